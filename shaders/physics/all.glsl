@@ -1,0 +1,11 @@
+// Every file of the physics, in the order of their dependence.
+#include "physics/records.glsl"
+#include "physics/random.glsl"
+#include "physics/source.glsl"
+#include "physics/conic.glsl"
+#include "physics/asphere.glsl"
+#include "physics/refraction.glsl"
+#include "physics/train.glsl"
+#include "physics/scatter.glsl"
+#include "physics/surface_function.glsl"
+#include "physics/path.glsl"

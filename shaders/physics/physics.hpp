@@ -1,0 +1,62 @@
+// The C++ side of the common language (see lang.glsl): everything in this folder as vkfv::physics::f64 (double,
+// the reference) and vkfv::physics::f32 (float, the device's arithmetic on the host).
+//
+// A scene, handed to the functions that take one, has:
+//   Surface surface_at(int index) const;
+//   Hit specimen_hit(real3 origin, real3 direction) const;
+//   real lattice_at(int column, int row) const;      only for analytic specimens with a lattice
+#pragma once
+
+#include <cstdint>
+
+#include <glm/glm.hpp>
+
+#define VKFV_FUNCTION inline
+#define VKFV_SCENE_FUNCTION template <class Scene>
+#define VKFV_SCENE_PARAMETER const Scene &scene,
+#define VKFV_SCENE scene,
+
+#define VKFV_PHYSICS_LANGUAGE                                                                                \
+    using glm::abs;                                                                                          \
+    using glm::ceil;                                                                                         \
+    using glm::clamp;                                                                                        \
+    using glm::cos;                                                                                          \
+    using glm::exp;                                                                                          \
+    using glm::floor;                                                                                        \
+    using glm::isinf;                                                                                        \
+    using glm::isnan;                                                                                        \
+    using glm::log;                                                                                          \
+    using glm::max;                                                                                          \
+    using glm::min;                                                                                          \
+    using glm::mix;                                                                                          \
+    using glm::pow;                                                                                          \
+    using glm::sin;                                                                                          \
+    using glm::sqrt;                                                                                         \
+    using glm::uvec2;                                                                                         \
+    using glm::uvec4;                                                                                        \
+    using uint = std::uint32_t;                                                                              \
+    inline uint multiply_high(uint a, uint b) {                                                              \
+        return static_cast<uint>((static_cast<std::uint64_t>(a) * b) >> 32);                                 \
+    }
+
+namespace vkfv::physics::f64 {
+using real = double;
+using real2 = glm::dvec2;
+using real3 = glm::dvec3;
+VKFV_PHYSICS_LANGUAGE
+#include "physics/all.glsl"
+} // namespace vkfv::physics::f64
+
+namespace vkfv::physics::f32 {
+using real = float;
+using real2 = glm::vec2;
+using real3 = glm::vec3;
+VKFV_PHYSICS_LANGUAGE
+#include "physics/all.glsl"
+} // namespace vkfv::physics::f32
+
+#undef VKFV_FUNCTION
+#undef VKFV_SCENE_FUNCTION
+#undef VKFV_SCENE_PARAMETER
+#undef VKFV_SCENE
+#undef VKFV_PHYSICS_LANGUAGE

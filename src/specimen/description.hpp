@@ -1,0 +1,63 @@
+// What a configuration says of the specimen, and the specimen made from it. Lengths in mm, angles in rad.
+#pragma once
+
+#include "specimen/specimen.hpp"
+
+#include "core/error.hpp"
+
+#include <cstdint>
+#include <filesystem>
+#include <optional>
+#include <string>
+
+namespace vkfv::specimen {
+
+enum class Kind { plane, step, sphere, sinusoid, chirp, rough, image, stl, gltf };
+enum class Representation { facets, analytic }; // of generated surfaces; files are always facets
+
+// Gaussian white noise of standard deviation `noise` on a grid of `pitch`, filtered by a Gaussian of standard
+// deviation `kernel`. What remains is about noise * pitch / (2 sqrt(pi) kernel); the log prints what it is.
+struct Roughness {
+    double noise = 0;
+    double kernel = 0;
+    double pitch = 0;
+    std::uint32_t seed = 0;
+};
+
+struct Description {
+    Kind kind = Kind::plane;
+    Representation representation = Representation::facets;
+    double size = 0;  // side of the square footprint, centred on the axis
+    double pitch = 0; // of the facets' grid (generated kinds) or of the image's pixels
+    double tilt_x = 0, tilt_y = 0; // plane: slope angles along x and y
+    double height = 0;             // step: upper minus lower level (upper at x > 0); sphere: of the cap over the
+                                   // plane (negative: a dimple); image: of the value 1 over the value 0
+    double wall = 0;               // step: width of the flank; 0: one pitch
+    double radius = 0;             // sphere
+    double amplitude = 0;          // sinusoid, chirp (half the peak-to-valley height)
+    double period = 0;             // sinusoid along x; chirp: at the lowest x
+    double period_stop = 0;        // chirp: at the highest x
+    double sq = 0;                 // rough: root mean square height
+    double correlation_length = 0; // rough: Gaussian autocorrelation exp(-(r/l)^2)
+    std::uint32_t seed = 0;        // rough
+    std::filesystem::path file;    // image, stl, gltf
+    double unit = 1;               // stl, gltf: mm per unit of the file
+    bool centre = true;            // stl, gltf: move the bounding box's centre to x = y = 0, mean height to z = 0
+    std::optional<Roughness> roughness; // added to any kind but stl and gltf
+    Material material;
+    SourceLocation where; // of the [specimen] table, for messages
+};
+
+// Throws InputError: missing or damaged files (with the byte offset), empty meshes, non-finite numbers, a
+// footprint of no extent.
+Specimen make(const Description& description);
+
+// Truth on the detector's pixels: the mean of the surface's height over each pixel's area (5 x 5 points), seen from
+// +z (the uppermost surface). Points off the specimen are NaN.
+surface::HeightMap truth(const Specimen& specimen, int columns, int rows, double x0, double y0, double pitch_x,
+                         double pitch_y);
+
+// The record the trace takes (bounds, kind, shape, lattice); top and bottom enclose the surface.
+physics::f64::SpecimenRecord record(const Specimen& specimen, int max_bounces);
+
+} // namespace vkfv::specimen

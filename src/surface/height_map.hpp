@@ -1,0 +1,23 @@
+// A height map: heights over a regular grid, as measured or as known to be true.
+#pragma once
+
+#include "core/grid.hpp"
+
+namespace vkfv::surface {
+
+// Heights in mm over the specimen frame's x and y in mm. NaN means "not measured".
+// Point (i, j) stands at (x0 + i * pitch_x, y0 + j * pitch_y); rows ascend with y.
+struct HeightMap {
+    Grid<double> height;
+    double x0 = 0;
+    double y0 = 0;
+    double pitch_x = 0;
+    double pitch_y = 0;
+
+    int columns() const { return height.columns; }
+    int rows() const { return height.rows; }
+    double x(int column) const { return x0 + column * pitch_x; }
+    double y(int row) const { return y0 + row * pitch_y; }
+};
+
+} // namespace vkfv::surface

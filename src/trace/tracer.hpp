@@ -1,0 +1,58 @@
+// From a seed and a focal position to an image: the trace, on a Vulkan device or on the host in double.
+#pragma once
+
+#include "core/grid.hpp"
+#include "optics/instrument.hpp"
+#include "specimen/specimen.hpp"
+
+#include <cstdint>
+#include <functional>
+#include <string>
+#include <vector>
+
+namespace vkfv::trace {
+
+enum class Traversal { automatic, ray_query, quadtree };
+
+struct TraceOptions {
+    std::uint64_t rays = 0; // launched per image
+    std::uint32_t seed = 1;
+    int max_bounces = 2;
+    Traversal traversal = Traversal::automatic;
+    std::uint64_t batch = 0; // rays in flight at once; 0: what suits the device
+    std::string device;      // selector: an index or a part of the name
+};
+
+// Where the emitted power of one image went; W. emitted = the sum of all others.
+struct Ledger {
+    struct Entry {
+        std::string name; // "detected", "escaped", "vignetted at imaging 3 (10x_0.28 3)", ...
+        double power = 0; // W
+        std::uint64_t rays = 0;
+    };
+    double emitted = 0;
+    std::vector<Entry> entries; // always the same names in the same order for one instrument
+    double residual() const;    // emitted minus the sum, W
+};
+
+// One exposure. Radiant flux per pixel in W and the standard error of each; rows ascend with y.
+struct Image {
+    Grid<double> flux;
+    Grid<double> standard_error;
+    Ledger ledger;
+    std::uint64_t rays = 0;
+    std::uint64_t detected = 0; // rays
+    double seconds = 0;         // wall clock of the trace; enters no image
+};
+
+// Constructed for one instrument, specimen and device, then const: exposures are independent of each other.
+class Tracer {
+  public:
+    virtual ~Tracer() = default;
+    // focal_height: z of the image, height of the focal plane in the specimen frame, mm. image: the index that keys
+    // the random numbers. The same arguments give the same bits whatever the batch size.
+    virtual Image expose(double focal_height, std::uint32_t image) const = 0;
+    virtual std::string description() const = 0; // device, traversal and the reason for both
+};
+
+} // namespace vkfv::trace

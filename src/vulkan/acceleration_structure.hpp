@@ -1,0 +1,42 @@
+// Bottom- and top-level acceleration structures for VK_KHR_ray_query.
+#pragma once
+
+#include "vulkan/buffer.hpp"
+
+#include <glm/glm.hpp>
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+namespace vkfv::vulkan {
+
+struct Box {
+    glm::vec3 minimum;
+    glm::vec3 maximum;
+};
+
+// One geometry under an identity instance. The caller gives primitives in the order the driver likes
+// (lavapipe splits by index: see median_order).
+class AccelerationStructure {
+  public:
+    static AccelerationStructure of_triangles(const Device& device, std::span<const glm::vec3> vertices,
+                                              std::span<const glm::uvec3> triangles);
+    // Boxes are padded by the builder: a ray lying in a face of a box misses on lavapipe.
+    static AccelerationStructure of_boxes(const Device& device, std::span<const Box> boxes);
+
+    vk::AccelerationStructureKHR top_level() const { return *top_; }
+    std::size_t bytes() const;
+
+  private:
+    AccelerationStructure() = default;
+    std::vector<Buffer> storage_;
+    vk::raii::AccelerationStructureKHR bottom_{nullptr};
+    vk::raii::AccelerationStructureKHR top_{nullptr};
+};
+
+// The order that recursive median splits along the longest axis give (left half = ceil(n/2)): result[k] is the index of
+// the primitive that stands k-th. lavapipe builds its tree by index, and is thousands of times slower without.
+std::vector<std::uint32_t> median_order(std::span<const glm::vec3> centres);
+
+} // namespace vkfv::vulkan

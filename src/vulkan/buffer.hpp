@@ -1,0 +1,52 @@
+// Device memory.
+#pragma once
+
+#include "vulkan/device.hpp"
+
+#include <cstddef>
+#include <span>
+#include <vector>
+
+namespace vkfv::vulkan {
+
+// Storage buffer (also uniform, transfer, device address, build input, indirect). Bytes; move-only.
+class Buffer {
+  public:
+    enum class Memory {
+        device, // fast; written and read through a staging copy
+        host,   // mapped and coherent; for read-back and for what the host writes often
+    };
+    // Throws DeviceError with sizes when the device cannot give `bytes` (rounded up to 64: a padding that keeps
+    // GPU-assisted validation quiet about the last scalar-packed record).
+    Buffer(const Device& device, std::size_t bytes, Memory memory = Memory::device);
+
+    std::size_t bytes() const { return bytes_; }
+    vk::Buffer handle() const { return *buffer_; }
+    vk::DeviceAddress address() const;
+
+    // Synchronous copies, any memory. Offsets and sizes in bytes, checked.
+    void write(std::span<const std::byte> data, std::size_t offset = 0);
+    void read(std::span<std::byte> data, std::size_t offset = 0) const;
+    void fill_zero();
+
+    template <class Value>
+    void write_values(std::span<const Value> values, std::size_t first = 0) {
+        write(std::as_bytes(values), first * sizeof(Value));
+    }
+    template <class Value>
+    std::vector<Value> read_values(std::size_t count, std::size_t first = 0) const {
+        std::vector<Value> values(count);
+        read(std::as_writable_bytes(std::span(values)), first * sizeof(Value));
+        return values;
+    }
+
+  private:
+    const Device* device_;
+    std::size_t bytes_ = 0;
+    Memory memory_;
+    vk::raii::Buffer buffer_{nullptr};
+    vk::raii::DeviceMemory allocation_{nullptr};
+    std::byte* mapped_ = nullptr;
+};
+
+} // namespace vkfv::vulkan

@@ -1,0 +1,61 @@
+// A Vulkan device fit for the trace, and how it was chosen.
+#pragma once
+
+#include <vulkan/vulkan_raii.hpp>
+
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace vkfv::vulkan {
+
+// What a physical device offers. `lacking` names what the trace needs and the device has not; empty: usable.
+struct DeviceReport {
+    int index = 0; // in the order of vkEnumeratePhysicalDevices
+    std::string name;
+    std::string driver; // driver name and version
+    std::string type;   // "discrete GPU", "integrated GPU", "CPU", ...
+    std::string api_version;
+    bool ray_query = false;
+    std::uint32_t subgroup_size = 0;
+    std::uint64_t memory_bytes = 0;         // the largest device-local heap
+    std::uint64_t max_storage_buffer_bytes = 0;
+    std::vector<std::string> lacking;
+    bool preferred = false; // the one that would be used
+};
+
+struct DeviceOptions {
+    std::string selector; // empty: the best; else an index or a part of the name
+};
+
+// The instance and one logical device with one compute queue. Move-only; construct valid, then const.
+class Device {
+  public:
+    // Prefers discrete over integrated over CPU; the reason stands in choice().
+    // Throws DeviceError that says what each device lacks, or that no driver was found, with the remedy.
+    explicit Device(const DeviceOptions& options = {});
+    ~Device();
+    Device(Device&&) noexcept;
+    Device& operator=(Device&&) noexcept;
+
+    const DeviceReport& report() const;
+    const std::string& choice() const; // one sentence: which device, and why
+    const vk::raii::Device& handle() const;
+    const vk::raii::PhysicalDevice& physical() const;
+    const vk::raii::Queue& queue() const;
+    std::uint32_t queue_family() const;
+    double timestamp_period_ns() const;
+    // Index of a memory type among `type_bits` with the properties; throws DeviceError when there is none.
+    std::uint32_t memory_type(std::uint32_t type_bits, vk::MemoryPropertyFlags properties) const;
+
+  private:
+    struct State;
+    std::unique_ptr<State> state_;
+};
+
+// Every device the loader finds; throws DeviceError if there is no Vulkan at all.
+std::vector<DeviceReport> list_devices();
+
+} // namespace vkfv::vulkan

@@ -1,0 +1,88 @@
+// Compute kernels, what they are bound to, and the recording of their dispatches.
+#pragma once
+
+#include "vulkan/acceleration_structure.hpp"
+#include "vulkan/buffer.hpp"
+
+#include <cstdint>
+#include <functional>
+#include <span>
+#include <string>
+#include <variant>
+#include <vector>
+
+namespace vkfv::vulkan {
+
+// A buffer or a top-level acceleration structure at a binding of set 0.
+struct Binding {
+    std::uint32_t slot;
+    std::variant<const Buffer*, const AccelerationStructure*> resource;
+};
+
+struct SpecializationConstant {
+    std::uint32_t id;
+    std::uint32_t value;
+};
+
+enum class BindingKind { storage_buffer, uniform_buffer, acceleration_structure };
+
+struct BindingDeclaration {
+    std::uint32_t slot;
+    BindingKind kind;
+};
+
+// A compute pipeline with push descriptors in set 0 and push constants at offset 0.
+class Kernel {
+  public:
+    Kernel(const Device& device, std::string name, std::span<const std::uint32_t> spirv,
+           std::vector<BindingDeclaration> bindings, std::uint32_t push_constant_bytes = 0,
+           std::span<const SpecializationConstant> constants = {});
+
+    const std::string& name() const { return name_; }
+    vk::Pipeline pipeline() const { return *pipeline_; }
+    vk::PipelineLayout layout() const { return *layout_; }
+    const std::vector<BindingDeclaration>& bindings() const { return bindings_; }
+    std::uint32_t push_constant_bytes() const { return push_constant_bytes_; }
+
+  private:
+    std::string name_;
+    std::vector<BindingDeclaration> bindings_;
+    std::uint32_t push_constant_bytes_;
+    vk::raii::DescriptorSetLayout set_layout_{nullptr};
+    vk::raii::PipelineLayout layout_{nullptr};
+    vk::raii::Pipeline pipeline_{nullptr};
+};
+
+// Commands recorded once and submitted; waits for their end. All barriers are made here.
+class Commands {
+  public:
+    explicit Commands(const Device& device, std::uint32_t timestamp_capacity = 0);
+
+    // Bindings must name every slot the kernel declares (throws std::logic_error otherwise).
+    void dispatch(const Kernel& kernel, std::span<const Binding> bindings,
+                  std::span<const std::byte> push_constants, std::uint32_t groups_x, std::uint32_t groups_y = 1);
+    template <class Push>
+    void dispatch(const Kernel& kernel, std::span<const Binding> bindings, const Push& push,
+                  std::uint32_t groups_x, std::uint32_t groups_y = 1) {
+        dispatch(kernel, bindings, std::as_bytes(std::span(&push, 1)), groups_x, groups_y);
+    }
+    void fill_zero(const Buffer& buffer);
+    void copy(const Buffer& from, const Buffer& to, std::size_t bytes);
+    // Everything before is finished and visible (shader, transfer, uniform, build, host read) to everything after.
+    void barrier();
+    void timestamp(); // the k-th call is seconds()[k]
+
+    // Submits and waits; throws RunError if the device is lost. May be called once.
+    void submit_and_wait();
+    std::vector<double> seconds() const; // timestamps since the first, s
+
+  private:
+    const Device* device_;
+    vk::raii::CommandPool pool_{nullptr};
+    vk::raii::CommandBuffers buffers_{nullptr};
+    vk::raii::QueryPool queries_{nullptr};
+    std::uint32_t timestamp_capacity_;
+    std::uint32_t timestamps_ = 0;
+};
+
+} // namespace vkfv::vulkan
