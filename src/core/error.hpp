@@ -15,7 +15,7 @@ struct SourceLocation {
     std::filesystem::path file;
     int line = 0;
     int column = 0;
-    std::optional<std::uint64_t> byte_offset;
+    std::optional<std::uint64_t> byte_offset{};
 
     // "file:line:column" or "file@offset", as far as known.
     std::string to_string() const;
