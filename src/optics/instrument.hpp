@@ -55,6 +55,9 @@ struct Instrument {
     FirstOrder first_order;
     double flux = 1;                 // W, emitted over the hemisphere
     double splitter_reflectance = 0.5;
+    // Surfaces of each train that light meets before the beam splitter: the illuminator's and the objective's number.
+    int illumination_surfaces_before_splitter = 0;
+    int imaging_surfaces_before_splitter = 0;
     // Front vertex of the objective above the plane of best focus (z = 0 of the specimen frame, scan at 0).
     double front_vertex_height = 0;
     std::vector<std::string> warnings;

@@ -1,0 +1,13 @@
+// What every kernel of the trace begins with: the physics, its bindings, the chosen traversal.
+#extension GL_GOOGLE_include_directive : require
+#extension GL_EXT_scalar_block_layout : require
+#extension GL_EXT_shader_explicit_arithmetic_types_int64 : require
+#extension GL_EXT_shader_atomic_int64 : require
+#extension GL_KHR_shader_subgroup_ballot : require
+#ifdef VKFV_RAY_QUERY
+#extension GL_EXT_ray_query : require
+#endif
+#include "physics/lang.glsl"
+#include "physics/all.glsl"
+#include "device/bindings.glsl"
+#include "device/specimen_hit.glsl"

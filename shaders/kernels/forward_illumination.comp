@@ -1,0 +1,59 @@
+#version 460
+#extension GL_GOOGLE_include_directive : require
+// First half of the forward trace: source, illumination, specimen, gate. Light that passes is appended to the survivors.
+#include "device/kernel.glsl"
+#include "device/tally.glsl"
+#include "device/survivors.glsl"
+
+layout(local_size_x = 128) in;
+
+// For timing alone, the path may end early: 0 the whole half, 1 after the illumination train, 2 after the specimen
+// (nothing is appended).
+layout(constant_id = 2) const uint stop_after = 0u;
+
+layout(push_constant, scalar) uniform Batch {
+    uvec2 first_path; // low and high word
+    uint count;       // paths of this batch
+};
+
+void main() {
+    tally_clear();
+    uint stride = gl_NumWorkGroups.x * gl_WorkGroupSize.x;
+    uint rounds = (count + stride - 1u) / stride;
+    for (uint round = 0u; round < rounds; ++round) {
+        uint index = round * stride + gl_GlobalInvocationID.x;
+        bool survives = false;
+        Departure departure;
+        if (index < count) {
+            uint carry;
+            uint low = uaddCarry(first_path.x, index, carry);
+            uvec2 path = uvec2(low, first_path.y + carry);
+            if (stop_after == 1u) {
+                Arrival arrival = illuminate(instrument, specimen, exposure, path);
+                departure.fate = arrival.fate;
+                // Never so far off; keeps the compiler from dropping what is timed.
+                survives = arrival.position.x + arrival.position.y + arrival.direction.z > real(1e30);
+            } else {
+                departure = trace_to_departure(instrument, specimen, exposure, path);
+                survives = departure.fate.status == PATH_ALIVE;
+                if (stop_after == 2u) {
+                    survives = departure.survivor.position.z + departure.survivor.direction_x +
+                               departure.survivor.direction_y > real(1e30);
+                }
+            }
+            if (departure.fate.status != PATH_ALIVE) {
+                tally_fate(departure.fate);
+            }
+        }
+        uvec4 ballot = subgroupBallot(survives);
+        uint first = 0u;
+        if (subgroupElect()) {
+            first = atomicAdd(survivor_count, subgroupBallotBitCount(ballot));
+        }
+        first = subgroupBroadcastFirst(first);
+        if (survives) {
+            survivors[first + subgroupBallotExclusiveBitCount(ballot)] = departure.survivor;
+        }
+    }
+    tally_flush();
+}

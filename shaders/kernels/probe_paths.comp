@@ -1,0 +1,41 @@
+#version 460
+#extension GL_GOOGLE_include_directive : require
+// Every path of a batch by itself: how and where it ended. Tests compare it with the host's reference.
+#include "device/kernel.glsl"
+
+layout(local_size_x = 64) in;
+
+struct PathEnd {
+    uint status;
+    int surface;
+    real x; // on the detector's plane where the path came so far, else on the specimen, else 0
+    real y;
+};
+
+layout(set = 0, binding = 6, scalar) writeonly buffer PathEnds { PathEnd path_ends[]; };
+
+layout(push_constant, scalar) uniform Batch {
+    uvec2 first_path;
+    uint count;
+};
+
+void main() {
+    uint index = gl_GlobalInvocationID.x;
+    if (index < count) {
+        uvec2 path = uvec2(first_path.x + index, first_path.y);
+        Departure departure = trace_to_departure(instrument, specimen, exposure, path);
+        PathEnd end;
+        end.status = departure.fate.status;
+        end.surface = departure.fate.surface;
+        end.x = real(0.0);
+        end.y = real(0.0);
+        if (departure.fate.status == PATH_ALIVE) {
+            Detection detection = image_survivor(instrument, specimen, exposure, departure.survivor);
+            end.status = detection.fate.status;
+            end.surface = detection.fate.surface;
+            end.x = detection.x;
+            end.y = detection.y;
+        }
+        path_ends[index] = end;
+    }
+}

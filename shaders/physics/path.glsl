@@ -1,0 +1,181 @@
+// Forward paths, in two halves: from the source to light that leaves the specimen, and from there to a pixel.
+
+#ifdef __cplusplus
+template <class Scene>
+Hit specimen_hit(const Scene& scene, real3 origin, real3 direction) {
+    return scene.specimen_hit(origin, direction);
+}
+#else
+Hit specimen_hit(real3 origin, real3 direction); // device/specimen_hit.glsl
+#endif
+
+VKFV_FUNCTION Fate make_fate(uint status, int surface) {
+    Fate fate;
+    fate.status = status;
+    fate.surface = surface;
+    return fate;
+}
+
+// Where the ledger counts a fate: the plain statuses first, then three for each surface.
+VKFV_FUNCTION int ledger_slot(Fate fate) {
+    return fate.surface < 0 ? int(fate.status)
+                            : PATH_STATUS_COUNT + 3 * fate.surface + int(fate.status - PATH_VIGNETTED);
+}
+
+// Start of scattered light: the hit point moved along the normal by eight rounding steps (2^-23) of the largest
+// coordinate. The point lies off its facet by a few such steps, which a fixed offset could not know; at 1 mm it is
+// moved by 1 nm.
+VKFV_FUNCTION real3 scatter_origin(Hit hit) {
+    real largest = max(max(abs(hit.position.x), abs(hit.position.y)), abs(hit.position.z));
+    return hit.position + hit.normal * (largest * real(9.5367431640625e-7));
+}
+
+// Could light that leaves the specimen still reach the detector? Conservative: see Instrument. direction: unit.
+VKFV_FUNCTION bool passes_gate(Instrument instrument, real top, real3 position, real3 direction) {
+    real rise = top - position.z;
+    real x = instrument.gate_position * (position.x * direction.z + direction.x * rise) +
+             instrument.gate_slope * direction.x;
+    real y = instrument.gate_position * (position.y * direction.z + direction.y * rise) +
+             instrument.gate_slope * direction.y;
+    real radius = instrument.gate_radius * direction.z;
+    return direction.z > real(0.0) && x * x + y * y <= radius * radius;
+}
+
+// Light at the specimen's top plane (specimen frame), on its way down, or why it did not come so far.
+struct Arrival {
+    Fate fate;       // PATH_ALIVE: it arrived
+    real3 position;  // on the plane z = top
+    real3 direction; // unit
+};
+
+VKFV_SCENE_FUNCTION VKFV_FUNCTION Arrival illuminate(VKFV_SCENE_PARAMETER Instrument instrument,
+                                                     SpecimenRecord specimen, Exposure exposure,
+                                                     uvec2 path) {
+    Draws draws = draw(exposure.seed, exposure.image, path, 0u);
+    Ray ray = emit_from_disc(instrument.source_radius, instrument.emission_sine, draws.u0, draws.u1, draws.u2,
+                             draws.u3);
+    ray.position.z = -instrument.source_distance;
+    TrainResult train = trace_train(VKFV_SCENE instrument.illumination_first, instrument.illumination_count, ray, 1u);
+    Ray down = fly_to_plane(train.ray, exposure.top_distance, real(1.0));
+    Arrival arrival;
+    arrival.fate = make_fate(train.status, train.surface);
+    // The specimen frame is the illumination's turned half a turn about x.
+    arrival.position = real3(down.position.x, -down.position.y, specimen.top);
+    arrival.direction = real3(down.direction.x, -down.direction.y, -down.direction.z);
+    return arrival;
+}
+
+// The first half of a path: fate PATH_ALIVE comes with a survivor.
+struct Departure {
+    Fate fate;
+    Survivor survivor;
+};
+
+// Scatter at the specimen until the light leaves it. Before the last permitted bounce every ray is tested against
+// the specimen; on the last one the gate comes first and the test is left to the second half.
+VKFV_SCENE_FUNCTION VKFV_FUNCTION Departure scatter_at_specimen(VKFV_SCENE_PARAMETER Instrument instrument,
+                                                                SpecimenRecord specimen, Exposure exposure,
+                                                                uvec2 path, real3 origin, real3 direction) {
+    uint status = PATH_ALIVE;
+    uint test_occlusion = 0u;
+    Hit hit = specimen_hit(VKFV_SCENE origin, direction);
+    status = hit.found == 1u ? PATH_ALIVE : PATH_OFF_SPECIMEN;
+    bool under_way = hit.found == 1u;
+    for (int bounce = 0; bounce < specimen.max_bounces && under_way; ++bounce) {
+        Scattered scattered = scatter(specimen.scatter_g, direction, hit.normal, exposure.seed, exposure.image, path,
+                                      1u + uint(bounce) * SCATTER_BLOCKS);
+        direction = scattered.direction;
+        origin = scatter_origin(hit);
+        under_way = scattered.accepted == 1u;
+        status = under_way ? PATH_ALIVE : PATH_NUMERICAL;
+        if (bounce + 1 == specimen.max_bounces) {
+            test_occlusion = 1u;
+            under_way = false;
+        } else if (under_way) {
+            hit = specimen_hit(VKFV_SCENE origin, direction);
+            under_way = hit.found == 1u;
+        }
+    }
+    if (status == PATH_ALIVE && !passes_gate(instrument, specimen.top, origin, direction)) {
+        status = PATH_ESCAPED;
+    }
+    Departure departure;
+    departure.fate = make_fate(status, -1);
+    departure.survivor.position = origin;
+    departure.survivor.direction_x = direction.x;
+    departure.survivor.direction_y = direction.y;
+    departure.survivor.test_occlusion = test_occlusion;
+    return departure;
+}
+
+VKFV_SCENE_FUNCTION VKFV_FUNCTION Departure trace_to_departure(VKFV_SCENE_PARAMETER Instrument instrument,
+                                                               SpecimenRecord specimen, Exposure exposure,
+                                                               uvec2 path) {
+    Arrival arrival = illuminate(VKFV_SCENE instrument, specimen, exposure, path);
+    Departure departure;
+    departure.fate = arrival.fate;
+    if (arrival.fate.status == PATH_ALIVE) {
+        departure = scatter_at_specimen(VKFV_SCENE instrument, specimen, exposure, path, arrival.position,
+                                        arrival.direction);
+    }
+    return departure;
+}
+
+// The second half: where on the detector.
+struct Detection {
+    Fate fate; // PATH_DETECTED comes with a pixel
+    int column;
+    int row;
+    real x; // detector's plane, axes parallel to the specimen's, inversion not removed, mm
+    real y;
+};
+
+VKFV_FUNCTION real3 survivor_direction(Survivor survivor) {
+    real axial = real(1.0) - survivor.direction_x * survivor.direction_x -
+                 survivor.direction_y * survivor.direction_y;
+    return real3(survivor.direction_x, survivor.direction_y, sqrt(max(axial, real(0.0))));
+}
+
+// Whether the light meets the specimen again: the test that the first half left.
+VKFV_SCENE_FUNCTION VKFV_FUNCTION bool survivor_occluded(VKFV_SCENE_PARAMETER Survivor survivor) {
+    bool occluded = false;
+    if (survivor.test_occlusion == 1u) {
+        Hit hit = specimen_hit(VKFV_SCENE survivor.position, survivor_direction(survivor));
+        occluded = hit.found == 1u;
+    }
+    return occluded;
+}
+
+VKFV_SCENE_FUNCTION VKFV_FUNCTION Detection image_survivor(VKFV_SCENE_PARAMETER Instrument instrument,
+                                                           SpecimenRecord specimen, Exposure exposure,
+                                                           Survivor survivor) {
+    real3 direction = survivor_direction(survivor);
+    bool occluded = survivor_occluded(VKFV_SCENE survivor);
+    // Re-based: on the top plane, whose distance to the front vertex is known in double.
+    real rise = (specimen.top - survivor.position.z) / direction.z;
+    Ray ray;
+    ray.position = real3(survivor.position.x + rise * direction.x, survivor.position.y + rise * direction.y,
+                         -exposure.top_distance);
+    ray.direction = direction;
+    ray.path_length = real(0.0);
+    TrainResult train = trace_train(VKFV_SCENE instrument.imaging_first, instrument.imaging_count, ray, 1u);
+    Ray arrived = fly_to_plane(train.ray, instrument.detector_distance, real(1.0));
+    real x = arrived.position.x;
+    real y = arrived.position.y;
+    real half_size = instrument.detector_half_size;
+    // Removing the inversion: a negative magnification turns the image half a turn.
+    real turn = instrument.magnification < real(0.0) ? real(-1.0) : real(1.0);
+    real scale = real(instrument.detector_pixels) / (real(2.0) * half_size);
+    bool on_detector = abs(x) < half_size && abs(y) < half_size;
+    bool finite = !(isnan(x) || isinf(x) || isnan(y) || isinf(y));
+    Detection detection;
+    detection.x = x;
+    detection.y = y;
+    detection.column = on_detector ? clamp(int(floor((turn * x + half_size) * scale)), 0, instrument.detector_pixels - 1) : 0;
+    detection.row = on_detector ? clamp(int(floor((turn * y + half_size) * scale)), 0, instrument.detector_pixels - 1) : 0;
+    uint landed = !finite ? PATH_NUMERICAL : on_detector ? PATH_DETECTED : PATH_OFF_DETECTOR;
+    detection.fate = occluded                      ? make_fate(PATH_BOUNCE_LIMIT, -1)
+                     : train.status != PATH_ALIVE ? make_fate(train.status, train.surface)
+                                                   : make_fate(landed, -1);
+    return detection;
+}

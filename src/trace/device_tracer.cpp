@@ -1,0 +1,351 @@
+#include "trace/device_tracer.hpp"
+
+#include "core/error.hpp"
+#include "specimen/description.hpp"
+#include "trace/device_records.hpp"
+#include "trace/device_specimen.hpp"
+#include "trace/ledger.hpp"
+#include "vulkan/kernel.hpp"
+
+#include "spirv/forward_illumination_quadtree.h"
+#include "spirv/forward_illumination_ray_query.h"
+#include "spirv/forward_imaging_quadtree.h"
+#include "spirv/forward_imaging_ray_query.h"
+#include "spirv/probe_paths_quadtree.h"
+#include "spirv/probe_paths_ray_query.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <chrono>
+#include <mutex>
+
+namespace vkfv::trace {
+
+namespace {
+
+constexpr std::uint32_t workgroup_size = 128; // of the forward kernels
+constexpr std::uint32_t rays_per_invocation = 16;
+
+struct Batch {
+    std::uint32_t first_low;
+    std::uint32_t first_high;
+    std::uint32_t count;
+};
+
+// Record of the kernel probe_paths.
+struct DevicePathEnd {
+    std::uint32_t status;
+    std::int32_t surface;
+    float x;
+    float y;
+};
+static_assert(sizeof(DevicePathEnd) == 16);
+
+std::vector<physics::f32::Surface> float_surfaces(const optics::Instrument& instrument) {
+    std::vector<physics::f32::Surface> surfaces;
+    surfaces.reserve(instrument.surfaces.size());
+    for (const auto& surface : instrument.surfaces) {
+        surfaces.push_back(to_float(surface));
+    }
+    return surfaces;
+}
+
+// Constant ids 0, 1 and 2 of the forward kernels.
+std::array<vulkan::SpecializationConstant, 3> constants_of(const specimen::Specimen& specimen,
+                                                           const optics::Instrument& instrument,
+                                                           std::uint32_t stop_after) {
+    return {{{0, specimen::record(specimen, 1).kind},
+             {1, static_cast<std::uint32_t>(ledger_slot_count(instrument))},
+             {2, stop_after}}};
+}
+
+// Device, buffers and bindings that every use of the trace on a device shares.
+class Bench {
+  public:
+    Bench(const optics::Instrument& instrument, const specimen::Specimen& specimen, const TraceOptions& options)
+        : instrument(instrument), device(vulkan::DeviceOptions{options.device}),
+          traversal(choose_traversal(device.report(), specimen, options.traversal, reason)),
+          device_specimen(device, specimen, traversal), host_record(specimen::record(specimen, options.max_bounces)),
+          seed(options.seed), surfaces(device, instrument.surfaces.size() * sizeof(physics::f32::Surface)),
+          parameters(device, sizeof(Parameters), vulkan::Buffer::Memory::host) {
+        surfaces.write_values(std::span<const physics::f32::Surface>(float_surfaces(instrument)));
+        constants.instrument = to_float(instrument.constants);
+        constants.specimen = device_specimen.record(options.max_bounces);
+    }
+
+    void set_exposure(double focal_height, std::uint32_t image) {
+        constants.exposure = to_float(make_exposure(instrument, host_record, focal_height, seed, image));
+        parameters.write_values(std::span<const Parameters>(&constants, 1));
+    }
+
+    // The scene's bindings (0, 1, 8 and up) and those given.
+    std::vector<vulkan::Binding> bindings(std::initializer_list<vulkan::Binding> further) const {
+        std::vector<vulkan::Binding> all = {{0, &surfaces}, {1, &parameters}};
+        const auto of_specimen = device_specimen.bindings();
+        all.insert(all.end(), of_specimen.begin(), of_specimen.end());
+        all.insert(all.end(), further.begin(), further.end());
+        return all;
+    }
+    std::vector<vulkan::BindingDeclaration> declarations(std::initializer_list<std::uint32_t> further) const {
+        using enum vulkan::BindingKind;
+        std::vector<vulkan::BindingDeclaration> all = {{0, storage_buffer}, {1, uniform_buffer}};
+        const auto of_specimen = device_specimen.declarations();
+        all.insert(all.end(), of_specimen.begin(), of_specimen.end());
+        for (const std::uint32_t slot : further) {
+            all.push_back({slot, storage_buffer});
+        }
+        return all;
+    }
+
+    bool ray_query() const { return traversal == Traversal::ray_query; }
+    bool software() const { return device.report().type == "CPU"; }
+
+    const optics::Instrument& instrument;
+    std::string reason; // of the traversal; before `traversal`, which sets it
+    vulkan::Device device;
+    Traversal traversal;
+    DeviceSpecimen device_specimen;
+    physics::f64::SpecimenRecord host_record;
+    std::uint32_t seed;
+    vulkan::Buffer surfaces;
+    vulkan::Buffer parameters;
+    Parameters constants{};
+};
+
+// The two kernels of the forward trace and what lies between them.
+class ForwardTrace {
+  public:
+    ForwardTrace(const Bench& bench, const specimen::Specimen& specimen, std::uint32_t batch,
+                 std::uint32_t stop_illumination = 0, std::uint32_t stop_imaging = 0)
+        : bench_(bench), batch_(batch),
+          survivors_(bench.device, std::size_t{batch} * sizeof(physics::f32::Survivor)),
+          survivor_count_(bench.device, sizeof(std::uint32_t)),
+          pixels_(bench.device, pixel_count() * sizeof(std::uint64_t)),
+          fates_(bench.device, ledger_slot_count(bench.instrument) * sizeof(std::uint64_t)),
+          illumination_(bench.device, "forward_illumination",
+                        bench.ray_query() ? std::span<const std::uint32_t>(forward_illumination_ray_query)
+                                          : std::span<const std::uint32_t>(forward_illumination_quadtree),
+                        bench.declarations({2, 4, 5}), sizeof(Batch),
+                        constants_of(specimen, bench.instrument, stop_illumination)),
+          imaging_(bench.device, "forward_imaging",
+                   bench.ray_query() ? std::span<const std::uint32_t>(forward_imaging_ray_query)
+                                     : std::span<const std::uint32_t>(forward_imaging_quadtree),
+                   bench.declarations({2, 3, 4, 5}), 0, constants_of(specimen, bench.instrument, stop_imaging)) {}
+
+    std::size_t pixel_count() const {
+        const auto side = static_cast<std::size_t>(bench_.instrument.constants.detector_pixels);
+        return side * side;
+    }
+
+    void clear(vulkan::Commands& commands) const {
+        commands.fill_zero(pixels_);
+        commands.fill_zero(fates_);
+        commands.barrier();
+    }
+
+    // Paths first ... first + count - 1, count at most the batch; timestamps around and between the halves if wanted.
+    void record(vulkan::Commands& commands, std::uint64_t first, std::uint32_t count, bool timed = false) const {
+        commands.fill_zero(survivor_count_);
+        commands.barrier();
+        const Batch batch{static_cast<std::uint32_t>(first), static_cast<std::uint32_t>(first >> 32), count};
+        const std::uint32_t per_group = workgroup_size * rays_per_invocation;
+        if (timed) {
+            commands.timestamp();
+        }
+        commands.dispatch(illumination_, bench_.bindings({{2, &survivors_}, {4, &fates_}, {5, &survivor_count_}}),
+                          batch, (count + per_group - 1) / per_group);
+        commands.barrier();
+        if (timed) {
+            commands.timestamp();
+        }
+        // The number of survivors is known to the device alone: a fixed grid strides over them.
+        const std::uint32_t groups = bench_.software() ? 64 : 4096;
+        commands.dispatch(imaging_,
+                          bench_.bindings({{2, &survivors_}, {3, &pixels_}, {4, &fates_}, {5, &survivor_count_}}),
+                          std::span<const std::byte>{}, groups);
+        commands.barrier();
+        if (timed) {
+            commands.timestamp();
+        }
+    }
+
+    std::vector<std::uint64_t> pixels() const { return pixels_.read_values<std::uint64_t>(pixel_count()); }
+    std::vector<std::uint64_t> fates() const {
+        return fates_.read_values<std::uint64_t>(ledger_slot_count(bench_.instrument));
+    }
+    std::uint32_t batch() const { return batch_; }
+
+  private:
+    const Bench& bench_;
+    std::uint32_t batch_;
+    vulkan::Buffer survivors_;
+    vulkan::Buffer survivor_count_;
+    vulkan::Buffer pixels_;
+    vulkan::Buffer fates_;
+    vulkan::Kernel illumination_;
+    vulkan::Kernel imaging_;
+};
+
+// Software devices like dispatches of about 100 ms; a GPU wants enough rays to fill it. 24 bytes a ray are kept.
+std::uint32_t suitable_batch(const Bench& bench, std::uint64_t asked, std::uint64_t rays) {
+    const std::uint64_t largest =
+        std::min<std::uint64_t>(bench.device.report().max_storage_buffer_bytes / sizeof(physics::f32::Survivor),
+                                std::uint64_t{1} << 27);
+    const std::uint64_t wanted = asked > 0 ? asked : bench.software() ? std::uint64_t{1} << 20 : std::uint64_t{1} << 25;
+    return static_cast<std::uint32_t>(std::max<std::uint64_t>(1, std::min({wanted, largest, rays})));
+}
+
+// Batches a submission: waiting for each costs a GPU 60 us, and a software device's dispatch is long enough.
+constexpr std::uint32_t batches_per_submission_gpu = 8;
+
+class DeviceTracer final : public Tracer {
+  public:
+    DeviceTracer(const optics::Instrument& instrument, const specimen::Specimen& specimen, const TraceOptions& options)
+        : instrument_(instrument), rays_(options.rays), bench_(instrument_, specimen, options),
+          forward_(bench_, specimen, suitable_batch(bench_, options.batch, options.rays)) {}
+
+    Image expose(double focal_height, std::uint32_t image) const override {
+        const std::scoped_lock lock(mutex_);
+        const auto start = std::chrono::steady_clock::now();
+        bench_.set_exposure(focal_height, image);
+        const std::uint64_t per_submission =
+            std::uint64_t{forward_.batch()} * (bench_.software() ? 1 : batches_per_submission_gpu);
+        for (std::uint64_t first = 0; first < rays_; first += per_submission) {
+            vulkan::Commands commands(bench_.device);
+            if (first == 0) {
+                forward_.clear(commands);
+            }
+            const std::uint64_t end = std::min(rays_, first + per_submission);
+            for (std::uint64_t path = first; path < end; path += forward_.batch()) {
+                forward_.record(commands, path,
+                                static_cast<std::uint32_t>(std::min<std::uint64_t>(forward_.batch(), end - path)));
+            }
+            commands.submit_and_wait();
+        }
+        Image result = make_image(instrument_, forward_.pixels(), forward_.fates(), rays_);
+        result.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+        return result;
+    }
+
+    std::string description() const override {
+        return fmt::format("{}; traversal {}", bench_.device.choice(), bench_.reason);
+    }
+
+  private:
+    optics::Instrument instrument_;
+    std::uint64_t rays_;
+    mutable std::mutex mutex_; // one exposure at a time: the buffers are shared
+    mutable Bench bench_;
+    ForwardTrace forward_;
+};
+
+double median(std::vector<double> values) {
+    std::ranges::nth_element(values, values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2));
+    return values[values.size() / 2];
+}
+
+} // namespace
+
+std::unique_ptr<Tracer> make_device_tracer(const optics::Instrument& instrument, const specimen::Specimen& specimen,
+                                           const TraceOptions& options) {
+    return std::make_unique<DeviceTracer>(instrument, specimen, options);
+}
+
+std::vector<PathEnd> device_paths(const optics::Instrument& instrument, const specimen::Specimen& specimen,
+                                  const TraceOptions& options, double focal_height, std::uint32_t image,
+                                  std::uint32_t first, std::uint32_t count) {
+    Bench bench(instrument, specimen, options);
+    bench.set_exposure(focal_height, image);
+    const vulkan::Buffer ends(bench.device, count * sizeof(DevicePathEnd));
+    const vulkan::Kernel kernel(bench.device, "probe_paths",
+                                bench.ray_query() ? std::span<const std::uint32_t>(probe_paths_ray_query)
+                                                  : std::span<const std::uint32_t>(probe_paths_quadtree),
+                                bench.declarations({6}), sizeof(Batch), constants_of(specimen, instrument, 0));
+    vulkan::Commands commands(bench.device);
+    commands.dispatch(kernel, bench.bindings({{6, &ends}}), Batch{first, 0, count}, (count + 63) / 64);
+    commands.barrier();
+    commands.submit_and_wait();
+    std::vector<PathEnd> result;
+    result.reserve(count);
+    for (const DevicePathEnd& end : ends.read_values<DevicePathEnd>(count)) {
+        result.push_back({end.status, end.surface, end.x, end.y});
+    }
+    return result;
+}
+
+StageTimes time_stages(const optics::Instrument& instrument, const specimen::Specimen& specimen,
+                       const TraceOptions& options, double focal_height, int runs) {
+    Bench bench(instrument, specimen, options);
+    bench.set_exposure(focal_height, 0);
+    const std::uint32_t batch = suitable_batch(bench, options.batch, options.rays);
+    const ForwardTrace whole(bench, specimen, batch);
+    const ForwardTrace to_specimen(bench, specimen, batch, 1);
+    const ForwardTrace to_departure(bench, specimen, batch, 2);
+    const ForwardTrace occlusion(bench, specimen, batch, 0, 2);
+    const ForwardTrace uncounted(bench, specimen, batch, 0, 1);
+
+    // Both halves of one form of the trace, s.
+    const auto time = [&](const ForwardTrace& trace) {
+        vulkan::Commands commands(bench.device, 3);
+        trace.clear(commands);
+        trace.record(commands, 0, batch, true);
+        commands.submit_and_wait();
+        const auto stamps = commands.seconds();
+        return std::array<double, 2>{stamps[1] - stamps[0], stamps[2] - stamps[1]};
+    };
+    for (const ForwardTrace* trace : {&whole, &to_specimen, &to_departure, &occlusion, &uncounted}) {
+        time(*trace); // warm-up: compilation and idle clocks
+    }
+    std::vector<double> total, illumination, departure, first, second, hidden, imaged;
+    for (int run = 0; run < runs; ++run) {
+        const auto all = time(whole);
+        total.push_back(all[0] + all[1]);
+        first.push_back(all[0]);
+        second.push_back(all[1]);
+        illumination.push_back(time(to_specimen)[0]);
+        departure.push_back(time(to_departure)[0]);
+        hidden.push_back(time(occlusion)[1]);
+        imaged.push_back(time(uncounted)[1]);
+    }
+    StageTimes result;
+    result.description = fmt::format("{}; traversal {}", bench.device.choice(), bench.reason);
+    result.rays = batch;
+    result.runs = runs;
+    const double whole_seconds = median(total);
+    result.seconds_per_ray = whole_seconds / batch;
+    const auto [least, most] = std::ranges::minmax(total);
+    result.spread = (most - least) / whole_seconds;
+    result.lenses = (median(illumination) + std::max(0.0, median(imaged) - median(hidden))) / whole_seconds;
+    result.specimen = (median(first) - median(illumination) + median(hidden)) / whole_seconds;
+    result.detector = std::max(0.0, median(second) - median(imaged)) / whole_seconds;
+
+    // Crossings from the fates of one run: a path that ended at a surface has crossed those before it.
+    vulkan::Commands commands(bench.device);
+    whole.clear(commands);
+    whole.record(commands, 0, batch);
+    commands.submit_and_wait();
+    const auto fates = whole.fates();
+    const auto& constants = instrument.constants;
+    using namespace physics::f64;
+    const int both = constants.illumination_count + constants.imaging_count;
+    double crossings = 0;
+    for (std::size_t slot = 0; slot < fates.size(); ++slot) {
+        int crossed = constants.illumination_count;
+        if (slot >= PATH_STATUS_COUNT) {
+            const int surface = static_cast<int>(slot - PATH_STATUS_COUNT) / 3;
+            crossed = surface < constants.imaging_first
+                          ? surface - constants.illumination_first + 1
+                          : constants.illumination_count + surface - constants.imaging_first + 1;
+        } else if (slot == PATH_DETECTED || slot == PATH_OFF_DETECTOR) {
+            crossed = both;
+        }
+        crossings += static_cast<double>(fates[slot]) * crossed;
+    }
+    result.surfaces_per_ray = crossings / batch;
+    result.surfaces_per_detected_ray = both;
+    return result;
+}
+
+} // namespace vkfv::trace

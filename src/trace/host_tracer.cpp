@@ -1,0 +1,134 @@
+#include "trace/host_tracer.hpp"
+
+#include "specimen/description.hpp"
+#include "specimen/intersector.hpp"
+#include "trace/ledger.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <chrono>
+#include <thread>
+
+namespace vkfv::trace {
+
+namespace {
+
+using namespace physics::f64;
+
+// What the shared physics asks of a scene.
+struct HostScene {
+    const std::vector<Surface>* surfaces;
+    const specimen::Intersector* intersector;
+
+    Surface surface_at(int index) const { return (*surfaces)[static_cast<std::size_t>(index)]; }
+    Hit specimen_hit(real3 origin, real3 direction) const { return intersector->hit(origin, direction); }
+};
+
+uvec2 path_of(std::uint64_t index) {
+    return {static_cast<uint>(index), static_cast<uint>(index >> 32)};
+}
+
+class HostTracer final : public Tracer {
+  public:
+    HostTracer(const optics::Instrument& instrument, const specimen::Specimen& specimen, const TraceOptions& options)
+        : instrument_(instrument), record_(specimen::record(specimen, options.max_bounces)), intersector_(specimen),
+          options_(options) {}
+
+    Image expose(double focal_height, std::uint32_t image) const override {
+        const auto start = std::chrono::steady_clock::now();
+        const std::size_t pixels = static_cast<std::size_t>(instrument_.constants.detector_pixels) *
+                                   static_cast<std::size_t>(instrument_.constants.detector_pixels);
+        const Exposure exposure = make_exposure(instrument_, record_, focal_height, options_.seed, image);
+        const HostScene scene{&instrument_.surfaces, &intersector_};
+        const unsigned workers = std::max(1u, std::thread::hardware_concurrency());
+        std::vector<std::vector<std::uint64_t>> counts(workers, std::vector<std::uint64_t>(pixels));
+        std::vector<std::vector<std::uint64_t>> fates(
+            workers, std::vector<std::uint64_t>(ledger_slot_count(instrument_)));
+        {
+            std::vector<std::jthread> threads;
+            for (unsigned worker = 0; worker < workers; ++worker) {
+                threads.emplace_back([&, worker] {
+                    for (std::uint64_t path = worker; path < options_.rays; path += workers) {
+                        trace_path(scene, exposure, path, counts[worker], fates[worker]);
+                    }
+                });
+            }
+        }
+        for (unsigned worker = 1; worker < workers; ++worker) {
+            std::ranges::transform(counts[0], counts[worker], counts[0].begin(), std::plus<>());
+            std::ranges::transform(fates[0], fates[worker], fates[0].begin(), std::plus<>());
+        }
+        Image result = make_image(instrument_, counts[0], fates[0], options_.rays);
+        result.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+        return result;
+    }
+
+    std::string description() const override {
+        return fmt::format("host reference in double on {} threads", std::thread::hardware_concurrency());
+    }
+
+  private:
+    void trace_path(const HostScene& scene, const Exposure& exposure, std::uint64_t index,
+                    std::vector<std::uint64_t>& counts, std::vector<std::uint64_t>& fates) const {
+        const auto& constants = instrument_.constants;
+        const Departure departure = trace_to_departure(scene, constants, record_, exposure, path_of(index));
+        Fate fate = departure.fate;
+        if (fate.status == PATH_ALIVE) {
+            const Detection detection = image_survivor(scene, constants, record_, exposure, departure.survivor);
+            fate = detection.fate;
+            if (fate.status == PATH_DETECTED) {
+                counts[static_cast<std::size_t>(detection.row * constants.detector_pixels + detection.column)] += 1;
+            }
+        }
+        fates[static_cast<std::size_t>(ledger_slot(fate))] += 1;
+    }
+
+    optics::Instrument instrument_;
+    SpecimenRecord record_;
+    specimen::Intersector intersector_;
+    TraceOptions options_;
+};
+
+} // namespace
+
+Exposure make_exposure(const optics::Instrument& instrument, const SpecimenRecord& specimen, double focal_height,
+                       std::uint32_t seed, std::uint32_t image) {
+    Exposure exposure{};
+    // In the specimen's frame the plane of best focus stands at focal_height and carries the objective along.
+    exposure.top_distance = focal_height + instrument.front_vertex_height - specimen.top;
+    exposure.seed = seed;
+    exposure.image = image;
+    return exposure;
+}
+
+std::unique_ptr<Tracer> make_host_tracer(const optics::Instrument& instrument, const specimen::Specimen& specimen,
+                                         const TraceOptions& options) {
+    return std::make_unique<HostTracer>(instrument, specimen, options);
+}
+
+std::vector<PathEnd> host_paths(const optics::Instrument& instrument, const specimen::Specimen& specimen,
+                                const TraceOptions& options, double focal_height, std::uint32_t image,
+                                std::uint64_t first, std::uint64_t count, double source_scale) {
+    const specimen::Intersector intersector(specimen);
+    const HostScene scene{&instrument.surfaces, &intersector};
+    const SpecimenRecord record = specimen::record(specimen, options.max_bounces);
+    const Exposure exposure = make_exposure(instrument, record, focal_height, options.seed, image);
+    physics::f64::Instrument constants = instrument.constants;
+    constants.source_radius *= source_scale;
+    constants.emission_sine = std::min(1.0, constants.emission_sine * source_scale);
+    std::vector<PathEnd> ends(count);
+    for (std::uint64_t index = 0; index < count; ++index) {
+        const Departure departure = trace_to_departure(scene, constants, record, exposure, path_of(first + index));
+        PathEnd& end = ends[index];
+        end.status = departure.fate.status;
+        end.surface = departure.fate.surface;
+        if (departure.fate.status == PATH_ALIVE) {
+            const Detection detection = image_survivor(scene, constants, record, exposure, departure.survivor);
+            end = {detection.fate.status, detection.fate.surface, detection.x, detection.y};
+        }
+    }
+    return ends;
+}
+
+} // namespace vkfv::trace

@@ -1,0 +1,122 @@
+#include "trace/ledger.hpp"
+
+#include <array>
+#include <cmath>
+
+namespace vkfv::trace {
+
+namespace {
+
+using namespace physics::f64;
+
+struct Slot {
+    std::string name;
+    double weight; // of the power a ray starts with: what passed the splitter
+};
+
+// The splitter's passes that a ray with this fate has behind it: 0, 1 or 2.
+int splitter_passes(const optics::Instrument& instrument, int surface) {
+    const auto& constants = instrument.constants;
+    if (surface < constants.illumination_first + constants.illumination_count) {
+        return surface - constants.illumination_first < instrument.illumination_surfaces_before_splitter ? 0 : 1;
+    }
+    return surface - constants.imaging_first < instrument.imaging_surfaces_before_splitter ? 1 : 2;
+}
+
+std::vector<Slot> slots_of(const optics::Instrument& instrument) {
+    const double reflected = instrument.splitter_reflectance;
+    const std::array<double, 3> weight = {1.0, reflected, reflected * (1.0 - reflected)};
+    std::vector<Slot> slots(ledger_slot_count(instrument));
+    const std::array<std::pair<const char*, double>, PATH_VIGNETTED> plain = {{
+        {"under way", weight[0]},
+        {"detected", weight[2]},
+        {"beside the specimen", weight[1]},
+        {"escaped outside the pupil", weight[1]},
+        {"bounce limit", weight[1]},
+        {"beside the detector", weight[2]},
+        {"numerical", weight[1]},
+    }};
+    for (std::size_t status = 0; status < plain.size(); ++status) {
+        slots[status] = {plain[status].first, plain[status].second};
+    }
+    const std::array<const char*, 3> kinds = {"vignetted", "missed", "totally reflected"};
+    for (std::size_t surface = 0; surface < instrument.surfaces.size(); ++surface) {
+        for (std::size_t kind = 0; kind < kinds.size(); ++kind) {
+            slots[PATH_STATUS_COUNT + 3 * surface + kind] = {
+                std::string(kinds[kind]) + " at " + instrument.surface_names[surface],
+                weight[static_cast<std::size_t>(splitter_passes(instrument, static_cast<int>(surface)))]};
+        }
+    }
+    return slots;
+}
+
+double aimed_share(const optics::Instrument& instrument) {
+    return instrument.constants.emission_sine * instrument.constants.emission_sine;
+}
+
+} // namespace
+
+double Ledger::residual() const {
+    double sum = 0;
+    for (const Entry& entry : entries) {
+        sum += entry.power;
+    }
+    return emitted - sum;
+}
+
+std::size_t ledger_slot_count(const optics::Instrument& instrument) {
+    return PATH_STATUS_COUNT + 3 * instrument.surfaces.size();
+}
+
+double detected_power_per_ray(const optics::Instrument& instrument, std::uint64_t rays) {
+    return instrument.flux * aimed_share(instrument) * instrument.splitter_reflectance *
+           (1.0 - instrument.splitter_reflectance) / static_cast<double>(rays);
+}
+
+Ledger make_ledger(const optics::Instrument& instrument, std::span<const std::uint64_t> counts, std::uint64_t rays) {
+    const std::vector<Slot> slots = slots_of(instrument);
+    const double per_ray = instrument.flux * aimed_share(instrument) / static_cast<double>(rays);
+    const double reflected = instrument.splitter_reflectance;
+    Ledger ledger;
+    ledger.emitted = instrument.flux;
+    ledger.entries.push_back({"detected", per_ray * slots[PATH_DETECTED].weight *
+                                              static_cast<double>(counts[PATH_DETECTED]),
+                              counts[PATH_DETECTED]});
+    ledger.entries.push_back({"not aimed at", instrument.flux * (1.0 - aimed_share(instrument)), 0});
+    // The splitter takes its share of every ray that passes it, known from the fates beyond.
+    std::uint64_t first_pass = 0;
+    std::uint64_t second_pass = 0;
+    for (std::size_t slot = 0; slot < slots.size(); ++slot) {
+        first_pass += slots[slot].weight < 1.0 ? counts[slot] : 0;
+        second_pass += slots[slot].weight < reflected ? counts[slot] : 0;
+    }
+    ledger.entries.push_back({"beam splitter, towards the specimen",
+                              per_ray * (1.0 - reflected) * static_cast<double>(first_pass), first_pass});
+    ledger.entries.push_back({"beam splitter, towards the detector",
+                              per_ray * reflected * reflected * static_cast<double>(second_pass), second_pass});
+    for (std::size_t slot = PATH_DETECTED + 1; slot < slots.size(); ++slot) {
+        ledger.entries.push_back(
+            {slots[slot].name, per_ray * slots[slot].weight * static_cast<double>(counts[slot]), counts[slot]});
+    }
+    return ledger;
+}
+
+Image make_image(const optics::Instrument& instrument, std::span<const std::uint64_t> pixel_counts,
+                 std::span<const std::uint64_t> ledger_counts, std::uint64_t rays) {
+    const int side = instrument.constants.detector_pixels;
+    const double per_ray = detected_power_per_ray(instrument, rays);
+    Image image;
+    image.flux = Grid<double>(side, side);
+    image.standard_error = Grid<double>(side, side);
+    for (std::size_t pixel = 0; pixel < pixel_counts.size(); ++pixel) {
+        const double count = static_cast<double>(pixel_counts[pixel]);
+        image.flux.values[pixel] = per_ray * count;
+        image.standard_error.values[pixel] = per_ray * std::sqrt(count * (1.0 - count / static_cast<double>(rays)));
+    }
+    image.ledger = make_ledger(instrument, ledger_counts, rays);
+    image.rays = rays;
+    image.detected = ledger_counts[PATH_DETECTED];
+    return image;
+}
+
+} // namespace vkfv::trace

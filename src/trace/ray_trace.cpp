@@ -1,0 +1,133 @@
+#include "trace/ray_trace.hpp"
+
+#include "trace/device_records.hpp"
+#include "vulkan/kernel.hpp"
+
+#include "spirv/trace_rays.h"
+
+#include <cmath>
+#include <limits>
+
+namespace vkfv::trace {
+
+namespace {
+
+// Record of the kernel trace_rays.
+struct DeviceTracedRay {
+    glm::vec3 position;
+    glm::vec3 direction;
+    float path_length;
+    std::uint32_t status;
+};
+static_assert(sizeof(DeviceTracedRay) == 32);
+
+std::string status_name(std::uint32_t status) {
+    using namespace physics::f64;
+    switch (status) {
+    case PATH_ALIVE:
+        return "ok";
+    case PATH_VIGNETTED:
+        return "vignetted";
+    case PATH_TOTAL_REFLECTION:
+        return "tir";
+    default:
+        return "missed";
+    }
+}
+
+TracedRay traced(glm::dvec3 position, glm::dvec3 direction, double path_length, std::uint32_t status) {
+    TracedRay result;
+    result.status = status_name(status);
+    if (status != physics::f64::PATH_ALIVE) {
+        const double nan = std::numeric_limits<double>::quiet_NaN();
+        result.x = result.y = result.l = result.m = result.n = result.path_length = nan;
+        return result;
+    }
+    result.x = position.x;
+    result.y = position.y;
+    result.l = direction.x;
+    result.m = direction.y;
+    result.n = direction.z;
+    result.path_length = path_length;
+    return result;
+}
+
+// In the frame of the first vertex, direction normalised.
+physics::f64::Ray entering(const optics::Instrument& instrument, const RayInput& input) {
+    physics::f64::Ray ray{};
+    ray.position = {input.x, input.y, input.z - instrument.first_order.working_distance};
+    ray.direction = glm::normalize(glm::dvec3(input.l, input.m, input.n));
+    return ray;
+}
+
+struct SurfacesAlone {
+    const std::vector<physics::f64::Surface>* surfaces;
+    physics::f64::Surface surface_at(int index) const { return (*surfaces)[static_cast<std::size_t>(index)]; }
+};
+
+} // namespace
+
+std::vector<TracedRay> trace_rays_on_host(const optics::Instrument& instrument, std::span<const RayInput> rays,
+                                          bool apertures) {
+    using namespace physics::f64;
+    const auto& constants = instrument.constants;
+    const SurfacesAlone scene{&instrument.surfaces};
+    std::vector<TracedRay> result;
+    result.reserve(rays.size());
+    for (const RayInput& input : rays) {
+        const TrainResult train = trace_train(scene, constants.imaging_first, constants.imaging_count,
+                                              entering(instrument, input), apertures ? 1u : 0u);
+        const Ray arrived = fly_to_plane(train.ray, constants.detector_distance, 1.0);
+        result.push_back(traced(arrived.position, arrived.direction, arrived.path_length, train.status));
+    }
+    return result;
+}
+
+std::vector<TracedRay> trace_rays_on_device(const optics::Instrument& instrument, std::span<const RayInput> rays,
+                                            bool apertures, const std::string& device_selector) {
+    if (rays.empty()) {
+        return {};
+    }
+    const vulkan::Device device(vulkan::DeviceOptions{device_selector});
+    std::vector<physics::f32::Surface> surfaces;
+    for (const auto& surface : instrument.surfaces) {
+        surfaces.push_back(to_float(surface));
+    }
+    std::vector<physics::f32::Ray> entering_rays;
+    entering_rays.reserve(rays.size());
+    for (const RayInput& input : rays) {
+        const auto ray = entering(instrument, input);
+        entering_rays.push_back({glm::vec3(ray.position), glm::vec3(ray.direction), 0.0f});
+    }
+    Parameters parameters{};
+    parameters.instrument = to_float(instrument.constants);
+
+    vulkan::Buffer surface_buffer(device, surfaces.size() * sizeof(surfaces[0]));
+    vulkan::Buffer parameter_buffer(device, sizeof(Parameters), vulkan::Buffer::Memory::host);
+    vulkan::Buffer ray_buffer(device, entering_rays.size() * sizeof(entering_rays[0]));
+    vulkan::Buffer traced_buffer(device, rays.size() * sizeof(DeviceTracedRay));
+    surface_buffer.write_values(std::span<const physics::f32::Surface>(surfaces));
+    parameter_buffer.write_values(std::span<const Parameters>(&parameters, 1));
+    ray_buffer.write_values(std::span<const physics::f32::Ray>(entering_rays));
+
+    using enum vulkan::BindingKind;
+    const vulkan::Kernel kernel(device, "trace_rays", ::trace_rays,
+                                {{0, storage_buffer}, {1, uniform_buffer}, {2, storage_buffer}, {3, storage_buffer}},
+                                2 * sizeof(std::uint32_t));
+    const std::array<vulkan::Binding, 4> bindings = {
+        {{0, &surface_buffer}, {1, &parameter_buffer}, {2, &ray_buffer}, {3, &traced_buffer}}};
+    const std::array<std::uint32_t, 2> push = {static_cast<std::uint32_t>(rays.size()), apertures ? 1u : 0u};
+    vulkan::Commands commands(device);
+    commands.dispatch(kernel, bindings, push, (push[0] + 63) / 64);
+    commands.barrier();
+    commands.submit_and_wait();
+
+    std::vector<TracedRay> result;
+    result.reserve(rays.size());
+    for (const auto& ray : traced_buffer.read_values<DeviceTracedRay>(rays.size())) {
+        result.push_back(traced(ray.position, ray.direction, ray.path_length, ray.status));
+    }
+    return result;
+}
+
+} // namespace vkfv::trace

@@ -1,0 +1,34 @@
+// Given rays through the imaging train, for comparison with other programs.
+#pragma once
+
+#include "optics/instrument.hpp"
+
+#include <span>
+#include <string>
+#include <vector>
+
+namespace vkfv::trace {
+
+// Specimen frame with its origin in the paraxial object plane; mm and direction cosines.
+struct RayInput {
+    double x = 0, y = 0, z = 0;
+    double l = 0, m = 0, n = 1;
+};
+
+// On the detector's plane, axes parallel to the specimen's, inversion not removed. path_length: optical path from the
+// given point, mm. status: "ok", "vignetted", "missed" or "tir"; coordinates are NaN unless the ray arrived.
+struct TracedRay {
+    double x = 0, y = 0;
+    double l = 0, m = 0, n = 0;
+    double path_length = 0;
+    std::string status;
+};
+
+std::vector<TracedRay> trace_rays_on_host(const optics::Instrument& instrument, std::span<const RayInput> rays,
+                                          bool apertures);
+
+// In float on a device; `device` as TraceOptions::device. Throws DeviceError.
+std::vector<TracedRay> trace_rays_on_device(const optics::Instrument& instrument, std::span<const RayInput> rays,
+                                            bool apertures, const std::string& device);
+
+} // namespace vkfv::trace
