@@ -1,39 +1,105 @@
 // From a focus stack to a height map, and from two height maps to their deviation.
+//
+// How a height is found. For every pixel:
+//   1. The images are averaged along z with Gaussian weights (smoothing_steps). Texture that is in focus
+//   stays in
+//      focus over several steps, ray noise does not: averaging before the focus measure squares the noise is
+//      what helps most. A symmetric average does not shift a symmetric focus curve.
+//   2. A windowed focus measure of every averaged image (focus_measure.hpp) gives the focus curve along z.
+//   3. The curve is averaged with the same weights, and the three points around its maximum give the height
+//   by a
+//      Gaussian fit (peak.hpp).
+//   4. The point is "not measured" where the maximum lies at either end of the scan, or rises no further
+//   above
+//      the curve's mean than ray noise alone would at `false_peak_rate`.
+// Near the ends of the scan the averages hold only the images there are, which draws heights within about two
+// smoothing_steps of an end inwards: plan the scan a depth of focus wider than the specimen at either side.
 #pragma once
 
 #include "core/grid.hpp"
 #include "surface/height_map.hpp"
+#include "topography/axial_average.hpp"
+#include "topography/focus_measure.hpp"
+#include "topography/peak.hpp"
 
 #include <span>
 #include <string>
+#include <vector>
 
 namespace vkfv::topography {
 
 struct TopographyOptions {
     std::string focus_measure = "standard-deviation"; // or "modified-laplacian"
-    int window_px = 7;                                // odd
-    std::string peak = "gaussian";
+    int window_px = 7;                                // odd, at least 3
+    std::string peak = "gaussian";                    // the only one
+    // Standard deviation, in steps of the scan, of the Gaussian average along z; 0 switches it off. Best at
+    // about half the half width of the focus curve: 3 for steps of an eighth of it, less for coarser steps.
+    double smoothing_steps = 3;
+    // Probability that a pixel without any texture, only ray noise, is given a height (an upper bound).
+    double false_peak_rate = 1e-3;
 };
 
 struct Topography {
     surface::HeightMap height; // NaN: not measured
-    Grid<double> quality;      // peak over median of the focus measure along z; dimensionless
+    Grid<double> quality;      // peak over mean of the focus curve; dimensionless, 1 is featureless
 };
 
-// stack[k] is the image at z[k] (mm, ascending, equidistant); pixel (0, 0) stands at (x0, y0), pitch in mm.
+// Evaluates a stack whose images come one at a time: beside a few numbers a pixel it holds
+// 2 (6 smoothing_steps + 1) images, however long the stack.
+class StackEvaluator {
+  public:
+    // Throws InputError where an option is out of its range.
+    explicit StackEvaluator(const TopographyOptions& options);
+
+    // The image at height z (mm). Images come in ascending z, equidistant to a hundredth of a step and all of
+    // one size, with finite values: InputError otherwise.
+    void add(const Grid<float>& image, double z);
+
+    // The heights of all images added; pixel (0, 0) stands at (x0, y0), pitch in mm. At least three images:
+    // InputError otherwise. Ends the evaluation: call it once.
+    Topography finish(double x0, double y0, double pitch);
+
+  private:
+    void measure(const Grid<float>& averaged_image);
+
+    FocusMeasure focus_measure_;
+    int window_px_;
+    double false_peak_rate_;
+    AxialAverage images_;
+    AxialAverage curves_;
+    int columns_ = 0;
+    int rows_ = 0;
+    std::vector<double> z_;
+    PeakTracker peaks_;
+};
+
+// The smallest quality (peak over mean of the focus curve) that counts as a peak. On a featureless surface
+// with independent noise in every pixel and image, the focus measure has the relative standard deviation s of
+// noise_deviation(), lessened by the averages along z; the largest of n values of a normal distribution
+// exceeds 1 + t s with probability below n exp(-t^2 / 2) / 2, the union bound with Chernoff's tail, which
+// gives t.
+double quality_threshold(FocusMeasure measure, int window_px, const AxialAverage& average, int images,
+                         double false_peak_rate);
+
+// A whole stack in memory: stack[k] is the image at z[k] (mm, ascending, equidistant).
 Topography reconstruct(std::span<const Grid<float>> stack, std::span<const double> z, double x0, double y0,
                        double pitch, const TopographyOptions& options);
 
-// Statistics of measured against true over the points measured, after the same levelling (and, with a positive
-// nesting index, the same L-filter) of both. Lengths in mm.
+// Statistics of measured against true over the points present in both, after the same levelling (and, with a
+// positive nesting index in mm, the same L-filter) of both. Lengths in mm; NaN where no point is present.
 struct Deviation {
     double sq_measured = 0;
     double sq_true = 0;
     double rms = 0;            // of the difference, offset and tilt removed
-    double correlation = 0;    // Pearson
-    double measured_share = 0; // of all points
+    double correlation = 0;    // Pearson; 0 where either is flat
+    double measured_share = 0; // points present in both, of all points
 };
 
+// Both maps stand on the same grid: std::invalid_argument otherwise.
 Deviation compare(const surface::HeightMap& measured, const surface::HeightMap& truth, double l_filter);
+
+// Measured less true after the treatment of compare(); its root mean square is Deviation::rms.
+surface::HeightMap deviation_map(const surface::HeightMap& measured, const surface::HeightMap& truth,
+                                 double l_filter);
 
 } // namespace vkfv::topography

@@ -1,0 +1,137 @@
+#include "surface/filter.hpp"
+
+#include "core/units.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numbers>
+#include <stdexcept>
+#include <vector>
+
+namespace vkfv::surface {
+namespace {
+
+// weights[r + k] of points k pitches away, k in -r..r. Not normalised: the caller divides by the weights
+// present.
+std::vector<double> gaussian_weights(double nesting_index, double pitch) {
+    const double alpha = std::sqrt(std::numbers::ln2 / pi);
+    const int radius = static_cast<int>(std::floor(nesting_index / pitch));
+    std::vector<double> weights(static_cast<std::size_t>(2 * radius + 1));
+    for (int k = -radius; k <= radius; ++k) {
+        const double u = k * pitch / (alpha * nesting_index);
+        weights[static_cast<std::size_t>(k + radius)] = std::exp(-pi * u * u);
+    }
+    return weights;
+}
+
+Grid<double> convolve_columns(const Grid<double>& grid, const std::vector<double>& weights) {
+    const int radius = static_cast<int>(weights.size() / 2);
+    Grid<double> result(grid.columns, grid.rows);
+    for (int row = 0; row < grid.rows; ++row)
+        for (int source = std::max(0, row - radius); source <= std::min(grid.rows - 1, row + radius);
+             ++source) {
+            const double weight = weights[static_cast<std::size_t>(source - row + radius)];
+            for (int column = 0; column < grid.columns; ++column)
+                result(column, row) += weight * grid(column, source);
+        }
+    return result;
+}
+
+Grid<double> convolve_rows(const Grid<double>& grid, const std::vector<double>& weights) {
+    const int radius = static_cast<int>(weights.size() / 2);
+    Grid<double> result(grid.columns, grid.rows);
+    for (int row = 0; row < grid.rows; ++row)
+        for (int column = 0; column < grid.columns; ++column) {
+            double sum = 0;
+            for (int source = std::max(0, column - radius);
+                 source <= std::min(grid.columns - 1, column + radius); ++source)
+                sum += weights[static_cast<std::size_t>(source - column + radius)] * grid(source, row);
+            result(column, row) = sum;
+        }
+    return result;
+}
+
+} // namespace
+
+Plane least_squares_plane(const HeightMap& map) {
+    // Two passes: centred sums do not cancel.
+    double count = 0, sum_x = 0, sum_y = 0, sum_z = 0;
+    const auto over_measured = [&map](auto&& visit) {
+        for (int row = 0; row < map.rows(); ++row)
+            for (int column = 0; column < map.columns(); ++column)
+                if (const double z = map.height(column, row); std::isfinite(z))
+                    visit(map.x(column), map.y(row), z);
+    };
+    over_measured([&](double x, double y, double z) {
+        count += 1;
+        sum_x += x;
+        sum_y += y;
+        sum_z += z;
+    });
+    Plane plane{.offset = std::numeric_limits<double>::quiet_NaN()};
+    if (count == 0)
+        return plane;
+    plane.x_centre = sum_x / count;
+    plane.y_centre = sum_y / count;
+    plane.offset = sum_z / count;
+
+    double xx = 0, xy = 0, yy = 0, xz = 0, yz = 0;
+    over_measured([&](double x, double y, double z) {
+        const double dx = x - plane.x_centre, dy = y - plane.y_centre, dz = z - plane.offset;
+        xx += dx * dx;
+        xy += dx * dy;
+        yy += dy * dy;
+        xz += dx * dz;
+        yz += dy * dz;
+    });
+    // On one line the determinant is zero but for the rounding of sums as large as the trace.
+    const double determinant = xx * yy - xy * xy;
+    const double rounding = count * std::numeric_limits<double>::epsilon() * (xx + yy) * (xx + yy);
+    if (determinant > rounding) {
+        plane.slope_x = (yy * xz - xy * yz) / determinant;
+        plane.slope_y = (xx * yz - xy * xz) / determinant;
+    }
+    return plane;
+}
+
+HeightMap remove_plane(HeightMap map, const Plane& plane) {
+    for (int row = 0; row < map.rows(); ++row)
+        for (int column = 0; column < map.columns(); ++column)
+            map.height(column, row) -= plane.height(map.x(column), map.y(row));
+    return map;
+}
+
+HeightMap gaussian_low_pass(const HeightMap& map, double nesting_index) {
+    if (!(nesting_index > 0))
+        throw std::invalid_argument("gaussian_low_pass: the nesting index must be positive");
+    Grid<double> values(map.columns(), map.rows());
+    Grid<double> present(map.columns(), map.rows());
+    for (std::size_t k = 0; k < values.values.size(); ++k)
+        if (const double z = map.height.values[k]; std::isfinite(z)) {
+            values.values[k] = z;
+            present.values[k] = 1;
+        }
+    const auto along_x = gaussian_weights(nesting_index, map.pitch_x);
+    const auto along_y = gaussian_weights(nesting_index, map.pitch_y);
+    const auto convolve = [&](const Grid<double>& grid) {
+        return convolve_columns(convolve_rows(grid, along_x), along_y);
+    };
+    const Grid<double> sum = convolve(values);
+    const Grid<double> weight = convolve(present);
+    HeightMap result = map;
+    for (std::size_t k = 0; k < result.height.values.size(); ++k)
+        result.height.values[k] = std::isfinite(map.height.values[k])
+                                      ? sum.values[k] / weight.values[k]
+                                      : std::numeric_limits<double>::quiet_NaN();
+    return result;
+}
+
+HeightMap remove_long_waves(const HeightMap& map, double nesting_index) {
+    HeightMap result = gaussian_low_pass(map, nesting_index);
+    for (std::size_t k = 0; k < result.height.values.size(); ++k)
+        result.height.values[k] = map.height.values[k] - result.height.values[k];
+    return result;
+}
+
+} // namespace vkfv::surface

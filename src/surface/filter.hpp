@@ -1,0 +1,38 @@
+// Levelling and areal filters. Every function here ignores not-measured points (NaN) and leaves them so.
+#pragma once
+
+#include "surface/height_map.hpp"
+
+namespace vkfv::surface {
+
+// height = offset + slope_x * (x - x_centre) + slope_y * (y - y_centre): the centre is the mean position of
+// the points fitted, which makes offset their mean height. mm; slopes are dimensionless.
+struct Plane {
+    double offset = 0;
+    double slope_x = 0;
+    double slope_y = 0;
+    double x_centre = 0;
+    double y_centre = 0;
+
+    double height(double x, double y) const {
+        return offset + slope_x * (x - x_centre) + slope_y * (y - y_centre);
+    }
+};
+
+// Least squares along z over the measured points. Points on one line leave the tilt open: it is then zero.
+// Without measured points the offset is NaN.
+Plane least_squares_plane(const HeightMap& map);
+
+HeightMap remove_plane(HeightMap map, const Plane& plane);
+
+// The linear areal Gaussian filter of ISO 16610-61: weighting function
+//   s(x, y) = exp(-pi ((x / (alpha L))^2 + (y / (alpha L))^2)) / (alpha L)^2,  alpha = sqrt(ln 2 / pi),
+// L the nesting index (cut-off wavelength, mm, positive: std::invalid_argument otherwise), at which half of a
+// sinusoid's amplitude passes. The function is cut off at L, where it has fallen to exp(-pi^2/ln 2) = 6.5e-7.
+// Near borders and not-measured points the weights present are normalised to one (ISO 16610-28).
+HeightMap gaussian_low_pass(const HeightMap& map, double nesting_index);
+
+// The L-filter: what the Gaussian low-pass does not keep.
+HeightMap remove_long_waves(const HeightMap& map, double nesting_index);
+
+} // namespace vkfv::surface

@@ -1,0 +1,276 @@
+#include "surface/image_file.hpp"
+
+#include "core/error.hpp"
+#include "core/units.hpp"
+
+#include <OpenImageIO/imageio.h>
+
+#include <fcntl.h>
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cerrno>
+#include <charconv>
+#include <cmath>
+#include <limits>
+#include <memory>
+#include <string_view>
+#include <system_error>
+#include <vector>
+
+namespace vkfv::surface {
+namespace {
+
+constexpr double mm_per_cm = 10.0;
+
+template <class Value>
+constexpr OIIO::TypeDesc type_of();
+template <>
+constexpr OIIO::TypeDesc type_of<std::uint8_t>() {
+    return OIIO::TypeDesc::UINT8;
+}
+template <>
+constexpr OIIO::TypeDesc type_of<std::int8_t>() {
+    return OIIO::TypeDesc::INT8;
+}
+template <>
+constexpr OIIO::TypeDesc type_of<std::uint16_t>() {
+    return OIIO::TypeDesc::UINT16;
+}
+template <>
+constexpr OIIO::TypeDesc type_of<std::int16_t>() {
+    return OIIO::TypeDesc::INT16;
+}
+template <>
+constexpr OIIO::TypeDesc type_of<std::uint32_t>() {
+    return OIIO::TypeDesc::UINT32;
+}
+template <>
+constexpr OIIO::TypeDesc type_of<std::int32_t>() {
+    return OIIO::TypeDesc::INT32;
+}
+template <>
+constexpr OIIO::TypeDesc type_of<float>() {
+    return OIIO::TypeDesc::FLOAT;
+}
+
+template <class Value>
+std::vector<Value> flipped_rows(const Grid<Value>& grid) {
+    std::vector<Value> result(grid.values.size());
+    for (int row = 0; row < grid.rows; ++row) {
+        const auto source = grid.values.begin() + static_cast<std::ptrdiff_t>(grid.index(0, row));
+        std::copy_n(source, grid.columns,
+                    result.begin() + static_cast<std::ptrdiff_t>(grid.index(0, grid.rows - 1 - row)));
+    }
+    return result;
+}
+
+// Makes a file's content or a folder's entries durable.
+void sync_to_disk(const std::filesystem::path& path) {
+    const int descriptor = ::open(path.c_str(), O_RDONLY);
+    const bool synced = descriptor >= 0 && ::fsync(descriptor) == 0;
+    const int error = errno;
+    if (descriptor >= 0)
+        ::close(descriptor);
+    if (!synced)
+        throw RunError(fmt::format("{}: cannot be synced to disk: {}", path.string(),
+                                   std::generic_category().message(error)));
+}
+
+// Removes the file put aside unless it was renamed.
+class AsideFile {
+  public:
+    explicit AsideFile(const std::filesystem::path& final_path) : final_path_(final_path), path_(final_path) {
+        path_.replace_filename("." + final_path.filename().string() + ".part");
+    }
+    AsideFile(const AsideFile&) = delete;
+    AsideFile& operator=(const AsideFile&) = delete;
+    ~AsideFile() {
+        std::error_code ignored;
+        std::filesystem::remove(path_, ignored);
+    }
+    const std::filesystem::path& path() const { return path_; }
+    void publish() {
+        sync_to_disk(path_);
+        std::error_code error;
+        std::filesystem::rename(path_, final_path_, error);
+        if (error)
+            throw RunError(fmt::format("{}: cannot be renamed to {}: {}", path_.string(),
+                                       final_path_.string(), error.message()));
+        const auto folder = final_path_.parent_path();
+        sync_to_disk(folder.empty() ? std::filesystem::path(".") : folder);
+    }
+
+  private:
+    std::filesystem::path final_path_;
+    std::filesystem::path path_;
+};
+
+template <class Value>
+void write_single_page(const std::filesystem::path& path, const Grid<Value>& image, const ImageTags& tags) {
+    AsideFile aside(path);
+    // By format name, not by extension: the name aside has none of its own.
+    const std::unique_ptr<OIIO::ImageOutput> output = OIIO::ImageOutput::create("tiff");
+    if (!output)
+        throw RunError(fmt::format("OpenImageIO offers no TIFF writer: {}", OIIO::geterror()));
+
+    OIIO::ImageSpec spec(image.columns, image.rows, 1, type_of<Value>());
+    spec.attribute("compression", "none");
+    // Without these OpenImageIO writes its version and the time of day.
+    spec.attribute("Software", "vkfv");
+    spec.attribute("DateTime", "1970:01:01 00:00:00");
+    if (!tags.description.empty())
+        spec.attribute("ImageDescription", tags.description);
+    if (tags.pitch_x > 0 && tags.pitch_y > 0) {
+        spec.attribute("ResolutionUnit", "cm");
+        spec.attribute("XResolution", static_cast<float>(mm_per_cm / tags.pitch_x));
+        spec.attribute("YResolution", static_cast<float>(mm_per_cm / tags.pitch_y));
+    }
+    const std::vector<Value> values = flipped_rows(image);
+    if (!output->open(aside.path().string(), spec) || !output->write_image(type_of<Value>(), values.data()) ||
+        !output->close())
+        throw RunError(fmt::format("{}: cannot be written: {}", path.string(), output->geterror()));
+    aside.publish();
+}
+
+[[noreturn]] void reject(const std::filesystem::path& path, std::string key, std::string found,
+                         std::string expected, std::string remedy) {
+    throw InputError({.where = {.file = path, .line = 0, .column = 0, .byte_offset = {}},
+                      .key = std::move(key),
+                      .found = std::move(found),
+                      .expected = std::move(expected),
+                      .remedy = std::move(remedy)});
+}
+
+std::unique_ptr<OIIO::ImageInput> open_image(const std::filesystem::path& path) {
+    if (!std::filesystem::is_regular_file(path))
+        reject(path, "", "no such file", "an image file",
+               "Check the path; it is relative to the file that names it.");
+    auto input = OIIO::ImageInput::open(path.string());
+    if (!input)
+        reject(path, "", OIIO::geterror(), "a readable image",
+               "Write the file anew, as single-channel TIFF.");
+    return input;
+}
+
+template <class Stored>
+Grid<float> read_values(OIIO::ImageInput& input, const OIIO::ImageSpec& spec,
+                        const std::filesystem::path& path, int page) {
+    Grid<Stored> stored(spec.width, spec.height);
+    if (!input.read_image(page, 0, 0, 1, type_of<Stored>(), stored.values.data()))
+        reject(path, fmt::format("page {}", page), input.geterror(),
+               "pixel values up to the end of the image",
+               "The file is truncated or damaged: write or copy it anew.");
+    const std::vector<Stored> rows = flipped_rows(stored);
+    Grid<float> image(spec.width, spec.height);
+    std::transform(rows.begin(), rows.end(), image.values.begin(),
+                   [](Stored value) { return static_cast<float>(value); });
+    return image;
+}
+
+Grid<float> read_page(OIIO::ImageInput& input, const std::filesystem::path& path, int page) {
+    if (!input.seek_subimage(page, 0))
+        reject(path, fmt::format("page {}", page), "no such page", "an image with that page",
+               "Count the pages of the file; the first is page 0.");
+    const OIIO::ImageSpec spec = input.spec();
+    if (spec.nchannels != 1 || spec.depth > 1)
+        reject(path, fmt::format("page {}", page),
+               fmt::format("{} channels, depth {}", spec.nchannels, spec.depth),
+               "one channel and two dimensions", "Convert the image to greyscale without alpha.");
+    switch (spec.format.basetype) {
+    case OIIO::TypeDesc::UINT8:
+        return read_values<std::uint8_t>(input, spec, path, page);
+    case OIIO::TypeDesc::INT8:
+        return read_values<std::int8_t>(input, spec, path, page);
+    case OIIO::TypeDesc::UINT16:
+        return read_values<std::uint16_t>(input, spec, path, page);
+    case OIIO::TypeDesc::INT16:
+        return read_values<std::int16_t>(input, spec, path, page);
+    case OIIO::TypeDesc::UINT32:
+        return read_values<std::uint32_t>(input, spec, path, page);
+    case OIIO::TypeDesc::INT32:
+        return read_values<std::int32_t>(input, spec, path, page);
+    default:
+        return read_values<float>(input, spec, path, page);
+    }
+}
+
+// The value of "key=value" on a line of its own.
+double described_number(const std::filesystem::path& path, std::string_view description,
+                        std::string_view key) {
+    const std::string label = fmt::format("\n{}=", key);
+    const auto at = description.find(label);
+    double value = 0;
+    bool good = at != std::string_view::npos;
+    if (good) {
+        const char* begin = description.data() + at + label.size();
+        const auto [end, error] = std::from_chars(begin, description.data() + description.size(), value);
+        good = error == std::errc() && std::isfinite(value);
+    }
+    if (!good)
+        reject(path, std::string(key), "no such number in the ImageDescription",
+               fmt::format("{}=<number>", key),
+               "Use a height map that vkfv wrote, or give a plain image with its pitch as a specimen.");
+    return value;
+}
+
+} // namespace
+
+void write_tiff(const std::filesystem::path& path, const Grid<float>& image, const ImageTags& tags) {
+    write_single_page(path, image, tags);
+}
+
+void write_tiff(const std::filesystem::path& path, const Grid<std::uint16_t>& image, const ImageTags& tags) {
+    write_single_page(path, image, tags);
+}
+
+int page_count(const std::filesystem::path& path) {
+    const auto input = open_image(path);
+    int count = 1;
+    while (input->seek_subimage(count, 0))
+        ++count;
+    return count;
+}
+
+Grid<float> read_image(const std::filesystem::path& path, int page) {
+    return read_page(*open_image(path), path, page);
+}
+
+void write_height_map(const std::filesystem::path& path, const HeightMap& map) {
+    Grid<float> heights(map.columns(), map.rows());
+    std::transform(map.height.values.begin(), map.height.values.end(), heights.values.begin(),
+                   [](double height) {
+                       return std::isfinite(height) ? static_cast<float>(height * um_per_mm)
+                                                    : std::numeric_limits<float>::quiet_NaN();
+                   });
+    write_tiff(
+        path, heights,
+        {.pitch_x = map.pitch_x,
+         .pitch_y = map.pitch_y,
+         .description = fmt::format("vkfv height map: heights in um, NaN is not measured, the first row has "
+                                    "the highest y; x0 and y0 are of the last row's first pixel\n"
+                                    "x0_mm={}\ny0_mm={}\npitch_x_mm={}\npitch_y_mm={}\n",
+                                    map.x0, map.y0, map.pitch_x, map.pitch_y)});
+}
+
+HeightMap read_height_map(const std::filesystem::path& path) {
+    const auto input = open_image(path);
+    const std::string description = input->spec().get_string_attribute("ImageDescription");
+    HeightMap map;
+    map.x0 = described_number(path, description, "x0_mm");
+    map.y0 = described_number(path, description, "y0_mm");
+    map.pitch_x = described_number(path, description, "pitch_x_mm");
+    map.pitch_y = described_number(path, description, "pitch_y_mm");
+    if (map.pitch_x <= 0 || map.pitch_y <= 0)
+        reject(path, "pitch_x_mm, pitch_y_mm", fmt::format("{}, {}", map.pitch_x, map.pitch_y),
+               "positive pitches", "Use a height map that vkfv wrote.");
+    const Grid<float> heights = read_page(*input, path, 0);
+    map.height = Grid<double>(heights.columns, heights.rows);
+    std::transform(heights.values.begin(), heights.values.end(), map.height.values.begin(), [](float height) {
+        return std::isfinite(height) ? height * mm_per_um : std::numeric_limits<double>::quiet_NaN();
+    });
+    return map;
+}
+
+} // namespace vkfv::surface

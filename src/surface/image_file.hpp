@@ -1,0 +1,47 @@
+// Images and height maps as TIFF files, through OpenImageIO.
+//
+// Row order: in memory row 0 has the lowest y; in a file the first row has the highest y, so that every
+// viewer shows the specimen as seen from +z, x to the right and y up. Writers flip the rows, readers flip
+// them back.
+//
+// Writers put the file aside under a hidden name in the same folder, sync it to disk and rename it: a file
+// under its final name is whole. The bytes depend on the arguments alone: no compression, no clock, no
+// version. They throw RunError where the disk fails. Readers throw InputError where the file is at fault.
+#pragma once
+
+#include "core/grid.hpp"
+#include "surface/height_map.hpp"
+
+#include <cstdint>
+#include <filesystem>
+#include <string>
+
+namespace vkfv::surface {
+
+// What a TIFF says of its pixels beside their values.
+struct ImageTags {
+    double pitch_x = 0; // mm in the object plane; 0 leaves out the resolution tags. Written in pixels per cm,
+    double pitch_y = 0; // which Fiji turns into micrometres for pitches below 10 um
+    std::string description; // ImageDescription: ASCII
+};
+
+// float32, one page.
+void write_tiff(const std::filesystem::path& path, const Grid<float>& image, const ImageTags& tags = {});
+// uint16, one page.
+void write_tiff(const std::filesystem::path& path, const Grid<std::uint16_t>& image,
+                const ImageTags& tags = {});
+
+// Number of pages (TIFF directories) of an image file.
+int page_count(const std::filesystem::path& path);
+
+// One page of a single-channel image in any format that OpenImageIO reads; integers keep their stored value
+// (they are not scaled to 0..1). `page` counts from 0.
+Grid<float> read_image(const std::filesystem::path& path, int page = 0);
+
+// float32 heights in micrometres; NaN means "not measured". The grid's origin and pitch stand in the
+// description as text that reads back exactly, since resolution tags are rounded.
+void write_height_map(const std::filesystem::path& path, const HeightMap& map);
+// Reads what write_height_map wrote; heights come back rounded to float32 micrometres.
+HeightMap read_height_map(const std::filesystem::path& path);
+
+} // namespace vkfv::surface

@@ -1,0 +1,73 @@
+#include "surface/filter.hpp"
+#include "surface/statistics.hpp"
+#include "topography/topography.hpp"
+
+#include <cmath>
+#include <limits>
+#include <stdexcept>
+
+namespace vkfv::topography {
+namespace {
+
+using surface::HeightMap;
+
+// Both maps with the points that both have, levelled and filtered alike.
+struct Treated {
+    HeightMap measured;
+    HeightMap truth;
+};
+
+Treated treat(HeightMap measured, HeightMap truth, double l_filter) {
+    if (measured.columns() != truth.columns() || measured.rows() != truth.rows())
+        throw std::invalid_argument("compare: both height maps must stand on the same grid");
+    for (std::size_t k = 0; k < measured.height.values.size(); ++k) {
+        double& a = measured.height.values[k];
+        double& b = truth.height.values[k];
+        if (!std::isfinite(a) || !std::isfinite(b))
+            a = b = std::numeric_limits<double>::quiet_NaN();
+    }
+    const auto level = [l_filter](HeightMap map) {
+        const surface::Plane plane = surface::least_squares_plane(map);
+        map = surface::remove_plane(std::move(map), plane);
+        return l_filter > 0 ? surface::remove_long_waves(map, l_filter) : map;
+    };
+    return {level(std::move(measured)), level(std::move(truth))};
+}
+
+HeightMap difference(const Treated& treated) {
+    HeightMap result = treated.measured;
+    for (std::size_t k = 0; k < result.height.values.size(); ++k)
+        result.height.values[k] -= treated.truth.height.values[k];
+    // Levelled maps differ by a levelled map; after an L-filter a rest of offset and tilt may remain.
+    return surface::remove_plane(result, surface::least_squares_plane(result));
+}
+
+} // namespace
+
+Deviation compare(const HeightMap& measured, const HeightMap& truth, double l_filter) {
+    const Treated treated = treat(measured, truth, l_filter);
+    const auto a = surface::height_parameters(treated.measured);
+    const auto b = surface::height_parameters(treated.truth);
+    double covariance = 0, count = 0;
+    for (std::size_t k = 0; k < treated.measured.height.values.size(); ++k)
+        if (const double z = treated.measured.height.values[k]; std::isfinite(z)) {
+            covariance += (z - a.mean) * (treated.truth.height.values[k] - b.mean);
+            count += 1;
+        }
+    Deviation result;
+    result.sq_measured = a.sq;
+    result.sq_true = b.sq;
+    result.rms = surface::height_parameters(difference(treated)).sq;
+    if (count == 0)
+        result.correlation = std::numeric_limits<double>::quiet_NaN();
+    else if (a.sq > 0 && b.sq > 0)
+        result.correlation = covariance / count / (a.sq * b.sq);
+    result.measured_share = a.measured_share;
+    return result;
+}
+
+HeightMap deviation_map(const HeightMap& measured, const HeightMap& truth, double l_filter) {
+    return difference(treat(measured, truth, l_filter));
+}
+
+} // namespace vkfv::topography
