@@ -10,11 +10,13 @@
 namespace vkfv::optics {
 
 // A medium between surfaces: indices at stated wavelengths, and between them the Cauchy formula
-// n = A + B / lambda^2 + C / lambda^4 through three of them (one: constant, two: A and B).
+// n = A + B / lambda^2 + C / lambda^4 through the three nearest (one: constant, two: A and B).
 struct Medium {
-    std::string name; // "air", "N-BK7", ...; as the source names it
-    std::vector<double> wavelengths_um;
+    std::string name;                   // "air", "N-BK7", ...; as the source names it
+    std::vector<double> wavelengths_um; // ascending; empty, with one index: the same at every wavelength
     std::vector<double> indices;
+
+    static Medium air(); // index 1: indices are relative to air
 
     // Throws InputError (naming medium and wavelength) outside the tabulated range widened by 10 nm.
     double index(double wavelength_um) const;
@@ -32,6 +34,7 @@ struct PrescribedSurface {
 };
 
 struct Prescription {
+    std::filesystem::path file; // that it was read from, for messages
     std::string name;
     std::string title;
     std::string source;  // where the numbers come from
@@ -44,8 +47,14 @@ struct Prescription {
     Prescription reversed() const; // light travels the other way
 };
 
-// Reads a prescription: `name` is a file's stem in `assets/<folder>` or a path ending in .toml, relative to `base`.
-// Throws InputError.
+// Where a prescription is: `name` is a path ending in .toml, relative to the folder `base`, or the stem of a
+// file that is looked for as assets/<folder>/<name>.toml beside `base`, beside the folders above it, and in
+// the assets that came with the program. None: no such file.
+std::optional<std::filesystem::path> find_prescription(const std::string& name,
+                                                       const std::filesystem::path& folder,
+                                                       const std::filesystem::path& base);
+
+// Reads the prescription that find_prescription finds. Throws InputError.
 Prescription load_prescription(const std::string& name, const std::filesystem::path& folder,
                                const std::filesystem::path& base);
 

@@ -1,0 +1,61 @@
+#include "optics/first_order.hpp"
+
+namespace vkfv::optics {
+
+RayTransfer RayTransfer::then(const RayTransfer& next) const {
+    return {.a = next.a * a + next.b * c,
+            .b = next.a * b + next.b * d,
+            .c = next.c * a + next.d * c,
+            .d = next.c * b + next.d * d};
+}
+
+RayTransfer free_space(double distance, double index) {
+    return {.b = distance / index};
+}
+
+RayTransfer transfer_to_surface(std::span<const physics::f64::Surface> train, std::size_t index) {
+    RayTransfer transfer;
+    for (std::size_t i = 0; i <= index; ++i) {
+        const auto& surface = train[i];
+        if (i > 0) {
+            transfer = transfer.then(free_space(surface.distance, surface.index_before));
+        }
+        if (i < index) {
+            transfer =
+                transfer.then({.c = -(surface.index_after - surface.index_before) * surface.curvature});
+        }
+    }
+    return transfer;
+}
+
+RayTransfer transfer_of_train(std::span<const physics::f64::Surface> train) {
+    if (train.empty()) {
+        return {};
+    }
+    const auto& last = train.back();
+    return transfer_to_surface(train, train.size() - 1)
+        .then({.c = -(last.index_after - last.index_before) * last.curvature});
+}
+
+double focal_length(const RayTransfer& train) {
+    return -1 / train.c;
+}
+
+double back_focal_distance(const RayTransfer& train) {
+    return -train.a / train.c;
+}
+
+double front_focal_distance(const RayTransfer& train) {
+    return -train.d / train.c;
+}
+
+ParaxialImage image_of(const RayTransfer& train, double object_distance) {
+    const double distance = -(train.b + object_distance * train.a) / (train.d + object_distance * train.c);
+    return {.distance = distance, .magnification = train.a + distance * train.c};
+}
+
+EntrancePupil entrance_pupil(const RayTransfer& before) {
+    return {.scale = before.b, .curvature = before.a / before.b};
+}
+
+} // namespace vkfv::optics

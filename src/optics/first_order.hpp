@@ -1,0 +1,50 @@
+// Paraxial optics of a train of surfaces, as linear maps of height and angle (Born and Wolf, "Principles of
+// Optics", section 4.4; Kloos, "Matrix Methods for Optical Layout"). Lengths in mm; the train stands in air.
+#pragma once
+
+#include "physics/physics.hpp"
+
+#include <span>
+
+namespace vkfv::optics {
+
+// From one plane to another: y' = a y + b v, v' = c y + d v, with the height y (mm) and the reduced angle v =
+// n u. Its determinant is 1.
+struct RayTransfer {
+    double a = 1;
+    double b = 0; // mm
+    double c = 0; // 1/mm; minus the power
+    double d = 1;
+
+    RayTransfer then(const RayTransfer& next) const;
+};
+
+RayTransfer free_space(double distance, double index = 1);
+
+// From the first vertex to the last, both refractions included; the first surface's distance is left out.
+RayTransfer transfer_of_train(std::span<const physics::f64::Surface> train);
+
+// From the first vertex to that of the surface `index`, in front of its refraction.
+RayTransfer transfer_to_surface(std::span<const physics::f64::Surface> train, std::size_t index);
+
+double focal_length(const RayTransfer& train);
+double back_focal_distance(const RayTransfer& train);  // last vertex to back focal point
+double front_focal_distance(const RayTransfer& train); // front focal point to first vertex
+
+// The image of a plane `object_distance` in front of the first vertex. Infinite where there is none.
+struct ParaxialImage {
+    double distance = 0; // behind the last vertex; negative: virtual
+    double magnification = 0;
+};
+ParaxialImage image_of(const RayTransfer& train, double object_distance);
+
+// The image of a stop that all of `before` stands in front of, seen from the object's side. A ray of height y
+// and slope u at the first vertex crosses the stop at `scale` times (y * curvature + u), zero for the pupil's
+// centre.
+struct EntrancePupil {
+    double scale = 0;     // mm
+    double curvature = 0; // 1/mm, reciprocal of the pupil's distance behind the first vertex; 0: telecentric
+};
+EntrancePupil entrance_pupil(const RayTransfer& before);
+
+} // namespace vkfv::optics
