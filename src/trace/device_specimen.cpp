@@ -1,0 +1,328 @@
+#include "trace/device_specimen.hpp"
+
+#include "core/error.hpp"
+#include "specimen/description.hpp"
+#include "trace/pyramid.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <span>
+#include <stdexcept>
+#include <variant>
+
+namespace vkfv::trace {
+
+namespace {
+
+constexpr std::uint32_t heights_slot = 8;
+constexpr std::uint32_t pyramid_slot = 9;
+constexpr std::uint32_t vertices_slot = 10;
+constexpr std::uint32_t triangles_slot = 11;
+constexpr std::uint32_t structure_slot = 12;
+constexpr std::uint32_t tiles_slot = 13;
+
+// A slot that the chosen kind of specimen leaves unread must be bound all the same.
+constexpr std::size_t unread_bytes = 64;
+
+// Boxes along a side of an analytic surface: with many more the tree costs more than the march it saves.
+constexpr int boxes_along_side = 64;
+
+physics::f32::SpecimenRecord to_float(const physics::f64::SpecimenRecord& record) {
+    constexpr float infinity = std::numeric_limits<float>::infinity();
+    physics::f32::SpecimenRecord result{};
+    result.x_min = static_cast<float>(record.x_min);
+    result.y_min = static_cast<float>(record.y_min);
+    result.x_max = static_cast<float>(record.x_max);
+    result.y_max = static_cast<float>(record.y_max);
+    result.bottom = static_cast<float>(record.bottom);
+    result.top = static_cast<float>(record.top);
+    result.bottom = result.bottom > record.bottom ? std::nextafter(result.bottom, -infinity) : result.bottom;
+    result.top = result.top < record.top ? std::nextafter(result.top, infinity) : result.top;
+    result.pitch_x = static_cast<float>(record.pitch_x);
+    result.pitch_y = static_cast<float>(record.pitch_y);
+    result.shape_parameter_0 = static_cast<float>(record.shape_parameter_0);
+    result.shape_parameter_1 = static_cast<float>(record.shape_parameter_1);
+    result.shape_parameter_2 = static_cast<float>(record.shape_parameter_2);
+    result.shape_parameter_3 = static_cast<float>(record.shape_parameter_3);
+    result.lipschitz = std::nextafter(static_cast<float>(record.lipschitz), infinity);
+    result.scatter_g = static_cast<float>(record.scatter_g);
+    result.columns = record.columns;
+    result.rows = record.rows;
+    result.max_bounces = record.max_bounces;
+    result.kind = record.kind;
+    result.shape = record.shape;
+    return result;
+}
+
+struct Triangulation {
+    std::vector<glm::vec3> vertices;
+    std::vector<glm::uvec3> triangles;
+};
+
+// Counter-clockwise seen from +z.
+Triangulation triangulate(const specimen::HeightField& field) {
+    const Grid<float>& heights = field.heights;
+    Triangulation result;
+    result.vertices.reserve(heights.values.size());
+    for (int row = 0; row < heights.rows; ++row) {
+        for (int column = 0; column < heights.columns; ++column) {
+            result.vertices.emplace_back(static_cast<float>(field.x_min + column * field.pitch_x),
+                                         static_cast<float>(field.y_min + row * field.pitch_y),
+                                         heights(column, row));
+        }
+    }
+    result.triangles.reserve(2 * heights.values.size());
+    for (int row = 0; row + 1 < heights.rows; ++row) {
+        for (int column = 0; column + 1 < heights.columns; ++column) {
+            const auto corner = static_cast<std::uint32_t>(heights.index(column, row));
+            const auto above = static_cast<std::uint32_t>(heights.index(column, row + 1));
+            result.triangles.emplace_back(corner, corner + 1, above + 1);
+            result.triangles.emplace_back(corner, above + 1, above);
+        }
+    }
+    return result;
+}
+
+std::vector<glm::uvec3> in_median_order(const std::vector<glm::vec3>& vertices,
+                                        const std::vector<glm::uvec3>& triangles) {
+    std::vector<glm::vec3> centres;
+    centres.reserve(triangles.size());
+    for (const glm::uvec3& triangle : triangles) {
+        centres.push_back((vertices[triangle.x] + vertices[triangle.y] + vertices[triangle.z]) / 3.0F);
+    }
+    std::vector<glm::uvec3> result;
+    result.reserve(triangles.size());
+    for (const std::uint32_t index : vulkan::median_order(centres)) {
+        result.push_back(triangles[index]);
+    }
+    return result;
+}
+
+// Blocks of the pyramid as boxes, in median order.
+std::vector<vulkan::Box> boxes_of(const Pyramid& pyramid, const specimen::Analytic& surface) {
+    const PyramidHeader& header = pyramid.header;
+    int level = 0;
+    while (level < header.top_level && std::max(header.cells_x, header.cells_y) >> level > boxes_along_side) {
+        ++level;
+    }
+    const int side = 1 << level;
+    const glm::dvec2 cell((surface.x_max - surface.x_min) / header.cells_x,
+                          (surface.y_max - surface.y_min) / header.cells_y);
+    std::vector<vulkan::Box> boxes;
+    std::vector<glm::vec3> centres;
+    for (int row = 0; row * side < header.cells_y; ++row) {
+        for (int column = 0; column * side < header.cells_x; ++column) {
+            const glm::vec2 range = pyramid.range(level, column, row);
+            const auto x = [&](int block) {
+                return surface.x_min + std::min(block * side, header.cells_x) * cell.x;
+            };
+            const auto y = [&](int block) {
+                return surface.y_min + std::min(block * side, header.cells_y) * cell.y;
+            };
+            boxes.push_back(
+                {glm::vec3(x(column), y(row), range.x), glm::vec3(x(column + 1), y(row + 1), range.y)});
+            centres.push_back(0.5F * (boxes.back().minimum + boxes.back().maximum));
+        }
+    }
+    std::vector<vulkan::Box> ordered;
+    ordered.reserve(boxes.size());
+    for (const std::uint32_t index : vulkan::median_order(centres)) {
+        ordered.push_back(boxes[index]);
+    }
+    return ordered;
+}
+
+// Makes the buffers of one specimen, each no larger than a kernel may reach.
+class Uploader {
+  public:
+    Uploader(const vulkan::Device& device, std::map<std::uint32_t, vulkan::Buffer>& buffers)
+        : device_(&device), buffers_(&buffers) {}
+
+    void expect(const char* what, std::size_t bytes) const {
+        const std::uint64_t limit = device_->report().max_storage_buffer_bytes;
+        if (bytes > limit) {
+            throw DeviceError(
+                fmt::format("the specimen's {} take {} bytes, but {} reaches at most {} bytes of one "
+                            "buffer; give the specimen fewer points (a larger pitch or a smaller size)",
+                            what, bytes, device_->report().name, limit));
+        }
+    }
+
+    vulkan::Buffer& reserve(std::uint32_t slot, const char* what, std::size_t bytes) {
+        expect(what, bytes);
+        return buffers_->emplace(slot, vulkan::Buffer(*device_, bytes)).first->second;
+    }
+
+    template <class Value>
+    void put(std::uint32_t slot, const char* what, const std::vector<Value>& values) {
+        reserve(slot, what, values.size() * sizeof(Value)).write_values(std::span<const Value>(values));
+    }
+
+    void put_pyramid(const Pyramid& pyramid) {
+        vulkan::Buffer& buffer = reserve(pyramid_slot, "pyramid of heights", pyramid.bytes());
+        buffer.write(std::as_bytes(std::span(&pyramid.header, 1)));
+        buffer.write(std::as_bytes(std::span(pyramid.ranges)), sizeof pyramid.header);
+    }
+
+    void leave_unread(std::uint32_t slot) {
+        if (!buffers_->contains(slot)) {
+            reserve(slot, "unread bytes", unread_bytes).fill_zero();
+        }
+    }
+
+  private:
+    const vulkan::Device* device_;
+    std::map<std::uint32_t, vulkan::Buffer>* buffers_;
+};
+
+Pyramid pyramid_of(const specimen::Specimen& specimen, const specimen::Analytic& surface) {
+    specimen::Analytic shape = surface;
+    shape.lattice.reset();
+    return make_pyramid(surface, specimen::record({shape, specimen.material}, 0));
+}
+
+std::vector<glm::uvec3> upload_triangles(Uploader& uploader, const std::vector<glm::vec3>& vertices,
+                                         const std::vector<glm::uvec3>& triangles) {
+    uploader.expect("vertices", vertices.size() * sizeof(glm::vec3));
+    uploader.expect("triangles", triangles.size() * sizeof(glm::uvec3));
+    std::vector<glm::uvec3> ordered = in_median_order(vertices, triangles);
+    uploader.put(vertices_slot, "vertices", vertices);
+    uploader.put(triangles_slot, "triangles", ordered);
+    return ordered;
+}
+
+} // namespace
+
+Traversal choose_traversal(const vulkan::DeviceReport& device, const specimen::Specimen& specimen,
+                           Traversal asked, std::string& reason) {
+    const bool mesh = std::holds_alternative<specimen::Mesh>(specimen.geometry);
+    if (mesh && asked == Traversal::quadtree) {
+        throw InputError(
+            {{},
+             "trace.traversal",
+             "quadtree",
+             "a specimen that is a height field; this one is a mesh of any triangles",
+             "Use traversal = \"auto\" or \"ray-query\", or give the specimen as a height map image."});
+    }
+    const bool needed = mesh || asked == Traversal::ray_query;
+    if (needed && !device.ray_query) {
+        throw DeviceError(fmt::format(
+            "{} has no VK_KHR_ray_query, which {}; {}", device.name,
+            mesh ? "a specimen made of a mesh needs" : "traversal = \"ray-query\" asks for",
+            mesh ? "use another device (--devices lists them) or give the specimen as a height map image"
+                 : "use another device (--devices lists them) or traversal = \"quadtree\""));
+    }
+    if (mesh) {
+        reason = "ray-query (a mesh needs it)";
+        return Traversal::ray_query;
+    }
+    if (asked != Traversal::automatic) {
+        reason = asked == Traversal::ray_query ? "ray-query (as asked)" : "quadtree (as asked)";
+        return asked;
+    }
+    if (!device.ray_query) {
+        reason = "quadtree (the device has no ray query)";
+        return Traversal::quadtree;
+    }
+    if (device.type == "CPU") {
+        reason = "quadtree (faster than ray query on a CPU)";
+        return Traversal::quadtree;
+    }
+    reason = "ray-query (the device has it)";
+    return Traversal::ray_query;
+}
+
+DeviceSpecimen::DeviceSpecimen(const vulkan::Device& device, const specimen::Specimen& specimen,
+                               Traversal traversal)
+    : record_(to_float(specimen::record(specimen, 0))) {
+    if (traversal == Traversal::automatic) {
+        throw std::logic_error("DeviceSpecimen takes a traversal that has been chosen");
+    }
+    const bool ray_query = traversal == Traversal::ray_query;
+    Uploader uploader(device, buffers_);
+    if (const auto* field = std::get_if<specimen::HeightField>(&specimen.geometry)) {
+        if (ray_query) {
+            const Triangulation surface = triangulate(*field);
+            const auto triangles = upload_triangles(uploader, surface.vertices, surface.triangles);
+            structure_ = std::make_unique<vulkan::AccelerationStructure>(
+                vulkan::AccelerationStructure::of_triangles(device, surface.vertices, triangles));
+        } else {
+            uploader.expect("pyramid of heights",
+                            pyramid_bytes(field->heights.columns - 1, field->heights.rows - 1));
+            uploader.put(heights_slot, "heights", field->heights.values);
+            uploader.put_pyramid(make_pyramid(*field));
+        }
+    } else if (const auto* surface = std::get_if<specimen::Analytic>(&specimen.geometry)) {
+        if (surface->lattice) {
+            uploader.put(heights_slot, "heights", surface->lattice->heights.values);
+        }
+        const Pyramid pyramid = pyramid_of(specimen, *surface);
+        if (ray_query) {
+            const std::vector<vulkan::Box> boxes = boxes_of(pyramid, *surface);
+            uploader.put(tiles_slot, "tiles", boxes);
+            structure_ = std::make_unique<vulkan::AccelerationStructure>(
+                vulkan::AccelerationStructure::of_boxes(device, boxes));
+        } else {
+            uploader.put_pyramid(pyramid);
+        }
+    } else {
+        const auto& mesh = std::get<specimen::Mesh>(specimen.geometry);
+        if (!ray_query) {
+            throw std::logic_error("a mesh is traced by ray query");
+        }
+        const auto triangles = upload_triangles(uploader, mesh.vertices, mesh.triangles);
+        structure_ = std::make_unique<vulkan::AccelerationStructure>(
+            vulkan::AccelerationStructure::of_triangles(device, mesh.vertices, triangles));
+    }
+    uploader.leave_unread(heights_slot);
+    if (ray_query) {
+        uploader.leave_unread(vertices_slot);
+        uploader.leave_unread(triangles_slot);
+        uploader.leave_unread(tiles_slot);
+    }
+}
+
+std::vector<vulkan::Binding> DeviceSpecimen::bindings() const {
+    std::vector<vulkan::Binding> result;
+    for (const auto& [slot, buffer] : buffers_) {
+        result.push_back({slot, &buffer});
+    }
+    if (structure_) {
+        result.push_back({structure_slot, structure_.get()});
+    }
+    return result;
+}
+
+std::vector<vulkan::BindingDeclaration> DeviceSpecimen::declarations() const {
+    std::vector<vulkan::BindingDeclaration> result;
+    for (const auto& [slot, buffer] : buffers_) {
+        result.push_back({slot, vulkan::BindingKind::storage_buffer});
+    }
+    if (structure_) {
+        result.push_back({structure_slot, vulkan::BindingKind::acceleration_structure});
+    }
+    return result;
+}
+
+std::vector<vulkan::SpecializationConstant> DeviceSpecimen::constants() const {
+    return {{0, record_.kind}};
+}
+
+physics::f32::SpecimenRecord DeviceSpecimen::record(int max_bounces) const {
+    physics::f32::SpecimenRecord result = record_;
+    result.max_bounces = max_bounces;
+    return result;
+}
+
+std::size_t DeviceSpecimen::bytes() const {
+    std::size_t total = structure_ ? structure_->bytes() : 0;
+    for (const auto& [slot, buffer] : buffers_) {
+        total += buffer.bytes();
+    }
+    return total;
+}
+
+} // namespace vkfv::trace

@@ -1,0 +1,41 @@
+// A specimen in a device's memory, in the form that one traversal takes.
+#pragma once
+
+#include "specimen/specimen.hpp"
+#include "trace/tracer.hpp"
+#include "vulkan/kernel.hpp"
+
+#include <cstdint>
+#include <map>
+#include <memory>
+#include <string>
+#include <vector>
+
+namespace vkfv::trace {
+
+// The traversal for a specimen on a device: the one asked for, or the faster one if automatic. reason: a
+// sentence's part that names it and says why. Throws InputError (the quadtree needs a height field) or
+// DeviceError (ray query asked for or needed where the device has none).
+Traversal choose_traversal(const vulkan::DeviceReport& device, const specimen::Specimen& specimen,
+                           Traversal asked, std::string& reason);
+
+// What shaders/device/specimen_hit.glsl is bound to: the slots 8 and up of set 0. The device must outlive it.
+class DeviceSpecimen {
+  public:
+    // traversal: never automatic. Throws DeviceError with sizes when a part exceeds what a buffer may span.
+    DeviceSpecimen(const vulkan::Device& device, const specimen::Specimen& specimen, Traversal traversal);
+
+    std::vector<vulkan::Binding> bindings() const; // valid as long as this object, also when it is moved
+    std::vector<vulkan::BindingDeclaration> declarations() const;
+    std::vector<vulkan::SpecializationConstant> constants() const; // the specimen's kind
+    // In float; bottom and top still enclose the surface.
+    physics::f32::SpecimenRecord record(int max_bounces) const;
+    std::size_t bytes() const; // device memory taken
+
+  private:
+    physics::f32::SpecimenRecord record_{};
+    std::map<std::uint32_t, vulkan::Buffer> buffers_; // by slot
+    std::unique_ptr<vulkan::AccelerationStructure> structure_;
+};
+
+} // namespace vkfv::trace
