@@ -16,8 +16,9 @@ class Buffer {
         device, // fast; written and read through a staging copy
         host,   // mapped and coherent; for read-back and for what the host writes often
     };
-    // Throws DeviceError with sizes when the device cannot give `bytes` (rounded up to 64: a padding that keeps
-    // GPU-assisted validation quiet about the last scalar-packed record).
+    // Contents are undefined. Throws DeviceError with sizes when the device cannot give `bytes`. The
+    // allocation is at least 64 bytes larger and a multiple of 64: GPU-assisted validation misreads the last
+    // scalar-packed record.
     Buffer(const Device& device, std::size_t bytes, Memory memory = Memory::device);
 
     std::size_t bytes() const { return bytes_; }

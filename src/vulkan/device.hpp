@@ -5,7 +5,7 @@
 
 #include <cstdint>
 #include <memory>
-#include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -18,9 +18,9 @@ struct DeviceReport {
     std::string driver; // driver name and version
     std::string type;   // "discrete GPU", "integrated GPU", "CPU", ...
     std::string api_version;
-    bool ray_query = false;
+    bool ray_query = false; // not needed: the trace has other traversals
     std::uint32_t subgroup_size = 0;
-    std::uint64_t memory_bytes = 0;         // the largest device-local heap
+    std::uint64_t memory_bytes = 0; // the largest device-local heap
     std::uint64_t max_storage_buffer_bytes = 0;
     std::vector<std::string> lacking;
     bool preferred = false; // the one that would be used
@@ -30,7 +30,14 @@ struct DeviceOptions {
     std::string selector; // empty: the best; else an index or a part of the name
 };
 
+// The index into `reports` of the device to use: the selector's, else discrete before integrated before
+// virtual before CPU, and the larger memory among equals. Throws DeviceError that says what each device
+// lacks.
+std::size_t choose_device(std::span<const DeviceReport> reports, const DeviceOptions& options);
+
 // The instance and one logical device with one compute queue. Move-only; construct valid, then const.
+// Buffers, kernels and commands point to it: it must outlive them, unmoved. With VKFV_VALIDATION the Khronos
+// layer checks every call, and a message of it aborts the program.
 class Device {
   public:
     // Prefers discrete over integrated over CPU; the reason stands in choice().

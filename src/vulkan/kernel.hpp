@@ -5,7 +5,6 @@
 #include "vulkan/buffer.hpp"
 
 #include <cstdint>
-#include <functional>
 #include <span>
 #include <string>
 #include <variant>
@@ -53,24 +52,33 @@ class Kernel {
     vk::raii::Pipeline pipeline_{nullptr};
 };
 
-// Commands recorded once and submitted; waits for their end. All barriers are made here.
+// Commands recorded once and submitted; waits for their end. All barriers are made here: one stands before
+// the first command and one after the last, those between are the caller's barrier().
 class Commands {
   public:
     explicit Commands(const Device& device, std::uint32_t timestamp_capacity = 0);
 
-    // Bindings must name every slot the kernel declares (throws std::logic_error otherwise).
+    // Bindings must name every slot the kernel declares (throws std::logic_error otherwise). Throws
+    // DeviceError for a buffer larger than a descriptor may span on this device: reach that one by its
+    // address.
     void dispatch(const Kernel& kernel, std::span<const Binding> bindings,
-                  std::span<const std::byte> push_constants, std::uint32_t groups_x, std::uint32_t groups_y = 1);
+                  std::span<const std::byte> push_constants, std::uint32_t groups_x,
+                  std::uint32_t groups_y = 1);
     template <class Push>
     void dispatch(const Kernel& kernel, std::span<const Binding> bindings, const Push& push,
                   std::uint32_t groups_x, std::uint32_t groups_y = 1) {
         dispatch(kernel, bindings, std::as_bytes(std::span(&push, 1)), groups_x, groups_y);
     }
     void fill_zero(const Buffer& buffer);
-    void copy(const Buffer& from, const Buffer& to, std::size_t bytes);
-    // Everything before is finished and visible (shader, transfer, uniform, build, host read) to everything after.
+    void copy(const Buffer& from, const Buffer& to, std::size_t bytes, std::size_t from_offset = 0,
+              std::size_t to_offset = 0);
+    // Everything before is finished and visible (shader, transfer, uniform, build, host read) to everything
+    // after.
     void barrier();
     void timestamp(); // the k-th call is seconds()[k]
+
+    // For what has no function here.
+    const vk::raii::CommandBuffer& handle() const { return buffers_.front(); }
 
     // Submits and waits; throws RunError if the device is lost. May be called once.
     void submit_and_wait();
@@ -83,6 +91,7 @@ class Commands {
     vk::raii::QueryPool queries_{nullptr};
     std::uint32_t timestamp_capacity_;
     std::uint32_t timestamps_ = 0;
+    bool submitted_ = false;
 };
 
 } // namespace vkfv::vulkan

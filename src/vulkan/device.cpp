@@ -1,0 +1,440 @@
+#include "vulkan/device.hpp"
+
+#include "core/error.hpp"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <array>
+#include <cctype>
+#include <charconv>
+#include <cstdio>
+#include <cstdlib>
+#include <cstring>
+#include <string_view>
+
+namespace vkfv::vulkan {
+
+namespace {
+
+constexpr std::uint32_t api_version = VK_API_VERSION_1_2;
+
+constexpr std::array ray_query_extensions = {VK_KHR_DEFERRED_HOST_OPERATIONS_EXTENSION_NAME,
+                                             VK_KHR_ACCELERATION_STRUCTURE_EXTENSION_NAME,
+                                             VK_KHR_RAY_QUERY_EXTENSION_NAME};
+
+// In the order of preference.
+constexpr std::array<std::string_view, 5> type_names = {"discrete GPU", "integrated GPU", "virtual GPU",
+                                                        "CPU", "other"};
+
+std::string_view name_of(vk::PhysicalDeviceType type) {
+    switch (type) {
+    case vk::PhysicalDeviceType::eDiscreteGpu:
+        return type_names[0];
+    case vk::PhysicalDeviceType::eIntegratedGpu:
+        return type_names[1];
+    case vk::PhysicalDeviceType::eVirtualGpu:
+        return type_names[2];
+    case vk::PhysicalDeviceType::eCpu:
+        return type_names[3];
+    default:
+        return type_names[4];
+    }
+}
+
+std::size_t rank_of(const DeviceReport& report) {
+    return static_cast<std::size_t>(std::ranges::find(type_names, report.type) - type_names.begin());
+}
+
+// What in the environment keeps drivers from the loader, as a sentence; empty when nothing does.
+std::string driver_selection() {
+    std::vector<std::string> set;
+    for (const char* variable :
+         {"VK_DRIVER_FILES", "VK_ICD_FILENAMES", "VK_LOADER_DRIVERS_SELECT", "VK_LOADER_DRIVERS_DISABLE"}) {
+        if (const char* value = std::getenv(variable)) {
+            set.push_back(fmt::format("{}={}", variable, value));
+        }
+    }
+    return set.empty() ? ""
+                       : fmt::format(" The environment restricts the drivers: {}.", fmt::join(set, ", "));
+}
+
+[[noreturn]] void throw_no_driver(std::string_view cause) {
+    const std::string selection = driver_selection();
+    throw DeviceError(fmt::format(
+        "No Vulkan driver can be used ({}).{} {} the driver of the graphics card, or the package "
+        "mesa-vulkan-drivers, which also holds a driver for the CPU (lavapipe)",
+        cause, selection, selection.empty() ? "Install" : "Unset what names no driver, or install"));
+}
+
+vk::raii::Context make_context() {
+    try {
+        return vk::raii::Context();
+    } catch (const std::runtime_error& error) {
+        throw DeviceError(fmt::format("The Vulkan loader cannot be used ({}). Install the package libvulkan1",
+                                      error.what()));
+    }
+}
+
+#ifdef VKFV_VALIDATION
+
+constexpr const char* validation_layer = "VK_LAYER_KHRONOS_validation";
+
+VKAPI_ATTR VkBool32 VKAPI_CALL on_validation_message(VkDebugUtilsMessageSeverityFlagBitsEXT,
+                                                     VkDebugUtilsMessageTypeFlagsEXT,
+                                                     const VkDebugUtilsMessengerCallbackDataEXT* data,
+                                                     void*) {
+    // Not thrown: the frames above are the layer's, in C.
+    std::fprintf(stderr, "Vulkan validation: %s\n", data->pMessage);
+    std::abort();
+}
+
+// Messages of the loader ("general") are not the program's: a broken driver beside a good one gives some.
+vk::DebugUtilsMessengerCreateInfoEXT messenger_info() {
+    VkDebugUtilsMessengerCreateInfoEXT info{};
+    info.sType = VK_STRUCTURE_TYPE_DEBUG_UTILS_MESSENGER_CREATE_INFO_EXT;
+    info.messageSeverity =
+        VK_DEBUG_UTILS_MESSAGE_SEVERITY_WARNING_BIT_EXT | VK_DEBUG_UTILS_MESSAGE_SEVERITY_ERROR_BIT_EXT;
+    info.messageType =
+        VK_DEBUG_UTILS_MESSAGE_TYPE_VALIDATION_BIT_EXT | VK_DEBUG_UTILS_MESSAGE_TYPE_PERFORMANCE_BIT_EXT;
+    info.pfnUserCallback = on_validation_message;
+    return info;
+}
+
+#endif
+
+vk::raii::Instance make_instance(const vk::raii::Context& context) {
+    const vk::ApplicationInfo application("vkfv", 0, "vkfv", 0, api_version);
+    vk::InstanceCreateInfo info({}, &application);
+#ifdef VKFV_VALIDATION
+    const auto layers = context.enumerateInstanceLayerProperties();
+    if (std::ranges::none_of(layers, [](const vk::LayerProperties& layer) {
+            return std::strcmp(layer.layerName, validation_layer) == 0;
+        })) {
+        throw DeviceError(
+            fmt::format("This build validates its Vulkan calls, but the layer {} is not installed. "
+                        "Install the package vulkan-validationlayers, or use the release build",
+                        validation_layer));
+    }
+    const std::array extensions = {VK_EXT_DEBUG_UTILS_EXTENSION_NAME,
+                                   VK_EXT_VALIDATION_FEATURES_EXTENSION_NAME};
+    const vk::ValidationFeatureEnableEXT enabled = vk::ValidationFeatureEnableEXT::eSynchronizationValidation;
+    vk::DebugUtilsMessengerCreateInfoEXT messenger = messenger_info();
+    vk::ValidationFeaturesEXT validation(enabled);
+    validation.setPNext(&messenger);
+    info.setPEnabledLayerNames(validation_layer);
+    info.setPEnabledExtensionNames(extensions);
+    info.setPNext(&validation);
+#endif
+    try {
+        return vk::raii::Instance(context, info);
+    } catch (const vk::IncompatibleDriverError& error) {
+        throw_no_driver(error.what());
+    } catch (const vk::SystemError& error) {
+        throw DeviceError(
+            fmt::format("Vulkan does not start: {}.{} Check that the Vulkan loader and the drivers fit "
+                        "each other: `vulkaninfo` should run",
+                        error.what(), driver_selection()));
+    }
+}
+
+std::vector<vk::raii::PhysicalDevice> physical_devices(const vk::raii::Instance& instance) {
+    try {
+        vk::raii::PhysicalDevices devices(instance);
+        if (devices.empty()) {
+            throw_no_driver("none offers a device");
+        }
+        return devices;
+    } catch (const vk::SystemError& error) {
+        throw_no_driver(error.what());
+    }
+}
+
+// The first family that computes and counts time.
+std::optional<std::uint32_t> compute_family(const vk::raii::PhysicalDevice& device) {
+    const auto families = device.getQueueFamilyProperties();
+    for (std::uint32_t family = 0; family < families.size(); ++family) {
+        if ((families[family].queueFlags & vk::QueueFlagBits::eCompute) &&
+            families[family].timestampValidBits > 0) {
+            return family;
+        }
+    }
+    return std::nullopt;
+}
+
+DeviceReport examine(const vk::raii::PhysicalDevice& device, int index) {
+    const vk::PhysicalDeviceProperties basic = device.getProperties();
+    DeviceReport report;
+    report.index = index;
+    report.name = basic.deviceName.data();
+    report.type = name_of(basic.deviceType);
+    report.api_version =
+        fmt::format("{}.{}.{}", VK_API_VERSION_MAJOR(basic.apiVersion),
+                    VK_API_VERSION_MINOR(basic.apiVersion), VK_API_VERSION_PATCH(basic.apiVersion));
+    report.max_storage_buffer_bytes = basic.limits.maxStorageBufferRange;
+    for (const vk::MemoryHeap& heap : device.getMemoryProperties().memoryHeaps) {
+        if (heap.flags & vk::MemoryHeapFlagBits::eDeviceLocal) {
+            report.memory_bytes = std::max(report.memory_bytes, static_cast<std::uint64_t>(heap.size));
+        }
+    }
+    const auto require = [&](bool present, std::string_view what) {
+        if (!present) {
+            report.lacking.emplace_back(what);
+        }
+    };
+    require(compute_family(device).has_value(), "a compute queue with timestamps");
+    if (basic.apiVersion < api_version) {
+        report.lacking.push_back(fmt::format("Vulkan 1.2 (it offers {})", report.api_version));
+        return report; // what follows cannot be asked of it
+    }
+
+    const auto properties =
+        device.getProperties2<vk::PhysicalDeviceProperties2, vk::PhysicalDeviceVulkan11Properties,
+                              vk::PhysicalDeviceVulkan12Properties>();
+    const auto& properties_11 = properties.get<vk::PhysicalDeviceVulkan11Properties>();
+    const auto& properties_12 = properties.get<vk::PhysicalDeviceVulkan12Properties>();
+    report.driver = fmt::format("{} {}", properties_12.driverName.data(), properties_12.driverInfo.data());
+    report.subgroup_size = properties_11.subgroupSize;
+    const auto has_subgroup = [&](vk::SubgroupFeatureFlagBits operation) {
+        return (properties_11.subgroupSupportedStages & vk::ShaderStageFlagBits::eCompute) &&
+               (properties_11.subgroupSupportedOperations & operation);
+    };
+    const auto extensions = device.enumerateDeviceExtensionProperties();
+    const auto has_extension = [&](const char* name) {
+        return std::ranges::any_of(extensions, [&](const vk::ExtensionProperties& extension) {
+            return std::strcmp(extension.extensionName, name) == 0;
+        });
+    };
+    const auto features =
+        device.getFeatures2<vk::PhysicalDeviceFeatures2, vk::PhysicalDeviceVulkan12Features>();
+    const auto& features_10 = features.get<vk::PhysicalDeviceFeatures2>().features;
+    const auto& features_12 = features.get<vk::PhysicalDeviceVulkan12Features>();
+    require(has_extension(VK_KHR_PUSH_DESCRIPTOR_EXTENSION_NAME),
+            "push descriptors (VK_KHR_push_descriptor)");
+    require(features_12.bufferDeviceAddress, "buffer device addresses (bufferDeviceAddress)");
+    require(features_12.scalarBlockLayout, "scalar block layout (scalarBlockLayout)");
+    require(features_10.shaderInt64, "64-bit integers in shaders (shaderInt64)");
+    require(features_12.shaderBufferInt64Atomics,
+            "64-bit atomic operations on buffers (shaderBufferInt64Atomics)");
+    require(has_subgroup(vk::SubgroupFeatureFlagBits::eBallot), "subgroup ballot in compute shaders");
+    require(has_subgroup(vk::SubgroupFeatureFlagBits::eArithmetic), "subgroup arithmetic in compute shaders");
+
+    if (std::ranges::all_of(ray_query_extensions, has_extension)) {
+        const auto ray =
+            device
+                .getFeatures2<vk::PhysicalDeviceFeatures2, vk::PhysicalDeviceAccelerationStructureFeaturesKHR,
+                              vk::PhysicalDeviceRayQueryFeaturesKHR>();
+        report.ray_query =
+            ray.get<vk::PhysicalDeviceAccelerationStructureFeaturesKHR>().accelerationStructure &&
+            ray.get<vk::PhysicalDeviceRayQueryFeaturesKHR>().rayQuery;
+    }
+    return report;
+}
+
+std::vector<DeviceReport> examine(std::span<const vk::raii::PhysicalDevice> devices) {
+    std::vector<DeviceReport> reports;
+    for (const vk::raii::PhysicalDevice& device : devices) {
+        reports.push_back(examine(device, static_cast<int>(reports.size())));
+    }
+    return reports;
+}
+
+std::string describe(std::span<const DeviceReport> reports) {
+    std::string text;
+    for (const DeviceReport& report : reports) {
+        text += fmt::format(
+            "\n  [{}] {} ({}, Vulkan {}): {}", report.index, report.name, report.type, report.api_version,
+            report.lacking.empty() ? "usable" : fmt::format("lacks {}", fmt::join(report.lacking, ", ")));
+    }
+    return text;
+}
+
+std::string lower(std::string text) {
+    std::ranges::transform(text, text.begin(), [](unsigned char c) { return std::tolower(c); });
+    return text;
+}
+
+// An index that a device has; any other text is part of a name ("4090").
+bool matches(const DeviceReport& report, std::string_view selector, std::size_t device_count) {
+    std::size_t index = 0;
+    const auto [end, error] = std::from_chars(selector.data(), selector.data() + selector.size(), index);
+    if (error == std::errc() && end == selector.data() + selector.size() && index < device_count) {
+        return static_cast<std::size_t>(report.index) == index;
+    }
+    return lower(report.name).find(lower(std::string(selector))) != std::string::npos;
+}
+
+std::string explain(std::span<const DeviceReport> reports, std::size_t chosen, const DeviceOptions& options) {
+    const DeviceReport& report = reports[chosen];
+    const auto usable =
+        std::ranges::count_if(reports, [](const DeviceReport& r) { return r.lacking.empty(); });
+    constexpr double bytes_per_gib = 1024.0 * 1024.0 * 1024.0;
+    const std::string reason =
+        !options.selector.empty() ? fmt::format("selected by \"{}\"", options.selector)
+        : usable == 1
+            ? "the only usable device"
+            : fmt::format("{} with {:.1f} GiB, the first of {} usable devices in the order "
+                          "discrete, integrated, virtual, CPU, then memory",
+                          report.type, static_cast<double>(report.memory_bytes) / bytes_per_gib, usable);
+    return fmt::format("{} ({}): {}", report.name, report.driver, reason);
+}
+
+} // namespace
+
+#if defined(VKFV_VALIDATION) && defined(__SANITIZE_ADDRESS__)
+// The layer's synchronisation validation leaks some kilobytes of its own.
+extern "C" const char* __lsan_default_suppressions() {
+    return "leak:libVkLayer_khronos_validation.so\n";
+}
+#endif
+
+struct Device::State {
+    vk::raii::Context context = make_context();
+    vk::raii::Instance instance = make_instance(context);
+    vk::raii::DebugUtilsMessengerEXT messenger{nullptr};
+    vk::raii::PhysicalDevice physical{nullptr};
+    vk::raii::Device device{nullptr};
+    vk::raii::Queue queue{nullptr};
+    std::uint32_t queue_family = 0;
+    double timestamp_period_ns = 0;
+    vk::PhysicalDeviceMemoryProperties memory;
+    DeviceReport report;
+    std::string choice;
+};
+
+std::size_t choose_device(std::span<const DeviceReport> reports, const DeviceOptions& options) {
+    std::optional<std::size_t> best;
+    bool any_match = false;
+    for (std::size_t i = 0; i < reports.size(); ++i) {
+        if (!options.selector.empty() && !matches(reports[i], options.selector, reports.size())) {
+            continue;
+        }
+        any_match = true;
+        if (!reports[i].lacking.empty()) {
+            continue;
+        }
+        const auto key = [&](std::size_t k) {
+            return std::pair(type_names.size() - rank_of(reports[k]), reports[k].memory_bytes);
+        };
+        if (!best || key(i) > key(*best)) {
+            best = i;
+        }
+    }
+    if (best) {
+        return *best;
+    }
+    if (!any_match) {
+        throw DeviceError(
+            fmt::format("No Vulkan device matches \"{}\"; there are:{}\nName a device by its index or by a "
+                        "part of its name",
+                        options.selector, describe(reports)));
+    }
+    const std::string subject = options.selector.empty()
+                                    ? "No Vulkan device is usable"
+                                    : fmt::format("The Vulkan device \"{}\" is not usable", options.selector);
+    throw DeviceError(
+        fmt::format("{}; there are:{}\nUpdate the driver of the graphics card, or install the package "
+                    "mesa-vulkan-drivers, whose lavapipe (Mesa 25 or newer) runs on the CPU.{}",
+                    subject, describe(reports), driver_selection()));
+}
+
+Device::Device(const DeviceOptions& options) : state_(std::make_unique<State>()) {
+    State& state = *state_;
+#ifdef VKFV_VALIDATION
+    state.messenger = vk::raii::DebugUtilsMessengerEXT(state.instance, messenger_info());
+#endif
+    std::vector<vk::raii::PhysicalDevice> devices = physical_devices(state.instance);
+    std::vector<DeviceReport> reports = examine(devices);
+    const std::size_t chosen = choose_device(reports, options);
+    state.choice = explain(reports, chosen, options);
+    state.report = std::move(reports[chosen]);
+    state.report.preferred = true;
+    state.physical = std::move(devices[chosen]);
+    state.queue_family = compute_family(state.physical).value();
+    state.timestamp_period_ns = static_cast<double>(state.physical.getProperties().limits.timestampPeriod);
+    state.memory = state.physical.getMemoryProperties();
+
+    std::vector<const char*> extensions = {VK_KHR_PUSH_DESCRIPTOR_EXTENSION_NAME};
+    vk::StructureChain<vk::DeviceCreateInfo, vk::PhysicalDeviceFeatures2, vk::PhysicalDeviceVulkan12Features,
+                       vk::PhysicalDeviceAccelerationStructureFeaturesKHR,
+                       vk::PhysicalDeviceRayQueryFeaturesKHR>
+        chain;
+    chain.get<vk::PhysicalDeviceFeatures2>().features.setShaderInt64(VK_TRUE);
+    chain.get<vk::PhysicalDeviceVulkan12Features>()
+        .setBufferDeviceAddress(VK_TRUE)
+        .setScalarBlockLayout(VK_TRUE)
+        .setShaderBufferInt64Atomics(VK_TRUE);
+    if (state.report.ray_query) {
+        extensions.insert(extensions.end(), ray_query_extensions.begin(), ray_query_extensions.end());
+        chain.get<vk::PhysicalDeviceAccelerationStructureFeaturesKHR>().setAccelerationStructure(VK_TRUE);
+        chain.get<vk::PhysicalDeviceRayQueryFeaturesKHR>().setRayQuery(VK_TRUE);
+    } else {
+        chain.unlink<vk::PhysicalDeviceAccelerationStructureFeaturesKHR>();
+        chain.unlink<vk::PhysicalDeviceRayQueryFeaturesKHR>();
+    }
+    const float priority = 1.0F;
+    const vk::DeviceQueueCreateInfo queue_info({}, state.queue_family, 1, &priority);
+    vk::DeviceCreateInfo& info = chain.get<vk::DeviceCreateInfo>();
+    info.setQueueCreateInfos(queue_info);
+    info.setPEnabledExtensionNames(extensions);
+    try {
+        state.device = vk::raii::Device(state.physical, info);
+    } catch (const vk::SystemError& error) {
+        throw DeviceError(
+            fmt::format("The device {} does not open: {}. Another program may hold all of it: end that, "
+                        "or choose another device",
+                        state.report.name, error.what()));
+    }
+    state.queue = vk::raii::Queue(state.device, state.queue_family, 0);
+}
+
+Device::~Device() = default;
+Device::Device(Device&&) noexcept = default;
+Device& Device::operator=(Device&&) noexcept = default;
+
+const DeviceReport& Device::report() const {
+    return state_->report;
+}
+const std::string& Device::choice() const {
+    return state_->choice;
+}
+const vk::raii::Device& Device::handle() const {
+    return state_->device;
+}
+const vk::raii::PhysicalDevice& Device::physical() const {
+    return state_->physical;
+}
+const vk::raii::Queue& Device::queue() const {
+    return state_->queue;
+}
+std::uint32_t Device::queue_family() const {
+    return state_->queue_family;
+}
+double Device::timestamp_period_ns() const {
+    return state_->timestamp_period_ns;
+}
+
+std::uint32_t Device::memory_type(std::uint32_t type_bits, vk::MemoryPropertyFlags properties) const {
+    for (std::uint32_t type = 0; type < state_->memory.memoryTypeCount; ++type) {
+        if ((type_bits >> type & 1U) != 0 &&
+            (state_->memory.memoryTypes[type].propertyFlags & properties) == properties) {
+            return type;
+        }
+    }
+    throw DeviceError(fmt::format("The device {} has no memory that is {}. Choose another device",
+                                  state_->report.name, vk::to_string(properties)));
+}
+
+std::vector<DeviceReport> list_devices() {
+    const vk::raii::Context context = make_context();
+    const vk::raii::Instance instance = make_instance(context);
+    const std::vector<vk::raii::PhysicalDevice> devices = physical_devices(instance);
+    std::vector<DeviceReport> reports = examine(devices);
+    if (std::ranges::any_of(reports, [](const DeviceReport& report) { return report.lacking.empty(); })) {
+        reports[choose_device(reports, {})].preferred = true;
+    }
+    return reports;
+}
+
+} // namespace vkfv::vulkan

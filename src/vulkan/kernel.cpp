@@ -1,0 +1,276 @@
+#include "vulkan/kernel.hpp"
+
+#include "core/error.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <limits>
+#include <stdexcept>
+
+namespace vkfv::vulkan {
+
+namespace {
+
+// What every Vulkan device grants; more would run here and fail elsewhere.
+constexpr std::uint32_t portable_push_constant_bytes = 128;
+
+constexpr double seconds_per_nanosecond = 1e-9;
+
+vk::DescriptorType type_of(BindingKind kind) {
+    switch (kind) {
+    case BindingKind::storage_buffer:
+        return vk::DescriptorType::eStorageBuffer;
+    case BindingKind::uniform_buffer:
+        return vk::DescriptorType::eUniformBuffer;
+    case BindingKind::acceleration_structure:
+        return vk::DescriptorType::eAccelerationStructureKHR;
+    }
+    throw std::logic_error("unknown kind of binding");
+}
+
+const Binding& binding_at(std::uint32_t slot, std::span<const Binding> bindings, const Kernel& kernel) {
+    const auto found = std::ranges::find(bindings, slot, &Binding::slot);
+    if (found == bindings.end()) {
+        throw std::logic_error(fmt::format("kernel {}: nothing is bound to slot {}", kernel.name(), slot));
+    }
+    return *found;
+}
+
+void check_range(const Device& device, const Kernel& kernel, const BindingDeclaration& declaration,
+                 std::size_t bytes) {
+    const vk::PhysicalDeviceLimits limits = device.physical().getProperties().limits;
+    const std::uint32_t allowed = declaration.kind == BindingKind::uniform_buffer
+                                      ? limits.maxUniformBufferRange
+                                      : limits.maxStorageBufferRange;
+    if (bytes > allowed) {
+        throw DeviceError(
+            fmt::format("{} binds at most {} bytes to a kernel, but {} needs {} at slot {}. Use a smaller "
+                        "specimen, smaller batches or another device",
+                        device.report().name, allowed, kernel.name(), bytes, declaration.slot));
+    }
+}
+
+} // namespace
+
+Kernel::Kernel(const Device& device, std::string name, std::span<const std::uint32_t> spirv,
+               std::vector<BindingDeclaration> bindings, std::uint32_t push_constant_bytes,
+               std::span<const SpecializationConstant> constants)
+    : name_(std::move(name)), bindings_(std::move(bindings)), push_constant_bytes_(push_constant_bytes) {
+    if (push_constant_bytes_ > portable_push_constant_bytes || push_constant_bytes_ % 4 != 0) {
+        throw std::logic_error(
+            fmt::format("kernel {}: {} bytes of push constants, expected a multiple of 4 up to {}", name_,
+                        push_constant_bytes_, portable_push_constant_bytes));
+    }
+    std::vector<vk::DescriptorSetLayoutBinding> slots;
+    for (const BindingDeclaration& declaration : bindings_) {
+        if (declaration.kind == BindingKind::acceleration_structure && !device.report().ray_query) {
+            throw DeviceError(fmt::format("{} offers no ray query (VK_KHR_ray_query), which {} needs. Choose "
+                                          "--traversal quadtree or another device",
+                                          device.report().name, name_));
+        }
+        slots.emplace_back(declaration.slot, type_of(declaration.kind), 1, vk::ShaderStageFlagBits::eCompute);
+    }
+    set_layout_ = vk::raii::DescriptorSetLayout(
+        device.handle(),
+        vk::DescriptorSetLayoutCreateInfo(vk::DescriptorSetLayoutCreateFlagBits::ePushDescriptorKHR, slots));
+
+    const vk::DescriptorSetLayout set_layout = *set_layout_;
+    const vk::PushConstantRange push_range(vk::ShaderStageFlagBits::eCompute, 0, push_constant_bytes_);
+    vk::PipelineLayoutCreateInfo layout_info({}, set_layout);
+    if (push_constant_bytes_ > 0) {
+        layout_info.setPushConstantRanges(push_range);
+    }
+    layout_ = vk::raii::PipelineLayout(device.handle(), layout_info);
+
+    std::vector<vk::SpecializationMapEntry> entries;
+    std::vector<std::uint32_t> values;
+    for (const SpecializationConstant& constant : constants) {
+        entries.emplace_back(constant.id, static_cast<std::uint32_t>(values.size() * sizeof(std::uint32_t)),
+                             sizeof(std::uint32_t));
+        values.push_back(constant.value);
+    }
+    const vk::SpecializationInfo specialization(static_cast<std::uint32_t>(entries.size()), entries.data(),
+                                                values.size() * sizeof(std::uint32_t), values.data());
+    vk::ShaderModuleCreateInfo module_info;
+    module_info.setCodeSize(spirv.size_bytes()).setPCode(spirv.data());
+    try {
+        const vk::raii::ShaderModule module(device.handle(), module_info);
+        const vk::PipelineShaderStageCreateInfo stage({}, vk::ShaderStageFlagBits::eCompute, *module, "main",
+                                                      &specialization);
+        pipeline_ =
+            vk::raii::Pipeline(device.handle(), nullptr, vk::ComputePipelineCreateInfo({}, stage, *layout_));
+    } catch (const vk::SystemError& error) {
+        throw DeviceError(
+            fmt::format("{} ({}) does not compile the kernel {}: {}. Update its driver, or choose another "
+                        "device",
+                        device.report().name, device.report().driver, name_, error.what()));
+    }
+}
+
+Commands::Commands(const Device& device, std::uint32_t timestamp_capacity)
+    : device_(&device),
+      pool_(device.handle(),
+            vk::CommandPoolCreateInfo(vk::CommandPoolCreateFlagBits::eTransient, device.queue_family())),
+      buffers_(device.handle(), vk::CommandBufferAllocateInfo(*pool_, vk::CommandBufferLevel::ePrimary, 1)),
+      timestamp_capacity_(timestamp_capacity) {
+    handle().begin(vk::CommandBufferBeginInfo(vk::CommandBufferUsageFlagBits::eOneTimeSubmit));
+    if (timestamp_capacity_ > 0) {
+        queries_ = vk::raii::QueryPool(
+            device.handle(), vk::QueryPoolCreateInfo({}, vk::QueryType::eTimestamp, timestamp_capacity_));
+        handle().resetQueryPool(*queries_, 0, timestamp_capacity_);
+    }
+    barrier();
+}
+
+void Commands::dispatch(const Kernel& kernel, std::span<const Binding> bindings,
+                        std::span<const std::byte> push_constants, std::uint32_t groups_x,
+                        std::uint32_t groups_y) {
+    const vk::PhysicalDeviceLimits limits = device_->physical().getProperties().limits;
+    if (groups_x > limits.maxComputeWorkGroupCount[0] || groups_y > limits.maxComputeWorkGroupCount[1]) {
+        throw std::logic_error(
+            fmt::format("kernel {}: {} x {} workgroups, the device allows {} x {}", kernel.name(), groups_x,
+                        groups_y, limits.maxComputeWorkGroupCount[0], limits.maxComputeWorkGroupCount[1]));
+    }
+    if (push_constants.size() != kernel.push_constant_bytes()) {
+        throw std::logic_error(fmt::format("kernel {}: {} bytes of push constants, expected {}",
+                                           kernel.name(), push_constants.size(),
+                                           kernel.push_constant_bytes()));
+    }
+    if (bindings.size() != kernel.bindings().size()) {
+        throw std::logic_error(fmt::format("kernel {}: {} bindings, expected {}", kernel.name(),
+                                           bindings.size(), kernel.bindings().size()));
+    }
+
+    const std::size_t count = bindings.size();
+    // The writes point into these: no growth after this.
+    std::vector<vk::DescriptorBufferInfo> buffers(count);
+    std::vector<vk::AccelerationStructureKHR> structures(count);
+    std::vector<vk::WriteDescriptorSetAccelerationStructureKHR> structure_writes(count);
+    std::vector<vk::WriteDescriptorSet> writes(count);
+    for (std::size_t i = 0; i < count; ++i) {
+        const BindingDeclaration& declaration = kernel.bindings()[i];
+        const Binding& binding = binding_at(declaration.slot, bindings, kernel);
+        vk::WriteDescriptorSet& write = writes[i];
+        write.setDstBinding(declaration.slot)
+            .setDescriptorCount(1)
+            .setDescriptorType(type_of(declaration.kind));
+        const auto* buffer = std::get_if<const Buffer*>(&binding.resource);
+        if ((buffer == nullptr) != (declaration.kind == BindingKind::acceleration_structure)) {
+            throw std::logic_error(fmt::format("kernel {}: slot {} is bound to the wrong kind of resource",
+                                               kernel.name(), declaration.slot));
+        }
+        if (buffer != nullptr) {
+            check_range(*device_, kernel, declaration, (*buffer)->bytes());
+            // Without its padding, so that a run-time array's length() is right.
+            const vk::DeviceSize range = (*buffer)->bytes() > 0 ? (*buffer)->bytes() : VK_WHOLE_SIZE;
+            buffers[i] = vk::DescriptorBufferInfo((*buffer)->handle(), 0, range);
+            write.setBufferInfo(buffers[i]);
+        } else {
+            structures[i] = std::get<const AccelerationStructure*>(binding.resource)->top_level();
+            structure_writes[i].setAccelerationStructures(structures[i]);
+            write.setPNext(&structure_writes[i]);
+        }
+    }
+
+    handle().bindPipeline(vk::PipelineBindPoint::eCompute, kernel.pipeline());
+    if (!writes.empty()) {
+        handle().pushDescriptorSetKHR(vk::PipelineBindPoint::eCompute, kernel.layout(), 0, writes);
+    }
+    if (!push_constants.empty()) {
+        handle().pushConstants<std::byte>(
+            kernel.layout(), vk::ShaderStageFlagBits::eCompute, 0,
+            vk::ArrayProxy<const std::byte>(static_cast<std::uint32_t>(push_constants.size()),
+                                            push_constants.data()));
+    }
+    handle().dispatch(groups_x, groups_y, 1);
+}
+
+void Commands::fill_zero(const Buffer& buffer) {
+    handle().fillBuffer(buffer.handle(), 0, VK_WHOLE_SIZE, 0);
+}
+
+void Commands::copy(const Buffer& from, const Buffer& to, std::size_t bytes, std::size_t from_offset,
+                    std::size_t to_offset) {
+    if (from_offset > from.bytes() || bytes > from.bytes() - from_offset || to_offset > to.bytes() ||
+        bytes > to.bytes() - to_offset) {
+        throw std::logic_error(fmt::format("copy of {} bytes from {} of {} to {} of {}", bytes, from_offset,
+                                           from.bytes(), to_offset, to.bytes()));
+    }
+    if (bytes > 0) {
+        handle().copyBuffer(from.handle(), to.handle(), vk::BufferCopy(from_offset, to_offset, bytes));
+    }
+}
+
+void Commands::barrier() {
+    using Stage = vk::PipelineStageFlagBits;
+    using Access = vk::AccessFlagBits;
+    vk::PipelineStageFlags stages = Stage::eComputeShader | Stage::eTransfer;
+    vk::AccessFlags writes = Access::eShaderWrite | Access::eTransferWrite;
+    vk::AccessFlags reads = Access::eShaderRead | Access::eUniformRead | Access::eTransferRead;
+    if (device_->report().ray_query) {
+        stages |= Stage::eAccelerationStructureBuildKHR;
+        writes |= Access::eAccelerationStructureWriteKHR;
+        reads |= Access::eAccelerationStructureReadKHR;
+    }
+    handle().pipelineBarrier(stages, stages | Stage::eHost, {},
+                             vk::MemoryBarrier(writes, writes | reads | Access::eHostRead), {}, {});
+}
+
+void Commands::timestamp() {
+    if (timestamps_ == timestamp_capacity_) {
+        throw std::logic_error(fmt::format("more than {} timestamps", timestamp_capacity_));
+    }
+    handle().writeTimestamp(vk::PipelineStageFlagBits::eBottomOfPipe, *queries_, timestamps_++);
+}
+
+void Commands::submit_and_wait() {
+    if (submitted_) {
+        throw std::logic_error("commands are submitted once");
+    }
+    submitted_ = true;
+    try {
+        barrier();
+        handle().end();
+        const vk::raii::Fence done(device_->handle(), vk::FenceCreateInfo());
+        const vk::CommandBuffer commands = *handle();
+        vk::SubmitInfo info;
+        info.setCommandBuffers(commands);
+        device_->queue().submit(info, *done);
+        const vk::Fence fence = *done;
+        // Without a limit the wait ends in success or throws.
+        static_cast<void>(
+            device_->handle().waitForFences(fence, VK_TRUE, std::numeric_limits<std::uint64_t>::max()));
+    } catch (const vk::DeviceLostError&) {
+        throw RunError(fmt::format(
+            "The device {} was lost: its driver gave up, often because one batch took too long. Run "
+            "the same command again to continue, with smaller batches",
+            device_->report().name));
+    } catch (const vk::SystemError& error) {
+        throw RunError(fmt::format("The device {} failed: {}. Run the same command again to continue",
+                                   device_->report().name, error.what()));
+    }
+}
+
+std::vector<double> Commands::seconds() const {
+    if (!submitted_) {
+        throw std::logic_error("timestamps are read after the submission");
+    }
+    if (timestamps_ == 0) {
+        return {};
+    }
+    const auto [result, ticks] = queries_.getResults<std::uint64_t>(
+        0, timestamps_, timestamps_ * sizeof(std::uint64_t), sizeof(std::uint64_t),
+        vk::QueryResultFlagBits::e64 | vk::QueryResultFlagBits::eWait);
+    const std::uint32_t valid_bits =
+        device_->physical().getQueueFamilyProperties()[device_->queue_family()].timestampValidBits;
+    const std::uint64_t mask = std::numeric_limits<std::uint64_t>::max() >> (64U - valid_bits);
+    std::vector<double> seconds;
+    for (const std::uint64_t tick : ticks) {
+        const auto elapsed = static_cast<double>((tick - ticks.front()) & mask); // the counter may wrap
+        seconds.push_back(elapsed * device_->timestamp_period_ns() * seconds_per_nanosecond);
+    }
+    return seconds;
+}
+
+} // namespace vkfv::vulkan
