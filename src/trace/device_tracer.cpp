@@ -62,9 +62,9 @@ std::array<vulkan::SpecializationConstant, 3> constants_of(const specimen::Speci
 }
 
 // Device, buffers and bindings that every use of the trace on a device shares.
-class Bench {
+class DeviceScene {
   public:
-    Bench(const optics::Instrument& instrument, const specimen::Specimen& specimen, const TraceOptions& options)
+    DeviceScene(const optics::Instrument& instrument, const specimen::Specimen& specimen, const TraceOptions& options)
         : instrument(instrument), device(vulkan::DeviceOptions{options.device}),
           traversal(choose_traversal(device.report(), specimen, options.traversal, reason)),
           device_specimen(device, specimen, traversal), host_record(specimen::record(specimen, options.max_bounces)),
@@ -117,25 +117,25 @@ class Bench {
 // The two kernels of the forward trace and what lies between them.
 class ForwardTrace {
   public:
-    ForwardTrace(const Bench& bench, const specimen::Specimen& specimen, std::uint32_t batch,
+    ForwardTrace(const DeviceScene& scene, const specimen::Specimen& specimen, std::uint32_t batch,
                  std::uint32_t stop_illumination = 0, std::uint32_t stop_imaging = 0)
-        : bench_(bench), batch_(batch),
-          survivors_(bench.device, std::size_t{batch} * sizeof(physics::f32::Survivor)),
-          survivor_count_(bench.device, sizeof(std::uint32_t)),
-          pixels_(bench.device, pixel_count() * sizeof(std::uint64_t)),
-          fates_(bench.device, ledger_slot_count(bench.instrument) * sizeof(std::uint64_t)),
-          illumination_(bench.device, "forward_illumination",
-                        bench.ray_query() ? std::span<const std::uint32_t>(forward_illumination_ray_query)
+        : scene_(scene), batch_(batch),
+          survivors_(scene.device, std::size_t{batch} * sizeof(physics::f32::Survivor)),
+          survivor_count_(scene.device, sizeof(std::uint32_t)),
+          pixels_(scene.device, pixel_count() * sizeof(std::uint64_t)),
+          fates_(scene.device, ledger_slot_count(scene.instrument) * sizeof(std::uint64_t)),
+          illumination_(scene.device, "forward_illumination",
+                        scene.ray_query() ? std::span<const std::uint32_t>(forward_illumination_ray_query)
                                           : std::span<const std::uint32_t>(forward_illumination_quadtree),
-                        bench.declarations({2, 4, 5}), sizeof(Batch),
-                        constants_of(specimen, bench.instrument, stop_illumination)),
-          imaging_(bench.device, "forward_imaging",
-                   bench.ray_query() ? std::span<const std::uint32_t>(forward_imaging_ray_query)
+                        scene.declarations({2, 4, 5}), sizeof(Batch),
+                        constants_of(specimen, scene.instrument, stop_illumination)),
+          imaging_(scene.device, "forward_imaging",
+                   scene.ray_query() ? std::span<const std::uint32_t>(forward_imaging_ray_query)
                                      : std::span<const std::uint32_t>(forward_imaging_quadtree),
-                   bench.declarations({2, 3, 4, 5}), 0, constants_of(specimen, bench.instrument, stop_imaging)) {}
+                   scene.declarations({2, 3, 4, 5}), 0, constants_of(specimen, scene.instrument, stop_imaging)) {}
 
     std::size_t pixel_count() const {
-        const auto side = static_cast<std::size_t>(bench_.instrument.constants.detector_pixels);
+        const auto side = static_cast<std::size_t>(scene_.instrument.constants.detector_pixels);
         return side * side;
     }
 
@@ -154,16 +154,16 @@ class ForwardTrace {
         if (timed) {
             commands.timestamp();
         }
-        commands.dispatch(illumination_, bench_.bindings({{2, &survivors_}, {4, &fates_}, {5, &survivor_count_}}),
+        commands.dispatch(illumination_, scene_.bindings({{2, &survivors_}, {4, &fates_}, {5, &survivor_count_}}),
                           batch, (count + per_group - 1) / per_group);
         commands.barrier();
         if (timed) {
             commands.timestamp();
         }
         // The number of survivors is known to the device alone: a fixed grid strides over them.
-        const std::uint32_t groups = bench_.software() ? 64 : 4096;
+        const std::uint32_t groups = scene_.software() ? 64 : 4096;
         commands.dispatch(imaging_,
-                          bench_.bindings({{2, &survivors_}, {3, &pixels_}, {4, &fates_}, {5, &survivor_count_}}),
+                          scene_.bindings({{2, &survivors_}, {3, &pixels_}, {4, &fates_}, {5, &survivor_count_}}),
                           std::span<const std::byte>{}, groups);
         commands.barrier();
         if (timed) {
@@ -173,12 +173,12 @@ class ForwardTrace {
 
     std::vector<std::uint64_t> pixels() const { return pixels_.read_values<std::uint64_t>(pixel_count()); }
     std::vector<std::uint64_t> fates() const {
-        return fates_.read_values<std::uint64_t>(ledger_slot_count(bench_.instrument));
+        return fates_.read_values<std::uint64_t>(ledger_slot_count(scene_.instrument));
     }
     std::uint32_t batch() const { return batch_; }
 
   private:
-    const Bench& bench_;
+    const DeviceScene& scene_;
     std::uint32_t batch_;
     vulkan::Buffer survivors_;
     vulkan::Buffer survivor_count_;
@@ -189,11 +189,11 @@ class ForwardTrace {
 };
 
 // Software devices like dispatches of about 100 ms; a GPU wants enough rays to fill it. 24 bytes a ray are kept.
-std::uint32_t suitable_batch(const Bench& bench, std::uint64_t asked, std::uint64_t rays) {
+std::uint32_t suitable_batch(const DeviceScene& scene, std::uint64_t asked, std::uint64_t rays) {
     const std::uint64_t largest =
-        std::min<std::uint64_t>(bench.device.report().max_storage_buffer_bytes / sizeof(physics::f32::Survivor),
+        std::min<std::uint64_t>(scene.device.report().max_storage_buffer_bytes / sizeof(physics::f32::Survivor),
                                 std::uint64_t{1} << 27);
-    const std::uint64_t wanted = asked > 0 ? asked : bench.software() ? std::uint64_t{1} << 20 : std::uint64_t{1} << 25;
+    const std::uint64_t wanted = asked > 0 ? asked : scene.software() ? std::uint64_t{1} << 20 : std::uint64_t{1} << 25;
     return static_cast<std::uint32_t>(std::max<std::uint64_t>(1, std::min({wanted, largest, rays})));
 }
 
@@ -203,17 +203,17 @@ constexpr std::uint32_t batches_per_submission_gpu = 8;
 class DeviceTracer final : public Tracer {
   public:
     DeviceTracer(const optics::Instrument& instrument, const specimen::Specimen& specimen, const TraceOptions& options)
-        : instrument_(instrument), rays_(options.rays), bench_(instrument_, specimen, options),
-          forward_(bench_, specimen, suitable_batch(bench_, options.batch, options.rays)) {}
+        : instrument_(instrument), rays_(options.rays), scene_(instrument_, specimen, options),
+          forward_(scene_, specimen, suitable_batch(scene_, options.batch, options.rays)) {}
 
     Image expose(double focal_height, std::uint32_t image) const override {
         const std::scoped_lock lock(mutex_);
         const auto start = std::chrono::steady_clock::now();
-        bench_.set_exposure(focal_height, image);
+        scene_.set_exposure(focal_height, image);
         const std::uint64_t per_submission =
-            std::uint64_t{forward_.batch()} * (bench_.software() ? 1 : batches_per_submission_gpu);
+            std::uint64_t{forward_.batch()} * (scene_.software() ? 1 : batches_per_submission_gpu);
         for (std::uint64_t first = 0; first < rays_; first += per_submission) {
-            vulkan::Commands commands(bench_.device);
+            vulkan::Commands commands(scene_.device);
             if (first == 0) {
                 forward_.clear(commands);
             }
@@ -230,14 +230,14 @@ class DeviceTracer final : public Tracer {
     }
 
     std::string description() const override {
-        return fmt::format("{}; traversal {}", bench_.device.choice(), bench_.reason);
+        return fmt::format("{}; traversal {}", scene_.device.choice(), scene_.reason);
     }
 
   private:
     optics::Instrument instrument_;
     std::uint64_t rays_;
     mutable std::mutex mutex_; // one exposure at a time: the buffers are shared
-    mutable Bench bench_;
+    mutable DeviceScene scene_;
     ForwardTrace forward_;
 };
 
@@ -256,15 +256,15 @@ std::unique_ptr<Tracer> make_device_tracer(const optics::Instrument& instrument,
 std::vector<PathEnd> device_paths(const optics::Instrument& instrument, const specimen::Specimen& specimen,
                                   const TraceOptions& options, double focal_height, std::uint32_t image,
                                   std::uint32_t first, std::uint32_t count) {
-    Bench bench(instrument, specimen, options);
-    bench.set_exposure(focal_height, image);
-    const vulkan::Buffer ends(bench.device, count * sizeof(DevicePathEnd));
-    const vulkan::Kernel kernel(bench.device, "probe_paths",
-                                bench.ray_query() ? std::span<const std::uint32_t>(probe_paths_ray_query)
+    DeviceScene scene(instrument, specimen, options);
+    scene.set_exposure(focal_height, image);
+    const vulkan::Buffer ends(scene.device, count * sizeof(DevicePathEnd));
+    const vulkan::Kernel kernel(scene.device, "probe_paths",
+                                scene.ray_query() ? std::span<const std::uint32_t>(probe_paths_ray_query)
                                                   : std::span<const std::uint32_t>(probe_paths_quadtree),
-                                bench.declarations({6}), sizeof(Batch), constants_of(specimen, instrument, 0));
-    vulkan::Commands commands(bench.device);
-    commands.dispatch(kernel, bench.bindings({{6, &ends}}), Batch{first, 0, count}, (count + 63) / 64);
+                                scene.declarations({6}), sizeof(Batch), constants_of(specimen, instrument, 0));
+    vulkan::Commands commands(scene.device);
+    commands.dispatch(kernel, scene.bindings({{6, &ends}}), Batch{first, 0, count}, (count + 63) / 64);
     commands.barrier();
     commands.submit_and_wait();
     std::vector<PathEnd> result;
@@ -277,18 +277,18 @@ std::vector<PathEnd> device_paths(const optics::Instrument& instrument, const sp
 
 StageTimes time_stages(const optics::Instrument& instrument, const specimen::Specimen& specimen,
                        const TraceOptions& options, double focal_height, int runs) {
-    Bench bench(instrument, specimen, options);
-    bench.set_exposure(focal_height, 0);
-    const std::uint32_t batch = suitable_batch(bench, options.batch, options.rays);
-    const ForwardTrace whole(bench, specimen, batch);
-    const ForwardTrace to_specimen(bench, specimen, batch, 1);
-    const ForwardTrace to_departure(bench, specimen, batch, 2);
-    const ForwardTrace occlusion(bench, specimen, batch, 0, 2);
-    const ForwardTrace uncounted(bench, specimen, batch, 0, 1);
+    DeviceScene scene(instrument, specimen, options);
+    scene.set_exposure(focal_height, 0);
+    const std::uint32_t batch = suitable_batch(scene, options.batch, options.rays);
+    const ForwardTrace whole(scene, specimen, batch);
+    const ForwardTrace to_specimen(scene, specimen, batch, 1);
+    const ForwardTrace to_departure(scene, specimen, batch, 2);
+    const ForwardTrace occlusion(scene, specimen, batch, 0, 2);
+    const ForwardTrace uncounted(scene, specimen, batch, 0, 1);
 
     // Both halves of one form of the trace, s.
     const auto time = [&](const ForwardTrace& trace) {
-        vulkan::Commands commands(bench.device, 3);
+        vulkan::Commands commands(scene.device, 3);
         trace.clear(commands);
         trace.record(commands, 0, batch, true);
         commands.submit_and_wait();
@@ -310,7 +310,7 @@ StageTimes time_stages(const optics::Instrument& instrument, const specimen::Spe
         imaged.push_back(time(uncounted)[1]);
     }
     StageTimes result;
-    result.description = fmt::format("{}; traversal {}", bench.device.choice(), bench.reason);
+    result.description = fmt::format("{}; traversal {}", scene.device.choice(), scene.reason);
     result.rays = batch;
     result.runs = runs;
     const double whole_seconds = median(total);
@@ -322,7 +322,7 @@ StageTimes time_stages(const optics::Instrument& instrument, const specimen::Spe
     result.detector = std::max(0.0, median(second) - median(imaged)) / whole_seconds;
 
     // Crossings from the fates of one run: a path that ended at a surface has crossed those before it.
-    vulkan::Commands commands(bench.device);
+    vulkan::Commands commands(scene.device);
     whole.clear(commands);
     whole.record(commands, 0, batch);
     commands.submit_and_wait();

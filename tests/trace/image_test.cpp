@@ -1,0 +1,159 @@
+// Whole images: ledger, determinism, traversals, radiometry.
+#include "trace/microscope.hpp"
+#include "trace/device_tracer.hpp"
+#include "trace/host_tracer.hpp"
+
+#include "support/statistics.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <cstring>
+#include <numeric>
+
+using namespace vkfv;
+
+namespace {
+
+trace::TraceOptions options(trace::Traversal traversal = trace::Traversal::quadtree) {
+    trace::TraceOptions result;
+    result.rays = 400000;
+    result.seed = 3;
+    result.max_bounces = 2;
+    result.traversal = traversal;
+    return result;
+}
+
+trace::Image expose(const optics::Instrument& instrument, const specimen::Specimen& specimen,
+                    const trace::TraceOptions& with, double z = 0.001, std::uint32_t image = 2) {
+    return trace::make_device_tracer(instrument, specimen, with)->expose(z, image);
+}
+
+// p-value that two images of independent counts have the same expectation (counts, two-sample chi-square).
+double same_expectation_p(const trace::Image& a, const trace::Image& b) {
+    double chi_square = 0, degrees = 0;
+    for (std::size_t k = 0; k < a.flux.values.size(); ++k) {
+        const double variance = std::pow(a.standard_error.values[k], 2) + std::pow(b.standard_error.values[k], 2);
+        if (variance > 0) {
+            chi_square += std::pow(a.flux.values[k] - b.flux.values[k], 2) / variance;
+            degrees += 1;
+        }
+    }
+    return test::chi_square_tail(chi_square, degrees);
+}
+
+} // namespace
+
+TEST(Image, the_ledger_closes_for_analog_and_aimed_emission) {
+    const auto specimen = test::rough_specimen();
+    for (const bool directed : {false, true}) {
+        auto description = test::microscope_description();
+        description.directed_emission = directed;
+        const auto instrument = optics::assemble(description);
+        for (const auto traversal : {trace::Traversal::quadtree, trace::Traversal::ray_query}) {
+            const auto image = expose(instrument, specimen, options(traversal));
+            EXPECT_LT(std::abs(image.ledger.residual()), 1e-6 * image.ledger.emitted);
+            std::uint64_t rays = 0;
+            for (const auto& entry : image.ledger.entries) {
+                // The splitter's rows count rays that go on; every ray has one row beside them.
+                rays += entry.name.starts_with("beam splitter") ? 0 : entry.rays;
+            }
+            EXPECT_EQ(rays, image.rays);
+            const double sum = std::accumulate(image.flux.values.begin(), image.flux.values.end(), 0.0);
+            EXPECT_NEAR(sum, image.ledger.entries[0].power, 1e-12 * image.ledger.emitted);
+            EXPECT_EQ(image.ledger.entries[0].name, "detected");
+            if (directed) {
+                EXPECT_GT(image.detected, 20000u);
+            }
+        }
+    }
+}
+
+// Analog emission and emission into the cone that can arrive have the same expectation of detected power.
+TEST(Image, aimed_emission_detects_the_power_of_the_whole_source) {
+    auto description = test::microscope_description();
+    description.source_radius = 0.2;
+    const auto aimed = optics::assemble(description);
+    description.directed_emission = false;
+    const auto whole = optics::assemble(description);
+    const auto specimen = test::plane_specimen(0.9);
+    auto many = options();
+    many.rays = 8000000;
+    const auto a = expose(aimed, specimen, options());
+    const auto b = expose(whole, specimen, many);
+    const auto power = [](const trace::Image& image) { return image.ledger.entries[0].power; };
+    const auto error = [&](const trace::Image& image) { return power(image) / std::sqrt(double(image.detected)); };
+    ASSERT_GT(b.detected, 500u);
+    const double z = std::abs(power(a) - power(b)) / std::hypot(error(a), error(b));
+    EXPECT_LT(z, 4.0); // 6e-5
+    EXPECT_GT(std::abs(1.3 * power(a) - power(b)) / std::hypot(error(a), error(b)), 4.0); // wrong twin
+}
+
+TEST(Image, bits_do_not_depend_on_the_batch_or_the_run) {
+    const auto instrument = test::microscope();
+    const auto specimen = test::rough_specimen();
+    const auto reference = expose(instrument, specimen, options());
+    for (const std::uint64_t batch : {std::uint64_t{400000}, std::uint64_t{123457}, std::uint64_t{65536}}) {
+        auto with = options();
+        with.batch = batch;
+        const auto image = expose(instrument, specimen, with);
+        EXPECT_EQ(std::memcmp(image.flux.values.data(), reference.flux.values.data(),
+                              reference.flux.values.size() * sizeof(double)),
+                  0)
+            << batch;
+    }
+    auto other = options();
+    other.seed = 4;
+    EXPECT_NE(expose(instrument, specimen, other).flux.values, reference.flux.values); // wrong twin
+}
+
+// The same paths meet the same facets: the two traversals differ in a few detections of ties within rounding. The
+// images also agree with the host's, and a specimen of another g does not.
+TEST(Image, traversals_and_host_give_the_same_image) {
+    const auto instrument = test::microscope();
+    const auto specimen = test::rough_specimen();
+    const auto quadtree = expose(instrument, specimen, options());
+    const auto ray_query = expose(instrument, specimen, options(trace::Traversal::ray_query));
+    const auto host = trace::make_host_tracer(instrument, specimen, options())->expose(0.001, 2);
+    const auto differing = [](const trace::Image& a, const trace::Image& b) {
+        double sum = 0;
+        for (std::size_t k = 0; k < a.flux.values.size(); ++k) {
+            sum += std::abs(a.flux.values[k] - b.flux.values[k]);
+        }
+        return sum / a.ledger.entries[0].power;
+    };
+    EXPECT_LT(differing(quadtree, ray_query), 1e-3);
+    EXPECT_LT(differing(quadtree, host), 5e-3); // pixels' borders within the float error of 0.04 um of 20 um
+    // Independent paths: chi-square over the pixels, false-positive rate 1e-4.
+    auto fresh = options(trace::Traversal::ray_query);
+    fresh.seed = 77;
+    EXPECT_GT(same_expectation_p(quadtree, expose(instrument, specimen, fresh)), 1e-4);
+    EXPECT_LT(same_expectation_p(quadtree, expose(instrument, test::rough_specimen(0.60), fresh)), 1e-4);
+}
+
+// White furnace with every bounce permitted: whatever reaches the specimen leaves it again.
+TEST(Image, a_rough_specimen_loses_nothing_to_bounces) {
+    const auto instrument = test::microscope();
+    auto with = options();
+    with.max_bounces = 64;
+    const auto image = expose(instrument, test::rough_specimen(0.0), with);
+    const auto rays_of = [&](const std::string& name) {
+        for (const auto& entry : image.ledger.entries) {
+            if (entry.name == name) {
+                return entry.rays;
+            }
+        }
+        ADD_FAILURE() << name;
+        return std::uint64_t{0};
+    };
+    EXPECT_EQ(rays_of("bounce limit"), 0u);
+    EXPECT_LE(rays_of("numerical"), image.rays / 100000);
+    with.max_bounces = 1; // wrong twin: a limit that costs light
+    const auto limited = expose(instrument, test::rough_specimen(0.0), with);
+    EXPECT_GT(limited.ledger.residual() + 1.0, 0.0);
+    for (const auto& entry : limited.ledger.entries) {
+        if (entry.name == "bounce limit") {
+            EXPECT_GT(entry.rays, 100u);
+        }
+    }
+}

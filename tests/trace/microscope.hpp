@@ -1,0 +1,49 @@
+// The microscope and specimens that the tests of the trace share.
+#pragma once
+
+#include "core/units.hpp"
+#include "optics/instrument.hpp"
+#include "specimen/description.hpp"
+#include "trace/tracer.hpp"
+
+namespace vkfv::test {
+
+inline optics::InstrumentDescription microscope_description() {
+    const std::filesystem::path base = std::filesystem::path(VKFV_SOURCE_DIR) / "assets" / "stacks";
+    optics::InstrumentDescription description;
+    description.source_radius = 0.96;
+    description.wavelength_um = 0.587562;
+    description.illumination = optics::load_prescription("koehler", "illuminators", base);
+    description.field_stop_radius = 0.85;
+    description.objective = optics::load_prescription("10x_0.28", "objectives", base);
+    description.tube_lens = optics::load_prescription("200mm", "tube_lenses", base);
+    description.detector_size = 1.28;
+    description.detector_pixels = 64;
+    return description;
+}
+
+inline optics::Instrument microscope() { return optics::assemble(microscope_description()); }
+
+// Rough enough that light meets it more than once.
+inline specimen::Specimen rough_specimen(double g = 0.65) {
+    specimen::Description description;
+    description.kind = specimen::Kind::rough;
+    description.size = 0.3;
+    description.pitch = 0.001;
+    description.sq = 0.003;
+    description.correlation_length = 0.012;
+    description.seed = 5;
+    description.material.g = g;
+    return specimen::make(description);
+}
+
+inline specimen::Specimen plane_specimen(double g) {
+    specimen::Description description;
+    description.kind = specimen::Kind::plane;
+    description.size = 0.4;
+    description.pitch = 0.01;
+    description.material.g = g;
+    return specimen::make(description);
+}
+
+} // namespace vkfv::test
