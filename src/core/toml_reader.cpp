@@ -540,6 +540,12 @@ TomlTable TomlTable::table(std::string_view key) const {
     return *found;
 }
 
+TomlTable TomlTable::table_or_empty(std::string_view key) const {
+    static const toml::table empty;
+    const auto found = optional_table(key);
+    return found ? *found : TomlTable(state_->child(std::string(key), dotted(state_->path, key), empty));
+}
+
 std::vector<TomlTable> TomlTable::optional_tables(std::string_view key) const {
     const toml::node* node = state_->find(key);
     std::vector<TomlTable> found;

@@ -60,7 +60,7 @@ class TomlTable {
     // Of this table's header (the root: line 1), or of a key's value. A missing key has its table's place.
     SourceLocation where() const;
     SourceLocation where(std::string_view key) const;
-    bool has(std::string_view key) const;
+    bool has(std::string_view key) const; // does not count as asking for it
     // Keys in the order of the alphabet, for tables whose keys are data; they count as asked for.
     std::vector<std::string> keys() const;
 
@@ -89,6 +89,7 @@ class TomlTable {
     optional_numbers(std::string_view key, const NumberRange& range = NumberRange::finite()) const;
     TomlTable table(std::string_view key) const;
     std::optional<TomlTable> optional_table(std::string_view key) const;
+    TomlTable table_or_empty(std::string_view key) const; // a missing table is one without keys
     // [[key]] or an array of inline tables; `tables` wants at least one.
     std::vector<TomlTable> tables(std::string_view key) const;
     std::vector<TomlTable> optional_tables(std::string_view key) const;

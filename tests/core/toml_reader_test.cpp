@@ -55,6 +55,8 @@ TEST(TomlReader, GivesTypedValues) {
     EXPECT_EQ(surfaces[1].path(), "surface[1]");
     EXPECT_FALSE(root.optional_number("absent"));
     EXPECT_FALSE(root.optional_table("absent"));
+    EXPECT_EQ(root.table_or_empty("absent").path(), "absent");
+    EXPECT_THROW((void)root.table_or_empty("absent").number("x"), InputError);
     EXPECT_NO_THROW(root.reject_unknown_keys());
 }
 

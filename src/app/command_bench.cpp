@@ -1,0 +1,45 @@
+#include "app/commands.hpp"
+
+#include "trace/device_tracer.hpp"
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+#include <cstdio>
+
+namespace vkfv::app {
+
+void run_bench(const CommandOptions& options) {
+    const auto configuration = load_configuration(options.file, options.overrides, Needs::exposure);
+    const auto specimen = specimen::make(*configuration.specimen);
+    const double in_focus = 0;
+    const auto instrument = assemble_instrument(configuration, specimen, std::span(&in_focus, 1));
+    const auto times = trace::time_stages(instrument, specimen, configuration.trace, in_focus, options.runs);
+    const double rate = 1 / times.seconds_per_ray;
+    if (options.json) {
+        const nlohmann::ordered_json report = {
+            {"device", times.description},
+            {"rays_per_run", times.rays},
+            {"runs", times.runs},
+            {"rays_per_second", rate},
+            {"spread", times.spread},
+            {"seconds_per_1e9_rays", 1e9 * times.seconds_per_ray},
+            {"share_lenses", times.lenses},
+            {"share_specimen", times.specimen},
+            {"share_detector", times.detector},
+            {"surfaces_per_ray", times.surfaces_per_ray},
+            {"surfaces_per_detected_ray", times.surfaces_per_detected_ray}};
+        fmt::print("{}\n", report.dump(2));
+        return;
+    }
+    fmt::print("{}\n"
+               "  rays/s                 {:.4g}  (median of {} runs of {:.3g} rays, spread {:.1f} %)\n"
+               "  seconds per 1e9 rays   {:.4g}\n"
+               "  surfaces per ray       {:.2f} launched, {:.2f} detected\n"
+               "  share of the time      lenses {:.1f} %, specimen {:.1f} %, detector {:.1f} %\n",
+               times.description, rate, times.runs, static_cast<double>(times.rays), 100 * times.spread,
+               1e9 * times.seconds_per_ray, times.surfaces_per_ray, times.surfaces_per_detected_ray,
+               100 * times.lenses, 100 * times.specimen, 100 * times.detector);
+}
+
+} // namespace vkfv::app

@@ -1,0 +1,79 @@
+#include "app/commands.hpp"
+
+#include "core/units.hpp"
+#include "surface/image_file.hpp"
+
+#include <fmt/format.h>
+#include <spdlog/spdlog.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+
+namespace vkfv::app {
+
+namespace {
+
+// The random numbers of an exposure are keyed by its index: at a position of the scan, that image of the
+// stack is what comes out, bit by bit; anywhere else the index counts on after the scan's.
+std::uint32_t image_index(const Configuration& configuration, double focal_height) {
+    if (!configuration.scan) {
+        return 0;
+    }
+    const auto positions = configuration.scan->positions();
+    for (std::size_t i = 0; i < positions.size(); ++i) {
+        if (std::abs(positions[i] - focal_height) < 1e-6 * configuration.scan->z_step) {
+            return static_cast<std::uint32_t>(i);
+        }
+    }
+    return static_cast<std::uint32_t>(positions.size());
+}
+
+std::filesystem::path image_path(const CommandOptions& options, const Configuration& configuration) {
+    if (options.out && (options.out->extension() == ".tif" || options.out->extension() == ".tiff")) {
+        return *options.out;
+    }
+    return configuration.output_directory /
+           fmt::format("image_{:+.3f}um.tif", options.focal_height * um_per_mm);
+}
+
+void print_ledger(const trace::Image& image) {
+    fmt::print("{:<52} {:>14} {:>9}\n", "energy ledger", "W", "share");
+    for (const auto& entry : image.ledger.entries) {
+        fmt::print("{:<52} {:>14.6e} {:>8.4f} %\n", entry.name, entry.power,
+                   100 * entry.power / image.ledger.emitted);
+    }
+    fmt::print("{:<52} {:>14.6e}\n", "emitted", image.ledger.emitted);
+    fmt::print("{:<52} {:>14.6e}\n", "residual", image.ledger.residual());
+}
+
+} // namespace
+
+void run_image(const CommandOptions& options) {
+    const auto configuration = load_configuration(options.file, options.overrides, Needs::exposure);
+    const auto specimen = specimen::make(*configuration.specimen);
+    // The scan's positions too, so that the instrument is the stack's.
+    auto heights = configuration.scan ? configuration.scan->positions() : std::vector<double>();
+    heights.push_back(options.focal_height);
+    const auto instrument = assemble_instrument(configuration, specimen, heights);
+    const auto tracer = make_tracer(instrument, specimen, configuration.trace);
+    const auto image = tracer->expose(options.focal_height, image_index(configuration, options.focal_height));
+
+    Grid<float> flux(image.flux.columns, image.flux.rows);
+    std::copy(image.flux.values.begin(), image.flux.values.end(), flux.values.begin());
+    const double pitch = instrument.first_order.pixel_pitch;
+    const auto path = image_path(options, configuration);
+    if (path.has_parent_path()) {
+        std::filesystem::create_directories(path.parent_path());
+    }
+    surface::write_tiff(
+        path, flux,
+        {.pitch_x = pitch,
+         .pitch_y = pitch,
+         .description = fmt::format("radiant flux in W at z = {} um", options.focal_height * um_per_mm)});
+    print_ledger(image);
+    fmt::print("{} rays, {} detected, {:.3g} rays/s, {:.3g} s\n{}\n", image.rays, image.detected,
+               static_cast<double>(image.rays) / image.seconds, image.seconds, path.string());
+}
+
+} // namespace vkfv::app

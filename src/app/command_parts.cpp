@@ -1,0 +1,72 @@
+#include "app/commands.hpp"
+
+#include "trace/device_tracer.hpp"
+#include "trace/host_tracer.hpp"
+
+#include <spdlog/spdlog.h>
+
+#include <algorithm>
+#include <cmath>
+
+namespace vkfv::app {
+
+namespace {
+
+optics::Instrument assemble_at_its_place(const Configuration& configuration,
+                                         const optics::InstrumentDescription& description) {
+    try {
+        return optics::assemble(description);
+    } catch (const InputError& error) {
+        // The optics know keys, the configuration knows where they stand.
+        auto problem = error.problem();
+        if (const auto place = configuration.places.find(problem.key); place != configuration.places.end()) {
+            problem.where = place->second;
+        } else if (problem.where.file.empty()) {
+            problem.where.file = configuration.file;
+        }
+        throw InputError(std::move(problem));
+    }
+}
+
+} // namespace
+
+optics::Instrument assemble_instrument(const Configuration& configuration) {
+    return assemble_at_its_place(configuration, configuration.instrument);
+}
+
+optics::Instrument assemble_instrument(const Configuration& configuration, const specimen::Specimen& specimen,
+                                       std::span<const double> focal_heights) {
+    auto description = configuration.instrument;
+    const auto record = specimen::record(specimen, configuration.trace.max_bounces);
+    description.greatest_defocus = 0;
+    for (const double focal_height : focal_heights) {
+        for (const double height : {record.top, record.bottom}) {
+            description.greatest_defocus =
+                std::max(description.greatest_defocus, std::abs(height - focal_height));
+        }
+    }
+    auto instrument = assemble_at_its_place(configuration, description);
+    for (const auto& warning : instrument.warnings) {
+        spdlog::warn(warning);
+    }
+    return instrument;
+}
+
+std::unique_ptr<trace::Tracer> make_tracer(const optics::Instrument& instrument,
+                                           const specimen::Specimen& specimen,
+                                           const trace::TraceOptions& options) {
+    auto tracer = options.device == "host" ? trace::make_host_tracer(instrument, specimen, options)
+                                           : trace::make_device_tracer(instrument, specimen, options);
+    spdlog::info("{}", tracer->description());
+    return tracer;
+}
+
+surface::HeightMap truth_on_pixels(const optics::Instrument& instrument, const Configuration& configuration,
+                                   const specimen::Specimen& specimen) {
+    const int pixels = configuration.instrument.detector_pixels;
+    const double pitch = instrument.first_order.pixel_pitch;
+    const double first = -0.5 * (pixels - 1) * pitch; // the axis meets the detector's centre
+    return specimen::truth(specimen, pixels, pixels, first, first, pitch, pitch);
+}
+
+} // namespace vkfv::app

@@ -1,0 +1,63 @@
+// The program's commands, one file each. Data goes to standard output, everything else to standard error.
+// All throw InputError, DeviceError or RunError.
+#pragma once
+
+#include "app/configuration.hpp"
+
+#include <filesystem>
+#include <memory>
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+namespace vkfv::app {
+
+// What the command line says, as far as it does not override the configuration.
+struct CommandOptions {
+    std::filesystem::path file; // configuration; for --topography the stack's folder
+    std::vector<TomlOverride> overrides;
+    std::optional<std::filesystem::path> out;
+    bool quiet = false;
+    bool json = false;
+    double focal_height = 0;         // --image; mm
+    std::filesystem::path rays_file; // --trace-rays
+    bool float_precision = false;    // --trace-rays: on the device
+    bool apertures = true;           // --trace-rays
+    std::string device;              // as trace::TraceOptions::device
+    int runs = 5;                    // --bench
+};
+
+// A whole stack with its topography and deviation from truth; continues one that was interrupted.
+void run_stack(const CommandOptions& options);
+// One exposure, as a TIFF and its ledger.
+void run_image(const CommandOptions& options);
+// Validates, and prints the instrument's first-order data; needs no device.
+void run_check(const CommandOptions& options);
+// Given rays through the imaging train, as CSV.
+void run_trace_rays(const CommandOptions& options);
+// The devices at hand, what each lacks and which would be used.
+void run_devices(const CommandOptions& options);
+// Rays per second of the configuration's chain, by stages.
+void run_bench(const CommandOptions& options);
+// Evaluates an existing stack anew.
+void run_topography(const CommandOptions& options);
+
+// The configured instrument. Throws InputError at the place of the key that does not fit.
+optics::Instrument assemble_instrument(const Configuration& configuration);
+// The same for exposures of a specimen at these heights of the focal plane (mm), with its warnings in the
+// log.
+optics::Instrument assemble_instrument(const Configuration& configuration, const specimen::Specimen& specimen,
+                                       std::span<const double> focal_heights);
+
+// On the device that the options ask for; the selector "host" means the reference in double on the host's
+// cores.
+std::unique_ptr<trace::Tracer> make_tracer(const optics::Instrument& instrument,
+                                           const specimen::Specimen& specimen,
+                                           const trace::TraceOptions& options);
+
+// The true surface on the detector's pixels, in the object plane.
+surface::HeightMap truth_on_pixels(const optics::Instrument& instrument, const Configuration& configuration,
+                                   const specimen::Specimen& specimen);
+
+} // namespace vkfv::app

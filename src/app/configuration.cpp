@@ -1,0 +1,504 @@
+#include "app/configuration.hpp"
+
+#include "app/digest.hpp"
+#include "core/units.hpp"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <map>
+
+namespace vkfv::app {
+
+namespace {
+
+constexpr std::int64_t most_rays = 1'000'000'000'000; // 1e12: an hour a picture on the fastest device
+constexpr std::int64_t most_pixels = 16384;           // a side; the accumulator stays within 2 GiB
+constexpr std::int64_t most_bounces = 64;           // a Lambertian pit loses all but 1e-3 of its light in ten
+constexpr double most_facets = 16384;               // a side: the largest image of a common device
+constexpr std::int64_t fewest_positions = 3;        // the peak is a fit through three points
+constexpr double most_smoothing_steps = 100;        // 1202 images in memory
+constexpr double default_tube_lens_distance = 100;  // mm, in the infinity space
+constexpr std::int64_t largest_seed = 0xffffffffll; // seeds are 32-bit words of the counter-based generator
+constexpr std::array length_units = {std::pair{"mm", 1.0}, std::pair{"um", 1e-3}, std::pair{"m", 1e3},
+                                     std::pair{"inch", 25.4}};
+
+double from_um(double value) {
+    return value / um_per_mm;
+} // division rounds 0.8 um to the double nearest 0.0008
+
+// The shortest TOML float that reads back to the same bits.
+std::string shortest_text(double value) {
+    std::string text = fmt::format("{}", value);
+    return text.find_first_of(".e") == std::string::npos ? text + ".0" : text;
+}
+
+enum class Influence { images, nothing };
+
+// A table of the configuration that writes down what is read from it, with defaults, for the canonical text
+// and the identity.
+class Section {
+  public:
+    Section(const TomlTable& table, Configuration& configuration)
+        : table_(table), configuration_(configuration) {
+        const std::string header = fmt::format("\n[{}]\n", table.path());
+        configuration_.canonical += header;
+        configuration_.identity += header;
+    }
+
+    const TomlTable& table() const { return table_; }
+
+    double number(const std::string& key, const NumberRange& range, std::optional<double> fallback = {},
+                  Influence influence = Influence::images) const {
+        const double value =
+            fallback ? table_.optional_number(key, range).value_or(*fallback) : table_.number(key, range);
+        return record(key, shortest_text(value), influence), value;
+    }
+    std::optional<double> number_if_given(const std::string& key, const NumberRange& range) const {
+        const auto value = table_.optional_number(key, range);
+        if (value) {
+            record(key, shortest_text(*value), Influence::images);
+        }
+        return value;
+    }
+    std::int64_t integer(const std::string& key, std::int64_t minimum, std::int64_t maximum,
+                         std::optional<std::int64_t> fallback = {},
+                         Influence influence = Influence::images) const {
+        const std::int64_t value = fallback
+                                       ? table_.optional_integer(key, minimum, maximum).value_or(*fallback)
+                                       : table_.integer(key, minimum, maximum);
+        return record(key, fmt::format("{}", value), influence), value;
+    }
+    bool boolean(const std::string& key, bool fallback) const {
+        const bool value = table_.optional_boolean(key).value_or(fallback);
+        return record(key, value ? "true" : "false", Influence::images), value;
+    }
+    std::string choice(const std::string& key, const std::vector<std::string>& choices,
+                       std::optional<std::string> fallback = {},
+                       Influence influence = Influence::images) const {
+        const std::string value =
+            fallback ? table_.optional_choice(key, choices).value_or(*fallback) : table_.choice(key, choices);
+        return record(key, toml_quoted(value), influence), value;
+    }
+    void record(const std::string& key, const std::string& value, Influence influence) const {
+        const std::string line = fmt::format("{} = {}\n", key, value);
+        note_place(key);
+        configuration_.canonical += line;
+        if (influence == Influence::images) {
+            configuration_.identity += line;
+        }
+    }
+    // A path in the canonical text; in the identity nothing, or what stands in its place.
+    void record_path(const std::string& key, const std::string& value, const std::string& digest = "") const {
+        note_place(key);
+        configuration_.canonical += fmt::format("{} = {}\n", key, toml_quoted(value));
+        if (!digest.empty()) {
+            configuration_.identity += fmt::format("{}_digest = \"{}\"\n", key, digest);
+        }
+    }
+
+  private:
+    void note_place(const std::string& key) const {
+        configuration_.places[table_.path() + "." + key] = table_.where(key);
+    }
+
+    TomlTable table_;
+    Configuration& configuration_;
+};
+
+std::string content_digest(const optics::Prescription& prescription) {
+    Digest digest;
+    const auto add_medium = [&](const optics::Medium& medium) {
+        digest.add(
+            fmt::format("{} {};", fmt::join(medium.wavelengths_um, " "), fmt::join(medium.indices, " ")));
+    };
+    add_medium(prescription.medium_before);
+    for (const auto& surface : prescription.surfaces) {
+        digest.add(fmt::format("{} {} {} {} {} {};", surface.curvature, surface.conic,
+                               fmt::join(surface.aspheric, " "), surface.thickness,
+                               surface.semi_diameter.value_or(0), static_cast<int>(surface.role)));
+        add_medium(surface.medium_after);
+    }
+    digest.add(fmt::format("{}", prescription.source_distance.value_or(0)));
+    return digest.text();
+}
+
+std::filesystem::path absolute_path(const std::filesystem::path& path) {
+    return std::filesystem::absolute(path).lexically_normal();
+}
+
+optics::Prescription read_prescription(const Section& section, const Configuration& configuration,
+                                       const std::string& folder,
+                                       const std::optional<std::string>& fallback = {}) {
+    const std::string key = "prescription";
+    const TomlTable& table = section.table();
+    std::string name = fallback ? table.optional_string(key).value_or(*fallback) : table.string(key);
+    if (name.ends_with(".toml")) {
+        name = absolute_path(table.file_path(key)).string();
+    }
+    const auto base = configuration.file.parent_path();
+    if (!optics::find_prescription(name, folder, base)) {
+        table.fail(key,
+                   name.ends_with(".toml")
+                       ? "an existing file"
+                       : fmt::format("the name of a file in assets/{}, without .toml", folder),
+                   "Correct the name, or give the path of a prescription (.toml).");
+    }
+    auto prescription = optics::load_prescription(name, folder, base);
+    // A name that means the installed file means it from anywhere; another's path is kept.
+    if (optics::find_prescription(name, folder, {}) != prescription.file) {
+        name = absolute_path(prescription.file).string();
+    }
+    section.record_path(key, name, content_digest(prescription));
+    return prescription;
+}
+
+void read_instrument(const TomlTable& root, Configuration& configuration) {
+    auto& instrument = configuration.instrument;
+    {
+        const Section source(root.table("source"), configuration);
+        instrument.source_radius = source.number("radius_mm", NumberRange::positive());
+        instrument.flux = source.number("flux_W", NumberRange::positive(), 1.0);
+        instrument.wavelength_um = source.number("wavelength_um", NumberRange::positive(), 0.5876);
+        instrument.source_distance = source.number_if_given("distance_mm", NumberRange::positive());
+    }
+    {
+        const Section illumination(root.table_or_empty("illumination"), configuration);
+        instrument.illumination = read_prescription(illumination, configuration, "illuminators", "koehler");
+        instrument.field_stop_radius =
+            illumination.number_if_given("field_stop_radius_mm", NumberRange::positive());
+        instrument.illumination_to_objective =
+            illumination.number_if_given("objective_distance_mm", NumberRange::at_least(0));
+    }
+    {
+        const Section splitter(root.table_or_empty("beam_splitter"), configuration);
+        instrument.splitter_reflectance = splitter.number("reflectance", NumberRange::between(0, 1), 0.5);
+    }
+    {
+        const Section objective(root.table("objective"), configuration);
+        instrument.objective = read_prescription(objective, configuration, "objectives");
+    }
+    {
+        const Section tube_lens(root.table("tube_lens"), configuration);
+        instrument.tube_lens = read_prescription(tube_lens, configuration, "tube_lenses");
+        instrument.objective_to_tube_lens =
+            tube_lens.number("distance_mm", NumberRange::at_least(0), default_tube_lens_distance);
+    }
+    {
+        const Section detector(root.table("detector"), configuration);
+        instrument.detector_size = detector.number("size_mm", NumberRange::positive());
+        instrument.detector_pixels = static_cast<int>(detector.integer("pixels", 1, most_pixels));
+    }
+}
+
+struct KindRule {
+    const char* name;
+    specimen::Kind kind;
+    bool generated; // from a formula, so also analytic
+    std::vector<std::string> keys;
+};
+
+const std::vector<KindRule>& kind_rules() {
+    using specimen::Kind;
+    static const std::vector<KindRule> rules = {
+        {"plane", Kind::plane, true, {"size_mm", "pitch_um", "representation", "tilt_x_deg", "tilt_y_deg"}},
+        {"step", Kind::step, true, {"size_mm", "pitch_um", "representation", "height_um", "wall_um"}},
+        {"sphere", Kind::sphere, true, {"size_mm", "pitch_um", "representation", "radius_um", "height_um"}},
+        {"sinusoid",
+         Kind::sinusoid,
+         true,
+         {"size_mm", "pitch_um", "representation", "amplitude_um", "period_um"}},
+        {"chirp",
+         Kind::chirp,
+         true,
+         {"size_mm", "pitch_um", "representation", "amplitude_um", "period_um", "period_stop_um"}},
+        {"rough",
+         Kind::rough,
+         true,
+         {"size_mm", "pitch_um", "representation", "sq_um", "correlation_length_um", "seed"}},
+        {"image", Kind::image, false, {"file", "pitch_um", "height_um"}},
+        {"stl", Kind::stl, false, {"file", "unit", "centre"}},
+        {"gltf", Kind::gltf, false, {"file", "unit", "centre"}},
+    };
+    return rules;
+}
+
+bool has_key(const KindRule& rule, const std::string& key) {
+    return std::find(rule.keys.begin(), rule.keys.end(), key) != rule.keys.end();
+}
+
+// A key that another kind has, but not this one.
+void reject_keys_of_other_kinds(const TomlTable& table, const KindRule& rule) {
+    std::map<std::string, std::vector<std::string>> kinds_with;
+    for (const auto& other : kind_rules()) {
+        for (const auto& key : other.keys) {
+            kinds_with[key].push_back(other.name);
+        }
+    }
+    for (const auto& [key, kinds] : kinds_with) {
+        if (!has_key(rule, key) && table.has(key)) {
+            table.fail(key, fmt::format("no such key for a specimen of kind \"{}\"", rule.name),
+                       fmt::format("Remove it; it belongs to the kinds {}.", fmt::join(kinds, ", ")));
+        }
+    }
+}
+
+std::optional<specimen::Roughness> read_roughness(const TomlTable& specimen_table, const KindRule& rule,
+                                                  Configuration& configuration) {
+    const auto table = specimen_table.optional_table("roughness");
+    if (!table) {
+        return std::nullopt;
+    }
+    if (rule.kind == specimen::Kind::stl || rule.kind == specimen::Kind::gltf) {
+        specimen_table.fail("roughness", fmt::format("no roughness for a specimen of kind \"{}\"", rule.name),
+                            "Remove [specimen.roughness]; a mesh brings its own.");
+    }
+    const Section section(*table, configuration);
+    specimen::Roughness roughness;
+    roughness.noise = from_um(section.number("noise_um", NumberRange::at_least(0)));
+    roughness.kernel = from_um(section.number("kernel_um", NumberRange::positive()));
+    roughness.pitch = from_um(section.number("pitch_um", NumberRange::positive()));
+    roughness.seed = static_cast<std::uint32_t>(section.integer("seed", 0, largest_seed, 1));
+    return roughness;
+}
+
+void read_specimen(const TomlTable& root, Configuration& configuration) {
+    const TomlTable table = root.table("specimen");
+    const Section section(table, configuration);
+    std::vector<std::string> names;
+    for (const auto& rule : kind_rules()) {
+        names.emplace_back(rule.name);
+    }
+    const std::string name = section.choice("kind", names);
+    const KindRule& rule = *std::find_if(kind_rules().begin(), kind_rules().end(),
+                                         [&](const KindRule& candidate) { return candidate.name == name; });
+    reject_keys_of_other_kinds(table, rule);
+
+    specimen::Description description;
+    description.kind = rule.kind;
+    description.where = table.where();
+    const auto has = [&](const char* key) { return has_key(rule, key); };
+    const auto read_um = [&](const char* key, double& into, const NumberRange& range,
+                             std::optional<double> fallback = {}) {
+        if (has(key)) {
+            into = from_um(section.number(key, range, fallback));
+        }
+    };
+
+    const auto roughness_table = table.optional_table("roughness");
+    if (rule.generated) {
+        const bool analytic =
+            section.choice("representation", {"facets", "analytic"}, "facets") == "analytic";
+        description.representation =
+            analytic ? specimen::Representation::analytic : specimen::Representation::facets;
+        description.size = section.number("size_mm", NumberRange::positive());
+    }
+    if (has("pitch_um")) {
+        // Facets as fine as the roughness needs them; else half a micrometre, below what any objective
+        // resolves.
+        std::optional<double> fallback;
+        if (rule.generated) {
+            fallback =
+                roughness_table
+                    ? roughness_table->optional_number("pitch_um", NumberRange::positive()).value_or(0.5)
+                    : 0.5;
+        }
+        read_um("pitch_um", description.pitch, NumberRange::positive(), fallback);
+        if (rule.generated && description.size / description.pitch > most_facets) {
+            table.fail("pitch_um", fmt::format("at most {} facets along size_mm", most_facets),
+                       fmt::format("Choose pitch_um >= {:.3g}.", description.size * um_per_mm / most_facets));
+        }
+    }
+    if (rule.kind == specimen::Kind::plane) {
+        const auto slope =
+            NumberRange::within(-80, 80); // steeper, the facets no longer resolve the footprint
+        description.tilt_x = section.number("tilt_x_deg", slope, 0.0) * radians_per_degree;
+        description.tilt_y = section.number("tilt_y_deg", slope, 0.0) * radians_per_degree;
+    }
+    read_um("radius_um", description.radius, NumberRange::positive());
+    read_um("height_um", description.height, NumberRange::finite());
+    read_um("wall_um", description.wall, NumberRange::at_least(0), 0.0);
+    read_um("amplitude_um", description.amplitude, NumberRange::at_least(0));
+    read_um("period_um", description.period, NumberRange::positive());
+    read_um("period_stop_um", description.period_stop, NumberRange::positive());
+    if (rule.kind == specimen::Kind::rough) {
+        // The lattice of [specimen.roughness] may be all the roughness there is.
+        const std::optional<double> none = roughness_table ? std::optional(0.0) : std::nullopt;
+        read_um("sq_um", description.sq, NumberRange::at_least(0), none);
+        if (description.sq > 0 || table.has("correlation_length_um")) {
+            read_um("correlation_length_um", description.correlation_length, NumberRange::positive());
+        }
+        description.seed = static_cast<std::uint32_t>(section.integer("seed", 0, largest_seed, 1));
+    }
+    if (has("file")) {
+        description.file = table.file_path("file");
+        description.where = table.where("file");
+        section.record_path("file", absolute_path(description.file).string());
+    }
+    if (has("unit")) {
+        std::vector<std::string> units;
+        for (const auto& [unit, mm] : length_units) {
+            units.emplace_back(unit);
+        }
+        // glTF 2.0 lengths are metres; STL has no unit, and millimetres are its custom.
+        const std::string unit =
+            section.choice("unit", units, rule.kind == specimen::Kind::gltf ? "m" : "mm");
+        for (const auto& [candidate, mm] : length_units) {
+            if (unit == candidate) {
+                description.unit = mm;
+            }
+        }
+        description.centre = section.boolean("centre", true);
+    }
+    description.roughness = read_roughness(table, rule, configuration);
+    const Section material(table.table_or_empty("material"), configuration);
+    (void)material.choice("scatter", {"henyey-greenstein"}, "henyey-greenstein");
+    description.material.g = material.number("g", NumberRange::within(-1, 1), 0.0);
+    configuration.specimen = std::move(description);
+}
+
+void read_scan(const TomlTable& root, Configuration& configuration) {
+    const TomlTable table = root.table("scan");
+    const Section section(table, configuration);
+    const double start = section.number("z_start_um", NumberRange::finite());
+    const double stop = section.number("z_stop_um", NumberRange::finite());
+    const double step = section.number("z_step_um", NumberRange::positive());
+    if (stop < start) {
+        table.fail("z_stop_um", fmt::format("a number >= z_start_um = {}", start),
+                   "Exchange z_start_um and z_stop_um: a scan ascends.");
+    }
+    const double positions = std::floor((stop - start) / step + 1e-6) + 1; // as ScanPlan::positions() counts
+    if (positions < static_cast<double>(fewest_positions)) {
+        table.fail("z_step_um",
+                   fmt::format("at least {} focal positions from z_start_um = {} to z_stop_um = {}, found {}",
+                               fewest_positions, start, stop, positions),
+                   "Choose a smaller z_step_um or a longer scan.");
+    }
+    if (positions > scan::most_positions) {
+        table.fail("z_step_um",
+                   fmt::format("at most {} focal positions, found {}", scan::most_positions, positions),
+                   "Choose a larger z_step_um or a shorter scan.");
+    }
+    configuration.scan = scan::ScanPlan{from_um(start), from_um(stop), from_um(step)};
+}
+
+void read_trace(const TomlTable& root, Configuration& configuration) {
+    const TomlTable table = root.table_or_empty("trace");
+    const Section section(table, configuration);
+    auto& trace = configuration.trace;
+    trace.rays = static_cast<std::uint64_t>(section.integer("rays", 1, most_rays, 10'000'000));
+    trace.seed = static_cast<std::uint32_t>(section.integer("seed", 0, largest_seed, 1));
+    trace.max_bounces = static_cast<int>(section.integer("max_bounces", 1, most_bounces, 2));
+    if (section.choice("mode", {"sequential", "nonsequential"}, "sequential") != "sequential") {
+        table.fail("mode", "\"sequential\"; nonsequential tracing is not available yet",
+                   "Choose mode = \"sequential\".");
+    }
+    if (section.choice("estimator", {"forward", "backward"}, "forward") != "forward") {
+        table.fail("estimator", "\"forward\"; the backward estimator is not available yet",
+                   "Choose estimator = \"forward\".");
+    }
+    configuration.instrument.directed_emission =
+        section.choice("emission", {"directed", "analog"}, "directed") == "directed";
+    const std::string traversal =
+        section.choice("traversal", {"auto", "ray-query", "quadtree", "bvh"}, "auto", Influence::nothing);
+    if (traversal == "bvh") {
+        table.fail("traversal", "\"auto\", \"ray-query\" or \"quadtree\"; bvh is not available yet",
+                   "Choose traversal = \"auto\".");
+    }
+    trace.traversal = traversal == "ray-query"  ? trace::Traversal::ray_query
+                      : traversal == "quadtree" ? trace::Traversal::quadtree
+                                                : trace::Traversal::automatic;
+    trace.batch = static_cast<std::uint64_t>(section.integer("batch", 0, most_rays, 0, Influence::nothing));
+    if (const auto device = table.optional_string("device")) {
+        section.record("device", toml_quoted(*device), Influence::nothing);
+        trace.device = *device;
+    }
+}
+
+void read_topography(const TomlTable& root, Configuration& configuration, Needs needs) {
+    const TomlTable table = root.table_or_empty("topography");
+    const Section section(table, configuration);
+    auto& options = configuration.topography;
+    options.focus_measure = section.choice("focus_measure", {"standard-deviation", "modified-laplacian"},
+                                           options.focus_measure, Influence::nothing);
+    options.window_px =
+        static_cast<int>(section.integer("window_px", 3, 255, options.window_px, Influence::nothing));
+    if (options.window_px % 2 == 0) {
+        table.fail("window_px", "an odd integer, so that the window has a central pixel",
+                   fmt::format("Choose {} or {}.", options.window_px - 1, options.window_px + 1));
+    }
+    if (needs == Needs::stack && options.window_px > configuration.instrument.detector_pixels) {
+        table.fail(
+            "window_px",
+            fmt::format("an integer <= detector.pixels = {}", configuration.instrument.detector_pixels),
+            "Choose a smaller window or more pixels.");
+    }
+    options.smoothing_steps = section.number("smoothing_steps", NumberRange::within(0, most_smoothing_steps),
+                                             options.smoothing_steps, Influence::nothing);
+    options.false_peak_rate = section.number("false_peak_rate", NumberRange::between(0, 1),
+                                             options.false_peak_rate, Influence::nothing);
+    options.peak = section.choice("peak", {"gaussian"}, options.peak, Influence::nothing);
+    configuration.l_filter =
+        from_um(section.number("l_filter_um", NumberRange::at_least(0), 0.0, Influence::nothing));
+}
+
+void read_output(const TomlTable& root, Configuration& configuration) {
+    const TomlTable table = root.table_or_empty("output");
+    const Section section(table, configuration);
+    configuration.output_directory =
+        table.optional_file_path("directory").value_or(configuration.file.parent_path() / "vkfv-out");
+    section.record_path("directory", absolute_path(configuration.output_directory).string());
+    if (section.choice("images", {"float32", "uint16"}, "float32") != "float32") {
+        table.fail("images", "\"float32\"; 16-bit counts are not available yet",
+                   "Choose images = \"float32\".");
+    }
+}
+
+} // namespace
+
+Configuration load_configuration(const std::filesystem::path& file,
+                                 const std::vector<TomlOverride>& overrides, Needs needs) {
+    const TomlTable root = TomlTable::open(file, overrides);
+    Configuration configuration;
+    configuration.file = file;
+    configuration.identity = fmt::format("program = \"vkfv {}\"\n", VKFV_VERSION);
+    read_instrument(root, configuration);
+    if (needs != Needs::instrument || root.optional_table("specimen")) {
+        read_specimen(root, configuration);
+    }
+    if (needs == Needs::stack || root.optional_table("scan")) {
+        read_scan(root, configuration);
+    }
+    read_trace(root, configuration);
+    read_topography(root, configuration, needs);
+    read_output(root, configuration);
+    root.reject_unknown_keys();
+    return configuration;
+}
+
+std::string geometry_digest(const specimen::Specimen& specimen) {
+    Digest digest;
+    const auto add_field = [&](const specimen::HeightField& field) {
+        digest.add(fmt::format("{} {} {} {} {} {};", field.heights.columns, field.heights.rows, field.x_min,
+                               field.y_min, field.pitch_x, field.pitch_y));
+        digest.add_values(std::span<const float>(field.heights.values));
+    };
+    if (const auto* field = std::get_if<specimen::HeightField>(&specimen.geometry)) {
+        add_field(*field);
+    } else if (const auto* mesh = std::get_if<specimen::Mesh>(&specimen.geometry)) {
+        digest.add_values(std::span<const glm::vec3>(mesh->vertices));
+        digest.add_values(std::span<const glm::uvec3>(mesh->triangles));
+    } else if (const auto* analytic = std::get_if<specimen::Analytic>(&specimen.geometry)) {
+        digest.add(fmt::format("{} {} {} {} {} {};", analytic->shape, fmt::join(analytic->parameters, " "),
+                               analytic->x_min, analytic->y_min, analytic->x_max, analytic->y_max));
+        if (analytic->lattice) {
+            add_field(*analytic->lattice);
+        }
+    }
+    return digest.text();
+}
+
+} // namespace vkfv::app

@@ -1,0 +1,58 @@
+// What the user asks for: a TOML file (DESIGN.md 10) and the command line's overrides, checked and in the
+// units of the inside.
+#pragma once
+
+#include "core/toml_reader.hpp"
+#include "optics/instrument.hpp"
+#include "scan/plan.hpp"
+#include "specimen/description.hpp"
+#include "topography/topography.hpp"
+#include "trace/tracer.hpp"
+
+#include <filesystem>
+#include <map>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace vkfv::app {
+
+// Which tables a command cannot do without: [specimen] for an exposure, [scan] besides for a stack.
+enum class Needs { instrument, exposure, stack };
+
+struct Configuration {
+    std::filesystem::path file;
+    optics::InstrumentDescription instrument;
+    std::optional<specimen::Description> specimen;
+    std::optional<scan::ScanPlan> scan;
+    trace::TraceOptions trace;
+    topography::TopographyOptions topography;
+    double l_filter = 0; // nesting index of the comparison's L-filter, mm; 0: none
+    std::filesystem::path output_directory;
+
+    // Where each key stands that was read, by dotted key; defaults have the place of their table.
+    std::map<std::string, SourceLocation> places;
+
+    // Every key with its value, defaults included, in a fixed order and in the file's own units, so that it
+    // reads back to the same bits: TOML that load_configuration() takes. Paths are absolute.
+    std::string canonical;
+
+    // What the images depend on, a line a key, for telling one stack from another. Of the keys of `canonical`
+    // it leaves out, with the reason:
+    //   topography.*, output.directory   evaluate or place the images
+    //   trace.batch                      the same bits for any batch size
+    //   trace.device, trace.traversal    requests; what they resolve to is in the tracer's description
+    //   file paths                       the content counts, and stands in its place as a digest
+    // The program's version is in it: another version may trace other bits.
+    std::string identity;
+};
+
+// Throws InputError.
+Configuration load_configuration(const std::filesystem::path& file,
+                                 const std::vector<TomlOverride>& overrides = {}, Needs needs = Needs::stack);
+
+// The surface as it was made, vertex by vertex: what an STL, a glTF with its buffers or an image contributes
+// to the identity of a stack.
+std::string geometry_digest(const specimen::Specimen& specimen);
+
+} // namespace vkfv::app

@@ -1,0 +1,271 @@
+// The command line; the only main(). Every failure ends here, as a message on standard error and an exit
+// code.
+#include "app/commands.hpp"
+
+#include "core/units.hpp"
+
+#include <CLI/CLI.hpp>
+#include <fmt/format.h>
+#include <spdlog/sinks/stdout_color_sinks.h>
+#include <spdlog/spdlog.h>
+
+#include <cstdio>
+#include <map>
+#include <new>
+
+namespace {
+
+using vkfv::InputError;
+
+enum ExitCode { done = 0, wrong_input = 2, no_device = 3, run_failed = 4 };
+
+struct Arguments {
+    std::string stack, image, check, bench, topography;
+    std::vector<std::string> trace_rays;
+    bool devices = false;
+    double z_um = 0;
+    std::string precision = "double";
+    bool apertures = true;
+    bool json = false, quiet = false;
+    int runs = 5;
+    std::string out, device, traversal, estimator, rays, seed;
+    std::vector<std::string> settings;
+};
+
+[[noreturn]] void refuse(std::string found, std::string expected, std::string remedy) {
+    vkfv::SourceLocation where;
+    where.file = "command line";
+    throw InputError({.where = where,
+                      .key = "",
+                      .found = std::move(found),
+                      .expected = std::move(expected),
+                      .remedy = std::move(remedy)});
+}
+
+void declare(CLI::App& app, Arguments& given) {
+    app.set_version_flag("--version", std::string("vkfv ") + VKFV_VERSION);
+    app.allow_extras(); // what is left over is refused below, with a suggestion
+    const auto on_off = CLI::CheckedTransformer(std::map<std::string, bool>{{"on", true}, {"off", false}});
+
+    const char* commands = "Commands (one of these)";
+    app.add_option("--stack", given.stack,
+                   "Trace a focus stack, reconstruct it and compare it with the truth; "
+                   "continues an interrupted one")
+        ->type_name("C.toml")
+        ->group(commands);
+    app.add_option("--image", given.image, "Trace one exposure, at --z")
+        ->type_name("C.toml")
+        ->group(commands);
+    app.add_option("--topography", given.topography, "Evaluate an existing stack anew")
+        ->type_name("DIR")
+        ->group(commands);
+    app.add_option("--check", given.check, "Validate and print first-order data; needs no device")
+        ->type_name("C.toml")
+        ->group(commands);
+    app.add_option("--trace-rays", given.trace_rays,
+                   "Trace given rays (x_mm,y_mm,z_mm,l,m,n) from the specimen to the detector; CSV on "
+                   "standard output")
+        ->expected(2)
+        ->type_name("C.toml IN.csv")
+        ->group(commands);
+    app.add_flag("--devices", given.devices, "List devices, what each lacks and which would be used")
+        ->group(commands);
+    app.add_option("--bench", given.bench, "Measure rays/s of a configuration's chain")
+        ->type_name("C.toml")
+        ->group(commands);
+
+    const char* common = "Instead of the configuration's values";
+    app.add_option("--out", given.out, "Output folder; for --image also a .tif file")
+        ->type_name("PATH")
+        ->group(common);
+    app.add_option("--device", given.device, "Index or part of a name; \"host\": the reference in double")
+        ->type_name("DEVICE")
+        ->group(common);
+    app.add_option("--traversal", given.traversal, "auto, ray-query or quadtree")
+        ->type_name("NAME")
+        ->group(common);
+    app.add_option("--estimator", given.estimator, "forward")->type_name("NAME")->group(common);
+    app.add_option("--rays", given.rays, "Rays launched per image, 1e7 or 10000000")
+        ->type_name("N")
+        ->group(common);
+    app.add_option("--seed", given.seed, "Seed of the trace")->type_name("N")->group(common);
+    app.add_option("--set", given.settings,
+                   "Any key of the configuration, e.g. --set specimen.material.g=0.65")
+        ->type_name("KEY=VALUE")
+        ->expected(1)
+        ->take_all()
+        ->group(common);
+
+    const char* specific = "For some commands";
+    app.add_option("--z", given.z_um, "Height of the focal plane over best focus, um (--image)")
+        ->type_name("UM")
+        ->group(specific);
+    app.add_option("--precision", given.precision, "double: on the host; float: on the device (--trace-rays)")
+        ->check(CLI::IsMember({"double", "float"}))
+        ->type_name("NAME")
+        ->group(specific);
+    app.add_option("--apertures", given.apertures, "off: nothing is vignetted (--trace-rays)")
+        ->transform(on_off)
+        ->type_name("on|off")
+        ->group(specific);
+    app.add_option("--runs", given.runs, "Runs whose median counts (--bench)")
+        ->check(CLI::Range(1, 1000))
+        ->type_name("N")
+        ->group(specific);
+    app.add_flag("--json", given.json, "Machine-readable output (--check, --devices, --bench)")
+        ->group(specific);
+    app.add_flag("--quiet", given.quiet, "Only warnings and errors, no progress");
+
+    app.footer("\nExamples\n"
+               "  vkfv --stack assets/stacks/demo.toml --out demo\n"
+               "  vkfv --check assets/stacks/demo.toml --json\n"
+               "  vkfv --image assets/stacks/demo.toml --z -3.2 --rays 1e8\n"
+               "\nExit codes: 0 done, 2 the input is wrong, 3 no usable device, 4 the run failed and can be "
+               "resumed.");
+}
+
+// What CLI11 left over: an unknown option most likely meant the nearest known one.
+void refuse_leftovers(const CLI::App& app) {
+    const auto leftovers = app.remaining();
+    if (leftovers.empty()) {
+        return;
+    }
+    std::vector<std::string> known;
+    for (const auto* option : app.get_options()) {
+        known.push_back(option->get_name());
+    }
+    const auto meant = vkfv::nearest_word(leftovers.front(), known);
+    refuse(leftovers.front(), "a known option",
+           meant ? fmt::format("Did you mean {}? vkfv --help lists all.", *meant) : "vkfv --help lists all.");
+}
+
+vkfv::app::CommandOptions options_from(const Arguments& given) {
+    vkfv::app::CommandOptions options;
+    options.quiet = given.quiet;
+    options.json = given.json;
+    options.focal_height = given.z_um / vkfv::um_per_mm;
+    options.float_precision = given.precision == "float";
+    options.apertures = given.apertures;
+    options.device = given.device;
+    options.runs = given.runs;
+    const auto override_with = [&](const std::string& option, const std::string& key,
+                                   const std::string& value) {
+        if (!value.empty()) {
+            options.overrides.push_back({key, value, option});
+        }
+    };
+    const auto quoted = [](const std::string& text) { return text.empty() ? text : vkfv::toml_quoted(text); };
+    for (const auto& setting : given.settings) {
+        const auto equals = setting.find('=');
+        if (equals == std::string::npos) {
+            refuse("--set " + setting, "KEY=VALUE", "Write for example --set trace.rays=1e8.");
+        }
+        options.overrides.push_back({setting.substr(0, equals), setting.substr(equals + 1), "--set"});
+    }
+    override_with("--rays", "trace.rays", given.rays);
+    override_with("--seed", "trace.seed", given.seed);
+    override_with("--traversal", "trace.traversal", quoted(given.traversal));
+    override_with("--estimator", "trace.estimator", quoted(given.estimator));
+    override_with("--device", "trace.device", quoted(given.device));
+    if (!given.out.empty()) {
+        options.out = given.out;
+        override_with("--out", "output.directory", quoted(given.out));
+    }
+    return options;
+}
+
+void run(const CLI::App& app, const Arguments& given) {
+    refuse_leftovers(app);
+    auto options = options_from(given);
+    struct Command {
+        const char* option;
+        std::filesystem::path file;
+        void (*run)(const vkfv::app::CommandOptions&);
+    };
+    if (!given.trace_rays.empty()) {
+        options.rays_file = given.trace_rays.back();
+    }
+    const std::vector<Command> commands = {
+        {"--stack", given.stack, vkfv::app::run_stack},
+        {"--image", given.image, vkfv::app::run_image},
+        {"--topography", given.topography, vkfv::app::run_topography},
+        {"--check", given.check, vkfv::app::run_check},
+        {"--trace-rays", given.trace_rays.empty() ? "" : given.trace_rays.front(), vkfv::app::run_trace_rays},
+        {"--devices", "", vkfv::app::run_devices},
+        {"--bench", given.bench, vkfv::app::run_bench},
+    };
+    const Command* chosen = nullptr;
+    for (const auto& command : commands) {
+        if (app.count(command.option) == 0) {
+            continue;
+        }
+        if (chosen) {
+            refuse(fmt::format("{} and {}", chosen->option, command.option), "one command",
+                   "Run one after the other.");
+        }
+        chosen = &command;
+    }
+    if (!chosen) {
+        refuse("no command",
+               "one of --stack, --image, --topography, --check, --trace-rays, --devices, --bench",
+               "vkfv --help tells what they do.");
+    }
+    if ((app.count("--z") > 0) != (chosen->run == vkfv::app::run_image)) {
+        refuse(app.count("--z") > 0 ? "--z" : "--image without --z", "--z with --image, and only with it",
+               "Give --z UM, the height of the focal plane over best focus, to --image.");
+    }
+    options.file = chosen->file;
+    chosen->run(options);
+}
+
+int report(const char* message, ExitCode code) {
+    fmt::print(stderr, "vkfv: {}\n", message);
+    return code;
+}
+
+} // namespace
+
+int main(int argument_count, char** argument_values) {
+    Arguments given;
+    CLI::App app(
+        "vkfv: a virtual focus-variation microscope. It traces light through real lens prescriptions to a "
+        "specimen and back to a detector, position by position, and measures the topography from the images.",
+        "vkfv");
+    try {
+        declare(app, given);
+        app.parse(argument_count, argument_values);
+        spdlog::set_default_logger(spdlog::stderr_color_mt("vkfv"));
+        spdlog::set_pattern("%^%l%$: %v");
+        spdlog::set_level(given.quiet ? spdlog::level::warn : spdlog::level::info);
+        run(app, given);
+        return done;
+    } catch (const CLI::Success& request) { // --help, --version
+        return app.exit(request);
+    } catch (const CLI::ParseError& error) {
+        return report(fmt::format("command line: {}. vkfv --help lists all options.", error.what()).c_str(),
+                      wrong_input);
+    } catch (const InputError& error) {
+        return report(error.what(), wrong_input);
+    } catch (const vkfv::DeviceError& error) {
+        return report(error.what(), no_device);
+    } catch (const vkfv::RunError& error) {
+        return report(error.what(), run_failed);
+    } catch (const std::filesystem::filesystem_error& error) {
+        return report(
+            fmt::format("{}. Check the path, its permissions and the free space, and run the same command "
+                        "again.",
+                        error.what())
+                .c_str(),
+            run_failed);
+    } catch (const std::bad_alloc&) {
+        return report(
+            "the host has not enough memory. Choose fewer pixels, fewer positions or a coarser specimen.",
+            run_failed);
+    } catch (const std::exception& error) {
+        return report(fmt::format("unexpected failure: {}. Please report it with the command line and the "
+                                  "configuration.",
+                                  error.what())
+                          .c_str(),
+                      run_failed);
+    }
+}
