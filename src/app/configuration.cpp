@@ -328,6 +328,7 @@ void read_specimen(const TomlTable& root, Configuration& configuration) {
         // The lattice of [specimen.roughness] may be all the roughness there is.
         const std::optional<double> none = roughness_table ? std::optional(0.0) : std::nullopt;
         read_um("sq_um", description.sq, NumberRange::at_least(0), none);
+        description.correlation_length = description.pitch; // of heights that are all zero
         if (description.sq > 0 || table.has("correlation_length_um")) {
             read_um("correlation_length_um", description.correlation_length, NumberRange::positive());
         }

@@ -1,0 +1,368 @@
+// Bad input never crashes and never runs on: each case through the real program, with the exit code and what
+// the message must say: the place (file:line:column, or file@offset), the key, what was expected and the
+// remedy.
+#include "app/program.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <bit>
+#include <cstdint>
+#include <limits>
+
+namespace vkfv::test {
+namespace {
+
+using testing::HasSubstr;
+
+struct Case {
+    std::string name;
+    // Changes to the small configuration: first by second. Empty: as it is.
+    std::vector<std::pair<std::string, std::string>> changes;
+    int exit_code = 2;
+    std::vector<std::string> message; // all of these in standard error
+    std::vector<std::string> arguments = {"--check", "c.toml"};
+    std::map<std::string, std::string> files = {}; // beside the configuration
+    std::map<std::string, std::string> environment = {};
+};
+
+std::ostream& operator<<(std::ostream& stream, const Case& given) {
+    return stream << given.name;
+}
+
+template <class Value>
+std::string bytes(Value value) {
+    static_assert(std::endian::native == std::endian::little); // as STL files are
+    return {reinterpret_cast<const char*>(&value), sizeof(Value)};
+}
+
+// A binary STL with `count` in its header and one triangle, whose first coordinate of the first vertex is
+// given.
+std::string binary_stl(std::uint32_t count, float first = 0) {
+    std::string text(80, ' ');
+    text += bytes(count);
+    for (const float value : {0.f, 0.f, 1.f, first, 0.f, 0.f, 0.1f, 0.f, 0.f, 0.f, 0.1f, 0.f}) {
+        text += bytes(value);
+    }
+    return text + std::string(2, '\0');
+}
+
+const std::pair<std::string, std::string> mesh_specimen = {
+    "kind = \"step\"\nsize_mm = 0.2\nheight_um = 2.0\n[specimen.material]\ng = 0.8\n[specimen.roughness]\n"
+    "noise_um = 0.1\nkernel_um = 1.0\npitch_um = 1.0\nseed = 7\n",
+    "kind = \"stl\"\nfile = \"part.stl\"\n"};
+
+std::pair<std::string, std::string> file_specimen(const std::string& lines) {
+    return {mesh_specimen.first, lines};
+}
+
+std::vector<Case> cases() {
+    const std::vector<std::string> stack = {"--stack", "c.toml"};
+    const std::vector<std::string> rays = {"--trace-rays", "c.toml", "rays.csv"};
+    const std::string rays_header = "x_mm,y_mm,z_mm,l,m,n\n";
+    return {
+        // The text of the configuration.
+        {"MissingFile", {}, 2, {"absent.toml", "no such file", "Check the path"}, {"--check", "absent.toml"}},
+        {"FolderForFile", {}, 2, {"a directory", "expected a readable TOML file"}, {"--check", "."}},
+        {"NotToml", {{"pixels = 8", "pixels = = 8"}}, 2, {"c.toml:19:10", "valid TOML"}},
+        {"KeyTwice", {{"pixels = 8", "pixels = 8\npixels = 9"}}, 2, {"c.toml:20:", "valid TOML"}},
+        {"BinaryForToml",
+         {{"# a small step", std::string("\xff\xfe\0\1", 4)}},
+         2,
+         {"c.toml:1:", "valid TOML"}},
+        // Keys.
+        {"UnknownKey",
+         {{"pixels = 8", "pixles = 8\npixels = 8"}},
+         2,
+         {"c.toml:19:1", "detector.pixles", "Did you mean \"pixels\"?"}},
+        {"UnknownTable",
+         {{"[detector]", "[detecter]\nx = 1\n[detector]"}},
+         2,
+         {"c.toml:17:", "detecter", "Did you mean \"detector\"?"}},
+        {"MissingKey",
+         {{"pixels = 8\n", ""}},
+         2,
+         {"c.toml:17:1", "detector.pixels", "Add pixels to [detector]"}},
+        {"MissingTable",
+         {{"[detector]\nsize_mm = 0.16\npixels = 8\n", ""}},
+         2,
+         {"detector", "Add [detector]"}},
+        {"KeyOfAnotherKind",
+         {{"height_um = 2.0", "height_um = 2.0\nradius_um = 5"}},
+         2,
+         {"c.toml:25:13", "specimen.radius_um", "kind \"step\"", "sphere"}},
+        {"RoughnessOfAMesh",
+         {{"kind = \"step\"\nsize_mm = 0.2\nheight_um = 2.0", "kind = \"stl\"\nfile = \"part.stl\""}},
+         2,
+         {"specimen.roughness", "kind \"stl\"", "Remove [specimen.roughness]"}},
+        // Types and ranges.
+        {"WrongType",
+         {{"radius_mm = 0.96", "radius_mm = \"wide\""}},
+         2,
+         {"c.toml:3:13", "source.radius_mm", "wide", "a finite number > 0"}},
+        {"NegativeRadius",
+         {{"radius_mm = 0.96", "radius_mm = -0.96"}},
+         2,
+         {"c.toml:3:13", "source.radius_mm = -0.96", "a finite number > 0"}},
+        {"NotANumber", {{"flux_W = 1.0", "flux_W = nan"}}, 2, {"c.toml:4:10", "source.flux_W = nan"}},
+        {"ZeroPixels", {{"pixels = 8", "pixels = 0"}}, 2, {"c.toml:19:10", "an integer in [1, 16384]"}},
+        {"HalfAPixel", {{"pixels = 8", "pixels = 8.5"}}, 2, {"c.toml:19:10", "an integer in [1, 16384]"}},
+        {"HugeDetector", {{"pixels = 8", "pixels = 1e9"}}, 2, {"c.toml:19:10", "an integer in [1, 16384]"}},
+        {"FullReflection", {{"reflectance = 0.5", "reflectance = 1"}}, 2, {"c.toml:11:15", "in (0, 1)"}},
+        {"AsymmetryOutOfRange",
+         {{"g = 0.8", "g = 1.2"}},
+         2,
+         {"c.toml:26:5", "specimen.material.g = 1.2", "[-1, 1]"}},
+        {"UnknownScatter",
+         {{"g = 0.8", "g = 0.8\nscatter = \"henyey\""}},
+         2,
+         {"c.toml:27:11", "specimen.material.scatter", "\"henyey-greenstein\""}},
+        {"UnknownKind",
+         {{"\"step\"", "\"stp\""}},
+         2,
+         {"c.toml:22:8", "specimen.kind", "Did you mean \"step\"?"}},
+        {"TooFineFacets",
+         {{"height_um = 2.0", "height_um = 2.0\npitch_um = 1e-6"}},
+         2,
+         {"c.toml:25:12", "specimen.pitch_um", "Choose pitch_um >="}},
+        {"NoRays", {{"rays = 2000", "rays = 0"}}, 2, {"c.toml:39:8", "trace.rays = 0", "an integer in [1, "}},
+        {"EvenWindow",
+         {{"window_px = 3", "window_px = 4"}},
+         2,
+         {"c.toml:43:13", "topography.window_px = 4", "Choose 3 or 5"}},
+        {"NotYetBackward",
+         {{"rays = 2000", "rays = 2000\nestimator = \"backward\""}},
+         2,
+         {"c.toml:40:13", "trace.estimator", "Choose estimator = \"forward\""}},
+        {"NotYetNonsequential",
+         {{"rays = 2000", "rays = 2000\nmode = \"nonsequential\""}},
+         2,
+         {"c.toml:40:8", "trace.mode", "Choose mode = \"sequential\""}},
+        {"WavelengthNoGlassKnows",
+         {{"wavelength_um = 0.5876", "wavelength_um = 10.6"}},
+         2,
+         {"c.toml", "10.6", "expected a wavelength", "Choose such a wavelength"}},
+        // The scan.
+        {"StepOfZero",
+         {{"z_step_um = 1.0", "z_step_um = 0"}},
+         2,
+         {"c.toml:36:13", "scan.z_step_um = 0"},
+         stack},
+        {"ScanOfZeroSteps",
+         {{"z_stop_um = 2.0", "z_stop_um = -2.0"}},
+         2,
+         {"c.toml:36:13", "scan.z_step_um", "at least 3 focal positions"},
+         stack},
+        {"ScanDownwards",
+         {{"z_stop_um = 2.0", "z_stop_um = -3.0"}},
+         2,
+         {"c.toml:35:13", "scan.z_stop_um = -3", "Exchange"},
+         stack},
+        {"EndlessScan",
+         {{"z_step_um = 1.0", "z_step_um = 1e-9"}},
+         2,
+         {"c.toml:36:13", "at most 10000"},
+         stack},
+        {"NoScan",
+         {{"[scan]\nz_start_um = -2.0\nz_stop_um = 2.0\nz_step_um = 1.0\n", ""}},
+         2,
+         {"c.toml", "scan", "Add [scan]"},
+         stack},
+        // Prescriptions.
+        {"UnknownObjective",
+         {{"\"10x_0.28\"", "\"11x_0.28\""}},
+         2,
+         {"c.toml:13:16", "objective.prescription", "11x_0.28", "assets/objectives"}},
+        {"MissingPrescriptionFile",
+         {{"\"10x_0.28\"", "\"mine.toml\""}},
+         2,
+         {"c.toml:13:16", "objective.prescription", "an existing file"}},
+        {"DamagedPrescription",
+         {{"\"10x_0.28\"", "\"mine.toml\""}},
+         2,
+         {"mine.toml:5:13", "radius_mm", "bent"},
+         {"--check", "c.toml"},
+         {{"mine.toml",
+           "title = \"t\"\nsource = \"s\"\nlicence = \"l\"\n[[surface]]\nradius_mm = \"bent\"\n"}}},
+        {"PrescriptionWithoutSurfaces",
+         {{"\"10x_0.28\"", "\"mine.toml\""}},
+         2,
+         {"mine.toml:1:1", "surface", "Add [[surface]]"},
+         {"--check", "c.toml"},
+         {{"mine.toml", "title = \"t\"\nsource = \"s\"\nlicence = \"l\"\n"}}},
+        // Files of specimens.
+        {"MissingMesh", {mesh_specimen}, 2, {"c.toml:23:8", "specimen.file", "part.stl"}},
+        {"TruncatedStl",
+         {mesh_specimen},
+         2,
+         {"part.stl@"},
+         {"--check", "c.toml"},
+         {{"part.stl", binary_stl(1).substr(0, 120)}}},
+        {"StlThatPromisesMore",
+         {mesh_specimen},
+         2,
+         {"part.stl"},
+         {"--check", "c.toml"},
+         {{"part.stl", binary_stl(7)}}},
+        {"StlWithNaN",
+         {mesh_specimen},
+         2,
+         {"part.stl@96", "finite"}, // 84 bytes of header, 12 of normal, then the first coordinate
+         {"--check", "c.toml"},
+         {{"part.stl", binary_stl(1, std::numeric_limits<float>::quiet_NaN())}}},
+        {"AsciiStlWithWord",
+         {mesh_specimen},
+         2,
+         {"part.stl:4:"},
+         {"--check", "c.toml"},
+         {{"part.stl",
+           "solid s\nfacet normal 0 0 1\nouter loop\nvertex 0 zero 0\nvertex 1 0 0\nvertex 0 1 0\n"
+           "endloop\nendfacet\nendsolid s\n"}}},
+        {"EmptyMesh",
+         {mesh_specimen},
+         2,
+         {"part.stl", "at least one triangle"},
+         {"--check", "c.toml"},
+         {{"part.stl", binary_stl(0).substr(0, 84)}}},
+        {"GltfThatIsNone",
+         {file_specimen("kind = \"gltf\"\nfile = \"part.gltf\"\n")},
+         2,
+         {"part.gltf"},
+         {"--check", "c.toml"},
+         {{"part.gltf", "{ \"asset\": "}}},
+        {"ImageThatIsNone",
+         {file_specimen("kind = \"image\"\nfile = \"map.png\"\npitch_um = 1\nheight_um = 1\n")},
+         2,
+         {"map.png"},
+         {"--check", "c.toml"},
+         {{"map.png", "no picture"}}},
+        // Rays.
+        {"RaysMissing", {}, 2, {"rays.csv", "Check the path"}, rays},
+        {"RaysHeader",
+         {},
+         2,
+         {"rays.csv:1:1", "x_mm,y_mm,z_mm,l,m,n"},
+         rays,
+         {{"rays.csv", "x,y,z\n1,2,3\n"}}},
+        {"RaysWord",
+         {},
+         2,
+         {"rays.csv:2:3", "y_mm", "\"b\""},
+         rays,
+         {{"rays.csv", rays_header + "0,b,0,0,0,1\n"}}},
+        {"RaysShortLine",
+         {},
+         2,
+         {"rays.csv:3:", "six numbers"},
+         rays,
+         {{"rays.csv", rays_header + "0,0,0,0,0,1\n0,0\n"}}},
+        {"RaysLongLine",
+         {},
+         2,
+         {"rays.csv:2:", "six numbers"},
+         rays,
+         {{"rays.csv", rays_header + "0,0,0,0,0,1,7\n"}}},
+        {"RaysInfinite",
+         {},
+         2,
+         {"rays.csv:2:1", "finite"},
+         rays,
+         {{"rays.csv", rays_header + "inf,0,0,0,0,1\n"}}},
+        {"RaysNotUnit",
+         {},
+         2,
+         {"rays.csv:2:1", "length 1"},
+         rays,
+         {{"rays.csv", rays_header + "0,0,0,0,0,2\n"}}},
+        {"RaysNone", {}, 2, {"rays.csv:1:1", "at least one ray"}, rays, {{"rays.csv", rays_header}}},
+        // The command line.
+        {"UnknownOption", {}, 2, {"--chekc", "Did you mean --check?"}, {"--chekc", "c.toml"}},
+        {"NoCommand", {}, 2, {"no command", "--help"}, {"--quiet"}},
+        {"TwoCommands",
+         {},
+         2,
+         {"--check", "--bench", "one command"},
+         {"--check", "c.toml", "--bench", "c.toml"}},
+        {"CommandWithoutFile", {}, 2, {"--check", "--help"}, {"--check"}},
+        {"ImageWithoutHeight", {}, 2, {"--z UM"}, {"--image", "c.toml"}},
+        {"HeightThatIsNone", {}, 2, {"--z", "--help"}, {"--image", "c.toml", "--z", "high"}},
+        {"RaysThatAreNone", {}, 2, {"--rays: trace.rays", "many"}, {"--check", "c.toml", "--rays", "many"}},
+        {"UnknownTraversal",
+         {},
+         2,
+         {"--traversal: trace.traversal", "Did you mean \"quadtree\"?"},
+         {"--check", "c.toml", "--traversal", "quadtre"}},
+        {"SettingWithoutValue",
+         {},
+         2,
+         {"--set trace.rays", "KEY=VALUE"},
+         {"--check", "c.toml", "--set", "trace.rays"}},
+        {"SettingOfUnknownKey",
+         {},
+         2,
+         {"--set", "trace.rasy", "Did you mean \"rays\"?"},
+         {"--check", "c.toml", "--set", "trace.rasy=5"}},
+        {"NoStackThere", {}, 2, {"nowhere", "stack.toml"}, {"--topography", "nowhere"}},
+        // Devices.
+        {"UnknownDevice",
+         {},
+         3,
+         {"no-such-device"},
+         {"--image", "c.toml", "--z", "0", "--device", "no-such-device"}},
+        {"NoDriver",
+         {},
+         3,
+         {"river"},
+         {"--image", "c.toml", "--z", "0"},
+         {},
+         {{"VK_DRIVER_FILES", "/nonexistent/icd.json"}, {"VK_ICD_FILENAMES", "/nonexistent/icd.json"}}},
+        {"NoDriverToList",
+         {},
+         3,
+         {"river"},
+         {"--devices"},
+         {},
+         {{"VK_DRIVER_FILES", "/nonexistent/icd.json"}, {"VK_ICD_FILENAMES", "/nonexistent/icd.json"}}},
+    };
+}
+
+class BadInput : public testing::TestWithParam<Case> {};
+
+TEST_P(BadInput, IsRefusedWithPlaceKeyExpectationAndRemedy) {
+    const Case& given = GetParam();
+    const auto folder = fresh_folder("bad_input_" + given.name);
+    std::string text = small_configuration;
+    for (const auto& [from, to] : given.changes) {
+        text = replaced(text, from, to);
+    }
+    write_file(folder / "c.toml", text);
+    for (const auto& [name, content] : given.files) {
+        write_file(folder / name, content);
+    }
+    const auto result = run_program(given.arguments, folder, given.environment);
+    EXPECT_EQ(result.exit_code, given.exit_code) << result.standard_error;
+    for (const auto& part : given.message) {
+        EXPECT_THAT(result.standard_error, HasSubstr(part));
+    }
+    EXPECT_EQ(result.standard_output, "");
+    EXPECT_FALSE(std::filesystem::exists(folder / "out")) << "it ran on";
+}
+
+INSTANTIATE_TEST_SUITE_P(Table, BadInput, testing::ValuesIn(cases()),
+                         [](const testing::TestParamInfo<Case>& info) { return info.param.name; });
+
+TEST(BadInputTable, IsAsLongAsPromised) {
+    EXPECT_GE(cases().size(), 30u);
+}
+
+// The wrong twin of the table: the configuration that every case damages is itself accepted.
+TEST(BadInputTable, UndamagedConfigurationIsAccepted) {
+    const auto folder = fresh_folder("bad_input_none");
+    write_file(folder / "c.toml", small_configuration);
+    const auto result = run_program({"--check", "c.toml"}, folder);
+    EXPECT_EQ(result.exit_code, 0) << result.standard_error;
+    EXPECT_THAT(result.standard_output, HasSubstr("numerical_aperture"));
+}
+
+} // namespace
+} // namespace vkfv::test

@@ -1,0 +1,33 @@
+// The real program as a subprocess, and configurations for it to read.
+#pragma once
+
+#include <filesystem>
+#include <map>
+#include <string>
+#include <vector>
+
+namespace vkfv::test {
+
+struct ProgramResult {
+    int exit_code = -1; // 128 + signal for a program that a signal ended
+    std::string standard_output;
+    std::string standard_error;
+};
+
+// Runs build/.../vkfv with the arguments, in `folder`, with these environment variables besides its own.
+ProgramResult run_program(const std::vector<std::string>& arguments, const std::filesystem::path& folder,
+                          const std::map<std::string, std::string>& environment = {});
+
+// An empty folder of this name below the test's temporary folder.
+std::filesystem::path fresh_folder(const std::string& name);
+
+void write_file(const std::filesystem::path& path, const std::string& content);
+std::string read_file(const std::filesystem::path& path);
+
+// A small configuration with every table; line numbers in tests refer to it.
+extern const std::string small_configuration;
+
+// `text` with `from`, which it must hold, replaced by `to`.
+std::string replaced(std::string text, const std::string& from, const std::string& to);
+
+} // namespace vkfv::test
