@@ -1,0 +1,327 @@
+#include "specimen/intersector.hpp"
+
+#include "specimen/analytic.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+#include <numeric>
+#include <optional>
+
+namespace vkfv::specimen {
+namespace {
+
+using physics::f64::Hit;
+using physics::f64::SpecimenRecord;
+
+constexpr double infinity = std::numeric_limits<double>::infinity();
+// Margin of every interval that only selects what is then tested: far above the rounding of a few operations,
+// far below any pitch.
+constexpr double selection_margin = 1e-12;
+
+// S. Woop, C. Benthin, I. Wald, "Watertight ray/triangle intersection", JCGT 2 (2013) 1: in coordinates
+// sheared so that the ray is the third axis, the edge functions of neighbours have exactly opposite values on
+// their common edge, and zero counts as inside; no ray passes between two triangles.
+class Ray {
+  public:
+    Ray(const glm::dvec3& origin, const glm::dvec3& direction) : origin_(origin), direction_(direction) {
+        const glm::dvec3 size = glm::abs(direction);
+        z_ = size.x > size.y ? (size.x > size.z ? 0 : 2) : (size.y > size.z ? 1 : 2);
+        x_ = (z_ + 1) % 3;
+        y_ = (z_ + 2) % 3;
+        shear_ = glm::dvec3(direction[x_], direction[y_], 1.0) / direction[z_];
+    }
+
+    // Distance to the triangle, if it is > 0.
+    std::optional<double> meet(const glm::dvec3& a, const glm::dvec3& b, const glm::dvec3& c) const {
+        const glm::dvec3 pa = shear(a);
+        const glm::dvec3 pb = shear(b);
+        const glm::dvec3 pc = shear(c);
+        const double u = pc.x * pb.y - pc.y * pb.x;
+        const double v = pa.x * pc.y - pa.y * pc.x;
+        const double w = pb.x * pa.y - pb.y * pa.x;
+        if ((u < 0 || v < 0 || w < 0) && (u > 0 || v > 0 || w > 0)) {
+            return std::nullopt;
+        }
+        const double sum = u + v + w;
+        if (sum == 0) { // seen edge-on
+            return std::nullopt;
+        }
+        const double distance = (u * pa.z + v * pb.z + w * pc.z) / sum;
+        return distance > 0 ? std::optional(distance) : std::nullopt;
+    }
+
+    const glm::dvec3& origin() const { return origin_; }
+    const glm::dvec3& direction() const { return direction_; }
+    glm::dvec3 at(double distance) const { return origin_ + distance * direction_; }
+
+  private:
+    glm::dvec3 shear(const glm::dvec3& point) const {
+        const glm::dvec3 p = point - origin_;
+        return {p[x_] - shear_.x * p[z_], p[y_] - shear_.y * p[z_], shear_.z * p[z_]};
+    }
+    glm::dvec3 origin_;
+    glm::dvec3 direction_;
+    int x_, y_, z_;
+    glm::dvec3 shear_;
+};
+
+struct Interval {
+    double start = 0;
+    double stop = infinity;
+    bool empty() const { return !(start <= stop); }
+
+    // Cuts to lower <= coordinate <= upper.
+    void clip(double origin, double direction, double lower, double upper) {
+        if (direction == 0) {
+            if (origin < lower || origin > upper) {
+                stop = -infinity;
+            }
+            return;
+        }
+        const double a = (lower - origin) / direction;
+        const double b = (upper - origin) / direction;
+        start = std::max(start, std::min(a, b));
+        stop = std::min(stop, std::max(a, b));
+    }
+};
+
+Hit no_hit() {
+    Hit hit{};
+    hit.found = 0;
+    hit.distance = infinity;
+    return hit;
+}
+
+class FieldWalk {
+  public:
+    explicit FieldWalk(const HeightField& field) : field_(field) {
+        const auto [lowest, highest] =
+            std::minmax_element(field.heights.values.begin(), field.heights.values.end());
+        bottom_ = static_cast<double>(*lowest);
+        top_ = static_cast<double>(*highest);
+        margin_ = selection_margin *
+                  std::max({std::abs(field.x_min), std::abs(field.x_max()), std::abs(field.y_min),
+                            std::abs(field.y_max()), std::abs(bottom_), std::abs(top_)});
+    }
+
+    Hit hit(const glm::dvec3& origin, const glm::dvec3& direction) const {
+        const Ray ray(origin, direction);
+        const double margin =
+            margin_ + selection_margin * (std::abs(origin.x) + std::abs(origin.y) + std::abs(origin.z));
+        Interval inside;
+        inside.clip(origin.x, direction.x, field_.x_min - margin, field_.x_max() + margin);
+        inside.clip(origin.y, direction.y, field_.y_min - margin, field_.y_max() + margin);
+        inside.clip(origin.z, direction.z, bottom_ - margin, top_ + margin);
+        Hit nearest = no_hit();
+        if (inside.empty()) {
+            return nearest;
+        }
+        // Strip by strip along the axis that the ray covers faster, and in each strip the few cells it
+        // crosses, each taken a margin wider than it is.
+        const bool by_columns = std::abs(direction.x) >= std::abs(direction.y);
+        const int main = by_columns ? 0 : 1;
+        const int cells_main = (by_columns ? field_.heights.columns : field_.heights.rows) - 1;
+        const double pitch_main = by_columns ? field_.pitch_x : field_.pitch_y;
+        const double min_main = by_columns ? field_.x_min : field_.y_min;
+        const double from = ray.at(inside.start)[main];
+        const double to = ray.at(inside.stop)[main];
+        const int step = direction[main] < 0 ? -1 : 1;
+        const int first = cell(from - step * margin, min_main, pitch_main, cells_main);
+        const int last = cell(to + step * margin, min_main, pitch_main, cells_main);
+        for (int strip = first; step * (last - strip) >= 0 && nearest.found == 0; strip += step) {
+            Interval part = inside;
+            part.clip(origin[main], direction[main], min_main + strip * pitch_main - margin,
+                      min_main + (strip + 1) * pitch_main + margin);
+            if (part.empty()) {
+                continue;
+            }
+            const double a = ray.at(part.start)[1 - main];
+            const double b = ray.at(part.stop)[1 - main];
+            const double pitch = by_columns ? field_.pitch_y : field_.pitch_x;
+            const double min = by_columns ? field_.y_min : field_.x_min;
+            const int cells = (by_columns ? field_.heights.rows : field_.heights.columns) - 1;
+            const int end = cell(std::max(a, b) + margin, min, pitch, cells);
+            for (int across = cell(std::min(a, b) - margin, min, pitch, cells); across <= end; ++across) {
+                meet_cell(ray, by_columns ? strip : across, by_columns ? across : strip, nearest);
+            }
+        }
+        return nearest;
+    }
+
+  private:
+    static int cell(double coordinate, double min, double pitch, int cells) {
+        return static_cast<int>(std::clamp(std::floor((coordinate - min) / pitch), 0.0, cells - 1.0));
+    }
+    glm::dvec3 point(int column, int row) const {
+        return {field_.x_min + column * field_.pitch_x, field_.y_min + row * field_.pitch_y,
+                static_cast<double>(field_.heights(column, row))};
+    }
+    void meet_cell(const Ray& ray, int column, int row, Hit& nearest) const {
+        const glm::dvec3 low = point(column, row);
+        const glm::dvec3 high = point(column + 1, row + 1);
+        meet_triangle(ray, low, point(column + 1, row), high, nearest);
+        meet_triangle(ray, low, high, point(column, row + 1), nearest);
+    }
+    static void meet_triangle(const Ray& ray, const glm::dvec3& a, const glm::dvec3& b, const glm::dvec3& c,
+                              Hit& nearest) {
+        const std::optional<double> distance = ray.meet(a, b, c);
+        if (distance && *distance < nearest.distance) {
+            nearest.found = 1;
+            nearest.distance = *distance;
+            nearest.position = ray.at(*distance);
+            nearest.normal =
+                glm::normalize(glm::cross(b - a, c - a)); // counter-clockwise from above: towards +z
+        }
+    }
+
+    HeightField field_;
+    double bottom_ = 0;
+    double top_ = 0;
+    double margin_ = 0;
+};
+
+class Hierarchy {
+  public:
+    explicit Hierarchy(const Mesh& mesh) {
+        triangles_.reserve(mesh.triangles.size());
+        for (const glm::uvec3& triangle : mesh.triangles) {
+            triangles_.push_back({glm::dvec3(mesh.vertices[triangle.x]),
+                                  glm::dvec3(mesh.vertices[triangle.y]),
+                                  glm::dvec3(mesh.vertices[triangle.z])});
+        }
+        if (!triangles_.empty()) {
+            build(0, triangles_.size());
+        }
+    }
+
+    Hit hit(const glm::dvec3& origin, const glm::dvec3& direction) const {
+        Hit nearest = no_hit();
+        if (nodes_.empty()) {
+            return nearest;
+        }
+        const Ray ray(origin, direction);
+        std::array<std::size_t, 64> stack; // a median split of 2^32 triangles is 32 deep
+        std::size_t depth = 0;
+        stack[depth++] = 0;
+        while (depth > 0) {
+            const Node& node = nodes_[stack[--depth]];
+            Interval inside{0, nearest.distance};
+            for (int axis = 0; axis < 3; ++axis) {
+                const double margin =
+                    selection_margin *
+                    (std::abs(origin[axis]) + std::abs(node.lower[axis]) + std::abs(node.upper[axis]));
+                inside.clip(origin[axis], direction[axis], node.lower[axis] - margin,
+                            node.upper[axis] + margin);
+            }
+            if (inside.empty()) {
+                continue;
+            }
+            if (node.count == 0) {
+                stack[depth++] = node.second;
+                stack[depth++] = node.first;
+                continue;
+            }
+            for (std::size_t i = node.first; i < node.first + node.count; ++i) {
+                const Triangle& t = triangles_[i];
+                const std::optional<double> distance = ray.meet(t[0], t[1], t[2]);
+                if (distance && *distance < nearest.distance) {
+                    const glm::dvec3 normal = glm::normalize(glm::cross(t[1] - t[0], t[2] - t[0]));
+                    nearest.found = 1;
+                    nearest.distance = *distance;
+                    nearest.position = ray.at(*distance);
+                    nearest.normal = glm::dot(normal, direction) > 0 ? -normal : normal;
+                }
+            }
+        }
+        return nearest;
+    }
+
+  private:
+    using Triangle = std::array<glm::dvec3, 3>;
+    struct Node {
+        glm::dvec3 lower = glm::dvec3(infinity);
+        glm::dvec3 upper = glm::dvec3(-infinity);
+        std::size_t first = 0;  // child, or triangle of a leaf
+        std::size_t second = 0; // child
+        std::size_t count = 0;  // triangles of a leaf; 0: an inner node
+    };
+    static constexpr std::size_t leaf_size = 4;
+
+    std::size_t build(std::size_t begin, std::size_t end) {
+        const std::size_t index = nodes_.size();
+        Node node;
+        for (std::size_t i = begin; i < end; ++i) {
+            for (const glm::dvec3& vertex : triangles_[i]) {
+                node.lower = glm::min(node.lower, vertex);
+                node.upper = glm::max(node.upper, vertex);
+            }
+        }
+        node.first = begin;
+        node.count = end - begin;
+        nodes_.push_back(node);
+        if (node.count > leaf_size) {
+            const glm::dvec3 extent = node.upper - node.lower;
+            const int axis =
+                extent.x >= extent.y && extent.x >= extent.z ? 0 : (extent.y >= extent.z ? 1 : 2);
+            const std::size_t middle = begin + node.count / 2;
+            const auto at = [&](std::size_t i) {
+                return triangles_.begin() + static_cast<std::ptrdiff_t>(i);
+            };
+            std::nth_element(at(begin), at(middle), at(end), [axis](const Triangle& a, const Triangle& b) {
+                return a[0][axis] + a[1][axis] + a[2][axis] < b[0][axis] + b[1][axis] + b[2][axis];
+            });
+            const std::size_t first = build(begin, middle);
+            const std::size_t second = build(middle, end);
+            nodes_[index].first = first;
+            nodes_[index].second = second;
+            nodes_[index].count = 0;
+        }
+        return index;
+    }
+
+    std::vector<Triangle> triangles_;
+    std::vector<Node> nodes_;
+};
+
+class Marcher {
+  public:
+    explicit Marcher(const Analytic& analytic)
+        : record_(specimen::record({analytic, {}}, 1)), lattice_(analytic.lattice) {}
+
+    Hit hit(const glm::dvec3& origin, const glm::dvec3& direction) const {
+        const LatticeScene scene{lattice_ ? &*lattice_ : nullptr};
+        return physics::f64::march_surface(scene, record_, origin, direction, 0.0, infinity);
+    }
+
+  private:
+    SpecimenRecord record_;
+    std::optional<HeightField> lattice_;
+};
+
+} // namespace
+
+struct Intersector::State {
+    std::variant<FieldWalk, Hierarchy, Marcher> geometry;
+};
+
+Intersector::Intersector(const Specimen& specimen) {
+    using Geometry = decltype(State::geometry);
+    struct Prepare {
+        Geometry operator()(const HeightField& field) const { return FieldWalk(field); }
+        Geometry operator()(const Mesh& mesh) const { return Hierarchy(mesh); }
+        Geometry operator()(const Analytic& analytic) const { return Marcher(analytic); }
+    };
+    state_ = std::make_unique<State>(State{std::visit(Prepare{}, specimen.geometry)});
+}
+
+Intersector::~Intersector() = default;
+Intersector::Intersector(Intersector&&) noexcept = default;
+
+Hit Intersector::hit(glm::dvec3 origin, glm::dvec3 direction) const {
+    return std::visit([&](const auto& geometry) { return geometry.hit(origin, direction); },
+                      state_->geometry);
+}
+
+} // namespace vkfv::specimen

@@ -1,0 +1,247 @@
+#include "specimen/files.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <bit>
+#include <cctype>
+#include <charconv>
+#include <cmath>
+#include <cstring>
+#include <fstream>
+#include <iterator>
+#include <string_view>
+#include <system_error>
+#include <unordered_map>
+
+namespace vkfv::specimen {
+
+std::string read_file(const std::filesystem::path& file, const SourceLocation& mention) {
+    std::error_code error;
+    std::ifstream stream;
+    if (std::filesystem::is_regular_file(file, error)) {
+        stream.open(file, std::ios::binary);
+    }
+    if (!stream.is_open()) {
+        throw InputError({mention, "specimen.file", file.string(), "a file that can be read",
+                          "Correct the path; it is relative to the configuration file."});
+    }
+    return {std::istreambuf_iterator<char>(stream), {}};
+}
+
+namespace {
+
+// Collects facets of three vertices, one index for equal positions.
+class Welder {
+  public:
+    void add(const glm::vec3& position) {
+        // Adding zero makes -0 and 0 the same vertex.
+        const glm::vec3 key = position + 0.0f;
+        const auto [entry, is_new] =
+            indices_.try_emplace(key, static_cast<std::uint32_t>(mesh_.vertices.size()));
+        if (is_new) {
+            mesh_.vertices.emplace_back(key);
+        }
+        corners_.push_back(entry->second);
+        if (corners_.size() == 3) {
+            mesh_.triangles.emplace_back(corners_[0], corners_[1], corners_[2]);
+            corners_.clear();
+        }
+    }
+    FileMesh take() { return std::move(mesh_); }
+
+  private:
+    struct Hash {
+        std::size_t operator()(const glm::vec3& p) const {
+            std::uint64_t hash = 0;
+            for (int axis = 0; axis < 3; ++axis) {
+                // The multiplier of Fibonacci hashing, 2^64 over the golden ratio.
+                hash = (hash ^ std::bit_cast<std::uint32_t>(p[axis])) * 0x9E3779B97F4A7C15u;
+                hash ^= hash >> 32;
+            }
+            return hash;
+        }
+    };
+    FileMesh mesh_;
+    std::vector<std::uint32_t> corners_;
+    std::unordered_map<glm::vec3, std::uint32_t, Hash> indices_;
+};
+
+constexpr std::size_t binary_header = 80;
+constexpr std::size_t binary_start = 84;    // after the count of triangles
+constexpr std::size_t binary_triangle = 50; // normal, three vertices (float32), attribute (uint16)
+
+static_assert(std::endian::native == std::endian::little, "STL is read in place");
+
+FileMesh read_binary(const std::string& bytes, std::uint32_t count, const std::filesystem::path& file) {
+    Welder welder;
+    for (std::uint32_t triangle = 0; triangle < count; ++triangle) {
+        for (std::size_t corner = 0; corner < 3; ++corner) {
+            const std::size_t offset = binary_start + triangle * binary_triangle + 12 * (corner + 1);
+            glm::vec3 position;
+            std::memcpy(&position, bytes.data() + offset, sizeof position);
+            for (int axis = 0; axis < 3; ++axis) {
+                if (!std::isfinite(position[axis])) {
+                    throw InputError({{file, 0, 0, offset + 4 * static_cast<std::size_t>(axis)},
+                                      fmt::format("triangle {}", triangle),
+                                      fmt::format("{}", position[axis]),
+                                      "a finite coordinate",
+                                      "Export the file anew; it is damaged."});
+                }
+            }
+            welder.add(position);
+        }
+    }
+    return welder.take();
+}
+
+// Words of an ASCII STL with the place they stand at.
+class Words {
+  public:
+    Words(std::string_view text, const std::filesystem::path& file) : text_(text), file_(file) {}
+
+    // The next word in lower case; empty at the end of the file.
+    std::string next() {
+        while (at_ < text_.size() && std::isspace(static_cast<unsigned char>(text_[at_]))) {
+            step();
+        }
+        word_line_ = line_;
+        word_column_ = static_cast<int>(at_ - line_start_) + 1;
+        std::string word;
+        while (at_ < text_.size() && !std::isspace(static_cast<unsigned char>(text_[at_]))) {
+            word += static_cast<char>(std::tolower(static_cast<unsigned char>(text_[at_])));
+            step();
+        }
+        return word;
+    }
+    void skip_line() {
+        while (at_ < text_.size() && text_[at_] != '\n') {
+            step();
+        }
+    }
+    void expect(std::string_view keyword) {
+        const std::string word = next();
+        if (word != keyword) {
+            fail(word, fmt::format("`{}`", keyword));
+        }
+    }
+    float number() {
+        const std::string word = next();
+        const char* first = word.data() + (word.starts_with('+') ? 1 : 0);
+        const char* last = word.data() + word.size();
+        double value = 0;
+        const auto [end, error] = std::from_chars(first, last, value);
+        if (error != std::errc() || end != last || !std::isfinite(static_cast<float>(value))) {
+            fail(word, "a finite number");
+        }
+        return static_cast<float>(value);
+    }
+    [[noreturn]] void fail(const std::string& found, const std::string& expected) const {
+        throw InputError({{file_, word_line_, word_column_, {}},
+                          "STL",
+                          found.empty() ? "the end of the file" : "`" + found.substr(0, 40) + "`",
+                          expected,
+                          "Export the file anew; it is damaged or truncated."});
+    }
+
+  private:
+    void step() {
+        if (text_[at_++] == '\n') {
+            ++line_;
+            line_start_ = at_;
+        }
+    }
+    std::string_view text_;
+    const std::filesystem::path& file_;
+    std::size_t at_ = 0;
+    std::size_t line_start_ = 0;
+    int line_ = 1;
+    int word_line_ = 1;
+    int word_column_ = 1;
+};
+
+FileMesh read_ascii(const std::string& text, const std::filesystem::path& file) {
+    Words words(text, file);
+    Welder welder;
+    words.expect("solid");
+    for (;;) { // solids
+        words.skip_line();
+        std::string word;
+        while ((word = words.next()) == "facet") {
+            words.expect("normal");
+            for (int axis = 0; axis < 3; ++axis) {
+                words.next(); // exporters write nan for the normal of a degenerate facet; it is not used
+            }
+            words.expect("outer");
+            words.expect("loop");
+            for (int corner = 0; corner < 3; ++corner) {
+                words.expect("vertex");
+                const float x = words.number();
+                const float y = words.number();
+                const float z = words.number();
+                welder.add({x, y, z});
+            }
+            words.expect("endloop");
+            words.expect("endfacet");
+        }
+        if (word != "endsolid") {
+            words.fail(word, "`facet` or `endsolid`");
+        }
+        words.skip_line();
+        word = words.next();
+        if (word.empty()) {
+            return welder.take();
+        }
+        if (word != "solid") {
+            words.fail(word, "`solid` or the end of the file");
+        }
+    }
+}
+
+bool looks_like_text(const std::string& bytes) {
+    const std::string_view head = std::string_view(bytes).substr(0, 512);
+    const std::size_t start = std::min(head.find_first_not_of(" \t\r\n"), head.size());
+    const bool printable = std::all_of(head.begin(), head.end(), [](unsigned char c) {
+        return c >= 0x20 || c == '\t' || c == '\r' || c == '\n';
+    });
+    std::string word(head.substr(start, 5));
+    std::transform(word.begin(), word.end(), word.begin(), [](unsigned char c) { return std::tolower(c); });
+    return printable && word == "solid";
+}
+
+} // namespace
+
+FileMesh read_stl(const std::filesystem::path& file, const SourceLocation& mention) {
+    const std::string bytes = read_file(file, mention);
+    const auto damaged = [&](std::uint64_t offset, const std::string& found, const std::string& expected) {
+        throw InputError(
+            {{file, 0, 0, offset}, "STL", found, expected, "Export the file anew; it is damaged."});
+    };
+    std::uint32_t count = 0;
+    if (bytes.size() >= binary_start) {
+        std::memcpy(&count, bytes.data() + binary_header, sizeof count);
+    }
+    FileMesh mesh;
+    if (bytes.size() >= binary_start &&
+        bytes.size() == binary_start + binary_triangle * std::uint64_t{count}) {
+        mesh = read_binary(bytes, count, file);
+    } else if (looks_like_text(bytes)) {
+        mesh = read_ascii(bytes, file);
+    } else if (bytes.size() < binary_start) {
+        damaged(bytes.size(), fmt::format("{} bytes", bytes.size()),
+                fmt::format("at least the {} bytes of a binary STL's header", binary_start));
+    } else {
+        damaged(binary_header, fmt::format("{} triangles in {} bytes", count, bytes.size()),
+                fmt::format("{} bytes for them", binary_start + binary_triangle * std::uint64_t{count}));
+    }
+    if (mesh.triangles.empty()) {
+        throw InputError({{file, 0, 0, {}},
+                          "STL",
+                          "0 triangles",
+                          "at least one triangle",
+                          "Export the mesh anew, or name another file."});
+    }
+    return mesh;
+}
+
+} // namespace vkfv::specimen
