@@ -137,7 +137,7 @@ AccelerationStructure::AccelerationStructure(const Device& device,
             {{1.0F, 0.0F, 0.0F, 0.0F}, {0.0F, 1.0F, 0.0F, 0.0F}, {0.0F, 0.0F, 1.0F, 0.0F}}});
         constexpr std::uint32_t visible_to_all = 0xFF;
         const vk::AccelerationStructureInstanceKHR instance(
-            identity, 0, visible_to_all, 0, vk::GeometryInstanceFlagBitsKHR::eTriangleFrontCounterclockwise,
+            identity, 0, visible_to_all, 0, vk::GeometryInstanceFlagsKHR(),
             device.handle().getAccelerationStructureAddressKHR(
                 vk::AccelerationStructureDeviceAddressInfoKHR(*bottom_)));
         const Buffer instances = upload(device, std::span(&instance, 1));

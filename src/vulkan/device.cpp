@@ -14,6 +14,10 @@
 #include <cstring>
 #include <string_view>
 
+#ifdef VKFV_VALIDATION
+#include <dlfcn.h>
+#endif
+
 namespace vkfv::vulkan {
 
 namespace {
@@ -128,7 +132,13 @@ vk::raii::Instance make_instance(const vk::raii::Context& context) {
     info.setPNext(&validation);
 #endif
     try {
-        return vk::raii::Instance(context, info);
+        vk::raii::Instance instance(context, info);
+#ifdef VKFV_VALIDATION
+        // Kept for good: the leak sanitizer knows what it finds by the library, and only while that is
+        // loaded.
+        dlopen("libVkLayer_khronos_validation.so", RTLD_LAZY | RTLD_NOLOAD | RTLD_NODELETE);
+#endif
+        return instance;
     } catch (const vk::IncompatibleDriverError& error) {
         throw_no_driver(error.what());
     } catch (const vk::SystemError& error) {
@@ -286,6 +296,9 @@ std::string explain(std::span<const DeviceReport> reports, std::size_t chosen, c
 // The layer's synchronisation validation leaks some kilobytes of its own.
 extern "C" const char* __lsan_default_suppressions() {
     return "leak:libVkLayer_khronos_validation.so\n";
+}
+extern "C" const char* __lsan_default_options() {
+    return "print_suppressions=0";
 }
 #endif
 
