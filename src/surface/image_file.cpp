@@ -82,7 +82,7 @@ void sync_to_disk(const std::filesystem::path& path) {
 class AsideFile {
   public:
     explicit AsideFile(const std::filesystem::path& final_path) : final_path_(final_path), path_(final_path) {
-        path_.replace_filename("." + final_path.filename().string() + ".part");
+        path_.replace_filename(fmt::format(".{}.part", final_path.filename().string()));
     }
     AsideFile(const AsideFile&) = delete;
     AsideFile& operator=(const AsideFile&) = delete;
