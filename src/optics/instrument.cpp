@@ -7,12 +7,15 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <utility>
 
 namespace vkfv::optics {
 
 namespace {
 
+using physics::f64::PATH_ALIVE;
 using physics::f64::Ray;
 using physics::f64::real3;
 using physics::f64::Surface;
@@ -128,7 +131,7 @@ void append(std::vector<Surface>& train, const std::vector<Surface>& part, doubl
 // / 128 (no pupil is as narrow as that), then by bisection. None: it holds at no step.
 template <class Predicate>
 std::optional<double> farthest(double limit, Predicate holds) {
-    constexpr int steps = 128;
+    constexpr int steps = 32;
     constexpr int bisections = 45; // 2^-45 of a step
     for (int step = steps; step >= 0; --step) {
         double inside = limit * step / steps;
@@ -154,7 +157,8 @@ struct Imaging {
 
     // Detector coordinates of light from (x, y) at `height` above the paraxial object plane, with direction
     // cosines l and m. None: it does not come so far.
-    std::optional<glm::dvec2> trace(glm::dvec2 position, double height, glm::dvec2 cosines) const {
+    std::optional<glm::dvec2> trace(glm::dvec2 position, double height, glm::dvec2 cosines,
+                                    unsigned apertures = 1u) const {
         const double axial_squared = 1 - glm::dot(cosines, cosines);
         if (axial_squared <= 0) {
             return std::nullopt;
@@ -163,8 +167,8 @@ struct Imaging {
         ray.position = real3(position, height - working_distance);
         ray.direction = real3(cosines, std::sqrt(axial_squared));
         const auto result =
-            physics::f64::trace_train(TrainScene{train}, 0, static_cast<int>(train.size()), ray, 1u);
-        if (result.status != physics::f64::PATH_ALIVE) {
+            physics::f64::trace_train(TrainScene{train}, 0, static_cast<int>(train.size()), ray, apertures);
+        if (result.status != PATH_ALIVE) {
             return std::nullopt;
         }
         const auto arrived = physics::f64::fly_to_plane(result.ray, detector_distance, 1.0);
@@ -214,56 +218,58 @@ Outline outline_at(const Imaging& imaging, double x) {
 }
 
 // Height above the paraxial plane at which the RMS distance of the outline's light from its centroid on the
-// detector is least. The landing points are all but linear in the height, so Gauss and Newton's method on
-// their deviations from the centroid converges in two steps; four leave rounding.
+// detector is least. The cone is that of the paraxial plane. The landing points are all but linear in the
+// height, so Gauss and Newton's method on their deviations from the centroid converges in two steps; three
+// leave rounding.
 double best_focus(const Imaging& imaging, const Outline& outline) {
-    constexpr std::size_t rings = 24; // of equal area
-    constexpr double difference =
-        1e-3; // mm: the curvature over a micrometre is far below rounding of the result
+    // Gauss-Legendre over [-1, 1] (Abramowitz and Stegun, table 25.4) in the share of the cone that a ring
+    // encloses: exact for squared aberrations up to the 30th power of the pupil's radius.
+    constexpr std::array<std::pair<double, double>, 8> rings = {{{-0.9602898564975363, 0.1012285362903763},
+                                                                 {-0.7966664774136267, 0.2223810344533745},
+                                                                 {-0.5255324099163290, 0.3137066458778873},
+                                                                 {-0.1834346424956498, 0.3626837833783620},
+                                                                 {0.1834346424956498, 0.3626837833783620},
+                                                                 {0.5255324099163290, 0.3137066458778873},
+                                                                 {0.7966664774136267, 0.2223810344533745},
+                                                                 {0.9602898564975363, 0.1012285362903763}}};
+    // mm, for the central difference: landing points curve far less than rounding over a micrometre.
+    constexpr double difference = 1e-3;
     struct Sample {
-        glm::dvec2 cosines;
+        glm::dvec2 landing;
+        glm::dvec2 rate; // of the landing with the height
         double weight;
     };
-    std::vector<Sample> samples;
-    double total = 0;
-    for (std::size_t i = 0; i < outline.radii.size(); ++i) {
-        const double weight = outline.radii[i] * outline.radii[i];
-        for (std::size_t ring = 0; ring < rings; ++ring) {
-            const double radius = outline.radii[i] * std::sqrt((static_cast<double>(ring) + 0.5) / rings);
-            const glm::dvec2 cosines = outline.cosines(i, radius);
-            if (imaging.trace(outline.position, -difference, cosines) &&
-                imaging.trace(outline.position, difference, cosines)) {
-                samples.push_back({cosines, weight});
-                total += weight;
-            }
-        }
-    }
     double height = 0;
-    for (int step = 0; step < 4; ++step) {
-        // Both halves of the pupil: the mirrored sample has the same x and the opposite y.
-        double centroid_x = 0;
+    for (int step = 0; step < 3; ++step) {
+        std::vector<Sample> samples;
+        // Only along x: the other half of the cone has the same x and the opposite y.
+        double total = 0;
+        double centroid = 0;
         double centroid_rate = 0;
-        std::vector<glm::dvec2> landings;
-        std::vector<glm::dvec2> rates;
-        std::vector<double> weights;
-        for (const Sample& sample : samples) {
-            const auto below = imaging.trace(outline.position, height - difference, sample.cosines);
-            const auto above = imaging.trace(outline.position, height + difference, sample.cosines);
-            if (below && above) {
-                landings.push_back(0.5 * (*below + *above));
-                rates.push_back((*above - *below) / (2 * difference));
-                weights.push_back(sample.weight / total);
-                centroid_x += weights.back() * landings.back().x;
-                centroid_rate += weights.back() * rates.back().x;
+        for (std::size_t i = 0; i < outline.radii.size(); ++i) {
+            for (const auto& [node, node_weight] : rings) {
+                const glm::dvec2 cosines = outline.cosines(i, outline.radii[i] * std::sqrt(0.5 * (1 + node)));
+                const auto below = imaging.trace(outline.position, height - difference, cosines, 0u);
+                const auto above = imaging.trace(outline.position, height + difference, cosines, 0u);
+                if (!below || !above) {
+                    continue;
+                }
+                const Sample sample{.landing = 0.5 * (*below + *above),
+                                    .rate = (*above - *below) / (2 * difference),
+                                    .weight = node_weight * outline.radii[i] * outline.radii[i]};
+                samples.push_back(sample);
+                total += sample.weight;
+                centroid += sample.weight * sample.landing.x;
+                centroid_rate += sample.weight * sample.rate.x;
             }
         }
         double numerator = 0;
         double denominator = 0;
-        for (std::size_t i = 0; i < landings.size(); ++i) {
-            const glm::dvec2 deviation = landings[i] - glm::dvec2(centroid_x, 0);
-            const glm::dvec2 rate = rates[i] - glm::dvec2(centroid_rate, 0);
-            numerator += weights[i] * glm::dot(deviation, rate);
-            denominator += weights[i] * glm::dot(rate, rate);
+        for (const Sample& sample : samples) {
+            const glm::dvec2 deviation = sample.landing - glm::dvec2(centroid / total, 0);
+            const glm::dvec2 rate = sample.rate - glm::dvec2(centroid_rate / total, 0);
+            numerator += sample.weight * glm::dot(deviation, rate);
+            denominator += sample.weight * glm::dot(rate, rate);
         }
         height -= denominator > 0 ? numerator / denominator : 0;
     }
@@ -274,12 +280,12 @@ double best_focus(const Imaging& imaging, const Outline& outline) {
 // as outlines of pupils are smooth but for the corners where two edges meet.
 constexpr double search_margin = 1.02;
 
-// The gate: a ray of position x and slope s on a plane at height t above focus crosses the paraxial entrance
-// pupil at p x + (1 + p t) s, up to a factor, where x now stands on the plane of focus and p is the pupil's
-// curvature. Light that reaches the detector comes from within the field; of all of it, over field, azimuth
-// and |t| <= greatest_defocus, the largest such crossing is the gate's radius. The crossing is convex in s
-// and t, so the rim of each cone and the two ends of t hold the largest.
-double gate_radius(const Imaging& imaging, double field_radius, double greatest_defocus) {
+// The gate: a ray of position x and slope s on a plane at height t above the paraxial one crosses the
+// paraxial entrance pupil at p x + (1 + p t) s, up to a factor, where x now stands on the paraxial plane and
+// p is the pupil's curvature. Light that reaches the detector comes from within the field; of all of it, over
+// field, azimuth and |t| <= greatest_defocus, the largest such crossing is the gate's radius. The crossing is
+// convex in s and t, so the rim of each cone and the two ends of t hold the largest.
+double gate_radius(const Imaging& imaging, double field_radius, double lowest, double highest) {
     constexpr int field_points = 12;
     double largest = 0;
     for (int i = 0; i <= field_points; ++i) {
@@ -290,7 +296,7 @@ double gate_radius(const Imaging& imaging, double field_radius, double greatest_
             }
             const glm::dvec2 cosines = outline.cosines(azimuth, outline.radii[azimuth]);
             const glm::dvec2 slope = cosines / std::sqrt(1 - glm::dot(cosines, cosines));
-            for (const double t : {-greatest_defocus, greatest_defocus}) {
+            for (const double t : {lowest, highest}) {
                 largest = std::max(largest, glm::length(imaging.pupil_curvature * outline.position +
                                                         (1 + imaging.pupil_curvature * t) * slope));
             }
@@ -304,15 +310,13 @@ double gate_radius(const Imaging& imaging, double field_radius, double greatest_
 // leads from the source to there.
 double emission_sine(const std::vector<Surface>& train, double source_radius, double source_distance,
                      const RayTransfer& towards_stop) {
-    constexpr int source_points = 12;
-    constexpr int azimuths = 25;
-    double largest = 0;
-    for (int i = 0; i <= source_points; ++i) {
-        const double x = source_radius * i / source_points;
+    const auto largest_from = [&](double x) {
+        constexpr int azimuths = 13;
         const double slope = -towards_stop.a / towards_stop.b * x;
         const glm::dvec2 centre(slope / std::sqrt(1 + slope * slope), 0);
-        for (int j = 0; j < azimuths; ++j) {
-            const double angle = pi * j / (azimuths - 1);
+        double largest = 0;
+        for (int i = 0; i < azimuths; ++i) {
+            const double angle = pi * i / (azimuths - 1);
             const auto cosines = [&](double radius) {
                 return centre + radius * glm::dvec2(std::cos(angle), std::sin(angle));
             };
@@ -327,10 +331,30 @@ double emission_sine(const std::vector<Surface>& train, double source_radius, do
                 ray.direction = real3(direction, std::sqrt(axial_squared));
                 return physics::f64::trace_train(TrainScene{train}, 0, static_cast<int>(train.size()), ray,
                                                  1u)
-                           .status == physics::f64::PATH_ALIVE;
+                           .status == PATH_ALIVE;
             });
             largest = radius ? std::max(largest, glm::length(cosines(*radius))) : largest;
         }
+        return largest;
+    };
+    // The angle grows towards the rim of what the pupil sees of the source, then light stops: two finer
+    // rounds about the best point so far close in on it to 1/50 of the source.
+    constexpr int points = 6;
+    double low = 0;
+    double high = source_radius;
+    double best = 0;
+    double largest = 0;
+    for (int round = 0; round < 3; ++round) {
+        const double step = (high - low) / points;
+        for (int i = 0; i <= points; ++i) {
+            const double x = low + i * step;
+            if (const double sine = largest_from(x); sine > largest) {
+                largest = sine;
+                best = x;
+            }
+        }
+        low = std::max(0.0, best - step);
+        high = std::min(source_radius, best + step);
     }
     return std::min(1.0, search_margin * largest);
 }
@@ -525,7 +549,9 @@ Instrument assemble(const InstrumentDescription& description) {
     constants.gate_position = pupil.curvature;
     constants.gate_slope = 1;
     // A little more than the field: aberrations let the detector see past its paraxial edge.
-    constants.gate_radius = gate_radius(imaging, 1.05 * field_half_diagonal, description.greatest_defocus);
+    constants.gate_radius = gate_radius(imaging, 1.05 * field_half_diagonal,
+                                        first_order.best_focus_offset - description.greatest_defocus,
+                                        first_order.best_focus_offset + description.greatest_defocus);
     constants.illumination_first = 0;
     constants.illumination_count = static_cast<int>(illumination_train.size());
     constants.imaging_first = constants.illumination_count;

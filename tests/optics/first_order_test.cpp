@@ -1,0 +1,71 @@
+#include "optics/first_order.hpp"
+
+#include "parts.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+namespace vkfv::optics {
+namespace {
+
+using test::surface;
+
+// Closed forms in double: a dozen operations, so 1e-13 relative.
+constexpr double rounding = 1e-13;
+
+TEST(FirstOrder, ThickLensFollowsTheLensmaker) {
+    const double n = 1.5168, r1 = 50, r2 = -80, t = 6;
+    const std::vector train = {surface(1 / r1, 0, 1, n), surface(1 / r2, t, n, 1)};
+    const RayTransfer transfer = transfer_of_train(train);
+    const double power = (n - 1) * (1 / r1 - 1 / r2 + (n - 1) * t / (n * r1 * r2));
+    EXPECT_NEAR(focal_length(transfer) * power, 1, rounding);
+    EXPECT_NEAR(back_focal_distance(transfer), (1 - (n - 1) * t / (n * r1)) / power, 100 * rounding);
+    EXPECT_NEAR(front_focal_distance(transfer), (1 + (n - 1) * t / (n * r2)) / power, 100 * rounding);
+    EXPECT_NEAR(transfer.a * transfer.d - transfer.b * transfer.c, 1, rounding);
+    // The thin-lens formula is the wrong twin: it is off by the thickness' share of the power.
+    EXPECT_GT(std::abs(focal_length(transfer) * (n - 1) * (1 / r1 - 1 / r2) - 1), 1e-3);
+}
+
+TEST(FirstOrder, BallLens) {
+    const double n = 1.5, radius = 2;
+    const std::vector train = {surface(1 / radius, 0, 1, n), surface(-1 / radius, 2 * radius, n, 1)};
+    const RayTransfer transfer = transfer_of_train(train);
+    EXPECT_NEAR(focal_length(transfer), n * 2 * radius / (4 * (n - 1)), 10 * rounding);
+    EXPECT_NEAR(back_focal_distance(transfer), focal_length(transfer) - radius, 10 * rounding);
+}
+
+// A thin lens of n = 1.5: the curvature is the power.
+std::vector<physics::f64::Surface> thin_lens(double focal_length) {
+    return {surface(1 / focal_length, 0, 1, 1.5), surface(-1 / focal_length, 0, 1.5, 1)};
+}
+
+TEST(FirstOrder, ThinLensImages) {
+    const double f = 40;
+    const RayTransfer lens = transfer_of_train(thin_lens(f));
+    for (const double s : {50.0, 80.0, 400.0, 20.0}) {
+        const ParaxialImage image = image_of(lens, s);
+        EXPECT_NEAR(1 / image.distance + 1 / s, 1 / f, rounding) << s;
+        EXPECT_NEAR(image.magnification, -image.distance / s, 100 * rounding) << s;
+    }
+}
+
+TEST(FirstOrder, PupilOfAStopBehindALens) {
+    const double f = 40;
+    for (const double d : {10.0, 25.0, 90.0}) {
+        auto train = thin_lens(f);
+        train.push_back(surface(0, d, 1, 1));
+        const RayTransfer before = transfer_to_surface(train, 2);
+        // The lens images the stop to 1/s' = 1/f - 1/d in front of the lens, so s' behind it with the sign
+        // turned.
+        const double distance = 1 / (1 / d - 1 / f);
+        EXPECT_NEAR(entrance_pupil(before).curvature * distance, 1, rounding) << d;
+        EXPECT_NEAR(entrance_pupil(before).scale, d, 100 * rounding) << d;
+    }
+    auto telecentric = thin_lens(f);
+    telecentric.push_back(surface(0, f, 1, 1));
+    EXPECT_NEAR(entrance_pupil(transfer_to_surface(telecentric, 2)).curvature, 0, rounding);
+}
+
+} // namespace
+} // namespace vkfv::optics

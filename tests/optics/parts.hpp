@@ -1,0 +1,73 @@
+// Parts and rays that the tests of the optics share.
+#pragma once
+
+#include "optics/instrument.hpp"
+
+#include <filesystem>
+#include <fstream>
+#include <sstream>
+#include <string>
+#include <vector>
+
+namespace vkfv::test {
+
+inline std::filesystem::path source_folder() {
+    return VKFV_SOURCE_DIR;
+}
+
+inline constexpr double d_line_um = 0.587562;
+
+// The demo's microscope.
+inline optics::InstrumentDescription microscope(const std::string& objective = "10x_0.28") {
+    const auto base = source_folder() / "assets" / "stacks";
+    optics::InstrumentDescription description;
+    description.source_radius = 0.96;
+    description.wavelength_um = d_line_um;
+    description.illumination = optics::load_prescription("koehler", "illuminators", base);
+    description.field_stop_radius = 0.85;
+    description.objective = optics::load_prescription(objective, "objectives", base);
+    description.tube_lens = optics::load_prescription("200mm", "tube_lenses", base);
+    description.detector_size = 1.3;
+    description.detector_pixels = 64;
+    return description;
+}
+
+// The rows of a CSV file after its header.
+inline std::vector<std::vector<double>> read_rows(const std::filesystem::path& file) {
+    std::ifstream stream(file);
+    std::string line;
+    std::getline(stream, line);
+    std::vector<std::vector<double>> rows;
+    while (std::getline(stream, line)) {
+        std::istringstream cells(line);
+        std::vector<double> row;
+        for (std::string cell; std::getline(cells, cell, ',');) {
+            row.push_back(std::stod(cell));
+        }
+        rows.push_back(std::move(row));
+    }
+    return rows;
+}
+
+// One surface in air or glass, for closed forms.
+inline physics::f64::Surface surface(double curvature, double distance, double index_before,
+                                     double index_after, double conic = 0) {
+    physics::f64::Surface result{};
+    result.curvature = curvature;
+    result.conic = conic;
+    result.distance = distance;
+    result.index_before = index_before;
+    result.index_after = index_after;
+    return result;
+}
+
+inline physics::f64::TrainResult trace(const std::vector<physics::f64::Surface>& train, glm::dvec3 position,
+                                       glm::dvec3 direction, unsigned apertures = 0u) {
+    physics::f64::Ray ray{};
+    ray.position = position;
+    ray.direction = glm::normalize(direction) * train.front().index_before;
+    return physics::f64::trace_train(optics::TrainScene{train}, 0, static_cast<int>(train.size()), ray,
+                                     apertures);
+}
+
+} // namespace vkfv::test

@@ -1,0 +1,272 @@
+#include "optics/prescription.hpp"
+
+#include "core/error.hpp"
+#include "optics/first_order.hpp"
+#include "parts.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <fstream>
+
+namespace vkfv::optics {
+namespace {
+
+using ::testing::HasSubstr;
+
+TEST(Medium, IsCauchysFormulaThroughItsPoints) {
+    const auto cauchy = [](double um) { return 1.5 + 0.0042 / (um * um) + 1e-5 / (um * um * um * um); };
+    Medium medium{.name = "glass", .wavelengths_um = {0.486133, 0.587562, 0.656273}, .indices = {}};
+    for (const double um : medium.wavelengths_um) {
+        medium.indices.push_back(cauchy(um));
+    }
+    for (std::size_t i = 0; i < 3; ++i) {
+        EXPECT_EQ(medium.index(medium.wavelengths_um[i]), medium.indices[i]);
+    }
+    // Rounding of indices near 1.5, amplified by a few in the range.
+    for (const double um : {0.4785, 0.52, 0.6, 0.663}) {
+        EXPECT_NEAR(medium.index(um), cauchy(um), 1e-14) << um;
+    }
+    EXPECT_THROW(medium.index(0.476), InputError);
+    EXPECT_THROW(medium.index(0.667), InputError);
+    EXPECT_THROW(medium.index(std::nan("")), InputError);
+}
+
+TEST(Medium, TakesTheThreeNearestOfMore) {
+    // The formula through the lower three is 1.5, through the upper three it is not.
+    const Medium medium{.name = "glass",
+                        .wavelengths_um = {0.40, 0.45, 0.50, 0.70, 0.75},
+                        .indices = {1.5, 1.5, 1.5, 1.6, 1.6}};
+    EXPECT_NEAR(medium.index(0.46), 1.5, 1e-14);
+    EXPECT_GT(medium.index(0.68), 1.55);
+    EXPECT_EQ(Medium::air().index(10.6), 1.0);
+}
+
+TEST(Prescription, ReversedTwiceIsItself) {
+    const auto lens = test::microscope().illumination;
+    const auto twice = lens.reversed().reversed();
+    ASSERT_EQ(twice.surfaces.size(), lens.surfaces.size());
+    EXPECT_EQ(twice.medium_before.name, lens.medium_before.name);
+    for (std::size_t i = 0; i < lens.surfaces.size(); ++i) {
+        const auto& a = lens.surfaces[i];
+        const auto& b = twice.surfaces[i];
+        EXPECT_EQ(a.curvature, b.curvature);
+        EXPECT_EQ(a.conic, b.conic);
+        EXPECT_EQ(a.aspheric, b.aspheric);
+        EXPECT_EQ(a.thickness, b.thickness);
+        EXPECT_EQ(a.medium_after.name, b.medium_after.name);
+        EXPECT_EQ(a.semi_diameter, b.semi_diameter);
+        EXPECT_EQ(a.role, b.role);
+    }
+}
+
+std::vector<physics::f64::Surface> surfaces_of(const Prescription& lens) {
+    std::vector<physics::f64::Surface> train;
+    double index = lens.medium_before.index(test::d_line_um);
+    double distance = 0;
+    for (const auto& prescribed : lens.surfaces) {
+        auto surface = test::surface(prescribed.curvature, distance, index,
+                                     prescribed.medium_after.index(test::d_line_um), prescribed.conic);
+        surface.a4 = prescribed.aspheric[0];
+        surface.flags = surface.a4 != 0 ? physics::f64::SURFACE_ASPHERIC : 0u;
+        train.push_back(surface);
+        index = surface.index_after;
+        distance = prescribed.thickness;
+    }
+    return train;
+}
+
+// Focal lengths at the d line, as two other programs print them (nine decimals).
+TEST(Prescription, AssetsHaveTheirFocalLengths) {
+    struct Row {
+        const char* folder;
+        const char* name;
+        double efl;
+        double bfd;
+    };
+    // Of objectives bfd is on the side of the specimen: the front focal distance in imaging order.
+    for (const Row& row : {Row{"objectives", "5x_0.15", 39.999999808, 65.90129633},
+                           {"objectives", "10x_0.28", 20.000007181, 16.144167633},
+                           {"objectives", "20x_0.41", 10.000000444, 7.383296607},
+                           {"objectives", "50x_0.66", 4.000000381, 3.368174177},
+                           {"objectives", "100x_0.83", 2.000000281, 0.719523246},
+                           {"tube_lenses", "200mm", 199.985758388, 168.442195294},
+                           {"tube_lenses", "180mm", 180.000154058, 157.042910143},
+                           {"tube_lenses", "200mm_kurata", 199.998528216, 71.579623418},
+                           {"tube_lenses", "200mm_achromat", 199.817607117, 193.741076841},
+                           {"illuminators", "condenser_acl2520", 20.003059273, 12.123873456},
+                           {"illuminators", "condenser_acl3026u", 25.910325048, 18.096799112}}) {
+        const auto lens = load_prescription(row.name, row.folder, test::source_folder());
+        EXPECT_FALSE(lens.title.empty() || lens.source.empty() || lens.licence.empty()) << row.name;
+        const auto transfer = transfer_of_train(surfaces_of(lens));
+        const bool tube = std::string(row.folder) == "tube_lenses";
+        EXPECT_NEAR(focal_length(transfer), row.efl, 1e-9) << row.name;
+        EXPECT_NEAR(tube ? back_focal_distance(transfer) : front_focal_distance(transfer), row.bfd, 1e-9)
+            << row.name;
+        EXPECT_LT(std::abs(lens.source_distance.value_or(row.bfd) - row.bfd), 1e-9) << row.name;
+    }
+}
+
+// Conic and asphere, against rays of two other programs (double precision).
+TEST(Prescription, CondenserAgreesWithReferenceRays) {
+    const auto folder = test::source_folder() / "tests" / "data" / "rays";
+    const auto in = test::read_rows(folder / "condenser_acl2520.in.csv");
+    const auto out = test::read_rows(folder / "condenser_acl2520.out.csv");
+    ASSERT_EQ(in.size(), out.size());
+    ASSERT_GE(in.size(), 500u);
+    // Backward: collimated light comes in, the source's plane is the focal plane.
+    auto train =
+        surfaces_of(load_prescription("condenser_acl2520", "illuminators", test::source_folder()).reversed());
+    const auto worst_with = [&](const std::vector<physics::f64::Surface>& lens) {
+        double worst = 0;
+        for (std::size_t i = 0; i < in.size(); ++i) {
+            const auto result =
+                test::trace(lens, {in[i][0], in[i][1], in[i][2]}, {in[i][3], in[i][4], in[i][5]});
+            const auto focal = physics::f64::fly_to_plane(result.ray, 12.123873456, 1.0);
+            worst =
+                std::max({worst, std::abs(focal.position.x - out[i][0]),
+                          std::abs(focal.position.y - out[i][1]), std::abs(focal.direction.x - out[i][3]),
+                          std::abs(focal.direction.y - out[i][4]), std::abs(focal.direction.z - out[i][5])});
+        }
+        return worst;
+    };
+    // The plane is given to 1e-9 mm, and slopes reach 0.6.
+    EXPECT_LT(worst_with(train), 1e-9);
+    train.front().a4 = -train.front().a4;
+    EXPECT_GT(worst_with(train), 1e-3);
+}
+
+// Collimated light in glass meets a hyperboloid of k = -n^2 and comes to one point (Fermat's principle).
+TEST(Prescription, HyperboloidFocusesPerfectly) {
+    const double n = 1.5168;
+    const double radius = -20;
+    const auto worst_with = [&](double conic) {
+        const std::vector train = {test::surface(0, 0, 1, n), test::surface(1 / radius, 15, n, 1, conic)};
+        const double focus = -radius / (n - 1);
+        double worst = 0;
+        for (double height = 0.5; height <= 12; height += 0.5) {
+            const auto result = test::trace(train, {height, 0, -5}, {0, 0, 1});
+            EXPECT_EQ(result.status, physics::f64::PATH_ALIVE);
+            worst = std::max(worst, std::abs(physics::f64::fly_to_plane(result.ray, focus, 1.0).position.x));
+        }
+        return worst;
+    };
+    EXPECT_LT(worst_with(-n * n), 1e-13);
+    EXPECT_GT(worst_with(-n * n + 0.01), 1e-4);
+}
+
+class WrittenPrescription : public ::testing::Test {
+  protected:
+    void SetUp() override {
+        const auto* test = ::testing::UnitTest::GetInstance()->current_test_info();
+        folder_ = std::filesystem::temp_directory_path() / (std::string("vkfv_optics_") + test->name());
+        std::filesystem::remove_all(folder_);
+        std::filesystem::create_directories(folder_ / "assets" / "objectives");
+        std::filesystem::create_directories(folder_ / "stacks" / "deep");
+    }
+    void TearDown() override { std::filesystem::remove_all(folder_); }
+
+    void write(const std::filesystem::path& file, const std::string& text) const {
+        std::ofstream(folder_ / file) << text;
+    }
+    // What is wrong with a lens.toml of this text.
+    InputProblem problem_of(const std::string& text) const {
+        write("lens.toml", "source = \"a test\"\nlicence = \"none\"\n" + text);
+        try {
+            load_prescription("lens.toml", "objectives", folder_);
+        } catch (const InputError& error) {
+            return error.problem();
+        }
+        ADD_FAILURE() << "accepted:\n" << text;
+        return {};
+    }
+
+    std::filesystem::path folder_;
+};
+
+constexpr const char* a_lens = "source = \"a test\"\nlicence = \"none\"\n[[surface]]\nradius_mm = 10.0\n";
+
+TEST_F(WrittenPrescription, IsFoundBesideTheConfigurationAndAboveIt) {
+    write("assets/objectives/mine.toml", a_lens);
+    const auto expected =
+        std::filesystem::absolute(folder_ / "assets/objectives/mine.toml").lexically_normal();
+    for (const char* base : {".", "stacks", "stacks/deep"}) {
+        const auto found = find_prescription("mine", "objectives", folder_ / base);
+        ASSERT_TRUE(found.has_value()) << base;
+        EXPECT_EQ(*found, expected) << base;
+    }
+    EXPECT_EQ(load_prescription("../assets/objectives/mine.toml", "objectives", folder_ / "stacks").name,
+              "mine");
+    EXPECT_TRUE(find_prescription("10x_0.28", "objectives", folder_)) << "comes with the program";
+    EXPECT_FALSE(find_prescription("mine", "tube_lenses", folder_));
+    EXPECT_THROW(load_prescription("11x", "objectives", folder_), InputError);
+    EXPECT_THROW(load_prescription("missing.toml", "objectives", folder_), InputError);
+}
+
+TEST_F(WrittenPrescription, ReadsEveryKey) {
+    write("lens.toml", std::string("title = \"lens\"\nsource_distance_mm = 7\nmedium_before = \"oil\"\n") +
+                           a_lens +
+                           "conic = -1.5\naspheric = [1e-5, -2e-7]\nthickness_mm = 3\nmedium = \"glass\"\n"
+                           "semi_diameter_mm = 4\nrole = \"aperture stop\"\n"
+                           "[[surface]]\ncurvature_per_mm = -0.02\n[[surface]]\nrole = \"field stop\"\n"
+                           "[media.oil]\nwavelengths_um = [0.5876]\nindices = [1.518]\n"
+                           "[media.glass]\nwavelengths_um = [0.4861, 0.6563]\nindices = [1.52, 1.51]\n");
+    // The second surface lacks its thickness.
+    EXPECT_THROW(load_prescription("lens.toml", "objectives", folder_), InputError);
+    std::ifstream stream(folder_ / "lens.toml");
+    std::string text{std::istreambuf_iterator<char>(stream), {}};
+    const std::string curvature = "curvature_per_mm = -0.02\n";
+    text.insert(text.find(curvature) + curvature.size(), "thickness_mm = 0\n");
+    write("lens.toml", text);
+    const auto lens = load_prescription("lens.toml", "objectives", folder_);
+    ASSERT_EQ(lens.surfaces.size(), 3u);
+    EXPECT_EQ(lens.medium_before.index(0.5876), 1.518);
+    EXPECT_EQ(lens.source_distance, 7);
+    EXPECT_EQ(lens.surfaces[0].curvature, 0.1);
+    EXPECT_EQ(lens.surfaces[0].conic, -1.5);
+    EXPECT_EQ(lens.surfaces[0].aspheric[1], -2e-7);
+    EXPECT_EQ(lens.surfaces[0].thickness, 3);
+    EXPECT_EQ(lens.surfaces[0].semi_diameter, 4);
+    EXPECT_EQ(lens.surfaces[0].role, PrescribedSurface::Role::aperture_stop);
+    EXPECT_EQ(lens.surfaces[0].medium_after.index(0.6563), 1.51);
+    EXPECT_EQ(lens.surfaces[1].curvature, -0.02);
+    EXPECT_EQ(lens.surfaces[1].medium_after.name, "air");
+    EXPECT_EQ(lens.surfaces[2].role, PrescribedSurface::Role::field_stop);
+}
+
+TEST_F(WrittenPrescription, FaultsNamePlaceAndKey) {
+    struct Fault {
+        const char* text;
+        const char* key;
+        int line;
+    };
+    for (const Fault& fault : {
+             Fault{"", "surface", 1},
+             {"[[surface]]\nradius_mm = \"x\"\n", "radius_mm", 4},
+             {"[[surface]]\nradius_mm = nan\n", "radius_mm", 4},
+             {"[[surface]]\nradius_mm = 5\ncurvature_per_mm = 0.2\n", "curvature_per_mm", 5},
+             {"[[surface]]\n[[surface]]\nthickness_mm = 1\n", "thickness_mm", 3},
+             {"[[surface]]\nthickness_mm = -1\n[[surface]]\n", "thickness_mm", 4},
+             {"[[surface]]\nsemi_diameter_mm = 0\n", "semi_diameter_mm", 4},
+             {"[[surface]]\naspheric = [1,2,3,4,5,6,7,8]\n", "aspheric", 4},
+             {"[[surface]]\nmedium = \"N-BK7\"\n", "medium", 4},
+             {"[[surface]]\nrole = \"mirror\"\n", "role", 4},
+             {"[[surface]]\nradius = 5\n", "radius", 4},
+             {"[[surface]]\n[media.g]\nwavelengths_um = [0.6, 0.5]\nindices = [1.5, 1.5]\n", "wavelengths_um",
+              5},
+             {"[[surface]]\n[media.g]\nwavelengths_um = [0.5, 0.6]\nindices = [1.5]\n", "indices", 6},
+             {"[[surface]]\n[media.g]\nwavelengths_um = [0.5]\nindices = [0.5]\n", "indices", 6},
+             {"[[surface]]\nrole = \"field stop\"\nthickness_mm = 1\n[[surface]]\nrole = \"field stop\"\n",
+              "role", 7},
+         }) {
+        const InputProblem problem = problem_of(fault.text);
+        EXPECT_THAT(problem.key, HasSubstr(fault.key)) << fault.text;
+        EXPECT_EQ(problem.where.file.filename(), "lens.toml") << fault.text;
+        EXPECT_EQ(problem.where.line, fault.line) << fault.text;
+        EXPECT_FALSE(problem.expected.empty() || problem.remedy.empty()) << fault.text;
+    }
+}
+
+} // namespace
+} // namespace vkfv::optics
