@@ -61,6 +61,10 @@ std::unique_ptr<trace::Tracer> make_tracer(const optics::Instrument& instrument,
     return tracer;
 }
 
+std::string identity_of_tracer(const trace::Tracer& tracer, const trace::TraceOptions& options) {
+    return options.device == "host" ? "host" : tracer.description();
+}
+
 surface::HeightMap truth_on_pixels(const optics::Instrument& instrument, const Configuration& configuration,
                                    const specimen::Specimen& specimen) {
     const int pixels = configuration.instrument.detector_pixels;

@@ -56,6 +56,9 @@ std::unique_ptr<trace::Tracer> make_tracer(const optics::Instrument& instrument,
                                            const specimen::Specimen& specimen,
                                            const trace::TraceOptions& options);
 
+// What of the tracer decides the bits of an image: device and traversal, but not how many threads a host has.
+std::string identity_of_tracer(const trace::Tracer& tracer, const trace::TraceOptions& options);
+
 // The true surface on the detector's pixels, in the object plane.
 surface::HeightMap truth_on_pixels(const optics::Instrument& instrument, const Configuration& configuration,
                                    const specimen::Specimen& specimen);

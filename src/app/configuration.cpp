@@ -130,6 +130,12 @@ std::filesystem::path absolute_path(const std::filesystem::path& path) {
     return std::filesystem::absolute(path).lexically_normal();
 }
 
+// "a/./b/" as "a/b".
+std::filesystem::path without_dots(const std::filesystem::path& path) {
+    const auto normal = path.lexically_normal();
+    return normal.has_filename() || normal == normal.root_path() ? normal : normal.parent_path();
+}
+
 optics::Prescription read_prescription(const Section& section, const Configuration& configuration,
                                        const std::string& folder,
                                        const std::optional<std::string>& fallback = {}) {
@@ -449,9 +455,10 @@ void read_topography(const TomlTable& root, Configuration& configuration, Needs 
 void read_output(const TomlTable& root, Configuration& configuration) {
     const TomlTable table = root.table_or_empty("output");
     const Section section(table, configuration);
-    configuration.output_directory =
-        table.optional_file_path("directory").value_or(configuration.file.parent_path() / "vkfv-out");
-    section.record_path("directory", absolute_path(configuration.output_directory).string());
+    configuration.output_directory = without_dots(
+        table.optional_file_path("directory").value_or(configuration.file.parent_path() / "vkfv-out"));
+    // The canonical text lies in the folder itself, wherever that is moved to.
+    section.record_path("directory", ".");
     if (section.choice("images", {"float32", "uint16"}, "float32") != "float32") {
         table.fail("images", "\"float32\"; 16-bit counts are not available yet",
                    "Choose images = \"float32\".");

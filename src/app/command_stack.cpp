@@ -1,0 +1,74 @@
+#include "app/commands.hpp"
+#include "app/digest.hpp"
+#include "app/evaluation.hpp"
+
+#include "core/progress.hpp"
+#include "scan/stack.hpp"
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+#include <spdlog/spdlog.h>
+
+#include <cstdio>
+
+namespace vkfv::app {
+
+namespace {
+
+// The configuration's part, the surface as made, and the device: another rounds otherwise.
+std::string stack_identity(const Configuration& configuration, const specimen::Specimen& specimen,
+                           const std::string& tracer) {
+    return configuration.identity + fmt::format("\n[made]\nspecimen_digest = \"{}\"\ntracer = {}\n",
+                                                geometry_digest(specimen), toml_quoted(tracer));
+}
+
+} // namespace
+
+void run_stack(const CommandOptions& options) {
+    const auto configuration = load_configuration(options.file, options.overrides, Needs::stack);
+    const auto positions = configuration.scan->positions();
+    const auto specimen = specimen::make(*configuration.specimen);
+    const auto instrument = assemble_instrument(configuration, specimen, positions);
+    const auto tracer = make_tracer(instrument, specimen, configuration.trace);
+    const std::string identity =
+        stack_identity(configuration, specimen, identity_of_tracer(*tracer, configuration.trace));
+
+    scan::ImageStore store(configuration.output_directory,
+                           {.configuration = configuration.canonical,
+                            .identity = identity,
+                            .digest = Digest().add(identity).text(),
+                            .positions = positions,
+                            .columns = configuration.instrument.detector_pixels,
+                            .rows = configuration.instrument.detector_pixels,
+                            .pitch = instrument.first_order.pixel_pitch});
+    auto progress = Progress::on_standard_error(options.quiet);
+    const auto traced = scan::run_stack(*tracer, store, progress);
+    spdlog::info("{} images traced, {} kept from before", traced.traced, traced.kept);
+
+    const auto& folder = store.folder();
+    const auto evaluation = evaluate(configuration, instrument, specimen, [&](int image) {
+        return scan::read_frame(folder, image, positions[static_cast<std::size_t>(image)]);
+    });
+    nlohmann::ordered_json run = {{"device", tracer->description()},
+                                  {"stack_digest", store.description().digest},
+                                  {"seed", configuration.trace.seed},
+                                  {"images", positions.size()},
+                                  {"rays_per_image", configuration.trace.rays}};
+    if (traced.traced > 0) {
+        // Of this run: an interrupted stack has the others in timings.csv.
+        run["images_traced"] = traced.traced;
+        run["trace_seconds"] = traced.trace_seconds;
+        run["rays_per_second"] = static_cast<double>(traced.rays) / traced.trace_seconds;
+    }
+    write_evaluation(folder, evaluation, run);
+
+    fmt::print("{}", summary(evaluation));
+    if (traced.traced > 0) {
+        fmt::print(
+            "traced {} images in {:.3g} s ({}), evaluated in {:.2g} s\n", traced.traced, traced.trace_seconds,
+            ray_rate_text(static_cast<double>(traced.rays) / traced.trace_seconds), evaluation.seconds);
+    }
+    fmt::print("results in {}\n", folder.string());
+}
+
+} // namespace vkfv::app

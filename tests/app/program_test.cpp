@@ -1,0 +1,212 @@
+// The program's commands from end to end, on the device at hand.
+#include "app/program.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <nlohmann/json.hpp>
+
+#include <algorithm>
+#include <cmath>
+#include <sstream>
+
+namespace vkfv::test {
+namespace {
+
+using testing::AllOf;
+using testing::HasSubstr;
+
+const std::filesystem::path source_folder = VKFV_SOURCE_DIR;
+
+std::vector<std::filesystem::path> example_stacks() {
+    std::vector<std::filesystem::path> files;
+    for (const auto& entry : std::filesystem::directory_iterator(source_folder / "assets/stacks")) {
+        if (entry.path().extension() == ".toml") {
+            files.push_back(entry.path());
+        }
+    }
+    std::sort(files.begin(), files.end());
+    return files;
+}
+
+class ExampleStack : public testing::TestWithParam<std::filesystem::path> {};
+
+// Few rays, few pixels, three positions: whether it runs, not what comes out.
+TEST_P(ExampleStack, RunsWithFewRays) {
+    const auto folder = fresh_folder("example_" + GetParam().stem().string());
+    const auto result =
+        run_program({"--stack", GetParam().string(), "--out", "out", "--rays", "2000", "--set",
+                     "detector.pixels=8", "--set", "topography.window_px=3", "--set", "scan.z_start_um=-1",
+                     "--set", "scan.z_stop_um=1", "--set", "scan.z_step_um=1"},
+                    folder);
+    ASSERT_EQ(result.exit_code, 0) << result.standard_error;
+    for (const char* name : {"stack.toml", "images/z_0000.tif", "images/z_0002.tif", "ledger.csv",
+                             "topography.tif", "truth.tif", "deviation.tif", "results.json"}) {
+        EXPECT_TRUE(std::filesystem::exists(folder / "out" / name)) << name;
+    }
+    EXPECT_FALSE(std::filesystem::exists(folder / "out/images/z_0003.tif"));
+}
+
+INSTANTIATE_TEST_SUITE_P(Assets, ExampleStack, testing::ValuesIn(example_stacks()),
+                         [](const auto& info) { return info.param.stem().string(); });
+
+// One for every kind of specimen and the demo; an empty folder would leave ExampleStack without a case.
+TEST(ExampleStacks, CoverEveryKindOfSpecimen) {
+    std::string all;
+    for (const auto& file : example_stacks()) {
+        all += read_file(file);
+    }
+    for (const char* kind :
+         {"plane", "step", "sphere", "sinusoid", "chirp", "rough", "image", "stl", "gltf"}) {
+        EXPECT_THAT(all, HasSubstr(std::string("kind = \"") + kind + "\""));
+    }
+    EXPECT_THAT(all, HasSubstr("representation = \"analytic\""));
+}
+
+TEST(Program, CheckReportsTheInstrument) {
+    const auto folder = fresh_folder("check");
+    write_file(folder / "c.toml", small_configuration);
+    const auto result = run_program({"--check", "c.toml", "--json"}, folder);
+    ASSERT_EQ(result.exit_code, 0) << result.standard_error;
+    const auto report = nlohmann::json::parse(result.standard_output);
+    for (const char* name :
+         {"efl_objective_mm", "numerical_aperture", "working_distance_mm", "magnification",
+          "depth_of_field_um", "pixel_pitch_um", "best_focus_offset_um", "field_curvature_um"}) {
+        ASSERT_TRUE(report.contains(name)) << name;
+        EXPECT_TRUE(report[name].is_number()) << name;
+    }
+    // 20 mm and 200 mm nominal: the prescriptions are re-engineered to a percent or two.
+    EXPECT_NEAR(std::abs(report["magnification"].get<double>()), 10, 0.2);
+    EXPECT_NEAR(report["numerical_aperture"].get<double>(), 0.28, 0.01);
+    // 0.16 mm over 8 pixels and 10x.
+    EXPECT_NEAR(report["pixel_pitch_um"].get<double>(), 2.0, 0.04);
+    const double aperture = report["numerical_aperture"];
+    EXPECT_NEAR(report["depth_of_field_um"].get<double>(), 0.5876 / (aperture * aperture), 1e-6);
+}
+
+TEST(Program, CheckWarnsOfASpecimenBeyondTheScan) {
+    const auto folder = fresh_folder("check_warns");
+    write_file(folder / "c.toml", replaced(small_configuration, "height_um = 2.0", "height_um = 20.0"));
+    const auto result = run_program({"--check", "c.toml"}, folder);
+    EXPECT_EQ(result.exit_code, 0) << result.standard_error;
+    EXPECT_THAT(result.standard_output, HasSubstr("beyond the scan"));
+    write_file(folder / "c.toml", small_configuration);
+    EXPECT_THAT(run_program({"--check", "c.toml"}, folder).standard_output,
+                testing::Not(HasSubstr("beyond the scan")));
+}
+
+TEST(Program, DevicesAreListedAsTextAndJson) {
+    const auto folder = fresh_folder("devices");
+    const auto text = run_program({"--devices"}, folder);
+    ASSERT_EQ(text.exit_code, 0) << text.standard_error;
+    const auto json = run_program({"--devices", "--json"}, folder);
+    ASSERT_EQ(json.exit_code, 0) << json.standard_error;
+    const auto devices = nlohmann::json::parse(json.standard_output);
+    ASSERT_GE(devices.size(), 1u);
+    EXPECT_EQ(
+        std::count_if(devices.begin(), devices.end(), [](const auto& device) { return device["preferred"]; }),
+        1);
+    EXPECT_THAT(text.standard_output, HasSubstr(devices[0]["name"].get<std::string>()));
+}
+
+TEST(Program, HelpAndVersion) {
+    const auto folder = fresh_folder("help");
+    const auto help = run_program({"--help"}, folder);
+    EXPECT_EQ(help.exit_code, 0);
+    EXPECT_THAT(help.standard_output,
+                AllOf(HasSubstr("--stack"), HasSubstr("--trace-rays"), HasSubstr("Exit codes")));
+    const auto version = run_program({"--version"}, folder);
+    EXPECT_EQ(version.exit_code, 0);
+    EXPECT_THAT(version.standard_output, testing::StartsWith("vkfv "));
+}
+
+std::vector<std::string> lines_of(const std::string& text) {
+    std::vector<std::string> lines;
+    std::istringstream stream(text);
+    for (std::string line; std::getline(stream, line);) {
+        lines.push_back(line);
+    }
+    return lines;
+}
+
+TEST(Program, TraceRaysWritesOneLineARay) {
+    const auto folder = fresh_folder("trace_rays");
+    write_file(folder / "c.toml", small_configuration);
+    // Along the axis; and 60 degrees off it, beyond the aperture of 0.28.
+    write_file(folder / "rays.csv", "x_mm,y_mm,z_mm,l,m,n\n0,0,0,0,0,1\n0,0,0,0.8660254037844386,0,0.5\n");
+    const auto result = run_program({"--trace-rays", "c.toml", "rays.csv"}, folder);
+    ASSERT_EQ(result.exit_code, 0) << result.standard_error;
+    const auto lines = lines_of(result.standard_output);
+    ASSERT_EQ(lines.size(), 3u);
+    EXPECT_EQ(lines[0], "x_mm,y_mm,l,m,n,opl_mm,status");
+    EXPECT_THAT(lines[1], testing::MatchesRegex("-?0,-?0,-?0,-?0,1,[0-9.]+,ok"));
+    EXPECT_THAT(lines[2], testing::AnyOf(testing::EndsWith(",vignetted"), testing::EndsWith(",missed")));
+}
+
+TEST(Program, ImageOfAScanPositionIsThatImageOfTheStack) {
+    const auto folder = fresh_folder("image");
+    write_file(folder / "c.toml", small_configuration);
+    const auto stack = run_program({"--stack", "c.toml"}, folder);
+    ASSERT_EQ(stack.exit_code, 0) << stack.standard_error;
+    const auto image = run_program({"--image", "c.toml", "--z", "1", "--out", "one.tif"}, folder);
+    ASSERT_EQ(image.exit_code, 0) << image.standard_error;
+    EXPECT_THAT(image.standard_output, AllOf(HasSubstr("detected"), HasSubstr("residual")));
+    // z = 1 um is the fourth position. The description differs, so the files do; the pixels stand at the end
+    // or the beginning of the strip: 8 x 8 floats that occur in both.
+    const auto both = {read_file(folder / "one.tif"), read_file(folder / "out/images/z_0003.tif")};
+    ASSERT_THAT(both, testing::Each(testing::SizeIs(testing::Ge(8u * 8u * 4u))));
+    const auto other = read_file(folder / "out/images/z_0002.tif");
+    const auto longest_common = [](const std::string& one, const std::string& two) {
+        std::size_t longest = 0;
+        for (std::size_t begin = 0; begin + 256 <= one.size(); ++begin) {
+            longest = std::max<std::size_t>(longest,
+                                            two.find(one.substr(begin, 256)) != std::string::npos ? 256 : 0);
+        }
+        return longest;
+    };
+    EXPECT_EQ(longest_common(*both.begin(), *(both.begin() + 1)), 256u);
+    EXPECT_EQ(longest_common(*both.begin(), other), 0u);
+}
+
+TEST(Program, TopographyEvaluatesAStackAnew) {
+    const auto folder = fresh_folder("topography");
+    write_file(folder / "c.toml", small_configuration);
+    const auto stack = run_program({"--stack", "c.toml", "--rays", "2e5"}, folder);
+    ASSERT_EQ(stack.exit_code, 0) << stack.standard_error;
+    const auto results = nlohmann::json::parse(read_file(folder / "out/results.json"));
+    for (const char* name : {"sq_measured_um", "sq_true_um", "rms_deviation_um", "correlation",
+                             "measured_share", "trace_seconds", "device", "seed"}) {
+        EXPECT_TRUE(results.contains(name)) << name;
+    }
+    const auto height_map = read_file(folder / "out/topography.tif");
+    const auto again = run_program({"--topography", "out"}, folder);
+    ASSERT_EQ(again.exit_code, 0) << again.standard_error;
+    EXPECT_EQ(read_file(folder / "out/topography.tif"), height_map);
+    EXPECT_EQ(nlohmann::json::parse(read_file(folder / "out/results.json"))["device"], results["device"]);
+    // Evaluated otherwise, it is another map.
+    const auto other = run_program(
+        {"--topography", "out", "--set", "topography.window_px=5", "--set", "topography.l_filter_um=10"},
+        folder);
+    ASSERT_EQ(other.exit_code, 0) << other.standard_error;
+    EXPECT_NE(read_file(folder / "out/topography.tif"), height_map);
+    EXPECT_EQ(nlohmann::json::parse(read_file(folder / "out/results.json"))["l_filtered"]["nesting_index_um"],
+              10.0);
+}
+
+TEST(Program, AStackOfAnotherConfigurationIsRefusedWithTheDifference) {
+    const auto folder = fresh_folder("refused");
+    write_file(folder / "c.toml", small_configuration);
+    ASSERT_EQ(run_program({"--stack", "c.toml"}, folder).exit_code, 0);
+    const auto refused = run_program({"--stack", "c.toml", "--seed", "2"}, folder);
+    EXPECT_EQ(refused.exit_code, 2);
+    EXPECT_THAT(refused.standard_error, AllOf(HasSubstr("trace.seed: 1 there, 2 here"), HasSubstr("--out")));
+    // The same again, also from stack.toml and with another batch size, finds all images.
+    for (const auto& arguments : {std::vector<std::string>{"--stack", "c.toml", "--set", "trace.batch=512"},
+                                  std::vector<std::string>{"--stack", "out/stack.toml"}}) {
+        const auto same = run_program(arguments, folder);
+        EXPECT_EQ(same.exit_code, 0) << same.standard_error;
+        EXPECT_THAT(same.standard_error, HasSubstr("0 images traced, 5 kept"));
+    }
+}
+
+} // namespace
+} // namespace vkfv::test
