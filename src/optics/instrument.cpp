@@ -482,7 +482,8 @@ Instrument assemble(const InstrumentDescription& description) {
     }
     if (!(first_order.illumination_to_objective >= 0 &&
           std::isfinite(first_order.illumination_to_objective))) {
-        refuse("illumination.to_objective_mm", fmt::format("{:.6g}", first_order.illumination_to_objective),
+        refuse("illumination.objective_distance_mm",
+               fmt::format("{:.6g}", first_order.illumination_to_objective),
                fmt::format("room between {} and {} so that the source is imaged into the pupil",
                            illumination.name, description.objective.name),
                "Give a distance >= 0, or move the source nearer to the illuminator's focal plane.",

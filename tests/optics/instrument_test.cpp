@@ -416,7 +416,7 @@ TEST(Instrument, RefusesPartsThatDoNotFit) {
     EXPECT_EQ(key_of(description), "source.distance_mm");
     description = test::microscope();
     description.source_distance = 30; // its image stands in front of the field lens
-    EXPECT_EQ(key_of(description), "illumination.to_objective_mm");
+    EXPECT_EQ(key_of(description), "illumination.objective_distance_mm");
     description = test::microscope();
     description.illumination.surfaces[2].role = PrescribedSurface::Role::refracting;
     EXPECT_EQ(key_of(description), "illumination.field_stop_radius_mm");
