@@ -1,0 +1,87 @@
+// The folder of one stack, from the first image to the last, over as many runs as it takes.
+//
+//   stack.toml              the configuration, and in comments the identity: what the images depend on
+//   images/z_0000.tif ...   one exposure each, float32 W per pixel; the file's first row has the highest y
+//   ledger.csv              a row an image: where its light went
+//   timings.csv             a row an exposure, in the order of their making; no part of the result, since a
+//                           clock is in it: all others hold the same bytes however often a run was
+//                           interrupted
+//   .lock                   held while a program writes here
+//
+// Every image carries its row of the ledger in its ImageDescription, so that pixels and row become durable in
+// one rename: there is no moment at which a kill leaves one without the other. ledger.csv only repeats those
+// rows.
+#pragma once
+
+#include "core/grid.hpp"
+#include "trace/tracer.hpp"
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+namespace vkfv::scan {
+
+// What a stack is of.
+struct StackDescription {
+    // TOML that `vkfv --stack` takes; becomes stack.toml. May change between runs as long as the identity
+    // stays.
+    std::string configuration;
+    // What the bits of the images depend on (configuration, program, device): lines of `[table]` and `key =
+    // value`, a key a line. Nothing volatile: no date, no folder.
+    std::string identity;
+    std::string digest; // of the identity, one word; every image carries it
+    // Focal heights, mm, equidistant; image i is focused at positions[i].
+    std::vector<double> positions;
+    int columns = 0; // pixels of an image
+    int rows = 0;
+    double pitch = 0; // of the pixels, mm in the object plane
+};
+
+class ImageStore {
+  public:
+    // Creates the folder, or continues the stack in it: keeps its whole images of this identity, counts
+    // others (damaged, of the wrong size, without their row) as not stored, and removes what a killed run
+    // left half written. Throws InputError if the folder holds something else, a stack of another identity
+    // (naming each key that differs), or is being written to by another program; RunError if the disk fails.
+    ImageStore(std::filesystem::path folder, StackDescription description);
+    ~ImageStore();
+    ImageStore(const ImageStore&) = delete;
+    ImageStore& operator=(const ImageStore&) = delete;
+
+    const std::filesystem::path& folder() const { return folder_; }
+    const StackDescription& description() const { return description_; }
+    bool stored(int image) const { return !ledger_rows_[static_cast<std::size_t>(image)].empty(); }
+    bool complete() const;
+    // A sentence on each image file that was there but not whole.
+    const std::vector<std::string>& damaged() const { return damaged_; }
+
+    // Makes one exposure durable; its pixels must be those of the description. Replaces an image stored
+    // before. Throws RunError if the disk fails. Not for several threads at once; stored() of other images
+    // may be asked meanwhile.
+    void store(int image, const trace::Image& exposure);
+
+    // Rewrites ledger.csv in the order of the images. Throws RunError.
+    void write_ledger() const;
+
+  private:
+    void create_or_compare() const;
+    void keep_whole_images();
+
+    std::filesystem::path folder_;
+    StackDescription description_;
+    int lock_ = -1;                        // file descriptor that holds the lock
+    std::string ledger_header_;            // empty until the first image
+    std::vector<std::string> ledger_rows_; // of each image, without line end; empty: not stored
+    std::vector<std::string> damaged_;
+};
+
+// The file of an image, relative to the stack's folder: "images/z_0007.tif".
+std::filesystem::path image_path(int image);
+
+// Radiant flux per pixel in W of a stored image; row 0 at the lowest y. `z` is its focal height (mm) as
+// planned. Throws InputError, with the remedy, if the image is missing, not whole or of another height:
+// frames are read from finished stacks, one at a time, without a store.
+Grid<float> read_frame(const std::filesystem::path& folder, int image, double z);
+
+} // namespace vkfv::scan

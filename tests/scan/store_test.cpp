@@ -1,0 +1,328 @@
+#include "scan/store.hpp"
+
+#include "core/error.hpp"
+#include "fake_stack.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cstdint>
+#include <cstring>
+#include <functional>
+
+namespace fs = std::filesystem;
+using namespace vkfv;
+using namespace vkfv::scan;
+using namespace vkfv::scan::test;
+using testing::ElementsAre;
+using testing::HasSubstr;
+using testing::IsEmpty;
+using testing::Not;
+
+namespace {
+
+// A reader of little-endian TIFF in uncompressed strips after the TIFF 6.0 specification, independent of the
+// writer.
+class RawTiff {
+  public:
+    explicit RawTiff(std::string bytes) : bytes_(std::move(bytes)) {
+        EXPECT_EQ(bytes_.substr(0, 4), std::string("II*\0", 4));
+        const auto directory = at<std::uint32_t>(4);
+        for (int i = 0; i < at<std::uint16_t>(directory); ++i) {
+            const std::size_t entry = directory + 2 + 12 * i;
+            offsets_[at<std::uint16_t>(entry)] = entry;
+        }
+    }
+    bool has(int tag) const { return offsets_.contains(tag); }
+    std::uint32_t number(int tag, std::uint32_t index = 0) const {
+        const std::size_t entry = offsets_.at(tag);
+        const int size = at<std::uint16_t>(entry + 2) == 3 ? 2 : 4; // SHORT or LONG
+        const std::size_t place = data(entry, size) + size * index;
+        return size == 2 ? at<std::uint16_t>(place) : at<std::uint32_t>(place);
+    }
+    double rational(int tag) const {
+        const std::size_t place = data(offsets_.at(tag), 8);
+        return static_cast<double>(at<std::uint32_t>(place)) / at<std::uint32_t>(place + 4);
+    }
+    std::string text(int tag) const {
+        const std::size_t entry = offsets_.at(tag);
+        return bytes_.substr(data(entry, 1), at<std::uint32_t>(entry + 4) - 1);
+    }
+    float pixel(int column, int row) const {
+        const std::uint32_t rows_per_strip = number(278);
+        const std::size_t strip = number(273, row / rows_per_strip);
+        return at<float>(strip + 4 * (row % rows_per_strip * number(256) + column));
+    }
+
+  private:
+    template <class Value>
+    Value at(std::size_t place) const {
+        Value value;
+        std::memcpy(&value, bytes_.substr(place, sizeof(Value)).data(), sizeof(Value));
+        return value;
+    }
+    std::size_t data(std::size_t entry, int size) const {
+        return at<std::uint32_t>(entry + 4) * size <= 4 ? entry + 8 : at<std::uint32_t>(entry + 8);
+    }
+    std::string bytes_;
+    std::map<int, std::size_t> offsets_;
+};
+
+std::string message_of(const std::function<void()>& action) {
+    try {
+        action();
+    } catch (const InputError& error) {
+        return error.what();
+    }
+    return "";
+}
+
+std::string opening_message(const fs::path& folder, const StackDescription& description = describe()) {
+    return message_of([&] { ImageStore store(folder, description); });
+}
+
+TEST(ImageStore, WritesFluxWithTheHighestRowFirst) {
+    const FreshFolder folder("pixels");
+    run(folder.path(), FakeTracer(), describe());
+    for (int image = 0; image < 4; ++image) {
+        const RawTiff tiff(bytes_of(folder.path() / fmt::format("images/z_000{}.tif", image)));
+        ASSERT_EQ(tiff.number(256), 5u);
+        ASSERT_EQ(tiff.number(257), 3u);
+        ASSERT_EQ(tiff.number(258), 32u); // bits
+        ASSERT_EQ(tiff.number(259), 1u);  // no compression
+        ASSERT_EQ(tiff.number(339), 3u);  // floating point
+        const double z = describe().positions[image];
+        for (int row = 0; row < rows; ++row) {
+            for (int column = 0; column < columns; ++column) {
+                EXPECT_EQ(tiff.pixel(column, row),
+                          static_cast<float>(flux(column, rows - 1 - row, z, image, 1)));
+            }
+        }
+    }
+}
+
+TEST(ImageStore, ImagesTellTheirPitchHeightAndDistance) {
+    const FreshFolder folder("tags");
+    run(folder.path(), FakeTracer(), describe());
+    const RawTiff tiff(bytes_of(folder.path() / "images/z_0002.tif"));
+    EXPECT_EQ(tiff.number(296), 3u); // centimetres
+    EXPECT_NEAR(tiff.rational(282), 5000,
+                5000e-6); // pixels per cm at 2 um; a float's rounding is far below 1e-6
+    const std::string text = tiff.text(270);
+    EXPECT_THAT(text, testing::StartsWith("ImageJ="));
+    EXPECT_THAT(text, HasSubstr("\nunit=cm\nspacing=8e-05\n")); // 0.8 um
+    EXPECT_THAT(text, HasSubstr("\nimage=2\nz_um=0.4\n"));
+}
+
+TEST(ImageStore, FramesReadBackWithTheLowestRowFirst) {
+    const FreshFolder folder("frames");
+    run(folder.path(), FakeTracer(), describe());
+    const double z = describe().positions[1];
+    const Grid<float> frame = read_frame(folder.path(), 1, z);
+    ASSERT_EQ(frame.columns, columns);
+    ASSERT_EQ(frame.rows, rows);
+    EXPECT_EQ(frame(4, 0), static_cast<float>(flux(4, 0, z, 1, 1)));
+    EXPECT_EQ(frame(0, 2), static_cast<float>(flux(0, 2, z, 1, 1)));
+    EXPECT_THAT(message_of([&] { read_frame(folder.path(), 1, z + 1e-4); }),
+                HasSubstr("expected the focal height"));
+    EXPECT_THAT(message_of([&] { read_frame(folder.path(), 9, z); }), HasSubstr("z_0009.tif"));
+}
+
+TEST(ImageStore, LedgerHasARowAnImageThatReadsBackExactly) {
+    const FreshFolder folder("ledger");
+    run(folder.path(), FakeTracer(), describe());
+    std::istringstream lines(bytes_of(folder.path() / "ledger.csv"));
+    std::string line;
+    std::getline(lines, line);
+    EXPECT_EQ(line,
+              "image,z_um,rays,detected_rays,emitted_W,detected_W,\"vignetted at imaging 3 (10x, back)_W\","
+              "residual_W");
+    const char* heights[] = {"-1.2", "-0.4", "0.4", "1.2"};
+    for (int image = 0; image < 4; ++image) {
+        ASSERT_TRUE(std::getline(lines, line));
+        EXPECT_THAT(line,
+                    testing::StartsWith(fmt::format("{},{},1000,{},1,", image, heights[image], 100 + image)));
+        std::vector<double> numbers;
+        std::istringstream fields(line);
+        for (std::string field; std::getline(fields, field, ',');) {
+            numbers.push_back(std::stod(field));
+        }
+        ASSERT_EQ(numbers.size(), 8u);
+        const trace::Image exposure = FakeTracer().expose(0, image);
+        EXPECT_EQ(numbers[5], exposure.ledger.entries[0].power);
+        EXPECT_EQ(numbers[6], exposure.ledger.entries[1].power);
+        EXPECT_EQ(numbers[7], exposure.ledger.residual());
+    }
+    EXPECT_FALSE(std::getline(lines, line));
+}
+
+TEST(ImageStore, KeepsWholeImagesAndTracesTheOthers) {
+    const FreshFolder folder("continue");
+    const FakeTracer first;
+    EXPECT_FALSE(run(folder.path(), first, describe(), {.index = 1, .count = 2}).complete);
+    EXPECT_THAT(first.exposed, ElementsAre(1, 3));
+    const FakeTracer second;
+    const StackSummary summary = run(folder.path(), second, describe());
+    EXPECT_THAT(second.exposed, ElementsAre(0, 2));
+    EXPECT_EQ(summary.kept, 2);
+    EXPECT_EQ(summary.traced, 2);
+    EXPECT_EQ(summary.rays, 2 * rays);
+    EXPECT_TRUE(summary.complete);
+    const FakeTracer third;
+    run(folder.path(), third, describe());
+    EXPECT_THAT(third.exposed, IsEmpty());
+}
+
+TEST(ImageStore, ShardsOfSeparateFoldersMakeOneStack) {
+    const FreshFolder whole("whole");
+    const FreshFolder even("even");
+    const FreshFolder odd("odd");
+    run(whole.path(), FakeTracer(), describe());
+    run(even.path(), FakeTracer(), describe(), {0, 2});
+    run(odd.path(), FakeTracer(), describe(), {1, 2});
+    fs::copy(odd.path() / "images", even.path() / "images");
+    const FakeTracer none;
+    EXPECT_TRUE(run(even.path(), none, describe()).complete);
+    EXPECT_THAT(none.exposed, IsEmpty());
+    EXPECT_EQ(differing_files(result_of(even.path()), result_of(whole.path())), "");
+}
+
+// Every state that a kill or a disk may leave behind heals to the bytes of an undisturbed run.
+TEST(ImageStore, HealsWhatIsDamaged) {
+    const FreshFolder whole("undisturbed");
+    run(whole.path(), FakeTracer(), describe());
+    const auto expected = result_of(whole.path());
+    const std::string tiff = bytes_of(whole.path() / "images/z_0001.tif");
+    const FreshFolder other("other");
+    run(other.path(), FakeTracer(2), describe(4, 2));
+    const std::string foreign = bytes_of(other.path() / "images/z_0001.tif");
+    std::string without_row = tiff;
+    without_row.replace(without_row.find("ledger_row="), 11, "ledger_ruw=");
+
+    std::string flipped_bit = tiff;
+    flipped_bit.back() ^= 1; // the last pixel's exponent
+
+    const auto image = fs::path("images") / "z_0001.tif";
+    struct Damage {
+        std::string name;
+        fs::path file;
+        std::string bytes;
+        int retraced;
+        int reported;
+    };
+    const std::vector<Damage> damages{
+        {"empty image", image, "", 1, 1},
+        {"header only", image, tiff.substr(0, 8), 1, 1},
+        {"last byte missing", image, tiff.substr(0, tiff.size() - 1), 1, 1},
+        {"a bit fell over", image, flipped_bit, 1, 1},
+        {"no TIFF", image, "<html>", 1, 1},
+        {"another image of the stack", image, bytes_of(whole.path() / "images/z_0002.tif"), 1, 1},
+        {"an image of another stack", image, foreign, 1, 1},
+        {"no ledger row", image, without_row, 1, 1},
+        {"image put aside", "images/.z_0003.tif.part", tiff.substr(0, 100), 0, 0},
+        {"configuration put aside", ".stack.toml.part", "[trace]", 0, 0},
+        {"half a row", "ledger.csv", "image,z_um\n0,-1", 0, 0},
+        {"empty ledger", "ledger.csv", "", 0, 0},
+    };
+    for (const Damage& damage : damages) {
+        SCOPED_TRACE(damage.name);
+        const FreshFolder folder("damaged");
+        fs::copy(whole.path(), folder.path(), fs::copy_options::recursive);
+        write_bytes(folder.path() / damage.file, damage.bytes);
+        ASSERT_TRUE(result_of(folder.path()) != expected);
+        EXPECT_EQ(ImageStore(folder.path(), describe()).damaged().size(), damage.reported);
+        const FakeTracer tracer;
+        run(folder.path(), tracer, describe());
+        EXPECT_EQ(tracer.exposed.size(), damage.retraced);
+        EXPECT_EQ(differing_files(result_of(folder.path()), expected), "");
+    }
+}
+
+TEST(ImageStore, AFolderLeftBeforeItsConfigurationWasWrittenIsNew) {
+    const FreshFolder folder("begun");
+    fs::create_directories(folder.path());
+    write_bytes(folder.path() / ".lock", "");
+    write_bytes(folder.path() / ".stack.toml.part", "[tra");
+    EXPECT_TRUE(run(folder.path(), FakeTracer(), describe()).complete);
+}
+
+TEST(ImageStore, RefusesAnotherConfigurationAndNamesEachKey) {
+    const FreshFolder folder("refused");
+    run(folder.path(), FakeTracer(), describe());
+    const auto before = result_of(folder.path());
+    StackDescription other = describe(4, 2);
+    other.identity += "max_bounces = 2\n[specimen]\nkind = \"step\"\n";
+    other.identity.erase(other.identity.find("rays"), std::string("rays = 1000\n").size());
+    const std::string message = opening_message(folder.path(), other);
+    EXPECT_THAT(message, HasSubstr("\n  trace.seed: 1 there, 2 here"));
+    EXPECT_THAT(message, HasSubstr("\n  trace.rays: 1000 there, absent here"));
+    EXPECT_THAT(message, HasSubstr("\n  trace.max_bounces: absent there, 2 here"));
+    EXPECT_THAT(message, HasSubstr("\n  specimen.kind: absent there, \"step\" here"));
+    EXPECT_THAT(message, Not(HasSubstr("program")));
+    EXPECT_THAT(message, HasSubstr("Give another --out, or remove the folder"));
+    EXPECT_EQ(differing_files(result_of(folder.path()), before), "");
+}
+
+TEST(ImageStore, TheConfigurationMayChangeWhereTheIdentityDoesNot) {
+    const FreshFolder folder("reevaluated");
+    run(folder.path(), FakeTracer(), describe());
+    StackDescription other = describe();
+    other.configuration = "[trace]\nseed = 1\n\n[topography]\nwindow_px = 9\n";
+    const FakeTracer tracer;
+    run(folder.path(), tracer, other);
+    EXPECT_THAT(tracer.exposed, IsEmpty());
+    EXPECT_THAT(bytes_of(folder.path() / "stack.toml"), testing::EndsWith(other.configuration));
+    EXPECT_THAT(bytes_of(folder.path() / "stack.toml"), HasSubstr("#: program = \"vkfv 0\"\n"));
+}
+
+TEST(ImageStore, RefusesWhatIsNoStack) {
+    const FreshFolder folder("foreign");
+    fs::create_directories(folder.path());
+    write_bytes(folder.path() / "thesis.tex", "years of work");
+    EXPECT_THAT(opening_message(folder.path()), HasSubstr("without stack.toml"));
+    EXPECT_THAT(opening_message(folder.path() / "thesis.tex"), HasSubstr("expected a folder"));
+    EXPECT_THAT(opening_message(folder.path() / "thesis.tex" / "out"), Not(IsEmpty()));
+    write_bytes(folder.path() / "stack.toml", "[trace]\nseed = 1\n"); // a user's own file, not an output's
+    EXPECT_THAT(opening_message(folder.path()), HasSubstr("without the identity of a stack"));
+    EXPECT_EQ(result_of(folder.path()).at("thesis.tex"), "years of work");
+}
+
+TEST(ImageStore, OneProgramAtATime) {
+    const FreshFolder folder("locked");
+    {
+        const ImageStore holder(folder.path(), describe());
+        EXPECT_THAT(opening_message(folder.path()), HasSubstr("another vkfv is writing"));
+    }
+    EXPECT_EQ(opening_message(folder.path()), "");
+}
+
+TEST(RunStack, AnExceptionOfTheTraceLeavesWhatIsStored) {
+    class Failing : public FakeTracer {
+        trace::Image expose(double z, std::uint32_t image) const override {
+            return image == 2 ? throw RunError("device lost") : FakeTracer::expose(z, image);
+        }
+    };
+    const FreshFolder folder("failing");
+    EXPECT_THROW(run(folder.path(), Failing(), describe()), RunError);
+    const FakeTracer tracer;
+    run(folder.path(), tracer, describe());
+    EXPECT_THAT(tracer.exposed, ElementsAre(2, 3));
+}
+
+TEST(RunStack, ADiskThatFailsIsARunThatCanBeContinued) {
+    const FreshFolder folder("disk");
+    ImageStore store(folder.path(), describe());
+    // A folder in the image's place can be neither written nor replaced, whoever runs the test.
+    fs::create_directories(folder.path() / "images/z_0002.tif/occupied");
+    std::ostringstream nowhere;
+    Progress progress(nowhere, Progress::Style::quiet);
+    try {
+        run_stack(FakeTracer(), store, progress);
+        FAIL();
+    } catch (const RunError& error) {
+        EXPECT_THAT(error.what(), HasSubstr("2 of 4 images are stored"));
+        EXPECT_THAT(error.what(), HasSubstr("same command again"));
+    }
+}
+
+} // namespace
