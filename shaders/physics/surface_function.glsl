@@ -194,6 +194,8 @@ VKFV_SCENE_FUNCTION VKFV_FUNCTION Hit march_surface(VKFV_SCENE_PARAMETER Specime
                     (abs(origin.z) + max(abs(specimen.bottom), abs(specimen.top)) +
                      specimen.lipschitz * (abs(origin.x) + abs(origin.y) + abs(specimen.x_min) + abs(specimen.x_max) +
                                            abs(specimen.y_min) + abs(specimen.y_max)));
+    // What the rate of approach of a tangential ray may be wrong by.
+    real undecided = real(8.0) * SURFACE_EPSILON * (real(1.0) + specimen.lipschitz);
     RayInterval inside;
     inside.start = t_min;
     inside.stop = t_max;
@@ -225,7 +227,7 @@ VKFV_SCENE_FUNCTION VKFV_FUNCTION Hit march_surface(VKFV_SCENE_PARAMETER Specime
     for (int step = 0; step < MARCH_STEPS + MARCH_COARSE_STEPS; ++step) {
         real rate = side * (direction.z - surface.slope_x * direction.x - surface.slope_y * direction.y);
         // A ray that leaves a point of the surface is within rounding of it, but not approaching.
-        met = gap < -rounding || (gap <= rounding && rate < real(0.0));
+        met = gap < -rounding || (gap <= rounding && rate < -undecided);
         if (met || closing <= real(0.0) || s >= way) {
             break;
         }

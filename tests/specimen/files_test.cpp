@@ -1,0 +1,420 @@
+// Specimens from files: what is written is read, a letter reads as the letter, and damage is named.
+#include "specimen/description.hpp"
+#include "specimen/files.hpp"
+
+#include "surface/image_file.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <unistd.h>
+
+#include <cmath>
+#include <cstring>
+#include <fstream>
+#include <functional>
+#include <limits>
+
+namespace vkfv::specimen {
+namespace {
+
+using testing::HasSubstr;
+
+class Files : public testing::Test {
+  protected:
+    void SetUp() override {
+        const auto* test = testing::UnitTest::GetInstance()->current_test_info();
+        folder_ = std::filesystem::temp_directory_path() /
+                  ("vkfv-" + std::string(test->name()) + "-" + std::to_string(getpid()));
+        std::filesystem::create_directories(folder_);
+    }
+    void TearDown() override { std::filesystem::remove_all(folder_); }
+
+    std::filesystem::path write(const std::string& name, const std::string& bytes) const {
+        std::ofstream(folder_ / name, std::ios::binary) << bytes;
+        return folder_ / name;
+    }
+    std::filesystem::path folder_;
+};
+
+template <class Value>
+std::string raw(const Value& value) {
+    return {reinterpret_cast<const char*>(&value), sizeof value};
+}
+
+// A tetrahedron with corners that floats hold exactly.
+const std::vector<glm::vec3> corners = {{0, 0, 0}, {1, 0, 0.25f}, {0, 2, -0.5f}, {0.5f, 0.5f, 4}};
+const std::vector<glm::uvec3> faces = {{0, 2, 1}, {0, 1, 3}, {1, 2, 3}, {2, 0, 3}};
+
+std::string binary_stl() {
+    // The word solid in the header does not make it text.
+    std::string bytes = "solid but binary";
+    bytes.resize(80, ' ');
+    bytes += raw(static_cast<std::uint32_t>(faces.size()));
+    for (const glm::uvec3& face : faces) {
+        bytes += raw(glm::vec3(0));
+        for (int i = 0; i < 3; ++i) {
+            bytes += raw(corners[face[i]]);
+        }
+        bytes += std::string(2, '\0');
+    }
+    return bytes;
+}
+
+std::string ascii_stl() {
+    std::string text = "solid tetrahedron\n";
+    for (const glm::uvec3& face : faces) {
+        text += " facet normal 0 0 +1.0\n  outer loop\n";
+        for (int i = 0; i < 3; ++i) {
+            const glm::vec3& p = corners[face[i]];
+            text += "   vertex " + std::to_string(p.x) + " " + std::to_string(p.y) + "\t" +
+                    std::to_string(p.z) + "\r\n";
+        }
+        text += "  endloop\n endfacet\n";
+    }
+    return text + "endsolid tetrahedron\n";
+}
+
+void expect_tetrahedron(const FileMesh& mesh, const std::function<glm::dvec3(glm::dvec3)>& placed) {
+    ASSERT_EQ(mesh.vertices.size(), 4u); // equal vertices are one
+    ASSERT_EQ(mesh.triangles.size(), faces.size());
+    for (std::size_t i = 0; i < faces.size(); ++i) {
+        for (int k = 0; k < 3; ++k) {
+            const glm::dvec3 expected = placed(glm::dvec3(corners[faces[i][k]]));
+            EXPECT_NEAR(glm::length(mesh.vertices[mesh.triangles[i][k]] - expected), 0, 1e-14);
+        }
+    }
+}
+
+TEST_F(Files, StlBinaryAndAsciiAreTheMeshThatWasWritten) {
+    const auto same = [](glm::dvec3 p) { return p; };
+    expect_tetrahedron(read_stl(write("binary.stl", binary_stl()), {}), same);
+    expect_tetrahedron(read_stl(write("ascii.stl", ascii_stl()), {}), same);
+    std::string upper = ascii_stl();
+    for (char& c : upper) {
+        c = static_cast<char>(std::toupper(c));
+    }
+    expect_tetrahedron(read_stl(write("upper.stl", upper), {}), same);
+    EXPECT_EQ(read_stl(write("two.stl", ascii_stl() + ascii_stl()), {}).triangles.size(), 8u);
+}
+
+std::string base64(const std::string& bytes) {
+    const char* digits = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
+    std::string text;
+    for (std::size_t i = 0; i < bytes.size(); i += 3) {
+        std::uint32_t group = 0;
+        for (std::size_t k = 0; k < 3; ++k) {
+            group = group << 8 | (i + k < bytes.size() ? static_cast<unsigned char>(bytes[i + k]) : 0u);
+        }
+        for (std::size_t k = 0; k < 4; ++k) {
+            text += i + k > bytes.size() ? '=' : digits[group >> (18 - 6 * k) & 63];
+        }
+    }
+    return text;
+}
+
+struct Gltf {
+    std::string nodes = R"([{"mesh": 0}])";
+    int point_count = 4;
+    int view_length = 48;
+    int position = 0;
+    std::uint16_t first_index = 0;
+    float first_coordinate = 0;
+    int mode = 4;
+
+    std::string text() const {
+        std::string data;
+        for (glm::vec3 p : corners) {
+            p.x = data.empty() ? first_coordinate : p.x;
+            data += raw(p);
+        }
+        for (const glm::uvec3& face : faces) {
+            for (int i = 0; i < 3; ++i) {
+                data += raw(static_cast<std::uint16_t>(data.size() == 48 ? first_index : face[i]));
+            }
+        }
+        return R"({"asset": {"version": "2.0"}, "scene": 0, "scenes": [{"nodes": [0]}], "nodes": )" + nodes +
+               R"(, "meshes": [{"primitives": [{"attributes": {"POSITION": )" + std::to_string(position) +
+               R"(}, "indices": 1, "mode": )" + std::to_string(mode) +
+               R"(}]}], "accessors": [{"bufferView": 0, "componentType": 5126, "type": "VEC3", "count": )" +
+               std::to_string(point_count) +
+               R"(}, {"bufferView": 1, "componentType": 5123, "type": "SCALAR", "count": 12}],)"
+               R"("bufferViews": [{"buffer": 0, "byteLength": )" +
+               std::to_string(view_length) + R"(}, {"buffer": 0, "byteOffset": 48, "byteLength": 24}],)" +
+               R"("buffers": [{"byteLength": 72, "uri": "data:application/octet-stream;base64,)" +
+               base64(data) + R"("}]})";
+    }
+};
+
+TEST_F(Files, GltfIsTheMeshWithItsNodesTransforms) {
+    Gltf gltf;
+    expect_tetrahedron(read_gltf(write("plain.gltf", gltf.text()), {}), [](glm::dvec3 p) { return p; });
+    // A parent that moves, over a child that scales and then turns by 90 degrees about z: x to y, y to -x.
+    gltf.nodes = R"([{"translation": [10, 20, 30], "children": [1]},
+                     {"mesh": 0, "scale": [2, 3, 4], "rotation": [0, 0, 0.7071067811865476, 0.7071067811865476]}])";
+    expect_tetrahedron(read_gltf(write("nodes.gltf", gltf.text()), {}),
+                       [](glm::dvec3 p) { return glm::dvec3(10 - 3 * p.y, 20 + 2 * p.x, 30 + 4 * p.z); });
+    gltf.nodes = R"([{"mesh": 0, "matrix": [0,2,0,0, -3,0,0,0, 0,0,4,0, 10,20,30,1]}])";
+    expect_tetrahedron(read_gltf(write("matrix.gltf", gltf.text()), {}),
+                       [](glm::dvec3 p) { return glm::dvec3(10 - 3 * p.y, 20 + 2 * p.x, 30 + 4 * p.z); });
+}
+
+// The letter's stem is at the left, its long arm on top, its short one in the middle.
+void expect_letter(const Specimen& specimen, double low, double high) {
+    struct Place {
+        double x, y;
+        bool on_letter;
+    };
+    const Place places[] = {
+        {-0.03, -0.05, true}, {-0.03, 0.0, true}, {-0.03, 0.05, true},  {0.03, 0.05, true},
+        {0.01, 0.0, true},    {0.03, 0.0, false}, {0.03, -0.05, false}, {0.0, 0.025, false},
+        {0.0, -0.05, false},  {0.07, 0.0, false},
+    };
+    for (const Place& place : places) {
+        const auto map = truth(specimen, 1, 1, place.x, place.y, 0.002, 0.002);
+        EXPECT_NEAR(map.height(0, 0), place.on_letter ? high : low, 1e-7) << place.x << ", " << place.y;
+    }
+}
+
+TEST(ExampleSpecimens, ReadAsTheLetterF) {
+    const std::filesystem::path folder = std::filesystem::path(VKFV_SOURCE_DIR) / "assets" / "specimens";
+    Description d;
+    d.kind = Kind::image;
+    d.file = folder / "letter_F.png";
+    d.pitch = 0.002;
+    d.height = 0.005;
+    expect_letter(make(d), 0, 0.005);
+    d.kind = Kind::stl;
+    d.file = folder / "letter_F.stl";
+    d.centre = false;
+    expect_letter(make(d), 0, 0.005);
+    d.kind = Kind::gltf;
+    d.file = folder / "letter_F.glb";
+    d.unit = 1000;
+    expect_letter(make(d), 0, 0.005);
+    // Centred: the mean of the uppermost surface is at 0. The letter covers (22 x 120 + 58 x 22 + 38 x 22)
+    // um^2 of 200 x 200; of the 1280 lines of points that measure it each edge may be one off.
+    d.centre = true;
+    const double share = (22.0 * 120 + 58 * 22 + 38 * 22) / 40000;
+    const auto centred = truth(make(d), 1, 1, -0.03, 0, 0.002, 0.002);
+    EXPECT_NEAR(centred.height(0, 0), 0.005 * (1 - share), 0.005 * 0.002);
+}
+
+TEST_F(Files, ImageRowsStartAtTheTopAndValuesScale) {
+    // 3 x 2 points, 8 bit: the file's first row is the highest y.
+    const auto file =
+        write("map.pgm", std::string("P5 3 2 255\n") + '\x00' + '\x33' + '\xff' + '\x66' + '\x99' + '\xcc');
+    const Grid<float> grid = read_image(file, {});
+    ASSERT_EQ(grid.columns, 3);
+    ASSERT_EQ(grid.rows, 2);
+    EXPECT_FLOAT_EQ(grid(0, 1), 0.0f);
+    EXPECT_FLOAT_EQ(grid(2, 1), 1.0f);
+    EXPECT_FLOAT_EQ(grid(0, 0), 0.4f);
+    EXPECT_FLOAT_EQ(grid(2, 0), 0.8f);
+    Description d;
+    d.kind = Kind::image;
+    d.file = file;
+    d.pitch = 0.01;
+    d.height = -0.1;
+    const HeightField field = std::get<HeightField>(make(d).geometry);
+    EXPECT_FLOAT_EQ(field.heights(1, 1), -0.02f);
+    EXPECT_DOUBLE_EQ(field.x_min, -0.01);
+    EXPECT_DOUBLE_EQ(field.y_max(), 0.005);
+    // Floats are taken as they are.
+    Grid<float> heights(2, 2);
+    heights.values = {1.5f, -2.5f, 1000.0f, 0.0f};
+    surface::write_tiff(folder_ / "float.tif", heights);
+    EXPECT_EQ(read_image(folder_ / "float.tif", {}).values, heights.values);
+}
+
+TEST_F(Files, TrianglesWithoutAreaAreDropped) {
+    std::string text = ascii_stl();
+    text.insert(text.find(" facet"),
+                " facet normal 0 0 1\n outer loop\n vertex 0 0 0\n vertex 1 1 1\n vertex 2 2 2\n"
+                " endloop\n endfacet\n");
+    Description d;
+    d.kind = Kind::stl;
+    d.file = write("line.stl", text);
+    EXPECT_EQ(std::get<Mesh>(make(d).geometry).triangles.size(), faces.size());
+}
+
+std::string message_of(const Description& description) {
+    try {
+        make(description);
+    } catch (const InputError& error) {
+        return error.what();
+    }
+    return "no error";
+}
+
+struct BadFile {
+    const char* file;
+    std::string bytes;
+    std::vector<std::string> message; // parts of it
+};
+
+TEST_F(Files, DamageIsNamedWithItsPlace) {
+    const auto with_float = [](std::string bytes, std::size_t offset, float value) {
+        std::memcpy(bytes.data() + offset, &value, sizeof value);
+        return bytes;
+    };
+    const auto replaced = [](std::string text, const std::string& from, const std::string& to) {
+        return text.replace(text.find(from), from.size(), to);
+    };
+    const auto with_count = [](std::uint32_t count) {
+        std::string bytes = binary_stl();
+        std::memcpy(bytes.data() + 80, &count, sizeof count);
+        bytes[0] = '\x01'; // surely not text
+        return bytes;
+    };
+    const auto gltf = [](const std::function<void(Gltf&)>& change) {
+        Gltf file;
+        change(file);
+        return file.text();
+    };
+    const float nan = std::numeric_limits<float>::quiet_NaN();
+    const float inf = std::numeric_limits<float>::infinity();
+    std::string png; // of 16000 x 16000 pixels, with no more than its header
+    {
+        std::ifstream stream(std::filesystem::path(VKFV_SOURCE_DIR) / "assets/specimens/letter_F.png",
+                             std::ios::binary);
+        png.assign(std::istreambuf_iterator<char>(stream), {});
+    }
+    const std::string flat =
+        "solid flat\nfacet normal 0 0 1\nouter loop\nvertex 1 0 0\nvertex 1 1 0\nvertex 1 1 2\n"
+        "endloop\nendfacet\nendsolid\n";
+    const std::vector<BadFile> cases = {
+        {"none.stl", "", {"none.stl@0", "84"}},
+        {"short.stl", std::string(50, '\x01'), {"short.stl@50", "84"}},
+        {"cut.stl", with_count(4).substr(0, 200), {"cut.stl@80", "4 triangles in 200 bytes"}},
+        {"count.stl", with_count(0xFFFFFFFFu), {"count.stl@80", "4294967295 triangles"}},
+        {"nan.stl", with_float(binary_stl(), 84 + 12, nan), {"nan.stl@96", "triangle 0", "nan"}},
+        {"inf.stl", with_float(binary_stl(), 84 + 50 + 12 + 16, inf), {"inf.stl@162", "triangle 1", "inf"}},
+        {"empty.stl", std::string(84, '\0'), {"empty.stl", "0 triangles"}},
+        {"solid.stl", "solid nothing\nendsolid nothing\n", {"solid.stl", "0 triangles"}},
+        {"end.stl", ascii_stl().substr(0, 150), {"end.stl:", "the end of the file"}},
+        {"word.stl",
+         replaced(ascii_stl(), "vertex 0.000000", "vertex zero"),
+         {"word.stl:4:", "`zero`", "finite"}},
+        {"text.stl",
+         replaced(ascii_stl(), "vertex 0.000000", "vertex nan"),
+         {"text.stl:4:", "`nan`", "finite"}},
+        {"loop.stl", replaced(ascii_stl(), "outer loop", "outer hoop"), {"loop.stl:3:", "`loop`"}},
+        {"flat.stl", flat, {"footprint"}},
+        {"none.gltf", "", {"none.gltf", "glTF 2.0"}},
+        {"json.gltf", Gltf().text().substr(0, 100), {"json.gltf"}},
+        {"cut.glb", std::string("glTF\2\0\0\0\xff\0\0\0", 12), {"cut.glb"}},
+        {"count.gltf",
+         gltf([](Gltf& g) { g.point_count = 2000000000; }),
+         {"accessor 0", "2000000000 elements"}},
+        {"view.gltf", gltf([](Gltf& g) { g.view_length = 4096; }), {"accessor 0"}},
+        {"index.gltf", gltf([](Gltf& g) { g.first_index = 4; }), {"index 0", "below 4"}},
+        {"position.gltf", gltf([](Gltf& g) { g.position = 7; }), {"accessor = 7"}},
+        {"type.gltf", gltf([](Gltf& g) { g.position = 1; }), {"accessor 1", "positions"}},
+        {"nan.gltf", gltf([&](Gltf& g) { g.first_coordinate = nan; }), {"nan.gltf@0", "vertex 0", "nan"}},
+        {"lines.gltf", gltf([](Gltf& g) { g.mode = 1; }), {"0 triangles"}},
+        {"cycle.gltf", gltf([](Gltf& g) { g.nodes = R"([{"children": [0]}])"; }), {"node 0", "tree"}},
+        {"child.gltf", gltf([](Gltf& g) { g.nodes = R"([{"children": [9]}])"; }), {"node = 9"}},
+        {"text.png", "no image", {"text.png"}},
+        {"cut.png", png.substr(0, 90), {"cut.png", "rows"}},
+        {"huge.pgm", "P5 16000 16000 255\nonly this", {"huge.pgm", "rows 0 to"}},
+        {"vast.pgm", "P5 1000000 1000000 255\nonly this", {"vast.pgm", "1000000 x 1000000"}},
+        {"zero.pgm", "P5 0 0 255\n", {"zero.pgm"}},
+        {"one.pgm", "P5 1 1 255\nx", {"one.pgm", "2 x 2"}},
+        {"colour.ppm", "P6 2 2 255\nabcabcabcabc", {"colour.ppm", "colour in pixel (0, 0)"}},
+    };
+    for (const BadFile& bad : cases) {
+        Description d;
+        d.file = write(bad.file, bad.bytes);
+        const std::string extension = d.file.extension().string();
+        d.kind = extension == ".stl" ? Kind::stl : extension.starts_with(".gl") ? Kind::gltf : Kind::image;
+        d.pitch = 0.001;
+        d.height = 0.001;
+        const std::string message = message_of(d);
+        for (const std::string& part : bad.message) {
+            EXPECT_THAT(message, HasSubstr(part)) << bad.file;
+        }
+        EXPECT_THAT(message, HasSubstr("expected")) << bad.file;
+    }
+    Grid<float> holes(2, 2, 1.0f);
+    holes(1, 0) = nan;
+    surface::write_tiff(folder_ / "nan.tif", holes);
+    Description d;
+    d.kind = Kind::image;
+    d.file = folder_ / "nan.tif";
+    d.pitch = d.height = 1;
+    EXPECT_THAT(message_of(d), HasSubstr("nan in pixel (1, 1) from the top left"));
+    for (const Kind kind : {Kind::stl, Kind::gltf, Kind::image}) {
+        d.kind = kind;
+        d.file = folder_ / "missing";
+        d.where.file = "c.toml";
+        d.where.line = 5;
+        EXPECT_THAT(message_of(d), HasSubstr("c.toml:5: specimen.file = "));
+        d.file = folder_;
+        EXPECT_THAT(message_of(d), HasSubstr("specimen.file"));
+    }
+}
+
+TEST(Descriptions, ImpossibleValuesAreRefused) {
+    Description good;
+    good.size = 0.1;
+    good.pitch = 0.001;
+    good.radius = 0.1;
+    good.height = 0.01;
+    good.amplitude = 0.001;
+    good.period = good.period_stop = 0.01;
+    good.sq = 0.001;
+    good.correlation_length = 0.005;
+    const double nan = std::numeric_limits<double>::quiet_NaN();
+    struct Bad {
+        Kind kind;
+        std::function<void(Description&)> change;
+        const char* key;
+    };
+    const std::vector<Bad> cases = {
+        {Kind::plane, [](Description& d) { d.size = 0; }, "specimen.size"},
+        {Kind::plane, [&](Description& d) { d.size = nan; }, "specimen.size"},
+        {Kind::plane, [](Description& d) { d.pitch = 0; }, "specimen.pitch"},
+        {Kind::plane, [](Description& d) { d.pitch = 1; }, "specimen.pitch"},
+        {Kind::plane, [](Description& d) { d.pitch = 1e-6; }, "specimen.pitch"},
+        {Kind::plane, [](Description& d) { d.tilt_x = 1.6; }, "specimen.tilt"},
+        {Kind::step, [](Description& d) { d.wall = -1; }, "specimen.wall"},
+        {Kind::sphere, [](Description& d) { d.radius = -0.1; }, "specimen.radius"},
+        {Kind::sphere, [](Description& d) { d.height = -0.1; }, "specimen.height"},
+        {Kind::sinusoid, [](Description& d) { d.period = 0; }, "specimen.period"},
+        {Kind::chirp, [](Description& d) { d.period_stop = -1; }, "specimen.period_stop"},
+        {Kind::rough, [](Description& d) { d.sq = -1; }, "specimen.sq"},
+        {Kind::rough, [](Description& d) { d.correlation_length = 0; }, "specimen.correlation_length"},
+        {Kind::plane, [](Description& d) { d.material.g = 1.5; }, "specimen.material.g"},
+        {Kind::plane,
+         [](Description& d) {
+             d.roughness = Roughness{-1, 0.002, 0.001, 1};
+         },
+         "specimen.roughness.noise"},
+        {Kind::plane,
+         [](Description& d) {
+             d.roughness = Roughness{1, 1e9, 0.001, 1};
+         },
+         "specimen.roughness.kernel"},
+        {Kind::plane,
+         [](Description& d) {
+             d.roughness = Roughness{1, 0.002, 0, 1};
+         },
+         "specimen.roughness.pitch"},
+        {Kind::stl,
+         [](Description& d) {
+             d.roughness = Roughness{1, 0.002, 0.001, 1};
+         },
+         "specimen.roughness"},
+    };
+    for (const Bad& bad : cases) {
+        Description d = good;
+        d.kind = bad.kind;
+        EXPECT_THAT(message_of(d), HasSubstr(bad.kind == Kind::stl ? "specimen.file" : "no error"));
+        bad.change(d);
+        EXPECT_THAT(message_of(d), HasSubstr(bad.key));
+    }
+}
+
+} // namespace
+} // namespace vkfv::specimen

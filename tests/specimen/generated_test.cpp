@@ -1,0 +1,241 @@
+// Generated specimens: statistics of the irregular ones, and facets against the continuous function.
+#include "specimen/analytic.hpp"
+#include "specimen/intersector.hpp"
+#include "specimen/rays.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+namespace vkfv::specimen {
+namespace {
+
+using test::RandomRays;
+
+constexpr double pi = 3.14159265358979323846;
+
+// Student's t of a sample's mean against what is expected.
+double t_value(const std::vector<double>& values, double expected) {
+    const double n = static_cast<double>(values.size());
+    double sum = 0;
+    for (const double value : values) {
+        sum += value;
+    }
+    double squares = 0;
+    for (const double value : values) {
+        squares += (value - sum / n) * (value - sum / n);
+    }
+    return std::abs(sum / n - expected) / std::sqrt(squares / (n - 1) / n);
+}
+
+double mean(const Grid<float>& grid) {
+    double sum = 0;
+    for (const float value : grid.values) {
+        sum += static_cast<double>(value);
+    }
+    return sum / static_cast<double>(grid.values.size());
+}
+
+double rms(const Grid<float>& grid) {
+    double sum = 0;
+    for (const float value : grid.values) {
+        sum += static_cast<double>(value) * static_cast<double>(value);
+    }
+    return std::sqrt(sum / static_cast<double>(grid.values.size()));
+}
+
+double autocorrelation(const Grid<float>& grid, int lag) {
+    double sum = 0;
+    for (int row = 0; row < grid.rows; ++row) {
+        for (int column = 0; column < grid.columns; ++column) { // periodic, as the field is
+            sum += static_cast<double>(grid(column, row)) *
+                   static_cast<double>(grid((column + lag) % grid.columns, row));
+        }
+    }
+    return sum / static_cast<double>(grid.values.size()) / (rms(grid) * rms(grid));
+}
+
+TEST(Rough, HasTheHeightAndTheCorrelationItIsAskedFor) {
+    std::vector<double> at_length;
+    for (std::uint32_t seed = 1; seed <= 16; ++seed) {
+        Description d;
+        d.kind = Kind::rough;
+        d.size = 0.2;
+        d.pitch = 0.001;
+        d.sq = 0.0007;
+        d.correlation_length = 0.005;
+        d.seed = seed;
+        const HeightField field = std::get<HeightField>(make(d).geometry);
+        ASSERT_EQ(field.heights.columns, 201);
+        EXPECT_NEAR(rms(field.heights), 0.0007, 1e-9); // exact but for the rounding of heights to float
+        EXPECT_NEAR(mean(field.heights), 0, 1e-9);
+        at_length.push_back(autocorrelation(field.heights, 5));
+    }
+    // exp(-1) at the correlation length; removing the mean takes pi l^2 / A (1 - exp(-1)) of it. |t| > 4.07
+    // has the probability 1e-3 for 15 degrees of freedom. The twin: a length 10 % greater.
+    const double bias = pi * 25.0 / (201.0 * 201.0) * (1 - std::exp(-1.0));
+    EXPECT_LT(t_value(at_length, std::exp(-1.0) - bias), 4.07);
+    EXPECT_GT(t_value(at_length, std::exp(-1.0 / 1.21)), 4.07);
+}
+
+TEST(Roughness, LeavesWhatTheFilterLeavesOfTheNoise) {
+    std::vector<double> remaining;
+    for (std::uint32_t seed = 1; seed <= 12; ++seed) {
+        Description d;
+        d.kind = Kind::plane;
+        d.size = 0.1;
+        d.pitch = 0.0005;
+        d.roughness = Roughness{0.0002, 0.001, 0.0005, seed};
+        const Specimen specimen = make(d);
+        remaining.push_back(std::pow(rms(std::get<HeightField>(specimen.geometry).heights), 2));
+    }
+    // In squares, which are unbiased; 4.44 is the level 1e-3 for 11 degrees of freedom. The twin: a kernel 5
+    // % wider.
+    const auto expected = [](double kernel) {
+        return std::pow(0.0002 * 0.0005 / (2 * std::sqrt(pi) * kernel), 2);
+    };
+    EXPECT_LT(t_value(remaining, expected(0.001)), 4.44);
+    EXPECT_GT(t_value(remaining, expected(0.00105)), 4.44);
+}
+
+TEST(Roughness, IsInterpolatedToFinerFacetsAndRefinesCoarserOnes) {
+    Description d;
+    d.kind = Kind::plane;
+    d.size = 0.05;
+    d.pitch = 0.0005;
+    d.roughness = Roughness{0.0002, 0.002, 0.001, 5};
+    const HeightField fine = std::get<HeightField>(make(d).geometry);
+    EXPECT_EQ(fine.heights.columns, 101);
+    d.pitch = 0.001;
+    const HeightField same = std::get<HeightField>(make(d).geometry);
+    EXPECT_EQ(same.heights.columns, 51);
+    for (int i = 0; i < 51; ++i) {
+        EXPECT_NEAR(fine.heights(2 * i, 2 * (50 - i)), same.heights(i, 50 - i), 1e-10f);
+    }
+    d.pitch = 0.01;
+    EXPECT_EQ(std::get<HeightField>(make(d).geometry).heights.columns, 51);
+    // The lattice of the analytic representation has the same points.
+    d.representation = Representation::analytic;
+    const Specimen specimen = make(d);
+    EXPECT_EQ(std::get<Analytic>(specimen.geometry).lattice->heights.values, same.heights.values);
+}
+
+TEST(Generated, SeedsMakeTheSameOrOtherFields) {
+    Description d;
+    d.kind = Kind::rough;
+    d.size = 0.05;
+    d.pitch = 0.001;
+    d.sq = 0.001;
+    d.correlation_length = 0.005;
+    d.seed = 1;
+    const auto heights = [&] { return std::get<HeightField>(make(d).geometry).heights.values; };
+    const auto first = heights();
+    EXPECT_EQ(first, heights());
+    d.seed = 2;
+    EXPECT_NE(first, heights());
+}
+
+struct Pair {
+    const char* name;
+    Description description;
+    double second_derivative; // largest of the shape, along a cell's edges or its diagonal, 1/mm
+};
+
+TEST(Generated, FacetsAndFunctionAreMetAtTheSamePlaces) {
+    std::vector<Pair> pairs;
+    Description d;
+    d.size = 0.1;
+    d.pitch = 0.0005;
+    d.kind = Kind::plane;
+    pairs.push_back({"plane", d, 0});
+    d.tilt_x = 0.3;
+    d.tilt_y = -0.1;
+    pairs.push_back({"tilted plane", d, 0});
+    d.kind = Kind::step;
+    d.height = 0.002;
+    d.wall = 0.002; // its kinks lie on lines of the grid
+    pairs.push_back({"step", d, 0});
+    d.kind = Kind::sphere;
+    d.radius = 0.1;
+    d.height = 0.05; // the rim at 0.087 is outside the footprint's corner at 0.071
+    // R^2 / (R^2 - r^2)^(3/2) along the meridian.
+    pairs.push_back({"sphere", d, 0.01 / std::pow(0.01 - 0.005, 1.5)});
+    d.kind = Kind::sinusoid;
+    d.amplitude = 0.001;
+    d.period = 0.02;
+    pairs.push_back({"sinusoid", d, 0.001 * std::pow(2 * pi / 0.02, 2)});
+    d.kind = Kind::chirp;
+    d.period = 0.04;
+    d.period_stop = 0.015;
+    // A (w^2 + w'), the frequency rising by (1/0.015 - 1/0.04) over 0.1 mm.
+    pairs.push_back(
+        {"chirp", d, 0.001 * (std::pow(2 * pi / 0.015, 2) + 2 * pi * (1 / 0.015 - 1 / 0.04) / 0.1)});
+    RandomRays random(7);
+    for (const Pair& pair : pairs) {
+        Description facets = pair.description;
+        facets.representation = Representation::facets;
+        Description function = pair.description;
+        function.representation = Representation::analytic;
+        const Intersector on_facets(make(facets));
+        const Specimen continuous = make(function);
+        const Intersector on_function(continuous);
+        const auto r = record(continuous, 1);
+        // Linear interpolation in a triangle: h'' / 8 of the square of its longest edge (the diagonal; for
+        // shapes along x its extent in x is the pitch, which is less). And heights rounded to float.
+        const double between =
+            pair.second_derivative * 2 * facets.pitch * facets.pitch / 8 + 6e-8 * std::max(-r.bottom, r.top);
+        int compared = 0;
+        for (int i = 0; i < 3000; ++i) {
+            const glm::dvec3 direction = -random.direction(0, 0.5);
+            const glm::dvec3 origin =
+                glm::dvec3(random.uniform(-0.04, 0.04), random.uniform(-0.04, 0.04), 0) - 0.3 * direction;
+            const auto a = on_facets.hit(origin, direction);
+            const auto b = on_function.hit(origin, direction);
+            const double approach = -direction.z - r.lipschitz * std::hypot(direction.x, direction.y);
+            const glm::dvec3 level = origin + 0.3 * direction;
+            if (std::max(std::abs(level.x), std::abs(level.y)) > 0.04 || approach < 0.2) {
+                continue; // beside the footprint, or where a facet may hide what the function shows
+            }
+            ASSERT_EQ(a.found, b.found) << pair.name;
+            if (a.found == 1u) {
+                ++compared;
+                // The gap between the two surfaces, as far as the ray stretches it; and rounding of the
+                // distance.
+                EXPECT_NEAR(a.distance, b.distance, between / approach + 1e-13) << pair.name;
+            }
+        }
+        EXPECT_GT(compared, 300) << pair.name;
+    }
+}
+
+TEST(Generated, FacetsAndLatticeOfARoughSurfaceDifferByTheirInterpolation) {
+    Description d;
+    d.kind = Kind::rough;
+    d.size = 0.1;
+    d.pitch = 0.0005;
+    d.sq = 0.0005;
+    d.correlation_length = 0.01;
+    d.seed = 11;
+    const Intersector on_facets(make(d));
+    d.representation = Representation::analytic;
+    const Intersector on_function(make(d));
+    RandomRays random(8);
+    double squares = 0;
+    int count = 0;
+    for (int i = 0; i < 4000; ++i) {
+        const glm::dvec3 origin(random.uniform(-0.049, 0.049), random.uniform(-0.049, 0.049), 0.1);
+        const auto a = on_facets.hit(origin, {0, 0, -1});
+        const auto b = on_function.hit(origin, {0, 0, -1});
+        ASSERT_EQ(a.found, 1u);
+        ASSERT_EQ(b.found, 1u);
+        // The second derivative of such a field in one direction has the standard deviation sqrt(12) sq /
+        // l^2; five of them, along the triangle's diagonal.
+        EXPECT_NEAR(a.distance, b.distance, 5 * std::sqrt(12.0) * 0.0005 / 1e-4 * 2 * 0.0005 * 0.0005 / 8);
+        squares += (a.distance - b.distance) * (a.distance - b.distance);
+        ++count;
+    }
+    EXPECT_GT(std::sqrt(squares / count), 1e-8) << "the two must not be the same surface";
+}
+
+} // namespace
+} // namespace vkfv::specimen
