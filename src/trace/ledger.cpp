@@ -2,6 +2,7 @@
 
 #include <array>
 #include <cmath>
+#include <utility>
 
 namespace vkfv::trace {
 
@@ -79,10 +80,11 @@ Ledger make_ledger(const optics::Instrument& instrument, std::span<const std::ui
     const double reflected = instrument.splitter_reflectance;
     Ledger ledger;
     ledger.emitted = instrument.flux;
-    ledger.entries.push_back({"detected", per_ray * slots[PATH_DETECTED].weight *
-                                              static_cast<double>(counts[PATH_DETECTED]),
-                              counts[PATH_DETECTED]});
-    ledger.entries.push_back({"not aimed at", instrument.flux * (1.0 - aimed_share(instrument)), 0});
+    const auto add = [&](std::string name, double share, std::uint64_t count) {
+        ledger.entries.emplace_back(std::move(name), per_ray * share * static_cast<double>(count), count);
+    };
+    add("detected", slots[PATH_DETECTED].weight, counts[PATH_DETECTED]);
+    ledger.entries.emplace_back(std::string("not aimed at"), instrument.flux * (1.0 - aimed_share(instrument)), 0u);
     // The splitter takes its share of every ray that passes it, known from the fates beyond.
     std::uint64_t first_pass = 0;
     std::uint64_t second_pass = 0;
@@ -90,13 +92,10 @@ Ledger make_ledger(const optics::Instrument& instrument, std::span<const std::ui
         first_pass += slots[slot].weight < 1.0 ? counts[slot] : 0;
         second_pass += slots[slot].weight < reflected ? counts[slot] : 0;
     }
-    ledger.entries.push_back({"beam splitter, towards the specimen",
-                              per_ray * (1.0 - reflected) * static_cast<double>(first_pass), first_pass});
-    ledger.entries.push_back({"beam splitter, towards the detector",
-                              per_ray * reflected * reflected * static_cast<double>(second_pass), second_pass});
+    add("beam splitter, towards the specimen", 1.0 - reflected, first_pass);
+    add("beam splitter, towards the detector", reflected * reflected, second_pass);
     for (std::size_t slot = PATH_DETECTED + 1; slot < slots.size(); ++slot) {
-        ledger.entries.push_back(
-            {slots[slot].name, per_ray * slots[slot].weight * static_cast<double>(counts[slot]), counts[slot]});
+        add(slots[slot].name, slots[slot].weight, counts[slot]);
     }
     return ledger;
 }
