@@ -18,9 +18,9 @@ real3 triangle_vertex(uint triangle, uint corner) {
     return real3(vertices[first], vertices[first + 1u], vertices[first + 2u]);
 }
 
-Hit meet_triangles(real3 origin, real3 direction, RayInterval over, uint flags) {
+Hit meet_triangles(real3 origin, real3 direction, RayInterval over) {
     rayQueryEXT query;
-    rayQueryInitializeEXT(query, specimen_structure, flags, 0xFFu, origin, max(over.start, real(0.0)), direction,
+    rayQueryInitializeEXT(query, specimen_structure, gl_RayFlagsOpaqueEXT, 0xFFu, origin, max(over.start, real(0.0)), direction,
                           over.stop);
     while (rayQueryProceedEXT(query)) {
     }
@@ -73,15 +73,20 @@ Hit specimen_hit(real3 origin, real3 direction) {
         if (specimen_kind == SPECIMEN_ANALYTIC) {
             hit = meet_tiles(ray, rounding);
         } else {
-            bool sided = specimen_kind == SPECIMEN_FACETS && !ray.beside;
-            uint flags = gl_RayFlagsOpaqueEXT | (sided ? gl_RayFlagsCullBackFacingTrianglesEXT : 0u);
-            int tries = ray.through ? RAY_QUERY_TRIES : 1;
-            for (int i = 0; i < tries && hit.found == 0u; ++i) {
-                real aside = real(i) * rounding;
+            // A ray that is above a height field cannot meet it from below, unless it starts there by rounding.
+            bool above = specimen_kind == SPECIMEN_FACETS && !ray.beside;
+            real aside = real(0.0);
+            bool open = true;
+            for (int i = 0; i < RAY_QUERY_TRIES && open; ++i) {
                 // Askew to rows, columns and diagonals, and back over the footprint at its border.
                 real3 nudge = real3(ray.origin.x > real(0.0) ? -aside : aside,
                                     ray.origin.y > real(0.0) ? real(-0.6) * aside : real(0.6) * aside, real(0.0));
-                hit = meet_triangles(ray.origin + nudge, direction, ray.over, flags);
+                hit = meet_triangles(ray.origin + nudge, direction, ray.over);
+                bool from_below = hit.found == 1u && above && dot(hit.normal, direction) > real(0.0);
+                open = from_below || (hit.found == 0u && ray.through);
+                ray.over.start = from_below ? hit.distance : ray.over.start;
+                aside = from_below ? aside : aside + rounding;
+                hit.found = from_below ? 0u : hit.found;
             }
         }
     }
