@@ -117,7 +117,7 @@ void write_single_page(const std::filesystem::path& path, const Grid<Value>& ima
 
     OIIO::ImageSpec spec(image.columns, image.rows, 1, type_of<Value>());
     spec.attribute("compression", "none");
-    // Without these OpenImageIO writes its version and the time of day.
+    // Without these OpenImageIO writes its version and the time of day; it cannot leave DateTime out.
     spec.attribute("Software", "vkfv");
     spec.attribute("DateTime", "1970:01:01 00:00:00");
     if (!tags.description.empty())
@@ -126,6 +126,8 @@ void write_single_page(const std::filesystem::path& path, const Grid<Value>& ima
         spec.attribute("ResolutionUnit", "cm");
         spec.attribute("XResolution", static_cast<float>(mm_per_cm / tags.pitch_x));
         spec.attribute("YResolution", static_cast<float>(mm_per_cm / tags.pitch_y));
+        // OpenImageIO writes the y resolution as this times that of x.
+        spec.attribute("PixelAspectRatio", static_cast<float>(tags.pitch_x / tags.pitch_y));
     }
     const std::vector<Value> values = flipped_rows(image);
     if (!output->open(aside.path().string(), spec) || !output->write_image(type_of<Value>(), values.data()) ||
@@ -158,7 +160,8 @@ template <class Stored>
 Grid<float> read_values(OIIO::ImageInput& input, const OIIO::ImageSpec& spec,
                         const std::filesystem::path& path, int page) {
     Grid<Stored> stored(spec.width, spec.height);
-    if (!input.read_image(page, 0, 0, 1, type_of<Stored>(), stored.values.data()))
+    // A strip that cannot be read leaves an error and zeros, but counts as success.
+    if (!input.read_image(page, 0, 0, 1, type_of<Stored>(), stored.values.data()) || input.has_error())
         reject(path, fmt::format("page {}", page), input.geterror(),
                "pixel values up to the end of the image",
                "The file is truncated or damaged: write or copy it anew.");

@@ -54,8 +54,7 @@ void window_means(int columns, int rows, int window_px, const Value& value, cons
                     sum += column_sum[static_cast<std::size_t>(column + radius)];
                 if (column - radius - 1 >= 0)
                     sum -= column_sum[static_cast<std::size_t>(column - radius - 1)];
-                const int width = std::min(columns - 1, column + radius) - std::max(0, column - radius) + 1;
-                visit(column, row, sum / (static_cast<double>(width) * (top - bottom + 1)));
+                visit(column, row, sum / window_pixels(columns, rows, column, row, window_px));
             }
         }
     });
@@ -118,17 +117,24 @@ Grid<float> focus_measure(const Grid<float>& image, FocusMeasure measure, int wi
     return result;
 }
 
-double noise_deviation(FocusMeasure measure, int window_px) {
-    const double n = static_cast<double>(window_px) * window_px;
-    if (measure == FocusMeasure::standard_deviation)
-        return 1 / std::sqrt(2 * (n - 1));
-    // Second differences (-1, 2, -1) correlate at lags 0, 1, 2 along their own axis by 6/6, -4/6, 1/6; those
-    // along x and y of the same and neighbouring pixels by 4/6 (same), -2/6 (4 beside), 1/6 (4 diagonal).
-    const auto covariance = [](double r) { return std::sqrt(1 - r * r) + r * std::asin(r) - 1; };
-    const double same_axis = covariance(1) + 2 * covariance(4. / 6) + 2 * covariance(1. / 6);
-    const double other_axis = covariance(4. / 6) + 4 * covariance(2. / 6) + 4 * covariance(1. / 6);
-    // Two measures a pixel, of mean sqrt(2/pi) each: the factors 2/pi of covariance and squared mean cancel.
-    return std::sqrt(2 * (same_axis + other_axis) / 4 / n);
+Grid<float> window_mean(const Grid<float>& image, int window_px) {
+    Grid<float> result(image.columns, image.rows);
+    window_means(
+        image.columns, image.rows, window_px, [&](int column, int row) { return image(column, row); },
+        [&](int column, int row, double value) { result(column, row) = static_cast<float>(value); });
+    return result;
+}
+
+int window_pixels(int columns, int rows, int column, int row, int window_px) {
+    const int radius = window_px / 2;
+    const auto extent = [radius](int at, int count) {
+        return std::min(count - 1, at + radius) - std::max(0, at - radius) + 1;
+    };
+    return extent(column, columns) * extent(row, rows);
+}
+
+double noise_gain(FocusMeasure measure, int window_pixels) {
+    return std::sqrt((measure == FocusMeasure::modified_laplacian ? 12.0 : 1.0) / window_pixels);
 }
 
 } // namespace vkfv::topography

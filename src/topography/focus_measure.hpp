@@ -23,11 +23,18 @@ FocusMeasure focus_measure_from_name(std::string_view name);
 // not positive the measure is 0. Rows are shared among threads; the result does not depend on how.
 Grid<float> focus_measure(const Grid<float>& image, FocusMeasure measure, int window_px);
 
-// Relative standard deviation of the measure, whole window, on a featureless image with independent normal
-// noise. Standard deviation: 1 / sqrt(2 (n - 1)) over n = window_px^2 pixels (chi distribution, leading
-// order). Modified Laplacian: sqrt(c / n), c the summed covariance of |X| and |Y| over all pairs of second
-// differences that share pixels: for normal variables of correlation r it is (2/pi)(sqrt(1 - r^2) + r asin r
-// - 1).
-double noise_deviation(FocusMeasure measure, int window_px);
+// Mean over the same windows.
+Grid<float> window_mean(const Grid<float>& image, int window_px);
+
+// Pixels in the window around a pixel, less than window_px^2 near the border.
+int window_pixels(int columns, int rows, int column, int row, int window_px);
+
+// Standard deviation of the measure over a window of n pixels, for independent image noise of relative
+// standard deviation 1 in every pixel; noise passes linearly for small values. Standard deviation: at most 1
+// / sqrt(n) (that is its value where texture exceeds noise; 1 / sqrt(2 n) without texture). Modified
+// Laplacian: sqrt(12 / n): the second differences along x and y each have the variance 6, and their absolute
+// values, with signs from texture, do not correlate between pixels on average; without texture the
+// covariances (2/pi)(sqrt(1 - r^2) + r asin r - 1) of absolute normal variables add up to 12.02 / n.
+double noise_gain(FocusMeasure measure, int window_pixels);
 
 } // namespace vkfv::topography

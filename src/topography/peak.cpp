@@ -44,9 +44,9 @@ double PeakTracker::position(int column, int row) const {
     return curve.at + gaussian_peak_offset(curve.before, curve.largest, curve.after);
 }
 
-double PeakTracker::quality(int column, int row) const {
+double PeakTracker::prominence(int column, int row) const {
     const Curve& curve = curves_(column, row);
-    return curve.sum > 0 ? curve.largest * images_ / curve.sum : 1;
+    return curve.largest - curve.sum / images_;
 }
 
 } // namespace vkfv::topography

@@ -21,8 +21,8 @@ class PeakTracker {
 
     // Position of the maximum in steps from the first image; NaN where it lies at either end or has no fit.
     double position(int column, int row) const;
-    // Maximum over mean of the curve; 1 where the mean is not positive.
-    double quality(int column, int row) const;
+    // Maximum less mean of the curve.
+    double prominence(int column, int row) const;
 
   private:
     struct Curve {

@@ -1,4 +1,5 @@
 #include "core/error.hpp"
+#include "topography/parallel_rows.hpp"
 #include "topography/topography.hpp"
 
 #include <fmt/format.h>
@@ -36,10 +37,10 @@ const TopographyOptions& checked(const TopographyOptions& options) {
     return options;
 }
 
-// Variance of the averaged focus curve over that of the single measure, on noise. Images k and l, averaged
-// with weights w, correlate by r(k - l) = sum w w / sum w^2; to leading order their focus measures by r^2;
-// the second average takes the mean of these over its pairs.
-double curve_variance(const std::vector<double>& one_sided) {
+// Variance of the averaged focus curve over that of the measure of single images. Images averaged with
+// weights w have the variance sum w^2 / (sum w)^2 and correlate at a lag by r = sum w w / sum w^2; the
+// measure, linear in small noise, correlates alike, and the second average takes the mean over its pairs.
+double averaged_variance(const std::vector<double>& one_sided) {
     const int radius = static_cast<int>(one_sided.size()) - 1;
     const auto weight = [&](int d) {
         return std::abs(d) <= radius ? one_sided[static_cast<std::size_t>(std::abs(d))] : 0.0;
@@ -51,22 +52,18 @@ double curve_variance(const std::vector<double>& one_sided) {
         double sum = 0;
         for (int d = -radius; d <= radius; ++d)
             sum += weight(d) * weight(d + lag);
-        return sum;
+        return sum / (total * total);
     };
     double variance = 0;
-    for (int lag = -2 * radius; lag <= 2 * radius; ++lag) {
-        const double correlation = overlap(lag) / overlap(0);
-        variance += overlap(lag) * correlation * correlation;
-    }
-    return variance / (total * total);
+    for (int lag = -2 * radius; lag <= 2 * radius; ++lag)
+        variance += overlap(lag) * overlap(lag);
+    return variance;
 }
 
 } // namespace
 
-double quality_threshold(FocusMeasure measure, int window_px, const AxialAverage& average, int images,
-                         double false_peak_rate) {
-    const double t = std::sqrt(2 * std::max(0.0, std::log(images / (2 * false_peak_rate))));
-    return 1 + t * noise_deviation(measure, window_px) * std::sqrt(curve_variance(average.weights()));
+double quality_threshold(int images, double false_peak_rate) {
+    return std::sqrt(2 * std::max(0.0, std::log(images / (2 * false_peak_rate))));
 }
 
 StackEvaluator::StackEvaluator(const TopographyOptions& options)
@@ -77,6 +74,37 @@ StackEvaluator::StackEvaluator(const TopographyOptions& options)
 void StackEvaluator::measure(const Grid<float>& averaged_image) {
     curves_.push(focus_measure(averaged_image, focus_measure_, window_px_),
                  [this](const Grid<float>& curve_values) { peaks_.add(curve_values); });
+}
+
+void StackEvaluator::observe_noise(const Grid<float>& image) {
+    if (latest_.empty())
+        brightness_ = squared_differences_ = Grid<float>(image.columns, image.rows);
+    parallel_rows(image.columns, image.rows, [&](int first, int end) {
+        for (std::size_t k = image.index(0, first); k < image.index(0, end); ++k) {
+            brightness_.values[k] += image.values[k];
+            if (latest_.size() == 2) {
+                const float difference = latest_[0].values[k] - 2 * latest_[1].values[k] + image.values[k];
+                squared_differences_.values[k] += difference * difference;
+            }
+        }
+    });
+    latest_.push_back(image);
+    if (latest_.size() > 2)
+        latest_.pop_front();
+}
+
+// Standard deviation of a single image's noise over brightness, both over the window and all images.
+Grid<float> StackEvaluator::relative_noise() const {
+    Grid<float> brightness = window_mean(brightness_, window_px_);
+    Grid<float> noise = window_mean(squared_differences_, window_px_);
+    const double images = static_cast<double>(z_.size());
+    constexpr double gain = 1 + 4 + 1; // of the second difference on the variance of independent values
+    for (std::size_t k = 0; k < noise.values.size(); ++k) {
+        const double mean = brightness.values[k] / images;
+        noise.values[k] =
+            mean > 0 ? static_cast<float>(std::sqrt(noise.values[k] / (images - 2) / gain) / mean) : 0.0f;
+    }
+    return noise;
 }
 
 void StackEvaluator::add(const Grid<float>& image, double z) {
@@ -101,6 +129,7 @@ void StackEvaluator::add(const Grid<float>& image, double z) {
     columns_ = image.columns;
     rows_ = image.rows;
     z_.push_back(z);
+    observe_noise(image);
     images_.push(image, [this](const Grid<float>& averaged) { measure(averaged); });
 }
 
@@ -111,7 +140,9 @@ Topography StackEvaluator::finish(double x0, double y0, double pitch) {
     curves_.flush([this](const Grid<float>& curve_values) { peaks_.add(curve_values); });
 
     const int images = static_cast<int>(z_.size());
-    const double threshold = quality_threshold(focus_measure_, window_px_, curves_, images, false_peak_rate_);
+    const double threshold = quality_threshold(images, false_peak_rate_);
+    const double averaging = std::sqrt(averaged_variance(curves_.weights()));
+    const Grid<float> noise = relative_noise();
     const double step = (z_.back() - z_.front()) / (images - 1);
     Topography result;
     result.height = {.height = Grid<double>(columns_, rows_, std::numeric_limits<double>::quiet_NaN()),
@@ -122,7 +153,9 @@ Topography StackEvaluator::finish(double x0, double y0, double pitch) {
     result.quality = Grid<double>(columns_, rows_);
     for (int row = 0; row < rows_; ++row)
         for (int column = 0; column < columns_; ++column) {
-            const double quality = peaks_.quality(column, row);
+            const int pixels = window_pixels(columns_, rows_, column, row, window_px_);
+            const double curve_noise = noise(column, row) * noise_gain(focus_measure_, pixels) * averaging;
+            const double quality = peaks_.prominence(column, row) / curve_noise;
             result.quality(column, row) = quality;
             if (quality >= threshold)
                 result.height.height(column, row) = z_.front() + step * peaks_.position(column, row);

@@ -1,17 +1,20 @@
 // From a focus stack to a height map, and from two height maps to their deviation.
 //
-// How a height is found. For every pixel:
-//   1. The images are averaged along z with Gaussian weights (smoothing_steps). Texture that is in focus
-//   stays in
-//      focus over several steps, ray noise does not: averaging before the focus measure squares the noise is
-//      what helps most. A symmetric average does not shift a symmetric focus curve.
-//   2. A windowed focus measure of every averaged image (focus_measure.hpp) gives the focus curve along z.
-//   3. The curve is averaged with the same weights, and the three points around its maximum give the height
-//   by a
-//      Gaussian fit (peak.hpp).
-//   4. The point is "not measured" where the maximum lies at either end of the scan, or rises no further
-//   above
-//      the curve's mean than ray noise alone would at `false_peak_rate`.
+// How a height is found, for every pixel:
+//
+// - The images are averaged along z with Gaussian weights (smoothing_steps). Texture in focus stays in focus
+//   over several steps, ray noise does not: averaging before the focus measure squares the noise helps most.
+//   A symmetric average does not shift a symmetric focus curve.
+//
+// - A windowed focus measure of every averaged image (focus_measure.hpp) gives the focus curve along z.
+//
+// - The curve is averaged with the same weights, and the three points around its maximum give the height by a
+//   Gaussian fit (peak.hpp).
+//
+// - The point is "not measured" where the maximum lies at either end of the scan, or stands no further above
+//   the curve's mean than image noise alone would bring it at `false_peak_rate`. The noise is taken from the
+//   stack itself: from second differences along z, in which texture that changes slowly cancels.
+//
 // Near the ends of the scan the averages hold only the images there are, which draws heights within about two
 // smoothing_steps of an end inwards: plan the scan a depth of focus wider than the specimen at either side.
 #pragma once
@@ -22,6 +25,7 @@
 #include "topography/focus_measure.hpp"
 #include "topography/peak.hpp"
 
+#include <deque>
 #include <span>
 #include <string>
 #include <vector>
@@ -35,17 +39,21 @@ struct TopographyOptions {
     // Standard deviation, in steps of the scan, of the Gaussian average along z; 0 switches it off. Best at
     // about half the half width of the focus curve: 3 for steps of an eighth of it, less for coarser steps.
     double smoothing_steps = 3;
-    // Probability that a pixel without any texture, only ray noise, is given a height (an upper bound).
+    // Probability that a pixel gets a height from noise alone, its texture not changing along z. An upper
+    // bound for normal sums: with windows below 7 pixels and no average along z the skew of the measure may
+    // double it.
     double false_peak_rate = 1e-3;
 };
 
 struct Topography {
     surface::HeightMap height; // NaN: not measured
-    Grid<double> quality;      // peak over mean of the focus curve; dimensionless, 1 is featureless
+    // Height of the focus curve's maximum over its mean in standard deviations of the curve's noise:
+    // dimensionless; infinite on a stack without any noise.
+    Grid<double> quality;
 };
 
 // Evaluates a stack whose images come one at a time: beside a few numbers a pixel it holds
-// 2 (6 smoothing_steps + 1) images, however long the stack.
+// 2 (6 smoothing_steps + 2) images, however long the stack.
 class StackEvaluator {
   public:
     // Throws InputError where an option is out of its range.
@@ -61,6 +69,8 @@ class StackEvaluator {
 
   private:
     void measure(const Grid<float>& averaged_image);
+    void observe_noise(const Grid<float>& image);
+    Grid<float> relative_noise() const;
 
     FocusMeasure focus_measure_;
     int window_px_;
@@ -70,16 +80,16 @@ class StackEvaluator {
     int columns_ = 0;
     int rows_ = 0;
     std::vector<double> z_;
+    std::deque<Grid<float>> latest_;  // the last two images
+    Grid<float> brightness_;          // sum of all images
+    Grid<float> squared_differences_; // sum of (I[k-1] - 2 I[k] + I[k+1])^2
     PeakTracker peaks_;
 };
 
-// The smallest quality (peak over mean of the focus curve) that counts as a peak. On a featureless surface
-// with independent noise in every pixel and image, the focus measure has the relative standard deviation s of
-// noise_deviation(), lessened by the averages along z; the largest of n values of a normal distribution
-// exceeds 1 + t s with probability below n exp(-t^2 / 2) / 2, the union bound with Chernoff's tail, which
-// gives t.
-double quality_threshold(FocusMeasure measure, int window_px, const AxialAverage& average, int images,
-                         double false_peak_rate);
+// The smallest quality that counts as a peak among so many images. The largest of n normal values exceeds t
+// standard deviations with probability below n exp(-t^2 / 2) / 2, the union bound with Chernoff's tail;
+// solved for t.
+double quality_threshold(int images, double false_peak_rate);
 
 // A whole stack in memory: stack[k] is the image at z[k] (mm, ascending, equidistant).
 Topography reconstruct(std::span<const Grid<float>> stack, std::span<const double> z, double x0, double y0,

@@ -1,0 +1,282 @@
+#include "topography/topography.hpp"
+
+#include "core/error.hpp"
+#include "core/units.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numeric>
+#include <random>
+#include <stdexcept>
+#include <vector>
+
+namespace vkfv::topography {
+namespace {
+
+using surface::HeightMap;
+
+constexpr double not_measured = std::numeric_limits<double>::quiet_NaN();
+
+// A focus stack made without any optics of vkfv: a random texture in which every point of height h is spread,
+// in the image at z, by a Gaussian of standard deviation 0.2 |z - h|; Poisson noise from `counts` counts a
+// pixel.
+struct SyntheticStack {
+    std::vector<Grid<float>> images;
+    std::vector<double> z;
+    HeightMap truth;
+};
+
+constexpr int pixels = 48;
+constexpr double pitch = 0.002;
+constexpr double amplitude = 0.0025;
+
+SyntheticStack make_stack(double counts, unsigned seed) {
+    constexpr int images = 31;
+    constexpr double step = 0.0008;
+    std::mt19937 random(seed);
+    std::normal_distribution<double> normal;
+    SyntheticStack stack;
+    stack.truth = {
+        .height = Grid<double>(pixels, pixels), .x0 = 0.01, .y0 = -0.02, .pitch_x = pitch, .pitch_y = pitch};
+    Grid<double> texture(pixels, pixels);
+    for (int j = 0; j < pixels; ++j)
+        for (int i = 0; i < pixels; ++i) {
+            // Whole periods either way, so that mirror images are opposite and the transposed is orthogonal.
+            stack.truth.height(i, j) =
+                amplitude * std::sin(2 * pi * i / 48.0) * std::cos(2 * pi * (j - 5.5) / 24.0);
+            texture(i, j) = std::max(0.05, 1 + 0.3 * normal(random));
+        }
+    for (int k = 0; k < images; ++k) {
+        const double z = (k - (images - 1) / 2.0) * step;
+        Grid<double> blurred(pixels, pixels);
+        for (int j = 0; j < pixels; ++j)
+            for (int i = 0; i < pixels; ++i) {
+                // 0.3 pixels at focus: the pixel's own width.
+                const double sigma = std::hypot(0.3, 0.2 * std::abs(z - stack.truth.height(i, j)) / pitch);
+                const int radius = static_cast<int>(std::ceil(3 * sigma));
+                std::vector<double> weights;
+                for (int d = -radius; d <= radius; ++d)
+                    weights.push_back(std::exp(-0.5 * d * d / (sigma * sigma)));
+                const double total = std::accumulate(weights.begin(), weights.end(), 0.0);
+                for (int dj = -radius; dj <= radius; ++dj)
+                    for (int di = -radius; di <= radius; ++di)
+                        // Light past the border stays on it: no border pixel is darker for want of texture.
+                        blurred(std::clamp(i + di, 0, pixels - 1), std::clamp(j + dj, 0, pixels - 1)) +=
+                            texture(i, j) * weights[static_cast<std::size_t>(di + radius)] *
+                            weights[static_cast<std::size_t>(dj + radius)] / (total * total);
+            }
+        Grid<float> image(pixels, pixels);
+        for (std::size_t p = 0; p < image.values.size(); ++p)
+            image.values[p] =
+                static_cast<float>(std::poisson_distribution<int>(counts * blurred.values[p])(random));
+        stack.images.push_back(std::move(image));
+        stack.z.push_back(z);
+    }
+    return stack;
+}
+
+Topography evaluate(const SyntheticStack& stack, const TopographyOptions& options = {}) {
+    return reconstruct(stack.images, stack.z, stack.truth.x0, stack.truth.y0, pitch, options);
+}
+
+TEST(Reconstruct, FindsTheHeightsOfASyntheticStack) {
+    const SyntheticStack stack = make_stack(300, 1);
+    for (const char* measure : {"standard-deviation", "modified-laplacian"}) {
+        const Topography topography = evaluate(stack, {.focus_measure = measure});
+        EXPECT_EQ(topography.height.x0, stack.truth.x0);
+        EXPECT_EQ(topography.height.pitch_y, pitch);
+        const Deviation deviation = compare(topography.height, stack.truth, 0);
+        EXPECT_GT(deviation.measured_share, 0.98) << measure;
+        EXPECT_GT(deviation.correlation, 0.95) << measure;
+        // The window averages the heights over 14 um of waves of 96 and 48 um: sinc(14/96) sinc(14/48) = 0.84
+        // for a focus measure with equal weights, nearer 1 as sharp pixels weigh more.
+        EXPECT_GT(deviation.sq_measured / deviation.sq_true, 0.8) << measure;
+        EXPECT_LT(deviation.sq_measured / deviation.sq_true, 1.1) << measure;
+        // The three are bound by the law of cosines.
+        const double ratio = deviation.sq_measured / deviation.sq_true;
+        EXPECT_NEAR(deviation.rms / deviation.sq_true,
+                    std::sqrt(1 + ratio * ratio - 2 * deviation.correlation * ratio), 1e-9)
+            << measure;
+        RecordProperty(std::string(measure) + "_correlation", std::to_string(deviation.correlation));
+        RecordProperty(std::string(measure) + "_sq_ratio",
+                       std::to_string(deviation.sq_measured / deviation.sq_true));
+        RecordProperty(std::string(measure) + "_rms_um", std::to_string(deviation.rms * um_per_mm));
+    }
+}
+
+TEST(Reconstruct, HeightsAreNotMirroredOrTransposed) {
+    const SyntheticStack stack = make_stack(300, 2);
+    const HeightMap height = evaluate(stack).height;
+    HeightMap mirrored_x = stack.truth, mirrored_y = stack.truth, transposed = stack.truth,
+              negative = stack.truth;
+    for (int j = 0; j < pixels; ++j)
+        for (int i = 0; i < pixels; ++i) {
+            mirrored_x.height(i, j) = stack.truth.height(pixels - 1 - i, j);
+            mirrored_y.height(i, j) = stack.truth.height(i, pixels - 1 - j);
+            transposed.height(i, j) = stack.truth.height(j, i);
+            negative.height(i, j) = -stack.truth.height(i, j);
+        }
+    EXPECT_GT(compare(height, stack.truth, 0).correlation, 0.95);
+    // The truth correlates with its transposed by 0 and with the others by less than -0.99.
+    for (const HeightMap& twin : {mirrored_x, mirrored_y, transposed, negative})
+        EXPECT_LT(compare(height, twin, 0).correlation, 0.3);
+}
+
+TEST(Reconstruct, HeightsFromShuffledFramesDoNotCorrelateWithTheTruth) {
+    // One shuffle maps heights to other heights by chance, with a correlation of some 0.5 over the few points
+    // that still have a peak: the mean over 200 shuffles is 0 to 0.5 / sqrt(200) = 0.035, and 0.1 is 2.8 of
+    // these. The seed is fixed.
+    SyntheticStack stack = make_stack(300, 3);
+    std::mt19937 random(1);
+    double sum = 0;
+    constexpr int shuffles = 200;
+    for (int k = 0; k < shuffles; ++k) {
+        std::shuffle(stack.images.begin(), stack.images.end(), random);
+        const Deviation deviation = compare(evaluate(stack).height, stack.truth, 0);
+        sum += std::isfinite(deviation.correlation) ? deviation.correlation : 0;
+    }
+    EXPECT_LT(std::abs(sum / shuffles), 0.1);
+}
+
+TEST(Reconstruct, NoiseWithoutTextureIsNotMeasured) {
+    SyntheticStack stack = make_stack(300, 4);
+    std::mt19937 random(40);
+    std::poisson_distribution<int> poisson(300);
+    for (auto& image : stack.images)
+        for (float& value : image.values)
+            value = static_cast<float>(poisson(random));
+    const auto measured = [&](const char* measure, double smoothing_steps, double rate) {
+        const auto topography = evaluate(
+            stack, {.focus_measure = measure, .smoothing_steps = smoothing_steps, .false_peak_rate = rate});
+        return std::count_if(topography.height.height.values.begin(), topography.height.height.values.end(),
+                             [](double z) { return std::isfinite(z); });
+    };
+    // 2304 pixels at a rate of at most 1e-3 are 2.3; neighbouring windows share pixels, so that false peaks
+    // come in groups of some ten: 1 % is two groups.
+    for (const char* measure : {"standard-deviation", "modified-laplacian"})
+        for (const double smoothing_steps : {0.0, 3.0})
+            EXPECT_LE(measured(measure, smoothing_steps, 1e-3), pixels * pixels / 100) << measure;
+    // The wrong twin: with hardly any test for significance many of the same pixels get a height.
+    EXPECT_GT(measured("modified-laplacian", 0, 0.99), pixels * pixels / 10);
+}
+
+TEST(Reconstruct, PeaksBeyondTheScanAreNotMeasured) {
+    const SyntheticStack stack = make_stack(300, 5);
+    // Only images from 3 um above the highest point on.
+    std::vector<Grid<float>> images;
+    std::vector<double> z;
+    for (std::size_t k = 0; k < stack.z.size(); ++k)
+        if (stack.z[k] > amplitude + 0.003) {
+            images.push_back(stack.images[k]);
+            z.push_back(stack.z[k]);
+        }
+    ASSERT_GE(images.size(), 5u);
+    const Topography topography = reconstruct(images, z, 0, 0, pitch, {.smoothing_steps = 1});
+    const auto measured =
+        std::count_if(topography.height.height.values.begin(), topography.height.height.values.end(),
+                      [](double h) { return std::isfinite(h); });
+    EXPECT_LT(measured, pixels * pixels / 50);
+}
+
+TEST(Reconstruct, FollowsTheScanAndNotTheUnitOfLight) {
+    SyntheticStack stack = make_stack(300, 6);
+    const HeightMap before = evaluate(stack).height;
+    for (double& z : stack.z)
+        z += 0.125;
+    for (auto& image : stack.images)
+        for (float& value : image.values)
+            value *= 0x1p-30f; // exact
+    const HeightMap after = evaluate(stack).height;
+    for (std::size_t k = 0; k < before.height.values.size(); ++k) {
+        EXPECT_EQ(std::isnan(before.height.values[k]), std::isnan(after.height.values[k]));
+        if (!std::isnan(before.height.values[k])) {
+            EXPECT_NEAR(after.height.values[k], before.height.values[k] + 0.125, 1e-15);
+        }
+    }
+}
+
+TEST(Reconstruct, RejectsWhatItCannotEvaluate) {
+    const auto rejects = [](const TopographyOptions& options) {
+        EXPECT_THROW(StackEvaluator{options}, InputError);
+    };
+    rejects({.focus_measure = "entropy"});
+    rejects({.window_px = 4});
+    rejects({.window_px = 1});
+    rejects({.peak = "parabola"});
+    rejects({.smoothing_steps = -1});
+    rejects({.smoothing_steps = not_measured});
+    rejects({.false_peak_rate = 0});
+
+    const Grid<float> image(8, 8, 1.0f);
+    const auto stack = [&](std::vector<double> z, const Grid<float>& last) {
+        StackEvaluator evaluator({});
+        for (std::size_t k = 0; k < z.size(); ++k)
+            evaluator.add(k + 1 == z.size() ? last : image, z[k]);
+        evaluator.finish(0, 0, pitch);
+    };
+    EXPECT_NO_THROW(stack({0, 1, 2}, image));
+    EXPECT_THROW(stack({0, 1}, image), InputError);
+    EXPECT_THROW(stack({}, image), InputError);
+    EXPECT_THROW(stack({0, 1, 1}, image), InputError);
+    EXPECT_THROW(stack({0, 1, 2.5}, image), InputError);
+    EXPECT_THROW(stack({0, 1, 2}, Grid<float>(8, 7, 1.0f)), InputError);
+    EXPECT_THROW(stack({0}, Grid<float>()), InputError);
+    Grid<float> broken = image;
+    broken(3, 3) = std::numeric_limits<float>::infinity();
+    EXPECT_THROW(stack({0, 1, 2}, broken), InputError);
+}
+
+HeightMap wave(double scale, double offset, double tilt) {
+    HeightMap map{.height = Grid<double>(60, 50), .x0 = 0, .y0 = 0, .pitch_x = pitch, .pitch_y = pitch};
+    for (int j = 0; j < 50; ++j)
+        for (int i = 0; i < 60; ++i)
+            map.height(i, j) = scale * std::sin(2 * pi * i / 12.0) + offset + tilt * map.x(i);
+    return map;
+}
+
+TEST(Compare, LevelsBothAndUsesCommonPointsOnly) {
+    HeightMap measured = wave(0.9e-3, 0.3, 0.05), truth = wave(1e-3, 0, -0.02);
+    for (int j = 0; j < 50; ++j)
+        for (int i = 0; i < 12; ++i) // one whole period
+            measured.height(i, j) = not_measured;
+    truth.height(30, 20) = not_measured;
+    const Deviation deviation = compare(measured, truth, 0);
+    EXPECT_NEAR(deviation.measured_share, 48.0 / 60 - 1.0 / 3000, 1e-12);
+    EXPECT_NEAR(deviation.correlation, 1, 1e-12);
+    EXPECT_NEAR(deviation.sq_measured / deviation.sq_true, 0.9, 1e-12);
+    EXPECT_NEAR(deviation.rms / deviation.sq_true, 0.1, 1e-12);
+    const HeightMap map = deviation_map(measured, truth, 0);
+    EXPECT_TRUE(std::isnan(map.height(0, 0)));
+    EXPECT_TRUE(std::isnan(map.height(30, 20)));
+    EXPECT_NEAR(map.height(40, 7), -0.1 * (deviation.sq_true * std::sqrt(2.0)) * std::sin(2 * pi * 40 / 12.0),
+                2e-5);
+}
+
+TEST(Compare, TheLFilterRemovesWhatIsLongInBoth) {
+    HeightMap measured = wave(1e-3, 0, 0), truth = wave(1e-3, 0, 0);
+    for (int j = 0; j < 50; ++j)
+        for (int i = 0; i < 60; ++i)
+            measured.height(i, j) += 3e-3 * std::cos(2 * pi * j / 50.0);
+    EXPECT_LT(compare(measured, truth, 0).correlation, 0.5);
+    // Waves of 24 um stay, those of 100 um go: at an index of 40 um the high-pass keeps 1 - 2^-(40/24)^2 =
+    // 0.85 of the one and 1 - 2^-(40/100)^2 = 0.105 of the other, 0.3e-3 mm; the correlation is 0.85 /
+    // hypot(0.85, 0.31).
+    EXPECT_GT(compare(measured, truth, 0.04).correlation, 0.9);
+}
+
+TEST(Compare, NeedsOneGridAndSaysWhenNothingIsMeasured) {
+    EXPECT_THROW(compare(wave(1, 0, 0), HeightMap{}, 0), std::invalid_argument);
+    HeightMap nothing = wave(1, 0, 0);
+    std::fill(nothing.height.values.begin(), nothing.height.values.end(), not_measured);
+    const Deviation deviation = compare(nothing, wave(1, 0, 0), 0);
+    EXPECT_EQ(deviation.measured_share, 0);
+    EXPECT_TRUE(std::isnan(deviation.correlation));
+    EXPECT_TRUE(std::isnan(deviation.rms));
+    EXPECT_EQ(compare(wave(0, 0.1, 0), wave(1, 0, 0), 0).measured_share, 1);
+}
+
+} // namespace
+} // namespace vkfv::topography
