@@ -18,7 +18,7 @@ using namespace vkfv::scan::test;
 
 namespace {
 
-constexpr int images = 24;
+constexpr int images = 32;
 constexpr int kills = 10;
 constexpr const char* victim_flag = "--run-fake-stack";
 
@@ -29,7 +29,7 @@ fs::path sign_of_life(const fs::path& folder) {
 
 int run_victim(const char* folder) {
     write_bytes(sign_of_life(folder), "");
-    run(folder, FakeTracer(1, std::chrono::milliseconds(1)), describe(images));
+    run(folder, FakeTracer(1, std::chrono::milliseconds(4)), describe(images));
     return 0;
 }
 
@@ -59,8 +59,8 @@ TEST(Kill, AKilledStackEndsInTheSameBytes) {
     run(whole.path(), FakeTracer(), describe(images));
 
     std::mt19937 generator(20);
-    std::uniform_int_distribution<int> delay_us(0, 5000); // an image takes one to a few milliseconds
-    int kills_between = 0;                                // with some images stored and some not
+    std::uniform_int_distribution<int> delay_us(0, 10000); // an image takes about five milliseconds
+    int kills_between = 0;                                 // with some images stored and some not
     for (int run = 0; run <= kills; ++run) {
         const int before = stored_images(folder.path());
         fs::remove(sign_of_life(folder.path()));
