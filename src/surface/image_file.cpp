@@ -117,6 +117,8 @@ void write_single_page(const std::filesystem::path& path, const Grid<Value>& ima
 
     OIIO::ImageSpec spec(image.columns, image.rows, 1, type_of<Value>());
     spec.attribute("compression", "none");
+    // One strip: Gwyddion 2.62 crashes on float images of several.
+    spec.attribute("tiff:RowsPerStrip", image.rows);
     // Without these OpenImageIO writes its version and the time of day; it cannot leave DateTime out.
     spec.attribute("Software", "vkfv");
     spec.attribute("DateTime", "1970:01:01 00:00:00");

@@ -141,6 +141,11 @@ TEST_F(ImageFile, LetterIsUprightInTheBytesOfIntegerImages) {
     EXPECT_EQ(seen, expected);
 }
 
+TEST_F(ImageFile, IsOneStripForGwyddion) {
+    write_tiff(file("tall.tif"), Grid<float>(3, 700, 1.0f));
+    EXPECT_EQ(RawTiff(file("tall.tif")).entries.at(273).count, 1u);
+}
+
 TEST_F(ImageFile, ReaderReturnsWhatWasWritten) {
     const auto floats = letter_grid(1.25f, -3e-12f);
     const auto counts = letter_grid<std::uint16_t>(40000, 3);
