@@ -1,11 +1,12 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
 // First half of the forward trace: source, illumination, specimen, gate. Light that passes is appended to the survivors.
+// Before the includes, which ask for gl_WorkGroupSize: glslang takes it as 1 when it is declared later.
+layout(local_size_x = 128) in;
+
 #include "device/kernel.glsl"
 #include "device/tally.glsl"
 #include "device/survivors.glsl"
-
-layout(local_size_x = 128) in;
 
 // For timing alone, the path may end early: 0 the whole half, 1 after the illumination train, 2 after the specimen
 // (nothing is appended).

@@ -1,11 +1,12 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
 // Second half of the forward trace: whether the survivors meet the specimen again, the imaging train, the detector.
+// Before the includes, which ask for gl_WorkGroupSize: glslang takes it as 1 when it is declared later.
+layout(local_size_x = 128) in;
+
 #include "device/kernel.glsl"
 #include "device/tally.glsl"
 #include "device/survivors.glsl"
-
-layout(local_size_x = 128) in;
 
 layout(set = 0, binding = 3, scalar) buffer Pixels { uint64_t pixels[]; };
 

@@ -4,6 +4,7 @@
 
 #include "app/configuration.hpp"
 
+#include <cstdint>
 #include <filesystem>
 #include <memory>
 #include <optional>
@@ -20,12 +21,12 @@ struct CommandOptions {
     std::optional<std::filesystem::path> out;
     bool quiet = false;
     bool json = false;
-    double focal_height = 0;         // --image; mm
-    std::filesystem::path rays_file; // --trace-rays
-    bool float_precision = false;    // --trace-rays: on the device
-    bool apertures = true;           // --trace-rays
-    std::string device;              // as trace::TraceOptions::device
-    int runs = 5;                    // --bench
+    double focal_height = 0;              // --image; mm
+    std::filesystem::path rays_file;      // --trace-rays
+    bool float_precision = false;         // --trace-rays: on the device
+    bool apertures = true;                // --trace-rays
+    int runs = 5;                         // --bench
+    std::optional<std::uint64_t> shuffle; // --topography: seed of the order in which the images are taken
 };
 
 // A whole stack with its topography and deviation from truth; continues one that was interrupted.
@@ -40,7 +41,8 @@ void run_trace_rays(const CommandOptions& options);
 void run_devices(const CommandOptions& options);
 // Rays per second of the configuration's chain, by stages.
 void run_bench(const CommandOptions& options);
-// Evaluates an existing stack anew.
+// Evaluates an existing stack anew; with `shuffle` in a random order of its images, a control that must find
+// nothing.
 void run_topography(const CommandOptions& options);
 
 // The configured instrument. Throws InputError at the place of the key that does not fit.

@@ -105,6 +105,11 @@ void write_evaluation(const std::filesystem::path& folder, const Evaluation& eva
 }
 
 std::string summary(const Evaluation& evaluation) {
+    if (!(evaluation.deviation.measured_share > 0)) {
+        return "no point was measured: the focus of no pixel rises above its noise. Trace more rays, scan "
+               "further or in "
+               "finer steps, or give the specimen texture.\n";
+    }
     std::string text =
         fmt::format("measured {:.1f} % of the points\n", 100 * evaluation.deviation.measured_share);
     text += text_of("levelled:", evaluation.deviation);

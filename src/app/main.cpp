@@ -28,6 +28,7 @@ struct Arguments {
     bool apertures = true;
     bool json = false, quiet = false;
     int runs = 5;
+    std::optional<std::uint64_t> shuffle;
     std::string out, device, traversal, estimator, rays, seed;
     std::vector<std::string> settings;
 };
@@ -66,7 +67,7 @@ void declare(CLI::App& app, Arguments& given) {
                    "Trace given rays (x_mm,y_mm,z_mm,l,m,n) from the specimen to the detector; CSV on "
                    "standard output")
         ->expected(2)
-        ->type_name("C.toml IN.csv")
+        ->option_text("C.toml IN.csv")
         ->group(commands);
     app.add_flag("--devices", given.devices, "List devices, what each lacks and which would be used")
         ->group(commands);
@@ -102,15 +103,19 @@ void declare(CLI::App& app, Arguments& given) {
         ->group(specific);
     app.add_option("--precision", given.precision, "double: on the host; float: on the device (--trace-rays)")
         ->check(CLI::IsMember({"double", "float"}))
-        ->type_name("NAME")
+        ->option_text("double|float")
         ->group(specific);
     app.add_option("--apertures", given.apertures, "off: nothing is vignetted (--trace-rays)")
         ->transform(on_off)
-        ->type_name("on|off")
+        ->option_text("on|off")
         ->group(specific);
     app.add_option("--runs", given.runs, "Runs whose median counts (--bench)")
         ->check(CLI::Range(1, 1000))
-        ->type_name("N")
+        ->option_text("N")
+        ->group(specific);
+    app.add_option("--shuffle", given.shuffle,
+                   "Take the images in a random order: a control, which must find nothing (--topography)")
+        ->type_name("SEED")
         ->group(specific);
     app.add_flag("--json", given.json, "Machine-readable output (--check, --devices, --bench)")
         ->group(specific);
@@ -146,8 +151,8 @@ vkfv::app::CommandOptions options_from(const Arguments& given) {
     options.focal_height = given.z_um / vkfv::um_per_mm;
     options.float_precision = given.precision == "float";
     options.apertures = given.apertures;
-    options.device = given.device;
     options.runs = given.runs;
+    options.shuffle = given.shuffle;
     const auto override_with = [&](const std::string& option, const std::string& key,
                                    const std::string& value) {
         if (!value.empty()) {
