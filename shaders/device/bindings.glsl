@@ -1,5 +1,6 @@
 // What the kernels of the trace are bound to (set 0). device_specimen.hpp binds 8 and up.
-layout(set = 0, binding = 0, scalar) readonly buffer Surfaces { Surface surfaces[]; };
+// Uniform blocks, since every lane reads the same surface: gathered lane by lane it would take longer than the optics.
+layout(set = 0, binding = 0, scalar) uniform Surfaces { Surface surfaces[SURFACE_CAPACITY]; };
 layout(set = 0, binding = 1, scalar) uniform Parameters {
     Instrument instrument;
     SpecimenRecord specimen;

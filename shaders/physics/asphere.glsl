@@ -32,26 +32,38 @@ VKFV_FUNCTION Sag asphere_sag(Surface surface, real r_squared) {
     return result;
 }
 
-// Newton's method from the conic's intersection. The start is off by the polynomial alone (micrometres on lenses of
-// millimetres), so the error squares each time: eight steps leave rounding in double; fewer never hurt, as a
-// converged step is zero.
+// Steps of Newton's method from the conic's intersection. The start is off by the polynomial alone (below a micrometre
+// at a millimetre of radius), and the error squares each time: three steps reach rounding in float, and four more
+// in double. One more leaves the normal, which is taken before the step, at a converged point.
+#ifdef __cplusplus
 const int ASPHERE_NEWTON_STEPS = 8;
+#else
+const int ASPHERE_NEWTON_STEPS = 4;
+#endif
 
-VKFV_FUNCTION Intersection intersect_asphere(real3 position, real3 direction, Surface surface) {
-    Intersection result = intersect_conic(position, direction, surface.curvature, surface.conic);
-    for (int step = 0; step < ASPHERE_NEWTON_STEPS; ++step) {
+struct SurfacePoint {
+    uint found;     // 1: the ray meets the surface near its vertex
+    real parameter; // position + parameter * direction is the point
+    real3 normal;   // not normalised, towards +z
+};
+
+// Meeting with the surface, position and direction in its vertex frame. One flow for conics and aspheres, the loop empty
+// for conics: software devices run both sides of a branch, but not an empty loop.
+VKFV_FUNCTION SurfacePoint meet_surface(real3 position, real3 direction, Surface surface) {
+    Intersection conic = intersect_conic(position, direction, surface.curvature, surface.conic);
+    SurfacePoint result;
+    result.found = conic.found;
+    result.parameter = conic.parameter;
+    result.normal = conic_normal(position + conic.parameter * direction, surface.curvature, surface.conic);
+    int steps = (surface.flags & SURFACE_ASPHERIC) != 0u ? ASPHERE_NEWTON_STEPS : 0;
+    for (int step = 0; step < steps; ++step) {
         real3 point = position + result.parameter * direction;
         Sag sag = asphere_sag(surface, point.x * point.x + point.y * point.y);
-        real residual = point.z - sag.sag;
-        real derivative = direction.z -
-                          sag.slope_over_r * (point.x * direction.x + point.y * direction.y);
-        result.found = sag.defined == 1u && derivative > real(0.0) ? result.found : 0u;
-        result.parameter = result.parameter - (result.found == 1u ? residual / derivative : real(0.0));
+        real3 normal = real3(-sag.slope_over_r * point.x, -sag.slope_over_r * point.y, real(1.0));
+        real approach = dot(direction, normal);
+        result.found = sag.defined == 1u && approach > real(0.0) ? result.found : 0u;
+        result.parameter = result.parameter - (result.found == 1u ? (point.z - sag.sag) / approach : real(0.0));
+        result.normal = normal;
     }
     return result;
-}
-
-VKFV_FUNCTION real3 asphere_normal(real3 point, Surface surface) {
-    Sag sag = asphere_sag(surface, point.x * point.x + point.y * point.y);
-    return real3(-sag.slope_over_r * point.x, -sag.slope_over_r * point.y, real(1.0));
 }

@@ -18,6 +18,8 @@ const int PATH_STATUS_COUNT = 10;
 const uint SURFACE_CLIPPED = 1u;  // semi_diameter_squared limits it; without the flag it is unbounded
 const uint SURFACE_ASPHERIC = 2u; // the even coefficients are not all zero
 
+const int SURFACE_CAPACITY = 128; // surfaces of both trains together that the device's uniform block holds
+
 // One refracting surface or stop, in the frame of its own vertex; light travels towards +z.
 // Sag: z = c r^2 / (1 + sqrt(1 - (1 + k) c^2 r^2)) + a4 r^4 + ... + a16 r^16 (ISO 10110-12, eq. 5).
 struct Surface {

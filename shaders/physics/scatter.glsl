@@ -60,29 +60,24 @@ struct ScatterTry {
 
 // normal: unit, on the side the light comes from; mirror: unit mirror direction.
 VKFV_FUNCTION ScatterTry try_scatter(real g, real3 normal, real3 mirror, real u0, real u1, real u2) {
-    real phi = real(6.283185307179586477) * u1;
+    bool cosine_law = scatter_proposes_cosine(g) == 1u;
+    // The cosine law: cos^2(theta_o) uniform.
+    real versine = cosine_law ? real(1.0) - sqrt(u0) : draw_henyey_greenstein_versine(g, u0);
     ScatterTry result;
-    if (scatter_proposes_cosine(g) == 1u) {
-        // The cosine law: cos^2(theta_o) uniform.
-        real cosine = sqrt(u0);
-        result.direction = direction_around(normal, real(1.0) - cosine, phi);
-        real base = real(1.0) + g * g - real(2.0) * g * dot(result.direction, mirror);
-        real least = real(1.0) - abs(g);
-        real ratio = least * least / base;
-        result.accepted = u2 < ratio * sqrt(ratio) ? 1u : 0u;
-    } else {
-        result.direction = direction_around(mirror, draw_henyey_greenstein_versine(g, u0), phi);
-        real cosine = dot(result.direction, normal);
-        // The mirror (g = 1) has one direction, and trying it again would not change it.
-        real threshold = g < real(1.0) ? u2 : real(0.0);
-        result.accepted = cosine > threshold ? 1u : 0u;
-    }
+    result.direction = direction_around(cosine_law ? normal : mirror, versine, real(6.283185307179586477) * u1);
+    real least = real(1.0) - abs(g);
+    real ratio = least * least / (real(1.0) + g * g - real(2.0) * g * dot(result.direction, mirror));
+    real cosine = dot(result.direction, normal);
+    real acceptance = cosine_law ? ratio * sqrt(ratio) : cosine;
+    // The mirror (g = 1) has one direction, and trying it again would not change it.
+    real threshold = g < real(1.0) ? u2 : real(0.0);
+    result.accepted = cosine > real(0.0) && acceptance > threshold ? 1u : 0u;
     return result;
 }
 
 // The acceptance is no less than about cos(theta_i) for sharp lobes: 2048 tries fail less than once in 1e8 for
 // incidence up to 89.4 degrees. What fails is counted as numerical.
-const uint SCATTER_BLOCKS = 1024u; // blocks of random numbers a scatter event owns; two tries each
+const uint SCATTER_BLOCKS = 2048u; // blocks of random numbers a scatter event owns; one try each
 
 struct Scattered {
     uint accepted; // 0: tries exhausted
@@ -101,9 +96,6 @@ VKFV_FUNCTION Scattered scatter(real g, real3 incoming, real3 normal, uint seed,
     for (uint block = 0u; block < blocks && result.accepted == 0u; ++block) {
         Draws draws = draw(seed, image, path, first_block + block);
         ScatterTry attempt = try_scatter(g, normal, mirror, draws.u0, draws.u1, draws.u2);
-        if (attempt.accepted == 0u) {
-            attempt = try_scatter(g, normal, mirror, draws.u3, draws.u4, draws.u5);
-        }
         result.accepted = attempt.accepted;
         result.direction = attempt.direction;
     }

@@ -18,20 +18,10 @@ Surface surface_at(int index); // the kernel's bindings say where surfaces are k
 // One surface: transfer, intersection, edge, refraction. ray enters in the frame of the previous vertex.
 VKFV_FUNCTION TrainResult trace_surface(Surface surface, int index, Ray ray, uint apertures) {
     real3 start = real3(ray.position.x, ray.position.y, ray.position.z - surface.distance);
-    Intersection meeting;
-    real3 normal;
-    real3 point;
-    if ((surface.flags & SURFACE_ASPHERIC) != 0u) {
-        meeting = intersect_asphere(start, ray.direction, surface);
-        point = start + meeting.parameter * ray.direction;
-        normal = asphere_normal(point, surface);
-    } else {
-        meeting = intersect_conic(start, ray.direction, surface.curvature, surface.conic);
-        point = start + meeting.parameter * ray.direction;
-        normal = conic_normal(point, surface.curvature, surface.conic);
-    }
+    SurfacePoint meeting = meet_surface(start, ray.direction, surface);
+    real3 point = start + meeting.parameter * ray.direction;
     Refraction refraction =
-        refract_scaled(ray.direction, normal, surface.index_before, surface.index_after);
+        refract_scaled(ray.direction, meeting.normal, surface.index_before, surface.index_after);
     bool clipped = apertures != 0u && (surface.flags & SURFACE_CLIPPED) != 0u &&
                    point.x * point.x + point.y * point.y > surface.semi_diameter_squared;
     TrainResult result;
@@ -48,7 +38,9 @@ VKFV_FUNCTION TrainResult trace_surface(Surface surface, int index, Ray ray, uin
     return result;
 }
 
-// ray enters in the frame of the first vertex (its z there, usually negative).
+// ray enters in the frame of the first vertex (its z there, usually negative). The loop runs to its end for every ray: an
+// ended one keeps its state. Neighbouring rays seldom all end, and a loop that all leave together reads each surface once
+// for all of them.
 VKFV_SCENE_FUNCTION VKFV_FUNCTION TrainResult trace_train(VKFV_SCENE_PARAMETER int first, int count, Ray ray,
                                                           uint apertures) {
     TrainResult result;
@@ -56,9 +48,9 @@ VKFV_SCENE_FUNCTION VKFV_FUNCTION TrainResult trace_train(VKFV_SCENE_PARAMETER i
     result.status = PATH_ALIVE;
     result.surface = -1;
     for (int i = 0; i < count; ++i) {
-        result = trace_surface(surface_at(VKFV_SCENE first + i), first + i, result.ray, apertures);
-        if (result.status != PATH_ALIVE) {
-            break;
+        TrainResult next = trace_surface(surface_at(VKFV_SCENE first + i), first + i, result.ray, apertures);
+        if (result.status == PATH_ALIVE) {
+            result = next;
         }
     }
     return result;

@@ -1,5 +1,9 @@
 #include "trace/device_records.hpp"
 
+#include "core/error.hpp"
+
+#include <string>
+
 namespace vkfv::trace {
 
 // The device reads these buffers in scalar layout: every member is four bytes and nothing is padded. The probe
@@ -11,6 +15,8 @@ static_assert(sizeof(physics::f32::Exposure) == 4 * 4);
 static_assert(sizeof(physics::f32::Survivor) == 6 * 4);
 static_assert(sizeof(Parameters) ==
               sizeof(physics::f32::Instrument) + sizeof(physics::f32::SpecimenRecord) + sizeof(physics::f32::Exposure));
+
+namespace {
 
 physics::f32::Surface to_float(const physics::f64::Surface& surface) {
     physics::f32::Surface result{};
@@ -29,6 +35,24 @@ physics::f32::Surface to_float(const physics::f64::Surface& surface) {
     result.a16 = static_cast<float>(surface.a16);
     result.flags = surface.flags;
     return result;
+}
+
+} // namespace
+
+std::vector<physics::f32::Surface> surface_block(const optics::Instrument& instrument) {
+    constexpr std::size_t capacity = physics::f32::SURFACE_CAPACITY;
+    if (instrument.surfaces.size() > capacity) {
+        throw InputError({.where = {},
+                          .key = "surfaces of illumination and imaging together",
+                          .found = std::to_string(instrument.surfaces.size()),
+                          .expected = "at most " + std::to_string(capacity),
+                          .remedy = "Use prescriptions of fewer surfaces, or the host (--device host)."});
+    }
+    std::vector<physics::f32::Surface> block(capacity);
+    for (std::size_t k = 0; k < instrument.surfaces.size(); ++k) {
+        block[k] = to_float(instrument.surfaces[k]);
+    }
+    return block;
 }
 
 physics::f32::Instrument to_float(const physics::f64::Instrument& instrument) {

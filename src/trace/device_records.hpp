@@ -1,7 +1,10 @@
 // The shared records, rounded from the host's double to the device's float.
 #pragma once
 
+#include "optics/instrument.hpp"
 #include "physics/physics.hpp"
+
+#include <vector>
 
 namespace vkfv::trace {
 
@@ -12,7 +15,9 @@ struct Parameters {
     physics::f32::Exposure exposure;
 };
 
-physics::f32::Surface to_float(const physics::f64::Surface& surface);
+// The other one: every surface, padded to the block's capacity. Throws InputError when there are more.
+std::vector<physics::f32::Surface> surface_block(const optics::Instrument& instrument);
+
 physics::f32::Instrument to_float(const physics::f64::Instrument& instrument);
 physics::f32::Exposure to_float(const physics::f64::Exposure& exposure);
 

@@ -43,15 +43,6 @@ struct DevicePathEnd {
 };
 static_assert(sizeof(DevicePathEnd) == 16);
 
-std::vector<physics::f32::Surface> float_surfaces(const optics::Instrument& instrument) {
-    std::vector<physics::f32::Surface> surfaces;
-    surfaces.reserve(instrument.surfaces.size());
-    for (const auto& surface : instrument.surfaces) {
-        surfaces.push_back(to_float(surface));
-    }
-    return surfaces;
-}
-
 // Constant ids 0, 1 and 2 of the forward kernels.
 std::array<vulkan::SpecializationConstant, 3> constants_of(const specimen::Specimen& specimen,
                                                            const optics::Instrument& instrument,
@@ -68,9 +59,9 @@ class DeviceScene {
         : instrument(instrument), device(vulkan::DeviceOptions{options.device}),
           traversal(choose_traversal(device.report(), specimen, options.traversal, reason)),
           device_specimen(device, specimen, traversal), host_record(specimen::record(specimen, options.max_bounces)),
-          seed(options.seed), surfaces(device, instrument.surfaces.size() * sizeof(physics::f32::Surface)),
+          seed(options.seed), surfaces(device, physics::f32::SURFACE_CAPACITY * sizeof(physics::f32::Surface)),
           parameters(device, sizeof(Parameters), vulkan::Buffer::Memory::host) {
-        surfaces.write_values(std::span<const physics::f32::Surface>(float_surfaces(instrument)));
+        surfaces.write_values(std::span<const physics::f32::Surface>(surface_block(instrument)));
         constants.instrument = to_float(instrument.constants);
         constants.specimen = device_specimen.record(options.max_bounces);
     }
@@ -90,7 +81,7 @@ class DeviceScene {
     }
     std::vector<vulkan::BindingDeclaration> declarations(std::initializer_list<std::uint32_t> further) const {
         using enum vulkan::BindingKind;
-        std::vector<vulkan::BindingDeclaration> all = {{0, storage_buffer}, {1, uniform_buffer}};
+        std::vector<vulkan::BindingDeclaration> all = {{0, uniform_buffer}, {1, uniform_buffer}};
         const auto of_specimen = device_specimen.declarations();
         all.insert(all.end(), of_specimen.begin(), of_specimen.end());
         for (const std::uint32_t slot : further) {

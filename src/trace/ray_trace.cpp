@@ -89,10 +89,7 @@ std::vector<TracedRay> trace_rays_on_device(const optics::Instrument& instrument
         return {};
     }
     const vulkan::Device device(vulkan::DeviceOptions{device_selector});
-    std::vector<physics::f32::Surface> surfaces;
-    for (const auto& surface : instrument.surfaces) {
-        surfaces.push_back(to_float(surface));
-    }
+    const auto surfaces = surface_block(instrument);
     std::vector<physics::f32::Ray> entering_rays;
     entering_rays.reserve(rays.size());
     for (const RayInput& input : rays) {
@@ -112,7 +109,7 @@ std::vector<TracedRay> trace_rays_on_device(const optics::Instrument& instrument
 
     using enum vulkan::BindingKind;
     const vulkan::Kernel kernel(device, "trace_rays", ::trace_rays,
-                                {{0, storage_buffer}, {1, uniform_buffer}, {2, storage_buffer}, {3, storage_buffer}},
+                                {{0, uniform_buffer}, {1, uniform_buffer}, {2, storage_buffer}, {3, storage_buffer}},
                                 2 * sizeof(std::uint32_t));
     const std::array<vulkan::Binding, 4> bindings = {
         {{0, &surface_buffer}, {1, &parameter_buffer}, {2, &ray_buffer}, {3, &traced_buffer}}};

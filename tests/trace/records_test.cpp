@@ -36,7 +36,7 @@ std::vector<float> fill(Record& record, const std::vector<std::size_t>& integers
 
 TEST(Records, the_device_sees_every_field_where_the_host_wrote_it) {
     const vulkan::Device device;
-    std::array<physics::f32::Surface, 3> surfaces{};
+    std::array<physics::f32::Surface, physics::f32::SURFACE_CAPACITY> surfaces{};
     std::array<physics::f32::Survivor, 3> survivors{};
     trace::Parameters parameters{};
     std::vector<float> expected;
@@ -58,7 +58,7 @@ TEST(Records, the_device_sees_every_field_where_the_host_wrote_it) {
     survivor_buffer.write_values(std::span<const physics::f32::Survivor>(survivors));
     using enum vulkan::BindingKind;
     const vulkan::Kernel kernel(device, "probe_records", ::probe_records,
-                                {{0, storage_buffer}, {1, uniform_buffer}, {2, storage_buffer}, {3, storage_buffer}});
+                                {{0, uniform_buffer}, {1, uniform_buffer}, {2, storage_buffer}, {3, storage_buffer}});
     const std::array<vulkan::Binding, 4> bindings = {
         {{0, &surface_buffer}, {1, &parameter_buffer}, {2, &survivor_buffer}, {3, &echo}}};
     vulkan::Commands commands(device);
