@@ -1,5 +1,6 @@
 // The program's commands from end to end, on the device at hand.
 #include "app/program.hpp"
+#include "surface/image_file.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -145,38 +146,35 @@ TEST(Program, TraceRaysWritesOneLineARay) {
 TEST(Program, ImageOfAScanPositionIsThatImageOfTheStack) {
     const auto folder = fresh_folder("image");
     write_file(folder / "c.toml", small_configuration);
-    const auto stack = run_program({"--stack", "c.toml"}, folder);
+    const auto stack = run_program({"--stack", "c.toml", "--rays", "1e5"}, folder);
     ASSERT_EQ(stack.exit_code, 0) << stack.standard_error;
-    const auto image = run_program({"--image", "c.toml", "--z", "1", "--out", "one.tif"}, folder);
+    const auto image =
+        run_program({"--image", "c.toml", "--rays", "1e5", "--z", "1", "--out", "one.tif"}, folder);
     ASSERT_EQ(image.exit_code, 0) << image.standard_error;
     EXPECT_THAT(image.standard_output, AllOf(HasSubstr("detected"), HasSubstr("residual")));
-    // z = 1 um is the fourth position. The description differs, so the files do; the pixels stand at the end
-    // or the beginning of the strip: 8 x 8 floats that occur in both.
-    const auto both = {read_file(folder / "one.tif"), read_file(folder / "out/images/z_0003.tif")};
-    ASSERT_THAT(both, testing::Each(testing::SizeIs(testing::Ge(8u * 8u * 4u))));
-    const auto other = read_file(folder / "out/images/z_0002.tif");
-    const auto longest_common = [](const std::string& one, const std::string& two) {
-        std::size_t longest = 0;
-        for (std::size_t begin = 0; begin + 256 <= one.size(); ++begin) {
-            longest = std::max<std::size_t>(longest,
-                                            two.find(one.substr(begin, 256)) != std::string::npos ? 256 : 0);
-        }
-        return longest;
-    };
-    EXPECT_EQ(longest_common(*both.begin(), *(both.begin() + 1)), 256u);
-    EXPECT_EQ(longest_common(*both.begin(), other), 0u);
+    // z = 1 um is the fourth position of five.
+    const auto pixels = surface::read_image(folder / "one.tif").values;
+    EXPECT_EQ(pixels, surface::read_image(folder / "out/images/z_0003.tif").values);
+    EXPECT_NE(pixels, surface::read_image(folder / "out/images/z_0002.tif").values);
+    EXPECT_GT(*std::max_element(pixels.begin(), pixels.end()), 0);
 }
 
 TEST(Program, TopographyEvaluatesAStackAnew) {
     const auto folder = fresh_folder("topography");
     write_file(folder / "c.toml", small_configuration);
-    const auto stack = run_program({"--stack", "c.toml", "--rays", "2e5"}, folder);
+    // So few rays over so short a scan measure nothing; peaks of the noise are taken too, so that there are
+    // heights.
+    const auto stack =
+        run_program({"--stack", "c.toml", "--rays", "2e5", "--set", "topography.smoothing_steps=0", "--set",
+                     "topography.false_peak_rate=0.999"},
+                    folder);
     ASSERT_EQ(stack.exit_code, 0) << stack.standard_error;
     const auto results = nlohmann::json::parse(read_file(folder / "out/results.json"));
     for (const char* name : {"sq_measured_um", "sq_true_um", "rms_deviation_um", "correlation",
                              "measured_share", "trace_seconds", "device", "seed"}) {
         EXPECT_TRUE(results.contains(name)) << name;
     }
+    EXPECT_GT(results["measured_share"].get<double>(), 0);
     const auto height_map = read_file(folder / "out/topography.tif");
     const auto again = run_program({"--topography", "out"}, folder);
     ASSERT_EQ(again.exit_code, 0) << again.standard_error;

@@ -50,7 +50,8 @@ Differences compare_with_reference(const Scope& scope, const std::vector<std::st
         input += row[0] + "," + row[1] + "," + row[2] + "," + row[3] + "," + row[4] + "," + row[5] + "\n";
     }
     write_file(folder / "rays.csv", input);
-    std::vector<std::string> arguments = {"--trace-rays", "c.toml", "rays.csv"};
+    std::vector<std::string> arguments = {"--trace-rays", "c.toml", "rays.csv", "--set",
+                                          "source.wavelength_um=0.587562"};
     arguments.insert(arguments.end(), options.begin(), options.end());
     const auto result = run_program(arguments, folder);
     EXPECT_EQ(result.exit_code, 0) << result.standard_error;
