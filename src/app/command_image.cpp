@@ -14,6 +14,8 @@ namespace vkfv::app {
 
 namespace {
 
+constexpr std::uint64_t fewest_detected_per_pixel = 100; // 10 % of noise
+
 // The random numbers of an exposure are keyed by its index: at a position of the scan, that image of the
 // stack is what comes out, bit by bit; anywhere else the index counts on after the scan's.
 std::uint32_t image_index(const Configuration& configuration, double focal_height) {
@@ -40,6 +42,9 @@ std::filesystem::path image_path(const CommandOptions& options, const Configurat
 void print_ledger(const trace::Image& image) {
     fmt::print("{:<52} {:>14} {:>9}\n", "energy ledger", "W", "share");
     for (const auto& entry : image.ledger.entries) {
+        if (entry.rays == 0 && entry.power == 0) {
+            continue; // ledger.csv of a stack lists them all
+        }
         fmt::print("{:<52} {:>14.6e} {:>8.4f} %\n", entry.name, entry.power,
                    100 * entry.power / image.ledger.emitted);
     }
@@ -71,6 +76,13 @@ void run_image(const CommandOptions& options) {
         {.pitch_x = pitch,
          .pitch_y = pitch,
          .description = fmt::format("radiant flux in W at z = {} um", options.focal_height * um_per_mm)});
+    const auto pixels = image.flux.values.size();
+    if (image.detected < fewest_detected_per_pixel * pixels) {
+        spdlog::warn("{} rays detected on {} pixels: below {} a pixel an image is mostly noise. Launch more "
+                     "with --rays, "
+                     "or close the field stop to the field of view",
+                     image.detected, pixels, fewest_detected_per_pixel);
+    }
     print_ledger(image);
     fmt::print("{} rays, {} detected, {:.3g} rays/s, {:.3g} s\n{}\n", image.rays, image.detected,
                static_cast<double>(image.rays) / image.seconds, image.seconds, path.string());

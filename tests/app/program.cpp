@@ -30,6 +30,7 @@ wavelength_um = 0.5876
 
 [illumination]
 prescription = "koehler"
+field_stop_radius_mm = 0.2
 
 [beam_splitter]
 reflectance = 0.5
