@@ -135,7 +135,7 @@ TEST(Scatter, directions_have_the_stated_density_at_every_incidence) {
                 seen[ring * sectors + sector] += 1;
             });
             EXPECT_GT(vkfv::test::chi_square_p(seen, expected_cells(g, theta)), level) << g << " " << theta;
-            EXPECT_LT(vkfv::test::chi_square_p(seen, expected_cells(g + 0.02, theta)), level) // wrong twin
+            EXPECT_LT(vkfv::test::chi_square_p(seen, expected_cells(g + 0.03, theta)), level) // wrong twin
                 << g << " " << theta;
         }
     }

@@ -135,7 +135,8 @@ TEST(Intersector, LetsNothingThroughAtCornersAndEdges) {
     field.pitch_x = field.pitch_y = 0x1p-10;
     field.x_min = field.y_min = -10 * 0x1p-10;
     for (float& height : field.heights.values) {
-        // Slopes up to 0.3, below the cotangent of the steepest ray's angle, 0.39: every place is in plain view.
+        // Slopes up to 0.3, below the cotangent of the steepest ray's angle, 0.39: every place is in plain
+        // view.
         height = std::round(height * 0.05f * 0x1p20f) * 0x1p-20f;
     }
     const Triangles triangles(field);
