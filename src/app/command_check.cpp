@@ -46,14 +46,20 @@ std::vector<Property> properties(const Configuration& configuration, const optic
     return list;
 }
 
-// Lowest and highest point of the truth on the detector's pixels, and how many pixels see the specimen.
+constexpr int most_relief_points = 128; // a side; a look at the specimen, in a moment for any detector
+
+// Lowest and highest point of the specimen in the field of view, and the share of the field that it fills.
 struct Relief {
     double lowest = INFINITY;
     double highest = -INFINITY;
     double seen_share = 0;
 };
 
-Relief relief_of(const surface::HeightMap& truth) {
+Relief relief_of(const specimen::Specimen& specimen, double field, int pixels) {
+    const int points = std::min(pixels, most_relief_points);
+    const double pitch = field / points;
+    const double first = -0.5 * (points - 1) * pitch;
+    const auto truth = specimen::truth(specimen, points, points, first, first, pitch, pitch);
     Relief relief;
     std::size_t seen = 0;
     for (const double height : truth.height.values) {
@@ -92,16 +98,17 @@ void run_check(const CommandOptions& options) {
     }
     if (configuration.specimen) {
         const auto specimen = specimen::make(*configuration.specimen);
-        const auto relief = relief_of(truth_on_pixels(instrument, configuration, specimen));
+        const int pixels = configuration.instrument.detector_pixels;
+        const auto relief = relief_of(specimen, instrument.first_order.pixel_pitch * pixels, pixels);
         report["specimen_seen_share"] = relief.seen_share;
         if (relief.seen_share > 0) {
             report["specimen_lowest_um"] = relief.lowest * um_per_mm;
             report["specimen_highest_um"] = relief.highest * um_per_mm;
-            text += fmt::format("  {:<30} {:>14.6g}  highest {:g} um, on {:.1f} % of the pixels\n",
+            text += fmt::format("  {:<30} {:>14.6g}  highest {:g} um, on {:.1f} % of the field\n",
                                 "specimen_lowest_um", relief.lowest * um_per_mm, relief.highest * um_per_mm,
                                 100 * relief.seen_share);
         } else {
-            warnings.push_back("the detector does not see the specimen: no pixel has a height");
+            warnings.push_back("the detector does not see the specimen");
         }
         if (!positions.empty() && relief.seen_share > 0 &&
             (relief.lowest < positions.front() || relief.highest > positions.back())) {
