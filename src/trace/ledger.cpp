@@ -95,6 +95,9 @@ Ledger make_ledger(const optics::Instrument& instrument, std::span<const std::ui
     add("beam splitter, towards the specimen", 1.0 - reflected, first_pass);
     add("beam splitter, towards the detector", reflected * reflected, second_pass);
     for (std::size_t slot = PATH_DETECTED + 1; slot < slots.size(); ++slot) {
+        if (slot >= PATH_VIGNETTED && slot < PATH_STATUS_COUNT) {
+            continue; // these statuses belong to surfaces, which have slots of their own
+        }
         add(slots[slot].name, slots[slot].weight, counts[slot]);
     }
     return ledger;

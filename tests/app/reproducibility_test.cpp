@@ -1,0 +1,139 @@
+// The same bits, however a stack came about; and the same image by either traversal.
+#include "app/program.hpp"
+#include "surface/image_file.hpp"
+
+#include <gtest/gtest.h>
+
+#include <chrono>
+#include <cmath>
+#include <csignal>
+#include <sstream>
+#include <sys/wait.h>
+#include <thread>
+#include <unistd.h>
+
+namespace vkfv::test {
+namespace {
+
+const std::filesystem::path source_folder = VKFV_SOURCE_DIR;
+const std::string demo = (source_folder / "assets/stacks/demo.toml").string();
+
+// A stack of nine images of the demo's microscope and specimen.
+std::vector<std::string> short_stack(const std::string& out, std::vector<std::string> further = {}) {
+    std::vector<std::string> arguments = {"--stack", demo, "--out", out, "--rays", "30000", "--quiet",
+                                          "--set", "scan.z_start_um=-8", "--set", "scan.z_stop_um=8",
+                                          "--set", "scan.z_step_um=2"};
+    arguments.insert(arguments.end(), further.begin(), further.end());
+    return arguments;
+}
+
+// Everything that the trace decides, by name.
+std::map<std::string, std::string> bytes_of(const std::filesystem::path& folder) {
+    std::map<std::string, std::string> bytes = {{"ledger.csv", read_file(folder / "ledger.csv")},
+                                                {"topography.tif", read_file(folder / "topography.tif")}};
+    for (const auto& entry : std::filesystem::directory_iterator(folder / "images")) {
+        bytes[entry.path().filename().string()] = read_file(entry.path());
+    }
+    return bytes;
+}
+
+std::size_t images_in(const std::filesystem::path& folder) {
+    std::error_code missing;
+    std::size_t count = 0;
+    for (const auto& entry : std::filesystem::directory_iterator(folder / "images", missing)) {
+        count += entry.path().extension() == ".tif" && entry.path().filename().string().front() != '.' ? 1 : 0;
+    }
+    return count;
+}
+
+// Starts the program and kills it with SIGKILL once `images` are there; whether it was still running then.
+bool run_and_kill(const std::vector<std::string>& arguments, const std::filesystem::path& folder,
+                  const std::filesystem::path& stack, std::size_t images) {
+    const pid_t child = fork();
+    if (child == 0) {
+        std::vector<char*> words = {const_cast<char*>("vkfv")};
+        for (const auto& argument : arguments) {
+            words.push_back(const_cast<char*>(argument.c_str()));
+        }
+        words.push_back(nullptr);
+        if (chdir(folder.c_str()) == 0) {
+            execv(VKFV_BINARY_DIR "/vkfv", words.data());
+        }
+        _exit(127);
+    }
+    const auto deadline = std::chrono::steady_clock::now() + std::chrono::minutes(5);
+    int status = 0;
+    while (images_in(stack) < images && waitpid(child, &status, WNOHANG) == 0 &&
+           std::chrono::steady_clock::now() < deadline) {
+        std::this_thread::sleep_for(std::chrono::milliseconds(2));
+    }
+    const bool running = kill(child, SIGKILL) == 0 && waitpid(child, &status, 0) == child;
+    return running && WIFSIGNALED(status);
+}
+
+} // namespace
+
+TEST(Reproducibility, AKilledStackEndsInTheSameBytes) {
+    const auto folder = fresh_folder("killed");
+    ASSERT_EQ(run_program(short_stack("whole"), folder).exit_code, 0);
+    EXPECT_TRUE(run_and_kill(short_stack("killed"), folder, folder / "killed", 2));
+    EXPECT_TRUE(run_and_kill(short_stack("killed"), folder, folder / "killed", 5));
+    EXPECT_LT(images_in(folder / "killed"), 9u); // it was cut off
+    ASSERT_EQ(run_program(short_stack("killed"), folder).exit_code, 0);
+    EXPECT_EQ(bytes_of(folder / "killed"), bytes_of(folder / "whole"));
+}
+
+TEST(Reproducibility, BytesDoNotDependOnThreadsBatchOrRun) {
+    const auto folder = fresh_folder("threads");
+    ASSERT_EQ(run_program(short_stack("one"), folder, {{"LP_NUM_THREADS", "1"}}).exit_code, 0);
+    ASSERT_EQ(run_program(short_stack("two"), folder, {{"LP_NUM_THREADS", "2"}}).exit_code, 0);
+    ASSERT_EQ(run_program(short_stack("batch", {"--set", "trace.batch=7001"}), folder).exit_code, 0);
+    ASSERT_EQ(run_program(short_stack("seed", {"--seed", "2"}), folder).exit_code, 0);
+    const auto reference = bytes_of(folder / "one");
+    EXPECT_EQ(bytes_of(folder / "two"), reference);
+    EXPECT_EQ(bytes_of(folder / "batch"), reference);
+    EXPECT_NE(bytes_of(folder / "seed"), reference); // wrong twin
+}
+
+TEST(Reproducibility, EveryRowOfTheLedgerCloses) {
+    const auto folder = fresh_folder("ledger");
+    ASSERT_EQ(run_program(short_stack("out"), folder).exit_code, 0);
+    std::istringstream ledger(read_file(folder / "out/ledger.csv"));
+    std::string line;
+    std::getline(ledger, line);
+    ASSERT_TRUE(line.ends_with("residual_W")) << line;
+    int rows = 0;
+    while (std::getline(ledger, line)) {
+        ++rows;
+        EXPECT_LT(std::abs(std::stod(line.substr(line.rfind(',') + 1))), 1e-6) << line; // of 1 W emitted
+    }
+    EXPECT_EQ(rows, 9);
+}
+
+// The demo by quadtree and by ray query: the same paths meet the same facets, so the images differ only where a
+// path's fate hangs on the last bit, far below their own noise.
+TEST(Reproducibility, TheDemoIsTheSameByRayQuery) {
+    const auto folder = fresh_folder("traversals");
+    const auto image = [&](const std::string& name, const std::vector<std::string>& further) {
+        std::vector<std::string> arguments = {"--image", demo, "--z", "0", "--rays", "300000",
+                                              "--quiet", "--out", name};
+        arguments.insert(arguments.end(), further.begin(), further.end());
+        const auto result = run_program(arguments, folder);
+        EXPECT_EQ(result.exit_code, 0) << result.standard_error;
+        return surface::read_image(folder / name).values;
+    };
+    const auto quadtree = image("quadtree.tif", {"--traversal", "quadtree"});
+    const auto ray_query = image("ray_query.tif", {"--traversal", "ray-query"});
+    const auto other = image("other.tif", {"--traversal", "ray-query", "--seed", "9"});
+    double sum = 0, difference = 0, noise = 0;
+    for (std::size_t k = 0; k < quadtree.size(); ++k) {
+        sum += quadtree[k];
+        difference += std::abs(quadtree[k] - ray_query[k]);
+        noise += std::abs(quadtree[k] - other[k]);
+    }
+    EXPECT_GT(sum, 0);
+    EXPECT_LT(difference, 2e-3 * sum);
+    EXPECT_GT(noise, 0.1 * sum); // what independent paths differ by: the wrong twin
+}
+
+} // namespace vkfv::test
