@@ -28,16 +28,16 @@ double blur_diameter(const optics::Instrument& instrument, double height, double
 
 } // namespace
 
-// A point z out of focus is blurred over 2 z tan(asin NA). The marginal rays meet a few um above the plane of best
-// focus (spherical aberration): the means of equal defocus to both sides are free of it to first order, and what is left
-// is below its square, (7 um / 200 um)^2 or 0.1 %; the magnification of a ray of this aperture differs from the paraxial by
-// the offence against the sine condition, below 0.5 % for this lens.
+// A point z out of focus is blurred over 2 z tan(asin NA), exactly so by a lens that obeys the sine condition. This one
+// offends it at the rim by 0.27 % (an aperture of 0.2770 where pupil radius over focal length is 0.2778), with the
+// square of the aperture; the blur follows the derivative of aperture times offence, three times as much: 0.8 %. Spherical
+// aberration cancels to first order in the mean of equal defocus to both sides, and leaves (7 um / 200 um)^2, 0.1 %.
 TEST(Defocus, the_blur_has_the_diameter_of_the_marginal_cone) {
     const auto instrument = test::microscope();
     const double na = instrument.first_order.numerical_aperture * (1 - 1e-6);
     const double z = 0.2;
     const double mean = 0.5 * (blur_diameter(instrument, z, na) + blur_diameter(instrument, -z, na));
     const double expected = 2 * z * std::tan(std::asin(na));
-    EXPECT_NEAR(mean / expected, 1.0, 6e-3);
+    EXPECT_NEAR(mean / expected, 1.0, 9e-3);
     EXPECT_GT(std::abs(mean / (2 * z * na) - 1.0), 2e-2); // wrong twin: the sine instead of the tangent
 }
