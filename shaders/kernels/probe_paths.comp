@@ -8,7 +8,7 @@ layout(local_size_x = 64) in;
 struct PathEnd {
     uint status;
     int surface;
-    real x; // on the detector's plane where the path came so far, else on the specimen, else 0
+    real x; // mm, as Detection, for light that left the specimen through the gate (of meaning if it arrived), else 0
     real y;
 };
 
@@ -22,7 +22,9 @@ layout(push_constant, scalar) uniform Batch {
 void main() {
     uint index = gl_GlobalInvocationID.x;
     if (index < count) {
-        uvec2 path = uvec2(first_path.x + index, first_path.y);
+        uint carry;
+        uint low = uaddCarry(first_path.x, index, carry);
+        uvec2 path = uvec2(low, first_path.y + carry);
         Departure departure = trace_to_departure(instrument, specimen, exposure, path);
         PathEnd end;
         end.status = departure.fate.status;

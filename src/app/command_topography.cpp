@@ -49,7 +49,11 @@ void run_topography(const CommandOptions& options) {
     }
     const auto destination = options.out.value_or(folder);
     std::filesystem::create_directories(destination);
-    write_evaluation(destination, evaluation, nlohmann::ordered_json::object());
+    auto more = nlohmann::ordered_json::object();
+    if (options.shuffle) {
+        more["shuffle_seed"] = *options.shuffle;
+    }
+    write_evaluation(destination, evaluation, more);
     fmt::print("{}results in {}\n", summary(evaluation), destination.string());
 }
 

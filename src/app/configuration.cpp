@@ -363,7 +363,7 @@ void read_specimen(const TomlTable& root, Configuration& configuration) {
     description.roughness = read_roughness(table, rule, configuration);
     const Section material(table.table_or_empty("material"), configuration);
     (void)material.choice("scatter", {"henyey-greenstein"}, "henyey-greenstein");
-    description.material.g = material.number("g", NumberRange::within(-1, 1), 0.0);
+    description.material.g = material.number("g", NumberRange::within(-0.9, 1), 0.0);
     configuration.specimen = std::move(description);
 }
 

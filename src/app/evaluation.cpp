@@ -56,6 +56,7 @@ Evaluation evaluate(const Configuration& configuration, const optics::Instrument
                     const specimen::Specimen& specimen, const std::function<Grid<float>(int)>& image) {
     const auto started = std::chrono::steady_clock::now();
     Evaluation evaluation;
+    evaluation.options = configuration.topography;
     evaluation.truth = truth_on_pixels(instrument, configuration, specimen);
     topography::StackEvaluator evaluator(configuration.topography);
     const auto positions = configuration.scan->positions();
@@ -98,6 +99,11 @@ void write_evaluation(const std::filesystem::path& folder, const Evaluation& eva
         filtered["nesting_index_um"] = evaluation.l_filter * um_per_mm;
         results["l_filtered"] = std::move(filtered);
     }
+    results["topography"] = {{"focus_measure", evaluation.options.focus_measure},
+                             {"window_px", evaluation.options.window_px},
+                             {"smoothing_steps", evaluation.options.smoothing_steps},
+                             {"peak", evaluation.options.peak},
+                             {"false_peak_rate", evaluation.options.false_peak_rate}};
     results["evaluation_seconds"] = evaluation.seconds;
     results["evaluated_by"] = fmt::format("vkfv {}", VKFV_VERSION);
     results.update(more);

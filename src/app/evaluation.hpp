@@ -13,6 +13,7 @@
 namespace vkfv::app {
 
 struct Evaluation {
+    topography::TopographyOptions options; // that the heights were found by
     topography::Topography topography;
     surface::HeightMap truth;
     topography::Deviation deviation;                         // levelled

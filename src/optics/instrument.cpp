@@ -127,8 +127,8 @@ void append(std::vector<Surface>& train, const std::vector<Surface>& part, doubl
     train[first].distance = distance;
 }
 
-// The largest t of [0, limit] at which the predicate holds, to rounding: looked for inward in steps of limit
-// / 128 (no pupil is as narrow as that), then by bisection. None: it holds at no step.
+// The largest t of [0, limit] at which the predicate holds, to rounding: looked for inward in steps of limit / 32, then
+// by bisection. Where it holds only between two steps, and not at 0, it is not found. None: it holds at no step.
 template <class Predicate>
 std::optional<double> farthest(double limit, Predicate holds) {
     constexpr int steps = 32;
@@ -558,6 +558,8 @@ Instrument assemble(const InstrumentDescription& description) {
     constants.imaging_first = constants.illumination_count;
     constants.imaging_count = static_cast<int>(imaging.train.size());
     constants.detector_pixels = description.detector_pixels;
+    instrument.illumination_surfaces_before_splitter = static_cast<int>(illuminator.train.size());
+    instrument.imaging_surfaces_before_splitter = static_cast<int>(objective.train.size());
     instrument.surfaces = std::move(illumination_train);
     instrument.surfaces.insert(instrument.surfaces.end(), imaging.train.begin(), imaging.train.end());
     return instrument;

@@ -301,9 +301,10 @@ struct Recorder {
 } // namespace
 
 Specimen make(const Description& d) {
-    if (!(d.material.g >= -1 && d.material.g <= 1)) {
+    // Sharper backward lobes lie all but wholly below the surface: scatter() would run out of tries.
+    if (!(d.material.g >= -0.9 && d.material.g <= 1)) {
         throw InputError({d.where, "specimen.material.g", fmt::format("{}", d.material.g),
-                          "a number in [-1, 1]", "Correct the value in the configuration."});
+                          "a number in [-0.9, 1]", "Correct the value in the configuration."});
     }
     if (d.roughness && (d.kind == Kind::stl || d.kind == Kind::gltf)) {
         throw InputError({d.where, "specimen.roughness", "roughness on a mesh",

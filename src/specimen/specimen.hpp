@@ -44,7 +44,7 @@ struct Analytic {
 };
 
 struct Material {
-    double g = 0; // Henyey-Greenstein asymmetry, in [-1, 1]; 1 is the mirror
+    double g = 0; // Henyey-Greenstein asymmetry, in [-0.9, 1]; 1 is the mirror
 };
 
 struct Specimen {

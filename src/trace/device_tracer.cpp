@@ -64,6 +64,7 @@ class DeviceScene {
         surfaces.write_values(std::span<const physics::f32::Surface>(surface_block(instrument)));
         constants.instrument = to_float(instrument.constants);
         constants.specimen = device_specimen.record(options.max_bounces);
+        host_record.top = constants.specimen.top; // the plane that the kernels mean: rounded to float
     }
 
     void set_exposure(double focal_height, std::uint32_t image) {
@@ -183,7 +184,8 @@ class ForwardTrace {
 std::uint32_t suitable_batch(const DeviceScene& scene, std::uint64_t asked, std::uint64_t rays) {
     const std::uint64_t largest =
         std::min<std::uint64_t>(scene.device.report().max_storage_buffer_bytes / sizeof(physics::f32::Survivor),
-                                std::uint64_t{1} << 27);
+                                // Vulkan promises 65535 workgroups a dispatch.
+                                std::uint64_t{65535} * workgroup_size * rays_per_invocation);
     const std::uint64_t wanted = asked > 0 ? asked : scene.software() ? std::uint64_t{1} << 20 : std::uint64_t{1} << 25;
     return static_cast<std::uint32_t>(std::max<std::uint64_t>(1, std::min({wanted, largest, rays})));
 }
@@ -246,7 +248,7 @@ std::unique_ptr<Tracer> make_device_tracer(const optics::Instrument& instrument,
 
 std::vector<PathEnd> device_paths(const optics::Instrument& instrument, const specimen::Specimen& specimen,
                                   const TraceOptions& options, double focal_height, std::uint32_t image,
-                                  std::uint32_t first, std::uint32_t count) {
+                                  std::uint64_t first, std::uint32_t count) {
     DeviceScene scene(instrument, specimen, options);
     scene.set_exposure(focal_height, image);
     const vulkan::Buffer ends(scene.device, count * sizeof(DevicePathEnd));
@@ -255,7 +257,8 @@ std::vector<PathEnd> device_paths(const optics::Instrument& instrument, const sp
                                                   : std::span<const std::uint32_t>(probe_paths_quadtree),
                                 scene.declarations({6}), sizeof(Batch), constants_of(specimen, instrument, 0));
     vulkan::Commands commands(scene.device);
-    commands.dispatch(kernel, scene.bindings({{6, &ends}}), Batch{first, 0, count}, (count + 63) / 64);
+    commands.dispatch(kernel, scene.bindings({{6, &ends}}), 
+                      Batch{static_cast<std::uint32_t>(first), static_cast<std::uint32_t>(first >> 32), count}, (count + 63) / 64);
     commands.barrier();
     commands.submit_and_wait();
     std::vector<PathEnd> result;

@@ -14,12 +14,13 @@ namespace vkfv::trace {
 std::unique_ptr<Tracer> make_device_tracer(const optics::Instrument& instrument, const specimen::Specimen& specimen,
                                            const TraceOptions& options);
 
-// Paths one by one, as host_paths(); for tests.
+// Paths one by one, as host_paths(); for tests. focal_height: mm, as Tracer::expose().
 std::vector<PathEnd> device_paths(const optics::Instrument& instrument, const specimen::Specimen& specimen,
                                   const TraceOptions& options, double focal_height, std::uint32_t image,
-                                  std::uint32_t first, std::uint32_t count);
+                                  std::uint64_t first, std::uint32_t count);
 
 // Device seconds per launched ray, by device timestamps, for the stages of the forward trace: medians.
+// focal_height: mm.
 struct StageTimes {
     std::string description;      // device and traversal
     std::uint64_t rays = 0;       // a run

@@ -12,8 +12,8 @@ namespace vkfv::trace {
 std::unique_ptr<Tracer> make_host_tracer(const optics::Instrument& instrument, const specimen::Specimen& specimen,
                                          const TraceOptions& options);
 
-// How one path ended; what the kernel probe_paths gives of the device. x and y as physics::Detection, 0 where the
-// path did not come so far.
+// How one path ended; what the kernel probe_paths gives of the device. x and y (mm) as physics::Detection: 0 for light that
+// did not leave the specimen through the gate, and without meaning for light that a surface or the specimen stopped.
 struct PathEnd {
     std::uint32_t status = 0;
     std::int32_t surface = -1;
@@ -21,7 +21,7 @@ struct PathEnd {
     double y = 0;
 };
 
-// Paths first ... first + count - 1 of one exposure, one by one. source_scale (about 1) scales the source's radius and
+// Paths first ... first + count - 1 of one exposure at focal_height (mm), one by one. source_scale (about 1) scales the source's radius and
 // emission: a test asks by it whether a path lies within rounding of an edge.
 std::vector<PathEnd> host_paths(const optics::Instrument& instrument, const specimen::Specimen& specimen,
                                 const TraceOptions& options, double focal_height, std::uint32_t image,

@@ -42,7 +42,7 @@ struct Image {
     Ledger ledger;
     std::uint64_t rays = 0;
     std::uint64_t detected = 0; // rays
-    double seconds = 0;         // wall clock of the trace; enters no image
+    double seconds = 0;         // s, wall clock of the trace; enters no image
 };
 
 // Constructed for one instrument, specimen and device, then const: exposures are independent of each other.

@@ -112,7 +112,7 @@ std::vector<Case> cases() {
         {"AsymmetryOutOfRange",
          {{"g = 0.8", "g = 1.2"}},
          2,
-         {"c.toml:29:5", "specimen.material.g = 1.2", "[-1, 1]"}},
+         {"c.toml:29:5", "specimen.material.g = 1.2", "[-0.9, 1]"}},
         {"UnknownScatter",
          {{"g = 0.8", "g = 0.8\nscatter = \"henyey\""}},
          2,

@@ -69,6 +69,30 @@ TEST(Image, the_ledger_closes_for_analog_and_aimed_emission) {
     }
 }
 
+// Power per ray: whole before the splitter, R beyond it, R (1 - R) beyond its second pass; a wrong split would still close.
+TEST(Image, the_ledger_gives_each_loss_the_power_it_carried) {
+    auto description = test::microscope_description();
+    description.splitter_reflectance = 0.3;
+    const auto instrument = optics::assemble(description);
+    const auto image = expose(instrument, test::rough_specimen(), options());
+    const double launched = instrument.flux * std::pow(instrument.constants.emission_sine, 2) / double(image.rays);
+    const auto power_per_ray = [&](const std::string& name) {
+        for (const auto& entry : image.ledger.entries) {
+            if (entry.name.starts_with(name) && entry.rays > 0) {
+                return entry.power / (launched * double(entry.rays));
+            }
+        }
+        ADD_FAILURE() << name;
+        return 0.0;
+    };
+    EXPECT_NEAR(power_per_ray("vignetted at illumination 3"), 1.0, 1e-12);  // the field stop
+    EXPECT_NEAR(power_per_ray("vignetted at illumination 11"), 0.3, 1e-12); // the objective's stop, on the way down
+    EXPECT_NEAR(power_per_ray("vignetted at imaging 7"), 0.3, 1e-12);       // and on the way up
+    EXPECT_NEAR(power_per_ray("escaped outside the pupil"), 0.3, 1e-12);
+    EXPECT_NEAR(power_per_ray("beside the detector"), 0.21, 1e-12);
+    EXPECT_NEAR(power_per_ray("detected"), 0.21, 1e-12);
+}
+
 // Analog emission and emission into the cone that can arrive have the same expectation of detected power.
 TEST(Image, aimed_emission_detects_the_power_of_the_whole_source) {
     auto description = test::microscope_description();
