@@ -77,8 +77,8 @@ TEST(Paths, host_and_device_trace_the_same_paths) {
         EXPECT_GT(fates[PATH_ESCAPED], 1000);
         EXPECT_GT(fates[PATH_BOUNCE_LIMIT], 10);
         EXPECT_GT(fates[PATH_VIGNETTED], 1000);
-        EXPECT_LE(differing, static_cast<int>(paths / 1000));
-        EXPECT_LE(far, static_cast<int>(paths / 1000));
+        EXPECT_LE(differing, static_cast<int>(paths / 2000));
+        EXPECT_LE(far, static_cast<int>(paths / 2000));
         EXPECT_EQ(unexplained, 0) << differing << " differing, " << far << " far of " << detected;
     }
 }
