@@ -19,7 +19,7 @@ constexpr std::size_t staging_bytes = std::size_t{64} << 20;
 vk::BufferUsageFlags usage_on(const Device& device) {
     using Usage = vk::BufferUsageFlagBits;
     vk::BufferUsageFlags usage = Usage::eStorageBuffer | Usage::eUniformBuffer | Usage::eTransferSrc |
-                                 Usage::eTransferDst | Usage::eShaderDeviceAddress | Usage::eIndirectBuffer;
+                                 Usage::eTransferDst | Usage::eShaderDeviceAddress;
     if (device.report().ray_query) {
         usage |= Usage::eAccelerationStructureBuildInputReadOnlyKHR | Usage::eAccelerationStructureStorageKHR;
     }

@@ -9,7 +9,7 @@
 
 namespace vkfv::vulkan {
 
-// Storage buffer (also uniform, transfer, device address, build input, indirect). Bytes; move-only.
+// Storage buffer (also uniform, transfer, device address, build input). Bytes; move-only.
 class Buffer {
   public:
     enum class Memory {
