@@ -43,15 +43,6 @@ struct DevicePathEnd {
 };
 static_assert(sizeof(DevicePathEnd) == 16);
 
-// Constant ids 0, 1 and 2 of the forward kernels.
-std::array<vulkan::SpecializationConstant, 3> constants_of(const specimen::Specimen& specimen,
-                                                           const optics::Instrument& instrument,
-                                                           std::uint32_t stop_after) {
-    return {{{0, specimen::record(specimen, 1).kind},
-             {1, static_cast<std::uint32_t>(ledger_slot_count(instrument))},
-             {2, stop_after}}};
-}
-
 // Device, buffers and bindings that every use of the trace on a device shares.
 class DeviceScene {
   public:
@@ -91,6 +82,14 @@ class DeviceScene {
         return all;
     }
 
+    // Of the kernels: the specimen's, and the forward trace's ledger slots and early end.
+    std::vector<vulkan::SpecializationConstant> kernel_constants(std::uint32_t stop_after) const {
+        auto all = device_specimen.constants();
+        all.push_back({1, static_cast<std::uint32_t>(ledger_slot_count(instrument))});
+        all.push_back({2, stop_after});
+        return all;
+    }
+
     bool ray_query() const { return traversal == Traversal::ray_query; }
     bool software() const { return device.report().type == "CPU"; }
 
@@ -109,7 +108,7 @@ class DeviceScene {
 // The two kernels of the forward trace and what lies between them.
 class ForwardTrace {
   public:
-    ForwardTrace(const DeviceScene& scene, const specimen::Specimen& specimen, std::uint32_t batch,
+    ForwardTrace(const DeviceScene& scene, std::uint32_t batch,
                  std::uint32_t stop_illumination = 0, std::uint32_t stop_imaging = 0)
         : scene_(scene), batch_(batch),
           survivors_(scene.device, std::size_t{batch} * sizeof(physics::f32::Survivor)),
@@ -120,11 +119,11 @@ class ForwardTrace {
                         scene.ray_query() ? std::span<const std::uint32_t>(forward_illumination_ray_query)
                                           : std::span<const std::uint32_t>(forward_illumination_quadtree),
                         scene.declarations({2, 4, 5}), sizeof(Batch),
-                        constants_of(specimen, scene.instrument, stop_illumination)),
+                        scene.kernel_constants(stop_illumination)),
           imaging_(scene.device, "forward_imaging",
                    scene.ray_query() ? std::span<const std::uint32_t>(forward_imaging_ray_query)
                                      : std::span<const std::uint32_t>(forward_imaging_quadtree),
-                   scene.declarations({2, 3, 4, 5}), 0, constants_of(specimen, scene.instrument, stop_imaging)) {}
+                   scene.declarations({2, 3, 4, 5}), 0, scene.kernel_constants(stop_imaging)) {}
 
     std::size_t pixel_count() const {
         const auto side = static_cast<std::size_t>(scene_.instrument.constants.detector_pixels);
@@ -197,7 +196,7 @@ class DeviceTracer final : public Tracer {
   public:
     DeviceTracer(const optics::Instrument& instrument, const specimen::Specimen& specimen, const TraceOptions& options)
         : instrument_(instrument), rays_(options.rays), scene_(instrument_, specimen, options),
-          forward_(scene_, specimen, suitable_batch(scene_, options.batch, options.rays)) {}
+          forward_(scene_, suitable_batch(scene_, options.batch, options.rays)) {}
 
     Image expose(double focal_height, std::uint32_t image) const override {
         const std::scoped_lock lock(mutex_);
@@ -255,7 +254,7 @@ std::vector<PathEnd> device_paths(const optics::Instrument& instrument, const sp
     const vulkan::Kernel kernel(scene.device, "probe_paths",
                                 scene.ray_query() ? std::span<const std::uint32_t>(probe_paths_ray_query)
                                                   : std::span<const std::uint32_t>(probe_paths_quadtree),
-                                scene.declarations({6}), sizeof(Batch), constants_of(specimen, instrument, 0));
+                                scene.declarations({6}), sizeof(Batch), scene.kernel_constants(0));
     vulkan::Commands commands(scene.device);
     commands.dispatch(kernel, scene.bindings({{6, &ends}}), 
                       Batch{static_cast<std::uint32_t>(first), static_cast<std::uint32_t>(first >> 32), count}, (count + 63) / 64);
@@ -274,11 +273,11 @@ StageTimes time_stages(const optics::Instrument& instrument, const specimen::Spe
     DeviceScene scene(instrument, specimen, options);
     scene.set_exposure(focal_height, 0);
     const std::uint32_t batch = suitable_batch(scene, options.batch, options.rays);
-    const ForwardTrace whole(scene, specimen, batch);
-    const ForwardTrace to_specimen(scene, specimen, batch, 1);
-    const ForwardTrace to_departure(scene, specimen, batch, 2);
-    const ForwardTrace occlusion(scene, specimen, batch, 0, 2);
-    const ForwardTrace uncounted(scene, specimen, batch, 0, 1);
+    const ForwardTrace whole(scene, batch);
+    const ForwardTrace to_specimen(scene, batch, 1);
+    const ForwardTrace to_departure(scene, batch, 2);
+    const ForwardTrace occlusion(scene, batch, 0, 2);
+    const ForwardTrace uncounted(scene, batch, 0, 1);
 
     // Both halves of one form of the trace, s.
     const auto time = [&](const ForwardTrace& trace) {
