@@ -1,6 +1,8 @@
 // Lens prescriptions: the tables of surfaces that assets/ holds as TOML.
 #pragma once
 
+#include "optics/medium.hpp"
+
 #include <array>
 #include <filesystem>
 #include <optional>
@@ -9,21 +11,22 @@
 
 namespace vkfv::optics {
 
-// A medium between surfaces: indices at stated wavelengths, and between them the Cauchy formula
-// n = A + B / lambda^2 + C / lambda^4 through the three nearest (one: constant, two: A and B).
-struct Medium {
-    std::string name;                   // "air", "N-BK7", ...; as the source names it
-    std::vector<double> wavelengths_um; // ascending; empty, with one index: the same at every wavelength
-    std::vector<double> indices;
-
-    static Medium air(); // index 1: indices are relative to air
-
-    // Throws InputError (naming medium and wavelength) outside the tabulated range widened by 10 nm.
-    double index(double wavelength_um) const;
+// A change of the frame that surfaces stand in: decentre, then tilts about the new x, y and z axes in this order (the
+// other way round if tilt_first), then the thickness along the new z. Positive tilts turn z towards -y (about x), z towards
+// x (about y) and x towards y (about z). Lengths in mm, angles in rad. It holds for all surfaces that follow.
+struct CoordinateBreak {
+    double decentre_x = 0;
+    double decentre_y = 0;
+    double tilt_x = 0;
+    double tilt_y = 0;
+    double tilt_z = 0;
+    bool tilt_first = false; // z, y, x tilts, then the decentre
+    double thickness = 0;
 };
 
 // One surface in the direction of the prescription. Lengths in mm.
 struct PrescribedSurface {
+    std::vector<CoordinateBreak> breaks; // between the previous surface's thickness and this vertex, in order
     double curvature = 0; // 1/mm
     double conic = 0;
     std::array<double, 7> aspheric{}; // a4 ... a16
