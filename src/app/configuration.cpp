@@ -112,8 +112,7 @@ class Section {
 std::string content_digest(const optics::Prescription& prescription) {
     Digest digest;
     const auto add_medium = [&](const optics::Medium& medium) {
-        digest.add(
-            fmt::format("{} {};", fmt::join(medium.wavelengths_um, " "), fmt::join(medium.indices, " ")));
+        digest.add(medium.dispersion_text() + ";");
     };
     add_medium(prescription.medium_before);
     for (const auto& surface : prescription.surfaces) {

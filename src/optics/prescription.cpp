@@ -2,6 +2,7 @@
 
 #include "core/error.hpp"
 #include "core/toml_reader.hpp"
+#include "core/units.hpp"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -15,10 +16,12 @@ namespace vkfv::optics {
 
 namespace {
 
-constexpr double wavelength_tolerance_um = 0.01; // beyond the tabulated range
 constexpr NumberRange index_range = {.minimum = 1, .maximum = 5};
+constexpr NumberRange abbe_range = {.minimum = 5, .maximum = 150}; // wide of every glass
 // Of any length; wide of every microscope, and far from where squares overflow.
 constexpr NumberRange length_range = {.minimum = 0, .maximum = 1e6};
+constexpr NumberRange offset_range = {.minimum = -length_range.maximum, .maximum = length_range.maximum};
+constexpr NumberRange tilt_range_deg = {.minimum = -360, .maximum = 360};
 
 std::filesystem::path asset_in(const std::filesystem::path& assets, const std::filesystem::path& folder,
                                const std::string& name) {
@@ -29,42 +32,104 @@ bool names_a_path(const std::string& name) {
     return name.ends_with(".toml");
 }
 
-Medium read_medium(const TomlTable& table, const std::string& name) {
-    Medium medium{.name = name,
-                  .wavelengths_um = table.numbers("wavelengths_um", NumberRange::positive()),
-                  .indices = table.numbers("indices", index_range)};
-    if (medium.wavelengths_um.empty() ||
-        std::adjacent_find(medium.wavelengths_um.begin(), medium.wavelengths_um.end(),
-                           [](double a, double b) { return a >= b; }) != medium.wavelengths_um.end()) {
+Medium read_table_medium(const TomlTable& table, const std::string& name, const std::string& source) {
+    auto wavelengths_um = table.numbers("wavelengths_um", NumberRange::positive());
+    auto indices = table.numbers("indices", index_range);
+    if (wavelengths_um.empty() ||
+        std::adjacent_find(wavelengths_um.begin(), wavelengths_um.end(),
+                           [](double a, double b) { return a >= b; }) != wavelengths_um.end()) {
         table.fail("wavelengths_um", "at least one wavelength in um, ascending", "Sort the wavelengths.");
     }
-    if (medium.indices.size() != medium.wavelengths_um.size()) {
-        table.fail("indices", fmt::format("{} indices, one a wavelength", medium.wavelengths_um.size()),
+    if (indices.size() != wavelengths_um.size()) {
+        table.fail("indices", fmt::format("{} indices, one a wavelength", wavelengths_um.size()),
                    "Give as many indices as wavelengths.");
     }
-    return medium;
+    return Medium::tabulated(name, std::move(wavelengths_um), std::move(indices), source);
 }
 
-Medium medium_named(const std::map<std::string, Medium>& media, const TomlTable& table,
-                    std::string_view key) {
+Medium read_formula_medium(const TomlTable& table, const std::string& name, const std::string& source) {
+    const std::vector<std::string> names(dispersion_formula_names.begin(), dispersion_formula_names.end());
+    const std::string chosen = table.choice("formula", names);
+    const auto formula = static_cast<DispersionFormula>(
+        1 + std::distance(names.begin(), std::find(names.begin(), names.end(), chosen)));
+    auto coefficients = table.numbers("coefficients");
+    if (coefficients.empty() || coefficients.size() > coefficient_count(formula)) {
+        table.fail("coefficients", fmt::format("1 to {} coefficients", coefficient_count(formula)),
+                   "Check the formula and its coefficients.");
+    }
+    const auto range_um = table.numbers("range_um", NumberRange::positive());
+    if (range_um.size() != 2 || range_um[0] >= range_um[1]) {
+        table.fail("range_um", "two wavelengths in um, ascending", "Give the ends of the range where it holds.");
+    }
+    return Medium::formula(name, formula, std::move(coefficients), range_um[0], range_um[1], source);
+}
+
+// [media.NAME]: by the key that tells its form, one of each medium.
+Medium read_medium(const TomlTable& table, const std::string& name, const std::string& default_source) {
+    const auto source = table.optional_string("source").value_or(default_source);
+    std::string form;
+    for (const std::string key : {"wavelengths_um", "nd", "index", "formula"}) {
+        if (table.has(key) && !std::exchange(form, key).empty()) {
+            table.fail(key, "one description of the medium", "Keep one of wavelengths_um, nd, index and formula.");
+        }
+    }
+    if (form == "nd") {
+        const double nd = table.number("nd", index_range);
+        return Medium::model(name, nd, table.number("vd", abbe_range), source);
+    }
+    if (form == "index") {
+        return Medium::constant(name, table.number("index", index_range), source);
+    }
+    if (form == "formula") {
+        return read_formula_medium(table, name, source);
+    }
+    return read_table_medium(table, name, source);
+}
+
+// The media of one prescription: its own, and those of catalogues.
+struct Media {
+    std::map<std::string, Medium> own;
+    const GlassCatalog& glasses;
+};
+
+Medium medium_named(const Media& media, const TomlTable& table, std::string_view key) {
     const auto name = table.optional_string(key);
     if (!name || *name == "air") {
         return Medium::air();
     }
-    const auto found = media.find(*name);
-    if (found == media.end()) {
-        std::vector<std::string> names = {"air"};
-        for (const auto& [known, medium] : media) {
-            names.push_back(known);
-        }
-        table.fail(key, fmt::format("a medium (one of {})", fmt::join(names, ", ")),
-                   fmt::format("Describe it in [media.{}], or correct its name.", *name));
+    if (const auto found = media.own.find(*name); found != media.own.end()) {
+        return found->second;
     }
-    return found->second;
+    if (auto found = media.glasses.find(*name)) {
+        return std::move(*found);
+    }
+    std::vector<std::string> names = {"air"};
+    for (const auto& [known, medium] : media.own) {
+        names.push_back(known);
+    }
+    table.fail(key, fmt::format("a medium (one of {}, or a glass of a catalogue)", fmt::join(names, ", ")),
+               remedy_for_unknown_glass(media.glasses, *name, names));
 }
 
-PrescribedSurface read_surface(const TomlTable& table, const std::map<std::string, Medium>& media) {
+CoordinateBreak read_coordinate_break(const TomlTable& table) {
+    const auto offset = [&](const char* key) { return table.optional_number(key, offset_range).value_or(0); };
+    const auto tilt = [&](const char* key) {
+        return table.optional_number(key, tilt_range_deg).value_or(0) * radians_per_degree;
+    };
+    return {.decentre_x = offset("decentre_x_mm"),
+            .decentre_y = offset("decentre_y_mm"),
+            .tilt_x = tilt("tilt_x_deg"),
+            .tilt_y = tilt("tilt_y_deg"),
+            .tilt_z = tilt("tilt_z_deg"),
+            .tilt_first = table.optional_boolean("tilt_first").value_or(false),
+            .thickness = offset("thickness_mm")};
+}
+
+PrescribedSurface read_surface(const TomlTable& table, const Media& media) {
     PrescribedSurface surface;
+    for (const auto& change : table.optional_tables("coordinate_breaks")) {
+        surface.breaks.push_back(read_coordinate_break(change));
+    }
     if (table.has("radius_mm")) {
         const double radius = table.number("radius_mm");
         if (table.has("curvature_per_mm")) {
@@ -93,48 +158,45 @@ PrescribedSurface read_surface(const TomlTable& table, const std::map<std::strin
     return surface;
 }
 
-} // namespace
+Prescription read_prescription(const TomlTable& root, const std::filesystem::path& file,
+                               const GlassCatalog& glasses) {
+    Prescription prescription;
+    prescription.file = file;
+    prescription.name = file.stem().string();
+    prescription.title = root.optional_string("title").value_or(prescription.name);
+    prescription.source = root.string("source");
+    prescription.licence = root.string("licence");
+    prescription.source_distance = root.optional_number("source_distance_mm", length_range);
 
-Medium Medium::air() {
-    return {.name = "air", .wavelengths_um = {}, .indices = {1.0}};
-}
-
-double Medium::index(double wavelength_um) const {
-    if (wavelengths_um.empty()) {
-        return indices.front();
+    Media media{.own = {}, .glasses = glasses};
+    if (const auto tables = root.optional_table("media")) {
+        for (const auto& key : tables->keys()) {
+            media.own[key] = read_medium(tables->table(key), key, prescription.source);
+        }
     }
-    if (!(wavelength_um >= wavelengths_um.front() - wavelength_tolerance_um &&
-          wavelength_um <= wavelengths_um.back() + wavelength_tolerance_um)) {
-        throw InputError({.where = {},
-                          .key = fmt::format("index of {}", name),
-                          .found = fmt::format("{} um", wavelength_um),
-                          .expected = fmt::format("a wavelength within 0.01 um of {} um to {} um",
-                                                  wavelengths_um.front(), wavelengths_um.back()),
-                          .remedy = "Choose such a wavelength, or add indices to the prescription."});
-    }
-    // The three nearest of an ascending table are neighbours.
-    const std::size_t count = std::min<std::size_t>(3, wavelengths_um.size());
-    std::size_t first = 0;
-    while (first + count < wavelengths_um.size() &&
-           wavelength_um - wavelengths_um[first] > wavelengths_um[first + count] - wavelength_um) {
-        ++first;
-    }
-    // Cauchy's formula is the polynomial in 1 / lambda^2 through the points; in Lagrange's form it is exact
-    // there.
-    const auto abscissa = [&](std::size_t i) { return 1 / (wavelengths_um[i] * wavelengths_um[i]); };
-    const double x = 1 / (wavelength_um * wavelength_um);
-    double sum = 0;
-    for (std::size_t i = first; i < first + count; ++i) {
-        double weight = 1;
-        for (std::size_t j = first; j < first + count; ++j) {
-            if (j != i) {
-                weight *= (x - abscissa(j)) / (abscissa(i) - abscissa(j));
+    prescription.medium_before = medium_named(media, root, "medium_before");
+    const auto tables = root.tables("surface");
+    bool has_aperture_stop = false;
+    bool has_field_stop = false;
+    for (std::size_t i = 0; i < tables.size(); ++i) {
+        auto surface = read_surface(tables[i], media);
+        surface.thickness = i + 1 < tables.size()
+                                ? tables[i].number("thickness_mm", length_range)
+                                : tables[i].optional_number("thickness_mm", length_range).value_or(0);
+        for (const auto& [role, seen] :
+             {std::pair{PrescribedSurface::Role::aperture_stop, &has_aperture_stop},
+              std::pair{PrescribedSurface::Role::field_stop, &has_field_stop}}) {
+            if (surface.role == role && std::exchange(*seen, true)) {
+                tables[i].fail("role", "one surface of this role", "Mark the one that limits the light.");
             }
         }
-        sum += weight * indices[i];
+        prescription.surfaces.push_back(std::move(surface));
     }
-    return sum;
+    root.reject_unknown_keys();
+    return prescription;
 }
+
+} // namespace
 
 Prescription Prescription::reversed() const {
     Prescription result = *this;
@@ -183,7 +245,7 @@ std::optional<std::filesystem::path> find_prescription(const std::string& name,
 }
 
 Prescription load_prescription(const std::string& name, const std::filesystem::path& folder,
-                               const std::filesystem::path& base) {
+                               const std::filesystem::path& base, const GlassCatalog& glasses) {
     const auto file = find_prescription(name, folder, base);
     if (!file) {
         throw InputError({.where = {.file = base},
@@ -194,41 +256,12 @@ Prescription load_prescription(const std::string& name, const std::filesystem::p
                                                                        folder.generic_string(), name),
                           .remedy = "Correct the name, or give the path of a prescription (.toml)."});
     }
-    const TomlTable root = TomlTable::open(*file);
-    Prescription prescription;
-    prescription.file = *file;
-    prescription.name = file->stem().string();
-    prescription.title = root.optional_string("title").value_or(prescription.name);
-    prescription.source = root.string("source");
-    prescription.licence = root.string("licence");
-    prescription.source_distance = root.optional_number("source_distance_mm", length_range);
+    return read_prescription(TomlTable::open(*file), *file, glasses);
+}
 
-    std::map<std::string, Medium> media;
-    if (const auto tables = root.optional_table("media")) {
-        for (const auto& key : tables->keys()) {
-            media[key] = read_medium(tables->table(key), key);
-        }
-    }
-    prescription.medium_before = medium_named(media, root, "medium_before");
-    const auto tables = root.tables("surface");
-    bool has_aperture_stop = false;
-    bool has_field_stop = false;
-    for (std::size_t i = 0; i < tables.size(); ++i) {
-        auto surface = read_surface(tables[i], media);
-        surface.thickness = i + 1 < tables.size()
-                                ? tables[i].number("thickness_mm", length_range)
-                                : tables[i].optional_number("thickness_mm", length_range).value_or(0);
-        for (const auto& [role, seen] :
-             {std::pair{PrescribedSurface::Role::aperture_stop, &has_aperture_stop},
-              std::pair{PrescribedSurface::Role::field_stop, &has_field_stop}}) {
-            if (surface.role == role && std::exchange(*seen, true)) {
-                tables[i].fail("role", "one surface of this role", "Mark the one that limits the light.");
-            }
-        }
-        prescription.surfaces.push_back(std::move(surface));
-    }
-    root.reject_unknown_keys();
-    return prescription;
+Prescription parse_prescription(std::string_view text, const std::filesystem::path& file,
+                                const GlassCatalog& glasses) {
+    return read_prescription(TomlTable::parse(text, file), file, glasses);
 }
 
 } // namespace vkfv::optics

@@ -1,12 +1,14 @@
 // Lens prescriptions: the tables of surfaces that assets/ holds as TOML.
 #pragma once
 
+#include "optics/glass_catalog.hpp"
 #include "optics/medium.hpp"
 
 #include <array>
 #include <filesystem>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 namespace vkfv::optics {
@@ -57,8 +59,14 @@ std::optional<std::filesystem::path> find_prescription(const std::string& name,
                                                        const std::filesystem::path& folder,
                                                        const std::filesystem::path& base);
 
-// Reads the prescription that find_prescription finds. Throws InputError.
+// Reads the prescription that find_prescription finds. A medium is looked for in the file's own [media], then in
+// `glasses`. Throws InputError.
 Prescription load_prescription(const std::string& name, const std::filesystem::path& folder,
-                               const std::filesystem::path& base);
+                               const std::filesystem::path& base,
+                               const GlassCatalog& glasses = GlassCatalog::builtin());
+
+// The same of a prescription's text; `file` stands for it in messages.
+Prescription parse_prescription(std::string_view text, const std::filesystem::path& file,
+                                const GlassCatalog& glasses = GlassCatalog::builtin());
 
 } // namespace vkfv::optics
