@@ -65,6 +65,8 @@ Hit no_hit() {
 
 #ifdef VKFV_RAY_QUERY
 #include "device/specimen_ray_query.glsl"
+#elif defined(VKFV_BVH)
+#include "device/specimen_bvh.glsl"
 #else
 #include "device/specimen_quadtree.glsl"
 #endif

@@ -1,22 +1,7 @@
 // Triangles, and analytic surfaces as procedural boxes, through VK_KHR_ray_query.
+#include "device/specimen_primitives.glsl"
 
-layout(set = 0, binding = 10, scalar) readonly buffer Vertices { real vertices[]; };  // three a vertex, mm
-layout(set = 0, binding = 11, scalar) readonly buffer Triangles { uint triangles[]; }; // three a triangle
 layout(set = 0, binding = 12) uniform accelerationStructureEXT specimen_structure;
-
-struct SurfaceTile {
-    real3 lower; // its box, mm, as the structure's builder had it
-    real3 upper;
-};
-layout(set = 0, binding = 13, scalar) readonly buffer Tiles { SurfaceTile tiles[]; };
-
-// A ray aimed at an edge may slip between its triangles: it is tried again beside itself by this many roundings.
-const int RAY_QUERY_TRIES = 4;
-
-real3 triangle_vertex(uint triangle, uint corner) {
-    uint first = 3u * triangles[3u * triangle + corner];
-    return real3(vertices[first], vertices[first + 1u], vertices[first + 2u]);
-}
 
 Hit meet_triangles(real3 origin, real3 direction, RayInterval over) {
     rayQueryEXT query;
@@ -26,17 +11,9 @@ Hit meet_triangles(real3 origin, real3 direction, RayInterval over) {
     }
     Hit hit = no_hit();
     if (rayQueryGetIntersectionTypeEXT(query, true) == gl_RayQueryCommittedIntersectionTriangleEXT) {
-        uint triangle = uint(rayQueryGetIntersectionPrimitiveIndexEXT(query, true));
-        vec2 barycentrics = rayQueryGetIntersectionBarycentricsEXT(query, true);
-        real3 corner = triangle_vertex(triangle, 0u);
-        real3 edge_1 = triangle_vertex(triangle, 1u) - corner;
-        real3 edge_2 = triangle_vertex(triangle, 2u) - corner;
-        real3 normal = normalize(cross(edge_1, edge_2));
-        bool turn = specimen_kind == SPECIMEN_MESH ? dot(normal, direction) > real(0.0) : normal.z < real(0.0);
-        hit.found = 1u;
-        hit.distance = rayQueryGetIntersectionTEXT(query, true);
-        hit.position = corner + barycentrics.x * edge_1 + barycentrics.y * edge_2;
-        hit.normal = turn ? -normal : normal;
+        hit = triangle_hit(uint(rayQueryGetIntersectionPrimitiveIndexEXT(query, true)),
+                           rayQueryGetIntersectionBarycentricsEXT(query, true), rayQueryGetIntersectionTEXT(query, true),
+                           direction);
     }
     return hit;
 }
@@ -48,48 +25,12 @@ Hit meet_tiles(SpecimenRay ray, real rounding) {
     Hit hit = no_hit();
     hit.distance = ray.over.stop;
     while (rayQueryProceedEXT(query)) {
-        SurfaceTile tile = tiles[rayQueryGetIntersectionPrimitiveIndexEXT(query, false)];
-        RayInterval inside = ray.over;
-        inside = clip_interval(inside, ray.origin.x, ray.direction.x, tile.lower.x - rounding, tile.upper.x + rounding);
-        inside = clip_interval(inside, ray.origin.y, ray.direction.y, tile.lower.y - rounding, tile.upper.y + rounding);
-        // A ray from beside may be below: the march over all of it knows from where it comes.
-        inside.start = ray.beside ? real(0.0) : inside.start;
-        inside.stop = ray.beside ? ray.over.stop : inside.stop;
-        Hit candidate = march_surface(specimen, ray.origin, ray.direction, inside.start, inside.stop);
-        // The box may lie before the ray's start, and a march knows nothing of what was met in other boxes.
-        if (inside.start <= inside.stop && candidate.found == 1u && candidate.distance < hit.distance) {
+        Hit candidate = tile_hit(tiles[rayQueryGetIntersectionPrimitiveIndexEXT(query, false)], ray, rounding);
+        // A march knows nothing of what was met in other boxes.
+        if (candidate.found == 1u && candidate.distance < hit.distance) {
             hit = candidate;
             rayQueryGenerateIntersectionEXT(query, candidate.distance);
         }
     }
-    return hit;
-}
-
-Hit specimen_hit(real3 origin, real3 direction) {
-    real rounding = specimen_rounding();
-    SpecimenRay ray = cut_to_specimen(origin, direction, rounding, rounding);
-    Hit hit = no_hit();
-    if (ray.over.start <= ray.over.stop) {
-        if (specimen_kind == SPECIMEN_ANALYTIC) {
-            hit = meet_tiles(ray, rounding);
-        } else {
-            // A ray that is above a height field cannot meet it from below, unless it starts there by rounding.
-            bool above = specimen_kind == SPECIMEN_FACETS && !ray.beside;
-            real aside = real(0.0);
-            bool open = true;
-            for (int i = 0; i < RAY_QUERY_TRIES && open; ++i) {
-                // Askew to rows, columns and diagonals, and back over the footprint at its border.
-                real3 nudge = real3(ray.origin.x > real(0.0) ? -aside : aside,
-                                    ray.origin.y > real(0.0) ? real(-0.6) * aside : real(0.6) * aside, real(0.0));
-                hit = meet_triangles(ray.origin + nudge, direction, ray.over);
-                bool from_below = hit.found == 1u && above && dot(hit.normal, direction) > real(0.0);
-                open = from_below || (hit.found == 0u && ray.through);
-                ray.over.start = from_below ? hit.distance : ray.over.start;
-                aside = from_below ? aside : aside + rounding;
-                hit.found = from_below ? 0u : hit.found;
-            }
-        }
-    }
-    hit.distance = max(hit.distance + ray.advance, real(0.0));
     return hit;
 }

@@ -37,7 +37,7 @@ std::string text_of(const vulkan::DeviceReport& device) {
                         static_cast<double>(device.max_storage_buffer_bytes) / bytes_per_gib,
                         device.subgroup_size);
     text += device.lacking.empty()
-                ? fmt::format("     usable; traversals: quadtree{}\n", device.ray_query ? ", ray-query" : "")
+                ? fmt::format("     usable; traversals: quadtree, bvh{}\n", device.ray_query ? ", ray-query" : "")
                 : fmt::format("     not usable, lacks: {}\n", fmt::join(device.lacking, ", "));
     return text;
 }

@@ -410,12 +410,9 @@ void read_trace(const TomlTable& root, Configuration& configuration) {
         section.choice("emission", {"directed", "analog"}, "directed") == "directed";
     const std::string traversal =
         section.choice("traversal", {"auto", "ray-query", "quadtree", "bvh"}, "auto", Influence::nothing);
-    if (traversal == "bvh") {
-        table.fail("traversal", "\"auto\", \"ray-query\" or \"quadtree\"; bvh is not available yet",
-                   "Choose traversal = \"auto\".");
-    }
     trace.traversal = traversal == "ray-query"  ? trace::Traversal::ray_query
                       : traversal == "quadtree" ? trace::Traversal::quadtree
+                      : traversal == "bvh"      ? trace::Traversal::bvh
                                                 : trace::Traversal::automatic;
     trace.batch = static_cast<std::uint64_t>(section.integer("batch", 0, most_rays, 0, Influence::nothing));
     if (const auto device = table.optional_string("device")) {

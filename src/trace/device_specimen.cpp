@@ -2,6 +2,7 @@
 
 #include "core/error.hpp"
 #include "specimen/description.hpp"
+#include "trace/bounding_volume_hierarchy.hpp"
 #include "trace/pyramid.hpp"
 
 #include <fmt/format.h>
@@ -21,7 +22,7 @@ constexpr std::uint32_t heights_slot = 8;
 constexpr std::uint32_t pyramid_slot = 9;
 constexpr std::uint32_t vertices_slot = 10;
 constexpr std::uint32_t triangles_slot = 11;
-constexpr std::uint32_t structure_slot = 12;
+constexpr std::uint32_t structure_slot = 12; // or the nodes of our own hierarchy
 constexpr std::uint32_t tiles_slot = 13;
 
 // A slot that the chosen kind of specimen leaves unread must be bound all the same.
@@ -86,6 +87,17 @@ Triangulation triangulate(const specimen::HeightField& field) {
     return result;
 }
 
+// result[k] = values[order[k]]
+template <class Value>
+std::vector<Value> in_order(const std::vector<Value>& values, const std::vector<std::uint32_t>& order) {
+    std::vector<Value> result;
+    result.reserve(values.size());
+    for (const std::uint32_t index : order) {
+        result.push_back(values[index]);
+    }
+    return result;
+}
+
 std::vector<glm::uvec3> in_median_order(const std::vector<glm::vec3>& vertices,
                                         const std::vector<glm::uvec3>& triangles) {
     std::vector<glm::vec3> centres;
@@ -93,12 +105,19 @@ std::vector<glm::uvec3> in_median_order(const std::vector<glm::vec3>& vertices,
     for (const glm::uvec3& triangle : triangles) {
         centres.push_back((vertices[triangle.x] + vertices[triangle.y] + vertices[triangle.z]) / 3.0F);
     }
-    std::vector<glm::uvec3> result;
-    result.reserve(triangles.size());
-    for (const std::uint32_t index : vulkan::median_order(centres)) {
-        result.push_back(triangles[index]);
+    return in_order(triangles, vulkan::median_order(centres));
+}
+
+std::vector<vulkan::Box> boxes_of(const std::vector<glm::vec3>& vertices, const std::vector<glm::uvec3>& triangles) {
+    std::vector<vulkan::Box> boxes;
+    boxes.reserve(triangles.size());
+    for (const glm::uvec3& triangle : triangles) {
+        const glm::vec3& a = vertices[triangle.x];
+        const glm::vec3& b = vertices[triangle.y];
+        const glm::vec3& c = vertices[triangle.z];
+        boxes.push_back({glm::min(a, glm::min(b, c)), glm::max(a, glm::max(b, c))});
     }
-    return result;
+    return boxes;
 }
 
 // Blocks of the pyramid as boxes, in median order.
@@ -127,12 +146,7 @@ std::vector<vulkan::Box> boxes_of(const Pyramid& pyramid, const specimen::Analyt
             centres.push_back(0.5F * (boxes.back().minimum + boxes.back().maximum));
         }
     }
-    std::vector<vulkan::Box> ordered;
-    ordered.reserve(boxes.size());
-    for (const std::uint32_t index : vulkan::median_order(centres)) {
-        ordered.push_back(boxes[index]);
-    }
-    return ordered;
+    return in_order(boxes, vulkan::median_order(centres));
 }
 
 // Makes the buffers of one specimen, each no larger than a kernel may reach.
@@ -194,6 +208,21 @@ std::vector<glm::uvec3> upload_triangles(Uploader& uploader, const std::vector<g
     return ordered;
 }
 
+// Vertices, triangles in the order of their hierarchy, and its nodes.
+void upload_hierarchy(Uploader& uploader, const std::vector<glm::vec3>& vertices,
+                      const std::vector<glm::uvec3>& triangles) {
+    uploader.expect("vertices", vertices.size() * sizeof(glm::vec3));
+    uploader.expect("triangles", triangles.size() * sizeof(glm::uvec3));
+    const BoundingVolumeHierarchy hierarchy = build_hierarchy(boxes_of(vertices, triangles), hierarchy_leaf_size);
+    uploader.put(vertices_slot, "vertices", vertices);
+    uploader.put(triangles_slot, "triangles", in_order(triangles, hierarchy.order));
+    uploader.put(structure_slot, "hierarchy of boxes", hierarchy.nodes);
+}
+
+const char* name_of(Traversal traversal) {
+    return traversal == Traversal::ray_query ? "ray-query" : traversal == Traversal::bvh ? "bvh" : "quadtree";
+}
+
 } // namespace
 
 Traversal choose_traversal(const vulkan::DeviceReport& device, const specimen::Specimen& specimen,
@@ -205,31 +234,25 @@ Traversal choose_traversal(const vulkan::DeviceReport& device, const specimen::S
              "trace.traversal",
              "quadtree",
              "a specimen that is a height field; this one is a mesh of any triangles",
-             "Use traversal = \"auto\" or \"ray-query\", or give the specimen as a height map image."});
+             "Use traversal = \"auto\", \"bvh\" or \"ray-query\", or give the specimen as a height map image."});
     }
-    const bool needed = mesh || asked == Traversal::ray_query;
-    if (needed && !device.ray_query) {
-        throw DeviceError(fmt::format(
-            "{} has no VK_KHR_ray_query, which {}; {}", device.name,
-            mesh ? "a specimen made of a mesh needs" : "traversal = \"ray-query\" asks for",
-            mesh ? "use another device (--devices lists them) or give the specimen as a height map image"
-                 : "use another device (--devices lists them) or traversal = \"quadtree\""));
-    }
-    if (mesh) {
-        reason = "ray-query (a mesh needs it)";
-        return Traversal::ray_query;
+    if (asked == Traversal::ray_query && !device.ray_query) {
+        throw DeviceError(fmt::format("{} has no VK_KHR_ray_query, which traversal = \"ray-query\" asks for; use "
+                                      "another device (--devices lists them) or traversal = \"{}\"",
+                                      device.name, mesh ? "bvh" : "quadtree"));
     }
     if (asked != Traversal::automatic) {
-        reason = asked == Traversal::ray_query ? "ray-query (as asked)" : "quadtree (as asked)";
+        reason = fmt::format("{} (as asked)", name_of(asked));
         return asked;
     }
+    const Traversal own = mesh ? Traversal::bvh : Traversal::quadtree;
     if (!device.ray_query) {
-        reason = "quadtree (the device has no ray query)";
-        return Traversal::quadtree;
+        reason = fmt::format("{} (the device has no ray query)", name_of(own));
+        return own;
     }
     if (device.type == "CPU") {
-        reason = "quadtree (faster than ray query on a CPU)";
-        return Traversal::quadtree;
+        reason = fmt::format("{} (faster than ray query on a CPU)", name_of(own));
+        return own;
     }
     reason = "ray-query (the device has it)";
     return Traversal::ray_query;
@@ -242,6 +265,7 @@ DeviceSpecimen::DeviceSpecimen(const vulkan::Device& device, const specimen::Spe
         throw std::logic_error("DeviceSpecimen takes a traversal that has been chosen");
     }
     const bool ray_query = traversal == Traversal::ray_query;
+    const bool bvh = traversal == Traversal::bvh;
     Uploader uploader(device, buffers_);
     if (const auto* field = std::get_if<specimen::HeightField>(&specimen.geometry)) {
         if (ray_query) {
@@ -249,6 +273,9 @@ DeviceSpecimen::DeviceSpecimen(const vulkan::Device& device, const specimen::Spe
             const auto triangles = upload_triangles(uploader, surface.vertices, surface.triangles);
             structure_ = std::make_unique<vulkan::AccelerationStructure>(
                 vulkan::AccelerationStructure::of_triangles(device, surface.vertices, triangles));
+        } else if (bvh) {
+            const Triangulation surface = triangulate(*field);
+            upload_hierarchy(uploader, surface.vertices, surface.triangles);
         } else {
             uploader.expect("pyramid of heights",
                             pyramid_bytes(field->heights.columns - 1, field->heights.rows - 1));
@@ -265,20 +292,30 @@ DeviceSpecimen::DeviceSpecimen(const vulkan::Device& device, const specimen::Spe
             uploader.put(tiles_slot, "tiles", boxes);
             structure_ = std::make_unique<vulkan::AccelerationStructure>(
                 vulkan::AccelerationStructure::of_boxes(device, boxes));
+        } else if (bvh) {
+            const std::vector<vulkan::Box> boxes = boxes_of(pyramid, *surface);
+            // A march costs far more than a box.
+            const BoundingVolumeHierarchy hierarchy = build_hierarchy(boxes, 1);
+            uploader.put(tiles_slot, "tiles", in_order(boxes, hierarchy.order));
+            uploader.put(structure_slot, "hierarchy of boxes", hierarchy.nodes);
         } else {
             uploader.put_pyramid(pyramid);
         }
     } else {
         const auto& mesh = std::get<specimen::Mesh>(specimen.geometry);
-        if (!ray_query) {
-            throw std::logic_error("a mesh is traced by ray query");
+        if (traversal == Traversal::quadtree) {
+            throw std::logic_error("a mesh is not traced by the quadtree");
         }
-        const auto triangles = upload_triangles(uploader, mesh.vertices, mesh.triangles);
-        structure_ = std::make_unique<vulkan::AccelerationStructure>(
-            vulkan::AccelerationStructure::of_triangles(device, mesh.vertices, triangles));
+        if (bvh) {
+            upload_hierarchy(uploader, mesh.vertices, mesh.triangles);
+        } else {
+            const auto triangles = upload_triangles(uploader, mesh.vertices, mesh.triangles);
+            structure_ = std::make_unique<vulkan::AccelerationStructure>(
+                vulkan::AccelerationStructure::of_triangles(device, mesh.vertices, triangles));
+        }
     }
     uploader.leave_unread(heights_slot);
-    if (ray_query) {
+    if (ray_query || bvh) {
         uploader.leave_unread(vertices_slot);
         uploader.leave_unread(triangles_slot);
         uploader.leave_unread(tiles_slot);

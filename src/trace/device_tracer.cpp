@@ -7,10 +7,13 @@
 #include "trace/ledger.hpp"
 #include "vulkan/kernel.hpp"
 
+#include "spirv/forward_illumination_bvh.h"
 #include "spirv/forward_illumination_quadtree.h"
 #include "spirv/forward_illumination_ray_query.h"
+#include "spirv/forward_imaging_bvh.h"
 #include "spirv/forward_imaging_quadtree.h"
 #include "spirv/forward_imaging_ray_query.h"
+#include "spirv/probe_paths_bvh.h"
 #include "spirv/probe_paths_quadtree.h"
 #include "spirv/probe_paths_ray_query.h"
 
@@ -90,7 +93,14 @@ class DeviceScene {
         return all;
     }
 
-    bool ray_query() const { return traversal == Traversal::ray_query; }
+    // The variant of a kernel for the traversal.
+    std::span<const std::uint32_t> variant(std::span<const std::uint32_t> by_quadtree,
+                                           std::span<const std::uint32_t> by_ray_query,
+                                           std::span<const std::uint32_t> by_bvh) const {
+        return traversal == Traversal::ray_query ? by_ray_query
+               : traversal == Traversal::bvh     ? by_bvh
+                                                 : by_quadtree;
+    }
     bool software() const { return device.report().type == "CPU"; }
 
     const optics::Instrument& instrument;
@@ -116,13 +126,12 @@ class ForwardTrace {
           pixels_(scene.device, pixel_count() * sizeof(std::uint64_t)),
           fates_(scene.device, ledger_slot_count(scene.instrument) * sizeof(std::uint64_t)),
           illumination_(scene.device, "forward_illumination",
-                        scene.ray_query() ? std::span<const std::uint32_t>(forward_illumination_ray_query)
-                                          : std::span<const std::uint32_t>(forward_illumination_quadtree),
+                        scene.variant(forward_illumination_quadtree, forward_illumination_ray_query,
+                                      forward_illumination_bvh),
                         scene.declarations({2, 4, 5}), sizeof(Batch),
                         scene.kernel_constants(stop_illumination)),
           imaging_(scene.device, "forward_imaging",
-                   scene.ray_query() ? std::span<const std::uint32_t>(forward_imaging_ray_query)
-                                     : std::span<const std::uint32_t>(forward_imaging_quadtree),
+                   scene.variant(forward_imaging_quadtree, forward_imaging_ray_query, forward_imaging_bvh),
                    scene.declarations({2, 3, 4, 5}), 0, scene.kernel_constants(stop_imaging)) {}
 
     std::size_t pixel_count() const {
@@ -252,8 +261,7 @@ std::vector<PathEnd> device_paths(const optics::Instrument& instrument, const sp
     scene.set_exposure(focal_height, image);
     const vulkan::Buffer ends(scene.device, count * sizeof(DevicePathEnd));
     const vulkan::Kernel kernel(scene.device, "probe_paths",
-                                scene.ray_query() ? std::span<const std::uint32_t>(probe_paths_ray_query)
-                                                  : std::span<const std::uint32_t>(probe_paths_quadtree),
+                                scene.variant(probe_paths_quadtree, probe_paths_ray_query, probe_paths_bvh),
                                 scene.declarations({6}), sizeof(Batch), scene.kernel_constants(0));
     vulkan::Commands commands(scene.device);
     commands.dispatch(kernel, scene.bindings({{6, &ends}}), 

@@ -12,7 +12,7 @@
 
 namespace vkfv::trace {
 
-enum class Traversal { automatic, ray_query, quadtree };
+enum class Traversal { automatic, ray_query, quadtree, bvh };
 
 struct TraceOptions {
     std::uint64_t rays = 0; // launched per image

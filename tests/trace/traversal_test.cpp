@@ -4,6 +4,7 @@
 #include "core/error.hpp"
 #include "specimen/description.hpp"
 #include "specimen/intersector.hpp"
+#include "spirv/probe_hits_bvh.h"
 #include "spirv/probe_hits_quadtree.h"
 #include "spirv/probe_hits_ray_query.h"
 #include "trace/device_records.hpp"
@@ -45,6 +46,8 @@ const vulkan::Device& device() {
     return shared;
 }
 
+constexpr Traversal every_traversal[] = {Traversal::quadtree, Traversal::ray_query, Traversal::bvh};
+
 std::vector<Hit> meet(const specimen::Specimen& specimen, Traversal traversal,
                       const std::vector<ProbeRay>& rays) {
     const DeviceSpecimen on_device(device(), specimen, traversal);
@@ -64,9 +67,10 @@ std::vector<Hit> meet(const specimen::Specimen& specimen, Traversal traversal,
     bindings.push_back({1, &uniform});
     bindings.push_back({6, &origins});
     bindings.push_back({7, &hits});
-    const std::span<const std::uint32_t> spirv = traversal == Traversal::ray_query
-                                                     ? std::span<const std::uint32_t>(probe_hits_ray_query)
-                                                     : std::span<const std::uint32_t>(probe_hits_quadtree);
+    const std::span<const std::uint32_t> spirv =
+        traversal == Traversal::ray_query ? std::span<const std::uint32_t>(probe_hits_ray_query)
+        : traversal == Traversal::bvh     ? std::span<const std::uint32_t>(probe_hits_bvh)
+                                          : std::span<const std::uint32_t>(probe_hits_quadtree);
     const auto count = static_cast<std::uint32_t>(rays.size());
     const vulkan::Kernel kernel(device(), "probe_hits", spirv, declarations, sizeof count,
                                 on_device.constants());
@@ -255,39 +259,48 @@ specimen::Specimen shifted(const specimen::Specimen& surface, double height) {
     return result;
 }
 
-TEST(Traversal, RayQueryAndQuadtreeAgreeOnARoughSurface) {
+TEST(Traversal, AllAgreeOnARoughSurface) {
     const specimen::Intersector reference(rough());
     const auto rays = rays_from_top(rough(), 1'000'000, 0.4, 0.002, 1);
     const auto quadtree = meet(rough(), Traversal::quadtree, rays);
     const auto ray_query = meet(rough(), Traversal::ray_query, rays);
-    const Comparison seen = compare(reference, rays, quadtree, ray_query, nm);
-    EXPECT_GT(seen.both, rays.size() * 9 / 10);
-    EXPECT_EQ(seen.one_only, 0u);
-    EXPECT_EQ(seen.apart, 0u);
-    EXPECT_LE(static_cast<double>(seen.for_rounding), share_for_rounding * static_cast<double>(rays.size()));
-    // The distance is as much longer than the height as the steepest slope against the flattest ray makes it.
-    EXPECT_LT(seen.largest_distance, 4 * nm);
-    // Within two roundings of the edges, 3.4 pitches of which belong to each cell, either facet is right.
-    EXPECT_LT(static_cast<double>(seen.turned),
-              3.4 * 4 * rounding / (0.2 / 511) * static_cast<double>(rays.size()));
-    RecordProperty("for_rounding", std::to_string(seen.for_rounding));
-    RecordProperty("largest_height_nm", std::to_string(seen.largest_height / nm));
+    const auto bvh = meet(rough(), Traversal::bvh, rays);
+    for (const auto& [name, seen] :
+         {std::pair("quadtree, ray query", compare(reference, rays, quadtree, ray_query, nm)),
+          std::pair("quadtree, bvh", compare(reference, rays, quadtree, bvh, nm)),
+          std::pair("ray query, bvh", compare(reference, rays, ray_query, bvh, nm))}) {
+        SCOPED_TRACE(name);
+        EXPECT_GT(seen.both, rays.size() * 9 / 10);
+        EXPECT_EQ(seen.one_only, 0u);
+        EXPECT_EQ(seen.apart, 0u);
+        EXPECT_LE(static_cast<double>(seen.for_rounding),
+                  share_for_rounding * static_cast<double>(rays.size()));
+        // The distance is as much longer than the height as the steepest slope against the flattest ray makes it.
+        EXPECT_LT(seen.largest_distance, 4 * nm);
+        // Within two roundings of the edges, 3.4 pitches of which belong to each cell, either facet is right.
+        EXPECT_LT(static_cast<double>(seen.turned),
+                  3.4 * 4 * rounding / (0.2 / 511) * static_cast<double>(rays.size()));
+        RecordProperty(std::string(name) + " for_rounding", std::to_string(seen.for_rounding));
+        RecordProperty(std::string(name) + " largest_height_nm", std::to_string(seen.largest_height / nm));
+        RecordProperty(std::string(name) + " largest_distance_nm", std::to_string(seen.largest_distance / nm));
+    }
 }
 
 TEST(Traversal, AShiftOfThreeNanometresIsRejected) {
     const specimen::Intersector reference(rough());
     const auto rays = rays_from_top(rough(), 2'000, 0.4, 0, 2);
     const auto quadtree = meet(rough(), Traversal::quadtree, rays);
-    const auto ray_query = meet(shifted(rough(), 3 * nm), Traversal::ray_query, rays);
-    const Comparison seen = compare(reference, rays, quadtree, ray_query, nm);
-    EXPECT_GT(seen.apart, rays.size() * 9 / 10);
+    for (const Traversal traversal : {Traversal::ray_query, Traversal::bvh}) {
+        const auto moved = meet(shifted(rough(), 3 * nm), traversal, rays);
+        EXPECT_GT(compare(reference, rays, quadtree, moved, nm).apart, rays.size() * 9 / 10);
+    }
 }
 
-TEST(Traversal, BothAgreeWithTheHostsReferenceInDouble) {
+TEST(Traversal, EachAgreesWithTheHostsReferenceInDouble) {
     const specimen::Intersector reference(rough());
     const auto rays = rays_from_top(rough(), 100'000, 0.4, 0.002, 3);
     const auto expected = meet(reference, rays);
-    for (const Traversal traversal : {Traversal::quadtree, Traversal::ray_query}) {
+    for (const Traversal traversal : every_traversal) {
         const Comparison seen = compare(reference, rays, meet(rough(), traversal, rays), expected, nm);
         EXPECT_GT(seen.both, rays.size() * 9 / 10);
         EXPECT_EQ(seen.one_only + seen.apart, 0u);
@@ -304,12 +317,14 @@ TEST(Traversal, ScatteredLightIsMetAlike) {
     const auto rays = scattered_rays(meet(rough(), Traversal::quadtree, down), 4);
     const auto quadtree = meet(rough(), Traversal::quadtree, rays);
     const auto ray_query = meet(rough(), Traversal::ray_query, rays);
+    const auto bvh = meet(rough(), Traversal::bvh, rays);
     const auto expected = meet(reference, rays);
     // Few leave so flat that they meet the surface again; but some must, or nothing is tested.
     EXPECT_GT(compare(reference, rays, quadtree, ray_query, nm).both, rays.size() / 100);
     for (const Comparison& seen :
          {compare(reference, rays, quadtree, ray_query, nm), compare(reference, rays, quadtree, expected, nm),
-          compare(reference, rays, ray_query, expected, nm)}) {
+          compare(reference, rays, ray_query, expected, nm), compare(reference, rays, bvh, expected, nm),
+          compare(reference, rays, bvh, quadtree, nm), compare(reference, rays, bvh, ray_query, nm)}) {
         EXPECT_EQ(seen.one_only, 0u);
         EXPECT_EQ(seen.apart, 0u);
         EXPECT_LE(static_cast<double>(seen.for_rounding),
@@ -327,7 +342,7 @@ TEST(Traversal, SteepLightLeavesTheSurface) {
             rays.push_back({physics::f32::scatter_origin(hit), glm::vec3(0.0F, 0.28F, 0.96F)});
         }
     }
-    for (const Traversal traversal : {Traversal::quadtree, Traversal::ray_query}) {
+    for (const Traversal traversal : every_traversal) {
         const auto hits = meet(rough(), traversal, rays);
         EXPECT_EQ(std::ranges::count(hits, 1u, &Hit::found), 0);
     }
@@ -356,7 +371,7 @@ TEST(Traversal, NoRayAtAVertexOrAnEdgeIsLost) {
                 }
             }
         }
-        for (const Traversal traversal : {Traversal::quadtree, Traversal::ray_query}) {
+        for (const Traversal traversal : every_traversal) {
             const auto hits = meet(surface, traversal, rays);
             EXPECT_EQ(std::ranges::count(hits, 0u, &Hit::found), 0);
             EXPECT_TRUE(std::ranges::all_of(hits, [](const Hit& hit) { return hit.normal.z > 0; }));
@@ -482,17 +497,18 @@ TEST_P(FacetsAndFunction, AgreeWithinTheInterpolationsBound) {
     const auto on_facets = meet(facets, Traversal::quadtree, rays);
     const auto by_march = meet(function, Traversal::quadtree, rays);
     const auto by_boxes = meet(function, Traversal::ray_query, rays);
+    const auto by_hierarchy = meet(function, Traversal::bvh, rays);
     const auto moved = meet(shifted(facets, 3 * nm), Traversal::quadtree, rays);
 
-    for (const auto& hits : {by_march, by_boxes}) {
+    for (const auto& hits : {by_march, by_boxes, by_hierarchy}) {
         const Comparison seen = compare(reference, rays, on_facets, hits, tolerance);
         EXPECT_EQ(seen.both, rays.size());
         EXPECT_EQ(seen.one_only + seen.apart, 0u);
         // The normals of a chord and of its arc differ by at most the curvature times a pitch.
         EXPECT_LT(seen.largest_normal, 8 * pair.bound / pitch * std::numbers::sqrt2 + 0.001);
     }
-    const Comparison same = compare(reference, rays, by_march, by_boxes, nm);
-    EXPECT_EQ(same.both, rays.size());
+    EXPECT_EQ(compare(reference, rays, by_march, by_boxes, nm).both, rays.size());
+    EXPECT_EQ(compare(reference, rays, by_march, by_hierarchy, nm).both, rays.size());
     EXPECT_EQ(compare(reference, rays, moved, by_march, tolerance).both, 0u);
 }
 
@@ -509,7 +525,7 @@ TEST(Traversal, FunctionsAreMetAsOnTheHost) {
         const auto rays = scattered_rays(meet(function, Traversal::quadtree, down), 17);
         for (const auto& probes : {down, rays}) {
             const auto expected = meet(reference, probes);
-            for (const Traversal traversal : {Traversal::quadtree, Traversal::ray_query}) {
+            for (const Traversal traversal : every_traversal) {
                 const Comparison seen =
                     compare(reference, probes, meet(function, traversal, probes), expected, nm);
                 EXPECT_EQ(seen.one_only + seen.apart, 0u);
@@ -609,11 +625,69 @@ TEST(Traversal, AMeshIsMetLikeTheSphereItApproximates) {
             glm::normalize(glm::vec3(normal(generator), normal(generator), normal(generator)));
         rays.push_back({0.09F * from, glm::normalize(0.055F * uniform(generator) * to - 0.09F * from)});
     }
-    const auto hits = meet(ball, Traversal::ray_query, rays);
-    EXPECT_GT(std::ranges::count(hits, 1u, &Hit::found), 50'000);
-    EXPECT_EQ(disagreements(rays, hits, radius, sagitta), 0u);
-    // A ball larger by two depths of its facets is another one.
-    EXPECT_GT(disagreements(rays, hits, radius + 2 * sagitta, sagitta), rays.size() / 2);
+    for (const Traversal traversal : {Traversal::ray_query, Traversal::bvh}) {
+        const auto hits = meet(ball, traversal, rays);
+        EXPECT_GT(std::ranges::count(hits, 1u, &Hit::found), 50'000);
+        EXPECT_EQ(disagreements(rays, hits, radius, sagitta), 0u);
+        // A ball larger by two depths of its facets is another one.
+        EXPECT_GT(disagreements(rays, hits, radius + 2 * sagitta, sagitta), rays.size() / 2);
+    }
+}
+
+// Slivers and crossing triangles of all sizes in a cube of 0.1 mm: what no grid of cells resembles.
+specimen::Mesh thicket(std::size_t count, std::uint32_t seed) {
+    std::mt19937 generator(seed);
+    std::uniform_real_distribution<float> uniform(-1.0F, 1.0F);
+    specimen::Mesh mesh;
+    for (std::size_t k = 0; k < count; ++k) {
+        const auto point = [&](float size) {
+            return size * glm::vec3(uniform(generator), uniform(generator), uniform(generator));
+        };
+        const glm::vec3 corner = point(0.05F);
+        const float size = 0.03F * std::pow(0.5F, 3.0F * (1 + uniform(generator)));
+        const auto first = static_cast<std::uint32_t>(mesh.vertices.size());
+        mesh.vertices.insert(mesh.vertices.end(), {corner, corner + point(size), corner + point(size)});
+        mesh.triangles.emplace_back(first, first + 1, first + 2);
+    }
+    return mesh;
+}
+
+// From all sides, also from within, towards points of a ball of 0.05 mm; the longest travel 0.3 mm.
+std::vector<ProbeRay> rays_from_all_sides(std::size_t count, std::uint32_t seed) {
+    std::mt19937 generator(seed);
+    std::normal_distribution<float> normal;
+    std::uniform_real_distribution<float> uniform;
+    const auto point = [&](float radius) {
+        return radius * uniform(generator) *
+               glm::normalize(glm::vec3(normal(generator), normal(generator), normal(generator)));
+    };
+    std::vector<ProbeRay> rays;
+    while (rays.size() < count) {
+        const glm::vec3 from = point(0.15F);
+        const glm::vec3 to = point(0.05F);
+        if (glm::distance(from, to) > 0.001F) {
+            rays.push_back({from, glm::normalize(to - from)});
+        }
+    }
+    return rays;
+}
+
+TEST(Traversal, AnyMeshIsMetAsOnTheHost) {
+    const specimen::Specimen surface{thicket(3000, 31), {}};
+    const specimen::Intersector reference(surface);
+    auto rays = rays_from_all_sides(200'000, 32);
+    for (std::size_t k = 0; k < rays.size(); k += 10) {
+        rays[k].direction = {0, 0, rays[k].direction.z < 0 ? -1.0F : 1.0F}; // along an axis
+    }
+    const auto expected = meet(reference, rays);
+    for (const Traversal traversal : {Traversal::ray_query, Traversal::bvh}) {
+        const Comparison seen = compare(reference, rays, meet(surface, traversal, rays), expected, nm);
+        EXPECT_GT(seen.both, rays.size() / 3);
+        EXPECT_EQ(seen.one_only + seen.apart, 0u);
+        // There are more edges to pass than on a height field.
+        EXPECT_LE(static_cast<double>(seen.for_rounding),
+                  10 * share_for_rounding * static_cast<double>(rays.size()));
+    }
 }
 
 TEST(Traversal, IsChosenForDeviceAndSpecimen) {
@@ -636,9 +710,15 @@ TEST(Traversal, IsChosenForDeviceAndSpecimen) {
     EXPECT_EQ(choose_traversal(cpu, field, Traversal::ray_query, reason), Traversal::ray_query);
     EXPECT_EQ(choose_traversal(rtx, field, Traversal::quadtree, reason), Traversal::quadtree);
     EXPECT_THAT(reason, HasSubstr("asked"));
-    EXPECT_EQ(choose_traversal(cpu, mesh, Traversal::automatic, reason), Traversal::ray_query);
+    EXPECT_EQ(choose_traversal(rtx, field, Traversal::bvh, reason), Traversal::bvh);
+    EXPECT_THAT(reason, HasSubstr("bvh (as asked"));
+    EXPECT_EQ(choose_traversal(rtx, mesh, Traversal::automatic, reason), Traversal::ray_query);
+    EXPECT_EQ(choose_traversal(cpu, mesh, Traversal::automatic, reason), Traversal::bvh);
+    EXPECT_THAT(reason, HasSubstr("CPU"));
+    EXPECT_EQ(choose_traversal(without, mesh, Traversal::automatic, reason), Traversal::bvh);
+    EXPECT_THAT(reason, HasSubstr("no ray query"));
     EXPECT_THROW(choose_traversal(rtx, mesh, Traversal::quadtree, reason), InputError);
-    EXPECT_THROW(choose_traversal(without, mesh, Traversal::automatic, reason), DeviceError);
+    EXPECT_THROW(choose_traversal(without, mesh, Traversal::ray_query, reason), DeviceError);
     EXPECT_THROW(choose_traversal(without, field, Traversal::ray_query, reason), DeviceError);
 }
 
