@@ -26,6 +26,7 @@ struct CommandOptions {
     bool float_precision = false;         // --trace-rays: on the device
     bool apertures = true;                // --trace-rays
     int runs = 5;                         // --bench
+    std::vector<std::filesystem::path> glass_catalogs; // --import
     std::optional<std::uint64_t> shuffle; // --topography: seed of the order in which the images are taken
 };
 
@@ -44,6 +45,9 @@ void run_bench(const CommandOptions& options);
 // Evaluates an existing stack anew; with `shuffle` in a random order of its images, a control that must find
 // nothing.
 void run_topography(const CommandOptions& options);
+
+// A Zemax lens as a prescription: in the file `out`, else on standard output.
+void run_import(const CommandOptions& options);
 
 // The configured instrument. Throws InputError at the place of the key that does not fit.
 optics::Instrument assemble_instrument(const Configuration& configuration);

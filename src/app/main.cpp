@@ -20,7 +20,7 @@ using vkfv::InputError;
 enum ExitCode { done = 0, wrong_input = 2, no_device = 3, run_failed = 4 };
 
 struct Arguments {
-    std::string stack, image, check, bench, topography;
+    std::string stack, image, check, bench, topography, import_lens;
     std::vector<std::string> trace_rays;
     bool devices = false;
     double z_um = 0;
@@ -30,7 +30,7 @@ struct Arguments {
     int runs = 5;
     std::optional<std::uint64_t> shuffle;
     std::string out, device, traversal, estimator, rays, seed;
-    std::vector<std::string> settings;
+    std::vector<std::string> settings, glass_catalogs;
 };
 
 [[noreturn]] void refuse(std::string found, std::string expected, std::string remedy) {
@@ -75,14 +75,21 @@ void declare(CLI::App& app, Arguments& given) {
         ->type_name("C.toml")
         ->group(commands);
 
+    app.add_option("--import", given.import_lens,
+                   "Write a Zemax lens as a prescription, to --out or standard output, and its focal lengths to "
+                   "the log. Objectives must run from the specimen to the back: turn others round in Zemax")
+        ->type_name("LENS.zmx")
+        ->group(commands);
+
     const char* common = "Instead of the configuration's values";
-    app.add_option("--out", given.out, "Output folder; for --image also a .tif file")
+    app.add_option("--out", given.out,
+                   "Output folder; for --image also a .tif file, for --import the prescription")
         ->type_name("PATH")
         ->group(common);
     app.add_option("--device", given.device, "Index or part of a name; \"host\": the reference in double")
         ->type_name("DEVICE")
         ->group(common);
-    app.add_option("--traversal", given.traversal, "auto, ray-query, quadtree or bvh")
+    app.add_option("--traversal", given.traversal, "auto, ray-query or quadtree")
         ->type_name("NAME")
         ->group(common);
     app.add_option("--estimator", given.estimator, "forward")->type_name("NAME")->group(common);
@@ -117,7 +124,13 @@ void declare(CLI::App& app, Arguments& given) {
                    "Take the images in a random order: a control, which must find nothing (--topography)")
         ->type_name("SEED")
         ->group(specific);
-    app.add_flag("--json", given.json, "Machine-readable output (--check, --devices, --bench)")
+    app.add_option("--glass-catalog", given.glass_catalogs,
+                   "Glasses besides the built-in ones; may be repeated (--import)")
+        ->type_name("FILE.agf")
+        ->expected(1)
+        ->take_all()
+        ->group(specific);
+    app.add_flag("--json", given.json, "Machine-readable output (--check, --devices, --bench, --import)")
         ->group(specific);
     app.add_flag("--quiet", given.quiet, "Only warnings and errors, no progress");
 
@@ -153,6 +166,7 @@ vkfv::app::CommandOptions options_from(const Arguments& given) {
     options.apertures = given.apertures;
     options.runs = given.runs;
     options.shuffle = given.shuffle;
+    options.glass_catalogs.assign(given.glass_catalogs.begin(), given.glass_catalogs.end());
     const auto override_with = [&](const std::string& option, const std::string& key,
                                    const std::string& value) {
         if (!value.empty()) {
@@ -198,6 +212,7 @@ void run(const CLI::App& app, const Arguments& given) {
         {"--trace-rays", given.trace_rays.empty() ? "" : given.trace_rays.front(), vkfv::app::run_trace_rays},
         {"--devices", "", vkfv::app::run_devices},
         {"--bench", given.bench, vkfv::app::run_bench},
+        {"--import", given.import_lens, vkfv::app::run_import},
     };
     const Command* chosen = nullptr;
     for (const auto& command : commands) {
@@ -212,7 +227,7 @@ void run(const CLI::App& app, const Arguments& given) {
     }
     if (!chosen) {
         refuse("no command",
-               "one of --stack, --image, --topography, --check, --trace-rays, --devices, --bench",
+               "one of --stack, --image, --topography, --check, --trace-rays, --devices, --bench, --import",
                "vkfv --help tells what they do.");
     }
     if ((app.count("--z") > 0) != (chosen->run == vkfv::app::run_image)) {

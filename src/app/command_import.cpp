@@ -1,0 +1,93 @@
+#include "app/commands.hpp"
+
+#include "core/error.hpp"
+#include "optics/first_order.hpp"
+#include "optics/prescription_writer.hpp"
+#include "optics/zmx.hpp"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+#include <nlohmann/json.hpp>
+#include <spdlog/spdlog.h>
+
+#include <cstdio>
+#include <fstream>
+
+namespace vkfv::app {
+
+namespace {
+
+// Both in mm, as designers state them: the focal length in air, and the distance from the last vertex to the
+// focal point in the medium behind it. Infinite: afocal.
+struct FocalLengths {
+    double effective = 0;
+    double back = 0;
+};
+
+// Tilts and decentres do not count in paraxial optics, but the way along the axis does.
+FocalLengths focal_lengths(const optics::Prescription& lens, double wavelength_um) {
+    optics::RayTransfer transfer;
+    double index = lens.medium_before.index(wavelength_um);
+    double distance = 0;
+    for (const auto& surface : lens.surfaces) {
+        for (const auto& change : surface.breaks) {
+            distance += change.thickness;
+        }
+        const double index_after = surface.medium_after.index(wavelength_um);
+        transfer = transfer.then(optics::free_space(distance, index))
+                       .then({.c = -(index_after - index) * surface.curvature});
+        index = index_after;
+        distance = surface.thickness;
+    }
+    return {.effective = optics::focal_length(transfer),
+            .back = index * optics::back_focal_distance(transfer)};
+}
+
+void write_text(const std::filesystem::path& file, const std::string& text) {
+    std::ofstream stream(file, std::ios::binary);
+    stream << text;
+    stream.close();
+    if (!stream) {
+        throw RunError(
+            fmt::format("{} cannot be written. Check the path, its permissions and the free space, and run "
+                        "the same command again.",
+                        file.string()));
+    }
+}
+
+} // namespace
+
+void run_import(const CommandOptions& options) {
+    auto glasses = optics::GlassCatalog::builtin();
+    for (const auto& catalog : options.glass_catalogs) {
+        glasses.add(catalog);
+    }
+    const auto lens = optics::read_zmx(options.file, glasses);
+    const auto& prescription = lens.prescription;
+    const auto focal = focal_lengths(prescription, lens.primary_wavelength_um);
+    spdlog::info("{}: {} surfaces, wavelengths {} um, of which {} is the primary one", prescription.title,
+                 prescription.surfaces.size(), fmt::join(lens.wavelengths_um, ", "),
+                 lens.primary_wavelength_um);
+    spdlog::info("effective focal length {:.9g} mm, back focal length {:.9g} mm at {} um", focal.effective,
+                 focal.back, lens.primary_wavelength_um);
+
+    const std::string text = optics::prescription_text(prescription);
+    if (options.out) {
+        write_text(*options.out, text);
+    }
+    if (options.json) {
+        nlohmann::ordered_json report;
+        report["name"] = prescription.name;
+        report["title"] = prescription.title;
+        report["surfaces"] = prescription.surfaces.size();
+        report["wavelengths_um"] = lens.wavelengths_um;
+        report["primary_wavelength_um"] = lens.primary_wavelength_um;
+        report["efl_mm"] = focal.effective; // null: afocal
+        report["bfl_mm"] = focal.back;
+        fmt::print("{}\n", report.dump(2));
+    } else if (!options.out) {
+        fmt::print("{}", text);
+    }
+}
+
+} // namespace vkfv::app
