@@ -89,7 +89,7 @@ void declare(CLI::App& app, Arguments& given) {
     app.add_option("--device", given.device, "Index or part of a name; \"host\": the reference in double")
         ->type_name("DEVICE")
         ->group(common);
-    app.add_option("--traversal", given.traversal, "auto, ray-query or quadtree")
+    app.add_option("--traversal", given.traversal, "auto, ray-query, quadtree or bvh")
         ->type_name("NAME")
         ->group(common);
     app.add_option("--estimator", given.estimator, "forward")->type_name("NAME")->group(common);
