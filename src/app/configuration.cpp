@@ -152,13 +152,27 @@ optics::Prescription read_prescription(const Section& section, const Configurati
                        : fmt::format("the name of a file in assets/{}, without .toml", folder),
                    "Correct the name, or give the path of a prescription (.toml).");
     }
-    auto prescription = optics::load_prescription(name, folder, base);
+    auto prescription = optics::load_prescription(name, folder, base, configuration.glasses);
     // A name that means the installed file means it from anywhere; another's path is kept.
     if (optics::find_prescription(name, folder, {}) != prescription.file) {
         name = absolute_path(prescription.file).string();
     }
     section.record_path(key, name, content_digest(prescription));
     return prescription;
+}
+
+// Glasses count by the digests of the prescriptions that use them, so the identity does without the catalogues.
+void read_glass_catalogs(const TomlTable& root, Configuration& configuration) {
+    const std::string key = "glass_catalogs";
+    std::vector<std::string> paths;
+    for (const auto& path : root.optional_file_paths(key)) {
+        configuration.glasses.add(path);
+        paths.push_back(toml_quoted(absolute_path(path).string()));
+    }
+    if (!paths.empty()) {
+        configuration.canonical += fmt::format("{} = [{}]\n", key, fmt::join(paths, ", "));
+        configuration.places[key] = root.where(key);
+    }
 }
 
 void read_instrument(const TomlTable& root, Configuration& configuration) {
@@ -469,6 +483,7 @@ Configuration load_configuration(const std::filesystem::path& file,
     Configuration configuration;
     configuration.file = file;
     configuration.identity = fmt::format("program = \"vkfv {}\"\n", VKFV_VERSION);
+    read_glass_catalogs(root, configuration);
     read_instrument(root, configuration);
     if (needs != Needs::instrument || root.optional_table("specimen")) {
         read_specimen(root, configuration);

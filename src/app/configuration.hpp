@@ -22,6 +22,7 @@ enum class Needs { instrument, exposure, stack };
 
 struct Configuration {
     std::filesystem::path file;
+    optics::GlassCatalog glasses = optics::GlassCatalog::builtin(); // with the file's glass_catalogs
     optics::InstrumentDescription instrument;
     std::optional<specimen::Description> specimen;
     std::optional<scan::ScanPlan> scan;

@@ -480,6 +480,30 @@ std::optional<std::filesystem::path> TomlTable::optional_file_path(std::string_v
     return overridden ? std::filesystem::path(*value) : state_->document->file.parent_path() / *value;
 }
 
+std::vector<std::filesystem::path> TomlTable::optional_file_paths(std::string_view key) const {
+    std::vector<std::filesystem::path> paths;
+    const toml::node* node = state_->find(key);
+    if (!node) {
+        return paths;
+    }
+    const std::string expected = "an array of paths of files";
+    const auto* array = node->as_array();
+    if (!array) {
+        state_->refuse(key, node, expected, "Put the paths in brackets: [\"a\", \"b\"].");
+    }
+    const bool overridden = where(key).file != state_->document->file;
+    for (const auto& element : *array) {
+        const auto value = element.value_exact<std::string>();
+        if (!value || value->empty()) {
+            state_->refuse(fmt::format("{}[{}]", key, paths.size()), &element, "a string that is not empty",
+                           "Correct this element.");
+        }
+        paths.push_back(overridden ? std::filesystem::path(*value)
+                                   : state_->document->file.parent_path() / *value);
+    }
+    return paths;
+}
+
 std::filesystem::path TomlTable::file_path(std::string_view key) const {
     auto value = optional_file_path(key);
     if (!value) {

@@ -84,6 +84,7 @@ class TomlTable {
     // A path, relative to where it was written: the file's folder, or the working directory for an override.
     std::filesystem::path file_path(std::string_view key) const;
     std::optional<std::filesystem::path> optional_file_path(std::string_view key) const;
+    std::vector<std::filesystem::path> optional_file_paths(std::string_view key) const; // none: empty
     std::vector<double> numbers(std::string_view key, const NumberRange& range = NumberRange::finite()) const;
     std::optional<std::vector<double>>
     optional_numbers(std::string_view key, const NumberRange& range = NumberRange::finite()) const;

@@ -25,6 +25,8 @@ template <class... Functions>
 struct Overloaded : Functions... {
     using Functions::operator()...;
 };
+template <class... Functions>
+Overloaded(Functions...) -> Overloaded<Functions...>; // clang deduces no aggregates before 17
 
 double index_of(const IndexTable& table, double wavelength_um) {
     const auto& [wavelengths_um, indices] = table;

@@ -122,6 +122,29 @@ TEST(Configuration, IdentityFollowsAPrescriptionsContentNotItsPlace) {
     EXPECT_NE(load_copy(content.substr(0, thickness) + "1" + content.substr(thickness)), reference);
 }
 
+TEST(Configuration, IdentityFollowsTheContentOfACataloguesGlass) {
+    const auto asset = std::filesystem::path(VKFV_SOURCE_DIR) / "assets/objectives/10x_0.28.toml";
+    const auto lens = replaced(test::read_file(asset), "medium = \"622632\"", "medium = \"mine\"");
+    const auto text = replaced(small_configuration, "\"10x_0.28\"", "\"lens.toml\"");
+    const auto load_with = [&](const std::string& catalogue, const std::string& content) {
+        const auto folder = fresh_folder("catalogue");
+        write_file(folder / "lens.toml", lens);
+        write_file(folder / catalogue, content);
+        write_file(folder / "c.toml", "glass_catalogs = [\"" + catalogue + "\"]\n" + text);
+        return load_configuration(folder / "c.toml");
+    };
+    const std::string glass = "NM MINE 5\nCD 1.6225\nLD 0.4 0.7\n";
+    const auto reference = load_with("a.agf", glass);
+    EXPECT_THAT(reference.canonical,
+                HasSubstr("glass_catalogs = [\"" +
+                          (std::filesystem::absolute(reference.file.parent_path()) / "a.agf").string() +
+                          "\"]\n"));
+    EXPECT_EQ(load("catalogue_again", reference.canonical).canonical, reference.canonical);
+    EXPECT_EQ(load_with("b.agf", glass + "NM OTHER 5\nCD 1.5\nLD 0.4 0.7\n").identity, reference.identity);
+    EXPECT_NE(load_with("a.agf", "NM MINE 5\nCD 1.6226\nLD 0.4 0.7\n").identity, reference.identity);
+    EXPECT_THROW(load_with("a.agf", "NM YOURS 5\nCD 1.6225\nLD 0.4 0.7\n"), InputError);
+}
+
 TEST(Configuration, CommandsThatNeedNoSpecimenDoWithoutIt) {
     const auto text = small_configuration.substr(0, small_configuration.find("[specimen]"));
     EXPECT_FALSE(load("instrument", text, {}, Needs::instrument).specimen);

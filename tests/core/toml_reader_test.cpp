@@ -146,6 +146,19 @@ TEST(TomlReader, OverridesReplaceValuesAndNameTheirOrigin) {
     EXPECT_THROW((void)TomlTable::open(file, {{"", "1", "--set"}}), InputError);
 }
 
+TEST(TomlReader, ListsOfPathsAreRelativeToWhereTheyWereWritten) {
+    const std::filesystem::path file = std::filesystem::path(testing::TempDir()) / "paths.toml";
+    std::ofstream(file) << "files = [\"a.agf\", \"/b.agf\"]\nwords = \"a.agf\"\nbad = [\"a.agf\", 1]\n";
+    const auto root = TomlTable::open(file);
+    EXPECT_THAT(root.optional_file_paths("files"),
+                testing::ElementsAre(file.parent_path() / "a.agf", std::filesystem::path("/b.agf")));
+    EXPECT_THAT(root.optional_file_paths("absent"), testing::IsEmpty());
+    EXPECT_THAT(TomlTable::open(file, {{"files", "[\"a.agf\"]", "--set"}}).optional_file_paths("files"),
+                testing::ElementsAre("a.agf")); // from the working directory
+    EXPECT_THAT(message_of([&] { (void)root.optional_file_paths("words"); }), HasSubstr("paths.toml:2:9: words"));
+    EXPECT_THAT(message_of([&] { (void)root.optional_file_paths("bad"); }), HasSubstr("bad[1]"));
+}
+
 TEST(TomlReader, QuotedTextReadsBack) {
     const std::string text = "a \"b\" \\ \t\x01 \xc3\xb6";
     EXPECT_EQ(TomlTable::parse("t = " + toml_quoted(text), "quoted").string("t"), text);

@@ -5,6 +5,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <array>
 #include <cmath>
 
 namespace vkfv::optics {
@@ -39,6 +40,149 @@ TEST(Medium, TakesTheThreeNearestOfMore) {
     EXPECT_NEAR(medium.index(0.46), 1.5, 1e-14);
     EXPECT_GT(medium.index(0.68), 1.55);
     EXPECT_EQ(Medium::air().index(10.6), 1.0);
+}
+
+// Zemax's indices at 0.4861327, 0.5875618 and 0.6562725 um, as its reports print them for LensLibrary's
+// lenses.
+TEST(Medium, ModelGlassHasZemaxsIndices) {
+    const struct {
+        double nd, vd;
+        std::array<double, 3> indices;
+    } rows[] = {
+        {1.44, 94.6, {1.4431510608, 1.4400009540, 1.4385016931}},
+        {1.5163, 64.0, {1.5218874693, 1.5163016110, 1.5138234915}},
+        {1.54, 47.4, {1.5479841308, 1.5400022415, 1.5365963320}},
+        {1.62, 36.3, {1.6320638805, 1.6200033271, 1.6149909704}},
+        {1.7174, 29.5, {1.7346585744, 1.7174047079, 1.7103499326}},
+        {1.75844, 52.09, {1.7686104195, 1.7584428769, 1.7540560957}},
+        {1.8044, 39.59, {1.8187181389, 1.8044039697, 1.7984081538}},
+    };
+    for (const auto& row : rows) {
+        const Medium glass = Medium::model("model", row.nd, row.vd);
+        for (std::size_t i = 0; i < 3; ++i) {
+            // Half of the last digit printed, and the rounding of the six constants fitted to such digits.
+            EXPECT_NEAR(glass.index(std::array{0.4861327, 0.5875618, 0.6562725}[i]), row.indices[i], 8e-11);
+        }
+    }
+    EXPECT_THROW(Medium::model("model", 1.5, 60).index(0.35), InputError);
+    EXPECT_THROW(Medium::model("model", 1.5, 60).index(1.11), InputError);
+}
+
+// Away from F, d and C, by SCHOTT's published indices of two glasses of the normal line. Conrady's formula
+// with a partial dispersion linear in vd is good to a few times 1e-5 between g and r; one that forgets vd
+// there is not.
+TEST(Medium, ModelGlassIsNearNormalGlasses) {
+    const Medium n_bk7 = Medium::model("N-BK7", 1.5168, 64.17);
+    EXPECT_NEAR(n_bk7.index(0.435835), 1.52668, 1e-4);
+    EXPECT_NEAR(n_bk7.index(0.546074), 1.51872, 2e-5);
+    EXPECT_NEAR(n_bk7.index(0.7065188), 1.51289, 5e-5);
+    const Medium f2 = Medium::model("F2", 1.62004, 36.37);
+    EXPECT_NEAR(f2.index(0.435835), 1.64202, 1e-4);
+    EXPECT_NEAR(f2.index(0.546074), 1.62408, 2e-5);
+    EXPECT_GT(std::abs(Medium::model("F2", 1.62004, 64.17).index(0.435835) - 1.64202), 5e-3);
+}
+
+struct Evaluation {
+    DispersionFormula formula;
+    std::vector<double> coefficients;
+    double wavelength_um;
+    double value; // by hand: of n, or of n^2
+    bool squared;
+};
+
+// Coefficients chosen so that every term is a small number at 2 um (x^2 = 4) or, for Conrady's, at 4 um
+// (x^3.5 = 128).
+const std::vector<Evaluation>& evaluations() {
+    using enum DispersionFormula;
+    constexpr double l = 4 - 0.028; // Herzberger's L is its reciprocal
+    static const std::vector<Evaluation> rows = {
+        {schott, {2, 0.5, 4, 32, 192, 1024}, 2, 2 + 2 + 1 + 2 + 3 + 4, true},
+        {sellmeier_1, {1, 2, 2, 3, 3, -4}, 2, 1 + 2 + 8 + 1.5, true},
+        {herzberger, {1, 2 * l, 3 * l * l, 1, 0.3125, 0.09375}, 2, 1 + 2 + 3 + 4 + 5 + 6, false},
+        {sellmeier_2, {1, 3, 1, 7, 1.5}, 2, 1 + 1 + 4 + 4, true},
+        {conrady, {1, 2, 128}, 4, 1 + 0.5 + 1, false},
+        {sellmeier_3, {1, 2, 2, 3, 3, -4, 4, -12}, 2, 1 + 2 + 8 + 1.5 + 1, true},
+        {handbook_1, {6, 4, 2, 0.5}, 2, 6 + 2 - 2, true},
+        {handbook_2, {6, 4, 2, 0.5}, 2, 6 + 8 - 2, true},
+        {sellmeier_4, {1, 4, 2, 2, 3}, 2, 1 + 8 + 8, true},
+        {extended, {2, 0.5, 4, 32, 192, 1024, 5120, 24576}, 2, 14 + 5 + 6, true},
+        {sellmeier_5, {1, 2, 2, 3, 3, -4, 4, -12, 5, -16}, 2, 1 + 2 + 8 + 1.5 + 1 + 1, true},
+        {extended_2, {2, 0.5, 4, 32, 192, 1024, 0.3125, 0.09375}, 2, 14 + 5 + 6, true},
+        {extended_3,
+         {1, 0.5, 0.1875, 16, 80, 384, 1792, 8192, 36864},
+         2,
+         1 + 2 + 3 + 4 + 5 + 6 + 7 + 8 + 9,
+         true},
+    };
+    return rows;
+}
+
+TEST(Medium, EveryFormulaIsAsByHand) {
+    ASSERT_EQ(evaluations().size(), dispersion_formula_names.size());
+    for (const auto& row : evaluations()) {
+        const auto number = static_cast<std::size_t>(row.formula);
+        SCOPED_TRACE(dispersion_formula_names[number - 1]);
+        ASSERT_EQ(row.coefficients.size(), coefficient_count(row.formula));
+        const auto index = [&](const std::vector<double>& coefficients) {
+            return Medium::formula("glass", row.formula, coefficients, 1, 5).index(row.wavelength_um);
+        };
+        const double expected = row.squared ? std::sqrt(row.value) : row.value;
+        EXPECT_DOUBLE_EQ(index(row.coefficients), expected);
+        for (std::size_t i = 0; i < row.coefficients.size(); ++i) { // each counts
+            auto changed = row.coefficients;
+            changed[i] *= 1.1;
+            EXPECT_GT(std::abs(index(changed) - expected), 1e-3) << i;
+        }
+    }
+}
+
+TEST(Medium, FormulaHoldsInItsRangeOnly) {
+    const Medium glass = Medium::formula("N-X", DispersionFormula::conrady, {1.5}, 0.4, 0.7, "a test");
+    EXPECT_EQ(glass.index(0.4), 1.5);
+    EXPECT_EQ(glass.index(0.7), 1.5);
+    for (const double um : {0.39999, 0.70001, -0.5, std::nan("")}) {
+        EXPECT_THROW(glass.index(um), InputError) << um;
+    }
+    try {
+        glass.index(0.8);
+        FAIL();
+    } catch (const InputError& error) {
+        EXPECT_THAT(error.what(), HasSubstr("index of N-X"));
+        EXPECT_THAT(error.what(), HasSubstr("0.8 um"));
+        EXPECT_THAT(error.what(), HasSubstr("[0.4, 0.7] um"));
+        EXPECT_THAT(error.what(), HasSubstr("a test"));
+    }
+}
+
+TEST(Medium, FormulaWithoutAnIndexIsAnError) {
+    const auto index_of = [](DispersionFormula formula, std::vector<double> coefficients) {
+        return Medium::formula("N-X", formula, std::move(coefficients), 0.4, 2.5).index(2);
+    };
+    EXPECT_THROW(index_of(DispersionFormula::schott, {-1}), InputError);                // n^2 < 0
+    EXPECT_THROW(index_of(DispersionFormula::sellmeier_1, {1, 4}), InputError);         // on a resonance
+    EXPECT_THROW(index_of(DispersionFormula::conrady, {-1.5}), InputError);             // n < 0
+    EXPECT_THROW(index_of(DispersionFormula::conrady, {1.7e308, 1.7e308}), InputError); // overflow
+}
+
+TEST(Medium, TextTellsDispersionsApart) {
+    const std::vector<Medium> media = {
+        Medium::air(),
+        Medium::constant("a", 1.5),
+        Medium::tabulated("a", {0.5}, {1.5}),
+        Medium::tabulated("a", {0.5, 0.6}, {1.5, 1.5}),
+        Medium::model("a", 1.5, 60),
+        Medium::model("a", 1.5, 61),
+        Medium::formula("a", DispersionFormula::schott, {1.5, 60}, 0.4, 0.7),
+        Medium::formula("a", DispersionFormula::handbook_1, {1.5, 60}, 0.4, 0.7),
+        Medium::formula("a", DispersionFormula::schott, {1.5, 60}, 0.4, 0.8),
+    };
+    for (std::size_t i = 0; i < media.size(); ++i) {
+        for (std::size_t j = 0; j < media.size(); ++j) {
+            EXPECT_EQ(media[i].dispersion_text() == media[j].dispersion_text(), i == j) << i << ' ' << j;
+        }
+    }
+    EXPECT_EQ(Medium::constant("a", 1.5).dispersion_text(),
+              Medium::constant("b", 1.5, "x").dispersion_text());
 }
 
 } // namespace

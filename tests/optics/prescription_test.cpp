@@ -207,6 +207,51 @@ TEST_F(WrittenPrescription, ReadsEveryKey) {
     EXPECT_EQ(lens.surfaces[2].role, PrescribedSurface::Role::field_stop);
 }
 
+TEST(ParsedPrescription, MediaHaveEveryForm) {
+    const auto lens = parse_prescription("source = \"mine\"\nlicence = \"none\"\n"
+                                         "[[surface]]\nmedium = \"a\"\nthickness_mm = 1\n"
+                                         "[[surface]]\nmedium = \"b\"\nthickness_mm = 1\n"
+                                         "[[surface]]\nmedium = \"c\"\nthickness_mm = 1\n"
+                                         "[[surface]]\nmedium = \"d\"\n"
+                                         "[media.a]\nindex = 1.25\n"
+                                         "[media.b]\nnd = 1.5\nvd = 60\nsource = \"yours\"\n"
+                                         "[media.c]\nformula = \"conrady\"\ncoefficients = [1.5, 0.01]\n"
+                                         "range_um = [0.4, 0.7]\n"
+                                         "[media.d]\nwavelengths_um = [0.5]\nindices = [1.75]\n",
+                                         "lens.toml");
+    const std::vector<Medium> expected = {
+        Medium::constant("a", 1.25), Medium::model("b", 1.5, 60),
+        Medium::formula("c", DispersionFormula::conrady, {1.5, 0.01}, 0.4, 0.7),
+        Medium::tabulated("d", {0.5}, {1.75})};
+    ASSERT_EQ(lens.surfaces.size(), expected.size());
+    for (std::size_t i = 0; i < expected.size(); ++i) {
+        EXPECT_EQ(lens.surfaces[i].medium_after.name, expected[i].name);
+        EXPECT_EQ(lens.surfaces[i].medium_after.dispersion, expected[i].dispersion);
+        EXPECT_EQ(lens.surfaces[i].medium_after.source, i == 1 ? "yours" : "mine");
+    }
+}
+
+// Its own media first, then the user's catalogues, then the built-in table.
+TEST(ParsedPrescription, MediaAreLookedForFromTheNearest) {
+    const std::string text = "source = \"s\"\nlicence = \"l\"\n[[surface]]\nmedium = \"N-BK7\"\n";
+    const auto index = [](const std::string& lens, const GlassCatalog& glasses) {
+        return parse_prescription(lens, "lens.toml", glasses).surfaces[0].medium_after.index(0.5875618);
+    };
+    auto glasses = GlassCatalog::builtin();
+    EXPECT_NEAR(index(text, glasses), 1.5168, 1e-6);
+    glasses.add({Medium::constant("N-BK7", 1.25)});
+    EXPECT_EQ(index(text, glasses), 1.25);
+    EXPECT_EQ(index(text + "[media.N-BK7]\nindex = 1.75\n", glasses), 1.75);
+}
+
+TEST_F(WrittenPrescription, UnknownMediumNamesTheNearest) {
+    EXPECT_THAT(problem_of("[[surface]]\nmedium = \"N-BK8\"\n").remedy, HasSubstr("\"N-BK7\""));
+    EXPECT_THAT(problem_of("[[surface]]\nmedium = \"glas\"\n[media.glass]\nindex = 1.5\n").remedy,
+                HasSubstr("\"glass\""));
+    EXPECT_THAT(problem_of("[[surface]]\nmedium = \"516640\"\n").remedy,
+                HasSubstr("nd = 1.516 and vd = 64.0"));
+}
+
 TEST_F(WrittenPrescription, FaultsNamePlaceAndKey) {
     struct Fault {
         const char* text;
@@ -229,6 +274,19 @@ TEST_F(WrittenPrescription, FaultsNamePlaceAndKey) {
               5},
              {"[[surface]]\n[media.g]\nwavelengths_um = [0.5, 0.6]\nindices = [1.5]\n", "indices", 6},
              {"[[surface]]\n[media.g]\nwavelengths_um = [0.5]\nindices = [0.5]\n", "indices", 6},
+             {"[[surface]]\n[media.g]\n", "wavelengths_um", 4},
+             {"[[surface]]\n[media.g]\nnd = 1.5\n", "vd", 4},
+             {"[[surface]]\n[media.g]\nnd = 1.5\nvd = 0\n", "vd", 6},
+             {"[[surface]]\n[media.g]\nnd = 0.5\nvd = 50\n", "nd", 5},
+             {"[[surface]]\n[media.g]\nindex = 0.5\n", "index", 5},
+             {"[[surface]]\n[media.g]\nindex = 1.5\nnd = 1.5\nvd = 50\n", "index", 5},
+             {"[[surface]]\n[media.g]\nformula = \"sellmeier\"\n", "formula", 5},
+             {"[[surface]]\n[media.g]\nformula = \"conrady\"\ncoefficients = [1, 2, 3, 4]\n", "coefficients",
+              6},
+             {"[[surface]]\n[media.g]\nformula = \"conrady\"\ncoefficients = []\n", "coefficients", 6},
+             {"[[surface]]\n[media.g]\nformula = \"conrady\"\ncoefficients = [1]\n", "range_um", 4},
+             {"[[surface]]\n[media.g]\nformula = \"conrady\"\ncoefficients = [1]\nrange_um = [2, 1]\n",
+              "range_um", 7},
              {"[[surface]]\nrole = \"field stop\"\nthickness_mm = 1\n[[surface]]\nrole = \"field stop\"\n",
               "role", 7},
          }) {

@@ -1,0 +1,21 @@
+// Any bytes are a catalogue or an InputError, and every glass of a catalogue has an index in its range or an InputError.
+#include "core/error.hpp"
+#include "optics/agf.hpp"
+
+#include <cstddef>
+#include <cstdint>
+
+extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+    using namespace vkfv;
+    try {
+        for (const auto& glass :
+             optics::parse_agf({reinterpret_cast<const char*>(data), size}, "fuzzed.agf")) {
+            try {
+                (void)glass.index(0.5875618);
+            } catch (const InputError&) {
+            }
+        }
+    } catch (const InputError&) {
+    }
+    return 0;
+}

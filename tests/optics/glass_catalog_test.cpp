@@ -1,0 +1,167 @@
+#include "optics/glass_catalog.hpp"
+
+#include "core/error.hpp"
+#include "optics/agf.hpp"
+#include "optics/prescription.hpp"
+#include "parts.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cctype>
+#include <fstream>
+
+namespace vkfv::optics {
+namespace {
+
+using ::testing::HasSubstr;
+
+// Spectral lines in um: i, h, g, F', F, e, d, C', C, r, s, t.
+constexpr double line_i = 0.3650146, line_h = 0.4046561, line_g = 0.4358343, line_f2 = 0.4799914,
+                 line_f = 0.4861327, line_e = 0.5460740, line_d = 0.5875618, line_c2 = 0.6438469,
+                 line_c = 0.6562725, line_r = 0.7065188, line_s = 0.8521101, line_t = 1.0139798;
+
+// The data sheets' indices, which their vendors round to the last digit given here.
+TEST(GlassCatalog, HasPublishedIndicesToTheLastDigit) {
+    const struct {
+        const char* glass;
+        double wavelength_um;
+        double index;
+        double last_digit;
+    } rows[] = {
+        // SCHOTT, data sheet 517642.251
+        {"N-BK7", line_i, 1.53627, 1e-5},
+        {"N-BK7", line_h, 1.53024, 1e-5},
+        {"N-BK7", line_g, 1.52668, 1e-5},
+        {"N-BK7", line_f2, 1.52283, 1e-5},
+        {"N-BK7", line_f, 1.52238, 1e-5},
+        {"N-BK7", line_e, 1.51872, 1e-5},
+        {"N-BK7", line_d, 1.51680, 1e-5},
+        {"N-BK7", line_c2, 1.51472, 1e-5},
+        {"N-BK7", line_c, 1.51432, 1e-5},
+        {"N-BK7", line_r, 1.51289, 1e-5},
+        {"N-BK7", line_s, 1.50980, 1e-5},
+        {"N-BK7", line_t, 1.50731, 1e-5},
+        // OHARA, data sheet 883408
+        {"S-LAH58", line_f, 1.89822, 1e-5},
+        {"S-LAH58", line_d, 1.88300, 1e-5},
+        {"S-LAH58", line_c, 1.87656, 1e-5},
+        // SCHOTT, data sheet 620364.360
+        {"F2", line_g, 1.64202, 1e-5},
+        {"F2", line_f, 1.63208, 1e-5},
+        {"F2", line_d, 1.62004, 1e-5},
+        {"F2", line_c, 1.61503, 1e-5},
+        // SCHOTT, data sheet 785257.322
+        {"N-SF11", line_f, 1.80651, 1e-5},
+        {"N-SF11", line_d, 1.78472, 1e-5},
+        {"N-SF11", line_c, 1.77596, 1e-5},
+        // Malitson's tables (1965, 1963)
+        {"FUSED-SILICA", line_f, 1.46313, 1e-5},
+        {"FUSED-SILICA", line_d, 1.45846, 1e-5},
+        {"FUSED-SILICA", line_c, 1.45637, 1e-5},
+        {"CAF2", line_d, 1.43385, 1e-5},
+        // The sodium D line at 20 degrees C in air: the value long used to calibrate refractometers
+        {"WATER", 0.5892938, 1.33299, 1e-5},
+        // Handbook values of the ordinary rays at the sodium line
+        {"MGF2", 0.5892938, 1.3777, 1e-4},
+        {"SAPPHIRE", 0.5892938, 1.7681, 1e-4},
+        // ISO 8036
+        {"IMMERSION-OIL", line_e, 1.5180, 1e-4},
+    };
+    const auto glasses = GlassCatalog::builtin();
+    for (const auto& row : rows) {
+        EXPECT_NEAR(glasses.get(row.glass).index(row.wavelength_um), row.index, 0.5001 * row.last_digit)
+            << row.glass << ' ' << row.wavelength_um;
+    }
+    const auto oil = glasses.get("oil");
+    EXPECT_NEAR((oil.index(line_e) - 1) / (oil.index(line_f2) - oil.index(line_c2)), 44, 1e-3);
+}
+
+// Of the glasses that assets name, the indices there are Zemax's of the vendors' catalogues of their time.
+TEST(GlassCatalog, HasEveryGlassOfTheAssets) {
+    const auto glasses = GlassCatalog::builtin();
+    std::size_t count = 0;
+    for (const char* folder : {"objectives", "tube_lenses", "illuminators"}) {
+        for (const auto& entry :
+             std::filesystem::directory_iterator(test::source_folder() / "assets" / folder)) {
+            for (const auto& surface :
+                 load_prescription(entry.path().filename(), folder, entry.path().parent_path()).surfaces) {
+                const Medium& medium = surface.medium_after;
+                const auto* table = std::get_if<IndexTable>(&medium.dispersion);
+                if (!table || std::isdigit(static_cast<unsigned char>(medium.name[0]))) {
+                    continue; // air, a six-digit code
+                }
+                const auto found = glasses.find(medium.name);
+                ASSERT_TRUE(found) << medium.name;
+                EXPECT_FALSE(found->source.empty()) << medium.name;
+                ++count;
+                for (std::size_t i = 0; i < table->indices.size(); ++i) {
+                    // The wavelengths are given to 1e-6 um, and glass changes by less than 0.3 per um.
+                    EXPECT_NEAR(found->index(table->wavelengths_um[i]), table->indices[i], 3e-7)
+                        << medium.name;
+                }
+            }
+        }
+    }
+    EXPECT_GT(count, 20u);
+}
+
+TEST(GlassCatalog, EveryGlassIsDenserAtTheBlueEndAndHasASource) {
+    const auto glasses = GlassCatalog::builtin();
+    EXPECT_GE(glasses.names().size(), 60u);
+    for (const auto& name : glasses.names()) {
+        const auto glass = glasses.get(name);
+        const double dispersion = glass.index(line_f) - glass.index(line_c);
+        const double abbe = (glass.index(line_d) - 1) / dispersion;
+        EXPECT_TRUE(abbe > 18 && abbe < 110) << name << ' ' << abbe;
+        EXPECT_FALSE(glass.source.empty()) << name;
+        EXPECT_EQ(glass.name, name);
+    }
+}
+
+TEST(GlassCatalog, KnowsNamesInAnyCaseAndSpelling) {
+    const auto glasses = GlassCatalog::builtin();
+    EXPECT_EQ(glasses.get("n-bk7").name, "N-BK7");
+    EXPECT_EQ(glasses.get("N_BK7").name, "N-BK7");
+    for (const char* name : {"Fused Silica", "SILICA", "F_SILICA", "SiO2"}) {
+        EXPECT_EQ(glasses.get(name).name, "FUSED-SILICA") << name;
+    }
+    EXPECT_EQ(glasses.get("water").name, "WATER");
+    EXPECT_EQ(glasses.get("CaF2").name, "CAF2");
+    EXPECT_FALSE(glasses.find("BK7")); // another glass than N-BK7
+    EXPECT_FALSE(glasses.find(""));
+}
+
+TEST(GlassCatalog, UnknownGlassIsNamedWithTheNearest) {
+    const auto glasses = GlassCatalog::builtin();
+    const auto message = [&](const char* name) -> std::string {
+        try {
+            glasses.get(name);
+        } catch (const InputError& error) {
+            return error.what();
+        }
+        return "found";
+    };
+    EXPECT_THAT(message("N-BK8"), HasSubstr("\"N-BK8\""));
+    EXPECT_THAT(message("N-BK8"), HasSubstr("Did you mean \"N-BK7\"?"));
+    EXPECT_THAT(message("fused silca"), HasSubstr("Did you mean \"FUSED-SILICA\"?"));
+    // A code is no glass; what to write is said.
+    EXPECT_THAT(message("516640"), HasSubstr("nd = 1.516 and vd = 64.0"));
+}
+
+TEST(GlassCatalog, LaterCataloguesGoFirst) {
+    const auto catalogue = [](double index) {
+        return parse_agf("NM n-bk7 5\nCD " + std::to_string(index) + "\nLD 0.4 0.7\n", "x.agf");
+    };
+    auto glasses = GlassCatalog::builtin();
+    glasses.add(catalogue(1.25));
+    EXPECT_EQ(glasses.get("N-BK7").index(0.5), 1.25);
+    glasses.add(catalogue(1.75));
+    EXPECT_EQ(glasses.get("N-BK7").index(0.5), 1.75);
+    EXPECT_NEAR(glasses.get("F2").index(line_d), 1.62004, 1e-5);
+    EXPECT_NEAR(GlassCatalog::builtin().get("N-BK7").index(line_d), 1.5168, 1e-5); // a value
+}
+
+} // namespace
+} // namespace vkfv::optics
