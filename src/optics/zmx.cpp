@@ -460,7 +460,7 @@ class Reader {
         if (auto found = glasses_.find(name)) {
             return *std::move(found);
         }
-        const auto meant = glasses_.nearest(name);
+        const auto meant = nearest_word(name, glasses_.names());
         refuse(line, name, "a glass of the catalogues",
                fmt::format("{}Add its catalogue with --glass-catalog, or make it a model glass in Zemax.",
                            meant ? fmt::format("Did you mean \"{}\"? ", *meant) : ""));
