@@ -35,9 +35,9 @@ class GlassCatalog {
     std::vector<std::filesystem::path> files_;
 };
 
-// What to do about a name that neither a catalogue nor `others` has, as sentences: the nearest name, or how to
-// describe the glass. A six-digit code ("516640") is never taken as a model glass by itself, as several glasses of
-// other dispersion share it.
+// What to do about a name that neither a catalogue nor `others` has, as sentences: the nearest name, or how
+// to describe the glass. A six-digit code ("516640") is never taken as a model glass by itself, as several
+// glasses of other dispersion share it.
 std::string remedy_for_unknown_glass(const GlassCatalog& glasses, std::string_view name,
                                      const std::vector<std::string>& others = {});
 

@@ -48,7 +48,7 @@ struct IndexTable {
     bool operator==(const IndexTable&) const = default;
 };
 
-// A glass of index nd and Abbe number vd as Zemax understands it; valid from 0.36 um to 1.1 um. See Medium::model.
+// A glass of index nd and Abbe number vd as Zemax understands it (see Medium::model), 0.36 um to 1.1 um.
 struct ModelGlass {
     double nd = 0;
     double vd = 0;
@@ -63,9 +63,9 @@ struct GlassFormula { // valid from minimum_um to maximum_um, ends included
     bool operator==(const GlassFormula&) const = default;
 };
 
-// A medium between surfaces. Its indices are relative to air, as glass catalogues publish them, at the source's
-// reference temperature and pressure (20 to 25 degrees C, 1 atm); nothing is corrected for another temperature or
-// pressure.
+// A medium between surfaces. Its indices are relative to air, as glass catalogues publish them, at the
+// source's reference temperature and pressure (20 to 25 degrees C, 1 atm); nothing is corrected for another
+// temperature or pressure.
 struct Medium {
     std::string name;   // "air", "N-BK7", ...; as the source names it
     std::string source; // where the numbers come from

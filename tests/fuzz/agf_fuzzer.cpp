@@ -1,4 +1,4 @@
-// Any bytes are a catalogue or an InputError, and every glass of a catalogue has an index in its range or an InputError.
+// Any bytes are a catalogue or an InputError; every glass of it has an index, or an InputError.
 #include "core/error.hpp"
 #include "optics/agf.hpp"
 
