@@ -59,7 +59,8 @@ Medium read_formula_medium(const TomlTable& table, const std::string& name, cons
     }
     const auto range_um = table.numbers("range_um", NumberRange::positive());
     if (range_um.size() != 2 || range_um[0] >= range_um[1]) {
-        table.fail("range_um", "two wavelengths in um, ascending", "Give the ends of the range where it holds.");
+        table.fail("range_um", "two wavelengths in um, ascending",
+                   "Give the ends of the range where it holds.");
     }
     return Medium::formula(name, formula, std::move(coefficients), range_um[0], range_um[1], source);
 }
@@ -70,7 +71,8 @@ Medium read_medium(const TomlTable& table, const std::string& name, const std::s
     std::string form;
     for (const std::string key : {"wavelengths_um", "nd", "index", "formula"}) {
         if (table.has(key) && !std::exchange(form, key).empty()) {
-            table.fail(key, "one description of the medium", "Keep one of wavelengths_um, nd, index and formula.");
+            table.fail(key, "one description of the medium",
+                       "Keep one of wavelengths_um, nd, index and formula.");
         }
     }
     if (form == "nd") {

@@ -155,7 +155,8 @@ TEST(TomlReader, ListsOfPathsAreRelativeToWhereTheyWereWritten) {
     EXPECT_THAT(root.optional_file_paths("absent"), testing::IsEmpty());
     EXPECT_THAT(TomlTable::open(file, {{"files", "[\"a.agf\"]", "--set"}}).optional_file_paths("files"),
                 testing::ElementsAre("a.agf")); // from the working directory
-    EXPECT_THAT(message_of([&] { (void)root.optional_file_paths("words"); }), HasSubstr("paths.toml:2:9: words"));
+    EXPECT_THAT(message_of([&] { (void)root.optional_file_paths("words"); }),
+                HasSubstr("paths.toml:2:9: words"));
     EXPECT_THAT(message_of([&] { (void)root.optional_file_paths("bad"); }), HasSubstr("bad[1]"));
 }
 
