@@ -56,8 +56,39 @@ std::pair<std::string, std::string> file_specimen(const std::string& lines) {
     return {mesh_specimen.first, lines};
 }
 
+// A plate, with one more line in its first surface.
+std::string zemax_lens(const std::string& line) {
+    return "MODE SEQ\nUNIT MM\nWAVL 0.5875618\nSURF 0\n  CURV 0\n  DISZ INFINITY\nSURF 1\n  " + line +
+           "\n  CURV 0\n  DISZ 1\nSURF 2\n  CURV 0\n  DISZ 1\nSURF 3\n  CURV 0\n  DISZ 0\n";
+}
+
+// A fault of the glass catalogue g.agf, which the configuration names in its first line.
+Case catalogue_fault(const std::string& name, const std::string& catalogue,
+                     std::vector<std::string> message) {
+    return {name,
+            {{"# a small step", "glass_catalogs = [\"g.agf\"]"}},
+            2,
+            std::move(message),
+            {"--check", "c.toml"},
+            {{"g.agf", catalogue}}};
+}
+
+// A fault of the objective's glass "glass".
+Case glass_fault(const std::string& name, const std::string& medium, std::vector<std::string> message) {
+    return {
+        name,
+        {{"\"10x_0.28\"", "\"mine.toml\""}},
+        2,
+        std::move(message),
+        {"--check", "c.toml"},
+        {{"mine.toml", "source = \"s\"\nlicence = \"l\"\n[[surface]]\nmedium = \"glass\"\nthickness_mm = 1\n"
+                       "[[surface]]\nradius_mm = -10\nrole = \"aperture stop\"\nsemi_diameter_mm = 2\n" +
+                           medium}}};
+}
+
 std::vector<Case> cases() {
     const std::vector<std::string> stack = {"--stack", "c.toml"};
+    const std::vector<std::string> import = {"--import", "lens.zmx"};
     const std::vector<std::string> rays = {"--trace-rays", "c.toml", "rays.csv"};
     const std::string rays_header = "x_mm,y_mm,z_mm,l,m,n\n";
     return {
@@ -190,6 +221,58 @@ std::vector<Case> cases() {
          {"mine.toml:1:1", "surface", "Add [[surface]]"},
          {"--check", "c.toml"},
          {{"mine.toml", "title = \"t\"\nsource = \"s\"\nlicence = \"l\"\n"}}},
+        // Glasses.
+        {"MissingGlassCatalogue",
+         {{"# a small step", "glass_catalogs = [\"absent.agf\"]"}},
+         2,
+         {"absent.agf", "no such file", "Check the path"}},
+        {"GlassCataloguesNoArray",
+         {{"# a small step", "glass_catalogs = \"g.agf\""}},
+         2,
+         {"c.toml:1:18", "glass_catalogs", "an array of paths", "in brackets"}},
+        {"GlassCatalogueNoPath",
+         {{"# a small step", "glass_catalogs = [7]"}},
+         2,
+         {"c.toml:1:19", "glass_catalogs[0]", "a string"}},
+        catalogue_fault("CatalogueWithoutGlass", "CC none\n", {"g.agf", "NM", "no glass", "complete"}),
+        catalogue_fault("GlassWithoutFormula", "NM G\n",
+                        {"g.agf:1", "NM", "the number of a formula", "Complete"}),
+        catalogue_fault("UnknownGlassFormula", "NM G 14\n", {"g.agf:1", "NM", "\"14\"", "1 to 13"}),
+        catalogue_fault("GlassTwice", "NM G 5\nCD 1.5\nLD 1 2\nNM G 5\n",
+                        {"g.agf:4", "NM", "\"G\"", "Rename"}),
+        catalogue_fault("CoefficientNoNumber", "NM G 5\nCD 1,5\n",
+                        {"g.agf:2", "CD of \"G\"", "1,5", "a finite number"}),
+        catalogue_fault("CoefficientInfinite", "NM G 5\nCD 1e999\n", {"g.agf:2", "CD of \"G\"", "1e999"}),
+        catalogue_fault("CoefficientsTooMany", "NM G 5\nCD 1 2 3 4\n",
+                        {"g.agf:2", "CD of \"G\"", "3 coefficients"}),
+        catalogue_fault("CoefficientsNone", "NM G 5\nCD\n", {"g.agf:2", "CD of \"G\"", "Complete the line"}),
+        catalogue_fault("CoefficientsOfNoGlass", "CD 1.5\n", {"g.agf:1", "CD", "a line NM before it"}),
+        catalogue_fault("CoefficientsTwice", "NM G 5\nCD 1\nCD 1\n",
+                        {"g.agf:3", "CD of \"G\"", "Remove one"}),
+        catalogue_fault("CoefficientsMissing", "NM G 5\nLD 1 2\n",
+                        {"g.agf:1", "CD of \"G\"", "Complete the glass"}),
+        catalogue_fault("RangeMissing", "NM G 5\nCD 1.5\n", {"g.agf:1", "LD of \"G\"", "Complete the glass"}),
+        catalogue_fault("RangeCut", "NM G 5\nCD 1.5\nLD 1\n",
+                        {"g.agf:3", "LD of \"G\"", "Complete the line"}),
+        catalogue_fault("RangeDescending", "NM G 5\nCD 1.5\nLD 2 1\n",
+                        {"g.agf:3", "LD of \"G\"", "\"2 1\"", "ascending"}),
+        catalogue_fault("UnknownCatalogueKeyword", "NM G 5\nXY 1\n",
+                        {"g.agf:2", "XY of \"G\"", "NM, CD, LD", "'!'"}),
+        glass_fault("UnknownGlass", "",
+                    {"mine.toml:4:10", "surface[0].medium = 'glass'", "glass_catalogs"}),
+        glass_fault("GlassDescribedTwice", "[media.glass]\nindex = 1.5\nnd = 1.5\nvd = 50\n",
+                    {"mine.toml:11:9", "media.glass.index", "one description"}),
+        glass_fault("GlassNotDescribed", "[media.glass]\n", {"mine.toml:10:1", "media.glass.wavelengths_um"}),
+        glass_fault("UnknownFormulaName", "[media.glass]\nformula = \"selmeier 1\"\n",
+                    {"mine.toml:11:11", "media.glass.formula", "Did you mean \"sellmeier 1\"?"}),
+        glass_fault("FormulaWithoutRange", "[media.glass]\nformula = \"conrady\"\ncoefficients = [1.5]\n",
+                    {"mine.toml:10:1", "media.glass.range_um"}),
+        glass_fault("WavelengthOutsideTheGlass",
+                    "[media.glass]\nformula = \"conrady\"\ncoefficients = [1.5]\nrange_um = [0.6, 0.7]\n",
+                    {"index of glass", "0.5876 um", "[0.6, 0.7] um", "Choose such a wavelength"}),
+        glass_fault("GlassWithoutIndex",
+                    "[media.glass]\nformula = \"schott\"\ncoefficients = [-1]\nrange_um = [0.4, 0.7]\n",
+                    {"index of glass", "0.5876 um", "finite and positive", "Correct the numbers"}),
         // Files of specimens.
         {"MissingMesh", {mesh_specimen}, 2, {"c.toml:26:8", "specimen.file", "part.stl"}},
         {"TruncatedStl",
@@ -303,6 +386,51 @@ std::vector<Case> cases() {
          {"--set", "trace.rasy", "Did you mean \"rays\"?"},
          {"--check", "c.toml", "--set", "trace.rasy=5"}},
         {"NoStackThere", {}, 2, {"nowhere", "stack.toml"}, {"--topography", "nowhere"}},
+        // Zemax lenses.
+        {"ImportOfUnknownKeyword",
+         {},
+         2,
+         {"lens.zmx:8: surface 1: SCBD", "expected a keyword that this import understands", "Remove in Zemax"},
+         import,
+         {{"lens.zmx", zemax_lens("SCBD 0 1 0 0 0 0")}}},
+        {"ImportOfMirror",
+         {},
+         2,
+         {"lens.zmx:8: surface 1: GLAS = MIRROR", "a refracting surface", "unfold"},
+         import,
+         {{"lens.zmx", zemax_lens("GLAS MIRROR 0 0 1.5 40")}}},
+        {"ImportOfMissingGlass",
+         {},
+         2,
+         {"lens.zmx:8: surface 1: GLAS = N-BK99", "a glass of the catalogues", "--glass-catalog"},
+         import,
+         {{"lens.zmx", zemax_lens("GLAS N-BK99 0 0 1.5 40")}}},
+        {"ImportOfWrongNumber",
+         {},
+         2,
+         {"lens.zmx:8: surface 1: CONI = -0,6", "as value 1 a finite number", "decimals take a point"},
+         import,
+         {{"lens.zmx", zemax_lens("CONI -0,6")}}},
+        {"ImportOfTruncatedFile",
+         {},
+         2,
+         {"lens.zmx:11: surface 2: SURF = no DISZ", "The file looks cut off"},
+         import,
+         {{"lens.zmx", zemax_lens("").substr(0, 108)}}},
+        {"ImportOfEmptyFile", {}, 2, {"lens.zmx", "0 surfaces", "a whole .zmx file"}, import, {{"lens.zmx", ""}}},
+        {"ImportOfNoText",
+         {},
+         2,
+         {"lens.zmx@2", "a NUL character", "UTF-16"},
+         import,
+         {{"lens.zmx", std::string("\xff\xfe\0\0", 4)}}},
+        {"ImportOfNothing", {}, 2, {"lens.zmx", "no readable file", "Check the path"}, import},
+        {"ImportWithMissingCatalogue",
+         {},
+         2,
+         {"absent.agf"},
+         {"--import", "lens.zmx", "--glass-catalog", "absent.agf"},
+         {{"lens.zmx", zemax_lens("")}}},
         // Devices.
         {"UnknownDevice",
          {},
