@@ -26,6 +26,8 @@ constexpr std::size_t longest_quotation = 60; // characters of a line that a mes
 
 // As prescriptions are read.
 constexpr NumberRange thickness_range = {.minimum = 0, .maximum = 1e6};
+constexpr NumberRange offset_range = {.minimum = -1e6, .maximum = 1e6};
+constexpr NumberRange tilt_range_deg = {.minimum = -360, .maximum = 360};
 constexpr NumberRange index_range = {.minimum = 1, .maximum = 5};
 constexpr NumberRange abbe_range = {.minimum = 5, .maximum = 150};
 
@@ -278,7 +280,7 @@ class Reader {
         const auto value = word < line.words.size() ? as_number(line.words[word]) : std::nullopt;
         if (!value || !range.contains(*value)) {
             refuse(line, line.rest,
-                   fmt::format("as value {} a finite number {}", word + 1, range.to_string()),
+                   trimmed(fmt::format("as value {} a finite number {}", word + 1, range.to_string())),
                    "Correct the number; decimals take a point.");
         }
         return *value;
@@ -591,21 +593,35 @@ class Reader {
     }
 
     CoordinateBreak break_of(const Surface& surface) const {
-        const auto length = [&](int number) {
+        const auto checked = [&](int number, const NumberRange& range, auto convert) {
             const auto found = surface.parameters.find(number);
-            return found == surface.parameters.end()
-                       ? 0
-                       : in_mm(surface, found->second.line, found->second.value);
+            if (found == surface.parameters.end()) {
+                return 0.0;
+            }
+            const Line& line = found->second.line;
+            const double value = convert(line, found->second.value);
+            if (!range.contains(value)) {
+                refuse(surface, line, line.rest,
+                       fmt::format("a value {} in mm or degrees", range.to_string()),
+                       "Choose a smaller decentre or tilt.");
+            }
+            return value;
         };
-        const auto angle = [&](int number) { return parameter_of(surface, number) * radians_per_degree; };
+        const auto length = [&](int number) {
+            return checked(number, offset_range,
+                           [&](const Line& line, double value) { return in_mm(surface, line, value); });
+        };
+        const auto angle = [&](int number) {
+            return checked(number, tilt_range_deg, [](const Line&, double value) { return value; }) *
+                   radians_per_degree;
+        };
         return {.decentre_x = length(1),
                 .decentre_y = length(2),
                 .tilt_x = angle(3),
                 .tilt_y = angle(4),
                 .tilt_z = angle(5),
                 .tilt_first = parameter_of(surface, 6) != 0,
-                .thickness = thickness_of(
-                    surface, {.minimum = -thickness_range.maximum, .maximum = thickness_range.maximum})};
+                .thickness = thickness_of(surface, offset_range)};
     }
 
     PrescribedSurface prescribed(const Surface& surface) const {
@@ -669,9 +685,13 @@ ZmxLens parse_zmx(std::string_view bytes, const std::filesystem::path& file, con
 }
 
 ZmxLens read_zmx(const std::filesystem::path& file, const GlassCatalog& glasses) {
-    std::ifstream stream(file, std::ios::binary);
+    std::error_code code;
+    std::ifstream stream;
+    if (!std::filesystem::is_directory(file, code)) { // reading one throws
+        stream.open(file, std::ios::binary);
+    }
     const std::string bytes{std::istreambuf_iterator<char>(stream), {}};
-    if (!stream.is_open() || stream.bad() || std::filesystem::is_directory(file)) {
+    if (!stream.is_open() || stream.bad()) {
         throw InputError({.where = {.file = file},
                           .key = "",
                           .found = "no readable file",
