@@ -1,0 +1,11 @@
+// The law of reflection: one direction for each incidence.
+// delta
+
+VKFV_FUNCTION ScatterTry mirror_try(Incidence incidence, real, real, real) {
+    ScatterTry result;
+    result.direction = incidence.mirror;
+    result.accepted = dot(incidence.mirror, incidence.normal) > real(0.0) ? 1u : 0u;
+    return result;
+}
+
+VKFV_FUNCTION real mirror_density(Incidence, real3) { return real(0.0); }

@@ -1,0 +1,61 @@
+// What the models of scatter/ are made of. A model is one file there, named as in a configuration with _ for -; the
+// build finds it, and with it the reader, the kernels and the tests do. It has a line for each parameter, at most four,
+//   // parameter: NAME, MINIMUM, MAXIMUM, DEFAULT, MEANING
+// the line `// delta` where a direction is certain and has no density, and two functions, the parameters first:
+//   ScatterTry NAME_try(parameters..., Incidence incidence, real u0, real u1, real u2)
+//     one try of a rejection; the accepted directions lie above the surface and have the density
+//   real NAME_density(parameters..., Incidence incidence, real3 outgoing)
+//     per sr of the outgoing direction, the cosine included: its integral over the hemisphere is 1; a delta has 0
+
+// The models that the specimen's material has, bit k for model k, and SCATTER_CHOICE unless it is one lobe that reflects
+// everything: what it has not is compiled out of a kernel.
+const uint SCATTER_CHOICE = 0x80000000u;
+#ifdef __cplusplus
+const uint scatter_models = 0xFFFFFFFFu;
+#else
+layout(constant_id = 4) const uint scatter_models = 0xFFFFFFFFu;
+#endif
+
+// Light on its way from the source to the surface, all unit vectors.
+struct Incidence {
+    real3 incoming; // towards the surface
+    real3 normal;   // on the side the light comes from
+    real3 mirror;   // away from the surface
+};
+
+struct ScatterTry {
+    uint accepted;
+    real3 direction; // unit
+};
+
+VKFV_FUNCTION Incidence make_incidence(real3 incoming, real3 normal) {
+    Incidence incidence;
+    incidence.incoming = incoming;
+    incidence.normal = normal;
+    incidence.mirror = incoming - normal * (real(2.0) * dot(incoming, normal));
+    return incidence;
+}
+
+struct Frame {
+    real3 first;
+    real3 second;
+};
+
+// Two unit vectors at right angles to the unit vector w: T. Duff et al., "Building an orthonormal basis, revisited",
+// JCGT 6 (2017) 1.
+VKFV_FUNCTION Frame frame_around(real3 w) {
+    real sign_z = w.z >= real(0.0) ? real(1.0) : real(-1.0);
+    real a = real(-1.0) / (sign_z + w.z);
+    real b = w.x * w.y * a;
+    Frame frame;
+    frame.first = real3(real(1.0) + sign_z * w.x * w.x * a, sign_z * b, -sign_z * w.x);
+    frame.second = real3(b, sign_z + w.y * w.y * a, -w.y);
+    return frame;
+}
+
+// Unit vector at the angle of the given versine (1 - cos) from the unit vector axis, at the azimuth phi.
+VKFV_FUNCTION real3 direction_around(real3 axis, real versine, real phi) {
+    Frame frame = frame_around(axis);
+    real sine = sqrt(max(versine * (real(2.0) - versine), real(0.0)));
+    return axis * (real(1.0) - versine) + frame.first * (sine * cos(phi)) + frame.second * (sine * sin(phi));
+}
