@@ -634,6 +634,29 @@ TEST(Traversal, AMeshIsMetLikeTheSphereItApproximates) {
     }
 }
 
+// From points within, up at every vertex and every edge's middle: those that the traversals do not try again.
+TEST(Traversal, AClosedMeshLetsNoRayThroughItsHierarchy) {
+    specimen::Specimen ball{octahedral_sphere(0.05, 5), {}};
+    auto& mesh = std::get<specimen::Mesh>(ball.geometry);
+    std::vector<ProbeRay> rays;
+    for (const glm::vec3& from : {glm::vec3(0), glm::vec3(0.013F, -0.007F, -0.011F), glm::vec3(0, 0.03F, -0.02F)}) {
+        const auto aim = [&](const glm::vec3& target) {
+            if (target.z > from.z) {
+                rays.push_back({from, glm::normalize(target - from)});
+            }
+        };
+        for (const glm::uvec3& t : mesh.triangles) {
+            aim(mesh.vertices[t.x]);
+            aim(0.5F * (mesh.vertices[t.x] + mesh.vertices[t.y]));
+            aim(0.5F * (mesh.vertices[t.y] + mesh.vertices[t.z]));
+            aim(0.5F * (mesh.vertices[t.z] + mesh.vertices[t.x]));
+        }
+    }
+    EXPECT_EQ(std::ranges::count(meet(ball, Traversal::bvh, rays), 0u, &Hit::found), 0);
+    mesh.triangles.erase(mesh.triangles.begin()); // a hole, in the octant of +x, +y, +z
+    EXPECT_GT(std::ranges::count(meet(ball, Traversal::bvh, rays), 0u, &Hit::found), 0);
+}
+
 // Slivers and crossing triangles of all sizes in a cube of 0.1 mm: what no grid of cells resembles.
 specimen::Mesh thicket(std::size_t count, std::uint32_t seed) {
     std::mt19937 generator(seed);
