@@ -206,7 +206,8 @@ std::optional<std::string> nearest_word(std::string_view word, const std::vector
     std::size_t smallest = furthest + 1;
     for (const auto& candidate : candidates) {
         const std::size_t steps = distance(candidate);
-        if (steps < smallest && steps < candidate.size()) {
+        // Nothing in common: as many steps as letters.
+        if (steps < smallest && steps < std::max(word.size(), candidate.size())) {
             smallest = steps;
             nearest = candidate;
         }

@@ -118,6 +118,8 @@ TEST(TomlReader, SuggestsTheNearestKnownKey) {
         AllOf(HasSubstr("lens.toml:2:1: detector.pixles = 64"), HasSubstr("Did you mean \"pixels\"?")));
     EXPECT_EQ(nearest_word("raduis_mm", {"radius_mm", "flux_W"}), "radius_mm");
     EXPECT_EQ(nearest_word("zebra", {"radius_mm", "flux_W"}), std::nullopt);
+    EXPECT_EQ(nearest_word("gg", {"scatter", "g"}), "g");
+    EXPECT_EQ(nearest_word("q", {"scatter", "g"}), std::nullopt);
 }
 
 TEST(TomlReader, ParseErrorsHavePlaces) {
