@@ -379,6 +379,29 @@ TEST(Traversal, NoRayAtAVertexOrAnEdgeIsLost) {
     }
 }
 
+TEST(Traversal, ARayFromAfarIsMetAsOnTheHost) {
+    // At vertices and middles of edges around the centre, from 10 mm away.
+    const specimen::Specimen hills{make_field(129, 0.001, RandomWaves(0.0005, 0.01, 7)), {}};
+    const auto& field = std::get<specimen::HeightField>(hills.geometry);
+    std::vector<ProbeRay> rays;
+    for (const glm::vec3& direction : {glm::normalize(glm::vec3(0.1F, 0, -1)), glm::vec3(0.24F, -0.32F, -0.91651514F)}) {
+        for (int row = 86; row < 170; ++row) {
+            for (int column = 86; column < 170; ++column) {
+                const glm::vec3 target(field.x_min + 0.5 * column * field.pitch_x,
+                                       field.y_min + 0.5 * row * field.pitch_y, field.heights(column / 2, row / 2));
+                rays.push_back({target - 10.0F * direction, direction});
+            }
+        }
+    }
+    const specimen::Intersector reference(hills);
+    const auto expected = meet(reference, rays);
+    for (const Traversal traversal : every_traversal) {
+        // A float at 10 mm has steps of 1 nm, and so has the place where the ray comes to the specimen.
+        const Comparison seen = compare(reference, rays, meet(hills, traversal, rays), expected, 4 * nm);
+        EXPECT_EQ(seen.both, rays.size());
+    }
+}
+
 // The heights at which rays of slope tan(theta) meet two surfaces that are `gap` apart vertically differ by
 // at most gap / (1 - slope tan(theta)), where `slope` bounds both surfaces' slopes. Float adds rounding of
 // both.
