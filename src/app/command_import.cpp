@@ -10,6 +10,7 @@
 #include <nlohmann/json.hpp>
 #include <spdlog/spdlog.h>
 
+#include <cmath>
 #include <cstdio>
 #include <fstream>
 
@@ -68,8 +69,12 @@ void run_import(const CommandOptions& options) {
     spdlog::info("{}: {} surfaces, wavelengths {} um, of which {} is the primary one", prescription.title,
                  prescription.surfaces.size(), fmt::join(lens.wavelengths_um, ", "),
                  lens.primary_wavelength_um);
-    spdlog::info("effective focal length {:.9g} mm, back focal length {:.9g} mm at {} um", focal.effective,
-                 focal.back, lens.primary_wavelength_um);
+    if (std::isfinite(focal.effective)) {
+        spdlog::info("effective focal length {:.9g} mm, back focal length {:.9g} mm at {} um",
+                     focal.effective, focal.back, lens.primary_wavelength_um);
+    } else {
+        spdlog::info("afocal at {} um", lens.primary_wavelength_um);
+    }
 
     const std::string text = optics::prescription_text(prescription);
     if (options.out) {
