@@ -34,8 +34,10 @@ real lattice_at(int column, int row) { return real(0.0); }
 void main() {
     uint index = gl_GlobalInvocationID.x;
     if (index < count) {
-        TrainResult train = trace_train(instrument.imaging_first, instrument.imaging_count, rays[index], apertures);
-        Ray arrived = fly_to_plane(train.ray, instrument.detector_distance, real(1.0));
+        Light light = light_of_spectral(instrument, real(0.0));
+        TrainResult train = trace_train(instrument.imaging_first, instrument.imaging_count, rays[index],
+                                        specimen_medium_index(instrument, light), apertures, light);
+        Ray arrived = fly_to_plane(train.ray, instrument.detector_distance, train.index);
         TracedRay traced;
         traced.position = arrived.position;
         traced.direction = arrived.direction;

@@ -16,10 +16,11 @@ VKFV_FUNCTION Fate make_fate(uint status, int surface) {
     return fate;
 }
 
-// Where the ledger counts a fate: the plain statuses first, then three for each surface.
+// Where the ledger counts a fate: the plain statuses first, then those of each surface.
 VKFV_FUNCTION int ledger_slot(Fate fate) {
     return fate.surface < 0 ? int(fate.status)
-                            : PATH_STATUS_COUNT + 3 * fate.surface + int(fate.status - PATH_VIGNETTED);
+                            : PATH_STATUS_COUNT + SURFACE_STATUS_COUNT * fate.surface +
+                                  int(fate.status - PATH_VIGNETTED);
 }
 
 // Start of scattered light: the hit point moved along the normal by eight rounding steps (2^-23) of the largest
@@ -46,22 +47,58 @@ struct Arrival {
     Fate fate;       // PATH_ALIVE: it arrived
     real3 position;  // on the plane z = top
     real3 direction; // unit
+    Light light;
 };
+
+VKFV_FUNCTION real specimen_medium_index(Instrument instrument, Light light) {
+    return instrument.specimen_index + disperse(instrument.specimen_dispersion, light.spectral);
+}
+
+// Light as it leaves the source.
+struct Emission {
+    Ray ray; // in the source's frame (a ring light's: its aim at the origin), unit direction
+    Light light;
+};
+
+VKFV_SCENE_FUNCTION VKFV_FUNCTION Emission emit(VKFV_SCENE_PARAMETER Instrument instrument, Draws draws) {
+    uint present = features(VKFV_SCENE_ALONE);
+    Emission emission;
+    emission.light = light_of_spectral(instrument, real(0.0));
+    if ((present & FEATURE_SPECTRUM) != 0u) {
+        emission.light = draw_light(VKFV_SCENE instrument, draws.u4);
+    }
+    emission.light.survival = draws.u5;
+    if ((present & FEATURE_RING) != 0u) {
+        emission.ray =
+            emit_from_ring(instrument.ring, instrument.emission_sine, draws.u0, draws.u1, draws.u2, draws.u3);
+    } else {
+        emission.ray =
+            emit_from_disc(instrument.source_radius, instrument.emission_sine, draws.u0, draws.u1, draws.u2, draws.u3);
+    }
+    return emission;
+}
 
 VKFV_SCENE_FUNCTION VKFV_FUNCTION Arrival illuminate(VKFV_SCENE_PARAMETER Instrument instrument,
                                                      SpecimenRecord specimen, Exposure exposure,
                                                      uvec2 path) {
-    Draws draws = draw(exposure.seed, exposure.image, path, 0u);
-    Ray ray = emit_from_disc(instrument.source_radius, instrument.emission_sine, draws.u0, draws.u1, draws.u2,
-                             draws.u3);
-    ray.position.z = -instrument.source_distance;
-    TrainResult train = trace_train(VKFV_SCENE instrument.illumination_first, instrument.illumination_count, ray, 1u);
-    Ray down = fly_to_plane(train.ray, exposure.top_distance, real(1.0));
+    Emission emission = emit(VKFV_SCENE instrument, draw(exposure.seed, exposure.image, path, 0u));
     Arrival arrival;
+    arrival.light = emission.light;
+    Ray ray = emission.ray;
+    bool is_ring = (features(VKFV_SCENE_ALONE) & FEATURE_RING) != 0u;
+    ray.position.z = ray.position.z + (is_ring ? instrument.ring.aim_distance : -instrument.source_distance);
+    // The source stands in air, or where nothing parts it from the specimen, in the specimen's medium.
+    real specimen_index = specimen_medium_index(instrument, arrival.light);
+    real index = instrument.illumination_count > 0 ? real(1.0) : specimen_index;
+    ray.direction = ray.direction * index;
+    TrainResult train = trace_train(VKFV_SCENE instrument.illumination_first, instrument.illumination_count, ray,
+                                    index, 1u, arrival.light);
+    Ray down = fly_to_plane(train.ray, exposure.top_distance, specimen_index);
     arrival.fate = make_fate(train.status, train.surface);
     // The specimen frame is the illumination's turned half a turn about x.
+    real scale = real(1.0) / specimen_index;
     arrival.position = real3(down.position.x, -down.position.y, specimen.top);
-    arrival.direction = real3(down.direction.x, -down.direction.y, -down.direction.z);
+    arrival.direction = real3(down.direction.x * scale, -down.direction.y * scale, -down.direction.z * scale);
     return arrival;
 }
 
@@ -82,12 +119,12 @@ VKFV_SCENE_FUNCTION VKFV_FUNCTION Departure scatter_at_specimen(VKFV_SCENE_PARAM
     status = hit.found == 1u ? PATH_ALIVE : PATH_OFF_SPECIMEN;
     bool under_way = hit.found == 1u;
     for (int bounce = 0; bounce < specimen.max_bounces && under_way; ++bounce) {
-        Scattered scattered = scatter(specimen.scatter_g, direction, hit.normal, exposure.seed, exposure.image, path,
+        Scattered scattered = scatter(specimen.material, direction, hit.normal, exposure.seed, exposure.image, path,
                                       1u + uint(bounce) * SCATTER_BLOCKS);
         direction = scattered.direction;
         origin = scatter_origin(hit);
         under_way = scattered.accepted == 1u;
-        status = under_way ? PATH_ALIVE : PATH_NUMERICAL;
+        status = under_way ? PATH_ALIVE : scattered.absorbed == 1u ? PATH_ABSORBED : PATH_NUMERICAL;
         if (bounce + 1 == specimen.max_bounces) {
             test_occlusion = 1u;
             under_way = false;
@@ -104,6 +141,8 @@ VKFV_SCENE_FUNCTION VKFV_FUNCTION Departure scatter_at_specimen(VKFV_SCENE_PARAM
     departure.survivor.position = origin;
     departure.survivor.direction_x = direction.x;
     departure.survivor.direction_y = direction.y;
+    departure.survivor.spectral = real(0.0);
+    departure.survivor.survival = real(0.0);
     departure.survivor.test_occlusion = test_occlusion;
     return departure;
 }
@@ -117,6 +156,13 @@ VKFV_SCENE_FUNCTION VKFV_FUNCTION Departure trace_to_departure(VKFV_SCENE_PARAME
     if (arrival.fate.status == PATH_ALIVE) {
         departure = scatter_at_specimen(VKFV_SCENE instrument, specimen, exposure, path, arrival.position,
                                         arrival.direction);
+        departure.survivor.spectral = arrival.light.spectral;
+        if ((features(VKFV_SCENE_ALONE) & FEATURE_LOSSES) != 0u) {
+            // The block after those of the last scatter event.
+            Draws draws = draw(exposure.seed, exposure.image, path,
+                               1u + uint(specimen.max_bounces) * SCATTER_BLOCKS);
+            departure.survivor.survival = draws.u0;
+        }
     }
     return departure;
 }
@@ -146,6 +192,24 @@ VKFV_SCENE_FUNCTION VKFV_FUNCTION bool survivor_occluded(VKFV_SCENE_PARAMETER Su
     return occluded;
 }
 
+// A landing on the detector's plane, mm, axes parallel to the specimen's, inversion not removed.
+VKFV_FUNCTION Detection detect(Instrument instrument, real x, real y) {
+    real half_size = instrument.detector_half_size;
+    // Removing the inversion: a negative magnification turns the image half a turn.
+    real turn = instrument.magnification < real(0.0) ? real(-1.0) : real(1.0);
+    real scale = real(instrument.detector_pixels) / (real(2.0) * half_size);
+    bool on_detector = abs(x) < half_size && abs(y) < half_size;
+    bool finite = !(isnan(x) || isinf(x) || isnan(y) || isinf(y));
+    int last = instrument.detector_pixels - 1;
+    Detection detection;
+    detection.x = x;
+    detection.y = y;
+    detection.column = on_detector ? clamp(int(floor((turn * x + half_size) * scale)), 0, last) : 0;
+    detection.row = on_detector ? clamp(int(floor((turn * y + half_size) * scale)), 0, last) : 0;
+    detection.fate = make_fate(!finite ? PATH_NUMERICAL : on_detector ? PATH_DETECTED : PATH_OFF_DETECTOR, -1);
+    return detection;
+}
+
 VKFV_SCENE_FUNCTION VKFV_FUNCTION Detection image_survivor(VKFV_SCENE_PARAMETER Instrument instrument,
                                                            SpecimenRecord specimen, Exposure exposure,
                                                            Survivor survivor) {
@@ -156,26 +220,17 @@ VKFV_SCENE_FUNCTION VKFV_FUNCTION Detection image_survivor(VKFV_SCENE_PARAMETER 
     Ray ray;
     ray.position = real3(survivor.position.x + rise * direction.x, survivor.position.y + rise * direction.y,
                          -exposure.top_distance);
-    ray.direction = direction;
+    Light light = light_of_spectral(instrument, survivor.spectral);
+    light.survival = survivor.survival;
+    real index = specimen_medium_index(instrument, light);
+    ray.direction = direction * index;
     ray.path_length = real(0.0);
-    TrainResult train = trace_train(VKFV_SCENE instrument.imaging_first, instrument.imaging_count, ray, 1u);
-    Ray arrived = fly_to_plane(train.ray, instrument.detector_distance, real(1.0));
-    real x = arrived.position.x;
-    real y = arrived.position.y;
-    real half_size = instrument.detector_half_size;
-    // Removing the inversion: a negative magnification turns the image half a turn.
-    real turn = instrument.magnification < real(0.0) ? real(-1.0) : real(1.0);
-    real scale = real(instrument.detector_pixels) / (real(2.0) * half_size);
-    bool on_detector = abs(x) < half_size && abs(y) < half_size;
-    bool finite = !(isnan(x) || isinf(x) || isnan(y) || isinf(y));
-    Detection detection;
-    detection.x = x;
-    detection.y = y;
-    detection.column = on_detector ? clamp(int(floor((turn * x + half_size) * scale)), 0, instrument.detector_pixels - 1) : 0;
-    detection.row = on_detector ? clamp(int(floor((turn * y + half_size) * scale)), 0, instrument.detector_pixels - 1) : 0;
-    uint landed = !finite ? PATH_NUMERICAL : on_detector ? PATH_DETECTED : PATH_OFF_DETECTOR;
+    TrainResult train = trace_train(VKFV_SCENE instrument.imaging_first, instrument.imaging_count, ray, index, 1u,
+                                    light);
+    Ray arrived = fly_to_plane(train.ray, instrument.detector_distance, train.index);
+    Detection detection = detect(instrument, arrived.position.x, arrived.position.y);
     detection.fate = occluded                      ? make_fate(PATH_BOUNCE_LIMIT, -1)
                      : train.status != PATH_ALIVE ? make_fate(train.status, train.surface)
-                                                   : make_fate(landed, -1);
+                                                   : detection.fate;
     return detection;
 }

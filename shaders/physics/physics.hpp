@@ -3,6 +3,8 @@
 //
 // A scene, handed to the functions that take one, has:
 //   Surface surface_at(int index) const;
+//   uint features() const;                             FEATURE_* of its trains
+//   SpectralBin spectral_bin(int index) const;         only with FEATURE_SPECTRUM
 //   Hit specimen_hit(real3 origin, real3 direction) const;
 //   real lattice_at(int column, int row) const;      only for analytic specimens with a lattice
 #pragma once
@@ -15,6 +17,7 @@
 #define VKFV_SCENE_FUNCTION template <class Scene>
 #define VKFV_SCENE_PARAMETER const Scene &scene,
 #define VKFV_SCENE scene,
+#define VKFV_SCENE_ALONE scene
 
 #define VKFV_PHYSICS_LANGUAGE                                                                                \
     using glm::abs;                                                                                          \
@@ -59,4 +62,5 @@ VKFV_PHYSICS_LANGUAGE
 #undef VKFV_SCENE_FUNCTION
 #undef VKFV_SCENE_PARAMETER
 #undef VKFV_SCENE
+#undef VKFV_SCENE_ALONE
 #undef VKFV_PHYSICS_LANGUAGE

@@ -10,24 +10,52 @@ const uint PATH_ESCAPED = 3u;          // left the specimen outside the pupil's 
 const uint PATH_BOUNCE_LIMIT = 4u;     // would have met the specimen more often than permitted
 const uint PATH_OFF_DETECTOR = 5u;     // reached the detector's plane beside the detector
 const uint PATH_NUMERICAL = 6u;        // a non-finite number or an exhausted rejection loop
-const uint PATH_VIGNETTED = 7u;        // stopped by the edge of a surface (a surface index belongs to it)
-const uint PATH_MISSED_SURFACE = 8u;   // a surface of a train does not meet the ray (likewise)
-const uint PATH_TOTAL_REFLECTION = 9u; // totally reflected at a surface (likewise)
-const int PATH_STATUS_COUNT = 10;
+const uint PATH_ABSORBED = 7u;         // by the specimen
+const uint PATH_INTERACTION_LIMIT = 8u; // non-sequential: met more surfaces than permitted
+const uint PATH_VIGNETTED = 9u;        // stopped by the edge of a surface (a surface index belongs to it)
+const uint PATH_MISSED_SURFACE = 10u;   // a surface of a train does not meet the ray (likewise)
+const uint PATH_TOTAL_REFLECTION = 11u; // totally reflected at a surface (likewise)
+const uint PATH_INTERFACE_LOSS = 12u;   // reflected at a refracting surface, or absorbed by a mirror (likewise)
+const int PATH_STATUS_COUNT = 13;
+const int SURFACE_STATUS_COUNT = 4;     // statuses from PATH_VIGNETTED on
 
-const uint SURFACE_CLIPPED = 1u;  // semi_diameter_squared limits it; without the flag it is unbounded
-const uint SURFACE_ASPHERIC = 2u; // the even coefficients are not all zero
+const uint SURFACE_CLIPPED = 1u;    // semi_diameter_squared limits it; without the flag it is unbounded
+const uint SURFACE_ASPHERIC = 2u;   // the even coefficients are not all zero
+const uint SURFACE_FRESNEL = 4u;    // reflects by Fresnel's equations
+const uint SURFACE_LAYER = 8u;      // the same through one thin layer
+const uint SURFACE_MIRROR = 16u;    // plane; a train is unfolded at it
+const uint SURFACE_IDEAL_LENS = 32u; // of `power`, instead of an interface
+
+// What some instruments have and most have not: kernels are compiled without what is absent.
+const uint FEATURE_PLACEMENT = 1u; // surfaces decentred or tilted against each other
+const uint FEATURE_LOSSES = 2u;    // interfaces that reflect, mirrors that absorb
+const uint FEATURE_SPECTRUM = 4u;  // more than one wavelength
+const uint FEATURE_IDEAL_LENS = 8u;
+const uint FEATURE_RING = 16u;     // a ring light instead of the disc
 
 const int SURFACE_CAPACITY = 128; // surfaces of both trains together that the device's uniform block holds
+const int SPECTRUM_CAPACITY = 256; // bins of a spectrum, likewise
+const int RING_CAPACITY = 32;      // segments of a ring light: bits of a mask
 
-// One refracting surface or stop, in the frame of its own vertex; light travels towards +z.
+// index(x) - index(0) = c1 x + ... + c6 x^6 with the spectral coordinate x of Light.
+struct Dispersion {
+    real c1;
+    real c2;
+    real c3;
+    real c4;
+    real c5;
+    real c6;
+};
+
+// One refracting surface, mirror, ideal lens or stop, in the frame of its own vertex; light travels towards +z.
 // Sag: z = c r^2 / (1 + sqrt(1 - (1 + k) c^2 r^2)) + a4 r^4 + ... + a16 r^16 (ISO 10110-12, eq. 5).
+// From the frame of the previous vertex: p' = rotation (p - (decentre_x, decentre_y, distance)).
 struct Surface {
     real curvature;             // 1/mm, positive: centre of curvature towards +z
     real conic;                 // conic constant k; 0 is a sphere
     real semi_diameter_squared; // mm^2
-    real distance;              // mm, from the previous vertex to this one; a train's first: 0
-    real index_before;
+    real distance;              // mm, from the previous vertex along its z to this one; a train's first: 0
+    real index_before;          // at x = 0
     real index_after;
     real a4; // mm^-3 and so on
     real a6;
@@ -36,6 +64,23 @@ struct Surface {
     real a12;
     real a14;
     real a16;
+    real decentre_x; // mm
+    real decentre_y;
+    real rotation_xx; // new x from old x, and so on
+    real rotation_xy;
+    real rotation_xz;
+    real rotation_yx;
+    real rotation_yy;
+    real rotation_yz;
+    real rotation_zx;
+    real rotation_zy;
+    real rotation_zz;
+    real power;           // 1/mm, of an ideal lens
+    real reflectance;     // of a mirror
+    real layer_index;     // of the thin layer
+    real layer_thickness; // um
+    Dispersion dispersion_before;
+    Dispersion dispersion_after;
     uint flags; // SURFACE_*
 };
 
@@ -44,6 +89,33 @@ struct Ray {
     real3 position;   // mm
     real3 direction;  // unit vector times the index of the medium
     real path_length; // optical path so far, mm
+};
+
+// What distinguishes one ray's light from another's.
+struct Light {
+    real spectral;    // x = (1/lambda^2 - centre) / half-width of the spectrum in 1/lambda^2; in [-1, 1]
+    real wave_number; // 1/um, 1/lambda
+    real survival;    // in [0, 1): the light is lost where the surfaces' transmittances multiply to less than this
+};
+
+// A stretch of a spectrum whose density changes linearly from (1 - tilt) to (1 + tilt) times its mean.
+struct SpectralBin {
+    real cumulative; // share of the flux in this bin and those before it
+    real start;      // um
+    real stop;       // um; as start: a line
+    real tilt;
+};
+
+// A ring of Lambertian segments that face the axis' meeting with the plane of best focus: a band of a cone.
+struct RingLight {
+    real aim_distance; // mm, from the illumination train's first vertex to that meeting along the axis
+    real distance;     // mm, from there to the middle of the band
+    real elevation_sine; // of the direction to the middle of the band, over the specimen's plane
+    real elevation_cosine;
+    real half_width; // mm, of the band, at right angles to that direction
+    real fill;       // share of its sector that a segment takes
+    int segments;
+    uint switched_on; // bit k: segment k, counted from +x towards +y of the specimen frame
 };
 
 // The chain that light goes through, but for the specimen and the scan's position.
@@ -57,6 +129,12 @@ struct Instrument {
     real gate_position;         // gate: |gate_position * (x, y) + gate_slope * (dx/dz, dy/dz)| <= gate_radius,
     real gate_slope;            //   with x, y in mm on the specimen's top plane: the pupil's outline made
     real gate_radius;           //   linear and wide enough that no ray outside it reaches the detector
+    real spectrum_centre;       // 1/um^2, of 1/lambda^2: x = 0
+    real spectrum_half_width;   // 1/um^2; x = 1 is this far from it
+    real specimen_index;        // of the medium over the specimen, at x = 0
+    Dispersion specimen_dispersion;
+    RingLight ring;
+    int spectral_bins;
     int illumination_first;     // indices into the surfaces
     int illumination_count;
     int imaging_first;
@@ -74,6 +152,24 @@ const uint SHAPE_SPHERE = 2u;
 const uint SHAPE_SINUSOID = 3u;
 const uint SHAPE_CHIRP = 4u;
 
+// One way in which a material scatters; shaders/physics/scatter/ has the models.
+struct Lobe {
+    uint model;  // SCATTER_*
+    real weight; // share of the incident light
+    real parameter_0;
+    real parameter_1;
+    real parameter_2;
+    real parameter_3;
+};
+
+// The weights' sum is the reflectance, at most 1; the rest is absorbed. Lobes that there are not weigh nothing.
+struct Material {
+    Lobe lobe_0;
+    Lobe lobe_1;
+    Lobe lobe_2;
+    Lobe lobe_3;
+};
+
 // The specimen in its own frame: x and y across, +z towards the objective, mm.
 struct SpecimenRecord {
     real x_min; // footprint
@@ -89,7 +185,7 @@ struct SpecimenRecord {
     real shape_parameter_2;
     real shape_parameter_3;
     real lipschitz;       // bound of the analytic function's slope
-    real scatter_g;       // Henyey-Greenstein asymmetry
+    Material material;
     int columns; // points of the height field or lattice; 0 x 0: none
     int rows;
     int max_bounces; // scatter events permitted
@@ -102,7 +198,7 @@ struct Exposure {
     real top_distance; // mm, along the axis from the objective's front vertex to the specimen's top plane
     uint seed;
     uint image;
-    uint unused; // keeps the record's size a multiple of 16 bytes
+    real focal_height; // mm, of the focal plane in the specimen frame: z of the image
 };
 
 // Where a ray meets the specimen (specimen frame).
@@ -118,6 +214,8 @@ struct Survivor {
     real3 position;  // specimen frame, on the specimen
     real direction_x; // unit; z is recomputed, positive
     real direction_y;
+    real spectral;    // its Light in the imaging train
+    real survival;
     uint test_occlusion; // 1: whether it meets the specimen again is not yet known
 };
 

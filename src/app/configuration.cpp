@@ -2,6 +2,7 @@
 
 #include "app/digest.hpp"
 #include "core/units.hpp"
+#include "physics/scatter_registry.hpp"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -44,7 +45,11 @@ class Section {
   public:
     Section(const TomlTable& table, Configuration& configuration)
         : table_(table), configuration_(configuration) {
-        const std::string header = fmt::format("\n[{}]\n", table.path());
+        const auto& path = table.path();
+        // "a.b[2]" is a table of the array a.b.
+        const std::string header = path.ends_with(']')
+                                       ? fmt::format("\n[[{}]]\n", path.substr(0, path.rfind('[')))
+                                       : fmt::format("\n[{}]\n", path);
         configuration_.canonical += header;
         configuration_.identity += header;
     }
@@ -181,7 +186,8 @@ void read_instrument(const TomlTable& root, Configuration& configuration) {
         const Section source(root.table("source"), configuration);
         instrument.source_radius = source.number("radius_mm", NumberRange::positive());
         instrument.flux = source.number("flux_W", NumberRange::positive(), 1.0);
-        instrument.wavelength_um = source.number("wavelength_um", NumberRange::positive(), 0.5876);
+        instrument.spectrum =
+            optics::Spectrum::line(source.number("wavelength_um", NumberRange::positive(), 0.5876));
         instrument.source_distance = source.number_if_given("distance_mm", NumberRange::positive());
     }
     {
@@ -194,7 +200,8 @@ void read_instrument(const TomlTable& root, Configuration& configuration) {
     }
     {
         const Section splitter(root.table_or_empty("beam_splitter"), configuration);
-        instrument.splitter_reflectance = splitter.number("reflectance", NumberRange::between(0, 1), 0.5);
+        instrument.splitter.reflectance = splitter.number("reflectance", NumberRange::between(0, 1), 0.5);
+        instrument.splitter.transmittance = 1 - instrument.splitter.reflectance;
     }
     {
         const Section objective(root.table("objective"), configuration);
@@ -282,6 +289,74 @@ std::optional<specimen::Roughness> read_roughness(const TomlTable& specimen_tabl
     roughness.pitch = from_um(section.number("pitch_um", NumberRange::positive()));
     roughness.seed = static_cast<std::uint32_t>(section.integer("seed", 0, largest_seed, 1));
     return roughness;
+}
+
+// A scatter model and its parameters. Those of another model are refused.
+specimen::Lobe read_lobe(const Section& section, const std::optional<std::string>& fallback = {}) {
+    std::vector<std::string> names;
+    std::map<std::string, std::vector<std::string>> models_with;
+    for (const auto& model : physics::scatter_registry) {
+        names.emplace_back(model.name);
+        for (const auto& parameter : model.parameters) {
+            models_with[std::string(parameter.name)].push_back(names.back());
+        }
+    }
+    specimen::Lobe lobe;
+    lobe.model = section.choice("scatter", names, fallback);
+    lobe.parameters.clear();
+    for (const auto& parameter :
+         std::ranges::find(physics::scatter_registry, lobe.model, &physics::ScatterModel::name)->parameters) {
+        const std::string key(parameter.name);
+        models_with.erase(key);
+        lobe.parameters.push_back(section.number(
+            key, NumberRange::within(parameter.minimum, parameter.maximum), parameter.fallback));
+    }
+    for (const auto& [key, models] : models_with) {
+        if (section.table().has(key)) {
+            section.table().fail(key, fmt::format("no such key for scatter = \"{}\"", lobe.model),
+                                 fmt::format("Remove it; it belongs to scatter = \"{}\".",
+                                             fmt::join(models, "\" or \"")));
+        }
+    }
+    return lobe;
+}
+
+// One lobe in the table itself, or several in [[specimen.material.lobe]].
+specimen::Material read_material(const TomlTable& table, Configuration& configuration) {
+    const Section section(table, configuration);
+    const auto lobe_tables = table.optional_tables("lobe");
+    specimen::Material material;
+    material.lobes.clear();
+    if (lobe_tables.empty()) {
+        specimen::Lobe lobe = read_lobe(section, "henyey-greenstein");
+        lobe.weight = section.number("reflectance", NumberRange::within(0, 1), 1.0);
+        if (lobe.weight > 0) {
+            material.lobes.push_back(lobe);
+        }
+        return material;
+    }
+    for (const auto& key : table.keys()) {
+        if (key != "lobe") {
+            table.fail(key, "no other key beside [[specimen.material.lobe]]",
+                       "Move it into a lobe; the reflectance is the sum of the lobes' weights.");
+        }
+    }
+    if (lobe_tables.size() > specimen::most_lobes) {
+        table.fail("lobe", fmt::format("at most {} lobes", specimen::most_lobes), "Leave the weakest out.");
+    }
+    double reflectance = 0;
+    for (const auto& lobe_table : lobe_tables) {
+        const Section lobe_section(lobe_table, configuration);
+        material.lobes.push_back(read_lobe(lobe_section));
+        material.lobes.back().weight =
+            lobe_section.number("weight", {.minimum = 0, .maximum = 1, .minimum_included = false});
+        reflectance += material.lobes.back().weight;
+        if (reflectance > 1 + specimen::weight_rounding) {
+            lobe_table.fail("weight", fmt::format("weights that add up to at most 1, not {:.6g}", reflectance),
+                            "Choose smaller weights; what they leave of 1 is absorbed.");
+        }
+    }
+    return material;
 }
 
 void read_specimen(const TomlTable& root, Configuration& configuration) {
@@ -374,9 +449,7 @@ void read_specimen(const TomlTable& root, Configuration& configuration) {
         description.centre = section.boolean("centre", true);
     }
     description.roughness = read_roughness(table, rule, configuration);
-    const Section material(table.table_or_empty("material"), configuration);
-    (void)material.choice("scatter", {"henyey-greenstein"}, "henyey-greenstein");
-    description.material.g = material.number("g", NumberRange::within(-0.9, 1), 0.0);
+    description.material = read_material(table.table_or_empty("material"), configuration);
     configuration.specimen = std::move(description);
 }
 

@@ -2,23 +2,23 @@
 
 #include "core/error.hpp"
 #include "core/units.hpp"
+#include "optics/apertures.hpp"
 #include "optics/first_order.hpp"
 
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <array>
 #include <cmath>
+#include <iterator>
 #include <utility>
 
 namespace vkfv::optics {
 
 namespace {
 
-using physics::f64::PATH_ALIVE;
-using physics::f64::Ray;
-using physics::f64::real3;
 using physics::f64::Surface;
+using Role = PrescribedSurface::Role;
+using Part = std::vector<PlacedSurface>;
 
 [[noreturn]] void refuse(std::string key, std::string found, std::string expected, std::string remedy,
                          const std::filesystem::path& file = {}) {
@@ -35,368 +35,188 @@ void require_positive(double value, const char* key) {
     }
 }
 
-std::vector<Surface> train_of(const Prescription& prescription, double wavelength_um) {
-    std::vector<Surface> train;
-    double index = prescription.medium_before.index(wavelength_um);
-    double distance = 0;
-    for (const auto& prescribed : prescription.surfaces) {
-        Surface surface{};
-        surface.curvature = prescribed.curvature;
-        surface.conic = prescribed.conic;
-        surface.distance = distance;
-        surface.index_before = index;
-        surface.index_after = prescribed.medium_after.index(wavelength_um);
-        surface.a4 = prescribed.aspheric[0];
-        surface.a6 = prescribed.aspheric[1];
-        surface.a8 = prescribed.aspheric[2];
-        surface.a10 = prescribed.aspheric[3];
-        surface.a12 = prescribed.aspheric[4];
-        surface.a14 = prescribed.aspheric[5];
-        surface.a16 = prescribed.aspheric[6];
-        if (std::any_of(prescribed.aspheric.begin(), prescribed.aspheric.end(),
-                        [](double coefficient) { return coefficient != 0; })) {
-            surface.flags |= physics::f64::SURFACE_ASPHERIC;
-        }
-        if (prescribed.semi_diameter) {
-            surface.semi_diameter_squared = *prescribed.semi_diameter * *prescribed.semi_diameter;
-            surface.flags |= physics::f64::SURFACE_CLIPPED;
-        }
-        train.push_back(surface);
-        index = surface.index_after;
-        distance = prescribed.thickness;
-    }
-    return train;
+// Half a turn about x: the frame of light that comes down.
+Pose downward(double height) {
+    return Pose{}.along_z(height).half_turn();
 }
 
-// A part as a train by itself, with its paraxial transfer. Throws unless it stands in air and is not afocal.
-struct Part {
-    std::vector<Surface> train;
-    RayTransfer transfer;
+// A whole part moved: what was given against `from` then stands the same way against `to`.
+void move(Part& part, const Pose& from, const Pose& to) {
+    const glm::dmat3 turn = to.axes * glm::transpose(from.axes);
+    for (PlacedSurface& placed : part) {
+        placed.pose = {to.origin + turn * (placed.pose.origin - from.origin), turn * placed.pose.axes};
+    }
+}
+
+Pose placed_at(const Placement& placement, const Pose& nominal) {
+    if (placement.global) {
+        Pose corner;
+        corner.origin = *placement.global;
+        return corner.turned(placement.change);
+    }
+    return nominal.turned(placement.change);
+}
+
+bool is_displaced(const Placement& placement) {
+    const CoordinateBreak& c = placement.change;
+    return placement.global || c.decentre_x != 0 || c.decentre_y != 0 || c.tilt_x != 0 || c.tilt_y != 0 || c.tilt_z != 0;
+}
+
+void append(Part& train, const Part& part) {
+    train.insert(train.end(), part.begin(), part.end());
+}
+
+// "imaging 3 (10x_0.28 3, aperture stop)": the place in the train, and in the prescription as its file counts.
+void name_surfaces(std::vector<std::string>& names, const char* train, const Part& surfaces) {
+    for (std::size_t i = 0; i < surfaces.size(); ++i) {
+        names.push_back(fmt::format("{} {} ({})", train, i + 1, surfaces[i].name));
+    }
+}
+
+// The parts, each in the specimen's frame with its origin in the paraxial object plane, unfolded.
+struct Layout {
+    const InstrumentDescription& description;
+    const Spectrum& spectrum;
+    SpectralIndex air;
+
+    explicit Layout(const InstrumentDescription& given)
+        : description(given), spectrum(given.spectrum), air(spectral_index(Medium::air(), given.spectrum)) {}
+
+    Element element(Element::Kind kind, const PlacedSurface& placed, const char* part) const {
+        Element result;
+        result.kind = (placed.surface.flags & physics::f64::SURFACE_IDEAL_LENS) != 0 ? Element::Kind::ideal_lens
+                      : kind == Element::Kind::surface &&
+                              placed.surface.index_before == placed.surface.index_after
+                          ? Element::Kind::stop
+                          : kind;
+        result.surface = placed.surface;
+        result.pose = placed.pose;
+        result.name = placed.name;
+        result.part = part;
+        return result;
+    }
+
+    // A plate of glass between two planes; `medium` on both sides.
+    Part plate(const Pose& first, double thickness, const Medium& glass, const Medium& medium,
+               std::optional<double> semi_diameter, const std::string& name) const {
+        Prescription prescription;
+        prescription.name = name;
+        prescription.medium_before = medium;
+        PrescribedSurface surface;
+        surface.semi_diameter = semi_diameter;
+        surface.thickness = thickness;
+        surface.medium_after = glass;
+        prescription.surfaces = {surface, surface};
+        prescription.surfaces.back().medium_after = medium;
+        Pose end;
+        return place_prescription(prescription, spectrum, description.interfaces, first, end);
+    }
+
+    PlacedSurface mirror_plane(const Pose& pose, std::optional<double> semi_diameter, std::string name) const {
+        PlacedSurface mirror = dummy_plane(air, pose, std::move(name));
+        mirror.surface.flags |= physics::f64::SURFACE_MIRROR;
+        mirror.surface.reflectance = 1;
+        if (semi_diameter) {
+            mirror.surface.flags |= physics::f64::SURFACE_CLIPPED;
+            mirror.surface.semi_diameter_squared = *semi_diameter * *semi_diameter;
+        }
+        return mirror;
+    }
 };
 
-Part make_part(const Prescription& prescription, double wavelength_um, const char* key) {
-    if (prescription.surfaces.empty()) {
-        refuse(key, prescription.name, "a prescription with surfaces", "Add a [[surface]].",
-               prescription.file);
+// What stands in the infinity space of one train, in the order of its light.
+struct Inserted {
+    double distance = 0;
+    Part surfaces;
+};
+
+RayTransfer transfer_of(Part part) {
+    link(part, part.front().pose);
+    return transfer_of_train(surfaces_of(part));
+}
+
+Prescription with_stops(const InstrumentDescription& description, Prescription prescription, Role role,
+                        std::optional<double> radius, const char* key) {
+    if (!radius) {
+        return prescription;
     }
-    Part part{.train = train_of(prescription, wavelength_um), .transfer = {}};
-    if (part.train.front().index_before != 1 || part.train.back().index_after != 1) {
+    require_positive(*radius, key);
+    const auto found = std::ranges::find(prescription.surfaces, role, &PrescribedSurface::role);
+    if (found == prescription.surfaces.end()) {
+        refuse(key, fmt::format("{}", *radius),
+               fmt::format("a part with such a stop, which {} has not", prescription.name),
+               "Leave the radius out, or mark a surface with its role.", prescription.file);
+    }
+    found->semi_diameter = radius;
+    (void)description;
+    return prescription;
+}
+
+void require_surfaces(const Prescription& prescription, const char* key) {
+    if (prescription.surfaces.empty()) {
+        refuse(key, prescription.name, "a prescription with surfaces", "Add a [[surface]].", prescription.file);
+    }
+}
+
+void require_air(double index, const Prescription& prescription, const char* key) {
+    if (index != 1) {
         refuse(key, prescription.name, "a part that stands in air",
                "Remove medium_before and the medium of the last surface.", prescription.file);
     }
-    part.transfer = transfer_of_train(part.train);
-    return part;
-}
-
-std::optional<std::size_t> surface_with_role(const Prescription& prescription, PrescribedSurface::Role role) {
-    for (std::size_t i = 0; i < prescription.surfaces.size(); ++i) {
-        if (prescription.surfaces[i].role == role) {
-            return i;
-        }
-    }
-    return std::nullopt;
-}
-
-std::string role_suffix(PrescribedSurface::Role role) {
-    switch (role) {
-    case PrescribedSurface::Role::aperture_stop:
-        return ", aperture stop";
-    case PrescribedSurface::Role::field_stop:
-        return ", field stop";
-    case PrescribedSurface::Role::refracting:
-        break;
-    }
-    return "";
-}
-
-// "imaging 3 (10x_0.28 3, aperture stop)": the place in the train, and in the prescription as its file
-// counts.
-void name_surfaces(std::vector<std::string>& names, const char* train, std::size_t& place,
-                   const Prescription& prescription, bool backward) {
-    const std::size_t count = prescription.surfaces.size();
-    for (std::size_t i = 0; i < count; ++i) {
-        const std::size_t own = backward ? count - 1 - i : i;
-        names.push_back(fmt::format("{} {} ({} {}{})", train, ++place, prescription.name, own + 1,
-                                    role_suffix(prescription.surfaces[own].role)));
-    }
-}
-
-void append(std::vector<Surface>& train, const std::vector<Surface>& part, double distance) {
-    const std::size_t first = train.size();
-    train.insert(train.end(), part.begin(), part.end());
-    train[first].distance = distance;
-}
-
-// The largest t of [0, limit] at which the predicate holds, to rounding: looked for inward in steps of limit / 32, then
-// by bisection. Where it holds only between two steps, and not at 0, it is not found. None: it holds at no step.
-template <class Predicate>
-std::optional<double> farthest(double limit, Predicate holds) {
-    constexpr int steps = 32;
-    constexpr int bisections = 45; // 2^-45 of a step
-    for (int step = steps; step >= 0; --step) {
-        double inside = limit * step / steps;
-        if (!holds(inside)) {
-            continue;
-        }
-        double outside = limit * std::min(step + 1, steps) / steps;
-        for (int i = 0; i < bisections; ++i) {
-            const double middle = 0.5 * (inside + outside);
-            (holds(middle) ? inside : outside) = middle;
-        }
-        return inside;
-    }
-    return std::nullopt;
-}
-
-// Everything that decides where light from the specimen lands.
-struct Imaging {
-    std::vector<Surface> train;
-    double working_distance = 0;
-    double detector_distance = 0;
-    double pupil_curvature = 0; // of EntrancePupil, from the paraxial object plane
-
-    // Detector coordinates of light from (x, y) at `height` above the paraxial object plane, with direction
-    // cosines l and m. None: it does not come so far.
-    std::optional<glm::dvec2> trace(glm::dvec2 position, double height, glm::dvec2 cosines,
-                                    unsigned apertures = 1u) const {
-        const double axial_squared = 1 - glm::dot(cosines, cosines);
-        if (axial_squared <= 0) {
-            return std::nullopt;
-        }
-        Ray ray{};
-        ray.position = real3(position, height - working_distance);
-        ray.direction = real3(cosines, std::sqrt(axial_squared));
-        const auto result =
-            physics::f64::trace_train(TrainScene{train}, 0, static_cast<int>(train.size()), ray, apertures);
-        if (result.status != PATH_ALIVE) {
-            return std::nullopt;
-        }
-        const auto arrived = physics::f64::fly_to_plane(result.ray, detector_distance, 1.0);
-        return glm::dvec2(arrived.position.x, arrived.position.y);
-    }
-
-    // Direction cosines through the paraxial centre of the pupil.
-    glm::dvec2 chief_cosines(glm::dvec2 position) const {
-        const glm::dvec2 slope = -pupil_curvature * position;
-        return slope / std::sqrt(1 + glm::dot(slope, slope));
-    }
-};
-
-// The outline of the cone of light that passes all apertures from a point of the paraxial object plane, as
-// radii in direction cosines about the chief ray; by symmetry over half a turn, for points on the x axis.
-struct Outline {
-    glm::dvec2 position;
-    glm::dvec2 centre;         // direction cosines
-    std::vector<double> radii; // at azimuths (i + 1/2) * step: midpoints, for integrals
-    double step = 0;
-
-    glm::dvec2 cosines(std::size_t azimuth, double radius) const {
-        const double angle = (static_cast<double>(azimuth) + 0.5) * step;
-        return centre + radius * glm::dvec2(std::cos(angle), std::sin(angle));
-    }
-    double area() const { // in direction cosines, of both halves
-        double sum = 0;
-        for (const double radius : radii) {
-            sum += radius * radius * step;
-        }
-        return sum;
-    }
-};
-
-Outline outline_at(const Imaging& imaging, double x) {
-    constexpr std::size_t azimuths = 24;
-    Outline outline{
-        .position = {x, 0}, .centre = imaging.chief_cosines({x, 0}), .radii = {}, .step = pi / azimuths};
-    for (std::size_t i = 0; i < azimuths; ++i) {
-        // Beyond 1 + |centre| no direction cosines exist.
-        const auto radius = farthest(1 + glm::length(outline.centre), [&](double candidate) {
-            return imaging.trace(outline.position, 0, outline.cosines(i, candidate)).has_value();
-        });
-        outline.radii.push_back(radius.value_or(0));
-    }
-    return outline;
-}
-
-// Height above the paraxial plane at which the RMS distance of the outline's light from its centroid on the
-// detector is least. The cone is that of the paraxial plane. The landing points are all but linear in the
-// height, so Gauss and Newton's method on their deviations from the centroid converges in two steps; three
-// leave rounding.
-double best_focus(const Imaging& imaging, const Outline& outline) {
-    // Gauss-Legendre over [-1, 1] (Abramowitz and Stegun, table 25.4) in the share of the cone that a ring
-    // encloses: exact for squared aberrations up to the 30th power of the pupil's radius.
-    constexpr std::array<std::pair<double, double>, 8> rings = {{{-0.9602898564975363, 0.1012285362903763},
-                                                                 {-0.7966664774136267, 0.2223810344533745},
-                                                                 {-0.5255324099163290, 0.3137066458778873},
-                                                                 {-0.1834346424956498, 0.3626837833783620},
-                                                                 {0.1834346424956498, 0.3626837833783620},
-                                                                 {0.5255324099163290, 0.3137066458778873},
-                                                                 {0.7966664774136267, 0.2223810344533745},
-                                                                 {0.9602898564975363, 0.1012285362903763}}};
-    // mm, for the central difference: landing points curve far less than rounding over a micrometre.
-    constexpr double difference = 1e-3;
-    struct Sample {
-        glm::dvec2 landing;
-        glm::dvec2 rate; // of the landing with the height
-        double weight;
-    };
-    double height = 0;
-    for (int step = 0; step < 3; ++step) {
-        std::vector<Sample> samples;
-        // Only along x: the other half of the cone has the same x and the opposite y.
-        double total = 0;
-        double centroid = 0;
-        double centroid_rate = 0;
-        for (std::size_t i = 0; i < outline.radii.size(); ++i) {
-            for (const auto& [node, node_weight] : rings) {
-                const glm::dvec2 cosines = outline.cosines(i, outline.radii[i] * std::sqrt(0.5 * (1 + node)));
-                const auto below = imaging.trace(outline.position, height - difference, cosines, 0u);
-                const auto above = imaging.trace(outline.position, height + difference, cosines, 0u);
-                if (!below || !above) {
-                    continue;
-                }
-                const Sample sample{.landing = 0.5 * (*below + *above),
-                                    .rate = (*above - *below) / (2 * difference),
-                                    .weight = node_weight * outline.radii[i] * outline.radii[i]};
-                samples.push_back(sample);
-                total += sample.weight;
-                centroid += sample.weight * sample.landing.x;
-                centroid_rate += sample.weight * sample.rate.x;
-            }
-        }
-        double numerator = 0;
-        double denominator = 0;
-        for (const Sample& sample : samples) {
-            const glm::dvec2 deviation = sample.landing - glm::dvec2(centroid / total, 0);
-            const glm::dvec2 rate = sample.rate - glm::dvec2(centroid_rate / total, 0);
-            numerator += sample.weight * glm::dot(deviation, rate);
-            denominator += sample.weight * glm::dot(rate, rate);
-        }
-        height -= denominator > 0 ? numerator / denominator : 0;
-    }
-    return height;
-}
-
-// What is found in the finite places that are searched may be exceeded between them: by less than this share,
-// as outlines of pupils are smooth but for the corners where two edges meet.
-constexpr double search_margin = 1.02;
-
-// The gate: a ray of position x and slope s on a plane at height t above the paraxial one crosses the
-// paraxial entrance pupil at p x + (1 + p t) s, up to a factor, where x now stands on the paraxial plane and
-// p is the pupil's curvature. Light that reaches the detector comes from within the field; of all of it, over
-// field, azimuth and |t| <= greatest_defocus, the largest such crossing is the gate's radius. The crossing is
-// convex in s and t, so the rim of each cone and the two ends of t hold the largest.
-double gate_radius(const Imaging& imaging, double field_radius, double lowest, double highest) {
-    constexpr int field_points = 12;
-    double largest = 0;
-    for (int i = 0; i <= field_points; ++i) {
-        const Outline outline = outline_at(imaging, field_radius * i / field_points);
-        for (std::size_t azimuth = 0; azimuth < outline.radii.size(); ++azimuth) {
-            if (outline.radii[azimuth] == 0) {
-                continue;
-            }
-            const glm::dvec2 cosines = outline.cosines(azimuth, outline.radii[azimuth]);
-            const glm::dvec2 slope = cosines / std::sqrt(1 - glm::dot(cosines, cosines));
-            for (const double t : {lowest, highest}) {
-                largest = std::max(largest, glm::length(imaging.pupil_curvature * outline.position +
-                                                        (1 + imaging.pupil_curvature * t) * slope));
-            }
-        }
-    }
-    return search_margin * largest;
-}
-
-// Sine of the largest angle at which light leaves the source and passes the train. From each point of the
-// source the rim is looked for about the direction that aims at the centre of the field stop: `towards_stop`
-// leads from the source to there.
-double emission_sine(const std::vector<Surface>& train, double source_radius, double source_distance,
-                     const RayTransfer& towards_stop) {
-    const auto largest_from = [&](double x) {
-        constexpr int azimuths = 13;
-        const double slope = -towards_stop.a / towards_stop.b * x;
-        const glm::dvec2 centre(slope / std::sqrt(1 + slope * slope), 0);
-        double largest = 0;
-        for (int i = 0; i < azimuths; ++i) {
-            const double angle = pi * i / (azimuths - 1);
-            const auto cosines = [&](double radius) {
-                return centre + radius * glm::dvec2(std::cos(angle), std::sin(angle));
-            };
-            const auto radius = farthest(1 + std::abs(centre.x), [&](double candidate) {
-                const glm::dvec2 direction = cosines(candidate);
-                const double axial_squared = 1 - glm::dot(direction, direction);
-                if (axial_squared <= 0) {
-                    return false;
-                }
-                Ray ray{};
-                ray.position = real3(x, 0, -source_distance);
-                ray.direction = real3(direction, std::sqrt(axial_squared));
-                return physics::f64::trace_train(TrainScene{train}, 0, static_cast<int>(train.size()), ray,
-                                                 1u)
-                           .status == PATH_ALIVE;
-            });
-            largest = radius ? std::max(largest, glm::length(cosines(*radius))) : largest;
-        }
-        return largest;
-    };
-    // The angle grows towards the rim of what the pupil sees of the source, then light stops: two finer
-    // rounds about the best point so far close in on it to 1/50 of the source.
-    constexpr int points = 6;
-    double low = 0;
-    double high = source_radius;
-    double best = 0;
-    double largest = 0;
-    for (int round = 0; round < 3; ++round) {
-        const double step = (high - low) / points;
-        for (int i = 0; i <= points; ++i) {
-            const double x = low + i * step;
-            if (const double sine = largest_from(x); sine > largest) {
-                largest = sine;
-                best = x;
-            }
-        }
-        low = std::max(0.0, best - step);
-        high = std::min(source_radius, best + step);
-    }
-    return std::min(1.0, search_margin * largest);
 }
 
 } // namespace
 
 Instrument assemble(const InstrumentDescription& description) {
-    require_positive(description.source_radius, "source.radius_mm");
+    if (!description.ring) {
+        require_positive(description.source_radius, "source.radius_mm");
+    }
     require_positive(description.flux, "source.flux_W");
-    require_positive(description.wavelength_um, "source.wavelength_um");
+    require_positive(description.spectrum.reference_um, "source.wavelength_um");
     require_positive(description.detector_size, "detector.size_mm");
     require_positive(description.detector_pixels, "detector.pixels");
+    require_surfaces(description.objective, "objective.prescription");
+    require_surfaces(description.tube_lens, "tube_lens.prescription");
 
-    const double wavelength = description.wavelength_um;
-    const Part objective = make_part(description.objective, wavelength, "objective.prescription");
-    const Part tube_lens = make_part(description.tube_lens, wavelength, "tube_lens.prescription");
-    Prescription illumination = description.illumination;
-    if (description.field_stop_radius) {
-        require_positive(*description.field_stop_radius, "illumination.field_stop_radius_mm");
-        const auto given_stop = surface_with_role(illumination, PrescribedSurface::Role::field_stop);
-        if (!given_stop) {
-            refuse("illumination.field_stop_radius_mm", fmt::format("{}", *description.field_stop_radius),
-                   fmt::format("an illuminator with a field stop, which {} has not", illumination.name),
-                   "Leave the radius out, or mark a surface with role = \"field stop\".", illumination.file);
-        }
-        illumination.surfaces[*given_stop].semi_diameter = description.field_stop_radius;
-    }
-    const Part illuminator = make_part(illumination, wavelength, "illumination.prescription");
+    const Layout layout(description);
+    const Spectrum& spectrum = description.spectrum;
+    const double wavelength = spectrum.reference_um;
 
     Instrument instrument{};
     instrument.flux = description.flux;
-    instrument.splitter_reflectance = description.splitter_reflectance;
+    instrument.splitter_reflectance = description.ring ? 1 : description.splitter.reflectance;
+    instrument.splitter_transmittance = description.splitter.transmittance;
+    instrument.spectral_bins = spectrum.bins;
     FirstOrder& first_order = instrument.first_order;
     auto& constants = instrument.constants;
 
-    // Imaging: the object in the objective's front focal plane, the detector in the tube lens' back focal
-    // plane.
-    first_order.efl_objective = focal_length(objective.transfer);
-    first_order.efl_tube_lens = focal_length(tube_lens.transfer);
-    first_order.working_distance = front_focal_distance(objective.transfer);
-    const double detector_distance = back_focal_distance(tube_lens.transfer);
-    if (!(first_order.working_distance > 0 && std::isfinite(first_order.working_distance))) {
+    // Paraxially: the object in the front focal plane of the objective behind its cover glass, the detector in the tube
+    // lens' back focal plane.
+    Prescription objective_lens = with_stops(description, description.objective, Role::aperture_stop,
+                                             description.aperture_stop_radius, "objective.aperture_stop_radius_mm");
+    if (description.immersion) {
+        objective_lens.medium_before = *description.immersion;
+    }
+    const Medium& object_medium = objective_lens.medium_before;
+    const SpectralIndex object_index = spectral_index(object_medium, spectrum);
+    first_order.object_index = object_index.centre;
+    Pose end;
+    const Part straight_objective =
+        place_prescription(objective_lens, spectrum, description.interfaces, Pose{}, end);
+    const double objective_length = end.origin.z;
+    require_air(straight_objective.back().surface.index_after, description.objective, "objective.prescription");
+    const RayTransfer objective_transfer = transfer_of(straight_objective);
+    const Part straight_tube_lens =
+        place_prescription(description.tube_lens, spectrum, description.interfaces, Pose{}, end);
+    require_air(straight_tube_lens.front().surface.index_before, description.tube_lens, "tube_lens.prescription");
+    require_air(straight_tube_lens.back().surface.index_after, description.tube_lens, "tube_lens.prescription");
+    const RayTransfer tube_lens_transfer = transfer_of(straight_tube_lens);
+    first_order.efl_objective = focal_length(objective_transfer);
+    first_order.efl_tube_lens = focal_length(tube_lens_transfer);
+    // Without a cover glass; in the medium before the objective.
+    const double free_distance = object_index.centre * front_focal_distance(objective_transfer);
+    const double detector_distance = back_focal_distance(tube_lens_transfer);
+    if (!(free_distance > 0 && std::isfinite(free_distance))) {
         refuse("objective.prescription", description.objective.name,
                "an objective whose front focal point lies in front of its first surface",
                "List it from the specimen to the back.", description.objective.file);
@@ -418,38 +238,147 @@ Instrument assemble(const InstrumentDescription& description) {
         description.detector_size / description.detector_pixels / absolute_magnification;
     first_order.field_edge = field_half_side;
 
-    const auto aperture_stop =
-        surface_with_role(description.objective, PrescribedSurface::Role::aperture_stop);
-    if (!aperture_stop || !description.objective.surfaces[*aperture_stop].semi_diameter) {
+    // Heights over the paraxial object plane. A plate of thickness t shortens the way by t (1 - n0 / n).
+    double objective_front = free_distance;
+    Part cover;
+    first_order.working_distance = free_distance;
+    if (description.cover_glass) {
+        const CoverGlass& glass = *description.cover_glass;
+        require_positive(glass.thickness, "cover_glass.thickness_mm");
+        const double index = glass.glass.index(wavelength);
+        const double free_way = free_distance - glass.thickness * object_index.centre / index;
+        const double height = glass.distance.value_or(0.5 * free_way);
+        if (!(height > 0 && height < free_way)) {
+            refuse("cover_glass.thickness_mm", fmt::format("{} mm, {:.6g} mm over the focus", glass.thickness, height),
+                   fmt::format("a plate between the focus and the objective, which is {:.6g} mm away without it",
+                               free_distance),
+                   "Choose a thinner plate, or another distance_mm.");
+        }
+        cover = layout.plate(Pose{}.along_z(height), glass.thickness, glass.glass, object_medium, std::nullopt,
+                             "cover glass");
+        objective_front = free_way + glass.thickness;
+        first_order.working_distance = height;
+    }
+    const Pose front = Pose{}.along_z(first_order.working_distance);
+    const double back = objective_front + objective_length;
+
+    // Imaging, from the specimen to the detector.
+    const Part objective =
+        place_prescription(objective_lens, spectrum, description.interfaces,
+                           placed_at(description.objective_placement, Pose{}.along_z(objective_front)), end);
+    const BeamSplitter& splitter = description.splitter;
+    const double splitter_distance = splitter.distance.value_or(0.5 * description.objective_to_tube_lens);
+    const double splitter_height = back + splitter_distance;
+    // The coated side faces the specimen and the illuminator, which stands at +y.
+    constexpr double quarter_turn = pi / 2;
+    const Pose splitter_pose = Pose{}.along_z(splitter_height).turned({.tilt_x = 0.5 * quarter_turn});
+    const double half_size = 0.5 * splitter.size;
+    Part splitter_imaging;
+    int splitter_surfaces_before = 0;
+    if (splitter.kind == BeamSplitter::Kind::plate) {
+        splitter_imaging = layout.plate(splitter_pose, splitter.size, splitter.glass, Medium::air(),
+                                        splitter.semi_diameter, "beam splitter");
+        // What its coating reflects is the splitter's reflectance.
+        splitter_imaging.front().surface.flags &=
+            ~(physics::f64::SURFACE_FRESNEL | physics::f64::SURFACE_LAYER);
+        splitter_surfaces_before = 1;
+    } else if (splitter.kind == BeamSplitter::Kind::cube) {
+        splitter_imaging =
+            layout.plate(Pose{}.along_z(splitter_height - half_size), splitter.size, splitter.glass, Medium::air(),
+                         splitter.semi_diameter.value_or(half_size), "beam splitter");
+        splitter_surfaces_before = 1;
+    }
+    std::vector<Inserted> inserted = {{splitter_distance, splitter_imaging}};
+    struct Fold {
+        FoldMirror::Path path;
+        double distance;
+        PlacedSurface mirror; // unfolded
+    };
+    std::vector<Fold> folds;
+    const auto add_fold = [&](const FoldMirror& fold, const Pose& axis, std::vector<Inserted>& into) {
+        require_positive(fold.semi_diameter, "fold_mirror.semi_diameter_mm");
+        const Pose pose = axis.turned({.tilt_z = fold.azimuth}).turned({.tilt_x = fold.incidence});
+        PlacedSurface mirror = layout.mirror_plane(pose, fold.semi_diameter, "fold mirror");
+        mirror.surface.reflectance = fold.reflectance;
+        folds.push_back({fold.path, fold.distance, mirror});
+        into.push_back({fold.distance, {mirror}});
+    };
+    for (const FoldMirror& fold : description.fold_mirrors) {
+        if (fold.path == FoldMirror::Path::imaging) {
+            if (!(fold.distance > splitter_distance)) {
+                refuse("fold_mirror.distance_mm", fmt::format("{}", fold.distance),
+                       fmt::format("a place behind the beam splitter, which is {:.6g} mm behind the objective",
+                                   splitter_distance),
+                       "Move the fold mirror or the beam splitter.");
+            }
+            add_fold(fold, Pose{}.along_z(back + fold.distance), inserted);
+        }
+    }
+    std::ranges::stable_sort(inserted, {}, &Inserted::distance);
+    Part imaging_train = cover;
+    append(imaging_train, objective);
+    instrument.imaging_surfaces_before_splitter =
+        static_cast<int>(imaging_train.size()) + splitter_surfaces_before;
+    for (const Inserted& part : inserted) {
+        if (!(part.distance >= 0 && part.distance <= description.objective_to_tube_lens)) {
+            refuse("tube_lens.distance_mm", fmt::format("{}", description.objective_to_tube_lens),
+                   fmt::format("room for what stands {:.6g} mm behind the objective", part.distance),
+                   "Move the beam splitter or fold mirror, or the tube lens.");
+        }
+        append(imaging_train, part.surfaces);
+    }
+    const Pose tube_lens_nominal = Pose{}.along_z(back + description.objective_to_tube_lens);
+    const Part tube_lens =
+        place_prescription(description.tube_lens, spectrum, description.interfaces,
+                           placed_at(description.tube_lens_placement, tube_lens_nominal), end);
+    append(imaging_train, tube_lens);
+    const double tube_lens_length = straight_tube_lens.back().pose.origin.z;
+    const Pose detector_pose =
+        placed_at(description.detector_placement, tube_lens_nominal.along_z(tube_lens_length + detector_distance));
+    const bool imaging_is_displaced =
+        is_displaced(description.detector_placement) || is_displaced(description.tube_lens_placement);
+    if (imaging_is_displaced) {
+        imaging_train.push_back(dummy_plane(layout.air, detector_pose, "detector's plane"));
+    }
+    link(imaging_train, front);
+    constants.detector_distance = glm::dot(detector_pose.origin - imaging_train.back().pose.origin,
+                                           imaging_train.back().pose.axes[2]);
+
+    const auto aperture_stop = surface_with_role(objective, Role::aperture_stop);
+    if (!aperture_stop || (objective[*aperture_stop].surface.flags & physics::f64::SURFACE_CLIPPED) == 0) {
         refuse("objective.prescription", description.objective.name,
                "one surface that is the aperture stop and has a semi-diameter",
                "Mark the surface that limits the cone with role = \"aperture stop\".",
                description.objective.file);
     }
-    const EntrancePupil pupil = entrance_pupil(
-        free_space(first_order.working_distance).then(transfer_to_surface(objective.train, *aperture_stop)));
+    const std::vector<Surface> imaging_surfaces = surfaces_of(imaging_train);
+    const EntrancePupil pupil =
+        entrance_pupil(free_space(first_order.working_distance, object_index.centre)
+                           .then(transfer_to_surface(imaging_surfaces, cover.size() + *aperture_stop)));
+    const bool displaced = std::ranges::any_of(imaging_surfaces, [](const Surface& surface) {
+        return is_displaced(surface);
+    });
+    const Imaging imaging{.train = imaging_surfaces,
+                          .working_distance = first_order.working_distance,
+                          .detector_distance = constants.detector_distance,
+                          .pupil_curvature = pupil.curvature / object_index.centre,
+                          .symmetric = !displaced};
 
-    Imaging imaging{.train = objective.train,
-                    .working_distance = first_order.working_distance,
-                    .detector_distance = detector_distance,
-                    .pupil_curvature = pupil.curvature};
-    append(imaging.train, tube_lens.train, description.objective_to_tube_lens);
-
-    const Outline on_axis = outline_at(imaging, 0);
-    first_order.numerical_aperture = on_axis.radii.front();
+    const Outline on_axis = outline_at(imaging, {0, 0});
+    first_order.numerical_aperture = object_index.centre * std::sqrt(on_axis.area() / pi);
     if (!(first_order.numerical_aperture > 0)) {
         refuse("objective.prescription", description.objective.name,
                "an objective and a tube lens through which the axial ray passes",
                "Check media, radii and semi-diameters.", description.objective.file);
     }
-    first_order.depth_of_field =
-        wavelength * mm_per_um / (first_order.numerical_aperture * first_order.numerical_aperture);
+    first_order.depth_of_field = object_index.centre * wavelength * mm_per_um /
+                                 (first_order.numerical_aperture * first_order.numerical_aperture);
     first_order.best_focus_offset = best_focus(imaging, on_axis);
     first_order.field_curvature =
-        best_focus(imaging, outline_at(imaging, field_half_side)) - first_order.best_focus_offset;
+        best_focus(imaging, outline_at(imaging, {field_half_side, 0})) - first_order.best_focus_offset;
     instrument.front_vertex_height = first_order.working_distance - first_order.best_focus_offset;
 
-    const Outline at_corner = outline_at(imaging, field_half_diagonal);
+    const Outline at_corner = outline_at(imaging, {field_half_diagonal, 0});
     const double relative_light = at_corner.area() / on_axis.area();
     if (relative_light < 0.9) {
         instrument.warnings.push_back(fmt::format(
@@ -458,110 +387,303 @@ Instrument assemble(const InstrumentDescription& description) {
             100 * relative_light));
     }
 
-    // Illumination: the source is imaged into the objective's pupil, as it is seen from the back.
-    const std::optional<double> source_distance =
-        description.source_distance ? description.source_distance : illumination.source_distance;
-    if (!source_distance || !(*source_distance >= 0)) {
-        refuse("source.distance_mm", source_distance ? fmt::format("{}", *source_distance) : "",
-               "the distance from the source to the illuminator, >= 0",
-               "Give it, or source_distance_mm in the prescription.", illumination.file);
-    }
-    const ParaxialImage source_image = image_of(illuminator.transfer, *source_distance);
-    const std::vector<Surface> objective_backward = train_of(description.objective.reversed(), wavelength);
-    const RayTransfer back_to_stop =
-        transfer_to_surface(objective_backward, objective_backward.size() - 1 - *aperture_stop);
-    const EntrancePupil back_pupil = entrance_pupil(back_to_stop);
-    const double stop_radius = *description.objective.surfaces[*aperture_stop].semi_diameter;
-    // The stop's image has 1 / a its size; a = 0 has none.
-    const double back_pupil_distance = 1 / back_pupil.curvature;
-    const double back_pupil_radius = stop_radius / std::abs(back_to_stop.a);
-    if (description.illumination_to_objective) {
-        first_order.illumination_to_objective = *description.illumination_to_objective;
-    } else {
-        first_order.illumination_to_objective = source_image.distance - back_pupil_distance;
-    }
-    if (!(first_order.illumination_to_objective >= 0 &&
-          std::isfinite(first_order.illumination_to_objective))) {
-        refuse("illumination.objective_distance_mm",
-               fmt::format("{:.6g}", first_order.illumination_to_objective),
-               fmt::format("room between {} and {} so that the source is imaged into the pupil",
-                           illumination.name, description.objective.name),
-               "Give a distance >= 0, or move the source nearer to the illuminator's focal plane.",
-               illumination.file);
-    }
-    const double source_magnification = std::abs(source_image.magnification);
-    first_order.pupil_radius_in_source = back_pupil_radius / source_magnification;
-    if (description.source_radius < 0.98 * first_order.pupil_radius_in_source) {
-        instrument.warnings.push_back(fmt::format(
-            "The source does not fill the objective's pupil: its radius is {:.4g} mm, filling takes "
-            "{:.4g} mm.",
-            description.source_radius, first_order.pupil_radius_in_source));
-    }
-    const double image_to_pupil =
-        first_order.illumination_to_objective + back_pupil_distance - source_image.distance;
-    if (!(std::abs(image_to_pupil) < 0.05 * first_order.efl_objective)) {
-        instrument.warnings.push_back(fmt::format(
-            "The source is imaged {:.3g} mm in front of the objective's pupil instead of into it.",
-            image_to_pupil));
-    }
-
-    std::vector<Surface> illumination_train = illuminator.train;
-    append(illumination_train, objective_backward, first_order.illumination_to_objective);
-    const auto field_stop = surface_with_role(illumination, PrescribedSurface::Role::field_stop);
-    if (field_stop && illumination.surfaces[*field_stop].semi_diameter) {
-        const RayTransfer before = transfer_to_surface(illumination_train, *field_stop);
-        const RayTransfer whole =
-            transfer_of_train(illumination_train).then(free_space(first_order.working_distance));
-        // whole = after * before, so after = whole * before^-1; its first element is the stop's
-        // magnification.
-        const double magnification = whole.a * before.d - whole.b * before.c;
-        const double lit_radius = std::abs(magnification) * *illumination.surfaces[*field_stop].semi_diameter;
-        if (lit_radius < field_half_diagonal) {
-            instrument.warnings.push_back(fmt::format(
-                "The field stop's image, {:.4g} mm in radius on the specimen, does not cover the detector's "
-                "field, {:.4g} mm to its corners.",
-                lit_radius, field_half_diagonal));
+    // Illumination, from the source to the specimen. The frame of its end is that of the front vertex, turned.
+    const Part cover_downward = reversed(cover);
+    const Pose exit = front.half_turn();
+    Part illumination_train;
+    Part illuminator;
+    double sine = 1;
+    if (description.ring) {
+        const RingLightDescription& ring = *description.ring;
+        illumination_train = cover_downward;
+        const Pose entry = illumination_train.empty() ? exit : illumination_train.front().pose;
+        link(illumination_train, entry);
+        constants.ring.aim_distance = entry.origin.z - first_order.best_focus_offset;
+        constants.ring.distance = ring.distance;
+        constants.ring.elevation_sine = std::sin(ring.elevation);
+        constants.ring.elevation_cosine = std::cos(ring.elevation);
+        constants.ring.half_width = 0.5 * ring.width;
+        constants.ring.fill = ring.fill;
+        constants.ring.segments = ring.segments;
+        for (std::size_t segment = 0; segment < ring.on.size(); ++segment) {
+            constants.ring.switched_on |= ring.on[segment] ? 1u << segment : 0u;
         }
-    }
-    // Without a field stop the last surface limits the field as well as any.
-    const double sine = emission_sine(
-        illumination_train, description.source_radius, *source_distance,
-        free_space(*source_distance)
-            .then(transfer_to_surface(illuminator.train, field_stop.value_or(illuminator.train.size() - 1))));
-    if (!(sine > 0)) {
-        refuse("illumination.prescription", illumination.name,
-               "an illuminator whose light passes the objective", "Check distances and semi-diameters.",
-               illumination.file);
+        if (ring.segments < 1 || ring.segments > physics::f64::RING_CAPACITY ||
+            ring.on.size() != static_cast<std::size_t>(ring.segments) || constants.ring.switched_on == 0) {
+            refuse("source.segments", fmt::format("{} segments", ring.segments),
+                   fmt::format("1 to {} segments, at least one of them on", physics::f64::RING_CAPACITY),
+                   "Switch a segment on.");
+        }
+        if (!(ring.distance > 0 && ring.width > 0 && ring.elevation > 0 && ring.elevation < 0.5 * pi &&
+              0.5 * ring.width * std::tan(ring.elevation) < ring.distance)) {
+            refuse("source.width_mm", fmt::format("{} mm wide, {} mm away", ring.width, ring.distance),
+                   "a band that does not reach the axis", "Choose a smaller width or elevation.");
+        }
+        // From any point of the band the lit circle lies within this cone about the band's normal: its middle is off the
+        // normal by the half width, and no point of the circle is nearer than this.
+        const double reach = ring.lit_radius + 0.5 * ring.width + (cover.empty() ? 0 : description.cover_glass->thickness);
+        sine = ring.distance > ring.lit_radius
+                   ? std::min(1.0, reach / std::hypot(reach, ring.distance - ring.lit_radius))
+                   : 1;
+        instrument.source_pose = downward(0);
+        instrument.features |= physics::f64::FEATURE_RING;
+    } else {
+        require_surfaces(description.illumination, "illumination.prescription");
+        const Prescription prescribed = with_stops(description, description.illumination, Role::field_stop,
+                                                   description.field_stop_radius,
+                                                   "illumination.field_stop_radius_mm");
+        illuminator = place_prescription(prescribed, spectrum, description.interfaces, Pose{}, end);
+        require_air(illuminator.front().surface.index_before, prescribed, "illumination.prescription");
+        require_air(illuminator.back().surface.index_after, prescribed, "illumination.prescription");
+        const RayTransfer illuminator_transfer = transfer_of(illuminator);
+
+        // The source is imaged into the objective's pupil, as it is seen from the back.
+        const std::optional<double> source_distance =
+            description.source_distance ? description.source_distance : prescribed.source_distance;
+        if (!source_distance || !(*source_distance >= 0)) {
+            refuse("source.distance_mm", source_distance ? fmt::format("{}", *source_distance) : "",
+                   "the distance from the source to the illuminator, >= 0",
+                   "Give it, or source_distance_mm in the prescription.", prescribed.file);
+        }
+        constants.source_distance = *source_distance;
+        const ParaxialImage source_image = image_of(illuminator_transfer, *source_distance);
+        Part straight_backward = reversed(straight_objective);
+        link(straight_backward, straight_backward.front().pose);
+        const std::size_t stop_backward = objective.size() - 1 - *aperture_stop;
+        const RayTransfer back_to_stop = transfer_to_surface(surfaces_of(straight_backward), stop_backward);
+        const EntrancePupil back_pupil = entrance_pupil(back_to_stop);
+        const double stop_radius = std::sqrt(objective[*aperture_stop].surface.semi_diameter_squared);
+        // The stop's image has 1 / a its size; a = 0 has none. What stands on the vertex is no further away than 0.
+        const double back_pupil_distance = back_to_stop.b == 0 ? 0 : 1 / back_pupil.curvature;
+        const double back_pupil_radius = stop_radius / std::abs(back_to_stop.a);
+        // The cube's glass makes the way longer.
+        const double glass_shift = splitter.kind == BeamSplitter::Kind::cube
+                                       ? splitter.size * (1 - 1 / splitter.glass.index(wavelength))
+                                       : 0;
+        first_order.illumination_to_objective = description.illumination_to_objective.value_or(
+            source_image.distance - back_pupil_distance + glass_shift);
+        const double distance = first_order.illumination_to_objective;
+        if (!(distance >= 0 && std::isfinite(distance))) {
+            refuse("illumination.objective_distance_mm", fmt::format("{:.6g}", distance),
+                   fmt::format("room between {} and {} so that the source is imaged into the pupil",
+                               prescribed.name, description.objective.name),
+                   "Give a distance >= 0, or move the source nearer to the illuminator's focal plane.",
+                   prescribed.file);
+        }
+        first_order.source_magnification = source_image.magnification;
+        first_order.pupil_radius_in_source = back_pupil_radius / std::abs(source_image.magnification);
+        const double filling_radius =
+            std::min(description.source_radius,
+                     description.illumination_aperture_radius.value_or(description.source_radius));
+        if (filling_radius < 0.98 * first_order.pupil_radius_in_source) {
+            instrument.warnings.push_back(fmt::format(
+                "The source does not fill the objective's pupil: its radius is {:.4g} mm, filling takes "
+                "{:.4g} mm.",
+                filling_radius, first_order.pupil_radius_in_source));
+        }
+        const double image_to_pupil = distance + back_pupil_distance - glass_shift - source_image.distance;
+        if (!(std::abs(image_to_pupil) < 0.05 * first_order.efl_objective)) {
+            instrument.warnings.push_back(fmt::format(
+                "The source is imaged {:.3g} mm in front of the objective's pupil instead of into it.",
+                image_to_pupil));
+        }
+
+        const Pose illuminator_last = downward(back + distance);
+        move(illuminator, end, illuminator_last);
+        const Pose entry = {illuminator_last.origin - illuminator_last.axes * (glm::transpose(end.axes) * end.origin),
+                            illuminator_last.axes * glm::transpose(end.axes)};
+        std::vector<Inserted> between;
+        if (splitter.kind == BeamSplitter::Kind::cube) {
+            between.push_back({distance - splitter_distance,
+                               layout.plate(downward(splitter_height + half_size), splitter.size, splitter.glass,
+                                            Medium::air(), splitter.semi_diameter.value_or(half_size),
+                                            "beam splitter")});
+        }
+        const double splitter_from_illuminator = distance - splitter_distance;
+        for (const FoldMirror& fold : description.fold_mirrors) {
+            if (fold.path == FoldMirror::Path::illumination) {
+                if (!(fold.distance >= 0 && fold.distance < splitter_from_illuminator)) {
+                    refuse("fold_mirror.distance_mm", fmt::format("{}", fold.distance),
+                           fmt::format("a place between the illuminator and the beam splitter {:.6g} mm behind it",
+                                       splitter_from_illuminator),
+                           "Move the fold mirror.");
+                }
+                add_fold(fold, illuminator_last.along_z(fold.distance), between);
+            }
+        }
+        std::ranges::stable_sort(between, {}, &Inserted::distance);
+        if (description.illumination_aperture_radius) {
+            require_positive(*description.illumination_aperture_radius, "illumination.aperture_radius_mm");
+            PlacedSurface aperture = dummy_plane(layout.air, entry.along_z(-*source_distance), "illumination aperture");
+            aperture.surface.flags |= physics::f64::SURFACE_CLIPPED;
+            aperture.surface.semi_diameter_squared =
+                *description.illumination_aperture_radius * *description.illumination_aperture_radius;
+            illuminator.insert(illuminator.begin(), aperture);
+        }
+        illumination_train = illuminator;
+        instrument.illumination_surfaces_before_splitter = static_cast<int>(illumination_train.size());
+        for (const Inserted& part : between) {
+            append(illumination_train, part.surfaces);
+            instrument.illumination_surfaces_before_splitter +=
+                part.distance < splitter_from_illuminator ? static_cast<int>(part.surfaces.size())
+                : part.surfaces.size() == 2               ? 1 // the cube's first face
+                                                          : 0;
+        }
+        append(illumination_train, reversed(objective));
+        append(illumination_train, cover_downward);
+        if (is_displaced(description.objective_placement)) {
+            illumination_train.push_back(dummy_plane(object_index, exit, "front vertex' plane"));
+        }
+        link(illumination_train, entry);
+        const std::vector<Surface> illumination_surfaces = surfaces_of(illumination_train);
+        const auto field_stop = surface_with_role(illuminator, Role::field_stop);
+        if (field_stop && (illuminator[*field_stop].surface.flags & physics::f64::SURFACE_CLIPPED) != 0) {
+            const RayTransfer before = transfer_to_surface(illumination_surfaces, *field_stop);
+            const RayTransfer whole = transfer_of_train(illumination_surfaces)
+                                          .then(free_space(first_order.working_distance, object_index.centre));
+            // whole = after * before, so after = whole * before^-1; its first element is the stop's
+            // magnification.
+            const double magnification = whole.a * before.d - whole.b * before.c;
+            const double lit_radius =
+                std::abs(magnification) * std::sqrt(illuminator[*field_stop].surface.semi_diameter_squared);
+            if (lit_radius < field_half_diagonal) {
+                instrument.warnings.push_back(fmt::format(
+                    "The field stop's image, {:.4g} mm in radius on the specimen, does not cover the "
+                    "detector's field, {:.4g} mm to its corners.",
+                    lit_radius, field_half_diagonal));
+            }
+        }
+        // Without a field stop the last surface limits the field as well as any.
+        const bool straight = std::ranges::none_of(illumination_surfaces, [](const Surface& surface) {
+            return is_displaced(surface);
+        });
+        const auto stop_transfer =
+            transfer_to_surface(illumination_surfaces, field_stop.value_or(illuminator.size() - 1));
+        sine = emission_sine(illumination_surfaces, straight, description.source_radius, *source_distance,
+                             free_space(*source_distance).then(stop_transfer));
+        if (!(sine > 0)) {
+            refuse("illumination.prescription", prescribed.name,
+                   "an illuminator whose light passes the objective", "Check distances and semi-diameters.",
+                   prescribed.file);
+        }
+        instrument.source_pose = entry.along_z(-*source_distance);
     }
 
-    std::size_t place = 0;
-    name_surfaces(instrument.surface_names, "illumination", place, illumination, false);
-    name_surfaces(instrument.surface_names, "illumination", place, description.objective, true);
-    place = 0;
-    name_surfaces(instrument.surface_names, "imaging", place, description.objective, false);
-    name_surfaces(instrument.surface_names, "imaging", place, description.tube_lens, false);
+    name_surfaces(instrument.surface_names, "illumination", illumination_train);
+    name_surfaces(instrument.surface_names, "imaging", imaging_train);
 
     constants.source_radius = description.source_radius;
-    constants.source_distance = *source_distance;
     constants.emission_sine = description.directed_emission ? sine : 1;
     constants.magnification = first_order.magnification;
-    constants.detector_distance = detector_distance;
     constants.detector_half_size = 0.5 * description.detector_size;
-    constants.gate_position = pupil.curvature;
+    constants.gate_position = imaging.pupil_curvature;
     constants.gate_slope = 1;
     // A little more than the field: aberrations let the detector see past its paraxial edge.
     constants.gate_radius = gate_radius(imaging, 1.05 * field_half_diagonal,
                                         first_order.best_focus_offset - description.greatest_defocus,
                                         first_order.best_focus_offset + description.greatest_defocus);
+    constants.spectrum_centre = spectrum.centre();
+    constants.spectrum_half_width = spectrum.half_width();
+    constants.spectral_bins = static_cast<int>(spectrum.bins.size());
+    constants.specimen_index = object_index.centre;
+    constants.specimen_dispersion = object_index.dispersion;
     constants.illumination_first = 0;
     constants.illumination_count = static_cast<int>(illumination_train.size());
     constants.imaging_first = constants.illumination_count;
-    constants.imaging_count = static_cast<int>(imaging.train.size());
+    constants.imaging_count = static_cast<int>(imaging_train.size());
     constants.detector_pixels = description.detector_pixels;
-    instrument.illumination_surfaces_before_splitter = static_cast<int>(illuminator.train.size());
-    instrument.imaging_surfaces_before_splitter = static_cast<int>(objective.train.size());
-    instrument.surfaces = std::move(illumination_train);
-    instrument.surfaces.insert(instrument.surfaces.end(), imaging.train.begin(), imaging.train.end());
+    instrument.surfaces = surfaces_of(illumination_train);
+    instrument.surfaces.insert(instrument.surfaces.end(), imaging_surfaces.begin(), imaging_surfaces.end());
+    instrument.features |= spectrum.monochromatic() ? 0u : physics::f64::FEATURE_SPECTRUM;
+    for (const Surface& surface : instrument.surfaces) {
+        using namespace physics::f64;
+        const bool lossy_mirror = (surface.flags & SURFACE_MIRROR) != 0 && surface.reflectance < 1;
+        instrument.features |= is_displaced(surface) ? FEATURE_PLACEMENT : 0u;
+        instrument.features |= (surface.flags & SURFACE_IDEAL_LENS) != 0 ? FEATURE_IDEAL_LENS : 0u;
+        instrument.features |=
+            (surface.flags & (SURFACE_FRESNEL | SURFACE_LAYER)) != 0 || lossy_mirror ? FEATURE_LOSSES : 0u;
+    }
+
+    // The room: every element once, the light's way folded, heights over the plane of best focus.
+    auto& elements = instrument.elements;
+    const auto add_part = [&](const Part& part, Element::Kind kind, const char* name) {
+        const std::size_t first = elements.size();
+        for (const PlacedSurface& placed : part) {
+            elements.push_back(layout.element(kind, placed, name));
+        }
+        return first;
+    };
+    // In a mirror's space stands what lies behind it in the light's direction, for the illumination what lies before.
+    const auto fold_back = [&](std::size_t from, std::size_t to, const Pose& mirror) {
+        for (std::size_t i = from; i < to; ++i) {
+            elements[i].pose = elements[i].pose.mirrored_in(mirror);
+        }
+    };
+    if (!description.ring) {
+        add_part(illuminator, Element::Kind::surface, "illuminator");
+        std::vector<const Fold*> on_the_way;
+        for (const Fold& fold : folds) {
+            if (fold.path == FoldMirror::Path::illumination) {
+                on_the_way.push_back(&fold);
+            }
+        }
+        std::ranges::sort(on_the_way, {}, [](const Fold* fold) { return fold->distance; });
+        for (const Fold* fold : on_the_way) { // from the illuminator on: each shows all before it
+            fold_back(0, elements.size(), fold->mirror.pose);
+            instrument.source_pose = instrument.source_pose.mirrored_in(fold->mirror.pose);
+            add_part({fold->mirror}, Element::Kind::mirror, "fold mirror");
+        }
+        if (splitter.kind == BeamSplitter::Kind::cube) {
+            PlacedSurface face = splitter_imaging.front();
+            face.pose = downward(splitter_height + half_size);
+            add_part({face}, Element::Kind::surface, "beam splitter");
+        }
+        fold_back(0, elements.size(), splitter_pose);
+        instrument.source_pose = instrument.source_pose.mirrored_in(splitter_pose);
+    }
+    add_part(cover, Element::Kind::surface, "cover glass");
+    add_part(objective, Element::Kind::surface, "objective");
+    PlacedSurface splitting = layout.mirror_plane(splitter_pose, splitter.semi_diameter, "beam splitter's coating");
+    splitting.surface.reflectance = splitter.reflectance;
+    std::vector<std::pair<double, const Fold*>> imaging_folds;
+    for (const Fold& fold : folds) {
+        if (fold.path == FoldMirror::Path::imaging) {
+            imaging_folds.emplace_back(fold.distance, &fold);
+        }
+    }
+    std::ranges::sort(imaging_folds, {}, [](const auto& pair) { return pair.first; });
+    std::vector<std::pair<std::size_t, Pose>> mirrors; // first element behind, unfolded plane
+    if (splitter.kind == BeamSplitter::Kind::plate) {
+        Element coated = layout.element(Element::Kind::splitter, splitter_imaging.front(), "beam splitter");
+        coated.surface.reflectance = splitter.reflectance;
+        elements.push_back(coated);
+        elements.push_back(layout.element(Element::Kind::surface, splitter_imaging.back(), "beam splitter"));
+    } else if (splitter.kind == BeamSplitter::Kind::cube) {
+        const SpectralIndex glass = spectral_index(splitter.glass, spectrum);
+        splitting.surface.index_before = splitting.surface.index_after = glass.centre;
+        splitting.surface.dispersion_before = splitting.surface.dispersion_after = glass.dispersion;
+        elements.push_back(layout.element(Element::Kind::surface, splitter_imaging.front(), "beam splitter"));
+        elements.push_back(layout.element(Element::Kind::splitter, splitting, "beam splitter"));
+        elements.push_back(layout.element(Element::Kind::surface, splitter_imaging.back(), "beam splitter"));
+    } else {
+        elements.push_back(layout.element(Element::Kind::splitter, splitting, "beam splitter"));
+    }
+    for (const auto& [distance, fold] : imaging_folds) {
+        add_part({fold->mirror}, Element::Kind::mirror, "fold mirror");
+        mirrors.emplace_back(elements.size(), fold->mirror.pose);
+    }
+    add_part(tube_lens, Element::Kind::surface, "tube lens");
+    PlacedSurface detector = dummy_plane(layout.air, detector_pose, "detector");
+    add_part({detector}, Element::Kind::detector, "detector");
+    for (auto mirror = mirrors.rbegin(); mirror != mirrors.rend(); ++mirror) { // the farthest first
+        fold_back(mirror->first, elements.size(), mirror->second);
+    }
+    for (Element& element : elements) {
+        element.pose.origin.z -= first_order.best_focus_offset;
+    }
+    if (!description.ring) {
+        instrument.source_pose.origin.z -= first_order.best_focus_offset;
+    }
     return instrument;
 }
 

@@ -2,45 +2,103 @@
 #pragma once
 
 #include "optics/prescription.hpp"
+#include "optics/spectrum.hpp"
+#include "optics/train.hpp"
 #include "physics/physics.hpp"
 
 #include <optional>
-#include <span>
 #include <string>
 #include <vector>
 
 namespace vkfv::optics {
 
-// What a configuration says of the instrument, in the units of the inside (mm, W, wavelengths in um).
+// Where a part stands: its first vertex moved and tilted from where the axis would have it, the parts that follow it
+// unmoved; or, with `global`, at a point of the specimen frame with its origin in the paraxial object plane (mm), tilted
+// against that frame's axes. Fold mirrors do not count: positions are in the straight space that they show.
+struct Placement {
+    CoordinateBreak change;
+    std::optional<glm::dvec3> global;
+};
+
+// A Lambertian ring that shines on the specimen past the objective. Lengths in mm, angles in rad.
+struct RingLightDescription {
+    double distance = 0;  // from the plane of best focus on the axis to the middle of the band
+    double elevation = 0; // of that direction over the specimen's plane
+    double width = 0;     // of the band, at right angles to that direction
+    int segments = 1;
+    double fill = 1;         // share of its sector that a segment takes
+    std::vector<bool> on; // of each segment, counted from +x towards +y
+    double lit_radius = 0; // of the circle about the axis that every point of the ring must light
+};
+
+struct BeamSplitter {
+    enum class Kind { ideal, plate, cube } kind = Kind::ideal;
+    double reflectance = 0.5;   // for the illumination
+    double transmittance = 0.5; // for the imaging; the rest is absorbed
+    Medium glass = Medium::air();
+    double size = 0;                // thickness of the plate, edge of the cube
+    std::optional<double> distance; // from the objective's back vertex; none: half way to the tube lens
+    std::optional<double> semi_diameter;
+};
+
+// A plane mirror in the infinity space.
+struct FoldMirror {
+    enum class Path { imaging, illumination } path = Path::imaging;
+    double distance = 0;  // imaging: behind the objective's back vertex; illumination: behind the illuminator's last
+    double incidence = 0; // angle of incidence of the axis, rad
+    double azimuth = 0;   // of the plane of incidence about the axis, rad
+    double semi_diameter = 0;
+    double reflectance = 1;
+};
+
+// A plane-parallel plate over the specimen.
+struct CoverGlass {
+    double thickness = 0;
+    Medium glass = Medium::air();
+    std::optional<double> distance; // lower face over the paraxial object plane; none: half the free way
+};
+
+// What a configuration says of the instrument, in the units of the inside (mm, W, rad, wavelengths in um).
 struct InstrumentDescription {
     double source_radius = 0;
     double flux = 1;
-    double wavelength_um = 0.5876;
+    Spectrum spectrum = Spectrum::line(0.5876);
+    std::optional<RingLightDescription> ring; // instead of the disc and its illuminator
     std::optional<double> source_distance; // to the illumination's first vertex; none: the prescription's
     Prescription illumination;
     std::optional<double>
         illumination_to_objective;           // last illumination vertex to the objective's last (back)
                                              // vertex; none: the source is imaged into the pupil
     std::optional<double> field_stop_radius; // none: the prescription's
-    double splitter_reflectance = 0.5;
+    std::optional<double> illumination_aperture_radius; // of a stop at the source
+    BeamSplitter splitter;
+    std::vector<FoldMirror> fold_mirrors;
+    Interfaces interfaces;
     Prescription objective; // from the specimen to the back
+    std::optional<Medium> immersion;              // between specimen and objective; none: the prescription's
+    std::optional<double> aperture_stop_radius;   // none: the prescription's
+    std::optional<CoverGlass> cover_glass;
+    Placement objective_placement;
     Prescription tube_lens; // from the objective to the detector
+    Placement tube_lens_placement;
     double objective_to_tube_lens = 100;
     double detector_size = 0; // of the square, in the detector's plane
     int detector_pixels = 0;
+    Placement detector_placement;
     bool directed_emission = true; // aim the source at the cone that can pass the illumination train
     double greatest_defocus = 0.2; // of the specimen's top plane from the plane of best focus, for the gate
 };
 
-// First-order and measured properties (mm, unless the name says otherwise).
+// First-order and measured properties (mm, unless the name says otherwise), at the reference wavelength.
 struct FirstOrder {
     double efl_objective = 0;
     double efl_tube_lens = 0;
-    double numerical_aperture = 0; // object side, of the on-axis marginal ray through all apertures
-    double working_distance = 0;   // paraxial focus to the objective's front vertex
+    double numerical_aperture = 0; // object side, n sin, of the on-axis cone through all apertures
+    double object_index = 1;       // of the medium over the specimen
+    double working_distance = 0;   // paraxial focus to the first vertex over it (the objective's or the cover glass')
     double magnification = 0;      // signed, paraxial, at the detector
     double depth_of_field =
-        0;                  // lambda / NA^2 (n = 1): ISO 25178-604's optical depth of field, n lambda / NA^2
+        0;                  // n lambda / NA^2: ISO 25178-604's optical depth of field
     double pixel_pitch = 0; // in the object plane
     // Height above the paraxial plane, towards the objective (+z), of the on-axis point whose rays have the
     // least RMS distance from their centroid on the detector. They fill the real apertures with uniform
@@ -48,8 +106,19 @@ struct FirstOrder {
     double best_focus_offset = 0;
     double field_curvature = 0; // the same at the field's edge, from the on-axis best focus (+z)
     double field_edge = 0;      // the field height that belongs to it: half the detector's side in the object
-    double pupil_radius_in_source = 0;    // radius of source that fills the objective's pupil
+    double pupil_radius_in_source = 0;    // radius of source that fills the objective's pupil; 0: a ring light
     double illumination_to_objective = 0; // as resolved
+    double source_magnification = 0;      // paraxial, of the source's image in the objective's pupil
+};
+
+// An element as it stands in the room, for drawing and for non-sequential tracing. Frame: the specimen's with its origin on
+// the axis in the plane of best focus (mm), the objective at rest; the splitter and the mirrors fold the light's way.
+struct Element {
+    enum class Kind { surface, stop, mirror, splitter, ideal_lens, detector } kind = Kind::surface;
+    physics::f64::Surface surface{}; // z of its frame: in the imaging direction, for the illuminator the light's
+    Pose pose;
+    std::string name;
+    std::string part; // "objective", "tube lens", "illuminator", "beam splitter", "cover glass", "fold mirror", "detector"
 };
 
 // Trains and constants in double. `surfaces` holds the illumination train (source to specimen: illuminator,
@@ -58,25 +127,23 @@ struct FirstOrder {
 struct Instrument {
     std::vector<physics::f64::Surface> surfaces;
     std::vector<std::string> surface_names; // for the ledger: "illumination 3 (koehler 1)", ...
-    physics::f64::Instrument constants;
+    std::vector<physics::f64::SpectralBin> spectral_bins;
+    physics::f64::Instrument constants{};
+    std::uint32_t features = 0; // physics::FEATURE_*
     FirstOrder first_order;
     double flux = 1; // W, emitted over the hemisphere
-    double splitter_reflectance = 0.5;
-    // Surfaces of each train that light meets before the beam splitter: the illuminator's and the objective's
-    // number.
+    double splitter_reflectance = 0.5;   // for the illumination; 1 for a ring light, which does not meet it
+    double splitter_transmittance = 0.5; // for the imaging
+    // Surfaces of each train that light meets before the beam splitter's mirror.
     int illumination_surfaces_before_splitter = 0;
     int imaging_surfaces_before_splitter = 0;
-    // Front vertex of the objective above the plane of best focus (z = 0 of the specimen frame, scan at 0).
+    // Front vertex of the objective (or cover glass) above the plane of best focus (z = 0 of the specimen frame, scan at 0).
     double front_vertex_height = 0;
+    std::vector<Element> elements; // in the order of the light: illuminator, splitter, cover glass, objective, ... detector
+    Pose source_pose; // of the source's frame, light towards its z (a ring light's: its aim), in the elements' frame
     std::vector<std::string> warnings;
-};
 
-// The scene that trace_train needs on the host.
-struct TrainScene {
-    std::span<const physics::f64::Surface> surfaces;
-    const physics::f64::Surface& surface_at(int index) const {
-        return surfaces[static_cast<std::size_t>(index)];
-    }
+    TrainScene scene() const { return {surfaces, features, spectral_bins}; }
 };
 
 // Throws InputError where parts do not fit together (no real image, illumination too long to fit, ...).

@@ -35,6 +35,7 @@ struct PrescribedSurface {
     double thickness = 0;             // to the next vertex; of the last surface: unused
     Medium medium_after;
     std::optional<double> semi_diameter; // none: unbounded
+    std::optional<double> ideal_power;   // 1/mm: an ideal lens (physics::pass_ideal_lens) instead of an interface
     enum class Role { refracting, aperture_stop, field_stop } role = Role::refracting;
 };
 

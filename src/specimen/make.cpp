@@ -301,11 +301,7 @@ struct Recorder {
 } // namespace
 
 Specimen make(const Description& d) {
-    // Sharper backward lobes lie all but wholly below the surface: scatter() would run out of tries.
-    if (!(d.material.g >= -0.9 && d.material.g <= 1)) {
-        throw InputError({d.where, "specimen.material.g", fmt::format("{}", d.material.g),
-                          "a number in [-0.9, 1]", "Correct the value in the configuration."});
-    }
+    (void)material_record(d.material, d.where);
     if (d.roughness && (d.kind == Kind::stl || d.kind == Kind::gltf)) {
         throw InputError({d.where, "specimen.roughness", "roughness on a mesh",
                           "a height field or a generated kind",
@@ -338,7 +334,7 @@ Specimen make(const Description& d) {
 SpecimenRecord record(const Specimen& specimen, int max_bounces) {
     SpecimenRecord result{};
     std::visit(Recorder{result}, specimen.geometry);
-    result.scatter_g = specimen.material.g;
+    result.material = material_record(specimen.material);
     result.max_bounces = max_bounces;
     // Rays start on the plane z = top and must find the surface ahead of them, also where it is level and
     // after rounding to float: 128 steps of a float of the largest coordinate.

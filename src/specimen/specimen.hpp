@@ -1,6 +1,7 @@
 // The object under test: its surface in the specimen frame (mm, +z towards the objective) and how it scatters.
 #pragma once
 
+#include "core/error.hpp"
 #include "core/grid.hpp"
 #include "physics/physics.hpp"
 #include "surface/height_map.hpp"
@@ -43,9 +44,27 @@ struct Analytic {
     std::optional<HeightField> lattice;
 };
 
-struct Material {
-    double g = 0; // Henyey-Greenstein asymmetry, in [-0.9, 1]; 1 is the mirror
+// One way in which a material scatters: a model of shaders/physics/scatter/ by its name, and its parameters in that
+// file's order.
+struct Lobe {
+    std::string model = "henyey-greenstein";
+    double weight = 1; // share of the incident light, in (0, 1]
+    std::vector<double> parameters = {0};
 };
+
+inline constexpr std::size_t most_lobes = 4;    // as many as physics' Material holds
+inline constexpr double weight_rounding = 1e-9; // of weights that are meant to add up to 1
+
+// A sum of at most four lobes, whose weights add up to the reflectance, at most 1; the rest is absorbed.
+struct Material {
+    std::vector<Lobe> lobes = {Lobe{}}; // none: everything is absorbed
+
+    static Material henyey_greenstein(double g) { return {{{"henyey-greenstein", 1, {g}}}}; }
+};
+
+// The record the trace takes. Throws InputError (placed at `where`) for a model that there is not, parameters out of
+// their ranges, and weights that add up to more than 1.
+physics::f64::Material material_record(const Material& material, const SourceLocation& where = {});
 
 struct Specimen {
     std::variant<HeightField, Mesh, Analytic> geometry;

@@ -2,21 +2,41 @@
 
 #include "core/error.hpp"
 
+#include <algorithm>
 #include <string>
 
 namespace vkfv::trace {
 
 // The device reads these buffers in scalar layout: every member is four bytes and nothing is padded. The probe
 // kernel probe_records shows that the shaders see the same fields.
-static_assert(sizeof(physics::f32::Surface) == 14 * 4);
-static_assert(sizeof(physics::f32::Instrument) == 14 * 4);
-static_assert(sizeof(physics::f32::SpecimenRecord) == 19 * 4);
+static_assert(sizeof(physics::f32::Surface) == 41 * 4);
+static_assert(sizeof(physics::f32::SpectralBin) == 4 * 4);
+static_assert(sizeof(physics::f32::Instrument) == 32 * 4);
+static_assert(sizeof(physics::f32::SpecimenRecord) == 42 * 4);
 static_assert(sizeof(physics::f32::Exposure) == 4 * 4);
-static_assert(sizeof(physics::f32::Survivor) == 6 * 4);
+static_assert(sizeof(physics::f32::Survivor) == 8 * 4);
 static_assert(sizeof(Parameters) ==
               sizeof(physics::f32::Instrument) + sizeof(physics::f32::SpecimenRecord) + sizeof(physics::f32::Exposure));
 
 namespace {
+
+physics::f32::Dispersion to_float(const physics::f64::Dispersion& dispersion) {
+    return {static_cast<float>(dispersion.c1), static_cast<float>(dispersion.c2), static_cast<float>(dispersion.c3),
+            static_cast<float>(dispersion.c4), static_cast<float>(dispersion.c5), static_cast<float>(dispersion.c6)};
+}
+
+physics::f32::RingLight to_float(const physics::f64::RingLight& ring) {
+    physics::f32::RingLight result{};
+    result.aim_distance = static_cast<float>(ring.aim_distance);
+    result.distance = static_cast<float>(ring.distance);
+    result.elevation_sine = static_cast<float>(ring.elevation_sine);
+    result.elevation_cosine = static_cast<float>(ring.elevation_cosine);
+    result.half_width = static_cast<float>(ring.half_width);
+    result.fill = static_cast<float>(ring.fill);
+    result.segments = ring.segments;
+    result.switched_on = ring.switched_on;
+    return result;
+}
 
 physics::f32::Surface to_float(const physics::f64::Surface& surface) {
     physics::f32::Surface result{};
@@ -33,6 +53,23 @@ physics::f32::Surface to_float(const physics::f64::Surface& surface) {
     result.a12 = static_cast<float>(surface.a12);
     result.a14 = static_cast<float>(surface.a14);
     result.a16 = static_cast<float>(surface.a16);
+    result.decentre_x = static_cast<float>(surface.decentre_x);
+    result.decentre_y = static_cast<float>(surface.decentre_y);
+    result.rotation_xx = static_cast<float>(surface.rotation_xx);
+    result.rotation_xy = static_cast<float>(surface.rotation_xy);
+    result.rotation_xz = static_cast<float>(surface.rotation_xz);
+    result.rotation_yx = static_cast<float>(surface.rotation_yx);
+    result.rotation_yy = static_cast<float>(surface.rotation_yy);
+    result.rotation_yz = static_cast<float>(surface.rotation_yz);
+    result.rotation_zx = static_cast<float>(surface.rotation_zx);
+    result.rotation_zy = static_cast<float>(surface.rotation_zy);
+    result.rotation_zz = static_cast<float>(surface.rotation_zz);
+    result.power = static_cast<float>(surface.power);
+    result.reflectance = static_cast<float>(surface.reflectance);
+    result.layer_index = static_cast<float>(surface.layer_index);
+    result.layer_thickness = static_cast<float>(surface.layer_thickness);
+    result.dispersion_before = to_float(surface.dispersion_before);
+    result.dispersion_after = to_float(surface.dispersion_after);
     result.flags = surface.flags;
     return result;
 }
@@ -55,6 +92,15 @@ std::vector<physics::f32::Surface> surface_block(const optics::Instrument& instr
     return block;
 }
 
+std::vector<physics::f32::SpectralBin> spectrum_block(const optics::Instrument& instrument) {
+    std::vector<physics::f32::SpectralBin> block(physics::f32::SPECTRUM_CAPACITY);
+    std::ranges::transform(instrument.spectral_bins, block.begin(), [](const physics::f64::SpectralBin& bin) {
+        return physics::f32::SpectralBin{static_cast<float>(bin.cumulative), static_cast<float>(bin.start),
+                                         static_cast<float>(bin.stop), static_cast<float>(bin.tilt)};
+    });
+    return block;
+}
+
 physics::f32::Instrument to_float(const physics::f64::Instrument& instrument) {
     physics::f32::Instrument result{};
     result.source_radius = static_cast<float>(instrument.source_radius);
@@ -66,6 +112,12 @@ physics::f32::Instrument to_float(const physics::f64::Instrument& instrument) {
     result.gate_position = static_cast<float>(instrument.gate_position);
     result.gate_slope = static_cast<float>(instrument.gate_slope);
     result.gate_radius = static_cast<float>(instrument.gate_radius);
+    result.spectrum_centre = static_cast<float>(instrument.spectrum_centre);
+    result.spectrum_half_width = static_cast<float>(instrument.spectrum_half_width);
+    result.specimen_index = static_cast<float>(instrument.specimen_index);
+    result.specimen_dispersion = to_float(instrument.specimen_dispersion);
+    result.ring = to_float(instrument.ring);
+    result.spectral_bins = instrument.spectral_bins;
     result.illumination_first = instrument.illumination_first;
     result.illumination_count = instrument.illumination_count;
     result.imaging_first = instrument.imaging_first;
@@ -79,7 +131,7 @@ physics::f32::Exposure to_float(const physics::f64::Exposure& exposure) {
     result.top_distance = static_cast<float>(exposure.top_distance);
     result.seed = exposure.seed;
     result.image = exposure.image;
-    result.unused = exposure.unused;
+    result.focal_height = static_cast<float>(exposure.focal_height);
     return result;
 }
 

@@ -18,6 +18,9 @@ struct Parameters {
 // The other one: every surface, padded to the block's capacity. Throws InputError when there are more.
 std::vector<physics::f32::Surface> surface_block(const optics::Instrument& instrument);
 
+// The spectrum's, padded likewise.
+std::vector<physics::f32::SpectralBin> spectrum_block(const optics::Instrument& instrument);
+
 physics::f32::Instrument to_float(const physics::f64::Instrument& instrument);
 physics::f32::Exposure to_float(const physics::f64::Exposure& exposure);
 

@@ -31,6 +31,17 @@ constexpr std::size_t unread_bytes = 64;
 // Boxes along a side of an analytic surface: with many more the tree costs more than the march it saves.
 constexpr int boxes_along_side = 64;
 
+physics::f32::Lobe to_float(const physics::f64::Lobe& lobe) {
+    physics::f32::Lobe result{};
+    result.model = lobe.model;
+    result.weight = static_cast<float>(lobe.weight);
+    result.parameter_0 = static_cast<float>(lobe.parameter_0);
+    result.parameter_1 = static_cast<float>(lobe.parameter_1);
+    result.parameter_2 = static_cast<float>(lobe.parameter_2);
+    result.parameter_3 = static_cast<float>(lobe.parameter_3);
+    return result;
+}
+
 physics::f32::SpecimenRecord to_float(const physics::f64::SpecimenRecord& record) {
     constexpr float infinity = std::numeric_limits<float>::infinity();
     physics::f32::SpecimenRecord result{};
@@ -49,7 +60,10 @@ physics::f32::SpecimenRecord to_float(const physics::f64::SpecimenRecord& record
     result.shape_parameter_2 = static_cast<float>(record.shape_parameter_2);
     result.shape_parameter_3 = static_cast<float>(record.shape_parameter_3);
     result.lipschitz = std::nextafter(static_cast<float>(record.lipschitz), infinity);
-    result.scatter_g = static_cast<float>(record.scatter_g);
+    result.material.lobe_0 = to_float(record.material.lobe_0);
+    result.material.lobe_1 = to_float(record.material.lobe_1);
+    result.material.lobe_2 = to_float(record.material.lobe_2);
+    result.material.lobe_3 = to_float(record.material.lobe_3);
     result.columns = record.columns;
     result.rows = record.rows;
     result.max_bounces = record.max_bounces;
@@ -345,7 +359,13 @@ std::vector<vulkan::BindingDeclaration> DeviceSpecimen::declarations() const {
 }
 
 std::vector<vulkan::SpecializationConstant> DeviceSpecimen::constants() const {
-    return {{0, record_.kind}};
+    const auto& material = record_.material;
+    const bool one_white_lobe = material.lobe_0.weight >= 1 && material.lobe_1.weight <= 0;
+    std::uint32_t models = one_white_lobe ? 0u : physics::f32::SCATTER_CHOICE;
+    for (const auto& lobe : {material.lobe_0, material.lobe_1, material.lobe_2, material.lobe_3}) {
+        models |= lobe.weight > 0 ? 1u << lobe.model : 0u;
+    }
+    return {{0, record_.kind}, {4, models}};
 }
 
 physics::f32::SpecimenRecord DeviceSpecimen::record(int max_bounces) const {

@@ -27,7 +27,7 @@ class DeviceSpecimen {
 
     std::vector<vulkan::Binding> bindings() const; // valid as long as this object, also when it is moved
     std::vector<vulkan::BindingDeclaration> declarations() const;
-    std::vector<vulkan::SpecializationConstant> constants() const; // the specimen's kind
+    std::vector<vulkan::SpecializationConstant> constants() const; // the specimen's kind and its scatter models
     // In float; bottom and top still enclose the surface.
     physics::f32::SpecimenRecord record(int max_bounces) const;
     std::size_t bytes() const; // device memory taken

@@ -54,7 +54,9 @@ class DeviceScene {
           traversal(choose_traversal(device.report(), specimen, options.traversal, reason)),
           device_specimen(device, specimen, traversal), host_record(specimen::record(specimen, options.max_bounces)),
           seed(options.seed), surfaces(device, physics::f32::SURFACE_CAPACITY * sizeof(physics::f32::Surface)),
-          parameters(device, sizeof(Parameters), vulkan::Buffer::Memory::host) {
+          parameters(device, sizeof(Parameters), vulkan::Buffer::Memory::host),
+          spectrum(device, physics::f32::SPECTRUM_CAPACITY * sizeof(physics::f32::SpectralBin)) {
+        spectrum.write_values(std::span<const physics::f32::SpectralBin>(spectrum_block(instrument)));
         surfaces.write_values(std::span<const physics::f32::Surface>(surface_block(instrument)));
         constants.instrument = to_float(instrument.constants);
         constants.specimen = device_specimen.record(options.max_bounces);
@@ -66,9 +68,9 @@ class DeviceScene {
         parameters.write_values(std::span<const Parameters>(&constants, 1));
     }
 
-    // The scene's bindings (0, 1, 8 and up) and those given.
+    // The scene's bindings (0, 1, 8 to 14) and those given.
     std::vector<vulkan::Binding> bindings(std::initializer_list<vulkan::Binding> further) const {
-        std::vector<vulkan::Binding> all = {{0, &surfaces}, {1, &parameters}};
+        std::vector<vulkan::Binding> all = {{0, &surfaces}, {1, &parameters}, {14, &spectrum}};
         const auto of_specimen = device_specimen.bindings();
         all.insert(all.end(), of_specimen.begin(), of_specimen.end());
         all.insert(all.end(), further.begin(), further.end());
@@ -76,7 +78,7 @@ class DeviceScene {
     }
     std::vector<vulkan::BindingDeclaration> declarations(std::initializer_list<std::uint32_t> further) const {
         using enum vulkan::BindingKind;
-        std::vector<vulkan::BindingDeclaration> all = {{0, uniform_buffer}, {1, uniform_buffer}};
+        std::vector<vulkan::BindingDeclaration> all = {{0, uniform_buffer}, {1, uniform_buffer}, {14, uniform_buffer}};
         const auto of_specimen = device_specimen.declarations();
         all.insert(all.end(), of_specimen.begin(), of_specimen.end());
         for (const std::uint32_t slot : further) {
@@ -90,6 +92,7 @@ class DeviceScene {
         auto all = device_specimen.constants();
         all.push_back({1, static_cast<std::uint32_t>(ledger_slot_count(instrument))});
         all.push_back({2, stop_after});
+        all.push_back({3, instrument.features});
         return all;
     }
 
@@ -112,6 +115,7 @@ class DeviceScene {
     std::uint32_t seed;
     vulkan::Buffer surfaces;
     vulkan::Buffer parameters;
+    vulkan::Buffer spectrum;
     Parameters constants{};
 };
 
@@ -335,7 +339,7 @@ StageTimes time_stages(const optics::Instrument& instrument, const specimen::Spe
     for (std::size_t slot = 0; slot < fates.size(); ++slot) {
         int crossed = constants.illumination_count;
         if (slot >= PATH_STATUS_COUNT) {
-            const int surface = static_cast<int>(slot - PATH_STATUS_COUNT) / 3;
+            const int surface = static_cast<int>(slot - PATH_STATUS_COUNT) / SURFACE_STATUS_COUNT;
             crossed = surface < constants.imaging_first
                           ? surface - constants.illumination_first + 1
                           : constants.illumination_count + surface - constants.imaging_first + 1;

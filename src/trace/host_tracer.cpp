@@ -18,10 +18,12 @@ using namespace physics::f64;
 
 // What the shared physics asks of a scene.
 struct HostScene {
-    const std::vector<Surface>* surfaces;
+    optics::TrainScene trains;
     const specimen::Intersector* intersector;
 
-    Surface surface_at(int index) const { return (*surfaces)[static_cast<std::size_t>(index)]; }
+    const Surface& surface_at(int index) const { return trains.surface_at(index); }
+    std::uint32_t features() const { return trains.features(); }
+    const SpectralBin& spectral_bin(int index) const { return trains.spectral_bin(index); }
     Hit specimen_hit(real3 origin, real3 direction) const { return intersector->hit(origin, direction); }
 };
 
@@ -40,7 +42,7 @@ class HostTracer final : public Tracer {
         const std::size_t pixels = static_cast<std::size_t>(instrument_.constants.detector_pixels) *
                                    static_cast<std::size_t>(instrument_.constants.detector_pixels);
         const Exposure exposure = make_exposure(instrument_, record_, focal_height, options_.seed, image);
-        const HostScene scene{&instrument_.surfaces, &intersector_};
+        const HostScene scene{instrument_.scene(), &intersector_};
         const unsigned workers = std::max(1u, std::thread::hardware_concurrency());
         std::vector<std::vector<std::uint64_t>> counts(workers, std::vector<std::uint64_t>(pixels));
         std::vector<std::vector<std::uint64_t>> fates(
@@ -99,6 +101,7 @@ Exposure make_exposure(const optics::Instrument& instrument, const SpecimenRecor
     exposure.top_distance = focal_height + instrument.front_vertex_height - specimen.top;
     exposure.seed = seed;
     exposure.image = image;
+    exposure.focal_height = focal_height;
     return exposure;
 }
 
@@ -111,7 +114,7 @@ std::vector<PathEnd> host_paths(const optics::Instrument& instrument, const spec
                                 const TraceOptions& options, double focal_height, std::uint32_t image,
                                 std::uint64_t first, std::uint64_t count, double source_scale) {
     const specimen::Intersector intersector(specimen);
-    const HostScene scene{&instrument.surfaces, &intersector};
+    const HostScene scene{instrument.scene(), &intersector};
     const SpecimenRecord record = specimen::record(specimen, options.max_bounces);
     const Exposure exposure = make_exposure(instrument, record, focal_height, options.seed, image);
     physics::f64::Instrument constants = instrument.constants;

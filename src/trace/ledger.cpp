@@ -12,11 +12,12 @@ using namespace physics::f64;
 
 struct Slot {
     std::string name;
-    double weight; // of the power a ray starts with: what passed the splitter
+    std::size_t splitter_passes = 0; // that a ray with this fate has behind it
+    double weight = 0;               // of the power a ray starts with: what passed the splitter
 };
 
 // The splitter's passes that a ray with this fate has behind it: 0, 1 or 2.
-int splitter_passes(const optics::Instrument& instrument, int surface) {
+std::size_t splitter_passes(const optics::Instrument& instrument, int surface) {
     const auto& constants = instrument.constants;
     if (surface < constants.illumination_first + constants.illumination_count) {
         return surface - constants.illumination_first < instrument.illumination_surfaces_before_splitter ? 0 : 1;
@@ -26,26 +27,30 @@ int splitter_passes(const optics::Instrument& instrument, int surface) {
 
 std::vector<Slot> slots_of(const optics::Instrument& instrument) {
     const double reflected = instrument.splitter_reflectance;
-    const std::array<double, 3> weight = {1.0, reflected, reflected * (1.0 - reflected)};
+    const std::array<double, 3> weight = {1.0, reflected, reflected * instrument.splitter_transmittance};
     std::vector<Slot> slots(ledger_slot_count(instrument));
-    const std::array<std::pair<const char*, double>, PATH_VIGNETTED> plain = {{
-        {"under way", weight[0]},
-        {"detected", weight[2]},
-        {"beside the specimen", weight[1]},
-        {"escaped outside the pupil", weight[1]},
-        {"bounce limit", weight[1]},
-        {"beside the detector", weight[2]},
-        {"numerical", weight[1]},
+    const std::array<std::pair<const char*, std::size_t>, PATH_VIGNETTED> plain = {{
+        {"under way", 0},
+        {"detected", 2},
+        {"beside the specimen", 1},
+        {"escaped outside the pupil", 1},
+        {"bounce limit", 1},
+        {"beside the detector", 2},
+        {"numerical", 1},
+        {"absorbed by the specimen", 1},
+        {"interaction limit", 1},
     }};
     for (std::size_t status = 0; status < plain.size(); ++status) {
-        slots[status] = {plain[status].first, plain[status].second};
+        const auto& [name, passes] = plain[status];
+        slots[status] = {name, passes, weight[passes]};
     }
-    const std::array<const char*, 3> kinds = {"vignetted", "missed", "totally reflected"};
+    const std::array<const char*, SURFACE_STATUS_COUNT> kinds = {"vignetted", "missed", "totally reflected",
+                                                                "lost in reflection"};
     for (std::size_t surface = 0; surface < instrument.surfaces.size(); ++surface) {
         for (std::size_t kind = 0; kind < kinds.size(); ++kind) {
-            slots[PATH_STATUS_COUNT + 3 * surface + kind] = {
-                std::string(kinds[kind]) + " at " + instrument.surface_names[surface],
-                weight[static_cast<std::size_t>(splitter_passes(instrument, static_cast<int>(surface)))]};
+            const std::size_t passes = splitter_passes(instrument, static_cast<int>(surface));
+            slots[PATH_STATUS_COUNT + SURFACE_STATUS_COUNT * surface + kind] = {
+                std::string(kinds[kind]) + " at " + instrument.surface_names[surface], passes, weight[passes]};
         }
     }
     return slots;
@@ -66,12 +71,12 @@ double Ledger::residual() const {
 }
 
 std::size_t ledger_slot_count(const optics::Instrument& instrument) {
-    return PATH_STATUS_COUNT + 3 * instrument.surfaces.size();
+    return PATH_STATUS_COUNT + SURFACE_STATUS_COUNT * instrument.surfaces.size();
 }
 
 double detected_power_per_ray(const optics::Instrument& instrument, std::uint64_t rays) {
     return instrument.flux * aimed_share(instrument) * instrument.splitter_reflectance *
-           (1.0 - instrument.splitter_reflectance) / static_cast<double>(rays);
+           instrument.splitter_transmittance / static_cast<double>(rays);
 }
 
 Ledger make_ledger(const optics::Instrument& instrument, std::span<const std::uint64_t> counts, std::uint64_t rays) {
@@ -89,11 +94,11 @@ Ledger make_ledger(const optics::Instrument& instrument, std::span<const std::ui
     std::uint64_t first_pass = 0;
     std::uint64_t second_pass = 0;
     for (std::size_t slot = 0; slot < slots.size(); ++slot) {
-        first_pass += slots[slot].weight < 1.0 ? counts[slot] : 0;
-        second_pass += slots[slot].weight < reflected ? counts[slot] : 0;
+        first_pass += slots[slot].splitter_passes > 0 ? counts[slot] : 0;
+        second_pass += slots[slot].splitter_passes > 1 ? counts[slot] : 0;
     }
     add("beam splitter, towards the specimen", 1.0 - reflected, first_pass);
-    add("beam splitter, towards the detector", reflected * reflected, second_pass);
+    add("beam splitter, towards the detector", reflected * (1.0 - instrument.splitter_transmittance), second_pass);
     for (std::size_t slot = PATH_DETECTED + 1; slot < slots.size(); ++slot) {
         if (slot >= PATH_VIGNETTED && slot < PATH_STATUS_COUNT) {
             continue; // these statuses belong to surfaces, which have slots of their own

@@ -52,18 +52,13 @@ TracedRay traced(glm::dvec3 position, glm::dvec3 direction, double path_length, 
     return result;
 }
 
-// In the frame of the first vertex, direction normalised.
+// In the frame of the first vertex, direction scaled by the index.
 physics::f64::Ray entering(const optics::Instrument& instrument, const RayInput& input) {
     physics::f64::Ray ray{};
     ray.position = {input.x, input.y, input.z - instrument.first_order.working_distance};
-    ray.direction = glm::normalize(glm::dvec3(input.l, input.m, input.n));
+    ray.direction = glm::normalize(glm::dvec3(input.l, input.m, input.n)) * instrument.constants.specimen_index;
     return ray;
 }
-
-struct SurfacesAlone {
-    const std::vector<physics::f64::Surface>* surfaces;
-    physics::f64::Surface surface_at(int index) const { return (*surfaces)[static_cast<std::size_t>(index)]; }
-};
 
 } // namespace
 
@@ -71,13 +66,14 @@ std::vector<TracedRay> trace_rays_on_host(const optics::Instrument& instrument, 
                                           bool apertures) {
     using namespace physics::f64;
     const auto& constants = instrument.constants;
-    const SurfacesAlone scene{&instrument.surfaces};
+    const Light light = light_of_spectral(constants, 0.0);
     std::vector<TracedRay> result;
     result.reserve(rays.size());
     for (const RayInput& input : rays) {
-        const TrainResult train = trace_train(scene, constants.imaging_first, constants.imaging_count,
-                                              entering(instrument, input), apertures ? 1u : 0u);
-        const Ray arrived = fly_to_plane(train.ray, constants.detector_distance, 1.0);
+        const TrainResult train =
+            trace_train(instrument.scene(), constants.imaging_first, constants.imaging_count,
+                        entering(instrument, input), constants.specimen_index, apertures ? 1u : 0u, light);
+        const Ray arrived = fly_to_plane(train.ray, constants.detector_distance, train.index);
         result.push_back(traced(arrived.position, arrived.direction, arrived.path_length, train.status));
     }
     return result;
@@ -101,6 +97,7 @@ std::vector<TracedRay> trace_rays_on_device(const optics::Instrument& instrument
 
     vulkan::Buffer surface_buffer(device, surfaces.size() * sizeof(surfaces[0]));
     vulkan::Buffer parameter_buffer(device, sizeof(Parameters), vulkan::Buffer::Memory::host);
+    const vulkan::Buffer spectrum_buffer(device, spectrum_block(instrument).size() * sizeof(physics::f32::SpectralBin));
     vulkan::Buffer ray_buffer(device, entering_rays.size() * sizeof(entering_rays[0]));
     vulkan::Buffer traced_buffer(device, rays.size() * sizeof(DeviceTracedRay));
     surface_buffer.write_values(std::span<const physics::f32::Surface>(surfaces));
@@ -108,11 +105,21 @@ std::vector<TracedRay> trace_rays_on_device(const optics::Instrument& instrument
     ray_buffer.write_values(std::span<const physics::f32::Ray>(entering_rays));
 
     using enum vulkan::BindingKind;
+    // Given rays are monochromatic and lose nothing.
+    const std::array<vulkan::SpecializationConstant, 1> constants = {
+        {{3, instrument.features & (physics::f32::FEATURE_PLACEMENT | physics::f32::FEATURE_IDEAL_LENS)}}};
     const vulkan::Kernel kernel(device, "trace_rays", ::trace_rays,
-                                {{0, uniform_buffer}, {1, uniform_buffer}, {2, storage_buffer}, {3, storage_buffer}},
-                                2 * sizeof(std::uint32_t));
-    const std::array<vulkan::Binding, 4> bindings = {
-        {{0, &surface_buffer}, {1, &parameter_buffer}, {2, &ray_buffer}, {3, &traced_buffer}}};
+                                {{0, uniform_buffer},
+                                 {1, uniform_buffer},
+                                 {2, storage_buffer},
+                                 {3, storage_buffer},
+                                 {14, uniform_buffer}},
+                                2 * sizeof(std::uint32_t), constants);
+    const std::array<vulkan::Binding, 5> bindings = {{{0, &surface_buffer},
+                                                      {1, &parameter_buffer},
+                                                      {2, &ray_buffer},
+                                                      {3, &traced_buffer},
+                                                      {14, &spectrum_buffer}}};
     const std::array<std::uint32_t, 2> push = {static_cast<std::uint32_t>(rays.size()), apertures ? 1u : 0u};
     vulkan::Commands commands(device);
     commands.dispatch(kernel, bindings, push, (push[0] + 63) / 64);

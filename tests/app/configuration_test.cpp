@@ -26,11 +26,11 @@ Configuration load(const std::string& name, const std::string& text,
 TEST(Configuration, ConvertsUnitsOnceAtTheBorder) {
     const auto configuration = load("units", small_configuration);
     EXPECT_EQ(configuration.instrument.source_radius, 0.96);
-    EXPECT_EQ(configuration.instrument.wavelength_um, 0.5876);
+    EXPECT_EQ(configuration.instrument.spectrum.reference_um, 0.5876);
     EXPECT_EQ(configuration.instrument.detector_pixels, 8);
     EXPECT_EQ(configuration.specimen->height, 0.002);
     EXPECT_EQ(configuration.specimen->roughness->noise, 0.0001);
-    EXPECT_EQ(configuration.specimen->material.g, 0.8);
+    EXPECT_EQ(configuration.specimen->material.lobes[0].parameters[0], 0.8);
     EXPECT_EQ(configuration.scan->z_start, -0.002);
     EXPECT_EQ(configuration.scan->positions().size(), 5u);
     EXPECT_EQ(configuration.trace.rays, 2000u);
@@ -55,7 +55,7 @@ TEST(Configuration, OverridesWin) {
                                      {"specimen.material.g", "0.65", "--set"}});
     EXPECT_EQ(configuration.trace.rays, 1'000'000'000u);
     EXPECT_EQ(configuration.trace.traversal, trace::Traversal::quadtree);
-    EXPECT_EQ(configuration.specimen->material.g, 0.65);
+    EXPECT_EQ(configuration.specimen->material.lobes[0].parameters[0], 0.65);
 }
 
 TEST(Configuration, CanonicalTextReadsBackToItself) {
@@ -90,6 +90,7 @@ TEST(Configuration, IdentityHoldsWhatChangesImagesAndNothingElse) {
         {"trace.max_bounces", "3", ""},
         {"trace.emission", "\"analog\"", ""},
         {"specimen.material.g", "0.81", ""},
+        {"specimen.material.reflectance", "0.9", ""},
         {"specimen.representation", "\"analytic\"", ""},
         {"specimen.roughness.seed", "8", ""},
         {"scan.z_step_um", "0.5", ""},
@@ -172,6 +173,44 @@ TEST(Configuration, EveryKindOfSpecimenIsRead) {
         const auto configuration = load("kind_" + kind, text);
         ASSERT_TRUE(configuration.specimen) << kind;
         EXPECT_EQ(load("kind_again", configuration.canonical).canonical, configuration.canonical) << kind;
+    }
+}
+
+TEST(Configuration, MaterialsAreReadAndWrittenOut) {
+    const auto with = [](const std::string& lines) {
+        return replaced(small_configuration, "[specimen.material]\ng = 0.8\n", lines);
+    };
+    const auto reads_back = [](const Configuration& configuration) {
+        const auto again = load("material_again", configuration.canonical);
+        EXPECT_EQ(again.canonical, configuration.canonical);
+        EXPECT_EQ(again.identity, configuration.identity);
+    };
+    const auto plain = load("material", with(""));
+    ASSERT_EQ(plain.specimen->material.lobes.size(), 1u);
+    EXPECT_EQ(plain.specimen->material.lobes[0].model, "henyey-greenstein");
+    EXPECT_THAT(plain.specimen->material.lobes[0].parameters, testing::ElementsAre(0.0));
+    EXPECT_EQ(plain.specimen->material.lobes[0].weight, 1);
+    reads_back(plain);
+    const auto grey = load("material", with("[specimen.material]\nscatter = \"lambertian\"\nreflectance = 0.8\n"));
+    EXPECT_EQ(grey.specimen->material.lobes[0].model, "lambertian");
+    EXPECT_EQ(grey.specimen->material.lobes[0].weight, 0.8);
+    EXPECT_TRUE(grey.specimen->material.lobes[0].parameters.empty());
+    reads_back(grey);
+    const auto black = load("material", with("[specimen.material]\nreflectance = 0\n"));
+    EXPECT_TRUE(black.specimen->material.lobes.empty());
+    reads_back(black);
+    const std::string two = "[[specimen.material.lobe]]\nscatter = \"henyey-greenstein\"\ng = 0.95\nweight = 0.3\n"
+                            "[[specimen.material.lobe]]\nscatter = \"mirror\"\nweight = 0.5\n";
+    const auto sum = load("material", with(two));
+    ASSERT_EQ(sum.specimen->material.lobes.size(), 2u);
+    EXPECT_THAT(sum.specimen->material.lobes[0].parameters, testing::ElementsAre(0.95));
+    EXPECT_EQ(sum.specimen->material.lobes[0].weight, 0.3);
+    EXPECT_EQ(sum.specimen->material.lobes[1].model, "mirror");
+    EXPECT_EQ(sum.specimen->material.lobes[1].weight, 0.5);
+    reads_back(sum);
+    for (const auto& [from, to] : std::map<std::string, std::string>{
+             {"g = 0.95", "g = 0.94"}, {"weight = 0.3", "weight = 0.31"}, {"\"mirror\"", "\"lambertian\""}}) {
+        EXPECT_NE(load("material", with(replaced(two, from, to))).identity, sum.identity) << to;
     }
 }
 

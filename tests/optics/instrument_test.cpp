@@ -332,7 +332,7 @@ TEST(Koehler, ImagesTheSourceIntoThePupil) {
         const std::vector illuminator(train.begin(), train.begin() + 6);
         const auto image = image_of(transfer_of_train(illuminator), source_distance);
         EXPECT_NEAR(std::abs(image.magnification), 5.788, 1e-3) << name;
-        EXPECT_EQ(instrument.first_order.illumination_to_objective, train[6].distance) << name;
+        EXPECT_NEAR(instrument.first_order.illumination_to_objective, train[6].distance, 1e-12) << name;
     }
 }
 
@@ -375,7 +375,7 @@ TEST(Instrument, NamesItsSurfaces) {
     EXPECT_EQ(instrument.surface_names[28], "imaging 12 (200mm 1)");
     EXPECT_EQ(instrument.surfaces[0].distance, 0);
     EXPECT_EQ(instrument.surfaces[17].distance, 0);
-    EXPECT_EQ(instrument.surfaces[28].distance, 100);
+    EXPECT_NEAR(instrument.surfaces[28].distance, 100, 1e-12); // a difference of places up to 300 mm off
 }
 
 TEST(Instrument, Warns) {
@@ -409,7 +409,7 @@ TEST(Instrument, RefusesPartsThatDoNotFit) {
     description.source_radius = 0;
     EXPECT_EQ(key_of(description), "source.radius_mm");
     description = test::microscope();
-    description.wavelength_um = 1.5;
+    description.spectrum = optics::Spectrum::line(1.5);
     EXPECT_THAT(key_of(description), HasSubstr("index of"));
     description = test::microscope();
     description.illumination.source_distance.reset();

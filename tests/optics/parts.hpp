@@ -22,7 +22,7 @@ inline optics::InstrumentDescription microscope(const std::string& objective = "
     const auto base = source_folder() / "assets" / "stacks";
     optics::InstrumentDescription description;
     description.source_radius = 0.96;
-    description.wavelength_um = d_line_um;
+    description.spectrum = optics::Spectrum::line(d_line_um);
     description.illumination = optics::load_prescription("koehler", "illuminators", base);
     description.field_stop_radius = 0.85;
     description.objective = optics::load_prescription(objective, "objectives", base);
@@ -58,6 +58,7 @@ inline physics::f64::Surface surface(double curvature, double distance, double i
     result.distance = distance;
     result.index_before = index_before;
     result.index_after = index_after;
+    result.rotation_xx = result.rotation_yy = result.rotation_zz = 1;
     return result;
 }
 
@@ -66,8 +67,9 @@ inline physics::f64::TrainResult trace(const std::vector<physics::f64::Surface>&
     physics::f64::Ray ray{};
     ray.position = position;
     ray.direction = glm::normalize(direction) * train.front().index_before;
-    return physics::f64::trace_train(optics::TrainScene{train}, 0, static_cast<int>(train.size()), ray,
-                                     apertures);
+    return physics::f64::trace_train(optics::TrainScene{.surfaces = train}, 0, static_cast<int>(train.size()), ray,
+                                     train.front().index_before, apertures,
+                                     {.spectral = 0, .wave_number = 1, .survival = 0});
 }
 
 } // namespace vkfv::test

@@ -72,7 +72,8 @@ TEST(Image, the_ledger_closes_for_analog_and_aimed_emission) {
 // Power per ray: whole before the splitter, R beyond it, R (1 - R) beyond its second pass; a wrong split would still close.
 TEST(Image, the_ledger_gives_each_loss_the_power_it_carried) {
     auto description = test::microscope_description();
-    description.splitter_reflectance = 0.3;
+    description.splitter.reflectance = 0.3;
+    description.splitter.transmittance = 0.7;
     const auto instrument = optics::assemble(description);
     const auto image = expose(instrument, test::rough_specimen(), options());
     const double launched = instrument.flux * std::pow(instrument.constants.emission_sine, 2) / double(image.rays);
@@ -153,6 +154,48 @@ TEST(Image, traversals_and_host_give_the_same_image) {
     fresh.seed = 77;
     EXPECT_GT(same_expectation_p(quadtree, expose(instrument, specimen, fresh)), 1e-4);
     EXPECT_LT(same_expectation_p(quadtree, expose(instrument, test::rough_specimen(0.3), fresh)), 1e-4);
+}
+
+// One scatter event on a plane: every ray that comes to the specimen is absorbed or not by its reflectance, and the ledger
+// closes with its power in a row of its own. As many bounces change nothing, as a plane is met once.
+TEST(Image, what_the_specimen_does_not_reflect_is_absorbed) {
+    const auto instrument = test::microscope();
+    specimen::Specimen plane = test::plane_specimen(0.0);
+    const auto count = [](const trace::Image& image, const std::string& name) {
+        for (const auto& entry : image.ledger.entries) {
+            if (entry.name == name) {
+                return static_cast<double>(entry.rays);
+            }
+        }
+        ADD_FAILURE() << name;
+        return 0.0;
+    };
+    const auto white = expose(instrument, plane, options());
+    EXPECT_EQ(count(white, "absorbed by the specimen"), 0);
+    for (const auto& lobes : std::vector<std::vector<specimen::Lobe>>{
+             {{"henyey-greenstein", 0.5, {0.8}}},
+             {{"lambertian", 0.5, {}}},
+             {{"mirror", 0.2, {}}, {"henyey-greenstein", 0.1, {0.9}}, {"lambertian", 0.1, {}}, {"mirror", 0.1, {}}}}) {
+        plane.material.lobes = lobes;
+        for (const bool on_host : {false, true}) {
+            const auto image = on_host ? trace::make_host_tracer(instrument, plane, options())->expose(0.001, 2)
+                                       : expose(instrument, plane, options());
+            EXPECT_LT(std::abs(image.ledger.residual()), 1e-6 * image.ledger.emitted);
+            // The white specimen's rays came to it likewise: the same source, the same random numbers.
+            double arrived = 0;
+            for (const char* name : {"detected", "escaped outside the pupil", "bounce limit", "beside the detector"}) {
+                arrived += count(white, name);
+            }
+            for (const auto& entry : white.ledger.entries) {
+                arrived += entry.name.find(" at imaging ") != std::string::npos ? static_cast<double>(entry.rays) : 0.0;
+            }
+            ASSERT_GT(arrived, 10000);
+            const double absorbed = count(image, "absorbed by the specimen");
+            // 6e-5 for each of six.
+            EXPECT_LT(test::share_z(absorbed, arrived, 0.5), 4.0) << lobes[0].model;
+            EXPECT_GT(test::share_z(absorbed, arrived, 0.53), 4.0) << lobes[0].model; // wrong twin
+        }
+    }
 }
 
 // White furnace with every bounce permitted: whatever reaches the specimen leaves it again.

@@ -12,7 +12,7 @@ inline optics::InstrumentDescription microscope_description() {
     const std::filesystem::path base = std::filesystem::path(VKFV_SOURCE_DIR) / "assets" / "stacks";
     optics::InstrumentDescription description;
     description.source_radius = 0.96;
-    description.wavelength_um = 0.587562;
+    description.spectrum = optics::Spectrum::line(0.587562);
     description.illumination = optics::load_prescription("koehler", "illuminators", base);
     description.field_stop_radius = 0.85;
     description.objective = optics::load_prescription("10x_0.28", "objectives", base);
@@ -34,7 +34,7 @@ inline specimen::Specimen rough_specimen(double g = 0.65, double sq = 0.003, dou
     description.sq = sq;
     description.correlation_length = correlation_length;
     description.seed = 5;
-    description.material.g = g;
+    description.material = specimen::Material::henyey_greenstein(g);
     return specimen::make(description);
 }
 
@@ -45,7 +45,7 @@ inline specimen::Specimen plane_specimen(double g) {
     description.kind = specimen::Kind::plane;
     description.size = 0.4;
     description.pitch = 0.01;
-    description.material.g = g;
+    description.material = specimen::Material::henyey_greenstein(g);
     return specimen::make(description);
 }
 

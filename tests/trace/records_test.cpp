@@ -37,30 +37,35 @@ std::vector<float> fill(Record& record, const std::vector<std::size_t>& integers
 TEST(Records, the_device_sees_every_field_where_the_host_wrote_it) {
     const vulkan::Device device;
     std::array<physics::f32::Surface, physics::f32::SURFACE_CAPACITY> surfaces{};
+    std::array<physics::f32::SpectralBin, physics::f32::SPECTRUM_CAPACITY> bins{};
     std::array<physics::f32::Survivor, 3> survivors{};
     trace::Parameters parameters{};
     std::vector<float> expected;
     const auto append = [&](const std::vector<float>& numbers) {
         expected.insert(expected.end(), numbers.begin(), numbers.end());
     };
-    append(fill(surfaces[2], {13}, 100));
-    append(fill(parameters.instrument, {9, 10, 11, 12, 13}, 200));
-    append(fill(parameters.specimen, {14, 15, 16, 17, 18}, 300));
-    append(fill(parameters.exposure, {1, 2, 3}, 400));
-    append(fill(survivors[2], {5}, 500));
+    append(fill(surfaces[2], {40}, 100));
+    append(fill(parameters.instrument, {24, 25, 26, 27, 28, 29, 30, 31}, 200));
+    append(fill(parameters.specimen, {13, 19, 25, 31, 37, 38, 39, 40, 41}, 300));
+    append(fill(parameters.exposure, {1, 2}, 400));
+    append(fill(bins[2], {}, 450));
+    append(fill(survivors[2], {7}, 500));
 
     vulkan::Buffer surface_buffer(device, sizeof(surfaces));
     vulkan::Buffer parameter_buffer(device, sizeof(parameters), vulkan::Buffer::Memory::host);
+    vulkan::Buffer spectrum_buffer(device, sizeof(bins));
     vulkan::Buffer survivor_buffer(device, sizeof(survivors));
     vulkan::Buffer echo(device, expected.size() * sizeof(float));
     surface_buffer.write_values(std::span<const physics::f32::Surface>(surfaces));
     parameter_buffer.write_values(std::span<const trace::Parameters>(&parameters, 1));
+    spectrum_buffer.write_values(std::span<const physics::f32::SpectralBin>(bins));
     survivor_buffer.write_values(std::span<const physics::f32::Survivor>(survivors));
     using enum vulkan::BindingKind;
     const vulkan::Kernel kernel(device, "probe_records", ::probe_records,
-                                {{0, uniform_buffer}, {1, uniform_buffer}, {2, storage_buffer}, {3, storage_buffer}});
-    const std::array<vulkan::Binding, 4> bindings = {
-        {{0, &surface_buffer}, {1, &parameter_buffer}, {2, &survivor_buffer}, {3, &echo}}};
+                                {{0, uniform_buffer}, {1, uniform_buffer}, {2, storage_buffer}, {3, storage_buffer},
+                                 {14, uniform_buffer}});
+    const std::array<vulkan::Binding, 5> bindings = {
+        {{0, &surface_buffer}, {1, &parameter_buffer}, {2, &survivor_buffer}, {3, &echo}, {14, &spectrum_buffer}}};
     vulkan::Commands commands(device);
     commands.dispatch(kernel, bindings, std::span<const std::byte>{}, 1);
     commands.barrier();

@@ -1,0 +1,57 @@
+// How much an interface reflects: Born and Wolf, "Principles of Optics" (7th edition), sections 1.5.2 and 1.6.4.
+// Unpolarised light: the mean of both polarisations at each interface. Cosines are of the angles to the normal, > 0.
+
+VKFV_FUNCTION real fresnel_reflectance(real index_before, real index_after, real cosine) {
+    real sine_ratio = index_before / index_after;
+    real cosine_after_squared = real(1.0) - sine_ratio * sine_ratio * (real(1.0) - cosine * cosine);
+    real cosine_after = sqrt(max(cosine_after_squared, real(0.0)));
+    real s = (index_before * cosine - index_after * cosine_after) / (index_before * cosine + index_after * cosine_after);
+    real p = (index_after * cosine - index_before * cosine_after) / (index_after * cosine + index_before * cosine_after);
+    return cosine_after_squared > real(0.0) ? real(0.5) * (s * s + p * p) : real(1.0);
+}
+
+// One polarisation through one layer: amplitudes of its two interfaces, and the cosine of the phase between them.
+VKFV_FUNCTION real two_interface_reflectance(real first, real second, real cosine_phase) {
+    real cross_term = real(2.0) * first * second * cosine_phase;
+    return (first * first + second * second + cross_term) / (real(1.0) + first * first * second * second + cross_term);
+}
+
+// layer_thickness and 1 / wave_number in the same unit. Where the light is totally reflected, it is at the layer's far
+// side or before: the medium beyond is the thinner of the two.
+VKFV_FUNCTION real layer_reflectance(real index_before, real layer_index, real index_after, real cosine,
+                                     real layer_thickness, real wave_number) {
+    real tangential_squared = index_before * index_before * (real(1.0) - cosine * cosine); // (n sin(theta))^2
+    real axial_before = index_before * cosine;
+    real layer_squared = layer_index * layer_index - tangential_squared;
+    real after_squared = index_after * index_after - tangential_squared;
+    real axial_layer = sqrt(max(layer_squared, real(1e-12)));
+    real axial_after = sqrt(max(after_squared, real(0.0)));
+    real s_first = (axial_before - axial_layer) / (axial_before + axial_layer);
+    real s_second = (axial_layer - axial_after) / (axial_layer + axial_after);
+    // For p, n^2 / (n cos(theta)) takes the place of n cos(theta).
+    real p_before = axial_before / (index_before * index_before);
+    real p_layer = axial_layer / (layer_index * layer_index);
+    real p_after = axial_after / (index_after * index_after);
+    real p_first = (p_layer - p_before) / (p_layer + p_before);
+    real p_second = (p_after - p_layer) / (p_after + p_layer);
+    // Twice the phase across the layer, in turns; cos is asked for in [-pi, pi] alone.
+    real turns = real(2.0) * layer_thickness * axial_layer * wave_number;
+    real cosine_phase = cos(real(6.283185307179586477) * (turns - floor(turns + real(0.5))));
+    bool total = layer_squared <= real(0.0) || after_squared <= real(0.0);
+    return total ? real(1.0)
+                 : real(0.5) * (two_interface_reflectance(s_first, s_second, cosine_phase) +
+                                two_interface_reflectance(p_first, p_second, cosine_phase));
+}
+
+// Of a surface's interface, from either side.
+VKFV_FUNCTION real interface_reflectance(Surface surface, real index_before, real index_after, real cosine,
+                                         real wave_number) {
+    real reflectance = real(0.0);
+    if ((surface.flags & SURFACE_LAYER) != 0u) {
+        reflectance = layer_reflectance(index_before, surface.layer_index, index_after, cosine,
+                                        surface.layer_thickness, wave_number);
+    } else if ((surface.flags & SURFACE_FRESNEL) != 0u) {
+        reflectance = fresnel_reflectance(index_before, index_after, cosine);
+    }
+    return reflectance;
+}

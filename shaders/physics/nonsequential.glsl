@@ -1,0 +1,264 @@
+// Light that finds its own way: at every turn the nearest of all elements and the specimen, and one of the two rays that an
+// interface makes of one, drawn with its share of the power (Russian roulette, so every ray keeps its power). Frame: the
+// elements', that is the specimen's with its origin in the plane of best focus; mm, directions are unit vectors.
+
+#ifdef __cplusplus
+template <class Scene>
+Element element_at(const Scene& scene, int index) {
+    return scene.element_at(index);
+}
+// The nearest element that the ray meets; left: the index of the one it comes from, else -1.
+template <class Scene>
+ElementHit nearest_element(const Scene& scene, real3 origin, real3 direction, int left) {
+    return scene.nearest_element(origin, direction, left);
+}
+#else
+Element element_at(int index);
+ElementHit nearest_element(real3 origin, real3 direction, int left);
+#endif
+
+VKFV_FUNCTION real3 into_element(Element element, real3 v) {
+    return real3(dot(element.axis_x, v), dot(element.axis_y, v), dot(element.axis_z, v));
+}
+
+VKFV_FUNCTION real3 out_of_element(Element element, real3 v) {
+    return element.axis_x * v.x + element.axis_y * v.y + element.axis_z * v.z;
+}
+
+// Where a ray meets one element, in the element's frame turned so that the ray travels towards +z.
+struct ElementMeeting {
+    uint found;     // 1: met
+    uint clear;     // 1: within the free aperture
+    real distance;  // mm
+    real3 point;
+    real3 direction; // the ray's
+    real3 normal;   // not normalised, towards +z
+    real side;      // 1: the ray travels along the element's own z, -1: against it
+};
+
+VKFV_FUNCTION Surface seen_from(Surface surface, real side) {
+    Surface seen = surface;
+    seen.curvature = side * surface.curvature;
+    seen.a4 = side * surface.a4;
+    seen.a6 = side * surface.a6;
+    seen.a8 = side * surface.a8;
+    seen.a10 = side * surface.a10;
+    seen.a12 = side * surface.a12;
+    seen.a14 = side * surface.a14;
+    seen.a16 = side * surface.a16;
+    return seen;
+}
+
+// The wall of a tube about z from z = 0 to `length`, met from inside or outside.
+VKFV_FUNCTION ElementMeeting meet_barrel(ElementMeeting meeting, Element element, real3 start, real least) {
+    real3 d = meeting.direction;
+    real a = d.x * d.x + d.y * d.y;
+    real b = start.x * d.x + start.y * d.y;
+    real c = start.x * start.x + start.y * start.y - element.outer_radius * element.outer_radius;
+    real discriminant = b * b - a * c;
+    real root = sqrt(max(discriminant, real(0.0)));
+    real far = (root - b) / max(a, real(1e-20));
+    real near = (-root - b) / max(a, real(1e-20));
+    // The wall lies between these heights of the turned frame.
+    real low = meeting.side > real(0.0) ? real(0.0) : -element.length;
+    real high = low + element.length;
+    real near_z = start.z + near * d.z;
+    real far_z = start.z + far * d.z;
+    bool near_met = near > least && near_z >= low && near_z <= high;
+    bool far_met = far > least && far_z >= low && far_z <= high;
+    meeting.found = discriminant > real(0.0) && a > real(1e-20) && (near_met || far_met) ? 1u : 0u;
+    meeting.distance = near_met ? near : far;
+    meeting.clear = 0u;
+    return meeting;
+}
+
+// least: mm; nearer meetings are the start itself. comes_from_it: the ray starts on this element, so that of a conic's two
+// meetings the start is one.
+VKFV_FUNCTION ElementMeeting meet_element(Element element, real3 origin, real3 direction, bool comes_from_it, real least) {
+    real3 local = into_element(element, origin - element.origin);
+    real3 d = into_element(element, direction);
+    ElementMeeting meeting;
+    meeting.side = d.z < real(0.0) ? real(-1.0) : real(1.0);
+    real3 start = real3(local.x, local.y, meeting.side * local.z);
+    meeting.direction = real3(d.x, d.y, meeting.side * d.z);
+    meeting.normal = real3(real(0.0), real(0.0), real(1.0));
+    meeting.found = 0u;
+    meeting.clear = 0u;
+    meeting.distance = real(0.0);
+    if (element.kind == ELEMENT_BARREL) {
+        meeting = meet_barrel(meeting, element, start, least);
+    } else {
+        Surface surface = seen_from(element.surface, meeting.side);
+        SurfacePoint on = meet_surface(start, meeting.direction, surface);
+        meeting.distance = on.parameter;
+        meeting.found = on.found == 1u && on.parameter > least && !comes_from_it ? 1u : 0u;
+        if (comes_from_it && surface.curvature != real(0.0) && (surface.flags & SURFACE_ASPHERIC) == 0u) {
+            // The conic is a |p|^2-form whose constant term is zero at the start: one root is zero, and this the other.
+            real c = surface.curvature;
+            real q = real(1.0) + surface.conic;
+            real3 e = meeting.direction;
+            real a = c * (e.x * e.x + e.y * e.y + q * e.z * e.z);
+            real b = c * (start.x * e.x + start.y * e.y + q * start.z * e.z) - e.z;
+            real other = real(-2.0) * b / a;
+            real sheet = real(1.0) - c * q * (start.z + other * e.z); // > 0: the vertex' side
+            meeting.distance = other;
+            meeting.found = other > least && sheet > real(0.0) ? 1u : 0u;
+            on.normal = conic_normal(start + other * e, c, surface.conic);
+        }
+        meeting.normal = on.normal;
+        real3 point = start + meeting.distance * meeting.direction;
+        real r_squared = point.x * point.x + point.y * point.y;
+        meeting.clear = r_squared <= surface.semi_diameter_squared ? 1u : 0u;
+        // The mount: the same surface beyond the free aperture, and where that ends, the plane of its rim.
+        bool on_surface = meeting.found == 1u && r_squared <= element.rim_radius * element.rim_radius;
+        real to_rim = (meeting.side * element.rim_height - start.z) / max(meeting.direction.z, real(1e-20));
+        real3 rim_point = start + to_rim * meeting.direction;
+        real rim_squared = rim_point.x * rim_point.x + rim_point.y * rim_point.y;
+        bool on_rim = to_rim > least && rim_squared > element.rim_radius * element.rim_radius &&
+                      rim_squared <= element.outer_radius * element.outer_radius &&
+                      (!on_surface || to_rim < meeting.distance);
+        meeting.found = on_surface || on_rim ? 1u : 0u;
+        meeting.clear = on_rim ? 0u : meeting.clear;
+        meeting.distance = on_rim ? to_rim : meeting.distance;
+    }
+    meeting.point = start + meeting.distance * meeting.direction;
+    return meeting;
+}
+
+// The least distance at which a ray that starts at `origin` may meet something: a few roundings of where it starts.
+VKFV_FUNCTION real least_distance(real3 origin) {
+    real largest = max(max(abs(origin.x), abs(origin.y)), abs(origin.z));
+    return real(16.0) * SURFACE_EPSILON * max(largest, real(1.0));
+}
+
+// What becomes of a ray at an element that it has met.
+struct Passage {
+    Fate fate;       // PATH_ALIVE: it goes on
+    real3 position;
+    real3 direction; // unit
+};
+
+VKFV_FUNCTION real3 mirrored(real3 direction, real3 unit_normal) {
+    return direction - unit_normal * (real(2.0) * dot(direction, unit_normal));
+}
+
+// u uniform in (0, 1): which of the possible rays.
+VKFV_FUNCTION Passage pass_element(Instrument instrument, Element element, int index, ElementMeeting meeting, Light light,
+                                   real u) {
+    Surface surface = element.surface;
+    bool along = meeting.side > real(0.0);
+    real before = along ? surface.index_before + disperse(surface.dispersion_before, light.spectral)
+                        : surface.index_after + disperse(surface.dispersion_after, light.spectral);
+    real after = along ? surface.index_after + disperse(surface.dispersion_after, light.spectral)
+                       : surface.index_before + disperse(surface.dispersion_before, light.spectral);
+    real3 normal = meeting.normal * (real(1.0) / sqrt(dot(meeting.normal, meeting.normal)));
+    real cosine = min(dot(meeting.direction, normal), real(1.0));
+    real3 point = meeting.point;
+    real3 direction = meeting.direction;
+    uint status = PATH_ALIVE;
+    if (meeting.clear == 0u) {
+        status = PATH_VIGNETTED;
+    } else if (element.kind == ELEMENT_INTERFACE) {
+        real sine_squared = (before / after) * (before / after) * (real(1.0) - cosine * cosine);
+        real reflectance = interface_reflectance(surface, before, after, cosine, light.wave_number);
+        if (sine_squared >= real(1.0) || u < reflectance) {
+            direction = mirrored(direction, normal);
+        } else {
+            real ratio = before / after;
+            direction = direction * ratio + normal * (sqrt(real(1.0) - sine_squared) - ratio * cosine);
+        }
+    } else if (element.kind == ELEMENT_MIRROR) {
+        direction = mirrored(direction, normal);
+        status = u < surface.reflectance ? PATH_ALIVE : PATH_INTERFACE_LOSS;
+    } else if (element.kind == ELEMENT_SPLITTER) {
+        if (u < surface.reflectance) {
+            direction = mirrored(direction, normal);
+        } else {
+            status = u < surface.reflectance + element.transmittance ? PATH_ALIVE : PATH_INTERFACE_LOSS;
+            real ratio = before / after; // a plate's coated face refracts
+            real sine_squared = ratio * ratio * (real(1.0) - cosine * cosine);
+            direction = direction * ratio + normal * (sqrt(max(real(1.0) - sine_squared, real(0.0))) - ratio * cosine);
+        }
+    } else if (element.kind == ELEMENT_IDEAL_LENS) {
+        IdealLens lens = pass_ideal_lens(point, direction * before, surface.power, before, after);
+        status = lens.passes == 1u ? PATH_ALIVE : PATH_TOTAL_REFLECTION;
+        direction = lens.direction * (real(1.0) / after);
+        // On from the lens' own plane: something may stand between it and its focal plane.
+        point = lens.position - lens.direction * (lens.position.z / lens.direction.z);
+    }
+    Passage passage;
+    passage.fate = make_fate(status, status == PATH_ALIVE ? -1 : index);
+    real3 own_point = real3(point.x, point.y, meeting.side * point.z);
+    real3 own_direction = real3(direction.x, direction.y, meeting.side * direction.z);
+    passage.position = element.origin + out_of_element(element, own_point);
+    real3 turned = out_of_element(element, own_direction);
+    passage.direction = turned * (real(1.0) / sqrt(dot(turned, turned)));
+    return passage;
+}
+
+// Interactions with elements that a path may have. A path of the sequential model has about fifty; what is left after twice
+// that in an uncoated instrument is below 1e-6 of the light.
+const int MOST_INTERACTIONS = 128;
+// Blocks of random numbers: one an interaction from 1 on, and from here on those of the scatter events.
+const uint SCATTER_FIRST_BLOCK = 256u;
+
+// One path from the source to its end.
+VKFV_SCENE_FUNCTION VKFV_FUNCTION Detection trace_nonsequential(VKFV_SCENE_PARAMETER Instrument instrument,
+                                                                SpecimenRecord specimen, Exposure exposure,
+                                                                SourceFrame frame, uvec2 path) {
+    Draws draws = draw(exposure.seed, exposure.image, path, 0u);
+    Emission emission = emit(VKFV_SCENE instrument, draws);
+    real3 p = emission.ray.position;
+    real3 d = emission.ray.direction;
+    real3 origin = frame.origin + frame.axis_x * p.x + frame.axis_y * p.y + frame.axis_z * p.z;
+    real3 direction = frame.axis_x * d.x + frame.axis_y * d.y + frame.axis_z * d.z;
+    Detection detection;
+    detection.fate = make_fate(PATH_ALIVE, -1);
+    detection.column = 0;
+    detection.row = 0;
+    detection.x = real(0.0);
+    detection.y = real(0.0);
+    real3 to_specimen = real3(real(0.0), real(0.0), exposure.focal_height);
+    int left = -1;
+    int bounces = 0;
+    for (int k = 0; k < MOST_INTERACTIONS && detection.fate.status == PATH_ALIVE; ++k) {
+        ElementHit met = nearest_element(VKFV_SCENE origin, direction, left);
+        Hit hit = specimen_hit(VKFV_SCENE origin + to_specimen, direction);
+        if (hit.found == 1u && (met.index < 0 || hit.distance < met.distance)) {
+            if (bounces == specimen.max_bounces) {
+                detection.fate = make_fate(PATH_BOUNCE_LIMIT, -1);
+            } else {
+                Scattered scattered = scatter(specimen.material, direction, hit.normal, exposure.seed, exposure.image, path,
+                                              SCATTER_FIRST_BLOCK + uint(bounces) * SCATTER_BLOCKS);
+                direction = scattered.direction;
+                origin = scatter_origin(hit) - to_specimen;
+                detection.fate = make_fate(scattered.absorbed == 1u   ? PATH_ABSORBED
+                                           : scattered.accepted == 1u ? PATH_ALIVE
+                                                                      : PATH_NUMERICAL,
+                                           -1);
+                bounces += 1;
+                left = -1;
+            }
+        } else if (met.index < 0) {
+            detection.fate = make_fate(PATH_ESCAPED, -1);
+        } else {
+            Element element = element_at(VKFV_SCENE met.index);
+            ElementMeeting meeting =
+                meet_element(element, origin, direction, met.index == left, least_distance(origin));
+            if (element.kind == ELEMENT_DETECTOR && meeting.clear == 1u) {
+                detection = detect(instrument, meeting.point.x, meeting.point.y);
+            } else {
+                Draws turn = draw(exposure.seed, exposure.image, path, 1u + uint(k));
+                Passage passage = pass_element(instrument, element, met.index, meeting, emission.light, turn.u0);
+                detection.fate = passage.fate;
+                origin = passage.position;
+                direction = passage.direction;
+                left = met.index;
+            }
+        }
+    }
+    if (detection.fate.status == PATH_ALIVE) {
+        detection.fate = make_fate(PATH_INTERACTION_LIMIT, -1);
+    }
+    return detection;
+}

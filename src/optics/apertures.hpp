@@ -1,0 +1,68 @@
+// What the real apertures let through, found by tracing: the cone from a point of the field, its best focus, the gate that
+// no useful light lies outside of, the cone to aim a source into. Lengths in mm.
+#pragma once
+
+#include "optics/first_order.hpp"
+#include "optics/train.hpp"
+
+#include <glm/glm.hpp>
+
+#include <optional>
+#include <vector>
+
+namespace vkfv::optics {
+
+// The imaging train as the search needs it. Positions are on the paraxial object plane, heights above it (+z, towards the
+// objective), directions unit vectors in the medium over the specimen.
+struct Imaging {
+    std::vector<physics::f64::Surface> train;
+    double working_distance = 0;  // object plane to the frame that the train is entered in
+    double detector_distance = 0; // last vertex to detector
+    double detector_index = 1;    // of the medium before the detector
+    double pupil_curvature = 0;   // the paraxial chief ray from x has the slope -pupil_curvature x
+    bool symmetric = true;        // about the axis
+
+    // Light that leaves (position, height) with the direction cosines (l, m), at the detector; none: it does not come so far.
+    // The landing point is in the detector's frame, and path_length the optical path to it.
+    struct Landing {
+        glm::dvec2 position;
+        double path_length = 0;
+    };
+    std::optional<Landing> trace(glm::dvec2 position, double height, glm::dvec2 cosines,
+                                 std::uint32_t apertures = 1, double spectral = 0) const;
+    glm::dvec2 chief_cosines(glm::dvec2 position) const;
+};
+
+// The rim of the cone of light that passes all apertures from a point of the object plane, as radii in direction cosines
+// about the paraxial chief ray.
+struct Outline {
+    glm::dvec2 position;
+    glm::dvec2 centre;         // direction cosines
+    std::vector<double> radii; // at azimuths (i + 1/2) * step over a whole turn: midpoints, for integrals
+    double step = 0;
+
+    glm::dvec2 cosines(std::size_t azimuth, double radius) const;
+    double area() const; // in direction cosines
+};
+Outline outline_at(const Imaging& imaging, glm::dvec2 position);
+
+// A set of rays that fills an outline with uniform density in direction cosines, weights summing to 1.
+struct ConeRay {
+    glm::dvec2 cosines;
+    double weight = 0;
+};
+std::vector<ConeRay> fill_cone(const Outline& outline);
+
+// Height above the object plane at which the RMS distance of the outline's light from its centroid on the detector is
+// least. The cone is that of the object plane.
+double best_focus(const Imaging& imaging, const Outline& outline);
+
+// Of physics::Instrument, for light from within field_radius and from heights between lowest and highest.
+double gate_radius(const Imaging& imaging, double field_radius, double lowest, double highest);
+
+// Sine of the largest angle at which light leaves a disc source and passes the train, whose entry frame is source_distance
+// behind it. `towards_stop` leads, paraxially, from the source to the field stop.
+double emission_sine(std::span<const physics::f64::Surface> train, bool symmetric, double source_radius,
+                     double source_distance, const RayTransfer& towards_stop);
+
+} // namespace vkfv::optics

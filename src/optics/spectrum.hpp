@@ -1,0 +1,40 @@
+// The source's spectrum, in the form that the trace draws wavelengths from, and dispersion over it.
+#pragma once
+
+#include "optics/medium.hpp"
+#include "physics/physics.hpp"
+
+#include <vector>
+
+namespace vkfv::optics {
+
+struct Spectrum {
+    // Shares of the flux, their sum 1, ascending in wavelength (um).
+    std::vector<physics::f64::SpectralBin> bins;
+    // The reference wavelength: the flux's mean for a spectrum. First-order data belong to it.
+    double reference_um = 0;
+    double shortest_um = 0;
+    double longest_um = 0;
+
+    bool monochromatic() const { return shortest_um == longest_um; }
+    // Of the spectral coordinate x (physics::Light): x = 0 is the reference.
+    double centre() const { return 1 / (reference_um * reference_um); } // 1/um^2
+    double half_width() const;                                         // 1/um^2; 1 for a single wavelength
+
+    static Spectrum line(double wavelength_um);
+    // Relative fluxes of single wavelengths.
+    static Spectrum lines(const std::vector<double>& wavelengths_um, const std::vector<double>& weights);
+    // A Gaussian in wavelength, of the given full width at half maximum, cut at four standard deviations.
+    static Spectrum gaussian(double centre_um, double full_width_um);
+    // A spectral flux that is linear between the points and zero outside. All three throw InputError.
+    static Spectrum table(const std::vector<double>& wavelengths_um, const std::vector<double>& densities);
+};
+
+// Index of a medium over a spectrum: at x = 0 exactly, and a polynomial that agrees at six wavelengths more.
+struct SpectralIndex {
+    double centre = 1;
+    physics::f64::Dispersion dispersion{};
+};
+SpectralIndex spectral_index(const Medium& medium, const Spectrum& spectrum);
+
+} // namespace vkfv::optics

@@ -1,0 +1,179 @@
+#include "optics/train.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+namespace vkfv::optics {
+
+namespace {
+
+using physics::f64::Surface;
+
+std::string role_suffix(PrescribedSurface::Role role) {
+    switch (role) {
+    case PrescribedSurface::Role::aperture_stop:
+        return ", aperture stop";
+    case PrescribedSurface::Role::field_stop:
+        return ", field stop";
+    case PrescribedSurface::Role::refracting:
+        break;
+    }
+    return "";
+}
+
+double index_at(double centre, const physics::f64::Dispersion& dispersion, double spectral) {
+    return centre + physics::f64::disperse(dispersion, spectral);
+}
+
+} // namespace
+
+void set_interface(Surface& surface, const Interfaces& interfaces, double layer_index) {
+    using namespace physics::f64;
+    surface.flags &= ~(SURFACE_FRESNEL | SURFACE_LAYER);
+    if (surface.index_before == surface.index_after || (surface.flags & SURFACE_IDEAL_LENS) != 0) {
+        return;
+    }
+    // A layer lies between a glass and air; two cemented glasses meet without one.
+    const bool cemented = surface.index_before > 1 && surface.index_after > 1;
+    if (interfaces.model == Interfaces::Model::quarter_wave && !cemented) {
+        surface.flags |= SURFACE_LAYER;
+        surface.layer_index = layer_index;
+        surface.layer_thickness = interfaces.design_wavelength_um / (4 * layer_index);
+    } else if (interfaces.model != Interfaces::Model::ideal) {
+        surface.flags |= SURFACE_FRESNEL;
+    }
+}
+
+std::vector<PlacedSurface> place_prescription(const Prescription& prescription, const Spectrum& spectrum,
+                                              const Interfaces& interfaces, const Pose& first, Pose& end) {
+    std::vector<PlacedSurface> part;
+    SpectralIndex before = spectral_index(prescription.medium_before, spectrum);
+    const double layer_index = interfaces.layer.index(interfaces.design_wavelength_um);
+    Pose pose = first;
+    for (std::size_t i = 0; i < prescription.surfaces.size(); ++i) {
+        const PrescribedSurface& prescribed = prescription.surfaces[i];
+        for (const CoordinateBreak& change : prescribed.breaks) {
+            pose = pose.after(change);
+        }
+        const SpectralIndex after = spectral_index(prescribed.medium_after, spectrum);
+        PlacedSurface placed;
+        placed.pose = pose;
+        placed.role = prescribed.role;
+        placed.name = fmt::format("{} {}{}", prescription.name, i + 1, role_suffix(prescribed.role));
+        Surface& surface = placed.surface;
+        surface.curvature = prescribed.curvature;
+        surface.conic = prescribed.conic;
+        surface.index_before = before.centre;
+        surface.index_after = after.centre;
+        surface.dispersion_before = before.dispersion;
+        surface.dispersion_after = after.dispersion;
+        surface.a4 = prescribed.aspheric[0];
+        surface.a6 = prescribed.aspheric[1];
+        surface.a8 = prescribed.aspheric[2];
+        surface.a10 = prescribed.aspheric[3];
+        surface.a12 = prescribed.aspheric[4];
+        surface.a14 = prescribed.aspheric[5];
+        surface.a16 = prescribed.aspheric[6];
+        if (std::ranges::any_of(prescribed.aspheric, [](double coefficient) { return coefficient != 0; })) {
+            surface.flags |= physics::f64::SURFACE_ASPHERIC;
+        }
+        if (prescribed.semi_diameter) {
+            surface.semi_diameter_squared = *prescribed.semi_diameter * *prescribed.semi_diameter;
+            surface.flags |= physics::f64::SURFACE_CLIPPED;
+        }
+        if (prescribed.ideal_power) {
+            surface.power = *prescribed.ideal_power;
+            surface.flags |= physics::f64::SURFACE_IDEAL_LENS;
+        }
+        set_interface(surface, interfaces, layer_index);
+        part.push_back(std::move(placed));
+        before = after;
+        end = pose;
+        pose = pose.along_z(prescribed.thickness);
+    }
+    return part;
+}
+
+std::vector<PlacedSurface> reversed(const std::vector<PlacedSurface>& part) {
+    std::vector<PlacedSurface> result(part.rbegin(), part.rend());
+    for (PlacedSurface& placed : result) {
+        Surface& surface = placed.surface;
+        placed.pose = placed.pose.half_turn();
+        surface.curvature = -surface.curvature;
+        for (double* coefficient : {&surface.a4, &surface.a6, &surface.a8, &surface.a10, &surface.a12, &surface.a14,
+                                    &surface.a16}) {
+            *coefficient = -*coefficient;
+        }
+        std::swap(surface.index_before, surface.index_after);
+        std::swap(surface.dispersion_before, surface.dispersion_after);
+    }
+    return result;
+}
+
+PlacedSurface dummy_plane(const SpectralIndex& medium, const Pose& pose, std::string name) {
+    PlacedSurface placed;
+    placed.surface.index_before = placed.surface.index_after = medium.centre;
+    placed.surface.dispersion_before = placed.surface.dispersion_after = medium.dispersion;
+    placed.pose = pose;
+    placed.name = std::move(name);
+    return placed;
+}
+
+void link(std::vector<PlacedSurface>& train, const Pose& entry) {
+    // Below this a transfer's rounding, which would make every train look displaced.
+    constexpr double rounding = 1e-12;
+    const auto snapped = [](double value, double to) { return std::abs(value - to) < rounding ? to : value; };
+    const Pose* previous = &entry;
+    for (PlacedSurface& placed : train) {
+        Surface& surface = placed.surface;
+        const glm::dmat3 back = glm::transpose(previous->axes);
+        const glm::dvec3 shift = back * (placed.pose.origin - previous->origin);
+        const glm::dmat3 rotation = glm::transpose(placed.pose.axes) * previous->axes; // column: old axis
+        surface.decentre_x = snapped(shift.x, 0);
+        surface.decentre_y = snapped(shift.y, 0);
+        surface.distance = shift.z;
+        surface.rotation_xx = snapped(rotation[0][0], 1);
+        surface.rotation_yx = snapped(rotation[0][1], 0);
+        surface.rotation_zx = snapped(rotation[0][2], 0);
+        surface.rotation_xy = snapped(rotation[1][0], 0);
+        surface.rotation_yy = snapped(rotation[1][1], 1);
+        surface.rotation_zy = snapped(rotation[1][2], 0);
+        surface.rotation_xz = snapped(rotation[2][0], 0);
+        surface.rotation_yz = snapped(rotation[2][1], 0);
+        surface.rotation_zz = snapped(rotation[2][2], 1);
+        previous = &placed.pose;
+    }
+}
+
+bool is_displaced(const Surface& surface) {
+    return surface.decentre_x != 0 || surface.decentre_y != 0 || surface.rotation_xx != 1 ||
+           surface.rotation_yy != 1 || surface.rotation_zz != 1;
+}
+
+std::vector<Surface> surfaces_of(const std::vector<PlacedSurface>& train) {
+    std::vector<Surface> surfaces;
+    surfaces.reserve(train.size());
+    for (const PlacedSurface& placed : train) {
+        surfaces.push_back(placed.surface);
+    }
+    return surfaces;
+}
+
+std::optional<std::size_t> surface_with_role(const std::vector<PlacedSurface>& part, PrescribedSurface::Role role) {
+    const auto found = std::ranges::find(part, role, &PlacedSurface::role);
+    return found == part.end() ? std::nullopt : std::optional(static_cast<std::size_t>(found - part.begin()));
+}
+
+physics::f64::TrainResult trace_through(std::span<const Surface> train, physics::f64::Ray ray, std::uint32_t apertures,
+                                        double spectral) {
+    const double index =
+        train.empty() ? 1 : index_at(train.front().index_before, train.front().dispersion_before, spectral);
+    ray.direction *= index;
+    const physics::f64::Light light{.spectral = spectral, .wave_number = 1, .survival = 0};
+    return physics::f64::trace_train(TrainScene{.surfaces = train}, 0, static_cast<int>(train.size()), ray, index,
+                                     apertures, light);
+}
+
+} // namespace vkfv::optics
