@@ -379,7 +379,7 @@ TEST(Descriptions, ImpossibleValuesAreRefused) {
         {Kind::chirp, [](Description& d) { d.period_stop = -1; }, "specimen.period_stop"},
         {Kind::rough, [](Description& d) { d.sq = -1; }, "specimen.sq"},
         {Kind::rough, [](Description& d) { d.correlation_length = 0; }, "specimen.correlation_length"},
-        {Kind::plane, [](Description& d) { d.material.g = 1.5; }, "specimen.material.g"},
+        {Kind::plane, [](Description& d) { d.material = Material::henyey_greenstein(1.5); }, "specimen.material.g"},
         {Kind::plane,
          [](Description& d) {
              d.roughness = Roughness{-1, 0.002, 0.001, 1};

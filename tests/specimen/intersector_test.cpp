@@ -164,11 +164,11 @@ TEST(Intersector, LetsNothingThroughAtCornersAndEdges) {
 
 TEST(Intersector, RecordsEncloseTheSurface) {
     const HeightField field = bumpy_field(9, 12);
-    const auto r = record(Specimen{field, {0.7}}, 3);
+    const auto r = record(Specimen{field, Material::henyey_greenstein(0.7)}, 3);
     EXPECT_EQ(r.columns, 9);
     EXPECT_EQ(r.rows, 12);
     EXPECT_EQ(r.max_bounces, 3);
-    EXPECT_EQ(r.scatter_g, 0.7);
+    EXPECT_EQ(r.material.lobe_0.parameter_0, 0.7);
     EXPECT_DOUBLE_EQ(r.x_max, field.x_max());
     for (const float height : field.heights.values) {
         EXPECT_LT(static_cast<float>(r.bottom), height);
