@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <functional>
 
@@ -91,4 +92,179 @@ TEST(Source, an_aimed_disc_is_the_cone_cut_out_of_the_whole) {
     const std::vector<double> uniform_aimed(20, rays / 20.0), uniform_whole(20, inside / 20.0);
     EXPECT_GT(chi_square_p(aimed, uniform_aimed), false_positive_rate);
     EXPECT_GT(chi_square_p(whole, uniform_whole), false_positive_rate);
+}
+
+namespace {
+
+constexpr double pi = M_PI;
+
+// A ring 60 degrees high, broad enough that its inside and outside differ.
+RingLight broad_ring() {
+    RingLight ring{};
+    ring.distance = 50;
+    ring.elevation_sine = std::sin(pi / 3);
+    ring.elevation_cosine = std::cos(pi / 3);
+    ring.half_width = 10;
+    ring.fill = 1;
+    ring.segments = 1;
+    ring.switched_on = 1u;
+    return ring;
+}
+
+// A ray of the ring in the specimen's frame, its aim at the origin, and where on the band it starts.
+struct RingRay {
+    glm::dvec3 position;
+    glm::dvec3 direction;
+    double across;  // mm, from the middle of the band, upward
+    double azimuth; // turns, from +x towards +y
+};
+
+RingRay ring_ray(const RingLight& ring, double sine, uint seed, uint k) {
+    const Draws u = draw(seed, 0u, uvec2(k, 0u), 0u);
+    const Ray ray = emit_from_ring(ring, sine, u.u0, u.u1, u.u2, u.u3);
+    const auto to_specimen = [](glm::dvec3 v) { return glm::dvec3(v.x, -v.y, -v.z); };
+    RingRay result{to_specimen(ray.position), to_specimen(ray.direction), 0, 0};
+    const double rho = std::hypot(result.position.x, result.position.y);
+    result.across = result.position.z * ring.elevation_cosine - rho * ring.elevation_sine;
+    const double turns = std::atan2(result.position.y, result.position.x) / (2 * pi);
+    result.azimuth = turns < 0 ? turns + 1 : turns;
+    return result;
+}
+
+} // namespace
+
+// Every ray starts on the band, within the sectors of the segments that are on.
+TEST(RingLight, stands_where_it_is_said_to) {
+    RingLight ring = broad_ring();
+    ring.segments = 8;
+    ring.switched_on = 0b10010110u;
+    ring.fill = 0.7;
+    std::vector<double> segments(8);
+    std::vector<double> within(20);
+    for (uint k = 0; k < 200000; ++k) {
+        const RingRay ray = ring_ray(ring, 1, 21u, k);
+        const double rho = std::hypot(ray.position.x, ray.position.y);
+        // The band is at right angles to the direction of its middle.
+        ASSERT_NEAR(rho * ring.elevation_cosine + ray.position.z * ring.elevation_sine, ring.distance, 1e-12);
+        ASSERT_LE(std::abs(ray.across), ring.half_width * (1 + 1e-12));
+        ASSERT_GT(ray.position.z, 0);
+        const int segment = static_cast<int>(8 * ray.azimuth);
+        ASSERT_EQ(ring.switched_on >> segment & 1u, 1u) << ray.azimuth;
+        const double place = (8 * ray.azimuth - segment - 0.5) / ring.fill + 0.5;
+        ASSERT_GT(place, -1e-12);
+        ASSERT_LT(place, 1 + 1e-12);
+        segments[static_cast<std::size_t>(segment)] += 1;
+        within[static_cast<std::size_t>(std::clamp(20 * place, 0.0, 19.5))] += 1;
+    }
+    std::vector<double> expected(8);
+    for (const std::size_t on : {1u, 2u, 4u, 7u}) {
+        expected[on] = 200000 / 4.0;
+    }
+    EXPECT_GT(chi_square_p(segments, expected), false_positive_rate);
+    EXPECT_GT(chi_square_p(within, std::vector<double>(20, 200000 / 20.0)), false_positive_rate);
+}
+
+// Uniform per area: over the width the density goes as the radius. Uniform in width is the wrong twin.
+TEST(RingLight, is_uniform_over_its_area) {
+    const RingLight ring = broad_ring();
+    const double radius = ring.distance * ring.elevation_cosine;
+    std::vector<double> across(30), azimuths(30), expected;
+    for (uint k = 0; k < 300000; ++k) {
+        const RingRay ray = ring_ray(ring, 1, 22u, k);
+        across[static_cast<std::size_t>(std::clamp(15 + 15 * ray.across / ring.half_width, 0.0, 29.5))] += 1;
+        azimuths[static_cast<std::size_t>(30 * ray.azimuth)] += 1;
+    }
+    for (int i = 0; i < 30; ++i) {
+        const double middle = ring.half_width * (-1 + (i + 0.5) / 15);
+        expected.push_back(1e4 * (radius - middle * ring.elevation_sine) / radius);
+    }
+    EXPECT_GT(chi_square_p(across, expected), false_positive_rate);
+    EXPECT_LT(chi_square_p(across, std::vector<double>(30, 1e4)), false_positive_rate);
+    EXPECT_GT(chi_square_p(azimuths, std::vector<double>(30, 1e4)), false_positive_rate);
+}
+
+// About the normal towards the aim: sin^2 of the angle to it is uniform up to that of the cone, the cosine (the wrong twin)
+// is not, and the azimuth about it is.
+TEST(RingLight, is_lambertian_about_the_way_to_its_aim) {
+    const RingLight ring = broad_ring();
+    const double sine = 0.9;
+    std::vector<double> squares(20), cosines(20), azimuths(20);
+    const double least_cosine = std::sqrt(1 - sine * sine);
+    for (uint k = 0; k < 300000; ++k) {
+        const RingRay ray = ring_ray(ring, sine, 23u, k);
+        const glm::dvec3 outward(std::cos(2 * pi * ray.azimuth), std::sin(2 * pi * ray.azimuth), 0);
+        const glm::dvec3 normal = -ring.elevation_cosine * outward - glm::dvec3(0, 0, ring.elevation_sine);
+        const glm::dvec3 around = glm::cross(glm::dvec3(0, 0, 1), outward);
+        const double cosine = glm::dot(ray.direction, normal);
+        ASSERT_NEAR(glm::length(ray.direction), 1, 1e-14);
+        const double share = (1 - cosine * cosine) / (sine * sine);
+        squares[static_cast<std::size_t>(std::clamp(20 * share, 0.0, 19.5))] += 1;
+        cosines[static_cast<std::size_t>(
+            std::clamp(20 * (cosine - least_cosine) / (1 - least_cosine), 0.0, 19.5))] += 1;
+        const double angle =
+            std::atan2(glm::dot(ray.direction, around), glm::dot(ray.direction, glm::cross(normal, around)));
+        azimuths[static_cast<std::size_t>(std::clamp(10 * (1 + angle / pi), 0.0, 19.5))] += 1;
+    }
+    const std::vector<double> uniform(20, 300000 / 20.0);
+    EXPECT_GT(chi_square_p(squares, uniform), false_positive_rate);
+    EXPECT_LT(chi_square_p(cosines, uniform), false_positive_rate);
+    EXPECT_GT(chi_square_p(azimuths, uniform), false_positive_rate);
+}
+
+// E = L times the projected solid angle: the band is seen from its aim at elevations e +- atan(h / d), so
+// E = L pi (sin^2 up - sin^2 down) with the radiance L = flux / (pi area), area 2 pi d cos(e) 2 h.
+TEST(RingLight, lights_its_aim_as_its_projected_solid_angle_says) {
+    for (const double elevation : {pi / 6, pi / 3}) {
+        RingLight ring = broad_ring();
+        ring.half_width = 4;
+        ring.elevation_sine = std::sin(elevation);
+        ring.elevation_cosine = std::cos(elevation);
+        const double half_angle = std::atan(ring.half_width / ring.distance);
+        const double area = 4 * pi * ring.distance * ring.elevation_cosine * ring.half_width;
+        const double irradiance =
+            (std::pow(std::sin(elevation + half_angle), 2) - std::pow(std::sin(elevation - half_angle), 2)) / area;
+        // From the farthest of the band to the rim of a spot of this radius, over which E changes by (spot / d)^2.
+        constexpr double spot = 2;
+        constexpr double sine = 0.15;
+        constexpr int count = 400000;
+        double landed = 0;
+        for (uint k = 0; k < count; ++k) {
+            const RingRay ray = ring_ray(ring, sine, 24u, k);
+            const glm::dvec3 at = ray.position - ray.direction * (ray.position.z / ray.direction.z);
+            landed += at.x * at.x + at.y * at.y < spot * spot ? 1 : 0;
+        }
+        const double share = irradiance * pi * spot * spot / (sine * sine);
+        EXPECT_LT(vkfv::test::share_z(landed, count, share), 4.0) << landed / count << " " << share;
+        // Wrong twin: the cosine of the elevation for its sine.
+        EXPECT_GT(vkfv::test::share_z(landed, count, share / std::tan(elevation)), 4.0);
+    }
+}
+
+// Of two halves the one on lights from its own side, across the axis to the other.
+TEST(RingLight, half_of_it_lights_from_its_side) {
+    for (const uint half : {0u, 1u}) {
+        RingLight ring = broad_ring();
+        ring.segments = 2;
+        ring.switched_on = 1u << half;
+        const double side = half == 0u ? 1 : -1; // segment 0: from +x over +y to -x
+        double mean = 0;
+        for (uint k = 0; k < 20000; ++k) {
+            const RingRay ray = ring_ray(ring, 0.3, 25u, k);
+            ASSERT_GE(side * ray.position.y, 0);
+            mean += side * ray.direction.y / 20000;
+        }
+        EXPECT_LT(mean, -0.25); // -cos(60 degrees) times 2 / pi, less the cone's own spread
+    }
+}
+
+TEST(TurnOf, agrees_with_cosine_and_sine) {
+    for (int i = 0; i <= 20000; ++i) {
+        const double u = i / 20000.0;
+        // The angle rounds to 2^-53 (in float 2^-24) of pi, twice.
+        EXPECT_NEAR(turn_of(u).cosine, std::cos(2 * pi * u), 1.5e-15);
+        EXPECT_NEAR(turn_of(u).sine, std::sin(2 * pi * u), 1.5e-15);
+        const float single = static_cast<float>(u);
+        EXPECT_NEAR(vkfv::physics::f32::turn_of(single).cosine, std::cos(2 * pi * double(single)), 6e-7);
+        EXPECT_NEAR(vkfv::physics::f32::turn_of(single).sine, std::sin(2 * pi * double(single)), 6e-7);
+    }
 }
