@@ -9,6 +9,14 @@ RayTransfer RayTransfer::then(const RayTransfer& next) const {
             .d = next.c * b + next.d * d};
 }
 
+namespace {
+
+RayTransfer refraction(const physics::f64::Surface& surface) {
+    return {.c = -(surface.index_after - surface.index_before) * surface.curvature - surface.power};
+}
+
+} // namespace
+
 RayTransfer free_space(double distance, double index) {
     return {.b = distance / index};
 }
@@ -21,8 +29,7 @@ RayTransfer transfer_to_surface(std::span<const physics::f64::Surface> train, st
             transfer = transfer.then(free_space(surface.distance, surface.index_before));
         }
         if (i < index) {
-            transfer =
-                transfer.then({.c = -(surface.index_after - surface.index_before) * surface.curvature});
+            transfer = transfer.then(refraction(surface));
         }
     }
     return transfer;
@@ -32,9 +39,7 @@ RayTransfer transfer_of_train(std::span<const physics::f64::Surface> train) {
     if (train.empty()) {
         return {};
     }
-    const auto& last = train.back();
-    return transfer_to_surface(train, train.size() - 1)
-        .then({.c = -(last.index_after - last.index_before) * last.curvature});
+    return transfer_to_surface(train, train.size() - 1).then(refraction(train.back()));
 }
 
 double focal_length(const RayTransfer& train) {
