@@ -1,7 +1,7 @@
 // A walk through a tree of boxes that knows nothing of the primitives in them: they are handed out one by one, as a
 // ray query hands out its candidates. The boxes widen by the walk's margin, so the arithmetic here loses none.
 //
-//     BvhWalk walk = bvh_walk(origin, direction, start, margin);
+//     BvhWalk walk = bvh_walk(root, origin, direction, start, margin);
 //     while (bvh_proceed(walk, farthest)) {
 //         ... walk.primitive; what it meets nearer than `farthest` may shorten `farthest`
 //     }
@@ -27,9 +27,9 @@ struct BvhWalk {
 
 uvec2 bvh_stack[BVH_STACK];
 
-// start: nearest distance of interest, at least 0. margin: mm, by which boxes widen on each side; at least some ten
+// root: index of the tree's first node. start: nearest distance of interest, at least 0. margin: mm, by which boxes widen on each side; at least some ten
 // roundings of the largest coordinate of boxes and origin.
-BvhWalk bvh_walk(real3 origin, real3 direction, real start, real margin) {
+BvhWalk bvh_walk(uint root, real3 origin, real3 direction, real start, real margin) {
     BvhWalk walk;
     walk.origin = origin;
     // Slower than this across is less than the margin over any length that is traced.
@@ -40,7 +40,7 @@ BvhWalk bvh_walk(real3 origin, real3 direction, real start, real margin) {
     walk.start = start;
     walk.forward = (walk.slowness.x > real(0.0) ? 1u : 0u) | (walk.slowness.y > real(0.0) ? 2u : 0u) |
                    (walk.slowness.z > real(0.0) ? 4u : 0u);
-    walk.nodes = uvec2(0u, 0x80000000u); // the root, as if it were the first of siblings
+    walk.nodes = uvec2(root, 0x80000000u); // as if it were the first of siblings
     walk.primitives = uvec2(0u, 0u);
     walk.depth = 0;
     walk.primitive = 0u;

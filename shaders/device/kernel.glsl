@@ -11,3 +11,12 @@
 #include "physics/all.glsl"
 #include "device/bindings.glsl"
 #include "device/specimen_hit.glsl"
+#ifdef VKFV_NONSEQUENTIAL
+layout(push_constant, scalar) uniform Batch {
+    uvec2 first_path; // low and high word
+    uint count;       // paths of this batch
+    uint elements_root;
+    SourceFrame source_frame;
+};
+#include "device/nearest_element.glsl"
+#endif

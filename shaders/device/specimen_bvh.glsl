@@ -8,7 +8,7 @@ const real BVH_MARGIN = real(4.0);
 BvhWalk specimen_walk(real3 origin, real3 direction, real start) {
     real reach = max(abs(origin.x), max(abs(origin.y), abs(origin.z)));
     real margin = BVH_MARGIN * (specimen_rounding() + real(4.0) * SURFACE_EPSILON * reach);
-    return bvh_walk(origin, direction, max(start, real(0.0)), margin);
+    return bvh_walk(0u, origin, direction, max(start, real(0.0)), margin);
 }
 
 // Coordinates of a triangle's corners from the ray's origin: two across the ray, the third along it. As in S. Woop,

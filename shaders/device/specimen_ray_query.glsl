@@ -3,9 +3,13 @@
 
 layout(set = 0, binding = 12) uniform accelerationStructureEXT specimen_structure;
 
+// Bits of AccelerationStructure::join: parts in the order that they were joined in.
+const uint SPECIMEN_MASK = 1u;
+const uint ELEMENT_MASK = 2u; // the instrument's, for non-sequential paths
+
 Hit meet_triangles(real3 origin, real3 direction, RayInterval over) {
     rayQueryEXT query;
-    rayQueryInitializeEXT(query, specimen_structure, gl_RayFlagsOpaqueEXT, 0xFFu, origin, max(over.start, real(0.0)), direction,
+    rayQueryInitializeEXT(query, specimen_structure, gl_RayFlagsOpaqueEXT, SPECIMEN_MASK, origin, max(over.start, real(0.0)), direction,
                           over.stop);
     while (rayQueryProceedEXT(query)) {
     }
@@ -20,7 +24,7 @@ Hit meet_triangles(real3 origin, real3 direction, RayInterval over) {
 
 Hit meet_tiles(SpecimenRay ray, real rounding) {
     rayQueryEXT query;
-    rayQueryInitializeEXT(query, specimen_structure, gl_RayFlagsNoneEXT, 0xFFu, ray.origin,
+    rayQueryInitializeEXT(query, specimen_structure, gl_RayFlagsNoneEXT, SPECIMEN_MASK, ray.origin,
                           max(ray.over.start, real(0.0)), ray.direction, ray.over.stop);
     Hit hit = no_hit();
     hit.distance = ray.over.stop;

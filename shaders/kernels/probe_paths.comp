@@ -14,10 +14,12 @@ struct PathEnd {
 
 layout(set = 0, binding = 6, scalar) writeonly buffer PathEnds { PathEnd path_ends[]; };
 
+#ifndef VKFV_NONSEQUENTIAL
 layout(push_constant, scalar) uniform Batch {
     uvec2 first_path;
     uint count;
 };
+#endif
 
 void main() {
     uint index = gl_GlobalInvocationID.x;
@@ -25,8 +27,15 @@ void main() {
         uint carry;
         uint low = uaddCarry(first_path.x, index, carry);
         uvec2 path = uvec2(low, first_path.y + carry);
-        Departure departure = trace_to_departure(instrument, specimen, exposure, path);
         PathEnd end;
+#ifdef VKFV_NONSEQUENTIAL
+        Detection detection = trace_nonsequential(instrument, specimen, exposure, source_frame, path);
+        end.status = detection.fate.status;
+        end.surface = detection.fate.surface;
+        end.x = detection.x;
+        end.y = detection.y;
+#else
+        Departure departure = trace_to_departure(instrument, specimen, exposure, path);
         end.status = departure.fate.status;
         end.surface = departure.fate.surface;
         end.x = real(0.0);
@@ -38,6 +47,7 @@ void main() {
             end.x = detection.x;
             end.y = detection.y;
         }
+#endif
         path_ends[index] = end;
     }
 }

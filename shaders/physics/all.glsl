@@ -14,3 +14,6 @@
 #include "physics/scatter.glsl"
 #include "physics/surface_function.glsl"
 #include "physics/path.glsl"
+#if defined(__cplusplus) || defined(VKFV_NONSEQUENTIAL) // most kernels have no elements
+#include "physics/nonsequential.glsl"
+#endif

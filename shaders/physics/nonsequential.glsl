@@ -60,8 +60,8 @@ VKFV_FUNCTION ElementMeeting meet_barrel(ElementMeeting meeting, Element element
     real far = (root - b) / max(a, real(1e-20));
     real near = (-root - b) / max(a, real(1e-20));
     // The wall lies between these heights of the turned frame.
-    real low = meeting.side > real(0.0) ? real(0.0) : -element.length;
-    real high = low + element.length;
+    real low = meeting.side > real(0.0) ? real(0.0) : -element.barrel_length;
+    real high = low + element.barrel_length;
     real near_z = start.z + near * d.z;
     real far_z = start.z + far * d.z;
     bool near_met = near > least && near_z >= low && near_z <= high;
@@ -93,24 +93,26 @@ VKFV_FUNCTION ElementMeeting meet_element(Element element, real3 origin, real3 d
         meeting.distance = on.parameter;
         meeting.found = on.found == 1u && on.parameter > least && !comes_from_it ? 1u : 0u;
         if (comes_from_it && surface.curvature != real(0.0) && (surface.flags & SURFACE_ASPHERIC) == 0u) {
-            // The conic is a |p|^2-form whose constant term is zero at the start: one root is zero, and this the other.
+            // On the conic the quadratic's constant term is zero: one root is the start, and this the other.
             real c = surface.curvature;
             real q = real(1.0) + surface.conic;
             real3 e = meeting.direction;
             real a = c * (e.x * e.x + e.y * e.y + q * e.z * e.z);
             real b = c * (start.x * e.x + start.y * e.y + q * start.z * e.z) - e.z;
             real other = real(-2.0) * b / a;
-            real sheet = real(1.0) - c * q * (start.z + other * e.z); // > 0: the vertex' side
             meeting.distance = other;
-            meeting.found = other > least && sheet > real(0.0) ? 1u : 0u;
+            meeting.found = other > least ? 1u : 0u;
             on.normal = conic_normal(start + other * e, c, surface.conic);
         }
         meeting.normal = on.normal;
         real3 point = start + meeting.distance * meeting.direction;
         real r_squared = point.x * point.x + point.y * point.y;
         meeting.clear = r_squared <= surface.semi_diameter_squared ? 1u : 0u;
+        // Not on the conic's far half: rays across the axis meet that too.
+        bool near_half = (surface.flags & SURFACE_ASPHERIC) != 0u ||
+                         surface.curvature * (real(1.0) + surface.conic) * point.z < real(1.0);
         // The mount: the same surface beyond the free aperture, and where that ends, the plane of its rim.
-        bool on_surface = meeting.found == 1u && r_squared <= element.rim_radius * element.rim_radius;
+        bool on_surface = meeting.found == 1u && near_half && r_squared <= element.rim_radius * element.rim_radius;
         real to_rim = (meeting.side * element.rim_height - start.z) / max(meeting.direction.z, real(1e-20));
         real3 rim_point = start + to_rim * meeting.direction;
         real rim_squared = rim_point.x * rim_point.x + rim_point.y * rim_point.y;
@@ -143,8 +145,7 @@ VKFV_FUNCTION real3 mirrored(real3 direction, real3 unit_normal) {
 }
 
 // u uniform in (0, 1): which of the possible rays.
-VKFV_FUNCTION Passage pass_element(Instrument instrument, Element element, int index, ElementMeeting meeting, Light light,
-                                   real u) {
+VKFV_FUNCTION Passage pass_element(Element element, int index, ElementMeeting meeting, Light light, real u) {
     Surface surface = element.surface;
     bool along = meeting.side > real(0.0);
     real before = along ? surface.index_before + disperse(surface.dispersion_before, light.spectral)
@@ -156,8 +157,8 @@ VKFV_FUNCTION Passage pass_element(Instrument instrument, Element element, int i
     real3 point = meeting.point;
     real3 direction = meeting.direction;
     uint status = PATH_ALIVE;
-    if (meeting.clear == 0u) {
-        status = PATH_VIGNETTED;
+    if (meeting.clear == 0u || element.kind == ELEMENT_DETECTOR) {
+        status = PATH_VIGNETTED; // by the mount, or the detector's back
     } else if (element.kind == ELEMENT_INTERFACE) {
         real sine_squared = (before / after) * (before / after) * (real(1.0) - cosine * cosine);
         real reflectance = interface_reflectance(surface, before, after, cosine, light.wave_number);
@@ -245,11 +246,11 @@ VKFV_SCENE_FUNCTION VKFV_FUNCTION Detection trace_nonsequential(VKFV_SCENE_PARAM
             Element element = element_at(VKFV_SCENE met.index);
             ElementMeeting meeting =
                 meet_element(element, origin, direction, met.index == left, least_distance(origin));
-            if (element.kind == ELEMENT_DETECTOR && meeting.clear == 1u) {
+            if (element.kind == ELEMENT_DETECTOR && meeting.clear == 1u && meeting.side > real(0.0)) {
                 detection = detect(instrument, meeting.point.x, meeting.point.y);
             } else {
                 Draws turn = draw(exposure.seed, exposure.image, path, 1u + uint(k));
-                Passage passage = pass_element(instrument, element, met.index, meeting, emission.light, turn.u0);
+                Passage passage = pass_element(element, met.index, meeting, emission.light, turn.u0);
                 detection.fate = passage.fate;
                 origin = passage.position;
                 direction = passage.direction;

@@ -118,6 +118,44 @@ struct RingLight {
     uint switched_on; // bit k: segment k, counted from +x towards +y of the specimen frame
 };
 
+const uint ELEMENT_INTERFACE = 0u;
+const uint ELEMENT_STOP = 1u; // passes what is within its aperture
+const uint ELEMENT_MIRROR = 2u;
+const uint ELEMENT_SPLITTER = 3u;
+const uint ELEMENT_IDEAL_LENS = 4u;
+const uint ELEMENT_DETECTOR = 5u;
+const uint ELEMENT_BARREL = 6u; // an absorbing tube about z
+
+// An element as it stands in the room, for non-sequential tracing. Each is absorbing around its free aperture (the surface's
+// semi-diameter): its mount is the same surface out to rim_radius, and from there the plane z = rim_height.
+struct Element {
+    Surface surface; // in its own frame; its transfer from another is not used
+    real3 origin;    // of that frame, mm
+    real3 axis_x;    // unit vectors
+    real3 axis_y;
+    real3 axis_z;
+    real rim_radius;    // mm
+    real rim_height;
+    real outer_radius;  // of the mount, or of a barrel
+    real barrel_length; // along z
+    real transmittance; // of a splitter; its reflectance is the surface's
+    uint kind;          // ELEMENT_*
+};
+
+// The nearest element on a ray's way.
+struct ElementHit {
+    int index;     // -1: none
+    real distance; // mm
+};
+
+// Where the source stands in the room.
+struct SourceFrame {
+    real3 origin;
+    real3 axis_x;
+    real3 axis_y;
+    real3 axis_z;
+};
+
 // The chain that light goes through, but for the specimen and the scan's position.
 struct Instrument {
     real source_radius;         // mm, a flat Lambertian disc

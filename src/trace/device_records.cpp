@@ -15,6 +15,8 @@ static_assert(sizeof(physics::f32::Instrument) == 32 * 4);
 static_assert(sizeof(physics::f32::SpecimenRecord) == 42 * 4);
 static_assert(sizeof(physics::f32::Exposure) == 4 * 4);
 static_assert(sizeof(physics::f32::Survivor) == 8 * 4);
+static_assert(sizeof(physics::f32::Element) == (41 + 18) * 4);
+static_assert(sizeof(physics::f32::SourceFrame) == 12 * 4);
 static_assert(sizeof(Parameters) ==
               sizeof(physics::f32::Instrument) + sizeof(physics::f32::SpecimenRecord) + sizeof(physics::f32::Exposure));
 
@@ -99,6 +101,26 @@ std::vector<physics::f32::SpectralBin> spectrum_block(const optics::Instrument& 
                                          static_cast<float>(bin.stop), static_cast<float>(bin.tilt)};
     });
     return block;
+}
+
+physics::f32::Element to_float(const physics::f64::Element& element) {
+    physics::f32::Element result{};
+    result.surface = to_float(element.surface);
+    result.origin = glm::vec3(element.origin);
+    result.axis_x = glm::vec3(element.axis_x);
+    result.axis_y = glm::vec3(element.axis_y);
+    result.axis_z = glm::vec3(element.axis_z);
+    result.rim_radius = static_cast<float>(element.rim_radius);
+    result.rim_height = static_cast<float>(element.rim_height);
+    result.outer_radius = static_cast<float>(element.outer_radius);
+    result.barrel_length = static_cast<float>(element.barrel_length);
+    result.transmittance = static_cast<float>(element.transmittance);
+    result.kind = element.kind;
+    return result;
+}
+
+physics::f32::SourceFrame to_float(const physics::f64::SourceFrame& frame) {
+    return {glm::vec3(frame.origin), glm::vec3(frame.axis_x), glm::vec3(frame.axis_y), glm::vec3(frame.axis_z)};
 }
 
 physics::f32::Instrument to_float(const physics::f64::Instrument& instrument) {

@@ -10,6 +10,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <numeric>
 #include <span>
 #include <stdexcept>
 #include <variant>
@@ -222,15 +223,25 @@ std::vector<glm::uvec3> upload_triangles(Uploader& uploader, const std::vector<g
     return ordered;
 }
 
-// Vertices, triangles in the order of their hierarchy, and its nodes.
-void upload_hierarchy(Uploader& uploader, const std::vector<glm::vec3>& vertices,
-                      const std::vector<glm::uvec3>& triangles) {
+// Vertices and triangles in the order of their hierarchy; gives its nodes.
+std::vector<HierarchyNode> upload_in_hierarchy(Uploader& uploader, const std::vector<glm::vec3>& vertices,
+                                               const std::vector<glm::uvec3>& triangles) {
     uploader.expect("vertices", vertices.size() * sizeof(glm::vec3));
     uploader.expect("triangles", triangles.size() * sizeof(glm::uvec3));
-    const BoundingVolumeHierarchy hierarchy = build_hierarchy(boxes_of(vertices, triangles), hierarchy_leaf_size);
+    BoundingVolumeHierarchy hierarchy = build_hierarchy(boxes_of(vertices, triangles), hierarchy_leaf_size);
     uploader.put(vertices_slot, "vertices", vertices);
     uploader.put(triangles_slot, "triangles", in_order(triangles, hierarchy.order));
-    uploader.put(structure_slot, "hierarchy of boxes", hierarchy.nodes);
+    return std::move(hierarchy.nodes);
+}
+
+// A tree behind another in one buffer; gives the index of its root there.
+std::uint32_t append_tree(std::vector<HierarchyNode>& nodes, const std::vector<HierarchyNode>& tree) {
+    const auto root = static_cast<std::uint32_t>(nodes.size());
+    for (HierarchyNode node : tree) {
+        node.first_node += root;
+        nodes.push_back(node);
+    }
+    return root;
 }
 
 const char* name_of(Traversal traversal) {
@@ -240,8 +251,15 @@ const char* name_of(Traversal traversal) {
 } // namespace
 
 Traversal choose_traversal(const vulkan::DeviceReport& device, const specimen::Specimen& specimen,
-                           Traversal asked, std::string& reason) {
+                           Traversal asked, std::string& reason, bool nonsequential) {
     const bool mesh = std::holds_alternative<specimen::Mesh>(specimen.geometry);
+    if (nonsequential && asked == Traversal::quadtree) {
+        throw InputError({{},
+                          "trace.traversal",
+                          "quadtree",
+                          "a traversal that knows the instrument's elements too",
+                          "Use traversal = \"auto\", \"bvh\" or \"ray-query\" with mode = \"nonsequential\"."});
+    }
     if (mesh && asked == Traversal::quadtree) {
         throw InputError(
             {{},
@@ -253,13 +271,13 @@ Traversal choose_traversal(const vulkan::DeviceReport& device, const specimen::S
     if (asked == Traversal::ray_query && !device.ray_query) {
         throw DeviceError(fmt::format("{} has no VK_KHR_ray_query, which traversal = \"ray-query\" asks for; use "
                                       "another device (--devices lists them) or traversal = \"{}\"",
-                                      device.name, mesh ? "bvh" : "quadtree"));
+                                      device.name, mesh || nonsequential ? "bvh" : "quadtree"));
     }
     if (asked != Traversal::automatic) {
         reason = fmt::format("{} (as asked)", name_of(asked));
         return asked;
     }
-    const Traversal own = mesh ? Traversal::bvh : Traversal::quadtree;
+    const Traversal own = mesh || nonsequential ? Traversal::bvh : Traversal::quadtree;
     if (!device.ray_query) {
         reason = fmt::format("{} (the device has no ray query)", name_of(own));
         return own;
@@ -273,13 +291,17 @@ Traversal choose_traversal(const vulkan::DeviceReport& device, const specimen::S
 }
 
 DeviceSpecimen::DeviceSpecimen(const vulkan::Device& device, const specimen::Specimen& specimen,
-                               Traversal traversal)
+                               Traversal traversal, std::span<const vulkan::Box> elements)
     : record_(to_float(specimen::record(specimen, 0))) {
     if (traversal == Traversal::automatic) {
         throw std::logic_error("DeviceSpecimen takes a traversal that has been chosen");
     }
     const bool ray_query = traversal == Traversal::ray_query;
     const bool bvh = traversal == Traversal::bvh;
+    if (!elements.empty() && !ray_query && !bvh) {
+        throw std::logic_error("elements are traced by ray query or bvh");
+    }
+    std::vector<HierarchyNode> nodes; // bvh
     Uploader uploader(device, buffers_);
     if (const auto* field = std::get_if<specimen::HeightField>(&specimen.geometry)) {
         if (ray_query) {
@@ -289,7 +311,7 @@ DeviceSpecimen::DeviceSpecimen(const vulkan::Device& device, const specimen::Spe
                 vulkan::AccelerationStructure::of_triangles(device, surface.vertices, triangles));
         } else if (bvh) {
             const Triangulation surface = triangulate(*field);
-            upload_hierarchy(uploader, surface.vertices, surface.triangles);
+            nodes = upload_in_hierarchy(uploader, surface.vertices, surface.triangles);
         } else {
             uploader.expect("pyramid of heights",
                             pyramid_bytes(field->heights.columns - 1, field->heights.rows - 1));
@@ -309,9 +331,9 @@ DeviceSpecimen::DeviceSpecimen(const vulkan::Device& device, const specimen::Spe
         } else if (bvh) {
             const std::vector<vulkan::Box> boxes = boxes_of(pyramid, *surface);
             // A march costs far more than a box.
-            const BoundingVolumeHierarchy hierarchy = build_hierarchy(boxes, 1);
+            BoundingVolumeHierarchy hierarchy = build_hierarchy(boxes, 1);
             uploader.put(tiles_slot, "tiles", in_order(boxes, hierarchy.order));
-            uploader.put(structure_slot, "hierarchy of boxes", hierarchy.nodes);
+            nodes = std::move(hierarchy.nodes);
         } else {
             uploader.put_pyramid(pyramid);
         }
@@ -321,12 +343,28 @@ DeviceSpecimen::DeviceSpecimen(const vulkan::Device& device, const specimen::Spe
             throw std::logic_error("a mesh is not traced by the quadtree");
         }
         if (bvh) {
-            upload_hierarchy(uploader, mesh.vertices, mesh.triangles);
+            nodes = upload_in_hierarchy(uploader, mesh.vertices, mesh.triangles);
         } else {
             const auto triangles = upload_triangles(uploader, mesh.vertices, mesh.triangles);
             structure_ = std::make_unique<vulkan::AccelerationStructure>(
                 vulkan::AccelerationStructure::of_triangles(device, mesh.vertices, triangles));
         }
+    }
+    if (!elements.empty() && ray_query) {
+        std::vector<vulkan::AccelerationStructure> parts;
+        parts.push_back(std::move(*structure_));
+        parts.push_back(vulkan::AccelerationStructure::of_boxes(device, elements));
+        *structure_ = vulkan::AccelerationStructure::join(device, std::move(parts));
+        element_order_.resize(elements.size());
+        std::iota(element_order_.begin(), element_order_.end(), 0u);
+    } else if (!elements.empty()) {
+        // Meeting an element costs far more than a box.
+        BoundingVolumeHierarchy hierarchy = build_hierarchy(elements, 1);
+        elements_root_ = append_tree(nodes, hierarchy.nodes);
+        element_order_ = std::move(hierarchy.order);
+    }
+    if (bvh) {
+        uploader.put(structure_slot, "hierarchy of boxes", nodes);
     }
     uploader.leave_unread(heights_slot);
     if (ray_query || bvh) {

@@ -8,6 +8,7 @@
 #include <cstdint>
 #include <map>
 #include <memory>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -17,13 +18,15 @@ namespace vkfv::trace {
 // sentence's part that names it and says why. Throws InputError (the quadtree needs a height field) or
 // DeviceError (ray query asked for or needed where the device has none).
 Traversal choose_traversal(const vulkan::DeviceReport& device, const specimen::Specimen& specimen,
-                           Traversal asked, std::string& reason);
+                           Traversal asked, std::string& reason, bool nonsequential = false);
 
 // What shaders/device/specimen_hit.glsl is bound to: the slots 8 and up of set 0. The device must outlive it.
 class DeviceSpecimen {
   public:
     // traversal: never automatic. Throws DeviceError with sizes when a part exceeds what a buffer may span.
-    DeviceSpecimen(const vulkan::Device& device, const specimen::Specimen& specimen, Traversal traversal);
+    // elements: boxes of the instrument's (frame of their own), in one structure with the specimen: non-sequential.
+    DeviceSpecimen(const vulkan::Device& device, const specimen::Specimen& specimen, Traversal traversal,
+                   std::span<const vulkan::Box> elements = {});
 
     std::vector<vulkan::Binding> bindings() const; // valid as long as this object, also when it is moved
     std::vector<vulkan::BindingDeclaration> declarations() const;
@@ -31,11 +34,16 @@ class DeviceSpecimen {
     // In float; bottom and top still enclose the surface.
     physics::f32::SpecimenRecord record(int max_bounces) const;
     std::size_t bytes() const; // device memory taken
+    // Of the elements' tree: its root among the nodes, and which element its k-th box is.
+    std::uint32_t elements_root() const { return elements_root_; }
+    const std::vector<std::uint32_t>& element_order() const { return element_order_; }
 
   private:
     physics::f32::SpecimenRecord record_{};
     std::map<std::uint32_t, vulkan::Buffer> buffers_; // by slot
     std::unique_ptr<vulkan::AccelerationStructure> structure_;
+    std::uint32_t elements_root_ = 0;
+    std::vector<std::uint32_t> element_order_;
 };
 
 } // namespace vkfv::trace

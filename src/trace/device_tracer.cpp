@@ -1,11 +1,7 @@
 #include "trace/device_tracer.hpp"
 
 #include "core/error.hpp"
-#include "specimen/description.hpp"
-#include "trace/device_records.hpp"
-#include "trace/device_specimen.hpp"
-#include "trace/ledger.hpp"
-#include "vulkan/kernel.hpp"
+#include "trace/device_scene.hpp"
 
 #include "spirv/forward_illumination_bvh.h"
 #include "spirv/forward_illumination_quadtree.h"
@@ -13,6 +9,10 @@
 #include "spirv/forward_imaging_bvh.h"
 #include "spirv/forward_imaging_quadtree.h"
 #include "spirv/forward_imaging_ray_query.h"
+#include "spirv/nonsequential_bvh.h"
+#include "spirv/nonsequential_ray_query.h"
+#include "spirv/probe_nonsequential_bvh.h"
+#include "spirv/probe_nonsequential_ray_query.h"
 #include "spirv/probe_paths_bvh.h"
 #include "spirv/probe_paths_quadtree.h"
 #include "spirv/probe_paths_ray_query.h"
@@ -37,6 +37,18 @@ struct Batch {
     std::uint32_t count;
 };
 
+Batch make_batch(std::uint64_t first, std::uint32_t count) {
+    return {static_cast<std::uint32_t>(first), static_cast<std::uint32_t>(first >> 32), count};
+}
+
+// Push constants of the non-sequential kernels.
+struct NonsequentialBatch {
+    Batch paths;
+    std::uint32_t elements_root;
+    physics::f32::SourceFrame source_frame;
+};
+static_assert(sizeof(NonsequentialBatch) == 16 * 4);
+
 // Record of the kernel probe_paths.
 struct DevicePathEnd {
     std::uint32_t status;
@@ -46,97 +58,15 @@ struct DevicePathEnd {
 };
 static_assert(sizeof(DevicePathEnd) == 16);
 
-// Device, buffers and bindings that every use of the trace on a device shares.
-class DeviceScene {
+constexpr std::uint32_t paths_per_group = workgroup_size * rays_per_invocation;
+
+// One way of tracing paths on a device, and what it counts.
+class PathTrace {
   public:
-    DeviceScene(const optics::Instrument& instrument, const specimen::Specimen& specimen, const TraceOptions& options)
-        : instrument(instrument), device(vulkan::DeviceOptions{options.device}),
-          traversal(choose_traversal(device.report(), specimen, options.traversal, reason)),
-          device_specimen(device, specimen, traversal), host_record(specimen::record(specimen, options.max_bounces)),
-          seed(options.seed), surfaces(device, physics::f32::SURFACE_CAPACITY * sizeof(physics::f32::Surface)),
-          parameters(device, sizeof(Parameters), vulkan::Buffer::Memory::host),
-          spectrum(device, physics::f32::SPECTRUM_CAPACITY * sizeof(physics::f32::SpectralBin)) {
-        spectrum.write_values(std::span<const physics::f32::SpectralBin>(spectrum_block(instrument)));
-        surfaces.write_values(std::span<const physics::f32::Surface>(surface_block(instrument)));
-        constants.instrument = to_float(instrument.constants);
-        constants.specimen = device_specimen.record(options.max_bounces);
-        host_record.top = constants.specimen.top; // the plane that the kernels mean: rounded to float
-    }
-
-    void set_exposure(double focal_height, std::uint32_t image) {
-        constants.exposure = to_float(make_exposure(instrument, host_record, focal_height, seed, image));
-        parameters.write_values(std::span<const Parameters>(&constants, 1));
-    }
-
-    // The scene's bindings (0, 1, 8 to 14) and those given.
-    std::vector<vulkan::Binding> bindings(std::initializer_list<vulkan::Binding> further) const {
-        std::vector<vulkan::Binding> all = {{0, &surfaces}, {1, &parameters}, {14, &spectrum}};
-        const auto of_specimen = device_specimen.bindings();
-        all.insert(all.end(), of_specimen.begin(), of_specimen.end());
-        all.insert(all.end(), further.begin(), further.end());
-        return all;
-    }
-    std::vector<vulkan::BindingDeclaration> declarations(std::initializer_list<std::uint32_t> further) const {
-        using enum vulkan::BindingKind;
-        std::vector<vulkan::BindingDeclaration> all = {{0, uniform_buffer}, {1, uniform_buffer}, {14, uniform_buffer}};
-        const auto of_specimen = device_specimen.declarations();
-        all.insert(all.end(), of_specimen.begin(), of_specimen.end());
-        for (const std::uint32_t slot : further) {
-            all.push_back({slot, storage_buffer});
-        }
-        return all;
-    }
-
-    // Of the kernels: the specimen's, and the forward trace's ledger slots and early end.
-    std::vector<vulkan::SpecializationConstant> kernel_constants(std::uint32_t stop_after) const {
-        auto all = device_specimen.constants();
-        all.push_back({1, static_cast<std::uint32_t>(ledger_slot_count(instrument))});
-        all.push_back({2, stop_after});
-        all.push_back({3, instrument.features});
-        return all;
-    }
-
-    // The variant of a kernel for the traversal.
-    std::span<const std::uint32_t> variant(std::span<const std::uint32_t> by_quadtree,
-                                           std::span<const std::uint32_t> by_ray_query,
-                                           std::span<const std::uint32_t> by_bvh) const {
-        return traversal == Traversal::ray_query ? by_ray_query
-               : traversal == Traversal::bvh     ? by_bvh
-                                                 : by_quadtree;
-    }
-    bool software() const { return device.report().type == "CPU"; }
-
-    const optics::Instrument& instrument;
-    std::string reason; // of the traversal; before `traversal`, which sets it
-    vulkan::Device device;
-    Traversal traversal;
-    DeviceSpecimen device_specimen;
-    physics::f64::SpecimenRecord host_record;
-    std::uint32_t seed;
-    vulkan::Buffer surfaces;
-    vulkan::Buffer parameters;
-    vulkan::Buffer spectrum;
-    Parameters constants{};
-};
-
-// The two kernels of the forward trace and what lies between them.
-class ForwardTrace {
-  public:
-    ForwardTrace(const DeviceScene& scene, std::uint32_t batch,
-                 std::uint32_t stop_illumination = 0, std::uint32_t stop_imaging = 0)
-        : scene_(scene), batch_(batch),
-          survivors_(scene.device, std::size_t{batch} * sizeof(physics::f32::Survivor)),
-          survivor_count_(scene.device, sizeof(std::uint32_t)),
-          pixels_(scene.device, pixel_count() * sizeof(std::uint64_t)),
-          fates_(scene.device, ledger_slot_count(scene.instrument) * sizeof(std::uint64_t)),
-          illumination_(scene.device, "forward_illumination",
-                        scene.variant(forward_illumination_quadtree, forward_illumination_ray_query,
-                                      forward_illumination_bvh),
-                        scene.declarations({2, 4, 5}), sizeof(Batch),
-                        scene.kernel_constants(stop_illumination)),
-          imaging_(scene.device, "forward_imaging",
-                   scene.variant(forward_imaging_quadtree, forward_imaging_ray_query, forward_imaging_bvh),
-                   scene.declarations({2, 3, 4, 5}), 0, scene.kernel_constants(stop_imaging)) {}
+    PathTrace(const DeviceScene& scene, std::uint32_t batch)
+        : scene_(scene), batch_(batch), pixels_(scene.device, pixel_count() * sizeof(std::uint64_t)),
+          fates_(scene.device, scene.accounts.slots() * sizeof(std::uint64_t)) {}
+    virtual ~PathTrace() = default;
 
     std::size_t pixel_count() const {
         const auto side = static_cast<std::size_t>(scene_.instrument.constants.detector_pixels);
@@ -149,17 +79,48 @@ class ForwardTrace {
         commands.barrier();
     }
 
-    // Paths first ... first + count - 1, count at most the batch; timestamps around and between the halves if wanted.
-    void record(vulkan::Commands& commands, std::uint64_t first, std::uint32_t count, bool timed = false) const {
+    // Paths first ... first + count - 1, count at most the batch; timestamps around and between its stages if wanted.
+    virtual void record(vulkan::Commands& commands, std::uint64_t first, std::uint32_t count,
+                        bool timed = false) const = 0;
+
+    std::vector<std::uint64_t> pixels() const { return pixels_.read_values<std::uint64_t>(pixel_count()); }
+    std::vector<std::uint64_t> fates() const {
+        return fates_.read_values<std::uint64_t>(scene_.accounts.slots());
+    }
+    std::uint32_t batch() const { return batch_; }
+
+  protected:
+    const DeviceScene& scene_;
+    std::uint32_t batch_;
+    vulkan::Buffer pixels_;
+    vulkan::Buffer fates_;
+};
+
+// The two kernels of the forward trace and what lies between them.
+class ForwardTrace final : public PathTrace {
+  public:
+    ForwardTrace(const DeviceScene& scene, std::uint32_t batch,
+                 std::uint32_t stop_illumination = 0, std::uint32_t stop_imaging = 0)
+        : PathTrace(scene, batch), survivors_(scene.device, std::size_t{batch} * sizeof(physics::f32::Survivor)),
+          survivor_count_(scene.device, sizeof(std::uint32_t)),
+          illumination_(scene.device, "forward_illumination",
+                        scene.variant(forward_illumination_quadtree, forward_illumination_ray_query,
+                                      forward_illumination_bvh),
+                        scene.declarations({2, 4, 5}), sizeof(Batch),
+                        scene.kernel_constants(stop_illumination)),
+          imaging_(scene.device, "forward_imaging",
+                   scene.variant(forward_imaging_quadtree, forward_imaging_ray_query, forward_imaging_bvh),
+                   scene.declarations({2, 3, 4, 5}), 0, scene.kernel_constants(stop_imaging)) {}
+
+    void record(vulkan::Commands& commands, std::uint64_t first, std::uint32_t count,
+                bool timed = false) const override {
         commands.fill_zero(survivor_count_);
         commands.barrier();
-        const Batch batch{static_cast<std::uint32_t>(first), static_cast<std::uint32_t>(first >> 32), count};
-        const std::uint32_t per_group = workgroup_size * rays_per_invocation;
         if (timed) {
             commands.timestamp();
         }
         commands.dispatch(illumination_, scene_.bindings({{2, &survivors_}, {4, &fates_}, {5, &survivor_count_}}),
-                          batch, (count + per_group - 1) / per_group);
+                          make_batch(first, count), (count + paths_per_group - 1) / paths_per_group);
         commands.barrier();
         if (timed) {
             commands.timestamp();
@@ -175,21 +136,40 @@ class ForwardTrace {
         }
     }
 
-    std::vector<std::uint64_t> pixels() const { return pixels_.read_values<std::uint64_t>(pixel_count()); }
-    std::vector<std::uint64_t> fates() const {
-        return fates_.read_values<std::uint64_t>(ledger_slot_count(scene_.instrument));
-    }
-    std::uint32_t batch() const { return batch_; }
-
   private:
-    const DeviceScene& scene_;
-    std::uint32_t batch_;
     vulkan::Buffer survivors_;
     vulkan::Buffer survivor_count_;
-    vulkan::Buffer pixels_;
-    vulkan::Buffer fates_;
     vulkan::Kernel illumination_;
     vulkan::Kernel imaging_;
+};
+
+NonsequentialBatch make_nonsequential_batch(const DeviceScene& scene, std::uint64_t first, std::uint32_t count) {
+    return {make_batch(first, count), scene.device_specimen.elements_root(), to_float(scene.room.source)};
+}
+
+class NonsequentialTrace final : public PathTrace {
+  public:
+    NonsequentialTrace(const DeviceScene& scene, std::uint32_t batch)
+        : PathTrace(scene, batch),
+          kernel_(scene.device, "nonsequential", scene.variant({}, nonsequential_ray_query, nonsequential_bvh),
+                  scene.declarations({3, 4}), sizeof(NonsequentialBatch), scene.kernel_constants(0)) {}
+
+    void record(vulkan::Commands& commands, std::uint64_t first, std::uint32_t count,
+                bool timed = false) const override {
+        if (timed) {
+            commands.timestamp();
+        }
+        commands.dispatch(kernel_, scene_.bindings({{3, &pixels_}, {4, &fates_}}),
+                          make_nonsequential_batch(scene_, first, count),
+                          (count + paths_per_group - 1) / paths_per_group);
+        commands.barrier();
+        if (timed) {
+            commands.timestamp();
+        }
+    }
+
+  private:
+    vulkan::Kernel kernel_;
 };
 
 // Software devices like dispatches of about 100 ms; a GPU wants enough rays to fill it. 24 bytes a ray are kept.
@@ -209,27 +189,27 @@ class DeviceTracer final : public Tracer {
   public:
     DeviceTracer(const optics::Instrument& instrument, const specimen::Specimen& specimen, const TraceOptions& options)
         : instrument_(instrument), rays_(options.rays), scene_(instrument_, specimen, options),
-          forward_(scene_, suitable_batch(scene_, options.batch, options.rays)) {}
+          trace_(make_trace(scene_, options)) {}
 
     Image expose(double focal_height, std::uint32_t image) const override {
         const std::scoped_lock lock(mutex_);
         const auto start = std::chrono::steady_clock::now();
         scene_.set_exposure(focal_height, image);
         const std::uint64_t per_submission =
-            std::uint64_t{forward_.batch()} * (scene_.software() ? 1 : batches_per_submission_gpu);
+            std::uint64_t{trace_->batch()} * (scene_.software() ? 1 : batches_per_submission_gpu);
         for (std::uint64_t first = 0; first < rays_; first += per_submission) {
             vulkan::Commands commands(scene_.device);
             if (first == 0) {
-                forward_.clear(commands);
+                trace_->clear(commands);
             }
             const std::uint64_t end = std::min(rays_, first + per_submission);
-            for (std::uint64_t path = first; path < end; path += forward_.batch()) {
-                forward_.record(commands, path,
-                                static_cast<std::uint32_t>(std::min<std::uint64_t>(forward_.batch(), end - path)));
+            for (std::uint64_t path = first; path < end; path += trace_->batch()) {
+                trace_->record(commands, path,
+                                static_cast<std::uint32_t>(std::min<std::uint64_t>(trace_->batch(), end - path)));
             }
             commands.submit_and_wait();
         }
-        Image result = make_image(instrument_, forward_.pixels(), forward_.fates(), rays_);
+        Image result = scene_.accounts.image(trace_->pixels(), trace_->fates(), rays_);
         result.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
         return result;
     }
@@ -239,11 +219,19 @@ class DeviceTracer final : public Tracer {
     }
 
   private:
+    static std::unique_ptr<PathTrace> make_trace(const DeviceScene& scene, const TraceOptions& options) {
+        const std::uint32_t batch = suitable_batch(scene, options.batch, options.rays);
+        if (options.nonsequential) {
+            return std::make_unique<NonsequentialTrace>(scene, batch);
+        }
+        return std::make_unique<ForwardTrace>(scene, batch);
+    }
+
     optics::Instrument instrument_;
     std::uint64_t rays_;
     mutable std::mutex mutex_; // one exposure at a time: the buffers are shared
     mutable DeviceScene scene_;
-    ForwardTrace forward_;
+    std::unique_ptr<PathTrace> trace_;
 };
 
 double median(std::vector<double> values) {
@@ -264,12 +252,20 @@ std::vector<PathEnd> device_paths(const optics::Instrument& instrument, const sp
     DeviceScene scene(instrument, specimen, options);
     scene.set_exposure(focal_height, image);
     const vulkan::Buffer ends(scene.device, count * sizeof(DevicePathEnd));
-    const vulkan::Kernel kernel(scene.device, "probe_paths",
-                                scene.variant(probe_paths_quadtree, probe_paths_ray_query, probe_paths_bvh),
-                                scene.declarations({6}), sizeof(Batch), scene.kernel_constants(0));
+    const bool nonsequential = options.nonsequential;
+    const vulkan::Kernel kernel(
+        scene.device, "probe_paths",
+        nonsequential ? scene.variant({}, probe_nonsequential_ray_query, probe_nonsequential_bvh)
+                      : scene.variant(probe_paths_quadtree, probe_paths_ray_query, probe_paths_bvh),
+        scene.declarations({6}), nonsequential ? sizeof(NonsequentialBatch) : sizeof(Batch),
+        scene.kernel_constants(0));
     vulkan::Commands commands(scene.device);
-    commands.dispatch(kernel, scene.bindings({{6, &ends}}), 
-                      Batch{static_cast<std::uint32_t>(first), static_cast<std::uint32_t>(first >> 32), count}, (count + 63) / 64);
+    const std::uint32_t groups = (count + 63) / 64;
+    if (nonsequential) {
+        commands.dispatch(kernel, scene.bindings({{6, &ends}}), make_nonsequential_batch(scene, first, count), groups);
+    } else {
+        commands.dispatch(kernel, scene.bindings({{6, &ends}}), make_batch(first, count), groups);
+    }
     commands.barrier();
     commands.submit_and_wait();
     std::vector<PathEnd> result;

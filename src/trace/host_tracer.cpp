@@ -1,5 +1,6 @@
 #include "trace/host_tracer.hpp"
 
+#include "optics/room.hpp"
 #include "specimen/description.hpp"
 #include "specimen/intersector.hpp"
 #include "trace/ledger.hpp"
@@ -20,33 +21,57 @@ using namespace physics::f64;
 struct HostScene {
     optics::TrainScene trains;
     const specimen::Intersector* intersector;
+    const optics::Room* room = nullptr; // only for non-sequential paths
 
     const Surface& surface_at(int index) const { return trains.surface_at(index); }
     std::uint32_t features() const { return trains.features(); }
     const SpectralBin& spectral_bin(int index) const { return trains.spectral_bin(index); }
     Hit specimen_hit(real3 origin, real3 direction) const { return intersector->hit(origin, direction); }
+    const Element& element_at(int index) const { return room->elements[static_cast<std::size_t>(index)]; }
+    ElementHit nearest_element(real3 origin, real3 direction, int left) const {
+        return optics::nearest_element(*room, origin, direction, left);
+    }
 };
 
 uvec2 path_of(std::uint64_t index) {
     return {static_cast<uint>(index), static_cast<uint>(index >> 32)};
 }
 
+Detection path_end(const HostScene& scene, const physics::f64::Instrument& constants, const SpecimenRecord& record,
+                   const Exposure& exposure, const optics::Room& room, bool nonsequential, std::uint64_t index) {
+    if (nonsequential) {
+        return trace_nonsequential(scene, constants, record, exposure, room.source, path_of(index));
+    }
+    const Departure departure = trace_to_departure(scene, constants, record, exposure, path_of(index));
+    Detection end{};
+    end.fate = departure.fate;
+    if (departure.fate.status == PATH_ALIVE) {
+        end = image_survivor(scene, constants, record, exposure, departure.survivor);
+    }
+    return end;
+}
+
 class HostTracer final : public Tracer {
   public:
     HostTracer(const optics::Instrument& instrument, const specimen::Specimen& specimen, const TraceOptions& options)
         : instrument_(instrument), record_(specimen::record(specimen, options.max_bounces)), intersector_(specimen),
-          options_(options) {}
+          options_(options), accounts_(instrument) {
+        if (options.nonsequential) {
+            room_ = optics::furnish(instrument);
+            accounts_ = Accounts(instrument, room_.names);
+        }
+    }
 
     Image expose(double focal_height, std::uint32_t image) const override {
         const auto start = std::chrono::steady_clock::now();
         const std::size_t pixels = static_cast<std::size_t>(instrument_.constants.detector_pixels) *
                                    static_cast<std::size_t>(instrument_.constants.detector_pixels);
         const Exposure exposure = make_exposure(instrument_, record_, focal_height, options_.seed, image);
-        const HostScene scene{instrument_.scene(), &intersector_};
+        const HostScene scene{instrument_.scene(), &intersector_, &room_};
         const unsigned workers = std::max(1u, std::thread::hardware_concurrency());
         std::vector<std::vector<std::uint64_t>> counts(workers, std::vector<std::uint64_t>(pixels));
         std::vector<std::vector<std::uint64_t>> fates(
-            workers, std::vector<std::uint64_t>(ledger_slot_count(instrument_)));
+            workers, std::vector<std::uint64_t>(accounts_.slots()));
         {
             std::vector<std::jthread> threads;
             for (unsigned worker = 0; worker < workers; ++worker) {
@@ -61,7 +86,7 @@ class HostTracer final : public Tracer {
             std::ranges::transform(counts[0], counts[worker], counts[0].begin(), std::plus<>());
             std::ranges::transform(fates[0], fates[worker], fates[0].begin(), std::plus<>());
         }
-        Image result = make_image(instrument_, counts[0], fates[0], options_.rays);
+        Image result = accounts_.image(counts[0], fates[0], options_.rays);
         result.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
         return result;
     }
@@ -73,23 +98,20 @@ class HostTracer final : public Tracer {
   private:
     void trace_path(const HostScene& scene, const Exposure& exposure, std::uint64_t index,
                     std::vector<std::uint64_t>& counts, std::vector<std::uint64_t>& fates) const {
-        const auto& constants = instrument_.constants;
-        const Departure departure = trace_to_departure(scene, constants, record_, exposure, path_of(index));
-        Fate fate = departure.fate;
-        if (fate.status == PATH_ALIVE) {
-            const Detection detection = image_survivor(scene, constants, record_, exposure, departure.survivor);
-            fate = detection.fate;
-            if (fate.status == PATH_DETECTED) {
-                counts[static_cast<std::size_t>(detection.row * constants.detector_pixels + detection.column)] += 1;
-            }
+        const Detection end =
+            path_end(scene, instrument_.constants, record_, exposure, room_, options_.nonsequential, index);
+        if (end.fate.status == PATH_DETECTED) {
+            counts[static_cast<std::size_t>(end.row * instrument_.constants.detector_pixels + end.column)] += 1;
         }
-        fates[static_cast<std::size_t>(ledger_slot(fate))] += 1;
+        fates[static_cast<std::size_t>(ledger_slot(end.fate))] += 1;
     }
 
     optics::Instrument instrument_;
     SpecimenRecord record_;
     specimen::Intersector intersector_;
     TraceOptions options_;
+    optics::Room room_;
+    Accounts accounts_;
 };
 
 } // namespace
@@ -114,7 +136,11 @@ std::vector<PathEnd> host_paths(const optics::Instrument& instrument, const spec
                                 const TraceOptions& options, double focal_height, std::uint32_t image,
                                 std::uint64_t first, std::uint64_t count, double source_scale) {
     const specimen::Intersector intersector(specimen);
-    const HostScene scene{instrument.scene(), &intersector};
+    optics::Room room;
+    if (options.nonsequential) {
+        room = optics::furnish(instrument);
+    }
+    const HostScene scene{instrument.scene(), &intersector, &room};
     const SpecimenRecord record = specimen::record(specimen, options.max_bounces);
     const Exposure exposure = make_exposure(instrument, record, focal_height, options.seed, image);
     physics::f64::Instrument constants = instrument.constants;
@@ -122,14 +148,8 @@ std::vector<PathEnd> host_paths(const optics::Instrument& instrument, const spec
     constants.emission_sine = std::min(1.0, constants.emission_sine * source_scale);
     std::vector<PathEnd> ends(count);
     for (std::uint64_t index = 0; index < count; ++index) {
-        const Departure departure = trace_to_departure(scene, constants, record, exposure, path_of(first + index));
-        PathEnd& end = ends[index];
-        end.status = departure.fate.status;
-        end.surface = departure.fate.surface;
-        if (departure.fate.status == PATH_ALIVE) {
-            const Detection detection = image_survivor(scene, constants, record, exposure, departure.survivor);
-            end = {detection.fate.status, detection.fate.surface, detection.x, detection.y};
-        }
+        const Detection end = path_end(scene, constants, record, exposure, room, options.nonsequential, first + index);
+        ends[index] = {end.fate.status, end.fate.surface, end.x, end.y};
     }
     return ends;
 }

@@ -1,6 +1,5 @@
 #include "trace/ledger.hpp"
 
-#include <array>
 #include <cmath>
 #include <utility>
 
@@ -10,54 +9,20 @@ namespace {
 
 using namespace physics::f64;
 
-struct Slot {
-    std::string name;
-    std::size_t splitter_passes = 0; // that a ray with this fate has behind it
-    double weight = 0;               // of the power a ray starts with: what passed the splitter
-};
-
-// The splitter's passes that a ray with this fate has behind it: 0, 1 or 2.
-std::size_t splitter_passes(const optics::Instrument& instrument, int surface) {
+// The splitter's passes that a ray has behind it which ends at a surface: 0, 1 or 2.
+std::vector<std::size_t> splitter_passes(const optics::Instrument& instrument) {
     const auto& constants = instrument.constants;
-    if (surface < constants.illumination_first + constants.illumination_count) {
-        return surface - constants.illumination_first < instrument.illumination_surfaces_before_splitter ? 0 : 1;
-    }
-    return surface - constants.imaging_first < instrument.imaging_surfaces_before_splitter ? 1 : 2;
-}
-
-std::vector<Slot> slots_of(const optics::Instrument& instrument) {
-    const double reflected = instrument.splitter_reflectance;
-    const std::array<double, 3> weight = {1.0, reflected, reflected * instrument.splitter_transmittance};
-    std::vector<Slot> slots(ledger_slot_count(instrument));
-    const std::array<std::pair<const char*, std::size_t>, PATH_VIGNETTED> plain = {{
-        {"under way", 0},
-        {"detected", 2},
-        {"beside the specimen", 1},
-        {"escaped outside the pupil", 1},
-        {"bounce limit", 1},
-        {"beside the detector", 2},
-        {"numerical", 1},
-        {"absorbed by the specimen", 1},
-        {"interaction limit", 1},
-    }};
-    for (std::size_t status = 0; status < plain.size(); ++status) {
-        const auto& [name, passes] = plain[status];
-        slots[status] = {name, passes, weight[passes]};
-    }
-    const std::array<const char*, SURFACE_STATUS_COUNT> kinds = {"vignetted", "missed", "totally reflected",
-                                                                "lost in reflection"};
-    for (std::size_t surface = 0; surface < instrument.surfaces.size(); ++surface) {
-        for (std::size_t kind = 0; kind < kinds.size(); ++kind) {
-            const std::size_t passes = splitter_passes(instrument, static_cast<int>(surface));
-            slots[PATH_STATUS_COUNT + SURFACE_STATUS_COUNT * surface + kind] = {
-                std::string(kinds[kind]) + " at " + instrument.surface_names[surface], passes, weight[passes]};
+    std::vector<std::size_t> passes;
+    for (int surface = 0; surface < static_cast<int>(instrument.surfaces.size()); ++surface) {
+        if (surface < constants.illumination_first + constants.illumination_count) {
+            const int place = surface - constants.illumination_first;
+            passes.push_back(place < instrument.illumination_surfaces_before_splitter ? 0 : 1);
+        } else {
+            const int place = surface - constants.imaging_first;
+            passes.push_back(place < instrument.imaging_surfaces_before_splitter ? 1 : 2);
         }
     }
-    return slots;
-}
-
-double aimed_share(const optics::Instrument& instrument) {
-    return instrument.constants.emission_sine * instrument.constants.emission_sine;
+    return passes;
 }
 
 } // namespace
@@ -70,57 +35,84 @@ double Ledger::residual() const {
     return emitted - sum;
 }
 
-std::size_t ledger_slot_count(const optics::Instrument& instrument) {
-    return PATH_STATUS_COUNT + SURFACE_STATUS_COUNT * instrument.surfaces.size();
+Accounts::Accounts(const optics::Instrument& instrument)
+    : flux_(instrument.flux), aimed_(instrument.constants.emission_sine * instrument.constants.emission_sine),
+      left_{1.0, instrument.splitter_reflectance,
+            instrument.splitter_reflectance * instrument.splitter_transmittance},
+      pixels_(instrument.constants.detector_pixels) {
+    add_slots(instrument.surface_names, splitter_passes(instrument));
 }
 
-double detected_power_per_ray(const optics::Instrument& instrument, std::uint64_t rays) {
-    return instrument.flux * aimed_share(instrument) * instrument.splitter_reflectance *
-           instrument.splitter_transmittance / static_cast<double>(rays);
+Accounts::Accounts(const optics::Instrument& instrument, const std::vector<std::string>& element_names)
+    : flux_(instrument.flux), aimed_(instrument.constants.emission_sine * instrument.constants.emission_sine),
+      pixels_(instrument.constants.detector_pixels) {
+    add_slots(element_names, std::vector<std::size_t>(element_names.size(), 0));
 }
 
-Ledger make_ledger(const optics::Instrument& instrument, std::span<const std::uint64_t> counts, std::uint64_t rays) {
-    const std::vector<Slot> slots = slots_of(instrument);
-    const double per_ray = instrument.flux * aimed_share(instrument) / static_cast<double>(rays);
-    const double reflected = instrument.splitter_reflectance;
+void Accounts::add_slots(const std::vector<std::string>& names, const std::vector<std::size_t>& passes) {
+    const std::array<Slot, PATH_VIGNETTED> plain = {{
+        {"under way", 0},
+        {"detected", 2},
+        {"beside the specimen", 1},
+        {"escaped outside the pupil", 1},
+        {"bounce limit", 1},
+        {"beside the detector", 2},
+        {"numerical", 1},
+        {"absorbed by the specimen", 1},
+        {"interaction limit", 1},
+    }};
+    slots_.assign(plain.begin(), plain.end());
+    slots_.resize(PATH_STATUS_COUNT); // statuses that belong to surfaces count there
+    const std::array<const char*, SURFACE_STATUS_COUNT> kinds = {"vignetted", "missed", "totally reflected",
+                                                                "lost in reflection"};
+    for (std::size_t surface = 0; surface < names.size(); ++surface) {
+        for (const char* kind : kinds) {
+            slots_.push_back({std::string(kind) + " at " + names[surface], passes[surface]});
+        }
+    }
+}
+
+Ledger Accounts::ledger(std::span<const std::uint64_t> counts, std::uint64_t rays) const {
+    const double per_ray = flux_ * aimed_ / static_cast<double>(rays);
     Ledger ledger;
-    ledger.emitted = instrument.flux;
+    ledger.emitted = flux_;
     const auto add = [&](std::string name, double share, std::uint64_t count) {
         ledger.entries.emplace_back(std::move(name), per_ray * share * static_cast<double>(count), count);
     };
-    add("detected", slots[PATH_DETECTED].weight, counts[PATH_DETECTED]);
-    ledger.entries.emplace_back(std::string("not aimed at"), instrument.flux * (1.0 - aimed_share(instrument)), 0u);
+    const auto add_slot = [&](std::size_t slot) {
+        add(slots_[slot].name, left_[slots_[slot].splitter_passes], counts[slot]);
+    };
+    add_slot(PATH_DETECTED);
+    ledger.entries.emplace_back(std::string("not aimed at"), flux_ * (1.0 - aimed_), 0u);
     // The splitter takes its share of every ray that passes it, known from the fates beyond.
-    std::uint64_t first_pass = 0;
-    std::uint64_t second_pass = 0;
-    for (std::size_t slot = 0; slot < slots.size(); ++slot) {
-        first_pass += slots[slot].splitter_passes > 0 ? counts[slot] : 0;
-        second_pass += slots[slot].splitter_passes > 1 ? counts[slot] : 0;
-    }
-    add("beam splitter, towards the specimen", 1.0 - reflected, first_pass);
-    add("beam splitter, towards the detector", reflected * (1.0 - instrument.splitter_transmittance), second_pass);
-    for (std::size_t slot = PATH_DETECTED + 1; slot < slots.size(); ++slot) {
-        if (slot >= PATH_VIGNETTED && slot < PATH_STATUS_COUNT) {
-            continue; // these statuses belong to surfaces, which have slots of their own
+    std::array<std::uint64_t, 2> passed = {0, 0};
+    for (std::size_t slot = 0; slot < slots_.size(); ++slot) {
+        for (std::size_t pass = 0; pass < slots_[slot].splitter_passes; ++pass) {
+            passed[pass] += counts[slot];
         }
-        add(slots[slot].name, slots[slot].weight, counts[slot]);
+    }
+    add("beam splitter, towards the specimen", left_[0] - left_[1], passed[0]);
+    add("beam splitter, towards the detector", left_[1] - left_[2], passed[1]);
+    for (std::size_t slot = PATH_DETECTED + 1; slot < slots_.size(); ++slot) {
+        if (slot < PATH_VIGNETTED || slot >= PATH_STATUS_COUNT) {
+            add_slot(slot);
+        }
     }
     return ledger;
 }
 
-Image make_image(const optics::Instrument& instrument, std::span<const std::uint64_t> pixel_counts,
-                 std::span<const std::uint64_t> ledger_counts, std::uint64_t rays) {
-    const int side = instrument.constants.detector_pixels;
-    const double per_ray = detected_power_per_ray(instrument, rays);
+Image Accounts::image(std::span<const std::uint64_t> pixel_counts, std::span<const std::uint64_t> ledger_counts,
+                      std::uint64_t rays) const {
+    const double per_ray = flux_ * aimed_ * left_[2] / static_cast<double>(rays);
     Image image;
-    image.flux = Grid<double>(side, side);
-    image.standard_error = Grid<double>(side, side);
+    image.flux = Grid<double>(pixels_, pixels_);
+    image.standard_error = Grid<double>(pixels_, pixels_);
     for (std::size_t pixel = 0; pixel < pixel_counts.size(); ++pixel) {
         const double count = static_cast<double>(pixel_counts[pixel]);
         image.flux.values[pixel] = per_ray * count;
         image.standard_error.values[pixel] = per_ray * std::sqrt(count * (1.0 - count / static_cast<double>(rays)));
     }
-    image.ledger = make_ledger(instrument, ledger_counts, rays);
+    image.ledger = ledger(ledger_counts, rays);
     image.rays = rays;
     image.detected = ledger_counts[PATH_DETECTED];
     return image;

@@ -4,23 +4,45 @@
 #include "optics/instrument.hpp"
 #include "trace/tracer.hpp"
 
+#include <array>
 #include <cstdint>
 #include <span>
+#include <string>
+#include <vector>
 
 namespace vkfv::trace {
 
-// Slots of physics::ledger_slot() for this instrument.
-std::size_t ledger_slot_count(const optics::Instrument& instrument);
+// What the counts of an image stand for.
+class Accounts {
+  public:
+    // Sequential: rays pass the trains of surfaces, and the splitter takes its shares of them by calculation.
+    explicit Accounts(const optics::Instrument& instrument);
+    // Non-sequential: every ray keeps its power to its end, at one of these elements.
+    Accounts(const optics::Instrument& instrument, const std::vector<std::string>& element_names);
 
-// Power that one launched ray carries at the detector: flux * aimed share * splitter's two passes / rays; W.
-double detected_power_per_ray(const optics::Instrument& instrument, std::uint64_t rays);
+    // Of physics::ledger_slot().
+    std::size_t slots() const { return slots_.size(); }
 
-// counts[slot]: rays of each fate. What was not aimed at and what the ideal splitter turns away is added
-// analytically, so the ledger closes exactly when every launched ray has one fate.
-Ledger make_ledger(const optics::Instrument& instrument, std::span<const std::uint64_t> counts, std::uint64_t rays);
+    // Image in W from counts per pixel, with the binomial standard error of each. ledger_counts[slot]: rays of each fate. What
+    // was not aimed at and what the splitter turns away in the sequential trace is added analytically, so the ledger closes
+    // exactly when every launched ray has one fate.
+    Image image(std::span<const std::uint64_t> pixel_counts, std::span<const std::uint64_t> ledger_counts,
+                std::uint64_t rays) const;
 
-// Image in W from counts per pixel, with the binomial standard error of each.
-Image make_image(const optics::Instrument& instrument, std::span<const std::uint64_t> pixel_counts,
-                 std::span<const std::uint64_t> ledger_counts, std::uint64_t rays);
+  private:
+    struct Slot {
+        std::string name;
+        std::size_t splitter_passes = 0; // that a ray with this fate has behind it
+    };
+    void add_slots(const std::vector<std::string>& names, const std::vector<std::size_t>& passes);
+    Ledger ledger(std::span<const std::uint64_t> counts, std::uint64_t rays) const;
+
+    double flux_;  // W
+    double aimed_; // share of it
+    // Of the power a ray starts with: what is left after 0, 1 and 2 passes of the splitter.
+    std::array<double, 3> left_ = {1.0, 1.0, 1.0};
+    int pixels_; // along one side
+    std::vector<Slot> slots_;
+};
 
 } // namespace vkfv::trace

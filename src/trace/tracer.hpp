@@ -21,6 +21,7 @@ struct TraceOptions {
     Traversal traversal = Traversal::automatic;
     std::uint64_t batch = 0; // rays in flight at once; 0: what suits the device
     std::string device;      // selector: an index or a part of the name
+    bool nonsequential = false; // light finds its own way, and interfaces split it
 };
 
 // Where the emitted power of one image went; W. emitted = the sum of all others.

@@ -132,25 +132,58 @@ AccelerationStructure::AccelerationStructure(const Device& device,
                                              const vk::AccelerationStructureGeometryKHR& geometry,
                                              std::uint32_t primitives) {
     try {
-        bottom_ =
-            build(device, storage_, vk::AccelerationStructureTypeKHR::eBottomLevel, geometry, primitives);
-        const vk::TransformMatrixKHR identity(std::array<std::array<float, 4>, 3>{
-            {{1.0F, 0.0F, 0.0F, 0.0F}, {0.0F, 1.0F, 0.0F, 0.0F}, {0.0F, 0.0F, 1.0F, 0.0F}}});
-        constexpr std::uint32_t visible_to_all = 0xFF;
-        const vk::AccelerationStructureInstanceKHR instance(
-            identity, 0, visible_to_all, 0, vk::GeometryInstanceFlagsKHR(),
-            device.handle().getAccelerationStructureAddressKHR(
-                vk::AccelerationStructureDeviceAddressInfoKHR(*bottom_)));
-        const Buffer instances = upload(device, std::span(&instance, 1));
-        const vk::AccelerationStructureGeometryInstancesDataKHR data(VK_FALSE, instances.address());
-        top_ = build(device, storage_, vk::AccelerationStructureTypeKHR::eTopLevel,
-                     vk::AccelerationStructureGeometryKHR(vk::GeometryTypeKHR::eInstances, data), 1);
+        bottoms_.push_back(
+            build(device, storage_, vk::AccelerationStructureTypeKHR::eBottomLevel, geometry, primitives));
+        constexpr std::array<std::uint8_t, 1> visible_to_all = {0xFF};
+        build_top(device, visible_to_all);
     } catch (const vk::SystemError& error) {
         throw DeviceError(
             fmt::format("An acceleration structure of {} primitives cannot be built on {}: {}. Use a coarser "
                         "mesh, --traversal quadtree or another device",
                         primitives, device.report().name, error.what()));
     }
+}
+
+void AccelerationStructure::build_top(const Device& device, std::span<const std::uint8_t> masks) {
+    const vk::TransformMatrixKHR identity(std::array<std::array<float, 4>, 3>{
+        {{1.0F, 0.0F, 0.0F, 0.0F}, {0.0F, 1.0F, 0.0F, 0.0F}, {0.0F, 0.0F, 1.0F, 0.0F}}});
+    std::vector<vk::AccelerationStructureInstanceKHR> instances;
+    for (std::size_t part = 0; part < bottoms_.size(); ++part) {
+        instances.emplace_back(identity, static_cast<std::uint32_t>(part), masks[part], 0,
+                               vk::GeometryInstanceFlagsKHR(),
+                               device.handle().getAccelerationStructureAddressKHR(
+                                   vk::AccelerationStructureDeviceAddressInfoKHR(*bottoms_[part])));
+    }
+    const Buffer buffer = upload(device, std::span<const vk::AccelerationStructureInstanceKHR>(instances));
+    const vk::AccelerationStructureGeometryInstancesDataKHR data(VK_FALSE, buffer.address());
+    top_ = build(device, storage_, vk::AccelerationStructureTypeKHR::eTopLevel,
+                 vk::AccelerationStructureGeometryKHR(vk::GeometryTypeKHR::eInstances, data),
+                 static_cast<std::uint32_t>(instances.size()));
+}
+
+AccelerationStructure AccelerationStructure::join(const Device& device, std::vector<AccelerationStructure> parts) {
+    constexpr std::size_t most_parts = 8; // bits of a mask
+    if (parts.empty() || parts.size() > most_parts) {
+        throw std::logic_error("an acceleration structure joins one to eight parts");
+    }
+    AccelerationStructure joined;
+    std::vector<std::uint8_t> masks;
+    for (std::size_t part = 0; part < parts.size(); ++part) {
+        for (auto& bottom : parts[part].bottoms_) {
+            joined.bottoms_.push_back(std::move(bottom));
+            masks.push_back(static_cast<std::uint8_t>(1u << part));
+        }
+        for (Buffer& buffer : parts[part].storage_) {
+            joined.storage_.push_back(std::move(buffer));
+        }
+    }
+    try {
+        joined.build_top(device, masks);
+    } catch (const vk::SystemError& error) {
+        throw DeviceError(fmt::format("acceleration structures cannot be joined on {}: {}", device.report().name,
+                                      error.what()));
+    }
+    return joined;
 }
 
 AccelerationStructure AccelerationStructure::of_triangles(const Device& device,

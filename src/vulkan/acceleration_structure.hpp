@@ -16,7 +16,7 @@ struct Box {
     glm::vec3 maximum;
 };
 
-// One geometry under an identity instance, built for fast tracing; triangles are opaque, and their front is
+// Geometries under identity instances, built for fast tracing; triangles are opaque, and their front is
 // where they are seen counter-clockwise. The caller gives primitives in the order the driver likes (lavapipe
 // splits by index: see median_order). Throws std::logic_error for no primitives, coordinates that are not
 // finite or indices out of range, and DeviceError when the device has no ray query or cannot hold the
@@ -29,14 +29,20 @@ class AccelerationStructure {
     // misses on lavapipe.
     static AccelerationStructure of_boxes(const Device& device, std::span<const Box> boxes);
 
+    // Several under one top level: a ray query whose mask has bit k meets the k-th part (at most 8).
+    static AccelerationStructure join(const Device& device, std::vector<AccelerationStructure> parts);
+
     vk::AccelerationStructureKHR top_level() const { return *top_; }
     std::size_t bytes() const;
 
   private:
     AccelerationStructure(const Device& device, const vk::AccelerationStructureGeometryKHR& geometry,
                           std::uint32_t primitives);
+    AccelerationStructure() = default;
+    void build_top(const Device& device, std::span<const std::uint8_t> masks);
+
     std::vector<Buffer> storage_;
-    vk::raii::AccelerationStructureKHR bottom_{nullptr};
+    std::vector<vk::raii::AccelerationStructureKHR> bottoms_;
     vk::raii::AccelerationStructureKHR top_{nullptr};
 };
 

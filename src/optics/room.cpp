@@ -1,0 +1,169 @@
+#include "optics/room.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <map>
+
+namespace vkfv::optics {
+
+namespace {
+
+using physics::f64::Surface;
+using Kind = Element::Kind;
+
+// Free radius (mm) of what no semi-diameter limits: wide of any beam in a microscope's infinity space.
+constexpr double unlimited_radius = 25;
+// A barrel leaves its lenses this much room (share and mm).
+constexpr double barrel_share = 1.05;
+constexpr double barrel_gap = 0.5;
+
+std::uint32_t kind_of(Kind kind) {
+    switch (kind) {
+    case Kind::stop:
+        return physics::f64::ELEMENT_STOP;
+    case Kind::mirror:
+        return physics::f64::ELEMENT_MIRROR;
+    case Kind::splitter:
+        return physics::f64::ELEMENT_SPLITTER;
+    case Kind::ideal_lens:
+        return physics::f64::ELEMENT_IDEAL_LENS;
+    case Kind::detector:
+        return physics::f64::ELEMENT_DETECTOR;
+    case Kind::surface:
+        break;
+    }
+    return physics::f64::ELEMENT_INTERFACE;
+}
+
+bool is_limited(const Surface& surface) {
+    return (surface.flags & physics::f64::SURFACE_CLIPPED) != 0;
+}
+
+// Largest radius at which the surface may be asked for, mm.
+double reach(const Surface& surface) {
+    // Short of the equator, where its slope is infinite.
+    constexpr double short_of_equator = 0.98;
+    const double root = std::sqrt(std::max(0.0, 1 + surface.conic)) * std::abs(surface.curvature);
+    return root > 0 ? short_of_equator / root : std::numeric_limits<double>::infinity();
+}
+
+double free_radius(const Element& element, double detector_half_size) {
+    if (element.kind == Kind::detector) {
+        return std::sqrt(2.0) * detector_half_size;
+    }
+    const double limit = is_limited(element.surface) ? std::sqrt(element.surface.semi_diameter_squared) : unlimited_radius;
+    return std::min(limit, reach(element.surface));
+}
+
+bool has_barrel(const std::string& part) {
+    return part == "objective" || part == "tube lens" || part == "illuminator";
+}
+
+void stand(physics::f64::Element& element, const Pose& pose) {
+    element.origin = pose.origin;
+    element.axis_x = pose.axes[0];
+    element.axis_y = pose.axes[1];
+    element.axis_z = pose.axes[2];
+}
+
+} // namespace
+
+Room furnish(const Instrument& instrument) {
+    using namespace physics::f64;
+    Room room;
+    const Pose& source = instrument.source_pose;
+    room.source = {source.origin, source.axes[0], source.axes[1], source.axes[2]};
+    std::map<std::string, double> widest; // free radius of each part
+    for (const optics::Element& element : instrument.elements) {
+        double& radius = widest[element.part];
+        radius = std::max(radius, free_radius(element, instrument.constants.detector_half_size));
+    }
+    for (const optics::Element& placed : instrument.elements) {
+        if (placed.kind == Kind::stop && !is_limited(placed.surface)) {
+            continue; // an open stop is nothing
+        }
+        physics::f64::Element element{};
+        element.surface = placed.surface;
+        element.kind = kind_of(placed.kind);
+        const double radius = free_radius(placed, instrument.constants.detector_half_size);
+        element.surface.semi_diameter_squared = radius * radius;
+        stand(element, placed.pose);
+        const bool mounted = is_limited(placed.surface) || has_barrel(placed.part);
+        element.outer_radius = mounted ? barrel_share * widest[placed.part] + barrel_gap : radius;
+        // A polynomial may turn anywhere beyond the aperture that it was made for.
+        const bool aspheric = (placed.surface.flags & SURFACE_ASPHERIC) != 0;
+        element.rim_radius = aspheric ? radius : std::min(element.outer_radius, reach(placed.surface));
+        element.rim_height = asphere_sag(placed.surface, element.rim_radius * element.rim_radius).sag;
+        element.transmittance = placed.kind == Kind::splitter ? instrument.splitter_transmittance : 1;
+        room.elements.push_back(element);
+        room.names.push_back(fmt::format("{}: {}", placed.part, placed.name));
+    }
+    // A barrel from each part's first vertex to its last.
+    for (std::size_t first = 0; first < instrument.elements.size();) {
+        const optics::Element& start = instrument.elements[first];
+        std::size_t last = first;
+        while (last + 1 < instrument.elements.size() && instrument.elements[last + 1].part == start.part) {
+            ++last;
+        }
+        const glm::dvec3 axis = start.pose.axes[2];
+        const double length = glm::dot(instrument.elements[last].pose.origin - start.pose.origin, axis);
+        if (has_barrel(start.part) && length > 0) {
+            physics::f64::Element barrel{};
+            barrel.kind = ELEMENT_BARREL;
+            barrel.outer_radius = barrel_share * widest[start.part] + barrel_gap;
+            barrel.barrel_length = length;
+            stand(barrel, start.pose);
+            room.elements.push_back(barrel);
+            room.names.push_back(start.part + ": barrel");
+        }
+        first = last + 1;
+    }
+    return room;
+}
+
+Room::Box Room::bounds(std::size_t index) const {
+    const physics::f64::Element& element = elements[index];
+    double low = std::min(0.0, element.rim_height);
+    double high = std::max({0.0, element.rim_height, element.barrel_length});
+    if ((element.surface.flags & physics::f64::SURFACE_ASPHERIC) != 0) {
+        constexpr int samples = 64; // a polynomial of degree 16 turns seldomer
+        for (int i = 1; i < samples; ++i) {
+            const double r = element.rim_radius * i / samples;
+            const double sag = physics::f64::asphere_sag(element.surface, r * r).sag;
+            low = std::min(low, sag);
+            high = std::max(high, sag);
+        }
+        const double margin = 0.01 * (high - low);
+        low -= margin;
+        high += margin;
+    }
+    Box box{glm::dvec3(std::numeric_limits<double>::infinity()), glm::dvec3(-std::numeric_limits<double>::infinity())};
+    for (int corner = 0; corner < 8; ++corner) {
+        const double x = (corner & 1) != 0 ? element.outer_radius : -element.outer_radius;
+        const double y = (corner & 2) != 0 ? element.outer_radius : -element.outer_radius;
+        const double z = (corner & 4) != 0 ? high : low;
+        const glm::dvec3 point = element.origin + element.axis_x * x + element.axis_y * y + element.axis_z * z;
+        box.lower = glm::min(box.lower, point);
+        box.upper = glm::max(box.upper, point);
+    }
+    return box;
+}
+
+physics::f64::ElementHit nearest_element(const Room& room, glm::dvec3 origin, glm::dvec3 direction, int left) {
+    using namespace physics::f64;
+    const double least = least_distance(origin);
+    ElementHit nearest{-1, std::numeric_limits<double>::infinity()};
+    for (std::size_t i = 0; i < room.elements.size(); ++i) {
+        const int index = static_cast<int>(i);
+        const ElementMeeting meeting = meet_element(room.elements[i], origin, direction, index == left, least);
+        if (meeting.found == 1 && meeting.distance < nearest.distance) {
+            nearest = {index, meeting.distance};
+        }
+    }
+    return nearest;
+}
+
+} // namespace vkfv::optics

@@ -1,0 +1,32 @@
+// The instrument's elements as the non-sequential trace takes them: with mounts and barrels, since light that finds its own
+// way must not find one past the lenses.
+#pragma once
+
+#include "optics/instrument.hpp"
+
+#include <glm/glm.hpp>
+
+#include <string>
+#include <vector>
+
+namespace vkfv::optics {
+
+struct Room {
+    std::vector<physics::f64::Element> elements; // frame and unit: Element of instrument.hpp
+    std::vector<std::string> names;              // "objective: 10x_0.28 3", ...
+    physics::f64::SourceFrame source;
+
+    struct Box {
+        glm::dvec3 lower;
+        glm::dvec3 upper;
+    };
+    Box bounds(std::size_t element) const; // encloses its surface, mount and rim
+};
+
+// Throws InputError for more elements than the device's buffers are made for.
+Room furnish(const Instrument& instrument);
+
+// The scene that physics::trace_nonsequential needs of the elements, on the host: each is tried.
+physics::f64::ElementHit nearest_element(const Room& room, glm::dvec3 origin, glm::dvec3 direction, int left);
+
+} // namespace vkfv::optics

@@ -1,0 +1,290 @@
+// Light that finds its own way: the sequential image without Fresnel's reflections, closed forms with them, the ledger, and
+// the device against the host.
+#include "trace/microscope.hpp"
+#include "optics/room.hpp"
+#include "support/statistics.hpp"
+#include "trace/device_tracer.hpp"
+#include "trace/host_tracer.hpp"
+
+#include <gtest/gtest.h>
+
+#include <array>
+#include <cmath>
+
+using namespace vkfv;
+using namespace vkfv::physics::f64;
+
+namespace {
+
+trace::TraceOptions options(trace::Traversal traversal, bool nonsequential = true) {
+    trace::TraceOptions result;
+    result.rays = 400000;
+    result.seed = 3;
+    result.max_bounces = 2;
+    result.traversal = traversal;
+    result.nonsequential = nonsequential;
+    return result;
+}
+
+// Few pixels, so that few rays make a sharp test.
+optics::InstrumentDescription coarse_microscope() {
+    auto description = test::microscope_description();
+    description.detector_pixels = 8;
+    return description;
+}
+
+// p-value that two independent images have the same expectation.
+double same_expectation_p(const trace::Image& a, const trace::Image& b) {
+    double chi_square = 0;
+    for (std::size_t k = 0; k < a.flux.values.size(); ++k) {
+        chi_square += std::pow(a.flux.values[k] - b.flux.values[k], 2) /
+                      (std::pow(a.standard_error.values[k], 2) + std::pow(b.standard_error.values[k], 2));
+    }
+    return test::chi_square_tail(chi_square, static_cast<double>(a.flux.values.size()));
+}
+
+// Little roughness and a narrow lobe, so that much of the light returns.
+specimen::Specimen smooth_specimen() { return test::rough_specimen(0.95, 0.0002); }
+
+// A scene of given elements alone.
+struct Bench {
+    optics::Room room;
+    Surface surface_at(int) const { return {}; }
+    std::uint32_t features() const { return 0; }
+    SpectralBin spectral_bin(int) const { return {}; }
+    Hit specimen_hit(real3, real3) const { return {}; }
+    Element element_at(int index) const { return room.elements[static_cast<std::size_t>(index)]; }
+    ElementHit nearest_element(real3 origin, real3 direction, int left) const {
+        return optics::nearest_element(room, origin, direction, left);
+    }
+
+    void add(Element element, const optics::Pose& pose) {
+        element.origin = pose.origin;
+        element.axis_x = pose.axes[0];
+        element.axis_y = pose.axes[1];
+        element.axis_z = pose.axes[2];
+        element.rim_radius = element.outer_radius = radius;
+        element.surface.semi_diameter_squared = radius * radius;
+        room.elements.push_back(element);
+    }
+    void add_plate(const optics::Pose& first, double thickness, double index) {
+        Element face{};
+        face.kind = ELEMENT_INTERFACE;
+        face.surface.flags = SURFACE_FRESNEL;
+        face.surface.index_before = 1;
+        face.surface.index_after = index;
+        add(face, first);
+        std::swap(face.surface.index_before, face.surface.index_after);
+        add(face, first.along_z(thickness));
+    }
+    void add_detector(double height) {
+        Element detector{};
+        detector.kind = ELEMENT_DETECTOR;
+        detector.surface.index_before = detector.surface.index_after = 1;
+        add(detector, optics::Pose{}.along_z(height));
+    }
+
+    static constexpr double radius = 20;
+};
+
+// A fine parallel pencil up the axis from z = -1.
+physics::f64::Instrument pencil(double half_size, int pixels) {
+    physics::f64::Instrument instrument{};
+    instrument.source_radius = 0.01;
+    instrument.emission_sine = 1e-5;
+    instrument.magnification = 1;
+    instrument.detector_half_size = half_size;
+    instrument.detector_pixels = pixels;
+    instrument.spectrum_centre = 4;
+    instrument.spectrum_half_width = 1;
+    return instrument;
+}
+
+constexpr SourceFrame below_the_axis() {
+    return {{0, 0, -1}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
+}
+
+std::vector<Detection> trace_bench(const Bench& bench, const physics::f64::Instrument& instrument, std::uint32_t paths) {
+    std::vector<Detection> ends;
+    ends.reserve(paths);
+    const Exposure exposure{.top_distance = 0, .seed = 5, .image = 1, .focal_height = 0};
+    for (std::uint32_t path = 0; path < paths; ++path) {
+        ends.push_back(trace_nonsequential(bench, instrument, SpecimenRecord{}, exposure, below_the_axis(), uvec2(path, 0)));
+    }
+    return ends;
+}
+
+double detected_share(const std::vector<Detection>& ends) {
+    double detected = 0;
+    for (const Detection& end : ends) {
+        detected += end.fate.status == PATH_DETECTED ? 1 : 0;
+    }
+    return detected / static_cast<double>(ends.size());
+}
+
+} // namespace
+
+TEST(Nonsequential, WithoutFresnelItGivesTheSequentialImage) {
+    const auto description = coarse_microscope();
+    const auto instrument = optics::assemble(description);
+    const auto specimen = smooth_specimen();
+    constexpr double level = 1e-4; // false-positive rate of each comparison
+    const auto sequential =
+        trace::make_device_tracer(instrument, specimen, options(trace::Traversal::quadtree, false))->expose(0.001, 2);
+    const auto by_bvh = trace::make_device_tracer(instrument, specimen, options(trace::Traversal::bvh))->expose(0.001, 3);
+    EXPECT_GT(same_expectation_p(sequential, by_bvh), level);
+    EXPECT_GT(by_bvh.detected, 5000u);
+    const auto by_ray_query =
+        trace::make_device_tracer(instrument, specimen, options(trace::Traversal::ray_query))->expose(0.001, 3);
+    // The same paths: but for those within float rounding of an edge, the same counts.
+    EXPECT_NEAR(static_cast<double>(by_ray_query.detected), static_cast<double>(by_bvh.detected), 10);
+    // Wrong twin: a splitter of 0.4 / 0.6 passes 4 % less.
+    auto other = description;
+    other.splitter.reflectance = 0.4;
+    other.splitter.transmittance = 0.6;
+    auto twin_options = options(trace::Traversal::quadtree, false);
+    twin_options.rays *= 4;
+    const auto twin =
+        trace::make_device_tracer(optics::assemble(other), specimen, twin_options)->expose(0.001, 2);
+    double sum = 0;
+    double twin_sum = 0;
+    for (std::size_t k = 0; k < twin.flux.values.size(); ++k) {
+        sum += by_bvh.flux.values[k];
+        twin_sum += twin.flux.values[k];
+    }
+    const double sum_z = (sum - twin_sum) / (sum / std::sqrt(static_cast<double>(by_bvh.detected)));
+    EXPECT_GT(std::abs(sum_z), 4);
+}
+
+TEST(Nonsequential, TheLedgerClosesWithGhosts) {
+    auto description = coarse_microscope();
+    description.interfaces.model = optics::Interfaces::Model::fresnel;
+    const auto instrument = optics::assemble(description);
+    for (const auto traversal : {trace::Traversal::bvh, trace::Traversal::ray_query}) {
+        const auto image =
+            trace::make_device_tracer(instrument, smooth_specimen(), options(traversal))->expose(0.001, 2);
+        EXPECT_LT(std::abs(image.ledger.residual()), 1e-12 * image.ledger.emitted);
+        std::uint64_t rays = 0;
+        for (const auto& entry : image.ledger.entries) {
+            rays += entry.name.starts_with("beam splitter,") ? 0 : entry.rays;
+            EXPECT_FALSE(entry.name == "under way" && entry.rays > 0);
+        }
+        EXPECT_EQ(rays, image.rays);
+        EXPECT_GT(image.detected, 1000u);
+    }
+}
+
+// The device's float against the host's double, path by path, with Fresnel's reflections: a path whose random number lies
+// within float rounding of a reflectance parts, and so do all after many turns; so a share of fates may differ, and detected
+// ones land within the bound.
+TEST(Nonsequential, HostAndDeviceTraceTheSamePaths) {
+    auto description = coarse_microscope();
+    description.interfaces.model = optics::Interfaces::Model::fresnel;
+    const auto instrument = optics::assemble(description);
+    const auto specimen = smooth_specimen();
+    constexpr std::uint32_t paths = 3000;
+    const auto host =
+        trace::host_paths(instrument, specimen, options(trace::Traversal::automatic), 0.002, 7, 0, paths);
+    for (const auto traversal : {trace::Traversal::bvh, trace::Traversal::ray_query}) {
+        const auto device = trace::device_paths(instrument, specimen, options(traversal), 0.002, 7, 0, paths);
+        int differing = 0;
+        int far = 0;
+        int detected = 0;
+        for (std::uint32_t k = 0; k < paths; ++k) {
+            const bool same = host[k].status == device[k].status && host[k].surface == device[k].surface;
+            differing += same ? 0 : 1;
+            if (same && host[k].status == PATH_DETECTED) {
+                ++detected;
+                far += std::hypot(host[k].x - device[k].x, host[k].y - device[k].y) > 1e-3 ? 1 : 0; // 1 um
+            }
+        }
+        EXPECT_GT(detected, 30);
+        EXPECT_LE(differing, static_cast<int>(paths / 500));
+        EXPECT_LE(far, 2);
+    }
+}
+
+// Five uncoated plates of N-BK7 at normal incidence with all multiple reflections pass (1 - R) / (1 + 9 R): G. G. Stokes,
+// Proc. R. Soc. 11 (1862) 545. Single passes alone (the sequential mode) would leave (1 - R)^10.
+TEST(Nonsequential, FivePlatesPassWhatStokesSays) {
+    constexpr double index = 1.5168;
+    Bench bench;
+    for (int plate = 0; plate < 5; ++plate) {
+        bench.add_plate(optics::Pose{}.along_z(2.0 * plate), 1.0, index);
+    }
+    bench.add_detector(20);
+    constexpr double reflectance = (index - 1) * (index - 1) / ((index + 1) * (index + 1));
+    const double expected = (1 - reflectance) / (1 + 9 * reflectance);
+    EXPECT_NEAR(expected, 0.694, 5e-4);
+    constexpr std::uint32_t paths = 40000;
+    const double share = detected_share(trace_bench(bench, pencil(1, 4), paths));
+    EXPECT_LT(test::share_z(share * paths, paths, expected), 4); // false-positive rate 6e-5
+    EXPECT_GT(test::share_z(share * paths, paths, std::pow(1 - reflectance, 10)), 4);
+}
+
+// Light reflected twice inside a plate leaves parallel to what passes, t 2 cos(theta) tan(theta') beside it, with R^2 of its
+// power; and twice as far with R^4.
+TEST(Nonsequential, ThePlatesGhostHasItsPlaceAndStrength) {
+    constexpr double index = 2.0;
+    constexpr double thickness = 3.0;
+    const double theta = 20 * pi / 180;
+    const double refracted = std::asin(std::sin(theta) / index);
+    Bench bench;
+    bench.add_plate(optics::Pose{}.turned({.tilt_x = theta}), thickness, index);
+    bench.add_detector(10);
+    // A turn of the plate about x leans its normal to -y: what passes is moved to -y, and each ghost further to +y.
+    const double passes_at = -thickness * std::sin(theta - refracted) / std::cos(refracted);
+    const double step = 2 * thickness * std::cos(theta) * std::tan(refracted);
+    const double s = std::pow(std::sin(theta - refracted) / std::sin(theta + refracted), 2);
+    const double p = std::pow(std::tan(theta - refracted) / std::tan(theta + refracted), 2);
+    const double reflectance = 0.5 * (s + p); // unpolarised at each interface
+    constexpr std::uint32_t paths = 300000;
+    std::array<double, 3> seen{};
+    std::array<double, 3> place{};
+    for (const Detection& end : trace_bench(bench, pencil(10, 4), paths)) {
+        if (end.fate.status != PATH_DETECTED) {
+            continue;
+        }
+        const auto order = static_cast<std::size_t>(std::lround(std::abs(end.y - passes_at) / step));
+        if (order < seen.size()) {
+            seen[order] += 1;
+            place[order] += end.y;
+        }
+    }
+    const double through = (1 - reflectance) * (1 - reflectance);
+    for (std::size_t order = 0; order < seen.size(); ++order) {
+        const double share = through * std::pow(reflectance, 2.0 * static_cast<double>(order));
+        EXPECT_LT(test::share_z(seen[order], paths, share), 4) << order;
+        // The pencil's centre is known to its radius over the root of twice the counts.
+        const double tolerance = 5 * 0.01 / std::sqrt(4 * seen[order]);
+        EXPECT_NEAR(std::abs(place[order] / seen[order] - passes_at), static_cast<double>(order) * step, tolerance)
+            << order;
+    }
+    // Wrong twin: reflectance at normal incidence.
+    EXPECT_GT(test::share_z(seen[1], paths, through * std::pow(1.0 / 9, 2) * 1.1), 4);
+}
+
+// What lies beyond a lens' edge is its mount, and nothing passes beside the barrels to the detector.
+TEST(Nonsequential, NothingPassesBesideTheLenses) {
+    auto description = coarse_microscope();
+    description.splitter.semi_diameter = 25;
+    const auto instrument = optics::assemble(description);
+    const auto room = optics::furnish(instrument);
+    std::uint32_t reached = 0;
+    // Rays up from the specimen's plane at all angles, from beside the objective too.
+    for (int i = 0; i < 40; ++i) {
+        for (int j = -40; j <= 40; ++j) {
+            const glm::dvec3 origin(0.05 + 0.5 * i, 0, 0);
+            const double angle = j * 0.03;
+            const glm::dvec3 direction(std::sin(angle), 0, std::cos(angle));
+            const auto hit = optics::nearest_element(room, origin, direction, -1);
+            // First to be met is the objective, never what stands behind it, unless the ray passes outside its barrel.
+            if (hit.index >= 0 && room.names[static_cast<std::size_t>(hit.index)].starts_with("detector")) {
+                const double at_detector = origin.x + std::tan(angle) * 327;
+                EXPECT_GT(std::abs(origin.x + std::tan(angle) * 16), 7) << at_detector;
+                ++reached;
+            }
+        }
+    }
+    EXPECT_EQ(reached, 0u);
+}
