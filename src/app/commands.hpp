@@ -23,6 +23,7 @@ struct CommandOptions {
     bool json = false;
     double focal_height = 0;              // --image; mm
     std::filesystem::path rays_file;      // --trace-rays
+    std::filesystem::path picture_file;   // --layout
     bool float_precision = false;         // --trace-rays: on the device
     bool apertures = true;                // --trace-rays
     int runs = 5;                         // --bench
@@ -38,6 +39,8 @@ void run_image(const CommandOptions& options);
 void run_check(const CommandOptions& options);
 // Given rays through the imaging train, as CSV.
 void run_trace_rays(const CommandOptions& options);
+// The instrument to scale with rays through it, as an SVG.
+void run_layout(const CommandOptions& options);
 // The devices at hand, what each lacks and which would be used.
 void run_devices(const CommandOptions& options);
 // Rays per second of the configuration's chain, by stages.

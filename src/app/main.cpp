@@ -21,7 +21,7 @@ enum ExitCode { done = 0, wrong_input = 2, no_device = 3, run_failed = 4 };
 
 struct Arguments {
     std::string stack, image, check, bench, topography, import_lens;
-    std::vector<std::string> trace_rays;
+    std::vector<std::string> trace_rays, layout;
     bool devices = false;
     double z_um = 0;
     std::string precision = "double";
@@ -68,6 +68,11 @@ void declare(CLI::App& app, Arguments& given) {
                    "standard output")
         ->expected(2)
         ->option_text("C.toml IN.csv")
+        ->group(commands);
+    app.add_option("--layout", given.layout,
+                   "Draw the instrument to scale, with traced rays of illumination and imaging; needs no device")
+        ->expected(2)
+        ->option_text("C.toml OUT.svg")
         ->group(commands);
     app.add_flag("--devices", given.devices, "List devices, what each lacks and which would be used")
         ->group(commands);
@@ -204,12 +209,16 @@ void run(const CLI::App& app, const Arguments& given) {
     if (!given.trace_rays.empty()) {
         options.rays_file = given.trace_rays.back();
     }
+    if (!given.layout.empty()) {
+        options.picture_file = given.layout.back();
+    }
     const std::vector<Command> commands = {
         {"--stack", given.stack, vkfv::app::run_stack},
         {"--image", given.image, vkfv::app::run_image},
         {"--topography", given.topography, vkfv::app::run_topography},
         {"--check", given.check, vkfv::app::run_check},
         {"--trace-rays", given.trace_rays.empty() ? "" : given.trace_rays.front(), vkfv::app::run_trace_rays},
+        {"--layout", given.layout.empty() ? "" : given.layout.front(), vkfv::app::run_layout},
         {"--devices", "", vkfv::app::run_devices},
         {"--bench", given.bench, vkfv::app::run_bench},
         {"--import", given.import_lens, vkfv::app::run_import},
@@ -227,7 +236,7 @@ void run(const CLI::App& app, const Arguments& given) {
     }
     if (!chosen) {
         refuse("no command",
-               "one of --stack, --image, --topography, --check, --trace-rays, --devices, --bench, --import",
+               "one of --stack, --image, --topography, --check, --trace-rays, --layout, --devices, --bench, --import",
                "vkfv --help tells what they do.");
     }
     if ((app.count("--z") > 0) != (chosen->run == vkfv::app::run_image)) {
