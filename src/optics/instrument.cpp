@@ -57,9 +57,10 @@ Pose placed_at(const Placement& placement, const Pose& nominal) {
     return nominal.turned(placement.change);
 }
 
-bool is_displaced(const Placement& placement) {
-    const CoordinateBreak& c = placement.change;
-    return placement.global || c.decentre_x != 0 || c.decentre_y != 0 || c.tilt_x != 0 || c.tilt_y != 0 || c.tilt_z != 0;
+Surface transfer_between(const Pose& from, const PlacedSurface& to) {
+    Part part = {to};
+    link(part, from);
+    return part.front().surface;
 }
 
 void append(Part& train, const Part& part) {
@@ -335,10 +336,9 @@ Instrument assemble(const InstrumentDescription& description) {
     const double tube_lens_length = straight_tube_lens.back().pose.origin.z;
     const Pose detector_pose =
         placed_at(description.detector_placement, tube_lens_nominal.along_z(tube_lens_length + detector_distance));
-    const bool imaging_is_displaced =
-        is_displaced(description.detector_placement) || is_displaced(description.tube_lens_placement);
-    if (imaging_is_displaced) {
-        imaging_train.push_back(dummy_plane(layout.air, detector_pose, "detector's plane"));
+    const PlacedSurface detector_plane = dummy_plane(layout.air, detector_pose, "detector's plane");
+    if (is_displaced(transfer_between(imaging_train.back().pose, detector_plane))) {
+        imaging_train.push_back(detector_plane);
     }
     link(imaging_train, front);
     constants.detector_distance = glm::dot(detector_pose.origin - imaging_train.back().pose.origin,
@@ -418,6 +418,14 @@ Instrument assemble(const InstrumentDescription& description) {
               0.5 * ring.width * std::tan(ring.elevation) < ring.distance)) {
             refuse("source.width_mm", fmt::format("{} mm wide, {} mm away", ring.width, ring.distance),
                    "a band that does not reach the axis", "Choose a smaller width or elevation.");
+        }
+        if (!cover.empty() && !(ring.distance * constants.ring.elevation_sine -
+                                    constants.ring.half_width * constants.ring.elevation_cosine >
+                                constants.ring.aim_distance)) {
+            refuse("source.distance_mm", fmt::format("{} mm", ring.distance),
+                   fmt::format("a ring above the cover glass, whose upper face is {:.6g} mm over the focus",
+                               constants.ring.aim_distance),
+                   "Move the ring farther away, or the cover glass nearer to the specimen.");
         }
         // From any point of the band the lit circle lies within this cone about the band's normal: its middle is off the
         // normal by the half width, and no point of the circle is nearer than this.
@@ -531,8 +539,11 @@ Instrument assemble(const InstrumentDescription& description) {
         }
         append(illumination_train, reversed(objective));
         append(illumination_train, cover_downward);
-        if (is_displaced(description.objective_placement)) {
-            illumination_train.push_back(dummy_plane(object_index, exit, "front vertex' plane"));
+        const PlacedSurface exit_plane = dummy_plane(object_index, exit, "front vertex' plane");
+        const Surface to_exit = transfer_between(illumination_train.back().pose, exit_plane);
+        constexpr double rounding = 1e-12; // mm
+        if (is_displaced(to_exit) || std::abs(to_exit.distance) > rounding) {
+            illumination_train.push_back(exit_plane);
         }
         link(illumination_train, entry);
         const std::vector<Surface> illumination_surfaces = surfaces_of(illumination_train);
@@ -560,7 +571,7 @@ Instrument assemble(const InstrumentDescription& description) {
         const auto stop_transfer =
             transfer_to_surface(illumination_surfaces, field_stop.value_or(illuminator.size() - 1));
         sine = emission_sine(illumination_surfaces, straight, description.source_radius, *source_distance,
-                             free_space(*source_distance).then(stop_transfer));
+                             free_space(*source_distance + illumination_surfaces.front().distance).then(stop_transfer));
         if (!(sine > 0)) {
             refuse("illumination.prescription", prescribed.name,
                    "an illuminator whose light passes the objective", "Check distances and semi-diameters.",
