@@ -7,6 +7,7 @@
 #include <fstream>
 #include <sstream>
 #include <string>
+#include <utility>
 #include <vector>
 
 namespace vkfv::test {
@@ -59,6 +60,17 @@ inline physics::f64::Surface surface(double curvature, double distance, double i
     result.index_before = index_before;
     result.index_after = index_after;
     result.rotation_xx = result.rotation_yy = result.rotation_zz = 1;
+    return result;
+}
+
+// The same of a prescription.
+inline optics::PrescribedSurface prescribed(double curvature, double thickness, const optics::Medium& after,
+                                            std::vector<optics::CoordinateBreak> breaks = {}) {
+    optics::PrescribedSurface result;
+    result.breaks = std::move(breaks);
+    result.curvature = curvature;
+    result.thickness = thickness;
+    result.medium_after = after;
     return result;
 }
 
