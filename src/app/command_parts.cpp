@@ -1,5 +1,6 @@
 #include "app/commands.hpp"
 
+#include "app/configuration_section.hpp"
 #include "trace/device_tracer.hpp"
 #include "trace/host_tracer.hpp"
 
@@ -14,18 +15,10 @@ namespace {
 
 optics::Instrument assemble_at_its_place(const Configuration& configuration,
                                          const optics::InstrumentDescription& description) {
-    try {
-        return optics::assemble(description);
-    } catch (const InputError& error) {
-        // The optics know keys, the configuration knows where they stand.
-        auto problem = error.problem();
-        if (const auto place = configuration.places.find(problem.key); place != configuration.places.end()) {
-            problem.where = place->second;
-        } else if (problem.where.file.empty()) {
-            problem.where.file = configuration.file;
-        }
-        throw InputError(std::move(problem));
-    }
+    optics::Instrument instrument;
+    // The optics know keys, the configuration knows where they stand.
+    at_its_place(configuration, {.file = configuration.file}, [&] { instrument = optics::assemble(description); });
+    return instrument;
 }
 
 } // namespace
@@ -44,6 +37,10 @@ optics::Instrument assemble_instrument(const Configuration& configuration, const
             description.greatest_defocus =
                 std::max(description.greatest_defocus, std::abs(height - focal_height));
         }
+    }
+    if (description.ring) {
+        description.ring->lit_radius = std::hypot(std::max(-record.x_min, record.x_max),
+                                                  std::max(-record.y_min, record.y_max));
     }
     auto instrument = assemble_at_its_place(configuration, description);
     for (const auto& warning : instrument.warnings) {

@@ -1,5 +1,7 @@
 #include "app/configuration.hpp"
 
+#include "app/configuration_instrument.hpp"
+#include "app/configuration_section.hpp"
 #include "app/digest.hpp"
 #include "core/units.hpp"
 #include "physics/scatter_registry.hpp"
@@ -17,12 +19,10 @@ namespace vkfv::app {
 namespace {
 
 constexpr std::int64_t most_rays = 1'000'000'000'000; // 1e12: an hour a picture on the fastest device
-constexpr std::int64_t most_pixels = 16384;           // a side; the accumulator stays within 2 GiB
 constexpr std::int64_t most_bounces = 64;           // a Lambertian pit loses all but 1e-3 of its light in ten
 constexpr double most_facets = 16384;               // a side: the largest image of a common device
 constexpr std::int64_t fewest_positions = 3;        // the peak is a fit through three points
 constexpr double most_smoothing_steps = 100;        // 1202 images in memory
-constexpr double default_tube_lens_distance = 100;  // mm, in the infinity space
 constexpr std::int64_t largest_seed = 0xffffffffll; // seeds are 32-bit words of the counter-based generator
 constexpr std::array length_units = {std::pair{"mm", 1.0}, std::pair{"um", 1e-3}, std::pair{"m", 1e3},
                                      std::pair{"inch", 25.4}};
@@ -31,193 +31,10 @@ double from_um(double value) {
     return value / um_per_mm;
 } // division rounds 0.8 um to the double nearest 0.0008
 
-// The shortest TOML float that reads back to the same bits.
-std::string shortest_text(double value) {
-    std::string text = fmt::format("{}", value);
-    return text.find_first_of(".e") == std::string::npos ? text + ".0" : text;
-}
-
-enum class Influence { images, nothing };
-
-// A table of the configuration that writes down what is read from it, with defaults, for the canonical text
-// and the identity.
-class Section {
-  public:
-    Section(const TomlTable& table, Configuration& configuration)
-        : table_(table), configuration_(configuration) {
-        const auto& path = table.path();
-        // "a.b[2]" is a table of the array a.b.
-        const std::string header = path.ends_with(']')
-                                       ? fmt::format("\n[[{}]]\n", path.substr(0, path.rfind('[')))
-                                       : fmt::format("\n[{}]\n", path);
-        configuration_.canonical += header;
-        configuration_.identity += header;
-    }
-
-    const TomlTable& table() const { return table_; }
-
-    double number(const std::string& key, const NumberRange& range, std::optional<double> fallback = {},
-                  Influence influence = Influence::images) const {
-        const double value =
-            fallback ? table_.optional_number(key, range).value_or(*fallback) : table_.number(key, range);
-        return record(key, shortest_text(value), influence), value;
-    }
-    std::optional<double> number_if_given(const std::string& key, const NumberRange& range) const {
-        const auto value = table_.optional_number(key, range);
-        if (value) {
-            record(key, shortest_text(*value), Influence::images);
-        }
-        return value;
-    }
-    std::int64_t integer(const std::string& key, std::int64_t minimum, std::int64_t maximum,
-                         std::optional<std::int64_t> fallback = {},
-                         Influence influence = Influence::images) const {
-        const std::int64_t value = fallback
-                                       ? table_.optional_integer(key, minimum, maximum).value_or(*fallback)
-                                       : table_.integer(key, minimum, maximum);
-        return record(key, fmt::format("{}", value), influence), value;
-    }
-    bool boolean(const std::string& key, bool fallback) const {
-        const bool value = table_.optional_boolean(key).value_or(fallback);
-        return record(key, value ? "true" : "false", Influence::images), value;
-    }
-    std::string choice(const std::string& key, const std::vector<std::string>& choices,
-                       std::optional<std::string> fallback = {},
-                       Influence influence = Influence::images) const {
-        const std::string value =
-            fallback ? table_.optional_choice(key, choices).value_or(*fallback) : table_.choice(key, choices);
-        return record(key, toml_quoted(value), influence), value;
-    }
-    void record(const std::string& key, const std::string& value, Influence influence) const {
-        const std::string line = fmt::format("{} = {}\n", key, value);
-        note_place(key);
-        configuration_.canonical += line;
-        if (influence == Influence::images) {
-            configuration_.identity += line;
-        }
-    }
-    // A path in the canonical text; in the identity nothing, or what stands in its place.
-    void record_path(const std::string& key, const std::string& value, const std::string& digest = "") const {
-        note_place(key);
-        configuration_.canonical += fmt::format("{} = {}\n", key, toml_quoted(value));
-        if (!digest.empty()) {
-            configuration_.identity += fmt::format("{}_digest = \"{}\"\n", key, digest);
-        }
-    }
-
-  private:
-    void note_place(const std::string& key) const {
-        configuration_.places[table_.path() + "." + key] = table_.where(key);
-    }
-
-    TomlTable table_;
-    Configuration& configuration_;
-};
-
-std::string content_digest(const optics::Prescription& prescription) {
-    Digest digest;
-    const auto add_medium = [&](const optics::Medium& medium) {
-        digest.add(medium.dispersion_text() + ";");
-    };
-    add_medium(prescription.medium_before);
-    for (const auto& surface : prescription.surfaces) {
-        digest.add(fmt::format("{} {} {} {} {} {};", surface.curvature, surface.conic,
-                               fmt::join(surface.aspheric, " "), surface.thickness,
-                               surface.semi_diameter.value_or(0), static_cast<int>(surface.role)));
-        add_medium(surface.medium_after);
-    }
-    digest.add(fmt::format("{}", prescription.source_distance.value_or(0)));
-    return digest.text();
-}
-
-std::filesystem::path absolute_path(const std::filesystem::path& path) {
-    return std::filesystem::absolute(path).lexically_normal();
-}
-
 // "a/./b/" as "a/b".
 std::filesystem::path without_dots(const std::filesystem::path& path) {
     const auto normal = path.lexically_normal();
     return normal.has_filename() || normal == normal.root_path() ? normal : normal.parent_path();
-}
-
-optics::Prescription read_prescription(const Section& section, const Configuration& configuration,
-                                       const std::string& folder,
-                                       const std::optional<std::string>& fallback = {}) {
-    const std::string key = "prescription";
-    const TomlTable& table = section.table();
-    std::string name = fallback ? table.optional_string(key).value_or(*fallback) : table.string(key);
-    if (name.ends_with(".toml")) {
-        name = absolute_path(table.file_path(key)).string();
-    }
-    const auto base = configuration.file.parent_path();
-    if (!optics::find_prescription(name, folder, base)) {
-        table.fail(key,
-                   name.ends_with(".toml")
-                       ? "an existing file"
-                       : fmt::format("the name of a file in assets/{}, without .toml", folder),
-                   "Correct the name, or give the path of a prescription (.toml).");
-    }
-    auto prescription = optics::load_prescription(name, folder, base, configuration.glasses);
-    // A name that means the installed file means it from anywhere; another's path is kept.
-    if (optics::find_prescription(name, folder, {}) != prescription.file) {
-        name = absolute_path(prescription.file).string();
-    }
-    section.record_path(key, name, content_digest(prescription));
-    return prescription;
-}
-
-// Glasses count by the digests of the prescriptions that use them, so the identity does without the catalogues.
-void read_glass_catalogs(const TomlTable& root, Configuration& configuration) {
-    const std::string key = "glass_catalogs";
-    std::vector<std::string> paths;
-    for (const auto& path : root.optional_file_paths(key)) {
-        configuration.glasses.add(path);
-        paths.push_back(toml_quoted(absolute_path(path).string()));
-    }
-    if (!paths.empty()) {
-        configuration.canonical += fmt::format("{} = [{}]\n", key, fmt::join(paths, ", "));
-        configuration.places[key] = root.where(key);
-    }
-}
-
-void read_instrument(const TomlTable& root, Configuration& configuration) {
-    auto& instrument = configuration.instrument;
-    {
-        const Section source(root.table("source"), configuration);
-        instrument.source_radius = source.number("radius_mm", NumberRange::positive());
-        instrument.flux = source.number("flux_W", NumberRange::positive(), 1.0);
-        instrument.spectrum =
-            optics::Spectrum::line(source.number("wavelength_um", NumberRange::positive(), 0.5876));
-        instrument.source_distance = source.number_if_given("distance_mm", NumberRange::positive());
-    }
-    {
-        const Section illumination(root.table_or_empty("illumination"), configuration);
-        instrument.illumination = read_prescription(illumination, configuration, "illuminators", "koehler");
-        instrument.field_stop_radius =
-            illumination.number_if_given("field_stop_radius_mm", NumberRange::positive());
-        instrument.illumination_to_objective =
-            illumination.number_if_given("objective_distance_mm", NumberRange::at_least(0));
-    }
-    {
-        const Section splitter(root.table_or_empty("beam_splitter"), configuration);
-        instrument.splitter.reflectance = splitter.number("reflectance", NumberRange::between(0, 1), 0.5);
-        instrument.splitter.transmittance = 1 - instrument.splitter.reflectance;
-    }
-    {
-        const Section objective(root.table("objective"), configuration);
-        instrument.objective = read_prescription(objective, configuration, "objectives");
-    }
-    {
-        const Section tube_lens(root.table("tube_lens"), configuration);
-        instrument.tube_lens = read_prescription(tube_lens, configuration, "tube_lenses");
-        instrument.objective_to_tube_lens =
-            tube_lens.number("distance_mm", NumberRange::at_least(0), default_tube_lens_distance);
-    }
-    {
-        const Section detector(root.table("detector"), configuration);
-        instrument.detector_size = detector.number("size_mm", NumberRange::positive());
-        instrument.detector_pixels = static_cast<int>(detector.integer("pixels", 1, most_pixels));
-    }
 }
 
 struct KindRule {
@@ -254,22 +71,6 @@ const std::vector<KindRule>& kind_rules() {
 
 bool has_key(const KindRule& rule, const std::string& key) {
     return std::find(rule.keys.begin(), rule.keys.end(), key) != rule.keys.end();
-}
-
-// A key that another kind has, but not this one.
-void reject_keys_of_other_kinds(const TomlTable& table, const KindRule& rule) {
-    std::map<std::string, std::vector<std::string>> kinds_with;
-    for (const auto& other : kind_rules()) {
-        for (const auto& key : other.keys) {
-            kinds_with[key].push_back(other.name);
-        }
-    }
-    for (const auto& [key, kinds] : kinds_with) {
-        if (!has_key(rule, key) && table.has(key)) {
-            table.fail(key, fmt::format("no such key for a specimen of kind \"{}\"", rule.name),
-                       fmt::format("Remove it; it belongs to the kinds {}.", fmt::join(kinds, ", ")));
-        }
-    }
 }
 
 std::optional<specimen::Roughness> read_roughness(const TomlTable& specimen_table, const KindRule& rule,
@@ -363,13 +164,15 @@ void read_specimen(const TomlTable& root, Configuration& configuration) {
     const TomlTable table = root.table("specimen");
     const Section section(table, configuration);
     std::vector<std::string> names;
+    KeysOfKinds keys_of_kinds;
     for (const auto& rule : kind_rules()) {
         names.emplace_back(rule.name);
+        keys_of_kinds[rule.name] = rule.keys;
     }
     const std::string name = section.choice("kind", names);
     const KindRule& rule = *std::find_if(kind_rules().begin(), kind_rules().end(),
                                          [&](const KindRule& candidate) { return candidate.name == name; });
-    reject_keys_of_other_kinds(table, rule);
+    reject_keys_of_other_kinds(table, keys_of_kinds, name, "a specimen");
 
     specimen::Description description;
     description.kind = rule.kind;
@@ -431,7 +234,7 @@ void read_specimen(const TomlTable& root, Configuration& configuration) {
     if (has("file")) {
         description.file = table.file_path("file");
         description.where = table.where("file");
-        section.record_path("file", absolute_path(description.file).string());
+        section.record_reference("file", absolute_path(description.file).string());
     }
     if (has("unit")) {
         std::vector<std::string> units;
@@ -485,7 +288,8 @@ void read_trace(const TomlTable& root, Configuration& configuration) {
     trace.rays = static_cast<std::uint64_t>(section.integer("rays", 1, most_rays, 10'000'000));
     trace.seed = static_cast<std::uint32_t>(section.integer("seed", 0, largest_seed, 1));
     trace.max_bounces = static_cast<int>(section.integer("max_bounces", 1, most_bounces, 2));
-    if (section.choice("mode", {"sequential", "nonsequential"}, "sequential") != "sequential") {
+    trace.nonsequential = section.choice("mode", {"sequential", "nonsequential"}, "sequential") == "nonsequential";
+    if (trace.nonsequential) {
         table.fail("mode", "\"sequential\"; nonsequential tracing is not available yet",
                    "Choose mode = \"sequential\".");
     }
@@ -541,7 +345,7 @@ void read_output(const TomlTable& root, Configuration& configuration) {
     configuration.output_directory = without_dots(
         table.optional_file_path("directory").value_or(configuration.file.parent_path() / "vkfv-out"));
     // The canonical text lies in the folder itself, wherever that is moved to.
-    section.record_path("directory", ".");
+    section.record_reference("directory", ".");
     if (section.choice("images", {"float32", "uint16"}, "float32") != "float32") {
         table.fail("images", "\"float32\"; 16-bit counts are not available yet",
                    "Choose images = \"float32\".");
@@ -552,9 +356,12 @@ void read_output(const TomlTable& root, Configuration& configuration) {
 
 Configuration load_configuration(const std::filesystem::path& file,
                                  const std::vector<TomlOverride>& overrides, Needs needs) {
-    const TomlTable root = TomlTable::open(file, overrides);
+    return read_configuration(TomlTable::open(file, overrides), needs);
+}
+
+Configuration read_configuration(const TomlTable& root, Needs needs) {
     Configuration configuration;
-    configuration.file = file;
+    configuration.file = root.where().file;
     configuration.identity = fmt::format("program = \"vkfv {}\"\n", VKFV_VERSION);
     read_glass_catalogs(root, configuration);
     read_instrument(root, configuration);

@@ -31,7 +31,7 @@ struct Configuration {
     double l_filter = 0; // nesting index of the comparison's L-filter, mm; 0: none
     std::filesystem::path output_directory;
 
-    // Where each key stands that was read, by dotted key; defaults have the place of their table.
+    // Where each key and table stands that was read, by dotted key; defaults have the place of their table.
     std::map<std::string, SourceLocation> places;
 
     // Every key with its value, defaults included, in a fixed order and in the file's own units, so that it
@@ -51,6 +51,9 @@ struct Configuration {
 // Throws InputError.
 Configuration load_configuration(const std::filesystem::path& file,
                                  const std::vector<TomlOverride>& overrides = {}, Needs needs = Needs::stack);
+
+// The same of a document; relative paths start at its file.
+Configuration read_configuration(const TomlTable& root, Needs needs = Needs::stack);
 
 // The surface as it was made, vertex by vertex: what an STL, a glTF with its buffers or an image contributes
 // to the identity of a stack.

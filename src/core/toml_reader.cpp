@@ -420,6 +420,23 @@ std::optional<bool> TomlTable::optional_boolean(std::string_view key) const {
     return state_->get(key, "true or false", [](const toml::node& node) { return node.value_exact<bool>(); });
 }
 
+std::optional<std::vector<bool>> TomlTable::optional_booleans(std::string_view key) const {
+    return state_->get(key, "an array of true and false", [](const toml::node& node) {
+        std::optional<std::vector<bool>> values;
+        if (const auto* array = node.as_array()) {
+            values.emplace();
+            for (const auto& element : *array) {
+                const auto value = element.value_exact<bool>();
+                if (!value) {
+                    return std::optional<std::vector<bool>>();
+                }
+                values->push_back(*value);
+            }
+        }
+        return values;
+    });
+}
+
 bool TomlTable::boolean(std::string_view key) const {
     auto value = optional_boolean(key);
     if (!value) {

@@ -74,6 +74,7 @@ class TomlTable {
                                                  std::int64_t maximum) const;
     bool boolean(std::string_view key) const;
     std::optional<bool> optional_boolean(std::string_view key) const;
+    std::optional<std::vector<bool>> optional_booleans(std::string_view key) const;
     // Never empty.
     std::string string(std::string_view key) const;
     std::optional<std::string> optional_string(std::string_view key) const;

@@ -282,13 +282,8 @@ std::vector<std::string> GlassCatalog::names() const {
     return names;
 }
 
-std::string remedy_for_unknown_glass(const GlassCatalog& glasses, std::string_view name,
-                                     const std::vector<std::string>& others) {
-    if (is_glass_code(name)) {
-        return fmt::format(
-            "If a model glass is meant, describe it in [media.{}] by nd = 1.{} and vd = {}.{}.", name,
-            name.substr(0, 3), name.substr(3, 2), name.substr(5));
-    }
+std::optional<std::string> nearest_glass(const GlassCatalog& glasses, std::string_view name,
+                                         const std::vector<std::string>& others) {
     std::map<std::string, std::string> known; // by the name in one case
     auto candidates = glasses.names();
     candidates.insert(candidates.end(), others.begin(), others.end());
@@ -300,9 +295,20 @@ std::string remedy_for_unknown_glass(const GlassCatalog& glasses, std::string_vi
         keys.push_back(key);
     }
     const auto meant = nearest_word(in_one_case(name), keys);
+    return meant ? std::optional(known[*meant]) : std::nullopt;
+}
+
+std::string remedy_for_unknown_glass(const GlassCatalog& glasses, std::string_view name,
+                                     const std::vector<std::string>& others) {
+    if (is_glass_code(name)) {
+        return fmt::format(
+            "If a model glass is meant, describe it in [media.{}] by nd = 1.{} and vd = {}.{}.", name,
+            name.substr(0, 3), name.substr(3, 2), name.substr(5));
+    }
+    const auto meant = nearest_glass(glasses, name, others);
     return fmt::format("{}Correct the name, describe the medium in [media.{}], or add its catalogue to "
                        "glass_catalogs.",
-                       meant ? fmt::format("Did you mean \"{}\"? ", known[*meant]) : "", name);
+                       meant ? fmt::format("Did you mean \"{}\"? ", *meant) : "", name);
 }
 
 } // namespace vkfv::optics

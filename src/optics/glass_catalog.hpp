@@ -35,6 +35,10 @@ class GlassCatalog {
     std::vector<std::filesystem::path> files_;
 };
 
+// The glass, or that of `others`, that a misspelt name most likely meant; none if all are too far off.
+std::optional<std::string> nearest_glass(const GlassCatalog& glasses, std::string_view name,
+                                         const std::vector<std::string>& others = {});
+
 // What to do about a name that neither a catalogue nor `others` has, as sentences: the nearest name, or how
 // to describe the glass. A six-digit code ("516640") is never taken as a model glass by itself, as several
 // glasses of other dispersion share it.

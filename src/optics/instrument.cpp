@@ -304,10 +304,13 @@ Instrument assemble(const InstrumentDescription& description) {
         folds.push_back({fold.path, fold.distance, mirror});
         into.push_back({fold.distance, {mirror}});
     };
+    const auto key_of = [&](const FoldMirror& fold) {
+        return fmt::format("fold_mirror[{}].distance_mm", &fold - description.fold_mirrors.data());
+    };
     for (const FoldMirror& fold : description.fold_mirrors) {
         if (fold.path == FoldMirror::Path::imaging) {
             if (!(fold.distance > splitter_distance)) {
-                refuse("fold_mirror.distance_mm", fmt::format("{}", fold.distance),
+                refuse(key_of(fold), fmt::format("{}", fold.distance),
                        fmt::format("a place behind the beam splitter, which is {:.6g} mm behind the objective",
                                    splitter_distance),
                        "Move the fold mirror or the beam splitter.");
@@ -429,10 +432,10 @@ Instrument assemble(const InstrumentDescription& description) {
         }
         // From any point of the band the lit circle lies within this cone about the band's normal: its middle is off the
         // normal by the half width, and no point of the circle is nearer than this.
-        const double reach = ring.lit_radius + 0.5 * ring.width + (cover.empty() ? 0 : description.cover_glass->thickness);
-        sine = ring.distance > ring.lit_radius
-                   ? std::min(1.0, reach / std::hypot(reach, ring.distance - ring.lit_radius))
-                   : 1;
+        constexpr double margin = 1.5; // around the detector's field
+        const double lit_radius = ring.lit_radius.value_or(margin * field_half_diagonal);
+        const double reach = lit_radius + 0.5 * ring.width + (cover.empty() ? 0 : description.cover_glass->thickness);
+        sine = ring.distance > lit_radius ? std::min(1.0, reach / std::hypot(reach, ring.distance - lit_radius)) : 1;
         instrument.source_pose = downward(0);
         instrument.features |= physics::f64::FEATURE_RING;
     } else {
@@ -511,7 +514,7 @@ Instrument assemble(const InstrumentDescription& description) {
         for (const FoldMirror& fold : description.fold_mirrors) {
             if (fold.path == FoldMirror::Path::illumination) {
                 if (!(fold.distance >= 0 && fold.distance < splitter_from_illuminator)) {
-                    refuse("fold_mirror.distance_mm", fmt::format("{}", fold.distance),
+                    refuse(key_of(fold), fmt::format("{}", fold.distance),
                            fmt::format("a place between the illuminator and the beam splitter {:.6g} mm behind it",
                                        splitter_from_illuminator),
                            "Move the fold mirror.");

@@ -28,7 +28,7 @@ struct RingLightDescription {
     int segments = 1;
     double fill = 1;         // share of its sector that a segment takes
     std::vector<bool> on; // of each segment, counted from +x towards +y
-    double lit_radius = 0; // of the circle about the axis that every point of the ring must light
+    std::optional<double> lit_radius; // of the circle about the axis that all of the ring must light; none: the field
 };
 
 struct BeamSplitter {

@@ -151,6 +151,18 @@ PrescribedSurface read_surface(const TomlTable& table, const Media& media) {
                    "Leave out higher terms.");
     }
     std::copy(coefficients.begin(), coefficients.end(), surface.aspheric.begin());
+    const std::string ideal = "ideal_focal_length_mm";
+    if (const auto focal_length = table.optional_number(ideal, offset_range)) {
+        for (const char* key : {"radius_mm", "curvature_per_mm", "conic", "aspheric"}) {
+            if (table.has(key)) {
+                table.fail(key, "no shape of an ideal lens, which is thin and plane", "Remove one of the two.");
+            }
+        }
+        surface.ideal_power = 1 / *focal_length;
+        if (!std::isfinite(*surface.ideal_power)) {
+            table.fail(ideal, "a focal length whose reciprocal is finite", "Leave it out for a plane.");
+        }
+    }
     surface.medium_after = medium_named(media, table, "medium");
     surface.semi_diameter = table.optional_number("semi_diameter_mm", NumberRange::positive());
     if (const auto role = table.optional_choice("role", {"aperture stop", "field stop"})) {
@@ -199,26 +211,6 @@ Prescription read_prescription(const TomlTable& root, const std::filesystem::pat
 }
 
 } // namespace
-
-Prescription Prescription::reversed() const {
-    Prescription result = *this;
-    const std::size_t count = surfaces.size();
-    for (std::size_t i = 0; i < count; ++i) {
-        const std::size_t mirrored = count - 1 - i;
-        PrescribedSurface& surface = result.surfaces[i];
-        surface = surfaces[mirrored];
-        surface.curvature = -surface.curvature;
-        for (double& coefficient : surface.aspheric) {
-            coefficient = -coefficient;
-        }
-        surface.medium_after = mirrored == 0 ? medium_before : surfaces[mirrored - 1].medium_after;
-        surface.thickness = mirrored == 0 ? surfaces.back().thickness : surfaces[mirrored - 1].thickness;
-    }
-    if (count > 0) {
-        result.medium_before = surfaces.back().medium_after;
-    }
-    return result;
-}
 
 std::optional<std::filesystem::path> find_prescription(const std::string& name,
                                                        const std::filesystem::path& folder,

@@ -49,8 +49,6 @@ struct Prescription {
     std::vector<PrescribedSurface> surfaces;
     // Illuminators only: from the source to the first vertex.
     std::optional<double> source_distance;
-
-    Prescription reversed() const; // light travels the other way
 };
 
 // Where a prescription is: `name` is a path ending in .toml, relative to the folder `base`, or the stem of a

@@ -65,13 +65,19 @@ std::string break_text(const CoordinateBreak& change) {
     return entries.empty() ? "{}" : fmt::format("{{ {} }}", fmt::join(entries, ", "));
 }
 
+bool is_reciprocal(const std::string& text, double value) {
+    return 1 / std::strtod(text.c_str(), nullptr) == value;
+}
+
+std::string reciprocal_text(double value) {
+    return shortest(1 / value, [&](double candidate) { return 1 / candidate == value; });
+}
+
 // The radius if its reciprocal is the curvature to the last bit.
 std::string curvature_text(double curvature) {
-    const auto reads_back = [&](double radius) { return 1 / radius == curvature; };
-    const std::string radius = shortest(1 / curvature, reads_back);
-    return reads_back(std::strtod(radius.c_str(), nullptr))
-               ? fmt::format("radius_mm = {}\n", radius)
-               : fmt::format("curvature_per_mm = {}\n", curvature);
+    const std::string radius = reciprocal_text(curvature);
+    return is_reciprocal(radius, curvature) ? fmt::format("radius_mm = {}\n", radius)
+                                            : fmt::format("curvature_per_mm = {}\n", curvature);
 }
 
 std::string surface_text(const PrescribedSurface& surface, bool is_last) {
@@ -85,6 +91,9 @@ std::string surface_text(const PrescribedSurface& surface, bool is_last) {
     }
     if (surface.curvature != 0) {
         text += curvature_text(surface.curvature);
+    }
+    if (surface.ideal_power) {
+        text += fmt::format("ideal_focal_length_mm = {}\n", reciprocal_text(*surface.ideal_power));
     }
     if (surface.conic != 0) {
         text += fmt::format("conic = {}\n", surface.conic);

@@ -8,6 +8,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <cstring>
 #include <fstream>
 
 namespace vkfv::optics {
@@ -15,21 +16,25 @@ namespace {
 
 using ::testing::HasSubstr;
 
+std::vector<PlacedSurface> placed(const Prescription& lens) {
+    Pose end;
+    return place_prescription(lens, Spectrum::line(test::d_line_um), {}, {}, end);
+}
+
+// The surfaces and their frames.
 TEST(Prescription, ReversedTwiceIsItself) {
-    const auto lens = test::microscope().illumination;
-    const auto twice = lens.reversed().reversed();
-    ASSERT_EQ(twice.surfaces.size(), lens.surfaces.size());
-    EXPECT_EQ(twice.medium_before.name, lens.medium_before.name);
-    for (std::size_t i = 0; i < lens.surfaces.size(); ++i) {
-        const auto& a = lens.surfaces[i];
-        const auto& b = twice.surfaces[i];
-        EXPECT_EQ(a.curvature, b.curvature);
-        EXPECT_EQ(a.conic, b.conic);
-        EXPECT_EQ(a.aspheric, b.aspheric);
-        EXPECT_EQ(a.thickness, b.thickness);
-        EXPECT_EQ(a.medium_after.name, b.medium_after.name);
-        EXPECT_EQ(a.semi_diameter, b.semi_diameter);
-        EXPECT_EQ(a.role, b.role);
+    const auto lens = placed(test::microscope().illumination);
+    const auto once = reversed(lens);
+    const auto twice = reversed(once);
+    ASSERT_EQ(twice.size(), lens.size());
+    for (std::size_t i = 0; i < lens.size(); ++i) {
+        EXPECT_EQ(std::memcmp(&lens[i].surface, &twice[i].surface, sizeof lens[i].surface), 0) << i;
+        EXPECT_EQ(lens[i].pose.origin, twice[i].pose.origin);
+        EXPECT_EQ(lens[i].pose.axes, twice[i].pose.axes);
+        EXPECT_EQ(lens[i].name, twice[i].name);
+        EXPECT_EQ(lens[i].role, twice[i].role);
+        EXPECT_EQ(lens[i].surface.curvature, -once[lens.size() - 1 - i].surface.curvature);
+        EXPECT_EQ(lens[i].surface.index_before, once[lens.size() - 1 - i].surface.index_after);
     }
 }
 
@@ -88,8 +93,9 @@ TEST(Prescription, CondenserAgreesWithReferenceRays) {
     ASSERT_EQ(in.size(), out.size());
     ASSERT_GE(in.size(), 500u);
     // Backward: collimated light comes in, the source's plane is the focal plane.
-    auto train =
-        surfaces_of(load_prescription("condenser_acl2520", "illuminators", test::source_folder()).reversed());
+    auto part = reversed(placed(load_prescription("condenser_acl2520", "illuminators", test::source_folder())));
+    link(part, part.front().pose);
+    auto train = surfaces_of(part);
     const auto worst_with = [&](const std::vector<physics::f64::Surface>& lens) {
         double worst = 0;
         for (std::size_t i = 0; i < in.size(); ++i) {
@@ -205,6 +211,9 @@ TEST_F(WrittenPrescription, ReadsEveryKey) {
     EXPECT_EQ(lens.surfaces[1].curvature, -0.02);
     EXPECT_EQ(lens.surfaces[1].medium_after.name, "air");
     EXPECT_EQ(lens.surfaces[2].role, PrescribedSurface::Role::field_stop);
+    EXPECT_FALSE(lens.surfaces[2].ideal_power);
+    write("ideal.toml", "source = \"s\"\nlicence = \"l\"\n[[surface]]\nideal_focal_length_mm = -8\n");
+    EXPECT_EQ(load_prescription("ideal.toml", "objectives", folder_).surfaces[0].ideal_power, -0.125);
 }
 
 TEST(ParsedPrescription, MediaHaveEveryForm) {
@@ -270,6 +279,8 @@ TEST_F(WrittenPrescription, FaultsNamePlaceAndKey) {
              {"[[surface]]\nmedium = \"N-BK8\"\n", "medium", 4},
              {"[[surface]]\nrole = \"mirror\"\n", "role", 4},
              {"[[surface]]\nradius = 5\n", "radius", 4},
+             {"[[surface]]\nideal_focal_length_mm = 0\n", "ideal_focal_length_mm", 4},
+             {"[[surface]]\nideal_focal_length_mm = 5\nconic = -1\n", "conic", 5},
              {"[[surface]]\n[media.g]\nwavelengths_um = [0.6, 0.5]\nindices = [1.5, 1.5]\n", "wavelengths_um",
               5},
              {"[[surface]]\n[media.g]\nwavelengths_um = [0.5, 0.6]\nindices = [1.5]\n", "indices", 6},
