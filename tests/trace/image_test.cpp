@@ -69,6 +69,39 @@ TEST(Image, the_ledger_closes_for_analog_and_aimed_emission) {
     }
 }
 
+// Uncoated interfaces: every loss is counted at its surface. Light from the source meets the first one, of B270 (n = 1.523 at
+// d), all but normally.
+TEST(Image, the_ledger_counts_what_interfaces_reflect) {
+    auto description = test::microscope_description();
+    const auto ideal = optics::assemble(description);
+    description.interfaces.model = optics::Interfaces::Model::fresnel;
+    const auto instrument = optics::assemble(description);
+    const auto specimen = test::rough_specimen();
+    auto with = options();
+    with.rays = 200000;
+    const auto image = expose(instrument, specimen, with);
+    const auto lossless = expose(ideal, specimen, with);
+    EXPECT_LT(std::abs(image.ledger.residual()), 1e-6 * image.ledger.emitted);
+    const auto lost = [](const trace::Image& of, const std::string& where) {
+        std::uint64_t rays = 0;
+        for (const auto& entry : of.ledger.entries) {
+            rays += entry.name.starts_with("lost in reflection at " + where) ? entry.rays : 0;
+        }
+        return double(rays);
+    };
+    std::uint64_t rays = 0;
+    for (const auto& entry : image.ledger.entries) {
+        rays += entry.name.starts_with("beam splitter") ? 0 : entry.rays;
+    }
+    EXPECT_EQ(rays, image.rays);
+    const double first = std::pow(0.523 / 2.523, 2);
+    EXPECT_LT(test::share_z(lost(image, "illumination 1 ("), double(image.rays), first), 4.0); // 6e-5
+    EXPECT_GT(test::share_z(lost(image, "illumination 1 ("), double(image.rays), 1.1 * first), 4.0); // wrong twin
+    EXPECT_GT(lost(image, "imaging"), 1000);
+    EXPECT_EQ(lost(lossless, ""), 0);
+    EXPECT_LT(double(image.detected), 0.7 * double(lossless.detected));
+}
+
 // Power per ray: whole before the splitter, R beyond it, R (1 - R) beyond its second pass; a wrong split would still close.
 TEST(Image, the_ledger_gives_each_loss_the_power_it_carried) {
     auto description = test::microscope_description();
