@@ -11,6 +11,13 @@ namespace vkfv::app {
 
 void run_bench(const CommandOptions& options) {
     const auto configuration = load_configuration(options.file, options.overrides, Needs::exposure);
+    if (configuration.trace.nonsequential) {
+        throw InputError({.where = configuration.places.at("trace.mode"),
+                          .key = "trace.mode",
+                          .found = "\"nonsequential\"",
+                          .expected = "the sequential trace, which has stages to be timed",
+                          .remedy = "Use --set trace.mode=sequential, or time --image."});
+    }
     const auto specimen = specimen::make(*configuration.specimen);
     const double in_focus = 0;
     const auto instrument = assemble_instrument(configuration, specimen, std::span(&in_focus, 1));

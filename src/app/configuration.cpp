@@ -289,10 +289,6 @@ void read_trace(const TomlTable& root, Configuration& configuration) {
     trace.seed = static_cast<std::uint32_t>(section.integer("seed", 0, largest_seed, 1));
     trace.max_bounces = static_cast<int>(section.integer("max_bounces", 1, most_bounces, 2));
     trace.nonsequential = section.choice("mode", {"sequential", "nonsequential"}, "sequential") == "nonsequential";
-    if (trace.nonsequential) {
-        table.fail("mode", "\"sequential\"; nonsequential tracing is not available yet",
-                   "Choose mode = \"sequential\".");
-    }
     if (section.choice("estimator", {"forward", "backward"}, "forward") != "forward") {
         table.fail("estimator", "\"forward\"; the backward estimator is not available yet",
                    "Choose estimator = \"forward\".");
@@ -301,6 +297,10 @@ void read_trace(const TomlTable& root, Configuration& configuration) {
         section.choice("emission", {"directed", "analog"}, "directed") == "directed";
     const std::string traversal =
         section.choice("traversal", {"auto", "ray-query", "quadtree", "bvh"}, "auto", Influence::nothing);
+    if (trace.nonsequential && traversal == "quadtree") {
+        table.fail("traversal", "a traversal that knows the instrument's elements too",
+                   "Use \"auto\", \"bvh\" or \"ray-query\" with mode = \"nonsequential\".");
+    }
     trace.traversal = traversal == "ray-query"  ? trace::Traversal::ray_query
                       : traversal == "quadtree" ? trace::Traversal::quadtree
                       : traversal == "bvh"      ? trace::Traversal::bvh

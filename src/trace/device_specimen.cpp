@@ -254,11 +254,7 @@ Traversal choose_traversal(const vulkan::DeviceReport& device, const specimen::S
                            Traversal asked, std::string& reason, bool nonsequential) {
     const bool mesh = std::holds_alternative<specimen::Mesh>(specimen.geometry);
     if (nonsequential && asked == Traversal::quadtree) {
-        throw InputError({{},
-                          "trace.traversal",
-                          "quadtree",
-                          "a traversal that knows the instrument's elements too",
-                          "Use traversal = \"auto\", \"bvh\" or \"ray-query\" with mode = \"nonsequential\"."});
+        throw std::logic_error("elements are traced by ray query or bvh");
     }
     if (mesh && asked == Traversal::quadtree) {
         throw InputError(
