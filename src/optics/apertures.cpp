@@ -107,7 +107,7 @@ Outline outline_at(const Imaging& imaging, glm::dvec2 position) {
     return outline;
 }
 
-std::vector<ConeRay> fill_cone(const Outline& outline) {
+std::vector<ConeRay> fill_cone(const Outline& outline, int panels) {
     // Gauss-Legendre over [-1, 1] (Abramowitz and Stegun, table 25.4) in the share of the cone that a ring
     // encloses: exact for squared aberrations up to the 30th power of the pupil's radius.
     constexpr std::array<std::pair<double, double>, 8> rings = {{{-0.9602898564975363, 0.1012285362903763},
@@ -121,10 +121,13 @@ std::vector<ConeRay> fill_cone(const Outline& outline) {
     std::vector<ConeRay> rays;
     double total = 0;
     for (std::size_t i = 0; i < outline.radii.size(); ++i) {
-        for (const auto& [node, node_weight] : rings) {
-            const double weight = node_weight * outline.radii[i] * outline.radii[i];
-            rays.push_back({outline.cosines(i, outline.radii[i] * std::sqrt(0.5 * (1 + node))), weight});
-            total += weight;
+        for (int panel = 0; panel < panels; ++panel) {
+            for (const auto& [node, node_weight] : rings) {
+                const double weight = node_weight * outline.radii[i] * outline.radii[i];
+                const double share = (panel + 0.5 * (1 + node)) / panels;
+                rays.push_back({outline.cosines(i, outline.radii[i] * std::sqrt(share)), weight});
+                total += weight;
+            }
         }
     }
     for (ConeRay& ray : rays) {

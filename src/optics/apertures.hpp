@@ -46,12 +46,13 @@ struct Outline {
 };
 Outline outline_at(const Imaging& imaging, glm::dvec2 position);
 
-// A set of rays that fills an outline with uniform density in direction cosines, weights summing to 1.
+// A set of rays that fills an outline with uniform density in direction cosines, weights summing to 1. More panels,
+// rings of equal shares of the cone with a quadrature each, resolve what oscillates over it.
 struct ConeRay {
     glm::dvec2 cosines;
     double weight = 0;
 };
-std::vector<ConeRay> fill_cone(const Outline& outline);
+std::vector<ConeRay> fill_cone(const Outline& outline, int panels = 1);
 
 // Height above the object plane at which the RMS distance of the outline's light from its centroid on the detector is
 // least. The cone is that of the object plane.

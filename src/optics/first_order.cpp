@@ -54,6 +54,10 @@ double front_focal_distance(const RayTransfer& train) {
     return -train.d / train.c;
 }
 
+PrincipalPlanes principal_planes(const RayTransfer& train, double index_before, double index_after) {
+    return {.front = index_before * (train.d - 1) / train.c, .back = index_after * (1 - train.a) / train.c};
+}
+
 ParaxialImage image_of(const RayTransfer& train, double object_distance) {
     const double distance = -(train.b + object_distance * train.a) / (train.d + object_distance * train.c);
     return {.distance = distance, .magnification = train.a + distance * train.c};
@@ -61,6 +65,14 @@ ParaxialImage image_of(const RayTransfer& train, double object_distance) {
 
 EntrancePupil entrance_pupil(const RayTransfer& before) {
     return {.scale = before.b, .curvature = before.a / before.b};
+}
+
+StopImage stop_seen_from_front(const RayTransfer& before, double index_before) {
+    return {.distance = index_before * before.b / before.a, .magnification = 1 / before.a};
+}
+
+StopImage stop_seen_from_behind(const RayTransfer& after, double index_after) {
+    return {.distance = -index_after * after.b / after.d, .magnification = 1 / after.d};
 }
 
 } // namespace vkfv::optics

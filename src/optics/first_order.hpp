@@ -31,6 +31,14 @@ double focal_length(const RayTransfer& train);
 double back_focal_distance(const RayTransfer& train);  // last vertex to back focal point
 double front_focal_distance(const RayTransfer& train); // front focal point to first vertex
 
+// Where a unit magnification is: front behind the first vertex, back behind the last (mm, negative: in front of it).
+// Indices are those of the media in front of the train and behind it.
+struct PrincipalPlanes {
+    double front = 0;
+    double back = 0;
+};
+PrincipalPlanes principal_planes(const RayTransfer& train, double index_before = 1, double index_after = 1);
+
 // The image of a plane `object_distance` in front of the first vertex. Infinite where there is none.
 struct ParaxialImage {
     double distance = 0; // behind the last vertex; negative: virtual
@@ -46,5 +54,13 @@ struct EntrancePupil {
     double curvature = 0; // 1/mm, reciprocal of the pupil's distance behind the first vertex; 0: telecentric
 };
 EntrancePupil entrance_pupil(const RayTransfer& before);
+
+// The image of a stop through what stands on one side of it. Infinite in a telecentric space.
+struct StopImage {
+    double distance = 0;      // mm, along the light, from the vertex that light enters or leaves at
+    double magnification = 0; // signed: its size over the stop's
+};
+StopImage stop_seen_from_front(const RayTransfer& before, double index_before = 1); // behind the first vertex
+StopImage stop_seen_from_behind(const RayTransfer& after, double index_after = 1);  // behind the last vertex
 
 } // namespace vkfv::optics

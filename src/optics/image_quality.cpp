@@ -1,0 +1,378 @@
+#include "optics/image_quality.hpp"
+
+#include "core/units.hpp"
+#include "optics/first_order.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <complex>
+#include <cstdint>
+
+namespace vkfv::optics {
+
+namespace {
+
+using physics::f64::PATH_ALIVE;
+using physics::f64::Ray;
+using physics::f64::real3;
+using physics::f64::Surface;
+using Role = PrescribedSurface::Role;
+
+constexpr double airy_factor = 0.6098350; // first zero of J1 over 2 pi
+
+// An edge other than the stop's counts as clipping from this share of the light on: less is the rounding of tables.
+constexpr double least_clipped_share = 0.02;
+// As assemble() warns of darker corners.
+constexpr double least_relative_light = 0.9;
+
+// A ray at the detector: where it lands, its direction (of length index) and its optical path from the object.
+struct Arrival {
+    glm::dvec2 position;
+    glm::dvec2 direction;
+    double path_length = 0;
+    double weight = 0;
+};
+
+Ray ray_from(const Imaging& imaging, glm::dvec2 position, double height, glm::dvec2 cosines) {
+    Ray ray{};
+    ray.position = real3(position, height - imaging.working_distance);
+    ray.direction = real3(cosines, std::sqrt(std::max(0.0, 1 - glm::dot(cosines, cosines))));
+    return ray;
+}
+
+// Those of the cone that arrive, their weights adding up to 1. No aperture stops them: the outline has.
+std::vector<Arrival> arrivals(const Imaging& imaging, const Outline& outline, const std::vector<ConeRay>& cone,
+                              double height) {
+    std::vector<Arrival> list;
+    double total = 0;
+    for (const auto& [cosines, weight] : cone) {
+        const auto result = trace_through(imaging.train, ray_from(imaging, outline.position, height, cosines), 0);
+        if (result.status != PATH_ALIVE) {
+            continue;
+        }
+        const Ray landed = physics::f64::fly_to_plane(result.ray, imaging.detector_distance, result.index);
+        list.push_back({.position = {landed.position.x, landed.position.y},
+                        .direction = {landed.direction.x, landed.direction.y},
+                        .path_length = landed.path_length,
+                        .weight = weight});
+        total += weight;
+    }
+    for (Arrival& arrival : list) {
+        arrival.weight /= total;
+    }
+    return list;
+}
+
+// Shares of the cone, each with the eight rings of fill_cone, so that phases of several waves are resolved.
+constexpr int cone_panels = 3;
+
+CardinalPoints cardinal_points(const Prescription& prescription, const Spectrum& spectrum) {
+    Pose end;
+    auto part = place_prescription(prescription, spectrum, {}, Pose{}, end);
+    link(part, part.front().pose);
+    const auto surfaces = surfaces_of(part);
+    const RayTransfer transfer = transfer_of_train(surfaces);
+    const PrincipalPlanes planes =
+        principal_planes(transfer, surfaces.front().index_before, surfaces.back().index_after);
+    return {.focal_length = focal_length(transfer),
+            .front_principal_plane = planes.front,
+            .back_principal_plane = planes.back};
+}
+
+// What stops the rays just outside the rim.
+std::vector<Clipping> clipping(const Imaging& imaging, const Outline& outline, const Instrument& instrument,
+                               std::size_t aperture_stop) {
+    constexpr double outside = 1e-6; // of the radius: beyond the rim's bisection, short of any other edge
+    std::vector<Clipping> list;
+    for (std::size_t azimuth = 0; azimuth < outline.radii.size(); ++azimuth) {
+        const glm::dvec2 cosines = outline.cosines(azimuth, outline.radii[azimuth] * (1 + outside) + outside);
+        if (glm::dot(cosines, cosines) >= 1) {
+            continue;
+        }
+        const auto result = trace_through(imaging.train, ray_from(imaging, outline.position, 0, cosines), 1);
+        if (result.surface < 0) {
+            continue;
+        }
+        const auto surface = static_cast<std::size_t>(result.surface);
+        const std::string& name =
+            instrument.surface_names[static_cast<std::size_t>(instrument.constants.imaging_first) + surface];
+        auto found = std::ranges::find(list, name, &Clipping::surface);
+        if (found == list.end()) {
+            list.push_back({.surface = name, .share = 0, .aperture_stop = surface == aperture_stop});
+            found = list.end() - 1;
+        }
+        found->share += 1.0 / static_cast<double>(outline.radii.size());
+    }
+    std::ranges::stable_sort(list, std::ranges::greater{}, &Clipping::share);
+    return list;
+}
+
+std::string list_of_lenses(const std::vector<Clipping>& clipping) {
+    std::string text;
+    for (const Clipping& edge : clipping) {
+        if (!edge.aperture_stop && edge.share >= least_clipped_share) {
+            text += fmt::format("{}{} ({:.0f} % of the rim)", text.empty() ? "" : ", ", edge.surface, 100 * edge.share);
+        }
+    }
+    return text;
+}
+
+} // namespace
+
+std::vector<SpectralNode> spectral_nodes(const Instrument& instrument, int fewest) {
+    const auto& bins = instrument.spectral_bins;
+    const int per_bin = (fewest + static_cast<int>(bins.size()) - 1) / static_cast<int>(bins.size());
+    std::vector<SpectralNode> nodes;
+    double before = 0;
+    for (const auto& bin : bins) {
+        const int count = bin.start == bin.stop ? 1 : per_bin;
+        for (int i = 0; i < count; ++i) {
+            const double wavelength = physics::f64::wavelength_in_bin(bin, (i + 0.5) / count);
+            nodes.push_back(
+                {.spectral = physics::f64::light_of_wave_number(instrument.constants, 1 / wavelength).spectral,
+                 .wavelength_um = wavelength,
+                 .weight = (bin.cumulative - before) / count});
+        }
+        before = bin.cumulative;
+    }
+    return nodes;
+}
+
+Imaging at_wavelength(Imaging imaging, double spectral) {
+    for (Surface& surface : imaging.train) {
+        surface.index_before += physics::f64::disperse(surface.dispersion_before, spectral);
+        surface.index_after += physics::f64::disperse(surface.dispersion_after, spectral);
+        surface.dispersion_before = surface.dispersion_after = {};
+    }
+    imaging.detector_index = imaging.train.empty() ? 1 : imaging.train.back().index_after;
+    return imaging;
+}
+
+PointImage point_image(const Imaging& imaging, const Outline& outline, double height,
+                       std::span<const SpectralNode> spectrum) {
+    PointImage image{.position = outline.position};
+    if (!(outline.area() > 0)) { // nothing arrives: nothing is defined
+        image.centroid = glm::dvec2(NAN);
+        image.rms_spot = image.wavefront_rms = image.strehl = NAN;
+        return image;
+    }
+    const auto cone = fill_cone(outline, cone_panels);
+    std::vector<std::vector<Arrival>> light;
+    for (const SpectralNode& node : spectrum) {
+        light.push_back(arrivals(at_wavelength(imaging, node.spectral), outline, cone, height));
+        for (const Arrival& ray : light.back()) {
+            image.centroid += node.weight * ray.weight * ray.position;
+        }
+    }
+
+    // The angle characteristic about the centroid, without its mean; a shift of the centre by d adds direction . d to it.
+    double mean_square = 0;
+    glm::dmat2 normal(0);
+    glm::dvec2 right(0);
+    std::vector<double> wave_numbers; // 1/mm
+    for (std::size_t node = 0; node < light.size(); ++node) {
+        const double wave_number = 1 / (spectrum[node].wavelength_um * mm_per_um);
+        wave_numbers.push_back(wave_number);
+        double mean_path = 0;
+        glm::dvec2 mean_direction(0);
+        for (Arrival& ray : light[node]) {
+            const glm::dvec2 deviation = ray.position - image.centroid;
+            mean_square += spectrum[node].weight * ray.weight * glm::dot(deviation, deviation);
+            ray.path_length -= glm::dot(ray.direction, deviation);
+            mean_path += ray.weight * ray.path_length;
+            mean_direction += ray.weight * ray.direction;
+        }
+        for (Arrival& ray : light[node]) {
+            ray.path_length -= mean_path;
+            ray.direction -= mean_direction;
+            const double weight = spectrum[node].weight * ray.weight * wave_number * wave_number;
+            normal += weight * glm::outerProduct(ray.direction, ray.direction);
+            right += weight * ray.path_length * ray.direction;
+        }
+    }
+    image.rms_spot = std::sqrt(mean_square);
+    const glm::dvec2 tilt =
+        glm::determinant(normal) > 0 ? glm::inverse(normal) * right : glm::dvec2(0);
+
+    double variance = 0;
+    double reached = 0;
+    double ideal = 0;
+    for (std::size_t node = 0; node < light.size(); ++node) {
+        std::complex<double> sum = 0;
+        for (const Arrival& ray : light[node]) {
+            const double waves = wave_numbers[node] * (ray.path_length - glm::dot(tilt, ray.direction));
+            variance += spectrum[node].weight * ray.weight * waves * waves;
+            sum += ray.weight * std::polar(1.0, 2 * pi * waves);
+        }
+        const double weight = spectrum[node].weight * wave_numbers[node] * wave_numbers[node];
+        reached += weight * std::norm(sum);
+        ideal += weight;
+    }
+    image.wavefront_rms = std::sqrt(variance);
+    image.strehl = reached / ideal;
+    return image;
+}
+
+ImageQuality image_quality(const InstrumentDescription& description, const Instrument& instrument) {
+    const auto& constants = instrument.constants;
+    const FirstOrder& first_order = instrument.first_order;
+    const auto nodes = spectral_nodes(instrument);
+    ImageQuality quality;
+    quality.wavelength_um = 1 / std::sqrt(constants.spectrum_centre);
+
+    Prescription objective = description.objective;
+    objective.medium_before = description.immersion.value_or(objective.medium_before);
+    quality.objective = cardinal_points(objective, description.spectrum);
+    quality.tube_lens = cardinal_points(description.tube_lens, description.spectrum);
+
+    const auto first = instrument.surfaces.begin() + constants.imaging_first;
+    Imaging imaging{.train = {first, first + constants.imaging_count},
+                    .working_distance = first_order.working_distance,
+                    .detector_distance = constants.detector_distance,
+                    .pupil_curvature = constants.gate_position};
+    imaging.symmetric = std::ranges::none_of(imaging.train, is_displaced);
+    imaging.detector_index = imaging.train.back().index_after;
+
+    // Pupils, paraxially: the cover glass' two surfaces stand before the objective's.
+    const std::size_t objective_first = description.cover_glass ? 2 : 0;
+    const auto marked = std::ranges::find(objective.surfaces, Role::aperture_stop, &PrescribedSurface::role);
+    const std::size_t stop = objective_first + static_cast<std::size_t>(marked - objective.surfaces.begin());
+    const std::span<const Surface> train = imaging.train;
+    const double stop_radius = std::sqrt(train[stop].semi_diameter_squared);
+    const double object_index = first_order.object_index;
+    const StopImage entrance = stop_seen_from_front(
+        free_space(first_order.working_distance, object_index).then(transfer_to_surface(train, stop)), object_index);
+    quality.entrance_pupil_height = entrance.distance;
+    quality.entrance_pupil_radius = stop_radius * std::abs(entrance.magnification);
+    const std::size_t objective_end = objective_first + objective.surfaces.size();
+    const StopImage back =
+        stop_seen_from_behind(transfer_of_train(train.subspan(stop, objective_end - stop)));
+    quality.back_pupil_distance = back.distance;
+    quality.back_pupil_radius = stop_radius * std::abs(back.magnification);
+    const StopImage exit = stop_seen_from_behind(transfer_of_train(train.subspan(stop)), imaging.detector_index);
+    quality.exit_pupil_distance = imaging.detector_distance - exit.distance;
+    quality.exit_pupil_radius = stop_radius * std::abs(exit.magnification);
+
+    const double absolute_magnification = std::abs(first_order.magnification);
+    const double wavelength = quality.wavelength_um * mm_per_um;
+    quality.airy_radius = airy_factor * wavelength / first_order.numerical_aperture;
+    quality.detector_airy_radius = quality.airy_radius * absolute_magnification;
+    quality.detector_depth_of_field = object_index * first_order.pixel_pitch / first_order.numerical_aperture;
+    quality.field_side = first_order.pixel_pitch * description.detector_pixels;
+    quality.field_diagonal = std::sqrt(2.0) * quality.field_side;
+
+    // Images in the plane of best focus.
+    const double height = first_order.best_focus_offset;
+    const Outline on_axis = outline_at(imaging, {0, 0});
+    quality.axis = point_image(imaging, on_axis, height, nodes);
+    quality.axis.relative_light = 1;
+    const double rim_rays = static_cast<double>(on_axis.radii.size());
+    double sine_square = 0;
+    double height_square = 0;
+    glm::dvec2 beam_centre(0);
+    for (std::size_t azimuth = 0; azimuth < on_axis.radii.size(); ++azimuth) {
+        const Ray rim = ray_from(imaging, {0, 0}, 0, on_axis.cosines(azimuth, on_axis.radii[azimuth]));
+        const glm::dvec3 direction = trace_through(train, rim, 0).ray.direction;
+        const glm::dvec3 behind = trace_through(train.first(objective_end), rim, 0).ray.position;
+        sine_square += (direction.x * direction.x + direction.y * direction.y) / rim_rays;
+        height_square += (behind.x * behind.x + behind.y * behind.y) / rim_rays;
+        beam_centre += glm::dvec2(behind.x, behind.y) / rim_rays;
+    }
+    quality.image_aperture = std::sqrt(sine_square);
+    quality.beam_radius = std::sqrt(height_square - glm::dot(beam_centre, beam_centre));
+    quality.f_number = 0.5 / quality.image_aperture;
+
+    // Signed: the share by which the image of `point` lies farther out than magnification times its distance.
+    const std::vector<SpectralNode> reference = {{.spectral = 0, .wavelength_um = quality.wavelength_um, .weight = 1}};
+    const glm::dvec2 axis_centroid = point_image(imaging, on_axis, height, reference).centroid;
+    const auto real_magnification = [&](const Imaging& at, const Outline& outline, glm::dvec2 origin) {
+        const glm::dvec2 way = point_image(at, outline, height, reference).centroid - origin;
+        return glm::dot(way, outline.position) / glm::dot(outline.position, outline.position);
+    };
+    const double near_axis = 0.01 * first_order.field_edge; // distortion is 1e-4 of the edge's there
+    quality.magnification = real_magnification(imaging, outline_at(imaging, {near_axis, 0}), axis_centroid);
+
+    const double side = first_order.field_edge;
+    const double diagonal = std::sqrt(2.0) * side;
+    std::vector<glm::dvec2> edges = {{side, 0}};
+    std::vector<glm::dvec2> corners = {{diagonal, 0}};
+    if (!imaging.symmetric) {
+        edges = {{side, 0}, {0, side}, {-side, 0}, {0, -side}};
+        corners = {{side, side}, {-side, side}, {-side, -side}, {side, -side}};
+    }
+    struct Worst {
+        PointImage image;
+        Outline outline;
+        double distortion = 0;
+    };
+    const auto worst_of = [&](const std::vector<glm::dvec2>& points) {
+        Worst worst;
+        for (const glm::dvec2& point : points) {
+            const Outline outline = outline_at(imaging, point);
+            PointImage image = point_image(imaging, outline, height, nodes);
+            image.relative_light = outline.area() / on_axis.area();
+            if (worst.outline.radii.empty() || image.rms_spot > worst.image.rms_spot) {
+                worst = {image, outline,
+                         real_magnification(imaging, outline, axis_centroid) / first_order.magnification - 1};
+            }
+        }
+        return worst;
+    };
+    const Worst edge = worst_of(edges);
+    const Worst corner = worst_of(corners);
+    quality.edge = edge.image;
+    quality.edge_distortion = edge.distortion;
+    quality.corner = corner.image;
+    quality.corner_distortion = corner.distortion;
+
+    if (!description.spectrum.monochromatic()) {
+        const TrainScene scene = instrument.scene();
+        struct Colour {
+            double focus;
+            double height; // of the edge's image
+        };
+        const auto at_share = [&](double share) {
+            const Imaging tinted = at_wavelength(imaging, physics::f64::draw_light(scene, constants, share).spectral);
+            const glm::dvec2 origin = point_image(tinted, on_axis, height, reference).centroid;
+            return Colour{.focus = best_focus(tinted, on_axis),
+                          .height = real_magnification(tinted, edge.outline, origin) * side};
+        };
+        const Colour shorter = at_share(0.05);
+        const Colour longer = at_share(0.95);
+        quality.axial_colour = longer.focus - shorter.focus;
+        quality.lateral_colour = (longer.height - shorter.height) / first_order.magnification;
+    }
+
+    quality.axis_clipping = clipping(imaging, on_axis, instrument, stop);
+    quality.corner_clipping = clipping(imaging, corner.outline, instrument, stop);
+    if (const std::string lenses = list_of_lenses(quality.axis_clipping); !lenses.empty()) {
+        quality.warnings.push_back("The cone on the axis is not limited by the aperture stop alone: " + lenses + ".");
+    }
+    if (quality.corner.relative_light < least_relative_light) {
+        if (const std::string lenses = list_of_lenses(quality.corner_clipping); !lenses.empty()) {
+            quality.warnings.push_back("The cone from the field's corner is clipped by " + lenses + ".");
+        }
+    }
+    // Where one pixel's blur, n e / NA, is above the depth of field n lambda / NA^2, the detector decides what is in
+    // focus: it is coarser than the optics. Sampling all that they resolve takes half an Airy radius, which focus
+    // variation can do without. Below a tenth of the radius pixels add noise and memory and no detail.
+    constexpr double far_finer = 0.1;
+    if (quality.detector_depth_of_field > first_order.depth_of_field) {
+        quality.warnings.push_back(
+            fmt::format("The detector's pixel, {:.3g} um in the object, is coarser than the optics: above lambda / NA "
+                        "= {:.3g} um it decides the depth of field; sampling all that they resolve takes {:.3g} um.",
+                        first_order.pixel_pitch * um_per_mm, wavelength / first_order.numerical_aperture * um_per_mm,
+                        0.5 * quality.airy_radius * um_per_mm));
+    } else if (first_order.pixel_pitch < far_finer * quality.airy_radius) {
+        quality.warnings.push_back(
+            fmt::format("The detector's pixel, {:.3g} um in the object, is far finer than the optics resolve, whose Airy "
+                        "radius is {:.3g} um: larger pixels would see as much, with less noise.",
+                        first_order.pixel_pitch * um_per_mm, quality.airy_radius * um_per_mm));
+    }
+    return quality;
+}
+
+} // namespace vkfv::optics

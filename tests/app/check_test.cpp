@@ -1,0 +1,139 @@
+// --check as a user sees it: every figure in both forms, and each warning where it belongs and nowhere else.
+#include "app/program.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <nlohmann/json.hpp>
+
+#include <cmath>
+#include <sstream>
+
+namespace vkfv::test {
+namespace {
+
+using ::testing::Contains;
+using ::testing::HasSubstr;
+using ::testing::Not;
+
+nlohmann::json check(const std::string& configuration, const std::vector<std::string>& more = {}) {
+    const auto folder = fresh_folder("check_command");
+    write_file(folder / "c.toml", configuration);
+    std::vector<std::string> arguments = {"--check", "c.toml", "--json"};
+    arguments.insert(arguments.end(), more.begin(), more.end());
+    const auto result = run_program(arguments, folder);
+    EXPECT_EQ(result.exit_code, 0) << result.standard_error;
+    return nlohmann::json::parse(result.standard_output);
+}
+
+std::vector<std::string> warnings_of(const nlohmann::json& report) {
+    return report["warnings"];
+}
+
+const std::vector<std::string> figures = {
+    "efl_objective_mm", "objective_front_principal_plane_mm", "objective_back_principal_plane_mm", "efl_tube_lens_mm",
+    "tube_lens_front_principal_plane_mm", "tube_lens_back_principal_plane_mm", "working_distance_mm", "free_distance_mm",
+    "best_focus_offset_um", "numerical_aperture", "entrance_pupil_height_mm", "entrance_pupil_radius_mm",
+    "back_pupil_distance_mm", "back_pupil_radius_mm", "beam_radius_mm", "exit_pupil_distance_mm", "exit_pupil_radius_mm",
+    "source_radius_mm", "pupil_radius_in_source_mm", "illumination_to_objective_mm", "magnification",
+    "real_magnification", "detector_numerical_aperture", "f_number", "field_of_view_um", "field_diagonal_um",
+    "pixel_pitch_um", "wavelength_um", "airy_radius_um", "detector_airy_radius_um", "pixels_per_airy_radius",
+    "depth_of_field_um", "detector_depth_of_field_um", "field_edge_um", "rms_spot_axis_um", "rms_spot_edge_um",
+    "rms_spot_corner_um", "detector_rms_spot_axis_um", "detector_rms_spot_edge_um", "detector_rms_spot_corner_um",
+    "wavefront_rms_axis_waves", "wavefront_rms_edge_waves", "wavefront_rms_corner_waves", "strehl_axis", "strehl_edge",
+    "strehl_corner", "field_curvature_um", "distortion_edge_percent", "distortion_corner_percent",
+    "relative_light_edge_percent", "relative_light_corner_percent", "axial_colour_um", "lateral_colour_um"};
+
+TEST(Check, EveryMicroscopeHasEveryFigure) {
+    for (const char* objective : {"5x_0.15", "10x_0.28", "20x_0.41", "50x_0.66", "100x_0.83"}) {
+        const auto report = check(replaced(small_configuration, "10x_0.28", objective));
+        for (const auto& name : figures) {
+            ASSERT_TRUE(report.contains(name)) << objective << " " << name;
+            EXPECT_TRUE(report[name].is_number() && std::isfinite(report[name].get<double>())) << objective << " " << name;
+        }
+    }
+}
+
+TEST(Check, TextHasTheSameFiguresWithinItsWidth) {
+    const auto folder = fresh_folder("check_text");
+    write_file(folder / "c.toml", small_configuration);
+    const auto result = run_program({"--check", "c.toml"}, folder);
+    ASSERT_EQ(result.exit_code, 0) << result.standard_error;
+    for (const auto& name : figures) {
+        EXPECT_THAT(result.standard_output, HasSubstr("  " + name + " "));
+    }
+    std::istringstream lines(result.standard_output);
+    for (std::string line; std::getline(lines, line);) {
+        if (line.find("warning: ") == std::string::npos) {
+            EXPECT_LE(line.size(), 110u) << line;
+        }
+    }
+}
+
+// The figures hang together: each computed here from others by its definition.
+TEST(Check, FiguresAgreeWithTheirDefinitions) {
+    const auto report = check(small_configuration);
+    const auto value = [&](const char* name) { return report[name].get<double>(); };
+    const double aperture = value("numerical_aperture");
+    const double magnification = std::abs(value("magnification"));
+    // 0.61 is 0.6098 rounded.
+    EXPECT_NEAR(value("airy_radius_um"), 0.61 * 0.5876 / aperture, 5e-4 * value("airy_radius_um"));
+    EXPECT_NEAR(value("detector_airy_radius_um") / value("airy_radius_um"), magnification, 1e-9);
+    EXPECT_NEAR(value("field_of_view_um"), 160 / magnification, 1e-9);
+    EXPECT_NEAR(value("field_diagonal_um"), std::sqrt(2.0) * 160 / magnification, 1e-9);
+    EXPECT_NEAR(value("detector_depth_of_field_um"), 20 / magnification / aperture, 1e-9);
+    EXPECT_NEAR(value("f_number") * 2 * value("detector_numerical_aperture"), 1, 1e-12);
+    EXPECT_NEAR(value("rms_spot_edge_um") * magnification, value("detector_rms_spot_edge_um"), 1e-9);
+    EXPECT_NEAR(value("free_distance_mm"), value("working_distance_mm") - 1e-3 * value("best_focus_offset_um"), 1e-12);
+    EXPECT_NEAR(value("wavelength_um"), 0.5876, 1e-12);
+}
+
+TEST(Check, WarnsOfACoarseScanOnly) {
+    // The depth of field is 7.66 um.
+    const auto fine = check(small_configuration, {"--set", "scan.z_step_um=3.8", "--set", "scan.z_stop_um=20"});
+    EXPECT_THAT(warnings_of(fine), Not(Contains(HasSubstr("The scan's step"))));
+    const auto coarse = check(small_configuration, {"--set", "scan.z_step_um=3.9", "--set", "scan.z_stop_um=20"});
+    EXPECT_THAT(warnings_of(coarse), Contains(HasSubstr("The scan's step")));
+}
+
+TEST(Check, WarnsOfASpecimenLargerThanTheField) {
+    // The field is 16 um, a pixel 2.
+    EXPECT_THAT(warnings_of(check(small_configuration)), Contains(HasSubstr("larger than the field of view")));
+    EXPECT_THAT(warnings_of(check(replaced(small_configuration, "size_mm = 0.2", "size_mm = 0.016"))),
+                Not(Contains(HasSubstr("larger than the field of view"))));
+}
+
+TEST(Check, WarnsOfCoarseAndOfFinePixels) {
+    EXPECT_THAT(warnings_of(check(small_configuration, {"--set", "detector.pixels=7"})),
+                Contains(HasSubstr("coarser than the optics")));
+    EXPECT_THAT(warnings_of(check(small_configuration, {"--set", "detector.pixels=128"})),
+                Contains(HasSubstr("far finer than the optics")));
+    for (const auto& warning : warnings_of(check(small_configuration))) {
+        EXPECT_THAT(warning, Not(HasSubstr("The detector's pixel")));
+    }
+}
+
+TEST(Check, WarnsOfASourceThatDoesNotFillThePupil) {
+    EXPECT_THAT(warnings_of(check(small_configuration, {"--set", "source.radius_mm=0.5"})),
+                Contains(HasSubstr("does not fill the objective's pupil")));
+    EXPECT_THAT(warnings_of(check(small_configuration)), Not(Contains(HasSubstr("does not fill"))));
+}
+
+TEST(Check, NamesTheLensThatClipsTheCorner) {
+    const auto wide = check(small_configuration, {"--set", "detector.size_mm=40", "--set", "detector.pixels=2000"});
+    EXPECT_THAT(warnings_of(wide), Contains(::testing::AllOf(HasSubstr("from the field's corner is clipped by imaging"),
+                                                             HasSubstr("% of the rim"))));
+    EXPECT_THAT(warnings_of(check(small_configuration)), Not(Contains(HasSubstr("clipped"))));
+}
+
+// The demo's specimen goes on beyond its field on purpose; nothing else is amiss.
+TEST(Check, TheDemoHasNoOtherWarning) {
+    const auto folder = fresh_folder("check_demo");
+    const auto result =
+        run_program({"--check", std::string(VKFV_SOURCE_DIR) + "/assets/stacks/demo.toml", "--json"}, folder);
+    ASSERT_EQ(result.exit_code, 0) << result.standard_error;
+    EXPECT_THAT(warnings_of(nlohmann::json::parse(result.standard_output)),
+                ::testing::ElementsAre(HasSubstr("larger than the field of view")));
+}
+
+} // namespace
+} // namespace vkfv::test
