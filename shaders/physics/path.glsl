@@ -87,9 +87,9 @@ VKFV_SCENE_FUNCTION VKFV_FUNCTION Arrival illuminate(VKFV_SCENE_PARAMETER Instru
     Ray ray = emission.ray;
     bool is_ring = (features(VKFV_SCENE_ALONE) & FEATURE_RING) != 0u;
     ray.position.z = ray.position.z + (is_ring ? instrument.ring.aim_distance : -instrument.source_distance);
-    // The source stands in air, or where nothing parts it from the specimen, in the specimen's medium.
+    // The disc stands in air, the ring in the specimen's medium, which is on both sides of a cover glass.
     real specimen_index = specimen_medium_index(instrument, arrival.light);
-    real index = instrument.illumination_count > 0 ? real(1.0) : specimen_index;
+    real index = is_ring ? specimen_index : real(1.0);
     ray.direction = ray.direction * index;
     TrainResult train = trace_train(VKFV_SCENE instrument.illumination_first, instrument.illumination_count, ray,
                                     index, 1u, arrival.light);
