@@ -1,5 +1,7 @@
 #include "optics/first_order.hpp"
 
+#include <cmath>
+
 namespace vkfv::optics {
 
 RayTransfer RayTransfer::then(const RayTransfer& next) const {
@@ -21,12 +23,23 @@ RayTransfer free_space(double distance, double index) {
     return {.b = distance / index};
 }
 
+namespace {
+
+// From the previous vertex, mm. Where the frame turns on the way, as behind a fold mirror, the axis keeps its length.
+double way_to(const physics::f64::Surface& surface) {
+    return surface.rotation_zz == 1
+               ? surface.distance
+               : std::copysign(std::hypot(surface.decentre_x, surface.decentre_y, surface.distance), surface.distance);
+}
+
+} // namespace
+
 RayTransfer transfer_to_surface(std::span<const physics::f64::Surface> train, std::size_t index) {
     RayTransfer transfer;
     for (std::size_t i = 0; i <= index; ++i) {
         const auto& surface = train[i];
         if (i > 0) {
-            transfer = transfer.then(free_space(surface.distance, surface.index_before));
+            transfer = transfer.then(free_space(way_to(surface), surface.index_before));
         }
         if (i < index) {
             transfer = transfer.then(refraction(surface));

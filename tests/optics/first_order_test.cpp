@@ -1,5 +1,6 @@
 #include "optics/first_order.hpp"
 
+#include "core/units.hpp"
 #include "parts.hpp"
 
 #include <gtest/gtest.h>
@@ -65,6 +66,30 @@ TEST(FirstOrder, PupilOfAStopBehindALens) {
     auto telecentric = thin_lens(f);
     telecentric.push_back(surface(0, f, 1, 1));
     EXPECT_NEAR(entrance_pupil(transfer_to_surface(telecentric, 2)).curvature, 0, rounding);
+}
+
+// A fold mirror's frame is turned against those before and behind it, and the axis is as long as without it.
+TEST(FirstOrder, AFoldLeavesTheWayItsLength) {
+    const auto lens_at = [](double z, double curvature) {
+        PlacedSurface placed;
+        placed.surface = surface(curvature, 0, 1, 1.5);
+        placed.pose = Pose{}.along_z(z);
+        return placed;
+    };
+    PlacedSurface mirror;
+    mirror.surface = surface(0, 0, 1.5, 1.5);
+    mirror.pose = Pose{}.along_z(50).turned({.tilt_x = 0.25 * pi});
+    PlacedSurface last = lens_at(120, -0.01);
+    std::swap(last.surface.index_before, last.surface.index_after);
+    std::vector<PlacedSurface> straight = {lens_at(0, 0.02), last};
+    std::vector<PlacedSurface> folded = {lens_at(0, 0.02), mirror, last};
+    link(straight, Pose{});
+    link(folded, Pose{});
+    const RayTransfer expected = transfer_of_train(surfaces_of(straight));
+    const RayTransfer seen = transfer_of_train(surfaces_of(folded));
+    EXPECT_NEAR(seen.b, expected.b, 1e-12);
+    EXPECT_NEAR(seen.c, expected.c, 1e-14);
+    EXPECT_NEAR(seen.d, expected.d, 1e-12);
 }
 
 } // namespace
