@@ -374,7 +374,7 @@ void require_indices(const Configuration& configuration, const std::string& wave
     };
     const auto require_over_spectrum = [&](const std::string& part, const optics::Medium& medium) {
         const auto& spectrum = instrument.spectrum;
-        require(part, medium, wavelength_key, {spectrum.shortest_um, spectrum.reference_um, spectrum.longest_um});
+        require(part, medium, wavelength_key, {spectrum.shortest_um, spectrum.longest_um, spectrum.reference_um});
     };
     const auto require_all_of = [&](const char* role, const optics::Prescription& prescription) {
         const std::string part = fmt::format("the {} {}", role, prescription.name);

@@ -1,4 +1,5 @@
 // Configurations in process: values, units, canonical text and identity.
+#include "app/commands.hpp"
 #include "app/configuration.hpp"
 #include "app/program.hpp"
 
@@ -144,6 +145,219 @@ TEST(Configuration, IdentityFollowsTheContentOfACataloguesGlass) {
     EXPECT_EQ(load_with("b.agf", glass + "NM OTHER 5\nCD 1.5\nLD 0.4 0.7\n").identity, reference.identity);
     EXPECT_NE(load_with("a.agf", "NM MINE 5\nCD 1.6226\nLD 0.4 0.7\n").identity, reference.identity);
     EXPECT_THROW(load_with("a.agf", "NM YOURS 5\nCD 1.6225\nLD 0.4 0.7\n"), InputError);
+}
+
+// The description that `to` in place of `from` makes; the canonical text reads back to itself.
+optics::InstrumentDescription described(const std::string& from, const std::string& to) {
+    const auto configuration = load("described", replaced(small_configuration, from, to));
+    const auto again = load("described_again", configuration.canonical);
+    EXPECT_EQ(again.canonical, configuration.canonical) << to;
+    EXPECT_EQ(again.identity, configuration.identity) << to;
+    EXPECT_NE(configuration.identity, load("described", small_configuration).identity) << to;
+    return configuration.instrument;
+}
+
+const std::string wavelength_line = "wavelength_um = 0.5876\n";
+const std::string disc_lines = "radius_mm = 0.96\nflux_W = 1.0\nwavelength_um = 0.5876\n\n[illumination]\n"
+                               "prescription = \"koehler\"\nfield_stop_radius_mm = 0.2\n";
+
+TEST(Configuration, RingLightsAreRead) {
+    const std::string keys = "kind = \"ring\"\ndistance_mm = 12\nelevation_deg = 30\nwidth_mm = 2\n";
+    const auto plain = described(disc_lines, keys);
+    ASSERT_TRUE(plain.ring);
+    EXPECT_EQ(plain.ring->distance, 12);
+    EXPECT_NEAR(std::sin(plain.ring->elevation), 0.5, 1e-15); // one rounding of the angle
+    EXPECT_EQ(plain.ring->width, 2);
+    EXPECT_EQ(plain.ring->segments, 1);
+    EXPECT_EQ(plain.ring->fill, 1);
+    EXPECT_EQ(plain.ring->on, std::vector<bool>{true});
+    EXPECT_FALSE(plain.ring->lit_radius);
+    EXPECT_FALSE(plain.source_distance);
+    EXPECT_TRUE(plain.illumination.surfaces.empty());
+    const auto switched = described(disc_lines, keys + "segments = 3\nfill = 0.8\non = [true, false, true]\n");
+    EXPECT_EQ(switched.ring->segments, 3);
+    EXPECT_EQ(switched.ring->fill, 0.8);
+    EXPECT_EQ(switched.ring->on, (std::vector<bool>{true, false, true}));
+    EXPECT_EQ(described(disc_lines, keys + "segments = 4\n").ring->on, std::vector<bool>(4, true));
+    EXPECT_EQ(described(disc_lines + "\n[beam_splitter]\nreflectance = 0.5",
+                        keys + "[beam_splitter]\nreflectance = 0\n")
+                  .splitter.transmittance,
+              1);
+}
+
+// Every point of the specimen must be lit, whatever its size and wherever it stands: the aim is the cone about the band's
+// normal that holds the circle through the footprint's farthest corner.
+TEST(Configuration, RingLightsAimAtTheWholeSpecimen) {
+    const auto configuration =
+        load("aim", replaced(small_configuration, disc_lines,
+                             "kind = \"ring\"\ndistance_mm = 12\nelevation_deg = 30\nwidth_mm = 2\n"));
+    specimen::Specimen specimen;
+    specimen.geometry = specimen::HeightField{Grid<float>(3, 3, 0.0f), -1, -1, 1.5, 2.5}; // to x = 2 and y = 4
+    const std::vector<double> heights = {0};
+    const double lit = std::hypot(2.0, 4.0);
+    const double reach = lit + 1; // and half the band
+    EXPECT_NEAR(assemble_instrument(configuration, specimen, heights).constants.emission_sine,
+                reach / std::hypot(reach, 12 - lit), 1e-15);
+    // Without a specimen the detector's field, with half of it more around.
+    const auto alone = assemble_instrument(configuration);
+    const double field = 1.5 * std::sqrt(0.5) * 0.16 / std::abs(alone.first_order.magnification);
+    EXPECT_NEAR(alone.constants.emission_sine, (field + 1) / std::hypot(field + 1, 12 - field), 1e-15);
+}
+
+TEST(Configuration, SpectraAreRead) {
+    const auto spectrum = [](const std::string& lines) {
+        return described(wavelength_line, "[source.spectrum]\n" + lines).spectrum;
+    };
+    EXPECT_EQ(spectrum("kind = \"monochromatic\"\nwavelength_um = 0.55\n").reference_um, 0.55);
+    const auto lines = spectrum("kind = \"lines\"\nwavelengths_um = [0.5, 0.6]\nweights = [3, 1]\n");
+    ASSERT_EQ(lines.bins.size(), 2u);
+    EXPECT_EQ(lines.bins[0].cumulative, 0.75);
+    EXPECT_EQ(lines.shortest_um, 0.5);
+    EXPECT_EQ(lines.longest_um, 0.6);
+    const auto led = spectrum("kind = \"gaussian\"\ncentre_um = 0.55\nfull_width_um = 0.03\n");
+    EXPECT_EQ(led.reference_um, 0.55);
+    EXPECT_NEAR(led.longest_um, 0.55 + 4 * 0.03 / std::sqrt(8 * std::log(2)), 1e-15); // four standard deviations
+    const auto table = spectrum("kind = \"table\"\nwavelengths_um = [0.5, 0.52]\ndensities = [1, 1]\n");
+    EXPECT_EQ(table.bins.size(), 1u);
+    EXPECT_NEAR(table.reference_um, 0.51, 1e-15);
+}
+
+TEST(Configuration, ASpectrumsFileCountsByItsContent) {
+    const auto text = replaced(small_configuration, wavelength_line,
+                               "[source.spectrum]\nkind = \"table\"\nfile = \"led.csv\"\n");
+    const auto load_with = [&](const std::string& points) {
+        const auto folder = fresh_folder("spectrum_file");
+        write_file(folder / "led.csv", "wavelength_um,density\n" + points);
+        write_file(folder / "c.toml", text);
+        return load_configuration(folder / "c.toml");
+    };
+    const auto reference = load_with("0.50,1\n0.52,3\n");
+    const auto& spectrum = reference.instrument.spectrum;
+    EXPECT_EQ(spectrum.shortest_um, 0.5);
+    EXPECT_NEAR(spectrum.reference_um, 0.5 + 0.02 * 7 / 12, 1e-15); // centroid of a trapezium of 1 and 3
+    EXPECT_EQ(load("spectrum_again", reference.canonical).canonical, reference.canonical);
+    EXPECT_EQ(load_with("0.5, 1.0\r\n0.52,3\n").identity, reference.identity);
+    EXPECT_NE(load_with("0.5,1\n0.52,3.1\n").identity, reference.identity);
+}
+
+TEST(Configuration, SplittersAndFoldMirrorsAreRead) {
+    using Kind = optics::BeamSplitter::Kind;
+    using Path = optics::FoldMirror::Path;
+    const std::string given = "reflectance = 0.5\n";
+    const auto ideal = described(given, "reflectance = 0.3\ntransmittance = 0.6\ndistance_mm = 40\n").splitter;
+    EXPECT_EQ(ideal.kind, Kind::ideal);
+    EXPECT_EQ(ideal.reflectance, 0.3);
+    EXPECT_EQ(ideal.transmittance, 0.6);
+    EXPECT_EQ(ideal.distance, 40);
+    EXPECT_EQ(described(given, "reflectance = 0.3\n").splitter.transmittance, 0.7);
+    const auto plate = described(given, "kind = \"plate\"\nthickness_mm = 2\nglass = \"F2\"\n").splitter;
+    EXPECT_EQ(plate.kind, Kind::plate);
+    EXPECT_EQ(plate.size, 2);
+    EXPECT_EQ(plate.glass.name, "F2");
+    EXPECT_FALSE(plate.semi_diameter);
+    const auto cube = described(given, "kind = \"cube\"\nedge_mm = 25\nsemi_diameter_mm = 12\n").splitter;
+    EXPECT_EQ(cube.kind, Kind::cube);
+    EXPECT_EQ(cube.size, 25);
+    EXPECT_EQ(cube.glass.name, "N-BK7");
+    EXPECT_EQ(cube.semi_diameter, 12);
+    const auto folds = described("[objective]\n", "[[fold_mirror]]\npath = \"imaging\"\ndistance_mm = 80\n"
+                                                  "semi_diameter_mm = 20\n[[fold_mirror]]\n"
+                                                  "path = \"illumination\"\ndistance_mm = 30\n"
+                                                  "semi_diameter_mm = 15\nincidence_deg = 30\n"
+                                                  "azimuth_deg = -90\nreflectance = 0.9\n[objective]\n")
+                           .fold_mirrors;
+    ASSERT_EQ(folds.size(), 2u);
+    EXPECT_EQ(folds[0].path, Path::imaging);
+    EXPECT_EQ(folds[0].distance, 80);
+    EXPECT_NEAR(std::tan(folds[0].incidence), 1, 1e-15);
+    EXPECT_EQ(folds[0].azimuth, 0);
+    EXPECT_EQ(folds[0].reflectance, 1);
+    EXPECT_EQ(folds[1].path, Path::illumination);
+    EXPECT_NEAR(std::sin(folds[1].incidence), 0.5, 1e-15);
+    EXPECT_NEAR(std::sin(folds[1].azimuth), -1, 1e-15);
+    EXPECT_EQ(folds[1].semi_diameter, 15);
+    EXPECT_EQ(folds[1].reflectance, 0.9);
+}
+
+TEST(Configuration, InterfacesAndMediaAreRead) {
+    using Model = optics::Interfaces::Model;
+    const auto with = [](const std::string& tables) { return described("[objective]\n", tables + "[objective]\n"); };
+    EXPECT_EQ(with("[interfaces]\nmodel = \"fresnel\"\n").interfaces.model, Model::fresnel);
+    const auto coated =
+        with("[interfaces]\nmodel = \"quarter-wave\"\nlayer = \"CaF2\"\ndesign_wavelength_um = 0.6\n").interfaces;
+    EXPECT_EQ(coated.model, Model::quarter_wave);
+    EXPECT_EQ(coated.layer.name, optics::GlassCatalog::builtin().get("CaF2").name);
+    EXPECT_EQ(coated.design_wavelength_um, 0.6);
+    EXPECT_EQ(with("[interfaces]\nmodel = \"quarter-wave\"\n").interfaces.layer.name,
+              optics::GlassCatalog::builtin().get("MgF2").name);
+    const auto covered = with("[cover_glass]\nthickness_mm = 0.17\n").cover_glass;
+    ASSERT_TRUE(covered);
+    EXPECT_EQ(covered->thickness, 0.17);
+    EXPECT_EQ(covered->glass.name, "N-BK7");
+    EXPECT_FALSE(covered->distance);
+    EXPECT_EQ(with("[cover_glass]\nthickness_mm = 0.1\nglass = \"fused silica\"\ndistance_mm = 1\n")
+                  .cover_glass->distance,
+              1);
+}
+
+TEST(Configuration, LensesStopsAndPlacementsAreRead) {
+    const auto ideal = described("prescription = \"10x_0.28\"", "kind = \"ideal\"\nfocal_length_mm = 8\n"
+                                                               "numerical_aperture = 1.2\nimmersion = \"water\"\n");
+    ASSERT_EQ(ideal.objective.surfaces.size(), 2u);
+    EXPECT_EQ(ideal.objective.surfaces[0].ideal_power, 0.125);
+    EXPECT_EQ(ideal.objective.surfaces[0].thickness, 8);
+    EXPECT_EQ(ideal.objective.surfaces[1].semi_diameter, 8 * 1.2);
+    EXPECT_EQ(ideal.objective.surfaces[1].role, optics::PrescribedSurface::Role::aperture_stop);
+    ASSERT_TRUE(ideal.immersion);
+    EXPECT_NEAR(ideal.immersion->index(0.5876), 1.333, 1e-3); // water's, to the digits that need no temperature
+    // Abbe's sine condition: the cone is the one asked for.
+    EXPECT_NEAR(optics::assemble(ideal).first_order.numerical_aperture, 1.2, 1e-3);
+    const auto tube_lens = described("prescription = \"200mm\"", "kind = \"ideal\"\nfocal_length_mm = 160\n");
+    ASSERT_EQ(tube_lens.tube_lens.surfaces.size(), 1u);
+    EXPECT_NEAR(optics::assemble(tube_lens).first_order.efl_tube_lens, 160, 1e-12);
+    EXPECT_EQ(described("field_stop_radius_mm = 0.2", "aperture_radius_mm = 0.5\nobjective_distance_mm = 130")
+                  .illumination_aperture_radius,
+              0.5);
+    const auto stopped = described("\"10x_0.28\"", "\"10x_0.28\"\naperture_stop_radius_mm = 2");
+    EXPECT_EQ(stopped.aperture_stop_radius, 2);
+    const std::string keys = "\ndecentre_x_mm = 0.1\ndecentre_y_mm = -0.2\ntilt_x_deg = 30\ntilt_y_deg = -30\n"
+                             "tilt_z_deg = 90\ntilt_first = true\n";
+    const auto expect_placement = [](const optics::Placement& placement) {
+        EXPECT_EQ(placement.change.decentre_x, 0.1);
+        EXPECT_EQ(placement.change.decentre_y, -0.2);
+        EXPECT_NEAR(std::sin(placement.change.tilt_x), 0.5, 1e-15);
+        EXPECT_NEAR(std::sin(placement.change.tilt_y), -0.5, 1e-15);
+        EXPECT_NEAR(std::sin(placement.change.tilt_z), 1, 1e-15);
+        EXPECT_TRUE(placement.change.tilt_first);
+        EXPECT_FALSE(placement.global);
+    };
+    expect_placement(described("\"10x_0.28\"", "\"10x_0.28\"" + keys).objective_placement);
+    expect_placement(described("\"200mm\"", "\"200mm\"" + keys).tube_lens_placement);
+    expect_placement(described("pixels = 8", "pixels = 8" + keys).detector_placement);
+    const auto global = described("pixels = 8", "pixels = 8\nglobal_mm = [1, -2, 333.25]").detector_placement.global;
+    ASSERT_TRUE(global);
+    EXPECT_EQ(*global, glm::dvec3(1, -2, 333.25));
+}
+
+TEST(Configuration, IdentityFollowsTheContentOfAGlassByName) {
+    const auto text = replaced(small_configuration, "[objective]\n",
+                               "[cover_glass]\nthickness_mm = 0.17\nglass = \"mine\"\n[objective]\n");
+    const auto load_with = [&](const std::string& index) {
+        const auto folder = fresh_folder("glass_by_name");
+        write_file(folder / "a.agf", "NM MINE 5\nCD " + index + "\nLD 0.4 0.7\n");
+        write_file(folder / "c.toml", "glass_catalogs = [\"a.agf\"]\n" + text);
+        return load_configuration(folder / "c.toml").identity;
+    };
+    EXPECT_EQ(load_with("1.5"), load_with("1.5"));
+    EXPECT_NE(load_with("1.5"), load_with("1.6"));
+}
+
+TEST(Configuration, ParsedTextIsReadLikeAFile) {
+    const auto folder = fresh_folder("parsed");
+    write_file(folder / "c.toml", small_configuration);
+    const auto parsed = read_configuration(TomlTable::parse(small_configuration, folder / "c.toml"));
+    EXPECT_EQ(parsed.canonical, load_configuration(folder / "c.toml").canonical);
+    EXPECT_EQ(parsed.output_directory, folder / "out");
 }
 
 TEST(Configuration, CommandsThatNeedNoSpecimenDoWithoutIt) {
