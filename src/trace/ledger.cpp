@@ -77,13 +77,13 @@ Ledger Accounts::ledger(std::span<const std::uint64_t> counts, std::uint64_t ray
     Ledger ledger;
     ledger.emitted = flux_;
     const auto add = [&](std::string name, double share, std::uint64_t count) {
-        ledger.entries.emplace_back(std::move(name), per_ray * share * static_cast<double>(count), count);
+        ledger.entries.push_back({std::move(name), per_ray * share * static_cast<double>(count), count});
     };
     const auto add_slot = [&](std::size_t slot) {
         add(slots_[slot].name, left_[slots_[slot].splitter_passes], counts[slot]);
     };
     add_slot(PATH_DETECTED);
-    ledger.entries.emplace_back(std::string("not aimed at"), flux_ * (1.0 - aimed_), 0u);
+    ledger.entries.push_back({"not aimed at", flux_ * (1.0 - aimed_), 0});
     // The splitter takes its share of every ray that passes it, known from the fates beyond.
     std::array<std::uint64_t, 2> passed = {0, 0};
     for (std::size_t slot = 0; slot < slots_.size(); ++slot) {
