@@ -1,6 +1,7 @@
 #include "optics/prescription_writer.hpp"
 
 #include "core/units.hpp"
+#include "optics/ideal_lens.hpp"
 #include "optics/zmx.hpp"
 #include "parts.hpp"
 
@@ -45,6 +46,7 @@ void expect_same(const Prescription& a, const Prescription& b) {
         expect_same(one.thickness, other.thickness);
         expect_same(one.medium_after, other.medium_after);
         EXPECT_EQ(one.semi_diameter, other.semi_diameter);
+        EXPECT_EQ(one.ideal_power, other.ideal_power);
         EXPECT_EQ(one.role, other.role);
         ASSERT_EQ(one.breaks.size(), other.breaks.size());
         for (std::size_t j = 0; j < one.breaks.size(); ++j) {
@@ -121,6 +123,21 @@ TEST(PrescriptionWriter, AnyNumbersReadBackToTheSameBits) {
     lens.surfaces[3].role = PrescribedSurface::Role::aperture_stop;
     lens.surfaces[7].role = PrescribedSurface::Role::field_stop;
     expect_same(read_back(lens), lens);
+}
+
+// Every power that an ideal lens of a focal length has.
+TEST(PrescriptionWriter, IdealLensesReadBackToTheSameBits) {
+    std::mt19937_64 random(20261122);
+    std::uniform_real_distribution<double> focal_length(-300, 300);
+    for (int i = 0; i < 200; ++i) {
+        auto lens = ideal_objective(focal_length(random), 0.25);
+        lens.source = lens.licence = "none";
+        lens.surfaces[1].semi_diameter = lens.surfaces[0].thickness = std::abs(lens.surfaces[0].thickness);
+        expect_same(read_back(lens), lens);
+    }
+    auto lens = ideal_lens(200);
+    lens.source = lens.licence = "none";
+    EXPECT_THAT(prescription_text(lens), HasSubstr("ideal_focal_length_mm = 200\n"));
 }
 
 TEST(PrescriptionWriter, WritesWhatAPersonWould) {
