@@ -273,6 +273,7 @@ ImageQuality image_quality(const InstrumentDescription& description, const Instr
     double sine_square = 0;
     double height_square = 0;
     glm::dvec2 beam_centre(0);
+    glm::dvec2 cone_centre(0); // off the normal of a tilted detector
     for (std::size_t azimuth = 0; azimuth < on_axis.radii.size(); ++azimuth) {
         const Ray rim = ray_from(imaging, {0, 0}, 0, on_axis.cosines(azimuth, on_axis.radii[azimuth]));
         const glm::dvec3 direction = trace_through(train, rim, 0).ray.direction;
@@ -280,8 +281,9 @@ ImageQuality image_quality(const InstrumentDescription& description, const Instr
         sine_square += (direction.x * direction.x + direction.y * direction.y) / rim_rays;
         height_square += (behind.x * behind.x + behind.y * behind.y) / rim_rays;
         beam_centre += glm::dvec2(behind.x, behind.y) / rim_rays;
+        cone_centre += glm::dvec2(direction.x, direction.y) / rim_rays;
     }
-    quality.image_aperture = std::sqrt(sine_square);
+    quality.image_aperture = std::sqrt(sine_square - glm::dot(cone_centre, cone_centre));
     quality.beam_radius = std::sqrt(height_square - glm::dot(beam_centre, beam_centre));
     quality.f_number = 0.5 / quality.image_aperture;
 

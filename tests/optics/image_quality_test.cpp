@@ -341,5 +341,16 @@ TEST(ImageQuality, OfADecentredTubeLens) {
     EXPECT_NEAR(glm::length(decentred.corner.position), glm::length(straight.corner.position), 1e-12);
 }
 
+// The cone is the same; seen askew, one of its diameters shrinks by the tilt's cosine.
+TEST(ImageQuality, OfATiltedDetector) {
+    auto description = test::microscope();
+    const double straight = image_quality(description, assemble(description)).image_aperture;
+    const double tilt = 5 * radians_per_degree;
+    description.detector_placement.change.tilt_x = tilt;
+    const double tilted = image_quality(description, assemble(description)).image_aperture;
+    EXPECT_LE(tilted, straight * 1.001);
+    EXPECT_GE(tilted, straight * std::cos(tilt));
+}
+
 } // namespace
 } // namespace vkfv::optics
