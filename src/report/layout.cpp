@@ -525,26 +525,24 @@ class Drawing {
             fmt::format("class=\"detector\" stroke=\"{}\" stroke-width=\"4\"", ink));
     }
 
-    // Behind all the rest, lest it hide the objective.
+    // The band where the plane of drawing cuts it, on both sides, lit where the segment there is.
     void add_ring() {
         const auto& ring = instrument_.constants.ring;
-        for (int segment = 0; segment < ring.segments; ++segment) {
-            std::vector<dvec2> outline;
-            for (const double side : {-1.0, 1.0}) {
-                constexpr int pieces = 16;
-                const double w = side * ring.half_width;
-                const double radius = ring.distance * ring.elevation_cosine - w * ring.elevation_sine;
-                const double height = ring.distance * ring.elevation_sine + w * ring.elevation_cosine;
-                for (int k = 0; k <= pieces; ++k) {
-                    const double share = 0.5 - side * ring.fill * (static_cast<double>(k) / pieces - 0.5);
-                    outline.emplace_back(radius * std::sin(2 * pi * (segment + share) / ring.segments), height);
-                }
-            }
-            for (const dvec2& point : outline) {
+        const double depth = 0.012 * extent_; // of its body, behind the band
+        for (const double side : {-1.0, 1.0}) {
+            const double turns = side > 0 ? 0.25 : 0.75;
+            const int segment = static_cast<int>(turns * ring.segments);
+            const bool on = (ring.switched_on >> segment & 1u) != 0;
+            const dvec2 outward(side * ring.elevation_cosine, ring.elevation_sine);
+            const dvec2 across(-side * ring.elevation_sine, ring.elevation_cosine);
+            const dvec2 middle = ring.distance * outward;
+            const dvec2 inner = middle + ring.half_width * across;
+            const dvec2 outer = middle - ring.half_width * across;
+            add({inner, outer, outer + depth * outward, inner + depth * outward}, true,
+                on ? lit_look : "fill=\"#e4e4e4\" stroke=\"#8a8a8a\" stroke-width=\"0.8\"");
+            for (const dvec2& point : shapes_.back().points) {
                 source_.add(point);
             }
-            const bool on = (ring.switched_on >> segment & 1u) != 0;
-            add(std::move(outline), true, on ? lit_look : "fill=\"#e4e4e4\" stroke=\"#8a8a8a\" stroke-width=\"0.8\"");
         }
     }
 

@@ -234,7 +234,7 @@ void add_disc(std::vector<RoomRay>& rays, const optics::Instrument& instrument) 
 void add_ring(std::vector<RoomRay>& rays, const optics::Instrument& instrument) {
     RoomTracer tracer(instrument.elements, illumination_way(instrument.elements, true));
     const auto& ring = instrument.constants.ring;
-    const double index = instrument.constants.illumination_count > 0 ? 1.0 : instrument.constants.specimen_index;
+    const double index = instrument.constants.specimen_index;
     for (const double side : {1.0, -1.0}) {
         // The lit point of the band nearest to the plane of drawing on this side.
         double nearest = 0.5 * pi;
