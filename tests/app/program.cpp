@@ -1,5 +1,8 @@
 #include "app/program.hpp"
 
+#include <fmt/format.h>
+
+#include <algorithm>
 #include <cstdlib>
 #include <fstream>
 #include <iterator>
@@ -95,7 +98,11 @@ ProgramResult run_program(const std::vector<std::string>& arguments, const std::
 }
 
 std::filesystem::path fresh_folder(const std::string& name) {
-    const auto folder = std::filesystem::path(testing::TempDir()) / "vkfv_app_test" / name;
+    // Tests run side by side: each has folders of its own.
+    const auto* test = testing::UnitTest::GetInstance()->current_test_info();
+    std::string owner = fmt::format("{}.{}", test->test_suite_name(), test->name());
+    std::ranges::replace(owner, '/', '_');
+    const auto folder = std::filesystem::path(testing::TempDir()) / "vkfv_app_test" / owner / name;
     std::filesystem::remove_all(folder);
     std::filesystem::create_directories(folder);
     return folder;

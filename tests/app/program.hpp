@@ -18,7 +18,7 @@ struct ProgramResult {
 ProgramResult run_program(const std::vector<std::string>& arguments, const std::filesystem::path& folder,
                           const std::map<std::string, std::string>& environment = {});
 
-// An empty folder of this name below the test's temporary folder.
+// An empty folder of this name below the running test's own temporary folder.
 std::filesystem::path fresh_folder(const std::string& name);
 
 void write_file(const std::filesystem::path& path, const std::string& content);
