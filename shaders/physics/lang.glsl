@@ -4,8 +4,8 @@
 // real(0.5); functions marked VKFV_FUNCTION that return structs (no `out`, no swizzles, no default arguments);
 // structs built by assigning fields; GLM's names for GLSL's functions. What differs between host and device
 // (where surfaces are kept, how a specimen is hit) is reached through functions that take VKFV_SCENE first:
-// nothing on the device, the scene object on the host (VKFV_SCENE_ALONE where no other argument follows). These files include nothing and carry no include guards:
-// physics.hpp compiles them once in double and once in float.
+// nothing on the device, the scene object on the host (VKFV_SCENE_ALONE where no other argument follows). These
+// files include nothing and carry no include guards: physics.hpp compiles them once in double and once in float.
 #define real float
 #define real2 vec2
 #define real3 vec3

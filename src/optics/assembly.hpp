@@ -1,5 +1,5 @@
-// How an instrument is put together: the parts that its description names, placed one after another, and what is known
-// of them so far. Only instrument.cpp and the stages' own files include this.
+// How an instrument is put together: the parts that its description names, placed one after another, and what
+// is known of them so far. Only instrument.cpp and the stages' own files include this.
 #pragma once
 
 #include "optics/apertures.hpp"
@@ -29,18 +29,19 @@ physics::f64::Surface transfer_between(const Pose& from, const PlacedSurface& to
 Pose downward(double height); // the frame of light that comes down: half a turn about x
 Pose placed_at(const Placement& placement, const Pose& nominal);
 
-// Poses are in the specimen's frame with its origin in the paraxial object plane (mm), unfolded: in the straight space that
-// mirrors show. Each stage fills in what stands below it; `instrument` grows with all of them.
+// Poses are in the specimen's frame with its origin in the paraxial object plane (mm), unfolded: in the
+// straight space that mirrors show. Each stage fills in what stands below it; `instrument` grows with all of
+// them.
 struct Assembly {
     explicit Assembly(const InstrumentDescription& description);
 
-    void lay_out();             // 1: focal lengths, and where the parts stand along the axis
-    void assemble_imaging();    // 2: the train from specimen to detector
-    void measure_imaging();     //    and what it does, by tracing
-    void assemble_ring();       // 3: the train from the ring light to the specimen
+    void lay_out();              // 1: focal lengths, and where the parts stand along the axis
+    void assemble_imaging();     // 2: the train from specimen to detector
+    void measure_imaging();      //    and what it does, by tracing
+    void assemble_ring();        // 3: the train from the ring light to the specimen
     void assemble_illuminator(); //   or from the disc
-    void reduce();              // 4: the constants of the trace
-    void furnish();             // 5: the elements as they stand in the room, folded
+    void reduce();               // 4: the constants of the trace
+    void furnish();              // 5: the elements as they stand in the room, folded
 
     // A plate of glass between two planes; `medium` on both sides.
     Part plate(const Pose& first, double thickness, const Medium& glass, const Medium& medium,
@@ -58,7 +59,7 @@ struct Assembly {
         PlacedSurface mirror; // unfolded
     };
     void add_fold(const FoldMirror& fold, const Pose& axis, std::vector<Inserted>& into);
-    std::string key_of(const FoldMirror& fold) const; // of its distance, for messages
+    std::string key_of(const FoldMirror& fold) const;               // of its distance, for messages
     std::vector<const Fold*> folds_of(FoldMirror::Path path) const; // by distance
 
     const InstrumentDescription& description;
@@ -70,25 +71,25 @@ struct Assembly {
     physics::f64::Instrument& constants = instrument.constants;
 
     // 1
-    Prescription objective_lens;    // with its immersion and stop
-    SpectralIndex object_index;     // of the medium over the specimen
-    Part straight_objective;        // without placements, its first vertex at the origin
+    Prescription objective_lens; // with its immersion and stop
+    SpectralIndex object_index;  // of the medium over the specimen
+    Part straight_objective;     // without placements, its first vertex at the origin
     Part straight_tube_lens;
-    Part cover;                     // glass
-    double field_half_side = 0;     // of the detector, in the object
+    Part cover;                 // glass
+    double field_half_side = 0; // of the detector, in the object
     double field_half_diagonal = 0;
-    double detector_distance = 0;   // from the tube lens' last vertex
-    double objective_front = 0;     // heights of its vertices
+    double detector_distance = 0; // from the tube lens' last vertex
+    double objective_front = 0;   // heights of its vertices
     double back = 0;
-    Pose front;                     // frame in which the imaging train is entered
+    Pose front; // frame in which the imaging train is entered
     // 2
     Part objective;
     Part tube_lens;
-    double splitter_distance = 0;   // behind the objective
+    double splitter_distance = 0; // behind the objective
     double splitter_height = 0;
     Pose splitter_pose;
-    double half_size = 0;           // of the cube
-    Part splitter_imaging;          // its surfaces in the imaging train
+    double half_size = 0;  // of the cube
+    Part splitter_imaging; // its surfaces in the imaging train
     std::vector<Fold> folds;
     Pose detector_pose;
     Part imaging_train;

@@ -60,21 +60,23 @@ void Assembly::assemble_ring() {
                            constants.ring.aim_distance),
                "Move the ring farther away, or the cover glass nearer to the specimen.");
     }
-    // From any point of the band the lit circle lies within this cone about the band's normal: its middle is off the
-    // normal by the half width, and no point of the circle is nearer than this.
+    // From any point of the band the lit circle lies within this cone about the band's normal: its middle is
+    // off the normal by the half width, and no point of the circle is nearer than this.
     constexpr double margin = 1.5; // around the detector's field
     const double lit_radius = ring.lit_radius.value_or(margin * field_half_diagonal);
-    const double reach = lit_radius + 0.5 * ring.width + (cover.empty() ? 0 : description.cover_glass->thickness);
-    aimed_sine = ring.distance > lit_radius ? std::min(1.0, reach / std::hypot(reach, ring.distance - lit_radius)) : 1;
+    const double reach =
+        lit_radius + 0.5 * ring.width + (cover.empty() ? 0 : description.cover_glass->thickness);
+    aimed_sine =
+        ring.distance > lit_radius ? std::min(1.0, reach / std::hypot(reach, ring.distance - lit_radius)) : 1;
     instrument.source_pose = downward(0);
     instrument.features |= physics::f64::FEATURE_RING;
 }
 
 void Assembly::assemble_illuminator() {
     require_surfaces(description.illumination, "illumination.prescription");
-    const Prescription prescribed = with_stop(description.illumination, Role::field_stop,
-                                               description.field_stop_radius,
-                                               "illumination.field_stop_radius_mm");
+    const Prescription prescribed =
+        with_stop(description.illumination, Role::field_stop, description.field_stop_radius,
+                  "illumination.field_stop_radius_mm");
     Pose end;
     illuminator = place_prescription(prescribed, spectrum, description.interfaces, Pose{}, end);
     require_air(illuminator.front().surface.index_before, prescribed, "illumination.prescription");
@@ -97,7 +99,8 @@ void Assembly::assemble_illuminator() {
     const RayTransfer back_to_stop = transfer_to_surface(surfaces_of(straight_backward), stop_backward);
     const EntrancePupil back_pupil = entrance_pupil(back_to_stop);
     const double stop_radius = std::sqrt(objective[*aperture_stop].surface.semi_diameter_squared);
-    // The stop's image has 1 / a its size; a = 0 has none. What stands on the vertex is no further away than 0.
+    // The stop's image has 1 / a its size; a = 0 has none. What stands on the vertex is no further away than
+    // 0.
     const double back_pupil_distance = back_to_stop.b == 0 ? 0 : 1 / back_pupil.curvature;
     const double back_pupil_radius = stop_radius / std::abs(back_to_stop.a);
     // The cube's glass makes the way longer.
@@ -134,23 +137,25 @@ void Assembly::assemble_illuminator() {
 
     const Pose illuminator_last = downward(back + distance);
     move(illuminator, end, illuminator_last);
-    const Pose entry = {illuminator_last.origin - illuminator_last.axes * (glm::transpose(end.axes) * end.origin),
+    const Pose entry = {illuminator_last.origin -
+                            illuminator_last.axes * (glm::transpose(end.axes) * end.origin),
                         illuminator_last.axes * glm::transpose(end.axes)};
     std::vector<Inserted> between;
     if (splitter.kind == BeamSplitter::Kind::cube) {
-        between.push_back({distance - splitter_distance,
-                           plate(downward(splitter_height + half_size), splitter.size, splitter.glass,
-                                        Medium::air(), splitter.semi_diameter.value_or(half_size),
-                                        "beam splitter")});
+        between.push_back(
+            {distance - splitter_distance,
+             plate(downward(splitter_height + half_size), splitter.size, splitter.glass, Medium::air(),
+                   splitter.semi_diameter.value_or(half_size), "beam splitter")});
     }
     const double splitter_from_illuminator = distance - splitter_distance;
     for (const FoldMirror& fold : description.fold_mirrors) {
         if (fold.path == FoldMirror::Path::illumination) {
             if (!(fold.distance >= 0 && fold.distance < splitter_from_illuminator)) {
-                refuse(key_of(fold), fmt::format("{}", fold.distance),
-                       fmt::format("a place between the illuminator and the beam splitter {:.6g} mm behind it",
-                                   splitter_from_illuminator),
-                       "Move the fold mirror.");
+                refuse(
+                    key_of(fold), fmt::format("{}", fold.distance),
+                    fmt::format("a place between the illuminator and the beam splitter {:.6g} mm behind it",
+                                splitter_from_illuminator),
+                    "Move the fold mirror.");
             }
             add_fold(fold, illuminator_last.along_z(fold.distance), between);
         }
@@ -194,20 +199,20 @@ void Assembly::assemble_illuminator() {
         const double lit_radius =
             std::abs(magnification) * std::sqrt(illuminator[*field_stop].surface.semi_diameter_squared);
         if (lit_radius < field_half_diagonal) {
-            instrument.warnings.push_back(fmt::format(
-                "The field stop's image, {:.4g} mm in radius on the specimen, does not cover the "
-                "detector's field, {:.4g} mm to its corners.",
-                lit_radius, field_half_diagonal));
+            instrument.warnings.push_back(
+                fmt::format("The field stop's image, {:.4g} mm in radius on the specimen, does not cover the "
+                            "detector's field, {:.4g} mm to its corners.",
+                            lit_radius, field_half_diagonal));
         }
     }
     // Without a field stop the last surface limits the field as well as any.
-    const bool straight = std::ranges::none_of(illumination_surfaces, [](const Surface& surface) {
-        return is_displaced(surface);
-    });
+    const bool straight = std::ranges::none_of(illumination_surfaces,
+                                               [](const Surface& surface) { return is_displaced(surface); });
     const auto stop_transfer =
         transfer_to_surface(illumination_surfaces, field_stop.value_or(illuminator.size() - 1));
-    aimed_sine = emission_sine(illumination_surfaces, straight, description.source_radius, *source_distance,
-                         free_space(*source_distance + illumination_surfaces.front().distance).then(stop_transfer));
+    aimed_sine = emission_sine(
+        illumination_surfaces, straight, description.source_radius, *source_distance,
+        free_space(*source_distance + illumination_surfaces.front().distance).then(stop_transfer));
     if (!(aimed_sine > 0)) {
         refuse("illumination.prescription", prescribed.name,
                "an illuminator whose light passes the objective", "Check distances and semi-diameters.",

@@ -15,10 +15,10 @@ using physics::f64::Surface;
 using Role = PrescribedSurface::Role;
 
 void Assembly::lay_out() {
-    // Paraxially: the object in the front focal plane of the objective behind its cover glass, the detector in the tube
-    // lens' back focal plane.
-    objective_lens = with_stop(description.objective, Role::aperture_stop,
-                                             description.aperture_stop_radius, "objective.aperture_stop_radius_mm");
+    // Paraxially: the object in the front focal plane of the objective behind its cover glass, the detector
+    // in the tube lens' back focal plane.
+    objective_lens = with_stop(description.objective, Role::aperture_stop, description.aperture_stop_radius,
+                               "objective.aperture_stop_radius_mm");
     if (description.immersion) {
         objective_lens.medium_before = *description.immersion;
     }
@@ -26,15 +26,17 @@ void Assembly::lay_out() {
     object_index = spectral_index(object_medium, spectrum);
     first_order.object_index = object_index.centre;
     Pose end;
-    straight_objective =
-        place_prescription(objective_lens, spectrum, description.interfaces, Pose{}, end);
+    straight_objective = place_prescription(objective_lens, spectrum, description.interfaces, Pose{}, end);
     const double objective_length = end.origin.z;
-    require_air(straight_objective.back().surface.index_after, description.objective, "objective.prescription");
+    require_air(straight_objective.back().surface.index_after, description.objective,
+                "objective.prescription");
     const RayTransfer objective_transfer = transfer_of(straight_objective);
     straight_tube_lens =
         place_prescription(description.tube_lens, spectrum, description.interfaces, Pose{}, end);
-    require_air(straight_tube_lens.front().surface.index_before, description.tube_lens, "tube_lens.prescription");
-    require_air(straight_tube_lens.back().surface.index_after, description.tube_lens, "tube_lens.prescription");
+    require_air(straight_tube_lens.front().surface.index_before, description.tube_lens,
+                "tube_lens.prescription");
+    require_air(straight_tube_lens.back().surface.index_after, description.tube_lens,
+                "tube_lens.prescription");
     const RayTransfer tube_lens_transfer = transfer_of(straight_tube_lens);
     first_order.efl_objective = focal_length(objective_transfer);
     first_order.efl_tube_lens = focal_length(tube_lens_transfer);
@@ -73,13 +75,15 @@ void Assembly::lay_out() {
         const double free_way = free_distance - glass.thickness * object_index.centre / index;
         const double height = glass.distance.value_or(0.5 * free_way);
         if (!(height > 0 && height < free_way)) {
-            refuse("cover_glass.thickness_mm", fmt::format("{} mm, {:.6g} mm over the focus", glass.thickness, height),
-                   fmt::format("a plate between the focus and the objective, which is {:.6g} mm away without it",
-                               free_distance),
-                   "Choose a thinner plate, or another distance_mm.");
+            refuse(
+                "cover_glass.thickness_mm",
+                fmt::format("{} mm, {:.6g} mm over the focus", glass.thickness, height),
+                fmt::format("a plate between the focus and the objective, which is {:.6g} mm away without it",
+                            free_distance),
+                "Choose a thinner plate, or another distance_mm.");
         }
         cover = plate(Pose{}.along_z(height), glass.thickness, glass.glass, object_medium, std::nullopt,
-                             "cover glass");
+                      "cover glass");
         objective_front = free_way + glass.thickness;
         first_order.working_distance = height;
     }
@@ -102,25 +106,25 @@ void Assembly::assemble_imaging() {
     int splitter_surfaces_before = 0;
     if (splitter.kind == BeamSplitter::Kind::plate) {
         splitter_imaging = plate(splitter_pose, splitter.size, splitter.glass, Medium::air(),
-                                        splitter.semi_diameter, "beam splitter");
+                                 splitter.semi_diameter, "beam splitter");
         // What its coating reflects is the splitter's reflectance.
         splitter_imaging.front().surface.flags &=
             ~(physics::f64::SURFACE_FRESNEL | physics::f64::SURFACE_LAYER);
         splitter_surfaces_before = 1;
     } else if (splitter.kind == BeamSplitter::Kind::cube) {
-        splitter_imaging =
-            plate(Pose{}.along_z(splitter_height - half_size), splitter.size, splitter.glass, Medium::air(),
-                         splitter.semi_diameter.value_or(half_size), "beam splitter");
+        splitter_imaging = plate(Pose{}.along_z(splitter_height - half_size), splitter.size, splitter.glass,
+                                 Medium::air(), splitter.semi_diameter.value_or(half_size), "beam splitter");
         splitter_surfaces_before = 1;
     }
     std::vector<Inserted> inserted = {{splitter_distance, splitter_imaging}};
     for (const FoldMirror& fold : description.fold_mirrors) {
         if (fold.path == FoldMirror::Path::imaging) {
             if (!(fold.distance > splitter_distance)) {
-                refuse(key_of(fold), fmt::format("{}", fold.distance),
-                       fmt::format("a place behind the beam splitter, which is {:.6g} mm behind the objective",
-                                   splitter_distance),
-                       "Move the fold mirror or the beam splitter.");
+                refuse(
+                    key_of(fold), fmt::format("{}", fold.distance),
+                    fmt::format("a place behind the beam splitter, which is {:.6g} mm behind the objective",
+                                splitter_distance),
+                    "Move the fold mirror or the beam splitter.");
             }
             add_fold(fold, Pose{}.along_z(back + fold.distance), inserted);
         }
@@ -139,20 +143,19 @@ void Assembly::assemble_imaging() {
         append(imaging_train, part.surfaces);
     }
     const Pose tube_lens_nominal = Pose{}.along_z(back + description.objective_to_tube_lens);
-    tube_lens =
-        place_prescription(description.tube_lens, spectrum, description.interfaces,
-                           placed_at(description.tube_lens_placement, tube_lens_nominal), end);
+    tube_lens = place_prescription(description.tube_lens, spectrum, description.interfaces,
+                                   placed_at(description.tube_lens_placement, tube_lens_nominal), end);
     append(imaging_train, tube_lens);
     const double tube_lens_length = straight_tube_lens.back().pose.origin.z;
-    detector_pose =
-        placed_at(description.detector_placement, tube_lens_nominal.along_z(tube_lens_length + detector_distance));
+    detector_pose = placed_at(description.detector_placement,
+                              tube_lens_nominal.along_z(tube_lens_length + detector_distance));
     const PlacedSurface detector_plane = dummy_plane(air, detector_pose, "detector's plane");
     if (is_displaced(transfer_between(imaging_train.back().pose, detector_plane))) {
         imaging_train.push_back(detector_plane);
     }
     link(imaging_train, front);
-    constants.detector_distance = glm::dot(detector_pose.origin - imaging_train.back().pose.origin,
-                                           imaging_train.back().pose.axes[2]);
+    constants.detector_distance =
+        glm::dot(detector_pose.origin - imaging_train.back().pose.origin, imaging_train.back().pose.axes[2]);
 
     aperture_stop = surface_with_role(objective, Role::aperture_stop);
     if (!aperture_stop || (objective[*aperture_stop].surface.flags & physics::f64::SURFACE_CLIPPED) == 0) {
@@ -165,9 +168,8 @@ void Assembly::assemble_imaging() {
     const EntrancePupil pupil =
         entrance_pupil(free_space(first_order.working_distance, object_index.centre)
                            .then(transfer_to_surface(imaging_surfaces, cover.size() + *aperture_stop)));
-    const bool displaced = std::ranges::any_of(imaging_surfaces, [](const Surface& surface) {
-        return is_displaced(surface);
-    });
+    const bool displaced =
+        std::ranges::any_of(imaging_surfaces, [](const Surface& surface) { return is_displaced(surface); });
     imaging = {.train = imaging_surfaces,
                .working_distance = first_order.working_distance,
                .detector_distance = constants.detector_distance,

@@ -11,16 +11,15 @@
 
 namespace vkfv::optics {
 
-
 namespace {
 
 Element make_element(Element::Kind kind, const PlacedSurface& placed, const char* part) {
     Element result;
-    result.kind = (placed.surface.flags & physics::f64::SURFACE_IDEAL_LENS) != 0 ? Element::Kind::ideal_lens
-                  : kind == Element::Kind::surface &&
-                          placed.surface.index_before == placed.surface.index_after
-                      ? Element::Kind::stop
-                      : kind;
+    result.kind =
+        (placed.surface.flags & physics::f64::SURFACE_IDEAL_LENS) != 0 ? Element::Kind::ideal_lens
+        : kind == Element::Kind::surface && placed.surface.index_before == placed.surface.index_after
+            ? Element::Kind::stop
+            : kind;
     result.surface = placed.surface;
     result.pose = placed.pose;
     result.name = placed.name;
@@ -38,7 +37,8 @@ void Assembly::furnish() {
             elements.push_back(make_element(kind, placed, name));
         }
     };
-    // In a mirror's space stands what lies behind it in the light's direction, for the illumination what lies before.
+    // In a mirror's space stands what lies behind it in the light's direction, for the illumination what lies
+    // before.
     const auto fold_back = [&](std::size_t from, std::size_t to, const Pose& mirror) {
         for (std::size_t i = from; i < to; ++i) {
             elements[i].pose = elements[i].pose.mirrored_in(mirror);
@@ -46,7 +46,8 @@ void Assembly::furnish() {
     };
     if (!description.ring) {
         add_part(illuminator, Element::Kind::surface, "illuminator");
-        for (const Fold* fold : folds_of(FoldMirror::Path::illumination)) { // from the illuminator on: each shows all before it
+        for (const Fold* fold :
+             folds_of(FoldMirror::Path::illumination)) { // from the illuminator on: each shows all before it
             fold_back(0, elements.size(), fold->mirror.pose);
             instrument.source_pose = instrument.source_pose.mirrored_in(fold->mirror.pose);
             add_part({fold->mirror}, Element::Kind::mirror, "fold mirror");

@@ -16,7 +16,8 @@ using physics::f64::Surface;
 
 namespace {
 
-// "imaging 3 (10x_0.28 3, aperture stop)": the place in the train, and in the prescription as its file counts.
+// "imaging 3 (10x_0.28 3, aperture stop)": the place in the train, and in the prescription as its file
+// counts.
 void name_surfaces(std::vector<std::string>& names, const char* train, const Part& surfaces) {
     for (std::size_t i = 0; i < surfaces.size(); ++i) {
         names.push_back(fmt::format("{} {} ({})", train, i + 1, surfaces[i].name));
@@ -26,7 +27,7 @@ void name_surfaces(std::vector<std::string>& names, const char* train, const Par
 } // namespace
 
 void refuse(std::string key, std::string found, std::string expected, std::string remedy,
-                         const std::filesystem::path& file) {
+            const std::filesystem::path& file) {
     throw InputError({.where = {.file = file},
                       .key = std::move(key),
                       .found = std::move(found),
@@ -86,7 +87,8 @@ Prescription with_stop(Prescription prescription, PrescribedSurface::Role role, 
 
 void require_surfaces(const Prescription& prescription, const char* key) {
     if (prescription.surfaces.empty()) {
-        refuse(key, prescription.name, "a prescription with surfaces", "Add a [[surface]].", prescription.file);
+        refuse(key, prescription.name, "a prescription with surfaces", "Add a [[surface]].",
+               prescription.file);
     }
 }
 
@@ -98,7 +100,7 @@ void require_air(double index, const Prescription& prescription, const char* key
 }
 
 Part Assembly::plate(const Pose& first, double thickness, const Medium& glass, const Medium& medium,
-           std::optional<double> semi_diameter, const std::string& name) const {
+                     std::optional<double> semi_diameter, const std::string& name) const {
     Prescription prescription;
     prescription.name = name;
     prescription.medium_before = medium;
@@ -112,7 +114,8 @@ Part Assembly::plate(const Pose& first, double thickness, const Medium& glass, c
     return place_prescription(prescription, spectrum, description.interfaces, first, end);
 }
 
-PlacedSurface Assembly::mirror_plane(const Pose& pose, std::optional<double> semi_diameter, std::string name) const {
+PlacedSurface Assembly::mirror_plane(const Pose& pose, std::optional<double> semi_diameter,
+                                     std::string name) const {
     PlacedSurface mirror = dummy_plane(air, pose, std::move(name));
     mirror.surface.flags |= physics::f64::SURFACE_MIRROR;
     mirror.surface.reflectance = 1;

@@ -23,13 +23,16 @@ std::vector<vulkan::Box> boxes_of(const optics::Room& room);
 // Device, buffers and bindings that every use of the trace on a device shares.
 class DeviceScene {
   public:
-    DeviceScene(const optics::Instrument& instrument, const specimen::Specimen& specimen, const TraceOptions& options)
+    DeviceScene(const optics::Instrument& instrument, const specimen::Specimen& specimen,
+                const TraceOptions& options)
         : instrument(instrument), device(vulkan::DeviceOptions{options.device}),
           room(options.nonsequential ? optics::furnish(instrument) : optics::Room{}),
           accounts(options.nonsequential ? Accounts(instrument, room.names) : Accounts(instrument)),
-          traversal(choose_traversal(device.report(), specimen, options.traversal, reason, options.nonsequential)),
-          device_specimen(device, specimen, traversal, boxes_of(room)), host_record(specimen::record(specimen, options.max_bounces)),
-          seed(options.seed), surfaces(device, physics::f32::SURFACE_CAPACITY * sizeof(physics::f32::Surface)),
+          traversal(
+              choose_traversal(device.report(), specimen, options.traversal, reason, options.nonsequential)),
+          device_specimen(device, specimen, traversal, boxes_of(room)),
+          host_record(specimen::record(specimen, options.max_bounces)), seed(options.seed),
+          surfaces(device, physics::f32::SURFACE_CAPACITY * sizeof(physics::f32::Surface)),
           parameters(device, sizeof(Parameters), vulkan::Buffer::Memory::host),
           spectrum(device, physics::f32::SPECTRUM_CAPACITY * sizeof(physics::f32::SpectralBin)) {
         spectrum.write_values(std::span<const physics::f32::SpectralBin>(spectrum_block(instrument)));
@@ -70,7 +73,8 @@ class DeviceScene {
     }
     std::vector<vulkan::BindingDeclaration> declarations(std::initializer_list<std::uint32_t> further) const {
         using enum vulkan::BindingKind;
-        std::vector<vulkan::BindingDeclaration> all = {{0, uniform_buffer}, {1, uniform_buffer}, {14, uniform_buffer}};
+        std::vector<vulkan::BindingDeclaration> all = {
+            {0, uniform_buffer}, {1, uniform_buffer}, {14, uniform_buffer}};
         const auto of_specimen = device_specimen.declarations();
         all.insert(all.end(), of_specimen.begin(), of_specimen.end());
         if (elements) {
