@@ -23,7 +23,6 @@ struct Room {
     Box bounds(std::size_t element) const; // encloses its surface, mount and rim
 };
 
-// Throws InputError for more elements than the device's buffers are made for.
 Room furnish(const Instrument& instrument);
 
 // The scene that physics::trace_nonsequential needs of the elements, on the host: each is tried.
