@@ -2,6 +2,7 @@
 #include "report/layout.hpp"
 
 #include "core/units.hpp"
+#include "optics/parts.hpp"
 #include "report/room_rays.hpp"
 
 #include <glm/glm.hpp>
@@ -20,20 +21,7 @@ namespace {
 
 using optics::InstrumentDescription;
 using report::RoomRay;
-
-InstrumentDescription microscope(const std::string& objective = "10x_0.28") {
-    const std::filesystem::path base = std::filesystem::path(VKFV_SOURCE_DIR) / "assets" / "stacks";
-    InstrumentDescription description;
-    description.source_radius = 0.96;
-    description.spectrum = optics::Spectrum::line(0.587562);
-    description.illumination = optics::load_prescription("koehler", "illuminators", base);
-    description.field_stop_radius = 0.85;
-    description.objective = optics::load_prescription(objective, "objectives", base);
-    description.tube_lens = optics::load_prescription("200mm", "tube_lenses", base);
-    description.detector_size = 1.3;
-    description.detector_pixels = 64;
-    return description;
-}
+using test::microscope;
 
 struct Case {
     const char* name;
