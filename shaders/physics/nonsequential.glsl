@@ -197,8 +197,8 @@ VKFV_FUNCTION Passage pass_element(Element element, int index, ElementMeeting me
     return passage;
 }
 
-// Interactions with elements that a path may have. A path of the sequential model has about fifty; what is left after twice
-// that in an uncoated instrument is below 1e-6 of the light.
+// Turns, at elements or the specimen, that a path may have: about twice those of the sequential model's longest. What
+// reaches the limit is counted in the ledger.
 const int MOST_INTERACTIONS = 128;
 // Blocks of random numbers: one an interaction from 1 on, and from here on those of the scatter events.
 const uint SCATTER_FIRST_BLOCK = 256u;
