@@ -1,6 +1,6 @@
 #include "app/commands.hpp"
 
-#include "trace/device_tracer.hpp"
+#include "trace/stage_times.hpp"
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>

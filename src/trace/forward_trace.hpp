@@ -1,0 +1,24 @@
+// The forward trace: source to specimen to the pupil's gate, and on from there, as two kernels.
+#pragma once
+
+#include "trace/path_trace.hpp"
+
+namespace vkfv::trace {
+
+class ForwardTrace final : public PathTrace {
+  public:
+    // stop_illumination, stop_imaging: for timing alone, where the kernels end early; 0: nowhere.
+    ForwardTrace(const DeviceScene& scene, std::uint32_t batch, std::uint32_t stop_illumination = 0,
+                 std::uint32_t stop_imaging = 0);
+
+    void record(vulkan::Commands& commands, std::uint64_t first, std::uint32_t count,
+                bool timed = false) const override;
+
+  private:
+    vulkan::Buffer survivors_;
+    vulkan::Buffer survivor_count_;
+    vulkan::Kernel illumination_;
+    vulkan::Kernel imaging_;
+};
+
+} // namespace vkfv::trace

@@ -1,0 +1,65 @@
+// One way of tracing paths on a device, batch by batch, and what it counts.
+#pragma once
+
+#include "trace/device_scene.hpp"
+
+#include <cstdint>
+#include <vector>
+
+namespace vkfv::trace {
+
+inline constexpr std::uint32_t workgroup_size = 128; // of the forward kernels
+inline constexpr std::uint32_t rays_per_invocation = 16;
+
+// Push constants of the kernels of the trace.
+struct Batch {
+    std::uint32_t first_low;
+    std::uint32_t first_high;
+    std::uint32_t count;
+};
+
+inline Batch make_batch(std::uint64_t first, std::uint32_t count) {
+    return {static_cast<std::uint32_t>(first), static_cast<std::uint32_t>(first >> 32), count};
+}
+
+inline constexpr std::uint32_t paths_per_group = workgroup_size * rays_per_invocation;
+
+class PathTrace {
+  public:
+    PathTrace(const DeviceScene& scene, std::uint32_t batch)
+        : scene_(scene), batch_(batch), pixels_(scene.device, pixel_count() * sizeof(std::uint64_t)),
+          fates_(scene.device, scene.accounts.slots() * sizeof(std::uint64_t)) {}
+    virtual ~PathTrace() = default;
+
+    std::size_t pixel_count() const {
+        const auto side = static_cast<std::size_t>(scene_.instrument.constants.detector_pixels);
+        return side * side;
+    }
+
+    void clear(vulkan::Commands& commands) const {
+        commands.fill_zero(pixels_);
+        commands.fill_zero(fates_);
+        commands.barrier();
+    }
+
+    // Paths first ... first + count - 1, count at most the batch; timestamps around and between its stages if wanted.
+    virtual void record(vulkan::Commands& commands, std::uint64_t first, std::uint32_t count,
+                        bool timed = false) const = 0;
+
+    std::vector<std::uint64_t> pixels() const { return pixels_.read_values<std::uint64_t>(pixel_count()); }
+    std::vector<std::uint64_t> fates() const {
+        return fates_.read_values<std::uint64_t>(scene_.accounts.slots());
+    }
+    std::uint32_t batch() const { return batch_; }
+
+  protected:
+    const DeviceScene& scene_;
+    std::uint32_t batch_;
+    vulkan::Buffer pixels_;
+    vulkan::Buffer fates_;
+};
+
+// Paths in flight at once: software devices like dispatches of about 100 ms, a GPU wants enough rays to fill it.
+std::uint32_t suitable_batch(const DeviceScene& scene, std::uint64_t asked, std::uint64_t rays);
+
+} // namespace vkfv::trace
