@@ -1,0 +1,85 @@
+#version 460
+#extension GL_GOOGLE_include_directive : require
+// Rays made on the device, met with the specimen and counted: what trace/hit_times.hpp times.
+layout(local_size_x = 128) in;
+
+#include "device/kernel.glsl"
+
+const uint HITS_ARRIVE = 0u; // from the top plane down
+const uint HITS_RECORD = 1u; // the same, and where they met is kept
+const uint HITS_LEAVE = 2u;  // from there, over the hemisphere of the normal as a Lambertian scatterer sends light
+
+layout(constant_id = 1) const uint way = HITS_ARRIVE;
+
+struct Start {
+    real3 position;
+    real3 normal;
+};
+
+layout(set = 0, binding = 6, scalar) buffer Count { uint64_t met; };
+layout(set = 0, binding = 7, scalar) buffer Starts { Start starts[]; };
+
+layout(push_constant, scalar) uniform Batch {
+    uint count;
+    uint seed;
+    real aperture;    // sine of the cone's half-angle
+    uint strata_bits; // points lie in 2^strata_bits strata a side, in Morton order; 0: anywhere
+};
+
+uint even_bits(uint word) {
+    uint bits = word & 0x55555555u;
+    bits = (bits | (bits >> 1)) & 0x33333333u;
+    bits = (bits | (bits >> 2)) & 0x0F0F0F0Fu;
+    bits = (bits | (bits >> 4)) & 0x00FF00FFu;
+    return (bits | (bits >> 8)) & 0x0000FFFFu;
+}
+
+shared uint group_met;
+
+void main() {
+    if (gl_LocalInvocationIndex == 0u) {
+        group_met = 0u;
+    }
+    barrier();
+    uint stride = gl_NumWorkGroups.x * gl_WorkGroupSize.x;
+    uint own = 0u;
+    for (uint index = gl_GlobalInvocationID.x; index < count; index += stride) {
+        Draws draws = draw(seed, 0u, uvec2(index, 0u), way);
+        real3 origin;
+        real3 direction;
+        real angle = real(6.283185307179586) * draws.u1;
+        if (way == HITS_LEAVE) {
+            Start start = starts[index % uint(starts.length())];
+            real z = real(2.0) * draws.u0 - real(1.0);
+            real across = sqrt(real(1.0) - z * z);
+            // Just short of the sphere about the normal, so that none has no direction.
+            direction = normalize(start.normal + real(0.999) * real3(across * cos(angle), across * sin(angle), z));
+            origin = start.position;
+        } else {
+            real sine = aperture * sqrt(draws.u0);
+            direction = real3(sine * cos(angle), sine * sin(angle), -sqrt(real(1.0) - sine * sine));
+            // A stratum's 32 rays are a subgroup's.
+            uint stratum = index >> 5;
+            uint mask = (1u << strata_bits) - 1u;
+            real side = real(1u << strata_bits);
+            real u = (real(even_bits(stratum) & mask) + draws.u2) / side;
+            real v = (real(even_bits(stratum >> 1) & mask) + draws.u3) / side;
+            origin = real3(specimen.x_min + u * (specimen.x_max - specimen.x_min),
+                           specimen.y_min + v * (specimen.y_max - specimen.y_min), specimen.top);
+        }
+        Hit hit = specimen_hit(origin, direction);
+        if (way == HITS_RECORD) {
+            // A ray that met nothing starts above everything.
+            starts[index].position = hit.found == 1u ? scatter_origin(hit) : origin;
+            starts[index].normal = hit.found == 1u ? hit.normal : real3(real(0.0), real(0.0), real(1.0));
+        }
+        // Never so large; keeps the compiler from dropping what a path would use.
+        bool used = hit.position.x + hit.position.y + hit.position.z + hit.normal.x + hit.normal.y > real(1e30);
+        own += hit.found + (used ? 1u : 0u);
+    }
+    atomicAdd(group_met, own);
+    barrier();
+    if (gl_LocalInvocationIndex == 0u) {
+        atomicAdd(met, uint64_t(group_met));
+    }
+}
