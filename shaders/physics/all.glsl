@@ -17,3 +17,7 @@
 #if defined(__cplusplus) || defined(VKFV_NONSEQUENTIAL) // most kernels have no elements
 #include "physics/nonsequential.glsl"
 #endif
+#if defined(__cplusplus) || defined(VKFV_BACKWARD)
+#include "physics/lattice.glsl"
+#include "physics/backward.glsl"
+#endif

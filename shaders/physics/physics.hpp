@@ -14,6 +14,7 @@
 #include <cstdint>
 
 #include <glm/glm.hpp>
+#include <glm/integer.hpp>
 
 #define VKFV_FUNCTION inline
 #define VKFV_SCENE_FUNCTION template <class Scene>
@@ -27,7 +28,9 @@
     using glm::clamp;                                                                                        \
     using glm::cos;                                                                                          \
     using glm::exp;                                                                                          \
+    using glm::bitfieldReverse;                                                                              \
     using glm::floor;                                                                                        \
+    using glm::fract;                                                                                        \
     using glm::isinf;                                                                                        \
     using glm::isnan;                                                                                        \
     using glm::log;                                                                                          \

@@ -10,6 +10,7 @@
 // The models that the specimen's material has, bit k for model k, and SCATTER_CHOICE unless it is one lobe that reflects
 // everything: what it has not is compiled out of a kernel.
 const uint SCATTER_CHOICE = 0x80000000u;
+const uint SCATTER_DELTA = 0x40000000u; // set where a lobe is a delta
 #ifdef __cplusplus
 const uint scatter_models = 0xFFFFFFFFu;
 #else

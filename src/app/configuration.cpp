@@ -289,9 +289,13 @@ void read_trace(const TomlTable& root, Configuration& configuration) {
     trace.seed = static_cast<std::uint32_t>(section.integer("seed", 0, largest_seed, 1));
     trace.max_bounces = static_cast<int>(section.integer("max_bounces", 1, most_bounces, 2));
     trace.nonsequential = section.choice("mode", {"sequential", "nonsequential"}, "sequential") == "nonsequential";
-    if (section.choice("estimator", {"forward", "backward"}, "forward") != "forward") {
-        table.fail("estimator", "\"forward\"; the backward estimator is not available yet",
-                   "Choose estimator = \"forward\".");
+    if (section.choice("estimator", {"forward", "backward"}, "forward") == "backward") {
+        trace.estimator = trace::Estimator::backward;
+        configuration.instrument.turned = true;
+        if (trace.nonsequential) {
+            table.fail("estimator", "\"forward\" with mode = \"nonsequential\"",
+                       "Choose estimator = \"forward\", or mode = \"sequential\".");
+        }
     }
     configuration.instrument.directed_emission =
         section.choice("emission", {"directed", "analog"}, "directed") == "directed";

@@ -97,7 +97,7 @@ void declare(CLI::App& app, Arguments& given) {
     app.add_option("--traversal", given.traversal, "auto, ray-query, quadtree or bvh")
         ->type_name("NAME")
         ->group(common);
-    app.add_option("--estimator", given.estimator, "forward")->type_name("NAME")->group(common);
+    app.add_option("--estimator", given.estimator, "forward or backward")->type_name("NAME")->group(common);
     app.add_option("--rays", given.rays, "Rays launched per image, 1e7 or 10000000")
         ->type_name("N")
         ->group(common);

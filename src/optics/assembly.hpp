@@ -41,6 +41,7 @@ struct Assembly {
     void assemble_ring();        // 3: the train from the ring light to the specimen
     void assemble_illuminator(); //   or from the disc
     void reduce();               // 4: the constants of the trace
+    void turn_round();           //    and the same for light the other way
     void furnish();              // 5: the elements as they stand in the room, folded
 
     // A plate of glass between two planes; `medium` on both sides.

@@ -216,6 +216,13 @@ Instrument assemble(const InstrumentDescription& description) {
         assembly.assemble_illuminator();
     }
     assembly.reduce();
+    if (description.turned) {
+        if (description.ring) {
+            refuse("trace.estimator", "\"backward\"", "a disc source; the backward estimator does not know the ring light",
+                   "Use estimator = \"forward\".");
+        }
+        assembly.turn_round();
+    }
     assembly.furnish();
     return std::move(assembly.instrument);
 }

@@ -86,6 +86,7 @@ struct InstrumentDescription {
     int detector_pixels = 0;
     Placement detector_placement;
     bool directed_emission = true; // aim the source at the cone that can pass the illumination train
+    bool turned = false; // the backward estimator's form is wanted too; not with a ring light
     double greatest_defocus = 0.2; // of the specimen's top plane from the plane of best focus, for the gate
 };
 
@@ -121,6 +122,14 @@ struct Element {
     std::string part; // "objective", "tube lens", "illuminator", "beam splitter", "cover glass", "fold mirror", "detector"
 };
 
+// The instrument with its light turned round, for the backward estimator (shaders/physics/backward.glsl): its illumination
+// train leads from the detector to the specimen, its imaging train from there to the source.
+struct TurnedInstrument {
+    std::vector<physics::f64::Surface> surfaces;
+    physics::f64::Instrument constants{};
+    physics::f64::BackwardOptics optics{};
+};
+
 // Trains and constants in double. `surfaces` holds the illumination train (source to specimen: illuminator,
 // then the objective backward) and the imaging train (specimen to detector). Light travels towards +z in
 // both; the specimen frame is the illumination's turned half a turn about x. Constant throughout a run.
@@ -141,10 +150,14 @@ struct Instrument {
     double front_vertex_height = 0;
     std::vector<Element> elements; // in the order of the light: illuminator, splitter, cover glass, objective, ... detector
     Pose source_pose; // of the source's frame, light towards its z (a ring light's: its aim), in the elements' frame
+    std::optional<TurnedInstrument> turned; // where the description asks for it
     std::vector<std::string> warnings;
 
     TrainScene scene() const { return {surfaces, features, spectral_bins}; }
 };
+
+// With the trains and constants of the turned form.
+Instrument turned_round(const Instrument& instrument);
 
 // Throws InputError where parts do not fit together (no real image, illumination too long to fit, ...).
 Instrument assemble(const InstrumentDescription& description);

@@ -398,6 +398,7 @@ std::vector<vulkan::SpecializationConstant> DeviceSpecimen::constants() const {
     std::uint32_t models = one_white_lobe ? 0u : physics::f32::SCATTER_CHOICE;
     for (const auto& lobe : {material.lobe_0, material.lobe_1, material.lobe_2, material.lobe_3}) {
         models |= lobe.weight > 0 ? 1u << lobe.model : 0u;
+        models |= lobe.weight > 0 && physics::f32::lobe_is_delta(lobe) ? physics::f32::SCATTER_DELTA : 0u;
     }
     return {{0, record_.kind}, {4, models}};
 }

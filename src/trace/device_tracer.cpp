@@ -1,5 +1,6 @@
 #include "trace/device_tracer.hpp"
 
+#include "trace/backward_trace.hpp"
 #include "trace/forward_trace.hpp"
 #include "trace/nonsequential_trace.hpp"
 
@@ -84,6 +85,9 @@ class DeviceTracer final : public Tracer {
 
 std::unique_ptr<Tracer> make_device_tracer(const optics::Instrument& instrument, const specimen::Specimen& specimen,
                                            const TraceOptions& options) {
+    if (options.estimator == Estimator::backward) {
+        return make_backward_tracer(instrument, specimen, options);
+    }
     return std::make_unique<DeviceTracer>(instrument, specimen, options);
 }
 

@@ -14,8 +14,12 @@ namespace vkfv::trace {
 
 enum class Traversal { automatic, ray_query, quadtree, bvh };
 
+// forward: from the source, counted on the detector. backward: from the detector, collecting the source's radiance.
+enum class Estimator { forward, backward };
+
 struct TraceOptions {
-    std::uint64_t rays = 0; // launched per image
+    Estimator estimator = Estimator::forward; // backward asks for an instrument that was turned round too
+    std::uint64_t rays = 0; // launched per image; backward: at least, see backward_plan()
     std::uint32_t seed = 1;
     int max_bounces = 2;
     Traversal traversal = Traversal::automatic;

@@ -1,0 +1,36 @@
+#version 460
+#extension GL_GOOGLE_include_directive : require
+// Backward paths: an invocation takes some points of one pixel's lattice, so no two share what they sum in registers. The
+// sums are added up as integers, whose order does not matter: the same bits for any batch.
+// Before the includes, which ask for gl_WorkGroupSize: glslang takes it as 1 when it is declared later.
+layout(local_size_x = 128) in;
+
+#include "device/kernel.glsl"
+
+layout(set = 0, binding = 3, scalar) buffer Pixels { uint64_t pixels[]; }; // in units of 2^-BACKWARD_FRACTION_BITS
+layout(set = 0, binding = 17, scalar) uniform Backward { BackwardOptics backward; };
+
+layout(push_constant, scalar) uniform Batch {
+    uint first_chunk; // of each pixel's lattice
+    uint chunks;      // of this batch, for each pixel
+    uint chunk_points;
+    uint randomisation;
+};
+
+void main() {
+    uint pixel_count = uint(instrument.detector_pixels * instrument.detector_pixels);
+    uint index = gl_GlobalInvocationID.x;
+    if (index < pixel_count * chunks) {
+        uint pixel = index % pixel_count;
+        uint chunk = first_chunk + index / pixel_count;
+        LatticeShift shift = lattice_shift(exposure.seed, exposure.image, pixel, randomisation);
+        int row = int(pixel) / instrument.detector_pixels;
+        int column = int(pixel) - row * instrument.detector_pixels;
+        real sum = real(0.0);
+        for (uint point = 0u; point < chunk_points; ++point) {
+            sum += trace_backward(instrument, backward, specimen, exposure, column, row, randomisation,
+                                  chunk * chunk_points + point, shift);
+        }
+        atomicAdd(pixels[pixel], uint64_t(sum * BACKWARD_UNIT + real(0.5)));
+    }
+}

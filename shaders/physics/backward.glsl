@@ -1,0 +1,272 @@
+// Backward paths: from a point of a pixel through the imaging train to the specimen, and from there to the source, whose
+// radiance they collect. Radiance is constant along a ray (times the transmittances; over the square of the index, which is
+// 1 at both ends), so a pixel's flux is
+//   Phi = L_source * integral over the pixel's area and the directions of  T cos(theta) dA domega,
+// T the share of the source's radiance that the specimen sends on: the integral of bsdf(in -> out) cos(theta_in) over the
+// directions in which the source is seen. A path's value is an unbiased estimate of T cos^4(theta) for directions that are
+// uniform over the exit pupil's disc, so that Phi is the mean value times L_source A_pixel (disc's area in slopes).
+//
+// The Instrument is turned round: its illumination train leads from the detector to the specimen, its imaging train from the
+// specimen to the source, where the last surface is the source itself as a stop. trace/backward_scene makes it.
+struct BackwardOptics {
+    real pupil_position;  // at the detector, in the reversed frame: light from the specimen is within
+    real pupil_radius;    //   |pupil_position * (x, y) + (dx/dz, dy/dz)| <= pupil_radius
+    real source_position; // likewise on the plane of the paraxial object: light from the source is within
+    real source_outer;    //   |source_position * (x, y) + (dx/dz, dy/dz)| <= source_outer
+    real source_inner;    // and what is within source_inner, from points within inner_field, is from it; 0: nothing is sure
+    real inner_field;     // mm
+    real object_distance; // mm, from the objective's front vertex (or cover glass) to the paraxial object plane
+};
+
+// How many directions towards the source are weighed against each other at each scatter event, and how many of the lobe.
+#ifdef __cplusplus
+const uint connection_candidates = 4u;
+const uint lobe_candidates = 1u;
+#else
+layout(constant_id = 5) const uint connection_candidates = 4u;
+layout(constant_id = 6) const uint lobe_candidates = 1u;
+#endif
+
+// Dimensions of the lattice: pixel 0 and 1, pupil 2 and 3, direction to the source 4 and 5, choice among candidates 6,
+// wavelength 7. What comes after the first scatter event is drawn from Philox.
+
+// Light that is looked for backward, where it leaves the specimen.
+struct BackwardArrival {
+    uint status;
+    real weight;     // cos^4 at the detector times the transmittance
+    real3 position;  // on the plane z = top, specimen frame
+    real3 direction; // unit, downward
+    Light light;
+};
+
+// x, y: of the detector's plane, as Detection has them, mm. pupil: a point of the unit disc.
+VKFV_SCENE_FUNCTION VKFV_FUNCTION BackwardArrival look_from_detector(VKFV_SCENE_PARAMETER Instrument instrument,
+                                                                     BackwardOptics backward, SpecimenRecord specimen,
+                                                                     Exposure exposure, real x, real y, real2 pupil,
+                                                                     Light light) {
+    // The reversed frame is the detector's turned half a turn about x.
+    real2 slope = real2(backward.pupil_radius * pupil.x - backward.pupil_position * x,
+                        backward.pupil_radius * pupil.y + backward.pupil_position * y);
+    real axial_squared = real(1.0) / (real(1.0) + slope.x * slope.x + slope.y * slope.y);
+    real axial = sqrt(axial_squared);
+    Ray ray;
+    ray.position = real3(x, -y, real(0.0));
+    ray.direction = real3(slope.x * axial, slope.y * axial, axial);
+    ray.path_length = real(0.0);
+    real specimen_index = specimen_medium_index(instrument, light);
+    TrainResult train = trace_train(VKFV_SCENE instrument.illumination_first, instrument.illumination_count, ray,
+                                    real(1.0), 1u, light);
+    Ray down = fly_to_plane(train.ray, exposure.top_distance, specimen_index);
+    real scale = real(1.0) / specimen_index;
+    BackwardArrival arrival;
+    arrival.status = train.status;
+    arrival.weight = axial_squared * axial_squared * train.transmitted;
+    arrival.position = real3(down.position.x, -down.position.y, specimen.top);
+    arrival.direction = real3(down.direction.x * scale, -down.direction.y * scale, -down.direction.z * scale);
+    arrival.light = light;
+    return arrival;
+}
+
+// Height of the paraxial object plane in the specimen frame, mm.
+VKFV_FUNCTION real object_plane(BackwardOptics backward, SpecimenRecord specimen, Exposure exposure) {
+    return specimen.top + exposure.top_distance - backward.object_distance;
+}
+
+// The transmittance with which light from the source arrives at `position` from the unit direction; 0: none does.
+VKFV_SCENE_FUNCTION VKFV_FUNCTION real source_transmittance(VKFV_SCENE_PARAMETER Instrument instrument,
+                                                            BackwardOptics backward, SpecimenRecord specimen,
+                                                            Exposure exposure, real3 position, real3 direction,
+                                                            Light light) {
+    real2 slope = real2(direction.x, direction.y) / direction.z;
+    real rise = object_plane(backward, specimen, exposure) - position.z;
+    real2 field = real2(position.x, position.y) + slope * rise;
+    real2 crossing = field * backward.source_position + slope;
+    real crossing_squared = dot(crossing, crossing);
+    bool possible = direction.z > real(0.0) && crossing_squared <= backward.source_outer * backward.source_outer;
+    bool sure = crossing_squared <= backward.source_inner * backward.source_inner &&
+                dot(field, field) <= backward.inner_field * backward.inner_field;
+    real transmittance = possible ? real(1.0) : real(0.0);
+    if (possible && !sure) {
+        real to_top = specimen.top - position.z;
+        real index = specimen_medium_index(instrument, light);
+        Ray ray;
+        ray.position = real3(position.x + slope.x * to_top, position.y + slope.y * to_top, -exposure.top_distance);
+        ray.direction = direction * index;
+        ray.path_length = real(0.0);
+        TrainResult train = trace_train(VKFV_SCENE instrument.imaging_first, instrument.imaging_count, ray, index, 1u,
+                                        light);
+        transmittance = train.status == PATH_ALIVE ? train.transmitted : real(0.0);
+    }
+    return transmittance;
+}
+
+// A direction towards the source, chosen in proportion to the light it would scatter towards the detector, and the estimate of
+// all of that light, per radiance of the source.
+struct Connection {
+    real weight;
+    real3 direction;
+};
+
+// Resampled importance sampling (J. Talbot, D. Cline, P. Egbert, EGSR 2005) from stratified candidates: uniform over the
+// source's disc, and of the lobe seen backward. Each weighs f / (sum of all candidates' densities): the balance heuristic.
+VKFV_FUNCTION Connection connect(Material material, BackwardOptics backward, real plane, Hit hit, real3 outgoing, real u0,
+                                 real u1, real choice, Scattered of_lobe) {
+    real factor = real(1.0) / (real(1.0) + backward.source_position * (plane - hit.position.z));
+    real2 centre = real2(hit.position.x, hit.position.y) * (-backward.source_position * factor);
+    real radius = backward.source_outer * factor;
+    real radius_squared = radius * radius;
+    real of_disc = real(connection_candidates) / (real(3.14159265358979324) * radius_squared); // density in slopes
+    Connection connection;
+    connection.weight = real(0.0);
+    connection.direction = real3(real(0.0), real(0.0), real(1.0));
+    real u = choice;
+    for (uint k = 0u; k < connection_candidates + lobe_candidates; ++k) {
+        real3 direction = of_lobe.direction;
+        bool usable = of_lobe.accepted == 1u;
+        if (k < connection_candidates) {
+            // Rings of equal area, each turned by the golden angle against the one before.
+            real rho = radius * sqrt((real(k) + u0) / real(connection_candidates));
+            Turn turn = turn_of(fract(u1 + real(k) * real(0.61803398874989485)));
+            real2 slope = centre + real2(turn.cosine, turn.sine) * rho;
+            direction = real3(slope.x, slope.y, real(1.0)) * (real(1.0) / sqrt(real(1.0) + dot(slope, slope)));
+            usable = true;
+        }
+        real cosine = dot(direction, hit.normal);
+        real2 from_centre = real2(direction.x, direction.y) / direction.z - centre;
+        usable = usable && cosine > real(0.0) && direction.z > real(0.0) && dot(from_centre, from_centre) <= radius_squared;
+        if (usable) {
+            real flux = scatter_bsdf(material, -direction, hit.normal, outgoing) * cosine;
+            // domega = cos^3 of the slopes' area.
+            real density = of_disc / (direction.z * direction.z * direction.z);
+            if (lobe_candidates != 0u) {
+                density = density +
+                          real(lobe_candidates) * scatter_density(material, -outgoing, hit.normal, direction);
+            }
+            real weight = flux / density;
+            connection.weight = connection.weight + weight;
+            real share = weight / connection.weight;
+            bool chosen = u * connection.weight < weight;
+            u = chosen ? u / share : (u - share) / (real(1.0) - share);
+            connection.direction = chosen ? direction : connection.direction;
+        }
+    }
+    return connection;
+}
+
+// One lobe of a material, alone and white.
+VKFV_FUNCTION Material material_of_lobe(Lobe lobe) {
+    Material material;
+    material.lobe_0 = lobe;
+    material.lobe_0.weight = real(1.0);
+    material.lobe_1 = lobe;
+    material.lobe_1.weight = real(0.0);
+    material.lobe_2 = material.lobe_1;
+    material.lobe_3 = material.lobe_1;
+    return material;
+}
+
+// Whether a lobe is a delta: what has a density has one in the mirror direction too.
+VKFV_FUNCTION bool lobe_is_delta(Lobe lobe) {
+    bool delta = false;
+    if ((scatter_models & SCATTER_DELTA) != 0u) {
+        real3 up = real3(real(0.0), real(0.0), real(1.0));
+        delta = scatter_density(material_of_lobe(lobe), -up, up, up) == real(0.0);
+    }
+    return delta;
+}
+
+// The value of one path (see above). point: its index within the pixel, whose numbers key further draws; column, row:
+// of the pixel.
+VKFV_SCENE_FUNCTION VKFV_FUNCTION real trace_backward(VKFV_SCENE_PARAMETER Instrument instrument, BackwardOptics backward,
+                                                      SpecimenRecord specimen, Exposure exposure, int column, int row,
+                                                      uint randomisation, uint point, LatticeShift shift) {
+    uint inverse = bitfieldReverse(point);
+    real turn = instrument.magnification < real(0.0) ? real(-1.0) : real(1.0);
+    real pitch = real(2.0) * instrument.detector_half_size / real(instrument.detector_pixels);
+    real x = turn * ((real(column) + lattice_coordinate(inverse, 0u, shift.first.x)) * pitch -
+                     instrument.detector_half_size);
+    real y = turn * ((real(row) + lattice_coordinate(inverse, 1u, shift.first.y)) * pitch -
+                     instrument.detector_half_size);
+    real rho = sqrt(lattice_coordinate(inverse, 2u, shift.first.z));
+    Turn azimuth = turn_of(lattice_coordinate(inverse, 3u, shift.first.w));
+    Light light = light_of_spectral(instrument, real(0.0));
+    if ((features(VKFV_SCENE_ALONE) & FEATURE_SPECTRUM) != 0u) {
+        light = draw_light(VKFV_SCENE instrument, lattice_coordinate(inverse, 7u, shift.second.w));
+    }
+    BackwardArrival arrival =
+        look_from_detector(VKFV_SCENE instrument, backward, specimen, exposure, x, y,
+                           real2(rho * azimuth.cosine, rho * azimuth.sine), light);
+    real value = real(0.0);
+    real throughput = arrival.weight;
+    real3 direction = arrival.direction;
+    real plane = object_plane(backward, specimen, exposure);
+    uvec2 path = uvec2(uint(row * instrument.detector_pixels + column) * 16u + randomisation, 0x80000000u + point);
+    bool under_way = arrival.status == PATH_ALIVE;
+    Hit hit;
+    hit.found = 0u;
+    if (under_way) {
+        hit = specimen_hit(VKFV_SCENE arrival.position, direction);
+        under_way = hit.found == 1u && dot(direction, hit.normal) < real(0.0);
+    }
+    for (int bounce = 0; bounce < specimen.max_bounces && under_way; ++bounce) {
+        uint block = 1u + uint(bounce) * (SCATTER_BLOCKS + 2u);
+        real3 outgoing = -direction;
+        real3 origin = scatter_origin(hit);
+        Draws draws;
+        draws.u0 = lattice_coordinate(inverse, 4u, shift.second.x);
+        draws.u1 = lattice_coordinate(inverse, 5u, shift.second.y);
+        draws.u2 = lattice_coordinate(inverse, 6u, shift.second.z);
+        draws.u3 = real(0.0);
+        if (bounce > 0 || specimen.max_bounces > 1 || (scatter_models & SCATTER_DELTA) != 0u) {
+            Draws further = draw(exposure.seed, exposure.image, path, block);
+            draws.u3 = further.u3;
+            draws.u0 = bounce == 0 ? draws.u0 : further.u0;
+            draws.u1 = bounce == 0 ? draws.u1 : further.u1;
+            draws.u2 = bounce == 0 ? draws.u2 : further.u2;
+        }
+        bool last = bounce + 1 == specimen.max_bounces;
+        Lobe lobe = choose_lobe(specimen.material, draws.u3);
+        bool delta = lobe_is_delta(lobe);
+        Material alone = material_of_lobe(lobe);
+        // One draw of the lobe, as if the light came from the detector: a candidate for the connection, and the way on.
+        bool absorbed = lobe.model == SCATTER_NONE;
+        under_way = !absorbed && (delta || !last);
+        Scattered scattered;
+        scattered.accepted = 0u;
+        scattered.direction = outgoing;
+        if (under_way || (lobe_candidates != 0u && !absorbed)) {
+            scattered = scatter(alone, direction, hit.normal, exposure.seed, exposure.image, path, block + 1u);
+        }
+        under_way = under_way && scattered.accepted == 1u;
+        scattered.accepted = delta ? 0u : scattered.accepted;
+        Connection connection = connect(specimen.material, backward, plane, hit, outgoing, draws.u0, draws.u1, draws.u2,
+                                        scattered);
+        if (connection.weight > real(0.0)) {
+            Hit blocker = specimen_hit(VKFV_SCENE origin, connection.direction);
+            if (blocker.found == 0u) {
+                value = value + throughput * connection.weight *
+                                    source_transmittance(VKFV_SCENE instrument, backward, specimen, exposure, origin,
+                                                         connection.direction, light);
+            }
+        }
+        if (under_way) {
+            if (!delta) {
+                real cosine = dot(scattered.direction, hit.normal);
+                throughput = throughput * scatter_bsdf(alone, -scattered.direction, hit.normal, outgoing) * cosine /
+                             scatter_density(alone, direction, hit.normal, scattered.direction);
+            }
+            direction = scattered.direction;
+            hit = specimen_hit(VKFV_SCENE origin, direction);
+            if (hit.found == 0u && delta) {
+                value = value + throughput * source_transmittance(VKFV_SCENE instrument, backward, specimen, exposure,
+                                                                  origin, direction, light);
+            }
+            under_way = hit.found == 1u && dot(direction, hit.normal) < real(0.0);
+        }
+    }
+    return value;
+}
+
+// Sums of values are counted in 2^-36: a path's share of rounding is below 2^-37, and 2^24 paths of value 8 fit into 64 bits
+// with a bit to spare.
+const real BACKWARD_UNIT = real(68719476736.0);

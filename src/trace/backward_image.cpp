@@ -1,0 +1,60 @@
+#include "trace/backward_image.hpp"
+
+#include "core/units.hpp"
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+
+namespace vkfv::trace {
+
+BackwardPlan backward_plan(std::uint64_t rays, int detector_pixels) {
+    const auto pixels = static_cast<std::uint64_t>(detector_pixels) * static_cast<std::uint64_t>(detector_pixels);
+    const std::uint64_t per_pixel = (rays + pixels - 1) / pixels;
+    BackwardPlan plan;
+    plan.randomisations = per_pixel >= 256 ? 4 : 2;
+    plan.points = static_cast<std::uint32_t>(
+        std::bit_ceil((per_pixel + plan.randomisations - 1) / plan.randomisations));
+    return plan;
+}
+
+BackwardImage::BackwardImage(const optics::Instrument& instrument, const BackwardPlan& plan)
+    : plan_(plan), flux_(instrument.flux), pixels_(instrument.constants.detector_pixels), sum_(pixels_, pixels_),
+      squares_(pixels_, pixels_) {
+    const auto& constants = instrument.constants;
+    const double radiance = instrument.flux / (pi * pi * constants.source_radius * constants.source_radius);
+    const double pitch = 2 * constants.detector_half_size / pixels_;
+    const double pupil = pi * instrument.turned.value().optics.pupil_radius * instrument.turned.value().optics.pupil_radius;
+    scale_ = radiance * pitch * pitch * pupil * instrument.splitter_reflectance * instrument.splitter_transmittance;
+}
+
+void BackwardImage::add(std::span<const std::uint64_t> sums) {
+    const double unit = 1.0 / (static_cast<double>(physics::f64::BACKWARD_UNIT) * plan_.points);
+    for (std::size_t pixel = 0; pixel < sums.size(); ++pixel) {
+        const double mean = unit * static_cast<double>(sums[pixel]);
+        sum_.values[pixel] += mean;
+        squares_.values[pixel] += mean * mean;
+    }
+}
+
+Image BackwardImage::image() const {
+    Image image;
+    image.flux = Grid<double>(pixels_, pixels_);
+    image.standard_error = Grid<double>(pixels_, pixels_);
+    const double count = plan_.randomisations;
+    double detected = 0;
+    for (std::size_t pixel = 0; pixel < sum_.values.size(); ++pixel) {
+        const double mean = sum_.values[pixel] / count;
+        const double variance = std::max(0.0, squares_.values[pixel] / count - mean * mean) / (count - 1);
+        image.flux.values[pixel] = scale_ * mean;
+        image.standard_error.values[pixel] = scale_ * std::sqrt(variance);
+        detected += image.flux.values[pixel];
+    }
+    image.rays = plan_.rays_per_pixel() * sum_.values.size();
+    image.detected = image.rays;
+    image.ledger.emitted = flux_;
+    image.ledger.entries = {{"detected", detected, image.rays}, {"not followed backward", flux_ - detected, 0}};
+    return image;
+}
+
+} // namespace vkfv::trace

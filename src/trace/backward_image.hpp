@@ -1,0 +1,42 @@
+// The image that backward paths estimate.
+#pragma once
+
+#include "optics/instrument.hpp"
+#include "trace/tracer.hpp"
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+namespace vkfv::trace {
+
+// How many paths each pixel has: `points` of one lattice in each of `randomisations`, whose scatter gives the standard error.
+struct BackwardPlan {
+    std::uint32_t randomisations = 2;
+    std::uint32_t points = 1; // a power of two
+    std::uint64_t rays_per_pixel() const { return std::uint64_t{randomisations} * points; }
+};
+
+// No fewer than `rays` in all.
+BackwardPlan backward_plan(std::uint64_t rays, int detector_pixels);
+
+// Gathers the pixels' sums of one randomisation after another.
+class BackwardImage {
+  public:
+    BackwardImage(const optics::Instrument& instrument, const BackwardPlan& plan);
+
+    // sums: of the values of all points, in 1 / BACKWARD_UNIT.
+    void add(std::span<const std::uint64_t> sums);
+    // Detected power alone stands in its ledger: what becomes of the rest, backward paths do not see.
+    Image image() const;
+
+  private:
+    BackwardPlan plan_;
+    double flux_;  // W, emitted
+    double scale_; // W, of a pixel whose values' mean is 1
+    int pixels_;
+    Grid<double> sum_;     // of the randomisations' means
+    Grid<double> squares_;
+};
+
+} // namespace vkfv::trace

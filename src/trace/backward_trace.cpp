@@ -1,0 +1,152 @@
+#include "trace/backward_trace.hpp"
+
+#include "spirv/backward_bvh.h"
+#include "spirv/backward_quadtree.h"
+#include "spirv/backward_ray_query.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <chrono>
+#include <mutex>
+
+namespace vkfv::trace {
+
+namespace {
+
+constexpr std::uint32_t most_points_per_chunk = 32;
+constexpr std::uint32_t workgroup = 128;
+
+// Push constants of the kernel.
+struct Chunks {
+    std::uint32_t first;
+    std::uint32_t count;
+    std::uint32_t points;
+    std::uint32_t randomisation;
+};
+
+std::uint32_t pixel_count(const DeviceScene& scene) {
+    const auto side = static_cast<std::uint32_t>(scene.instrument.constants.detector_pixels);
+    return side * side;
+}
+
+std::vector<vulkan::BindingDeclaration> declarations(const DeviceScene& scene) {
+    auto all = scene.declarations({3});
+    all.push_back({17, vulkan::BindingKind::uniform_buffer});
+    return all;
+}
+
+std::vector<vulkan::SpecializationConstant> constants(const DeviceScene& scene, const physics::f64::BackwardOptics& optics) {
+    auto all = scene.kernel_constants(0);
+    // A lobe much narrower than the source's cone is found by drawing it, not by drawing the cone.
+    const double cone = 3.14159265358979 * optics.source_outer * optics.source_outer; // sr, about
+    const auto& material = scene.constants.specimen.material;
+    double peak = 0;
+    for (const auto& lobe : {material.lobe_0, material.lobe_1, material.lobe_2, material.lobe_3}) {
+        if (lobe.weight > 0 && lobe.model == physics::f32::SCATTER_HENYEY_GREENSTEIN && lobe.parameter_0 < 1) {
+            const double g = lobe.parameter_0;
+            peak = std::max(peak, (1 + g) / (4 * 3.14159265358979 * (1 - g) * (1 - g)));
+        }
+    }
+    all.push_back({5, 4});
+    all.push_back({6, peak * cone > 2 ? 1u : 0u});
+    return all;
+}
+
+physics::f32::BackwardOptics to_float(const physics::f64::BackwardOptics& optics) {
+    return {static_cast<float>(optics.pupil_position), static_cast<float>(optics.pupil_radius),
+            static_cast<float>(optics.source_position), static_cast<float>(optics.source_outer),
+            static_cast<float>(optics.source_inner), static_cast<float>(optics.inner_field),
+            static_cast<float>(optics.object_distance)};
+}
+
+} // namespace
+
+BackwardTrace::BackwardTrace(const DeviceScene& scene, const optics::Instrument& instrument, const BackwardPlan& plan,
+                             std::uint64_t asked_batch)
+    : scene_(scene), pixels_(pixel_count(scene)), points_per_chunk_(std::min(plan.points, most_points_per_chunk)),
+      sums_(scene.device, std::size_t{pixels_} * sizeof(std::uint64_t)),
+      optics_(scene.device, sizeof(physics::f32::BackwardOptics)),
+      kernel_(scene.device, "backward", scene.variant(backward_quadtree, backward_ray_query, backward_bvh),
+              declarations(scene), sizeof(Chunks), constants(scene, instrument.turned.value().optics)) {
+    const auto optics = to_float(instrument.turned.value().optics);
+    optics_.write_values(std::span<const physics::f32::BackwardOptics>(&optics, 1));
+    const std::uint64_t wanted = asked_batch > 0     ? asked_batch
+                                 : scene.software() ? std::uint64_t{1} << 19
+                                                    : std::uint64_t{1} << 27;
+    // Vulkan promises 65535 workgroups a dispatch.
+    const std::uint64_t most_chunks = std::uint64_t{65535} * workgroup / pixels_;
+    const std::uint64_t chunks =
+        std::clamp<std::uint64_t>(wanted / pixels_ / points_per_chunk_, 1, std::max<std::uint64_t>(1, most_chunks));
+    points_per_batch_ = static_cast<std::uint32_t>(
+        std::min<std::uint64_t>(plan.points, chunks * points_per_chunk_));
+}
+
+void BackwardTrace::clear(vulkan::Commands& commands) const {
+    commands.fill_zero(sums_);
+    commands.barrier();
+}
+
+void BackwardTrace::record(vulkan::Commands& commands, std::uint32_t randomisation, std::uint32_t first,
+                           std::uint32_t count) const {
+    auto bindings = scene_.bindings({{3, &sums_}, {17, &optics_}});
+    const Chunks chunks{first / points_per_chunk_, count / points_per_chunk_, points_per_chunk_, randomisation};
+    const std::uint64_t invocations = std::uint64_t{chunks.count} * pixels_;
+    commands.dispatch(kernel_, bindings, chunks, static_cast<std::uint32_t>((invocations + workgroup - 1) / workgroup));
+    commands.barrier();
+}
+
+std::vector<std::uint64_t> BackwardTrace::sums() const { return sums_.read_values<std::uint64_t>(pixels_); }
+
+namespace {
+
+class BackwardTracer final : public Tracer {
+  public:
+    BackwardTracer(const optics::Instrument& instrument, const specimen::Specimen& specimen,
+                   const TraceOptions& options)
+        : instrument_(instrument), turned_(optics::turned_round(instrument)),
+          plan_(backward_plan(options.rays, instrument.constants.detector_pixels)), scene_(turned_, specimen, options),
+          trace_(scene_, instrument_, plan_, options.batch) {}
+
+    Image expose(double focal_height, std::uint32_t image) const override {
+        const std::scoped_lock lock(mutex_);
+        const auto start = std::chrono::steady_clock::now();
+        scene_.set_exposure(focal_height, image);
+        BackwardImage sums(instrument_, plan_);
+        for (std::uint32_t randomisation = 0; randomisation < plan_.randomisations; ++randomisation) {
+            for (std::uint32_t first = 0; first < plan_.points; first += trace_.points_per_batch()) {
+                vulkan::Commands commands(scene_.device);
+                if (first == 0) {
+                    trace_.clear(commands);
+                }
+                trace_.record(commands, randomisation, first, std::min(trace_.points_per_batch(), plan_.points - first));
+                commands.submit_and_wait();
+            }
+            sums.add(trace_.sums());
+        }
+        Image result = sums.image();
+        result.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+        return result;
+    }
+
+    std::string description() const override {
+        return fmt::format("{}; traversal {}; backward", scene_.device.choice(), scene_.reason);
+    }
+
+  private:
+    optics::Instrument instrument_;
+    optics::Instrument turned_;
+    BackwardPlan plan_;
+    mutable std::mutex mutex_; // one exposure at a time: the buffers are shared
+    mutable DeviceScene scene_;
+    BackwardTrace trace_;
+};
+
+} // namespace
+
+std::unique_ptr<Tracer> make_backward_tracer(const optics::Instrument& instrument, const specimen::Specimen& specimen,
+                                             const TraceOptions& options) {
+    return std::make_unique<BackwardTracer>(instrument, specimen, options);
+}
+
+} // namespace vkfv::trace

@@ -1,0 +1,41 @@
+// The backward estimator on a device: every pixel's lattice of paths, in one kernel.
+#pragma once
+
+#include "trace/backward_image.hpp"
+#include "trace/device_scene.hpp"
+
+#include <cstdint>
+#include <memory>
+#include <vector>
+
+namespace vkfv::trace {
+
+class BackwardTrace {
+  public:
+    // scene: of turned_round(instrument).
+    BackwardTrace(const DeviceScene& scene, const optics::Instrument& instrument, const BackwardPlan& plan,
+                  std::uint64_t asked_batch);
+
+    void clear(vulkan::Commands& commands) const;
+    // Points first ... first + count - 1 of every pixel, multiples of points_per_chunk().
+    void record(vulkan::Commands& commands, std::uint32_t randomisation, std::uint32_t first, std::uint32_t count) const;
+    std::vector<std::uint64_t> sums() const;
+
+    std::uint32_t points_per_chunk() const { return points_per_chunk_; }
+    std::uint32_t points_per_batch() const { return points_per_batch_; }
+
+  private:
+    const DeviceScene& scene_;
+    std::uint32_t pixels_;
+    std::uint32_t points_per_chunk_; // of one invocation; the plan's alone, as it decides what floats are added up
+    std::uint32_t points_per_batch_;
+    vulkan::Buffer sums_;
+    vulkan::Buffer optics_;
+    vulkan::Kernel kernel_;
+};
+
+// Throws as make_device_tracer().
+std::unique_ptr<Tracer> make_backward_tracer(const optics::Instrument& instrument, const specimen::Specimen& specimen,
+                                             const TraceOptions& options);
+
+} // namespace vkfv::trace
