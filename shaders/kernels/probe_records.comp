@@ -20,7 +20,8 @@ real lattice_at(int column, int row) { return real(0.0); }
 
 #define ECHO_LOBE(lobe)                                                                                      \
     echo[k++] = real(lobe.model); echo[k++] = lobe.weight; echo[k++] = lobe.parameter_0;                     \
-    echo[k++] = lobe.parameter_1; echo[k++] = lobe.parameter_2; echo[k++] = lobe.parameter_3;
+    echo[k++] = lobe.parameter_1; echo[k++] = lobe.parameter_2; echo[k++] = lobe.parameter_3;                \
+    for (int i = 0; i < LOBE_TABLE_SIZE; ++i) { echo[k++] = lobe.table[i]; }
 
 void main() {
     int k = 0;

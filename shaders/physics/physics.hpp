@@ -11,7 +11,12 @@
 //   real lattice_at(int column, int row) const;      only for analytic specimens with a lattice
 #pragma once
 
+#include "physics/rational_fit.hpp"
+
+#include <algorithm>
+#include <cmath>
 #include <cstdint>
+#include <vector>
 
 #include <glm/glm.hpp>
 #include <glm/integer.hpp>

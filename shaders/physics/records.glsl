@@ -190,6 +190,8 @@ const uint SHAPE_SPHERE = 2u;
 const uint SHAPE_SINUSOID = 3u;
 const uint SHAPE_CHIRP = 4u;
 
+const int LOBE_TABLE_SIZE = 13;
+
 // One way in which a material scatters; shaders/physics/scatter/ has the models.
 struct Lobe {
     uint model;  // SCATTER_*
@@ -198,6 +200,7 @@ struct Lobe {
     real parameter_1;
     real parameter_2;
     real parameter_3;
+    real table[LOBE_TABLE_SIZE]; // what the host works out of the parameters, where the model says so
 };
 
 // The weights' sum is the reflectance, at most 1; the rest is absorbed. Lobes that there are not weigh nothing.

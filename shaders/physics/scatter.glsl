@@ -26,14 +26,27 @@ VKFV_FUNCTION Lobe choose_lobe(Material material, real u) {
     return lobe;
 }
 
-// Share of the incident light per sr of the unit direction outgoing; deltas, which have no density, count nothing.
+VKFV_FUNCTION real weighted_bsdf(Lobe lobe, Incidence incidence, real3 outgoing) {
+    return lobe.weight > real(0.0) ? lobe.weight * lobe_bsdf(lobe, incidence, outgoing) : real(0.0);
+}
+
+// Share of the incident light per sr of the unit direction outgoing, divided by the cosine of its angle with the normal,
+// 1/sr: finite at grazing, 0 unless both directions are above the surface. Deltas, which have no density, count nothing.
 // incoming: unit, towards the surface; normal: unit, on the incoming side.
-VKFV_FUNCTION real scatter_density(Material material, real3 incoming, real3 normal, real3 outgoing) {
+VKFV_FUNCTION real scatter_bsdf(Material material, real3 incoming, real3 normal, real3 outgoing) {
     Incidence incidence = make_incidence(incoming, normal);
-    return material.lobe_0.weight * lobe_density(material.lobe_0, incidence, outgoing) +
-           material.lobe_1.weight * lobe_density(material.lobe_1, incidence, outgoing) +
-           material.lobe_2.weight * lobe_density(material.lobe_2, incidence, outgoing) +
-           material.lobe_3.weight * lobe_density(material.lobe_3, incidence, outgoing);
+    real bsdf = weighted_bsdf(material.lobe_0, incidence, outgoing);
+    if ((scatter_models & SCATTER_CHOICE) != 0u) {
+        bsdf = bsdf + weighted_bsdf(material.lobe_1, incidence, outgoing) +
+               weighted_bsdf(material.lobe_2, incidence, outgoing) +
+               weighted_bsdf(material.lobe_3, incidence, outgoing);
+    }
+    return dot(incoming, normal) < real(0.0) && dot(outgoing, normal) > real(0.0) ? bsdf : real(0.0);
+}
+
+// The same per sr of the outgoing direction: its integral over the hemisphere is the reflectance.
+VKFV_FUNCTION real scatter_density(Material material, real3 incoming, real3 normal, real3 outgoing) {
+    return scatter_bsdf(material, incoming, normal, outgoing) * max(dot(outgoing, normal), real(0.0));
 }
 
 VKFV_FUNCTION real scatter_bsdf(Material material, real3 incoming, real3 normal, real3 outgoing) {

@@ -4,8 +4,12 @@
 // the line `// delta` where a direction is certain and has no density, and two functions, the parameters first:
 //   ScatterTry NAME_try(parameters..., Incidence incidence, real u0, real u1, real u2)
 //     one try of a rejection; the accepted directions lie above the surface and have the density
-//   real NAME_density(parameters..., Incidence incidence, real3 outgoing)
-//     per sr of the outgoing direction, the cosine included: its integral over the hemisphere is 1; a delta has 0
+//   real NAME_bsdf(parameters..., Incidence incidence, real3 outgoing)
+//     asked for above the surface alone, 1/sr: the density per sr of the outgoing direction divided by its cosine, so that
+//     the integral of bsdf * cosine over the hemisphere is 1; a delta has 0
+// With the line `// table`, NAME_bsdf takes `real table[LOBE_TABLE_SIZE]` after the parameters, and the host fills it:
+//   Lobe NAME_tabulated(Lobe lobe)
+//     the lobe with its table, between #ifdef __cplusplus and #endif
 
 // The models that the specimen's material has, bit k for model k, and SCATTER_CHOICE unless it is one lobe that reflects
 // everything: what it has not is compiled out of a kernel.

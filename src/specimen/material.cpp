@@ -43,7 +43,7 @@ physics::f64::Lobe lobe_record(const Lobe& lobe, const SourceLocation& where) {
     result.parameter_1 = parameters[1];
     result.parameter_2 = parameters[2];
     result.parameter_3 = parameters[3];
-    return result;
+    return physics::f64::tabulated(result);
 }
 
 } // namespace

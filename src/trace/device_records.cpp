@@ -12,7 +12,7 @@ namespace vkfv::trace {
 static_assert(sizeof(physics::f32::Surface) == 41 * 4);
 static_assert(sizeof(physics::f32::SpectralBin) == 4 * 4);
 static_assert(sizeof(physics::f32::Instrument) == 32 * 4);
-static_assert(sizeof(physics::f32::SpecimenRecord) == 42 * 4);
+static_assert(sizeof(physics::f32::SpecimenRecord) == 94 * 4);
 static_assert(sizeof(physics::f32::Exposure) == 4 * 4);
 static_assert(sizeof(physics::f32::Survivor) == 8 * 4);
 static_assert(sizeof(physics::f32::Element) == (41 + 18) * 4);

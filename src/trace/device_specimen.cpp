@@ -40,6 +40,7 @@ physics::f32::Lobe to_float(const physics::f64::Lobe& lobe) {
     result.parameter_1 = static_cast<float>(lobe.parameter_1);
     result.parameter_2 = static_cast<float>(lobe.parameter_2);
     result.parameter_3 = static_cast<float>(lobe.parameter_3);
+    std::ranges::transform(lobe.table, result.table, [](double value) { return static_cast<float>(value); });
     return result;
 }
 

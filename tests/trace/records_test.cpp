@@ -46,7 +46,7 @@ TEST(Records, the_device_sees_every_field_where_the_host_wrote_it) {
     };
     append(fill(surfaces[2], {40}, 100));
     append(fill(parameters.instrument, {24, 25, 26, 27, 28, 29, 30, 31}, 200));
-    append(fill(parameters.specimen, {13, 19, 25, 31, 37, 38, 39, 40, 41}, 300));
+    append(fill(parameters.specimen, {13, 32, 51, 70, 89, 90, 91, 92, 93}, 300));
     append(fill(parameters.exposure, {1, 2}, 400));
     append(fill(bins[2], {}, 450));
     append(fill(survivors[2], {7}, 500));

@@ -5,6 +5,7 @@
 // Lambertian, g = 1 the mirror, and no light is lost at any angle.
 // Sharper backward lobes than g = -0.9 lie all but wholly below the surface: scatter() would run out of tries.
 // parameter: g, -0.9, 1, 0, asymmetry: 0 is Lambertian and 1 the mirror
+// table
 
 // 1 - cos(alpha) of a Henyey-Greenstein draw. The usual inversion, rearranged so that neither g -> 0 nor alpha -> 0
 // cancels: 2 (1 - g)^2 (1 - u) (1 + g u) / (1 - g + 2 g u)^2, with cos(alpha) ascending in u.
@@ -42,61 +43,100 @@ VKFV_FUNCTION ScatterTry henyey_greenstein_try(real g, Incidence incidence, real
     return result;
 }
 
-// Complete elliptic integral of the second kind E(m) by its complement 1 - m, to 2e-8: C. Hastings, Approximations for
-// Digital Computers (1955), in M. Abramowitz and I. A. Stegun, Handbook of Mathematical Functions, 17.3.36.
-VKFV_FUNCTION real elliptic_e(real complement) {
-    real x = complement;
-    real plain = x * (real(0.44325141463) + x * (real(0.06260601220) + x * (real(0.04757383546) + x * real(0.01736506451))));
-    real with_log = x * (real(0.24998368310) + x * (real(0.09200180037) + x * (real(0.04069697526) + x * real(0.00526449639))));
-    return real(1.0) + plain - with_log * log(x);
+// N(theta_i, g) by the table, to 1e-6 of itself for g up to 0.999 and 2e-6 up to 0.9999, float's rounding included. As a
+// function of the complex cosine N has branch points at +-i d, d = (1 - g^2) / (2 |g|), and no others; in
+// x = sqrt(cosine^2 + d^2), N - g cosine / 2, which is even in the cosine, is smooth but on the negative axis, and a
+// quotient of polynomials of degrees 6 and 5 follows it. For g < 0 that difference would cancel, and N itself is taken,
+// in cosine + x.
+struct HenyeyGreensteinPlace {
+    real linear; // part of N left out of the quotient
+    real x;
+};
+VKFV_FUNCTION HenyeyGreensteinPlace henyey_greenstein_place(real g, real distance_squared, real cosine) {
+    real root = sqrt(cosine * cosine + distance_squared);
+    HenyeyGreensteinPlace place;
+    place.linear = g > real(0.0) ? real(0.5) * g * cosine : real(0.0);
+    place.x = g > real(0.0) ? root : cosine + root;
+    return place;
 }
 
-// N(theta_i, g), to 1e-5 of itself. p is Poisson's kernel of the unit ball, so N is the harmonic function with the
+VKFV_FUNCTION real henyey_greenstein_norm(real g, real table[LOBE_TABLE_SIZE], real cosine) {
+    HenyeyGreensteinPlace place = henyey_greenstein_place(g, table[12], cosine);
+    real x = place.x;
+    real above = table[0] + x * (table[1] + x * (table[2] + x * (table[3] + x * (table[4] + x * (table[5] + x * table[6])))));
+    real below = real(1.0) + x * (table[7] + x * (table[8] + x * (table[9] + x * (table[10] + x * table[11]))));
+    return place.linear + above / below;
+}
+
+VKFV_FUNCTION real henyey_greenstein_bsdf(real g, real table[LOBE_TABLE_SIZE], Incidence incidence, real3 outgoing) {
+    real3 apart = outgoing - incidence.mirror;
+    // 1 + g^2 - 2 g cos(alpha) without its cancellation.
+    real base = (real(1.0) - g) * (real(1.0) - g) + g * dot(apart, apart);
+    real bsdf = real(0.0);
+    // At g = 1 it is a delta.
+    if (g < real(1.0)) {
+        real phase = real(0.0795774715459476679) * (real(1.0) - g) * (real(1.0) + g) / (base * sqrt(base));
+        bsdf = phase / henyey_greenstein_norm(g, table, -dot(incidence.incoming, incidence.normal));
+    }
+    return bsdf;
+}
+
+#ifdef __cplusplus
+// N(theta_i, g) to 1e-10 of itself. p is Poisson's kernel of the unit ball, so N is the harmonic function with the
 // values max(cos(theta), 0) on the sphere, taken at g times the mirror direction. With z that point's height over the
 // surface, N = max(z, 0) + I, where I is what the kernel of the point (|z|) gives the hemisphere away from it: small
 // and smooth where the lobe is sharp. I is an integral over mu = |cos(theta_o)|, the one over the azimuth being
 //   4 E(m) / ((a - b) sqrt(a + b)),  a + b = (s + rho)^2 + (mu + |z|)^2,  a - b = (s - rho)^2 + (mu + |z|)^2,
-// s = sqrt(1 - mu^2), rho the point's distance from the normal, 1 - m = (a - b) / (a + b). It changes over the
-// point's distance d from the horizon, hence mu = d sinh(t), in panels of three Gauss points.
-VKFV_FUNCTION real henyey_greenstein_norm(real g, real cosine) {
-    real sine = sqrt(max(real(1.0) - cosine * cosine, real(0.0)));
-    real magnitude = abs(g);
-    real height = magnitude * cosine;
-    real rho = magnitude * sine;
-    real inside = (real(1.0) - magnitude) + magnitude * cosine * cosine / (real(1.0) + sine); // 1 - rho
-    real scale = sqrt(inside * inside + height * height);
-    real last = log(real(1.0) / scale + sqrt(real(1.0) / (scale * scale) + real(1.0)));
-    const int panels = 8;
-    real half_panel = real(0.5) * last / real(panels);
-    real sum = real(0.0);
+// s = sqrt(1 - mu^2), rho the point's distance from the normal, 1 - m = (a - b) / (a + b), E the complete elliptic
+// integral. It changes over the point's distance from the horizon, hence mu = distance sinh(t), in panels of three Gauss
+// points.
+inline double henyey_greenstein_exact_norm(double g, double cosine) {
+    const double sine = std::sqrt(std::max(1 - cosine * cosine, 0.0));
+    const double magnitude = std::abs(g), height = magnitude * cosine, rho = magnitude * sine;
+    const double inside = (1 - magnitude) + magnitude * cosine * cosine / (1 + sine); // 1 - rho
+    const double scale = std::hypot(inside, height);
+    constexpr int panels = 48;
+    constexpr double places[] = {-0.774596669241483377, 0, 0.774596669241483377}, weights[] = {5, 8, 5};
+    const double half_panel = 0.5 * std::asinh(1 / scale) / panels;
+    double sum = 0;
     for (int point = 0; point < 3 * panels; ++point) {
-        int place = point % 3 - 1; // of the Gauss point in its panel
-        real t = half_panel * (real(2 * (point / 3) + 1) + real(place) * real(0.774596669241483377));
-        real e = exp(t);
-        real mu = real(0.5) * scale * (e - real(1.0) / e);
-        real d_mu = real(0.5) * scale * (e + real(1.0) / e); // over dt
-        real s = sqrt(max(real(1.0) - mu * mu, real(0.0)));
-        real across = inside - mu * mu / (real(1.0) + s); // s - rho
-        real rise = (mu + height) * (mu + height);
-        real least = across * across + rise;
-        real most = (s + rho) * (s + rho) + rise;
-        real weight = place == 0 ? real(0.888888888888888889) : real(0.555555555555555556);
-        sum = sum + weight * d_mu * mu * elliptic_e(least / most) / (least * sqrt(most));
+        const double t = half_panel * (2 * (point / 3) + 1 + places[point % 3]);
+        const double mu = scale * std::sinh(t), d_mu = scale * std::cosh(t); // over dt
+        const double s = std::sqrt(std::max(1 - mu * mu, 0.0));
+        const double across = inside - mu * mu / (1 + s); // s - rho
+        const double rise = (mu + height) * (mu + height);
+        const double least = across * across + rise, most = (s + rho) * (s + rho) + rise;
+        const double modulus = std::sqrt(std::max(1 - least / most, 0.0));
+        sum += weights[point % 3] / 9 * d_mu * mu * std::comp_ellint_2(modulus) / (least * std::sqrt(most));
     }
-    real integral = real(0.318309886183790672) * (real(1.0) - magnitude) * (real(1.0) + magnitude) * half_panel * sum;
-    return max(g * cosine, real(0.0)) + integral;
+    return std::max(g * cosine, 0.0) + (1 - magnitude) * (1 + magnitude) / 3.14159265358979324 * half_panel * sum;
 }
 
-VKFV_FUNCTION real henyey_greenstein_density(real g, Incidence incidence, real3 outgoing) {
-    real cosine = dot(outgoing, incidence.normal);
-    real3 apart = outgoing - incidence.mirror;
-    // 1 + g^2 - 2 g cos(alpha) without its cancellation.
-    real base = (real(1.0) - g) * (real(1.0) - g) + g * dot(apart, apart);
-    real density = real(0.0);
-    // At g = 1 it is a delta.
-    if (cosine > real(0.0) && g < real(1.0)) {
-        real phase = real(0.0795774715459476679) * (real(1.0) - g) * (real(1.0) + g) / (base * sqrt(base));
-        density = phase * cosine / henyey_greenstein_norm(g, -dot(incidence.incoming, incidence.normal));
+inline Lobe henyey_greenstein_tabulated(Lobe lobe) {
+    const double g = lobe.parameter_0;
+    if (g == 1) {
+        return lobe;
     }
-    return density;
+    // Farther branch points than 1 do not matter.
+    const double distance = std::abs(g) > 0.4 ? (1 - g) * (1 + g) / (2 * std::abs(g)) : 1.0;
+    // Chebyshev's points in the variable over which N changes evenly.
+    constexpr int points = 100;
+    std::vector<double> x, quotient;
+    for (int k = 0; k < points; ++k) {
+        const double place = 0.5 + 0.5 * std::cos(3.14159265358979324 * (k + 0.5) / points);
+        const double cosine = std::min(distance * std::sinh(place * std::asinh(1 / distance)), 1.0);
+        const auto at = henyey_greenstein_place(real(g), real(distance * distance), real(cosine));
+        x.push_back(at.x);
+        quotient.push_back(henyey_greenstein_exact_norm(g, cosine) - at.linear);
+    }
+    const RationalFit fit = fit_rational(x, quotient, 6, 5e-7);
+    for (std::size_t k = 0; k < fit.numerator.size(); ++k) {
+        lobe.table[k] = real(fit.numerator[k]);
+    }
+    for (std::size_t k = 1; k < fit.denominator.size(); ++k) {
+        lobe.table[6 + k] = real(fit.denominator[k]);
+    }
+    lobe.table[12] = real(distance * distance);
+    return lobe;
 }
+#endif

@@ -8,6 +8,4 @@ VKFV_FUNCTION ScatterTry lambertian_try(Incidence incidence, real u0, real u1, r
     return result;
 }
 
-VKFV_FUNCTION real lambertian_density(Incidence incidence, real3 outgoing) {
-    return max(dot(outgoing, incidence.normal), real(0.0)) * real(0.318309886183790672);
-}
+VKFV_FUNCTION real lambertian_bsdf(Incidence, real3) { return real(0.318309886183790672); }

@@ -8,4 +8,4 @@ VKFV_FUNCTION ScatterTry mirror_try(Incidence incidence, real, real, real) {
     return result;
 }
 
-VKFV_FUNCTION real mirror_density(Incidence, real3) { return real(0.0); }
+VKFV_FUNCTION real mirror_bsdf(Incidence, real3) { return real(0.0); }
