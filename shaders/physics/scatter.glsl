@@ -49,10 +49,6 @@ VKFV_FUNCTION real scatter_density(Material material, real3 incoming, real3 norm
     return scatter_bsdf(material, incoming, normal, outgoing) * max(dot(outgoing, normal), real(0.0));
 }
 
-VKFV_FUNCTION real scatter_bsdf(Material material, real3 incoming, real3 normal, real3 outgoing) {
-    return scatter_density(material, incoming, normal, outgoing) / dot(outgoing, normal);
-}
-
 // Henyey-Greenstein's acceptance is no less than about cos(theta_i) for sharp lobes with g > 0, and about 0.01 for
 // g = -0.9, the least that a configuration may ask for: 2048 tries fail less than once in 1e8 for incidence up to 89.4
 // degrees. What fails is counted as numerical.
