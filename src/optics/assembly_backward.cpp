@@ -31,7 +31,8 @@ std::vector<Rim> rims_at_detector(const Imaging& imaging, const Outline& outline
         if (outline.radii[azimuth] == 0) {
             continue;
         }
-        const glm::dvec2 cosines = outline.cosines(azimuth, outline.radii[azimuth]);
+        // Within the rim, which rounding may put on either side of an edge.
+        const glm::dvec2 cosines = outline.cosines(azimuth, (1 - 1e-9) * outline.radii[azimuth]);
         physics::f64::Ray ray{};
         ray.position = glm::dvec3(outline.position, -imaging.working_distance);
         ray.direction = glm::dvec3(cosines, std::sqrt(1 - glm::dot(cosines, cosines)));
