@@ -1,34 +1,38 @@
-// Height fields and analytic surfaces by a pyramid of minima and maxima over their cells: the ray goes from block to
-// block of 2^level cells, up a level where it leaves the larger block too and down where its heights overlap the
-// block's (A. Tevs, I. Ihrke, H.-P. Seidel, "Maximum mipmaps for fast, accurate, and scalable dynamic height field
-// rendering", I3D 2008). In a cell the side of the surface that the ray was on is known, and a meeting is a change of
-// side: no rounding at the border of two facets can lose it.
+// Height fields and analytic surfaces, mostly met from above: a ray jumps as far as nothing can be in its way, and where
+// it has come close to the surface it walks from cell to cell. What it may jump over is read off ceilings: of each block
+// of 2^level x 2^level cells the highest point of the block and of its eight neighbours. From anywhere in the block a ray
+// is free down to the ceiling or until it is a block's side further across, whichever comes first (after maximum mipmaps,
+// A. Tevs, I. Ihrke, H.-P. Seidel, "Maximum mipmaps for fast, accurate, and scalable dynamic height field rendering",
+// I3D 2008; with the neighbours, no border of blocks need be met). In a cell the side of the surface that the ray was on
+// is known, and a meeting is a change of side: no rounding at the border of two facets can lose it.
 
-// PyramidHeader and pyramid of src/trace/pyramid.hpp.
-layout(set = 0, binding = 9, scalar) readonly buffer Pyramid {
-    int pyramid_cells_x; // cells with a surface
-    int pyramid_cells_y;
-    int pyramid_padded_x; // multiples of 2^top_level
-    int pyramid_padded_y;
-    int pyramid_top_level;
-    real pyramid_cell_x; // mm
-    real pyramid_cell_y;
-    real pyramid_unused;
-    real2 pyramid_ranges[]; // (lowest, highest) height, mm; level by level from the finest, row-major
+// CeilingsHeader and ceilings of src/trace/pyramid.hpp.
+layout(set = 0, binding = 9, scalar) readonly buffer Ceilings {
+    int ceilings_cells_x; // cells with a surface
+    int ceilings_cells_y;
+    real ceilings_per_x; // cells/mm
+    real ceilings_per_y;
+    real ceilings_steepest; // the surface's slope is nowhere larger
+    int ceilings_fine_level; // its blocks come first, row-major
+    int ceilings_fine_columns;
+    int ceilings_coarse_level;
+    int ceilings_coarse_columns;
+    int ceilings_coarse_first;
+    real ceilings[]; // mm
 };
 
-real2 pyramid_range(ivec2 block, int level, uint padded_cells) {
-    // Levels 0 to level - 1 hold (4/3) (n - n / 4^level) ranges. A division by 3 without remainder is a product with
-    // the inverse of 3 modulo 2^32.
-    uint first = 4u * ((padded_cells - (padded_cells >> (2 * level))) * 0xAAAAAAABu);
-    return pyramid_ranges[first + uint(block.y * (pyramid_padded_x >> level) + block.x)];
-}
+// Of a height field two points of a column a step, so that a cell takes two neighbouring loads: (i, j) and (i, j+1).
+layout(set = 0, binding = 8, scalar) readonly buffer Columns { real2 column_steps[]; };
+
+// Cells walked before jumps are tried again.
+const int CELLS_AHEAD = 16;
 
 // Heights of a cell's corners: (i, j), (i+1, j), (i, j+1), (i+1, j+1).
 vec4 cell_corners(ivec2 cell) {
     int first = cell.y * specimen.columns + cell.x;
-    return vec4(heights[first], heights[first + 1], heights[first + specimen.columns],
-                heights[first + specimen.columns + 1]);
+    real2 left = column_steps[first];
+    real2 right = column_steps[first + 1];
+    return vec4(left.x, right.x, left.y, right.y);
 }
 
 // Height of the facets at fractions of the cell; lower_right: the triangle with the corner (i+1, j).
@@ -38,114 +42,151 @@ real facet_height(vec4 corners, real2 fraction, bool lower_right) {
                                     : f.x * (corners.w - corners.z) + f.y * (corners.z - corners.x));
 }
 
+// A ray over the grid of cells, by its distance t in mm.
+struct GridRay {
+    real2 place; // cells
+    real2 speed; // cells/mm
+    real height; // mm
+    real rise;   // mm/mm
+    real inverse_rise;
+    real to_next_cell; // mm, at least, to be one cell further along x or y
+};
+
+ivec2 cell_at(GridRay ray, real t) {
+    return clamp(ivec2(ray.place + t * ray.speed), ivec2(0, 0), ivec2(ceilings_cells_x, ceilings_cells_y) - 1);
+}
+
+struct Jump {
+    real t;    // the ray is free until there
+    bool over; // it is above the ceiling where it starts
+    bool open; // the ceiling was not what ended it
+};
+
+Jump jump_over(GridRay ray, real t, int level, int columns, int first) {
+    ivec2 block = cell_at(ray, t) >> level;
+    real ceiling = ceilings[first + block.y * columns + block.x];
+    real further = t + ray.to_next_cell * real(1 << level);
+    real to_ceiling = ray.rise < real(0.0) ? (ceiling - ray.height) * ray.inverse_rise : further;
+    Jump jump;
+    jump.over = ray.height + t * ray.rise > ceiling;
+    jump.open = jump.over && to_ceiling >= further;
+    jump.t = jump.over ? max(t, min(further, to_ceiling)) : t;
+    return jump;
+}
+
 Hit specimen_hit(real3 origin, real3 direction) {
-    SpecimenRay ray = cut_to_specimen(origin, direction, specimen_rounding(), real(0.0));
-    real3 start = ray.origin;
-    real stop = ray.over.stop;
-    real t = ray.over.start;
+    real rounding = specimen_rounding();
+    real upper = specimen.top + rounding;
+    real lower = specimen.bottom - rounding;
+    bool down = direction.z < real(0.0);
 
-    // Across, in cells.
-    real2 cell_size = real2(pyramid_cell_x, pyramid_cell_y);
-    real2 place = real2(start.x - specimen.x_min, start.y - specimen.y_min) / cell_size;
-    real2 speed = direction.xy / cell_size;
+    GridRay ray;
+    ray.rise = direction.z;
+    ray.inverse_rise = real(1.0) / (abs(direction.z) > real(1e-12) ? direction.z : real(1e-12));
+    // Re-based, as cut_to_specimen() does.
+    bool from_top = down && origin.z >= specimen.top;
+    real advance = from_top ? (upper - origin.z) * ray.inverse_rise : real(0.0);
+    real3 start = real3(origin.x + advance * direction.x, origin.y + advance * direction.y, from_top ? upper : origin.z);
+    real2 per_mm = real2(ceilings_per_x, ceilings_per_y);
+    ray.place = real2(start.x - specimen.x_min, start.y - specimen.y_min) * per_mm;
+    ray.speed = direction.xy * per_mm;
+    ray.height = start.z;
     // Slower than this is less than a cell in 1e9 mm, and its inverse is finite.
-    bvec2 moves = greaterThan(abs(speed), real2(1e-9, 1e-9));
-    real2 slowness = real2(moves.x ? real(1.0) / speed.x : real(0.0), moves.y ? real(1.0) / speed.y : real(0.0));
-    real2 never = real2(moves.x ? real(0.0) : real(3e37), moves.y ? real(0.0) : real(3e37));
-    ivec2 forward = ivec2(speed.x >= real(0.0) ? 1 : 0, speed.y >= real(0.0) ? 1 : 0);
-    real fall = direction.z < real(0.0) ? real(1.0) / direction.z : real(0.0);
-    ivec2 cells = ivec2(pyramid_cells_x, pyramid_cells_y);
-    uint padded_cells = uint(pyramid_padded_x) * uint(pyramid_padded_y);
-    int top_level = pyramid_top_level;
+    bvec2 moves = greaterThan(abs(ray.speed), real2(1e-9, 1e-9));
+    real2 slowness = real2(moves.x ? real(1.0) / ray.speed.x : real(1e9), moves.y ? real(1.0) / ray.speed.y : real(1e9));
+    // Short of a cell by far more than a place is rounded by.
+    ray.to_next_cell = real(0.98) * min(abs(slowness.x), abs(slowness.y));
+    ivec2 cells = ivec2(ceilings_cells_x, ceilings_cells_y);
+    real2 to_first = -ray.place * slowness;
+    real2 to_last = (real2(cells) - ray.place) * slowness;
+    real2 enters = min(to_first, to_last);
+    real2 leaves = max(to_first, to_last);
+    real t = max(real(0.0), max(enters.x, enters.y));
+    real stop = min(((down ? lower : upper) - start.z) * ray.inverse_rise, min(leaves.x, leaves.y));
+    bool beside = t > real(0.0);
+    real side = beside ? real(0.0) : real(1.0); // of the surface: above, below (-1), not yet known
+    ivec2 forward = ivec2(slowness.x >= real(0.0) ? 1 : 0, slowness.y >= real(0.0) ? 1 : 0);
+    real drift = ray.speed.x - ray.speed.y; // across the cells' diagonals
+    real drift_slowness = real(1.0) / (abs(drift) > real(1e-9) ? drift : real(1e-9));
 
-    ivec2 cell = clamp(ivec2(floor(place + t * speed)), ivec2(0, 0), cells - 1);
-    // Blocks about as large as the ray is long across.
-    real across = max(abs(speed.x), abs(speed.y)) * (stop - t);
-    int level = clamp(findMSB(uint(clamp(across, real(0.0), real(1e6)))) + 1, 0, top_level);
-
-    real side = ray.beside ? real(0.0) : real(1.0); // of the surface: above, below (-1), not yet known
+    // What rises faster than the surface anywhere leaves it.
+    bool escapes = !beside && direction.z > ceilings_steepest * length(direction.xy);
+    bool under_way = t <= stop && !escapes && specimen_kind != SPECIMEN_MESH;
     bool found = false;
-    bool lower_right = true;
-    real meeting = t;
+    real from = t; // within the one facet where it is found
+    real to = t;
+    ivec2 cell = ivec2(0, 0);
     Hit hit = no_hit();
-    bool under_way = t <= stop && specimen_kind != SPECIMEN_MESH;
-    // Each step but a descent crosses a border of the grid, and each ascent is a crossing too.
-    for (int steps = 2 * (cells.x + cells.y + top_level) + 8; under_way && steps > 0; --steps) {
-        ivec2 block = cell >> level;
-        real2 range = pyramid_range(block, level, padded_cells);
-        ivec2 border = (block + forward) << level;
-        real2 to_border = (real2(border) - place) * slowness + never;
-        real leave = clamp(min(to_border.x, to_border.y), t, stop);
-        // Going down, nothing is met before the block's highest point.
-        real enter = max(t, (range.y - start.z) * fall);
-        real height_enter = start.z + t * direction.z;
-        real height_leave = start.z + leave * direction.z;
-        bool overlaps = enter <= leave && min(height_enter, height_leave) <= range.y &&
-                        max(height_enter, height_leave) >= range.x;
-        side = enter > t ? real(1.0) : side;
-        ivec2 block_first = block << level;
-        ivec2 block_last = block_first + (1 << level) - 1;
-        bool marched = false;
-        if (overlaps && level > 0) {
-            t = enter;
-            cell = clamp(ivec2(floor(place + t * speed)), block_first, min(block_last, cells - 1));
-            level -= 1;
-        } else {
-            if (overlaps && specimen_kind == SPECIMEN_FACETS) {
-                vec4 corners = cell_corners(cell);
-                real2 local = place - real2(cell);
-                real to_diagonal = (local.y - local.x) / (speed.x - speed.y);
-                bool crosses = to_diagonal > t && to_diagonal < leave;
-                real middle = crosses ? to_diagonal : leave;
-                real2 first_centre = local + real(0.5) * (t + middle) * speed;
-                bool first_lower_right = first_centre.x >= first_centre.y;
-                bool last_lower_right = crosses ? !first_lower_right : first_lower_right;
-                real gap_enter = height_enter - facet_height(corners, local + t * speed, first_lower_right);
-                real gap_middle = start.z + middle * direction.z -
-                                  facet_height(corners, local + middle * speed, first_lower_right);
-                real gap_leave = height_leave - facet_height(corners, local + leave * speed, last_lower_right);
-                side = side != real(0.0) ? side : (gap_enter > real(0.0) ? real(1.0) : real(-1.0));
-                bool in_first = side * gap_middle <= real(0.0);
-                found = in_first || side * gap_leave <= real(0.0);
-                lower_right = in_first ? first_lower_right : last_lower_right;
-                real from = in_first ? t : middle;
-                real to = in_first ? middle : leave;
-                real gap_from = max(side * (in_first ? gap_enter : gap_middle), real(0.0));
-                real gap_to = max(-side * (in_first ? gap_middle : gap_leave), real(0.0));
-                real total = gap_from + gap_to;
-                meeting = total > real(0.0) ? from + (to - from) * (gap_from / total) : from;
-            } else if (overlaps) {
-                // A ray from beside may be below: the march over all of it knows from where it comes.
-                marched = ray.beside;
-                hit = march_surface(specimen, start, direction, ray.beside ? real(0.0) : t, ray.beside ? stop : leave);
-                found = hit.found == 1u;
-            } else {
-                side = side != real(0.0) ? side : (height_enter > range.y ? real(1.0) : real(-1.0));
+    // Each round walks at least one cell.
+    for (int rounds = cells.x + cells.y + 8; under_way && rounds > 0; --rounds) {
+        bool free = side >= real(0.0);
+        while (free) {
+            Jump coarse = jump_over(ray, t, ceilings_coarse_level, ceilings_coarse_columns, ceilings_coarse_first);
+            Jump fine = jump_over(ray, coarse.t, ceilings_fine_level, ceilings_fine_columns, 0);
+            t = fine.t;
+            side = fine.over ? real(1.0) : side;
+            free = fine.open && t < stop;
+        }
+        under_way = t <= stop;
+        if (specimen_kind == SPECIMEN_ANALYTIC && under_way) {
+            // A ray from beside may be below: the march over all of it knows from where it comes.
+            real ahead = beside ? stop : min(stop, t + ray.to_next_cell * real(CELLS_AHEAD));
+            hit = march_surface(specimen, start, direction, beside ? real(0.0) : t, ahead);
+            found = hit.found == 1u;
+            under_way = !found && ahead < stop;
+            t = ahead;
+        }
+        cell = cell_at(ray, t);
+        for (int k = 0; k < CELLS_AHEAD && under_way && specimen_kind == SPECIMEN_FACETS; ++k) {
+            vec4 corners = cell_corners(cell);
+            real2 local = ray.place - real2(cell);
+            if (side == real(0.0)) {
+                real2 at = local + t * ray.speed;
+                bool above = ray.height + t * ray.rise > facet_height(corners, at, at.x >= at.y);
+                side = above ? real(1.0) : real(-1.0);
             }
+            real2 to_border = (real2(forward) - local) * slowness;
             bool cross_x = to_border.x <= to_border.y;
-            bool last = min(to_border.x, to_border.y) >= stop;
+            real leave = clamp(min(to_border.x, to_border.y), t, stop);
+            // On the diagonal, where both facets have the same height.
+            real middle = (local.y - local.x) * drift_slowness;
+            bool crosses = middle > t && middle < leave;
+            real along = clamp(local.x + middle * ray.speed.x, real(0.0), real(1.0));
+            real gap_middle = ray.height + middle * ray.rise - (corners.x + along * (corners.w - corners.x));
+            // On the border, which the next cell sees alike. A ray that stops short of it does so above or below all.
+            real2 ends = cross_x ? (forward.x == 1 ? corners.yw : corners.xz) : (forward.y == 1 ? corners.zw : corners.xy);
+            along = clamp(cross_x ? local.y + leave * ray.speed.y : local.x + leave * ray.speed.x, real(0.0), real(1.0));
+            real gap_leave = ray.height + leave * ray.rise - (ends.x + along * (ends.y - ends.x));
+            bool in_first = crosses && side * gap_middle <= real(0.0);
+            found = in_first || side * gap_leave <= real(0.0);
+            from = in_first || !crosses ? t : middle;
+            to = in_first ? middle : leave;
+            ivec2 step = cross_x ? ivec2(2 * forward.x - 1, 0) : ivec2(0, 2 * forward.y - 1);
+            cell = found ? cell : cell + step;
+            bool inside = uint(cell.x) < uint(cells.x) && uint(cell.y) < uint(cells.y);
+            under_way = !found && inside && leave < stop;
             t = leave;
-            ivec2 next = clamp(ivec2(floor(place + t * speed)), block_first, min(block_last, cells - 1));
-            next.x = cross_x ? border.x - 1 + forward.x : next.x;
-            next.y = cross_x ? next.y : border.y - 1 + forward.y;
-            bool outside = next.x < 0 || next.y < 0 || next.x >= cells.x || next.y >= cells.y;
-            under_way = !(found || last || outside || marched);
-            cell = found ? cell : next;
-            int crossed = cross_x ? border.x : border.y;
-            level += ((crossed >> level) & 1) == 0 && level < top_level ? 1 : 0;
         }
     }
 
     if (specimen_kind == SPECIMEN_FACETS && found) {
         vec4 corners = cell_corners(cell);
+        real2 local = ray.place - real2(cell);
+        real2 centre = local + real(0.5) * (from + to) * ray.speed;
+        bool lower_right = centre.x >= centre.y;
+        real gap_from = side * (ray.height + from * ray.rise - facet_height(corners, local + from * ray.speed, lower_right));
+        real gap_to = side * (ray.height + to * ray.rise - facet_height(corners, local + to * ray.speed, lower_right));
+        gap_from = max(gap_from, real(0.0));
+        real total = gap_from + max(-gap_to, real(0.0));
+        real meeting = total > real(0.0) ? from + (to - from) * (gap_from / total) : from;
         hit.found = 1u;
         hit.position = real3(start.x + meeting * direction.x, start.y + meeting * direction.y,
-                             facet_height(corners, place + meeting * speed - real2(cell), lower_right));
+                             facet_height(corners, local + meeting * ray.speed, lower_right));
         real2 rise = lower_right ? real2(corners.y - corners.x, corners.w - corners.y)
                                  : real2(corners.w - corners.z, corners.z - corners.x);
-        hit.normal = normalize(real3(-rise / cell_size, real(1.0)));
+        hit.normal = normalize(real3(-rise * per_mm, real(1.0)));
         hit.distance = meeting;
     }
-    hit.distance = max(hit.distance + ray.advance, real(0.0));
+    hit.distance = max(hit.distance + advance, real(0.0));
     return hit;
 }

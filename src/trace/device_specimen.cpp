@@ -20,7 +20,7 @@ namespace vkfv::trace {
 namespace {
 
 constexpr std::uint32_t heights_slot = 8;
-constexpr std::uint32_t pyramid_slot = 9;
+constexpr std::uint32_t ceilings_slot = 9;
 constexpr std::uint32_t vertices_slot = 10;
 constexpr std::uint32_t triangles_slot = 11;
 constexpr std::uint32_t structure_slot = 12; // or the nodes of our own hierarchy
@@ -101,6 +101,18 @@ Triangulation triangulate(const specimen::HeightField& field) {
         }
     }
     return result;
+}
+
+// Two points of a column at a time: (i, j) and (i, j+1), row by row but for the last.
+std::vector<glm::vec2> column_steps(const Grid<float>& heights) {
+    std::vector<glm::vec2> steps;
+    steps.reserve(heights.values.size());
+    for (int row = 0; row + 1 < heights.rows; ++row) {
+        for (int column = 0; column < heights.columns; ++column) {
+            steps.emplace_back(heights(column, row), heights(column, row + 1));
+        }
+    }
+    return steps;
 }
 
 // result[k] = values[order[k]]
@@ -191,10 +203,11 @@ class Uploader {
         reserve(slot, what, values.size() * sizeof(Value)).write_values(std::span<const Value>(values));
     }
 
-    void put_pyramid(const Pyramid& pyramid) {
-        vulkan::Buffer& buffer = reserve(pyramid_slot, "pyramid of heights", pyramid.bytes());
-        buffer.write(std::as_bytes(std::span(&pyramid.header, 1)));
-        buffer.write(std::as_bytes(std::span(pyramid.ranges)), sizeof pyramid.header);
+    void put_ceilings(const Ceilings& ceilings) {
+        vulkan::Buffer& buffer = reserve(ceilings_slot, "ceilings",
+                                         sizeof ceilings.header + ceilings.heights.size() * sizeof(float));
+        buffer.write(std::as_bytes(std::span(&ceilings.header, 1)));
+        buffer.write(std::as_bytes(std::span(ceilings.heights)), sizeof ceilings.header);
     }
 
     void leave_unread(std::uint32_t slot) {
@@ -310,10 +323,10 @@ DeviceSpecimen::DeviceSpecimen(const vulkan::Device& device, const specimen::Spe
             const Triangulation surface = triangulate(*field);
             nodes = upload_in_hierarchy(uploader, surface.vertices, surface.triangles);
         } else {
-            uploader.expect("pyramid of heights",
-                            pyramid_bytes(field->heights.columns - 1, field->heights.rows - 1));
-            uploader.put(heights_slot, "heights", field->heights.values);
-            uploader.put_pyramid(make_pyramid(*field));
+            const Grid<float>& heights = field->heights;
+            uploader.expect("heights", heights.values.size() * sizeof(glm::vec2));
+            uploader.put(heights_slot, "heights", column_steps(heights));
+            uploader.put_ceilings(make_ceilings(*field));
         }
     } else if (const auto* surface = std::get_if<specimen::Analytic>(&specimen.geometry)) {
         if (surface->lattice) {
@@ -332,7 +345,7 @@ DeviceSpecimen::DeviceSpecimen(const vulkan::Device& device, const specimen::Spe
             uploader.put(tiles_slot, "tiles", in_order(boxes, hierarchy.order));
             nodes = std::move(hierarchy.nodes);
         } else {
-            uploader.put_pyramid(pyramid);
+            uploader.put_ceilings(make_ceilings(pyramid, record_.top - record_.bottom));
         }
     } else {
         const auto& mesh = std::get<specimen::Mesh>(specimen.geometry);

@@ -1,9 +1,11 @@
 #include "trace/pyramid.hpp"
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
 #include <functional>
 #include <limits>
+#include <utility>
 
 namespace vkfv::trace {
 
@@ -87,31 +89,72 @@ double largest_height(const specimen::HeightField& field) {
     return largest;
 }
 
+// Light at NA 0.45 goes half as far across as down. Where blocks are about as large as that over the whole relief, one
+// jump brings it close to the surface, and one over finer blocks to within a few cells of where it meets it.
+int coarse_level_for(double relief, double cell, int cells) {
+    const int suitable = std::ilogb(std::max(0.5 * relief / cell, 1.0));
+    return std::clamp(suitable, 1, std::max(1, std::min(largest_level, static_cast<int>(std::bit_width(
+                                                                        static_cast<unsigned>(cells - 1))))));
+}
+
+// Highest points of cells, row-major, to those of blocks of twice the side.
+Grid<float> halved(const Grid<float>& highest) {
+    Grid<float> result((highest.columns + 1) / 2, (highest.rows + 1) / 2);
+    std::ranges::fill(result.values, -std::numeric_limits<float>::infinity());
+    for (int row = 0; row < highest.rows; ++row) {
+        for (int column = 0; column < highest.columns; ++column) {
+            float& block = result(column / 2, row / 2);
+            block = std::max(block, highest(column, row));
+        }
+    }
+    return result;
+}
+
+void append_ceilings(std::vector<float>& ceilings, const Grid<float>& highest) {
+    for (int row = 0; row < highest.rows; ++row) {
+        for (int column = 0; column < highest.columns; ++column) {
+            float ceiling = highest(column, row);
+            for (int j = std::max(row - 1, 0); j <= std::min(row + 1, highest.rows - 1); ++j) {
+                for (int i = std::max(column - 1, 0); i <= std::min(column + 1, highest.columns - 1); ++i) {
+                    ceiling = std::max(ceiling, highest(i, j));
+                }
+            }
+            ceilings.push_back(ceiling);
+        }
+    }
+}
+
+// highest: of each cell, mm.
+Ceilings ceilings_over(Grid<float> highest, double cell_x, double cell_y, double steepest, double relief) {
+    Ceilings result;
+    CeilingsHeader& header = result.header;
+    header.cells_x = highest.columns;
+    header.cells_y = highest.rows;
+    header.per_x = static_cast<float>(1 / cell_x);
+    header.per_y = static_cast<float>(1 / cell_y);
+    header.steepest = static_cast<float>(steepest);
+    header.coarse_level =
+        coarse_level_for(relief, std::min(cell_x, cell_y), std::max(highest.columns, highest.rows));
+    header.fine_level = std::max(1, header.coarse_level / 2);
+    for (int level = 1; level <= header.coarse_level; ++level) {
+        highest = halved(highest);
+        if (level == header.fine_level) {
+            header.fine_columns = highest.columns;
+            append_ceilings(result.heights, highest);
+        }
+    }
+    header.coarse_columns = highest.columns;
+    header.coarse_first = static_cast<std::int32_t>(result.heights.size());
+    append_ceilings(result.heights, highest);
+    return result;
+}
+
 } // namespace
 
 glm::vec2 Pyramid::range(int level, int column, int row) const {
     return ranges[first_of_level(header, level) +
                   static_cast<std::size_t>(row) * static_cast<std::size_t>(header.padded_x >> level) +
                   static_cast<std::size_t>(column)];
-}
-
-std::size_t pyramid_bytes(int cells_x, int cells_y) {
-    const PyramidHeader header = make_header(cells_x, cells_y);
-    return sizeof header + first_of_level(header, header.top_level + 1) * sizeof(glm::vec2);
-}
-
-Pyramid make_pyramid(const specimen::HeightField& field) {
-    const Grid<float>& heights = field.heights;
-    PyramidHeader header = make_header(heights.columns - 1, heights.rows - 1);
-    header.cell_x = static_cast<float>(field.pitch_x);
-    header.cell_y = static_cast<float>(field.pitch_y);
-    const double rounding =
-        float_rounding(field.x_min, field.x_max(), field.y_min, field.y_max(), largest_height(field));
-    return build(header, rounding, [&](int column, int row) {
-        const auto [lowest, highest] = std::minmax({heights(column, row), heights(column + 1, row),
-                                                    heights(column, row + 1), heights(column + 1, row + 1)});
-        return glm::dvec2(lowest, highest);
-    });
 }
 
 glm::ivec2 pyramid_cells(const specimen::Analytic& surface) {
@@ -158,6 +201,47 @@ Pyramid make_pyramid(const specimen::Analytic& surface, const physics::f64::Spec
         }
         return range;
     });
+}
+
+Ceilings make_ceilings(const specimen::HeightField& field) {
+    const Grid<float>& heights = field.heights;
+    const auto [bottom, top] = std::ranges::minmax(heights.values);
+    const double rounding = float_rounding(field.x_min, field.x_max(), field.y_min, field.y_max(), largest_height(field));
+    Grid<float> highest(heights.columns - 1, heights.rows - 1);
+    double steepest = 0; // squared
+    for (int row = 0; row < highest.rows; ++row) {
+        for (int column = 0; column < highest.columns; ++column) {
+            const double corner = heights(column, row);
+            const double right = heights(column + 1, row);
+            const double above = heights(column, row + 1);
+            const double across = heights(column + 1, row + 1);
+            const auto squared_slope = [&](double rise_x, double rise_y) {
+                const double x = rise_x / field.pitch_x;
+                const double y = rise_y / field.pitch_y;
+                return x * x + y * y;
+            };
+            steepest = std::max({steepest, squared_slope(right - corner, across - right),
+                                 squared_slope(across - above, above - corner)});
+            highest(column, row) =
+                std::nextafter(static_cast<float>(std::max({corner, right, above, across}) + rounding),
+                               std::numeric_limits<float>::infinity());
+        }
+    }
+    // Far more than float arithmetic makes of a slope.
+    return ceilings_over(std::move(highest), field.pitch_x, field.pitch_y, 1.0001 * std::sqrt(steepest),
+                         static_cast<double>(top) - static_cast<double>(bottom));
+}
+
+Ceilings make_ceilings(const Pyramid& pyramid, double relief) {
+    const PyramidHeader& header = pyramid.header;
+    Grid<float> highest(header.cells_x, header.cells_y);
+    for (int row = 0; row < highest.rows; ++row) {
+        for (int column = 0; column < highest.columns; ++column) {
+            highest(column, row) = pyramid.range(0, column, row).y;
+        }
+    }
+    constexpr double never = 1e30; // a march notices by itself that it escapes
+    return ceilings_over(std::move(highest), header.cell_x, header.cell_y, never, relief);
 }
 
 } // namespace vkfv::trace

@@ -1,4 +1,5 @@
-// Minimum/maximum pyramid over the cells of a specimen, as shaders/device/specimen_quadtree.glsl reads it.
+// Bounds of a specimen's heights over blocks of cells: minima and maxima as boxes are made of, and the ceilings that
+// shaders/device/specimen_quadtree.glsl jumps by.
 #pragma once
 
 #include "physics/physics.hpp"
@@ -12,7 +13,6 @@
 
 namespace vkfv::trace {
 
-// The head of the device's buffer, in scalar layout; the ranges follow.
 struct PyramidHeader {
     std::int32_t cells_x = 0; // cells with a surface
     std::int32_t cells_y = 0;
@@ -21,9 +21,7 @@ struct PyramidHeader {
     std::int32_t top_level = 0;
     float cell_x = 0; // mm
     float cell_y = 0;
-    float unused = 0;
 };
-static_assert(sizeof(PyramidHeader) == 8 * 4);
 
 // (lowest, highest) height in mm of every block of 2^level x 2^level cells: level by level from the finest,
 // row-major, row 0 at the lowest y. Each range encloses the surface over its block with what float arithmetic
@@ -34,14 +32,7 @@ struct Pyramid {
 
     // Of block (column, row) of a level.
     glm::vec2 range(int level, int column, int row) const;
-    std::size_t bytes() const { return sizeof header + ranges.size() * sizeof(glm::vec2); }
 };
-
-// How many bytes the pyramid over so many cells takes: known before it is made.
-std::size_t pyramid_bytes(int cells_x, int cells_y);
-
-// Over the cells of the height field.
-Pyramid make_pyramid(const specimen::HeightField& field);
 
 // Over the cells of the lattice, or over tiles of the footprint where there is none. shape: the record of the
 // same surface without its lattice, whose lipschitz bounds the slope of the shape alone.
@@ -49,5 +40,31 @@ Pyramid make_pyramid(const specimen::Analytic& surface, const physics::f64::Spec
 
 // Cells of that pyramid: (columns, rows).
 glm::ivec2 pyramid_cells(const specimen::Analytic& surface);
+
+// The head of the device's buffer, in scalar layout; the ceilings follow.
+struct CeilingsHeader {
+    std::int32_t cells_x = 0;
+    std::int32_t cells_y = 0;
+    float per_x = 0; // cells/mm
+    float per_y = 0;
+    float steepest = 0; // no slope of the surface is larger
+    std::int32_t fine_level = 0;
+    std::int32_t fine_columns = 0; // blocks
+    std::int32_t coarse_level = 0;
+    std::int32_t coarse_columns = 0;
+    std::int32_t coarse_first = 0; // index of the coarse level's first ceiling
+};
+static_assert(sizeof(CeilingsHeader) == 10 * 4);
+
+// mm: of every block of 2^level x 2^level cells the highest point of it and of the blocks around it, with what float
+// arithmetic may add to a height. Two levels, row-major, row 0 at the lowest y.
+struct Ceilings {
+    CeilingsHeader header;
+    std::vector<float> heights;
+};
+
+Ceilings make_ceilings(const specimen::HeightField& field);
+// relief: highest less lowest height of the surface, mm.
+Ceilings make_ceilings(const Pyramid& pyramid, double relief);
 
 } // namespace vkfv::trace
