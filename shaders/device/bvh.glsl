@@ -70,31 +70,15 @@ void bvh_visit(inout BvhWalk walk, uint node, real farthest) {
         uvec3 upper = four == 0 ? uvec3(corners_1.z, corners_2.xz) : uvec3(corners_1.w, corners_2.yw);
         uvec3 first = mix(upper, lower, forward);
         uvec3 last = mix(lower, upper, forward);
-#ifdef META
-        // Four slots at once: nodes are those with both bits of 24.
-        uint inner = ((slot_word & (slot_word << 1)) & 0x10101010u) >> 4;
-        uint places = (slot_word ^ (inner * walk.forward)) & 0x1F1F1F1Fu;
-        uint held = (slot_word >> 5) & 0x07070707u;
-#endif
         for (int k = 0; k < 4; ++k) {
             real3 enter = real3(bvh_byte(first.x, k), bvh_byte(first.y, k), bvh_byte(first.z, k)) * pace + base_enter;
             real3 leave = real3(bvh_byte(last.x, k), bvh_byte(last.y, k), bvh_byte(last.z, k)) * pace + base_leave;
-#ifdef IMAX
-            bool meets = max(max(max(floatBitsToInt(enter.x), floatBitsToInt(enter.y)), floatBitsToInt(enter.z)), floatBitsToInt(walk.start)) <=
-                         min(min(min(floatBitsToInt(leave.x), floatBitsToInt(leave.y)), floatBitsToInt(leave.z)), floatBitsToInt(farthest));
-#else
-            bool meets = max(max(enter.x, enter.y), max(enter.z, walk.start)) <=
-                         min(min(leave.x, leave.y), min(leave.z, farthest));
-#endif
-#ifdef META
-            uint bits = bitfieldExtract(held, 8 * k, 8) << bitfieldExtract(places, 8 * k, 8);
-            met |= meets ? bits : 0u;
-#else
             uint slot = bitfieldExtract(slot_word, 8 * k, 8);
             // A node's bit stands higher the nearer its slot is; primitives keep theirs.
             uint place = (slot & 24u) == 24u ? (slot ^ walk.forward) & 31u : slot & 31u;
+            bool meets = max(max(enter.x, enter.y), max(enter.z, walk.start)) <=
+                         min(min(leave.x, leave.y), min(leave.z, farthest));
             met |= meets ? (slot >> 5) << place : 0u;
-#endif
         }
     }
     walk.nodes = uvec2(slots.x, (met & 0xFF000000u) | (frame.w >> 24));
@@ -126,12 +110,4 @@ bool bvh_proceed(inout BvhWalk walk, real farthest) {
     walk.primitive = walk.primitives.x + uint(max(next, 0));
     walk.primitives.y &= walk.primitives.y - 1u; // the lowest one is done; 0 stays 0
     return under_way;
-}
-
-// Whether the node of the last primitive holds another one.
-bool bvh_another(inout BvhWalk walk) {
-    bool another = walk.primitives.y != 0u;
-    walk.primitive = walk.primitives.x + uint(max(findLSB(walk.primitives.y), 0));
-    walk.primitives.y &= walk.primitives.y - 1u;
-    return another;
 }

@@ -51,10 +51,6 @@ Hit meet_triangles(real3 origin, real3 direction, RayInterval over) {
     uint met = 0u;
     vec2 barycentrics = vec2(0.0, 0.0);
     while (bvh_proceed(walk, nearest)) {
-#ifdef ALL
-      bool more = true;
-      while (more) {
-#endif
         real3 a = in_frame(frame, triangle_vertex(walk.primitive, 0u));
         real3 b = in_frame(frame, triangle_vertex(walk.primitive, 1u));
         real3 c = in_frame(frame, triangle_vertex(walk.primitive, 2u));
@@ -73,10 +69,6 @@ Hit meet_triangles(real3 origin, real3 direction, RayInterval over) {
             met = walk.primitive;
             barycentrics = vec2(v, w) * inverse;
         }
-#ifdef ALL
-        more = bvh_another(walk);
-      }
-#endif
     }
     Hit hit = no_hit();
     if (found) {
