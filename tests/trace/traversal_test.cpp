@@ -358,7 +358,7 @@ TEST(Traversal, LightFromTheSideIsMetAlike) {
                   10 * share_for_rounding * static_cast<double>(rays.size()));
     }
     const auto wrong = meet(shifted(rough(), 10 * nm), Traversal::quadtree, rays);
-    EXPECT_GT(compare(reference, rays, wrong, expected, 4 * nm).apart, rays.size() / 4);
+    EXPECT_GT(compare(reference, {rays.begin(), rays.begin() + 1000}, wrong, expected, 4 * nm).apart, 100u);
 }
 
 TEST(Traversal, SteepLightLeavesTheSurface) {
