@@ -8,7 +8,10 @@ layout(local_size_x = 128) in;
 #include "device/kernel.glsl"
 
 layout(set = 0, binding = 3, scalar) buffer Pixels { uint64_t pixels[]; }; // in units of 2^-BACKWARD_FRACTION_BITS
-layout(set = 0, binding = 17, scalar) uniform Backward { BackwardOptics backward; };
+layout(set = 0, binding = 17, scalar) uniform Backward {
+    BackwardOptics backward;
+    Lattice lattice;
+};
 
 layout(push_constant, scalar) uniform Batch {
     uint first_chunk; // of each pixel's lattice
@@ -28,8 +31,8 @@ void main() {
         int column = int(pixel) - row * instrument.detector_pixels;
         real sum = real(0.0);
         for (uint point = 0u; point < chunk_points; ++point) {
-            sum += trace_backward(instrument, backward, specimen, exposure, column, row, randomisation,
-                                  chunk * chunk_points + point, shift);
+            sum += trace_backward(instrument, backward, specimen, exposure, column, row, randomisation, lattice,
+                                  shift, chunk * chunk_points + point);
         }
         atomicAdd(pixels[pixel], uint64_t(sum * BACKWARD_UNIT + real(0.5)));
     }

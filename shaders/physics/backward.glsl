@@ -175,23 +175,21 @@ VKFV_FUNCTION bool lobe_is_delta(Lobe lobe) {
     return delta;
 }
 
-// The value of one path (see above). point: its index within the pixel, whose numbers key further draws; column, row:
-// of the pixel.
+// The value of one path (see above): of one point of a pixel's lattice, whose number keys further draws.
 VKFV_SCENE_FUNCTION VKFV_FUNCTION real trace_backward(VKFV_SCENE_PARAMETER Instrument instrument, BackwardOptics backward,
                                                       SpecimenRecord specimen, Exposure exposure, int column, int row,
-                                                      uint randomisation, uint point, LatticeShift shift) {
-    uint inverse = bitfieldReverse(point);
+                                                      uint randomisation, Lattice lattice, LatticeShift shift, uint point) {
     real turn = instrument.magnification < real(0.0) ? real(-1.0) : real(1.0);
     real pitch = real(2.0) * instrument.detector_half_size / real(instrument.detector_pixels);
-    real x = turn * ((real(column) + lattice_coordinate(inverse, 0u, shift.first.x)) * pitch -
+    real x = turn * ((real(column) + lattice_coordinate(lattice, point, lattice.z_0, shift.first.x)) * pitch -
                      instrument.detector_half_size);
-    real y = turn * ((real(row) + lattice_coordinate(inverse, 1u, shift.first.y)) * pitch -
+    real y = turn * ((real(row) + lattice_coordinate(lattice, point, lattice.z_1, shift.first.y)) * pitch -
                      instrument.detector_half_size);
-    real rho = sqrt(lattice_coordinate(inverse, 2u, shift.first.z));
-    Turn azimuth = turn_of(lattice_coordinate(inverse, 3u, shift.first.w));
+    real rho = sqrt(lattice_coordinate(lattice, point, lattice.z_2, shift.first.z));
+    Turn azimuth = turn_of(lattice_coordinate(lattice, point, lattice.z_3, shift.first.w));
     Light light = light_of_spectral(instrument, real(0.0));
     if ((features(VKFV_SCENE_ALONE) & FEATURE_SPECTRUM) != 0u) {
-        light = draw_light(VKFV_SCENE instrument, lattice_coordinate(inverse, 7u, shift.second.w));
+        light = draw_light(VKFV_SCENE instrument, lattice_coordinate(lattice, point, lattice.z_7, shift.second.w));
     }
     BackwardArrival arrival =
         look_from_detector(VKFV_SCENE instrument, backward, specimen, exposure, x, y,
@@ -213,9 +211,9 @@ VKFV_SCENE_FUNCTION VKFV_FUNCTION real trace_backward(VKFV_SCENE_PARAMETER Instr
         real3 outgoing = -direction;
         real3 origin = scatter_origin(hit);
         Draws draws;
-        draws.u0 = lattice_coordinate(inverse, 4u, shift.second.x);
-        draws.u1 = lattice_coordinate(inverse, 5u, shift.second.y);
-        draws.u2 = lattice_coordinate(inverse, 6u, shift.second.z);
+        draws.u0 = lattice_coordinate(lattice, point, lattice.z_4, shift.second.x);
+        draws.u1 = lattice_coordinate(lattice, point, lattice.z_5, shift.second.y);
+        draws.u2 = lattice_coordinate(lattice, point, lattice.z_6, shift.second.z);
         draws.u3 = real(0.0);
         if (bounce > 0 || specimen.max_bounces > 1 || (scatter_models & SCATTER_DELTA) != 0u) {
             Draws further = draw(exposure.seed, exposure.image, path, block);

@@ -1,22 +1,21 @@
-// Points of an embedded rank-1 lattice in base 2, randomly shifted (J. Dick, F. Y. Kuo, I. H. Sloan, "High-dimensional
-// integration: the quasi-Monte Carlo way", Acta Numerica 22 (2013), section 5): every run of 2^k points that starts at a
-// multiple of 2^k is a shifted lattice of 2^k points, so a path needs no more than its index, and their number may grow.
-// The generator was searched component by component for the least P2 error, with weights 0.9^j, over 2^5 to 2^14 points
-// at once.
-const uint LATTICE_DIMENSIONS = 12u;
-#ifdef __cplusplus
-inline constexpr uint lattice_generator[12] = {
-    1u, 9937u, 14971u, 5153u, 11037u, 4649u, 10271u, 7731u, 2869u, 13763u, 7855u, 14181u};
-#else
-const uint lattice_generator[12] = uint[12](
-    1u, 9937u, 14971u, 5153u, 11037u, 4649u, 10271u, 7731u, 2869u, 13763u, 7855u, 14181u);
-#endif
+// Points of a randomly shifted rank-1 lattice (J. Dick, F. Y. Kuo, I. H. Sloan, "High-dimensional integration: the
+// quasi-Monte Carlo way", Acta Numerica 22 (2013), section 5): point i of n stands at the fractions of i z_d / n + shift_d.
+struct Lattice {
+    uint size_bits; // n = 2^size_bits
+    uint z_0;
+    uint z_1;
+    uint z_2;
+    uint z_3;
+    uint z_4;
+    uint z_5;
+    uint z_6;
+    uint z_7;
+};
 
-// The shift of one dimension per component.
+// In units of 2^-32.
 struct LatticeShift {
     uvec4 first;
     uvec4 second;
-    uvec4 third;
 };
 
 // Of `randomisation`, for one pixel of one image. The 2 keeps its counters apart from those of paths.
@@ -24,12 +23,11 @@ VKFV_FUNCTION LatticeShift lattice_shift(uint seed, uint image, uint pixel, uint
     LatticeShift shift;
     shift.first = philox_4x32_10(uvec4(pixel, randomisation, 0u, 2u), seed, image);
     shift.second = philox_4x32_10(uvec4(pixel, randomisation, 1u, 2u), seed, image);
-    shift.third = philox_4x32_10(uvec4(pixel, randomisation, 2u, 2u), seed, image);
     return shift;
 }
 
-// In (0, 1). radical_inverse: the bits of the point's index in reverse order.
-VKFV_FUNCTION real lattice_coordinate(uint radical_inverse, uint dimension, uint shift) {
-    uint bits = radical_inverse * lattice_generator[dimension] + shift;
-    return (real(bits >> 9) + real(0.5)) * real(1.1920928955078125e-7);
+// In (0, 1), of the point and one dimension's z and shift. n = 1 has no fraction.
+VKFV_FUNCTION real lattice_coordinate(Lattice lattice, uint point, uint z, uint shift) {
+    uint fraction = lattice.size_bits == 0u ? 0u : (point * z) << (32u - lattice.size_bits);
+    return (real((fraction + shift) >> 9) + real(0.5)) * real(1.1920928955078125e-7);
 }

@@ -33,7 +33,6 @@
     using glm::clamp;                                                                                        \
     using glm::cos;                                                                                          \
     using glm::exp;                                                                                          \
-    using glm::bitfieldReverse;                                                                              \
     using glm::floor;                                                                                        \
     using glm::fract;                                                                                        \
     using glm::isinf;                                                                                        \

@@ -1,6 +1,7 @@
 #include "trace/backward_image.hpp"
 
 #include "core/units.hpp"
+#include "trace/lattice_generators.hpp"
 
 #include <algorithm>
 #include <bit>
@@ -12,10 +13,18 @@ BackwardPlan backward_plan(std::uint64_t rays, int detector_pixels) {
     const auto pixels = static_cast<std::uint64_t>(detector_pixels) * static_cast<std::uint64_t>(detector_pixels);
     const std::uint64_t per_pixel = (rays + pixels - 1) / pixels;
     BackwardPlan plan;
-    plan.randomisations = per_pixel >= 256 ? 4 : 2;
+    const std::uint64_t most = std::uint64_t{1} << (lattice_generators.size() - 1);
     plan.points = static_cast<std::uint32_t>(
-        std::bit_ceil((per_pixel + plan.randomisations - 1) / plan.randomisations));
+        std::min(most, std::bit_ceil((per_pixel + plan.randomisations - 1) / plan.randomisations)));
+    plan.randomisations = static_cast<std::uint32_t>(
+        std::max<std::uint64_t>(plan.randomisations, (per_pixel + plan.points - 1) / plan.points));
     return plan;
+}
+
+physics::f64::Lattice BackwardPlan::lattice() const {
+    const auto bits = static_cast<std::uint32_t>(std::bit_width(points) - 1);
+    const auto& z = lattice_generators[bits];
+    return {bits, z[0], z[1], z[2], z[3], z[4], z[5], z[6], z[7]};
 }
 
 BackwardImage::BackwardImage(const optics::Instrument& instrument, const BackwardPlan& plan)

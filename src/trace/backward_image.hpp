@@ -13,8 +13,9 @@ namespace vkfv::trace {
 // How many paths each pixel has: `points` of one lattice in each of `randomisations`, whose scatter gives the standard error.
 struct BackwardPlan {
     std::uint32_t randomisations = 2;
-    std::uint32_t points = 1; // a power of two
+    std::uint32_t points = 1; // a power of two, at most 2^14
     std::uint64_t rays_per_pixel() const { return std::uint64_t{randomisations} * points; }
+    physics::f64::Lattice lattice() const;
 };
 
 // No fewer than `rays` in all.

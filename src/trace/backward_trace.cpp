@@ -53,6 +53,13 @@ std::vector<vulkan::SpecializationConstant> constants(const DeviceScene& scene, 
     return all;
 }
 
+// The kernel's uniform block.
+struct BackwardBlock {
+    physics::f32::BackwardOptics optics;
+    physics::f32::Lattice lattice;
+};
+static_assert(sizeof(BackwardBlock) == (7 + 9) * 4);
+
 physics::f32::BackwardOptics to_float(const physics::f64::BackwardOptics& optics) {
     return {static_cast<float>(optics.pupil_position), static_cast<float>(optics.pupil_radius),
             static_cast<float>(optics.source_position), static_cast<float>(optics.source_outer),
@@ -66,11 +73,14 @@ BackwardTrace::BackwardTrace(const DeviceScene& scene, const optics::Instrument&
                              std::uint64_t asked_batch)
     : scene_(scene), pixels_(pixel_count(scene)), points_per_chunk_(std::min(plan.points, most_points_per_chunk)),
       sums_(scene.device, std::size_t{pixels_} * sizeof(std::uint64_t)),
-      optics_(scene.device, sizeof(physics::f32::BackwardOptics)),
+      optics_(scene.device, sizeof(BackwardBlock)),
       kernel_(scene.device, "backward", scene.variant(backward_quadtree, backward_ray_query, backward_bvh),
               declarations(scene), sizeof(Chunks), constants(scene, instrument.turned.value().optics)) {
-    const auto optics = to_float(instrument.turned.value().optics);
-    optics_.write_values(std::span<const physics::f32::BackwardOptics>(&optics, 1));
+    BackwardBlock block{to_float(instrument.turned.value().optics), {}};
+    const auto lattice = plan.lattice();
+    block.lattice = {lattice.size_bits, lattice.z_0, lattice.z_1, lattice.z_2, lattice.z_3,
+                     lattice.z_4,       lattice.z_5, lattice.z_6, lattice.z_7};
+    optics_.write_values(std::span<const BackwardBlock>(&block, 1));
     const std::uint64_t wanted = asked_batch > 0     ? asked_batch
                                  : scene.software() ? std::uint64_t{1} << 19
                                                     : std::uint64_t{1} << 27;

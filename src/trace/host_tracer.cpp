@@ -161,8 +161,8 @@ class HostBackwardTracer final : public Tracer {
         double sum = 0;
         for (std::uint32_t point = 0; point < plan_.points; ++point) {
             sum += trace_backward(scene, turned_.constants, instrument_.turned.value().optics, record_, exposure,
-                                  static_cast<int>(pixel % side), static_cast<int>(pixel / side), randomisation, point,
-                                  shift);
+                                  static_cast<int>(pixel % side), static_cast<int>(pixel / side), randomisation, lattice_, shift,
+                                  point);
         }
         return static_cast<std::uint64_t>(sum * BACKWARD_UNIT + 0.5);
     }
@@ -173,6 +173,7 @@ class HostBackwardTracer final : public Tracer {
     specimen::Intersector intersector_;
     std::uint32_t seed_;
     BackwardPlan plan_;
+    Lattice lattice_ = plan_.lattice();
 };
 
 } // namespace
