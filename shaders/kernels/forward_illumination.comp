@@ -8,8 +8,8 @@ layout(local_size_x = 128) in;
 #include "device/tally.glsl"
 #include "device/survivors.glsl"
 
-// For timing alone, the path may end early: 0 the whole half, 1 after the illumination train, 2 after the specimen
-// (nothing is appended).
+// For timing alone, the path may end early: 0 the whole half, 1 after the illumination train, 2 after the specimen,
+// 3 after the source (nothing is appended).
 layout(constant_id = 2) const uint stop_after = 0u;
 
 layout(push_constant, scalar) uniform Batch {
@@ -29,7 +29,13 @@ void main() {
             uint carry;
             uint low = uaddCarry(first_path.x, index, carry);
             uvec2 path = uvec2(low, first_path.y + carry);
-            if (stop_after == 1u) {
+            if (stop_after == 3u) {
+                Emission emission = emit(instrument, draw(exposure.seed, exposure.image, path, 0u));
+                departure.fate = make_fate(PATH_ALIVE, -1);
+                // As below.
+                survives = emission.ray.position.x + emission.ray.position.y + emission.ray.direction.x +
+                           emission.ray.direction.y + emission.ray.direction.z > real(1e30);
+            } else if (stop_after == 1u) {
                 Arrival arrival = illuminate(instrument, specimen, exposure, path);
                 departure.fate = arrival.fate;
                 // Never so far off; keeps the compiler from dropping what is timed.

@@ -31,9 +31,11 @@ void run_bench(const CommandOptions& options) {
             {"rays_per_second", rate},
             {"spread", times.spread},
             {"seconds_per_1e9_rays", 1e9 * times.seconds_per_ray},
-            {"share_lenses", times.lenses},
+            {"share_source", times.source},
+            {"share_illumination", times.illumination},
             {"share_specimen", times.specimen},
-            {"share_detector", times.detector},
+            {"share_imaging", times.imaging},
+            {"share_detection", times.detection},
             {"surfaces_per_ray", times.surfaces_per_ray},
             {"surfaces_per_detected_ray", times.surfaces_per_detected_ray}};
         fmt::print("{}\n", report.dump(2));
@@ -43,10 +45,12 @@ void run_bench(const CommandOptions& options) {
                "  rays/s                 {:.4g}  (median of {} runs of {:.3g} rays, spread {:.1f} %)\n"
                "  seconds per 1e9 rays   {:.4g}\n"
                "  surfaces per ray       {:.2f} launched, {:.2f} detected\n"
-               "  share of the time      lenses {:.1f} %, specimen {:.1f} %, detector {:.1f} %\n",
+               "  share of the time      source {:.1f} %, illumination {:.1f} %, specimen {:.1f} %, imaging {:.1f} %, "
+               "detection {:.1f} %\n",
                times.description, rate, times.runs, static_cast<double>(times.rays), 100 * times.spread,
                1e9 * times.seconds_per_ray, times.surfaces_per_ray, times.surfaces_per_detected_ray,
-               100 * times.lenses, 100 * times.specimen, 100 * times.detector);
+               100 * times.source, 100 * times.illumination, 100 * times.specimen, 100 * times.imaging,
+               100 * times.detection);
 }
 
 } // namespace vkfv::app

@@ -44,8 +44,10 @@ class DeviceTracer final : public Tracer {
         scene_.set_exposure(focal_height, image);
         const std::uint64_t per_submission =
             std::uint64_t{trace_->batch()} * (scene_.software() ? 1 : batches_per_submission_gpu);
+        double device_seconds = 0;
         for (std::uint64_t first = 0; first < rays_; first += per_submission) {
-            vulkan::Commands commands(scene_.device);
+            vulkan::Commands commands(scene_.device, 2);
+            commands.timestamp();
             if (first == 0) {
                 trace_->clear(commands);
             }
@@ -54,9 +56,12 @@ class DeviceTracer final : public Tracer {
                 trace_->record(commands, path,
                                 static_cast<std::uint32_t>(std::min<std::uint64_t>(trace_->batch(), end - path)));
             }
+            commands.timestamp();
             commands.submit_and_wait();
+            device_seconds += commands.seconds()[1];
         }
         Image result = scene_.accounts.image(trace_->pixels(), trace_->fates(), rays_);
+        result.device_seconds = device_seconds;
         result.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
         return result;
     }

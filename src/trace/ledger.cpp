@@ -25,6 +25,18 @@ std::vector<std::size_t> splitter_passes(const optics::Instrument& instrument) {
     return passes;
 }
 
+// Surfaces that a ray has met which ends at a surface, that one included.
+std::vector<int> crossings_up_to(const optics::Instrument& instrument) {
+    const auto& constants = instrument.constants;
+    std::vector<int> crossings;
+    for (int surface = 0; surface < static_cast<int>(instrument.surfaces.size()); ++surface) {
+        crossings.push_back(surface < constants.imaging_first
+                                ? surface - constants.illumination_first + 1
+                                : constants.illumination_count + surface - constants.imaging_first + 1);
+    }
+    return crossings;
+}
+
 } // namespace
 
 double Ledger::residual() const {
@@ -40,26 +52,30 @@ Accounts::Accounts(const optics::Instrument& instrument)
       left_{1.0, instrument.splitter_reflectance,
             instrument.splitter_reflectance * instrument.splitter_transmittance},
       pixels_(instrument.constants.detector_pixels) {
-    add_slots(instrument.surface_names, splitter_passes(instrument));
+    const auto& constants = instrument.constants;
+    add_slots(instrument.surface_names, splitter_passes(instrument), crossings_up_to(instrument),
+              constants.illumination_count, constants.illumination_count + constants.imaging_count);
 }
 
 Accounts::Accounts(const optics::Instrument& instrument, const std::vector<std::string>& element_names)
     : flux_(instrument.flux), aimed_(instrument.constants.emission_sine * instrument.constants.emission_sine),
       pixels_(instrument.constants.detector_pixels) {
-    add_slots(element_names, std::vector<std::size_t>(element_names.size(), 0));
+    add_slots(element_names, std::vector<std::size_t>(element_names.size(), 0),
+              std::vector<int>(element_names.size(), 0), 0, 0);
 }
 
-void Accounts::add_slots(const std::vector<std::string>& names, const std::vector<std::size_t>& passes) {
+void Accounts::add_slots(const std::vector<std::string>& names, const std::vector<std::size_t>& passes,
+                         const std::vector<int>& crossings, int illumination, int both) {
     const std::array<Slot, PATH_VIGNETTED> plain = {{
-        {"under way", 0},
-        {"detected", 2},
-        {"beside the specimen", 1},
-        {"escaped outside the pupil", 1},
-        {"bounce limit", 1},
-        {"beside the detector", 2},
-        {"numerical", 1},
-        {"absorbed by the specimen", 1},
-        {"interaction limit", 1},
+        {"under way", 0, 0},
+        {"detected", 2, both},
+        {"beside the specimen", 1, illumination},
+        {"escaped outside the pupil", 1, illumination},
+        {"bounce limit", 1, illumination},
+        {"beside the detector", 2, both},
+        {"numerical", 1, illumination},
+        {"absorbed by the specimen", 1, illumination},
+        {"interaction limit", 1, 0},
     }};
     slots_.assign(plain.begin(), plain.end());
     slots_.resize(PATH_STATUS_COUNT); // statuses that belong to surfaces count there
@@ -67,7 +83,7 @@ void Accounts::add_slots(const std::vector<std::string>& names, const std::vecto
                                                                 "lost in reflection"};
     for (std::size_t surface = 0; surface < names.size(); ++surface) {
         for (const char* kind : kinds) {
-            slots_.push_back({std::string(kind) + " at " + names[surface], passes[surface]});
+            slots_.push_back({std::string(kind) + " at " + names[surface], passes[surface], crossings[surface]});
         }
     }
 }
@@ -115,6 +131,9 @@ Image Accounts::image(std::span<const std::uint64_t> pixel_counts, std::span<con
     image.ledger = ledger(ledger_counts, rays);
     image.rays = rays;
     image.detected = ledger_counts[PATH_DETECTED];
+    for (std::size_t slot = 0; slot < slots_.size(); ++slot) {
+        image.crossings += static_cast<double>(ledger_counts[slot]) * slots_[slot].crossings;
+    }
     return image;
 }
 

@@ -33,8 +33,11 @@ class Accounts {
     struct Slot {
         std::string name;
         std::size_t splitter_passes = 0; // that a ray with this fate has behind it
+        int crossings = 0;               // of surfaces in sequence, the last included
     };
-    void add_slots(const std::vector<std::string>& names, const std::vector<std::size_t>& passes);
+    // crossings: of the surfaces with these names, and of the illumination and of both trains in whole.
+    void add_slots(const std::vector<std::string>& names, const std::vector<std::size_t>& passes,
+                   const std::vector<int>& crossings, int illumination, int both);
     Ledger ledger(std::span<const std::uint64_t> counts, std::uint64_t rays) const;
 
     double flux_;  // W

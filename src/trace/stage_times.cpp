@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <array>
+#include <chrono>
 
 namespace vkfv::trace {
 
@@ -16,6 +17,8 @@ double median(std::vector<double> values) {
     return values[values.size() / 2];
 }
 
+constexpr std::chrono::milliseconds warm_up{500}; // clocks of an idle GPU take that long to rise
+
 } // namespace
 
 StageTimes time_stages(const optics::Instrument& instrument, const specimen::Specimen& specimen,
@@ -24,8 +27,8 @@ StageTimes time_stages(const optics::Instrument& instrument, const specimen::Spe
     scene.set_exposure(focal_height, 0);
     const std::uint32_t batch = suitable_batch(scene, options.batch, options.rays);
     const ForwardTrace whole(scene, batch);
+    const ForwardTrace emission(scene, batch, 3);
     const ForwardTrace to_specimen(scene, batch, 1);
-    const ForwardTrace to_departure(scene, batch, 2);
     const ForwardTrace occlusion(scene, batch, 0, 2);
     const ForwardTrace uncounted(scene, batch, 0, 1);
 
@@ -38,17 +41,21 @@ StageTimes time_stages(const optics::Instrument& instrument, const specimen::Spe
         const auto stamps = commands.seconds();
         return std::array<double, 2>{stamps[1] - stamps[0], stamps[2] - stamps[1]};
     };
-    for (const ForwardTrace* trace : {&whole, &to_specimen, &to_departure, &occlusion, &uncounted}) {
-        time(*trace); // warm-up: compilation and idle clocks
+    for (const ForwardTrace* trace : {&emission, &to_specimen, &occlusion, &uncounted, &whole}) {
+        time(*trace); // some drivers compile at the first use
     }
-    std::vector<double> total, illumination, departure, first, second, hidden, imaged;
+    const auto start = std::chrono::steady_clock::now();
+    while (std::chrono::steady_clock::now() - start < warm_up) {
+        time(whole);
+    }
+    std::vector<double> total, first, second, emitted, illuminated, hidden, imaged;
     for (int run = 0; run < runs; ++run) {
         const auto all = time(whole);
         total.push_back(all[0] + all[1]);
         first.push_back(all[0]);
         second.push_back(all[1]);
-        illumination.push_back(time(to_specimen)[0]);
-        departure.push_back(time(to_departure)[0]);
+        emitted.push_back(time(emission)[0]);
+        illuminated.push_back(time(to_specimen)[0]);
         hidden.push_back(time(occlusion)[1]);
         imaged.push_back(time(uncounted)[1]);
     }
@@ -60,34 +67,20 @@ StageTimes time_stages(const optics::Instrument& instrument, const specimen::Spe
     result.seconds_per_ray = whole_seconds / batch;
     const auto [least, most] = std::ranges::minmax(total);
     result.spread = (most - least) / whole_seconds;
-    result.lenses = (median(illumination) + std::max(0.0, median(imaged) - median(hidden))) / whole_seconds;
-    result.specimen = (median(first) - median(illumination) + median(hidden)) / whole_seconds;
-    result.detector = std::max(0.0, median(second) - median(imaged)) / whole_seconds;
+    const auto share = [&](double seconds) { return std::max(0.0, seconds) / whole_seconds; };
+    result.source = share(median(emitted));
+    result.illumination = share(median(illuminated) - median(emitted));
+    result.specimen = share(median(first) - median(illuminated) + median(hidden));
+    result.imaging = share(median(imaged) - median(hidden));
+    result.detection = share(median(second) - median(imaged));
 
-    // Crossings from the fates of one run: a path that ended at a surface has crossed those before it.
     vulkan::Commands commands(scene.device);
     whole.clear(commands);
     whole.record(commands, 0, batch);
     commands.submit_and_wait();
-    const auto fates = whole.fates();
-    const auto& constants = instrument.constants;
-    using namespace physics::f64;
-    const int both = constants.illumination_count + constants.imaging_count;
-    double crossings = 0;
-    for (std::size_t slot = 0; slot < fates.size(); ++slot) {
-        int crossed = constants.illumination_count;
-        if (slot >= PATH_STATUS_COUNT) {
-            const int surface = static_cast<int>(slot - PATH_STATUS_COUNT) / SURFACE_STATUS_COUNT;
-            crossed = surface < constants.imaging_first
-                          ? surface - constants.illumination_first + 1
-                          : constants.illumination_count + surface - constants.imaging_first + 1;
-        } else if (slot == PATH_DETECTED || slot == PATH_OFF_DETECTOR) {
-            crossed = both;
-        }
-        crossings += static_cast<double>(fates[slot]) * crossed;
-    }
-    result.surfaces_per_ray = crossings / batch;
-    result.surfaces_per_detected_ray = both;
+    const Image image = scene.accounts.image(whole.pixels(), whole.fates(), batch);
+    result.surfaces_per_ray = image.crossings / batch;
+    result.surfaces_per_detected_ray = instrument.constants.illumination_count + instrument.constants.imaging_count;
     return result;
 }
 
