@@ -27,9 +27,16 @@ struct CommandOptions {
     bool float_precision = false;         // --trace-rays: on the device
     bool apertures = true;                // --trace-rays
     int runs = 5;                         // --bench
+    std::vector<std::string> bench_parts; // --bench: what to measure (bench.hpp)
+    bool quick = false;                   // --bench
+    std::filesystem::path peer;           // --bench: the program vkfv_bench_peer
+    std::string commit;                   // --bench: for the report
     std::vector<std::filesystem::path> glass_catalogs; // --import
     std::optional<std::uint64_t> shuffle; // --topography: seed of the order in which the images are taken
 };
+
+// The parts of --bench, in the order in which they are measured.
+extern const std::vector<std::string> bench_parts;
 
 // A whole stack with its topography and deviation from truth; continues one that was interrupted.
 void run_stack(const CommandOptions& options);
@@ -43,7 +50,8 @@ void run_trace_rays(const CommandOptions& options);
 void run_layout(const CommandOptions& options);
 // The devices at hand, what each lacks and which would be used.
 void run_devices(const CommandOptions& options);
-// Rays per second of the configuration's chain, by stages.
+// Rays per second of the configuration's chain, by stages and whatever else bench.hpp tells of; with `out`, also as
+// bench.json and bench.svg in that folder.
 void run_bench(const CommandOptions& options);
 // Evaluates an existing stack anew; with `shuffle` in a random order of its images, a control that must find
 // nothing.

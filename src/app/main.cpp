@@ -6,9 +6,11 @@
 
 #include <CLI/CLI.hpp>
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 #include <spdlog/sinks/stdout_color_sinks.h>
 #include <spdlog/spdlog.h>
 
+#include <algorithm>
 #include <cstdio>
 #include <map>
 #include <new>
@@ -29,7 +31,9 @@ struct Arguments {
     bool json = false, quiet = false;
     int runs = 5;
     std::optional<std::uint64_t> shuffle;
-    std::string out, device, traversal, estimator, rays, seed;
+    bool quick = false;
+    std::string out, device, traversal, estimator, rays, seed, peer, commit;
+    std::vector<std::string> bench_parts = {"stages"};
     std::vector<std::string> settings, glass_catalogs;
 };
 
@@ -88,7 +92,8 @@ void declare(CLI::App& app, Arguments& given) {
 
     const char* common = "Instead of the configuration's values";
     app.add_option("--out", given.out,
-                   "Output folder; for --image also a .tif file, for --import the prescription")
+                   "Output folder (--bench: of bench.json and bench.svg); for --image also a .tif file, for --import the "
+                   "prescription")
         ->type_name("PATH")
         ->group(common);
     app.add_option("--device", given.device, "Index or part of a name; \"host\": the reference in double")
@@ -124,6 +129,21 @@ void declare(CLI::App& app, Arguments& given) {
     app.add_option("--runs", given.runs, "Runs whose median counts (--bench)")
         ->check(CLI::Range(1, 1000))
         ->option_text("N")
+        ->group(specific);
+    auto parts = vkfv::app::bench_parts;
+    parts.emplace_back("all");
+    app.add_option("--bench-parts", given.bench_parts,
+                   fmt::format("What to measure (--bench): {}; stages unless given", fmt::join(parts, ", ")))
+        ->delimiter(',')
+        ->check(CLI::IsMember(parts))
+        ->option_text("LIST")
+        ->group(specific);
+    app.add_flag("--quick", given.quick, "Shorter runs and fewer sizes (--bench)")->group(specific);
+    app.add_option("--peer", given.peer, "The program vkfv_bench_peer, to compare with (--bench)")
+        ->type_name("PROGRAM")
+        ->group(specific);
+    app.add_option("--commit", given.commit, "What the report says was measured (--bench)")
+        ->type_name("TEXT")
         ->group(specific);
     app.add_option("--shuffle", given.shuffle,
                    "Take the images in a random order: a control, which must find nothing (--topography)")
@@ -170,6 +190,13 @@ vkfv::app::CommandOptions options_from(const Arguments& given) {
     options.float_precision = given.precision == "float";
     options.apertures = given.apertures;
     options.runs = given.runs;
+    options.bench_parts = given.bench_parts;
+    if (std::ranges::find(given.bench_parts, "all") != given.bench_parts.end()) {
+        options.bench_parts = vkfv::app::bench_parts;
+    }
+    options.quick = given.quick;
+    options.peer = given.peer;
+    options.commit = given.commit;
     options.shuffle = given.shuffle;
     options.glass_catalogs.assign(given.glass_catalogs.begin(), given.glass_catalogs.end());
     const auto override_with = [&](const std::string& option, const std::string& key,

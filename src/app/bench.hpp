@@ -1,0 +1,36 @@
+// What --bench measures, part by part, as one JSON document:
+//   program, commit, date (UTC), device, driver, device_type, configuration, traversal
+//   aimed_share       of the source's flux that launched rays stand for; runs, rays_per_run
+//   validation[]      what, rays, total_z, chi_square, degrees, p, agrees
+//   stages            of one batch: seconds_per_1e9_rays and its shares source, illumination, specimen, imaging, detection
+//   whole             a timing: rays, seconds, spread ((max - min) / median), wall_seconds, processor_seconds,
+//                     seconds_per_1e9_rays, rays_per_second, surfaces_per_ray, ray_surfaces_per_second, detected_share
+//   traversals[]      name and a timing
+//   hits[]            traversal, order, numerical_aperture, hits_per_second, spread, share_met
+//   estimators[]      name, a timing, seeds, variance (W^2, summed over the pixels), relative_efficiency (forward: 1)
+//   scaling           rays[], triangles[], surfaces[], pixels[]: the quantity and a timing
+//   peer              rays, seconds, rays_per_second, processor_seconds, ratio (our rate over its), processor_ratio
+// All seconds are medians over the runs; `seconds` are the device's own. What was not measured is absent.
+#pragma once
+
+#include "app/commands.hpp"
+
+#include <nlohmann/json.hpp>
+
+#include <string>
+
+namespace vkfv::app {
+
+using Json = nlohmann::ordered_json;
+
+// Throws RunError if the validation fails: then nothing is timed.
+Json measure_bench(const CommandOptions& options);
+
+// The peer's own report (--json of vkfv_bench_peer) on a configuration with overrides. Throws RunError.
+Json run_peer(const std::filesystem::path& program, const std::filesystem::path& configuration,
+              const std::vector<TomlOverride>& overrides, const std::vector<std::string>& arguments);
+
+// All that was measured as one SVG.
+std::string bench_picture(const Json& report);
+
+} // namespace vkfv::app
