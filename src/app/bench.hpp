@@ -5,6 +5,7 @@
 //   stages            of one batch: seconds_per_1e9_rays and its shares source, illumination, specimen, imaging, detection
 //   whole             a timing: rays, seconds, spread ((max - min) / median), wall_seconds, processor_seconds,
 //                     seconds_per_1e9_rays, rays_per_second, surfaces_per_ray, ray_surfaces_per_second, detected_share
+//   forms[]           g, max_bounces, geometry ("as configured", "mesh": the height field's triangles), and a timing
 //   traversals[]      name and a timing
 //   hits[]            traversal, order, numerical_aperture, hits_per_second, spread, share_met
 //   estimators[]      name, a timing, seeds, variance (W^2, summed over the pixels), relative_efficiency (forward: 1)

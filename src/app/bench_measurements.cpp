@@ -19,8 +19,8 @@
 
 namespace vkfv::app {
 
-const std::vector<std::string> bench_parts = {"validation", "stages", "whole",     "traversals", "hits", "estimators",
-                                              "rays",       "triangles", "surfaces", "pixels",     "peer"};
+const std::vector<std::string> bench_parts = {"validation", "stages", "whole",    "forms",  "traversals", "hits",
+                                              "estimators", "rays",   "triangles", "surfaces", "pixels",  "peer"};
 
 namespace {
 
@@ -73,6 +73,23 @@ struct Way {
     trace::TraceOptions options;
 };
 
+specimen::Mesh mesh_of(const specimen::HeightField& field) {
+    specimen::Mesh mesh;
+    const auto columns = static_cast<unsigned>(field.heights.columns);
+    for (int row = 0; row < field.heights.rows; ++row) {
+        for (int column = 0; column < field.heights.columns; ++column) {
+            mesh.vertices.emplace_back(field.x_min + column * field.pitch_x, field.y_min + row * field.pitch_y,
+                                       field.heights(column, row));
+            if (column + 1 < field.heights.columns && row + 1 < field.heights.rows) {
+                const auto corner = static_cast<unsigned>(field.heights.index(column, row));
+                mesh.triangles.emplace_back(corner, corner + 1, corner + columns + 1);
+                mesh.triangles.emplace_back(corner, corner + columns + 1, corner + columns);
+            }
+        }
+    }
+    return mesh;
+}
+
 class Bench {
   public:
     explicit Bench(const CommandOptions& options)
@@ -121,6 +138,9 @@ class Bench {
             const auto tracer = tracer_of(configuration_.trace, rays_);
             report["traversal"] = tracer->description();
             report["whole"] = timing(*tracer);
+        }
+        if (wants("forms")) {
+            report["forms"] = forms();
         }
         if (wants("traversals")) {
             report["traversals"] = traversal_timings();
@@ -313,6 +333,46 @@ class Bench {
                   {"detection", times.detection}}}};
     }
 
+    // Sharp and wide lobe, one and four bounces, and the specimen as it comes from an STL of its triangles.
+    Json forms() const {
+        Json result = Json::array();
+        const bool one_lobe = specimen_.material.lobes.size() == 1 &&
+                              specimen_.material.lobes[0].model == "henyey-greenstein";
+        if (!one_lobe) {
+            return result;
+        }
+        auto form = specimen_;
+        const auto* field = std::get_if<specimen::HeightField>(&specimen_.geometry);
+        for (const bool as_mesh : {false, true}) {
+            if (as_mesh && !field) {
+                continue;
+            }
+            if (as_mesh) {
+                form.geometry = mesh_of(*field);
+            }
+            for (const double g : {0.3, 0.8}) {
+                for (const int bounces : {1, 4}) {
+                    spdlog::info("{}, g = {}, at most {} bounces", as_mesh ? "mesh" : "as configured", g, bounces);
+                    form.material.lobes[0].parameters[0] = g;
+                    auto options = configuration_.trace;
+                    options.max_bounces = bounces;
+                    options.rays = rays_;
+                    if (as_mesh && options.traversal == trace::Traversal::quadtree) {
+                        options.traversal = trace::Traversal::automatic;
+                    }
+                    const auto tracer = trace::make_device_tracer(instrument_, form, options);
+                    Json entry = {{"g", g},
+                                  {"max_bounces", bounces},
+                                  {"geometry", as_mesh ? "mesh" : "as configured"},
+                                  {"traversal", tracer->description()}};
+                    entry.update(timing(*tracer));
+                    result.push_back(entry);
+                }
+            }
+        }
+        return result;
+    }
+
     Json traversal_timings() const {
         Json result = Json::array();
         for (const auto& way : traversals()) {
@@ -479,6 +539,7 @@ class Bench {
 
     // In turn, so that whatever else the machine does slows both.
     Json beside_peer() const {
+        const std::uint64_t rays = std::min(rays_, std::uint64_t{10'000'000});
         const auto tracer = tracer_of(configuration_.trace, rays_);
         warm_up(*tracer);
         std::vector<double> seconds, processor, ratio, processor_ratio;
@@ -486,21 +547,23 @@ class Bench {
         for (int run = 0; run < options_.runs; ++run) {
             spdlog::info("peer, run {} of {}", run + 1, options_.runs);
             told = run_peer(options_.peer, options_.file, options_.overrides,
-                            {"--rays", fmt::format("{}", rays_), "--seed", fmt::format("{}", run + 1)});
+                            {"--rays", fmt::format("{}", rays), "--seed", fmt::format("{}", run + 1)});
             seconds.push_back(told["seconds"][0].get<double>());
             processor.push_back(told["processor_seconds"][0].get<double>());
             const auto start = std::clock();
             const auto image = tracer->expose(in_focus, static_cast<std::uint32_t>(run));
-            processor_ratio.push_back(processor.back() / (static_cast<double>(std::clock() - start) / CLOCKS_PER_SEC));
-            ratio.push_back(seconds.back() / image.seconds);
+            const double ours_per_its = static_cast<double>(image.rays) / static_cast<double>(rays);
+            processor_ratio.push_back(ours_per_its * processor.back() /
+                                      (static_cast<double>(std::clock() - start) / CLOCKS_PER_SEC));
+            ratio.push_back(ours_per_its * seconds.back() / image.seconds);
         }
         return {{"threads", told["threads"]},
                 {"packet", told["packet"]},
                 {"block", told["block"]},
-                {"rays", rays_},
+                {"rays", rays},
                 {"seconds", median(seconds)},
                 {"spread", spread(seconds)},
-                {"rays_per_second", static_cast<double>(rays_) / median(seconds)},
+                {"rays_per_second", static_cast<double>(rays) / median(seconds)},
                 {"processor_seconds", median(processor)},
                 {"ratio", median(ratio)},
                 {"ratio_spread", spread(ratio)},

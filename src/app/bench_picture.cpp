@@ -15,7 +15,7 @@ namespace {
 
 using glm::dvec2;
 
-constexpr dvec2 page{1140, 800};
+constexpr dvec2 page{1140, 760};
 constexpr dvec2 panel{350, 300};
 constexpr dvec2 margin{30, 90};
 constexpr dvec2 gap{15, 30};
@@ -87,9 +87,9 @@ class Picture {
             return;
         }
         const dvec2 corner = next(title);
-        const dvec2 from{std::floor(std::log10(least.x) + 1e-9), std::floor(std::log10(least.y) + 1e-9)};
-        const dvec2 to{std::max(std::ceil(std::log10(most.x) - 1e-9), from.x + 1),
-                       std::max(std::ceil(std::log10(most.y) - 1e-9), from.y + 1)};
+        const dvec2 from{std::floor(std::log10(least.x) + 0.05), std::floor(std::log10(least.y))};
+        const dvec2 to{std::max(std::ceil(std::log10(most.x) - 0.05), from.x + 1),
+                       std::max(std::ceil(std::log10(most.y)), from.y + 1)};
         const dvec2 low{corner.x + 52, corner.y + panel.y - 38}, high{corner.x + panel.x - 12, corner.y + 30};
         const auto place = [&](dvec2 point) {
             const dvec2 share = (glm::log(point) / std::log(10.0) - from) / (to - from);
@@ -122,8 +122,8 @@ class Picture {
             }
             svg_.path(points, false, stroke);
             if (series.size() > 1) {
-                svg_.text({high.x - 4, low.y - 8 - 15 * static_cast<double>(series.size() - 1 - k)}, series[k].name,
-                          fmt::format("font-size=\"11\" text-anchor=\"end\" fill=\"{}\"", colours[k % 4]));
+                svg_.text({low.x + 6, low.y - 8 - 15 * static_cast<double>(series.size() - 1 - k)}, series[k].name,
+                          fmt::format("font-size=\"11\" fill=\"{}\"", colours[k % 4]));
             }
         }
     }
@@ -205,7 +205,7 @@ std::string bench_picture(const Json& report) {
                             glass ? std::size_t{0} : std::size_t{1}});
         }
     }
-    picture.bars("Surfaces crossed, 1/s, by objective and splitter (surfaces)", bars);
+    picture.bars("Surfaces crossed, 1/s (surfaces), by splitter", bars);
     if (report.contains("scaling")) {
         const auto& scaling = report.at("scaling");
         const auto draw = [&](const char* list, const char* quantity, const char* by, const char* title,

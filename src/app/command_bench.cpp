@@ -53,8 +53,9 @@ void print_stages(const Json& stages) {
 }
 
 void print_report(const Json& report) {
-    fmt::print("{} {}, {}; {} ({}, {}); {:.4g} of the source's flux is aimed at, medians of {} runs\n",
-               text(report, "program"), text(report, "commit"), text(report, "date"), text(report, "device"),
+    const auto commit = text(report, "commit");
+    fmt::print("{}{}, {}; {} ({}, {}); {:.4g} of the source's flux is aimed at, medians of {} runs\n",
+               text(report, "program"), commit.empty() ? "" : " " + commit, text(report, "date"), text(report, "device"),
                text(report, "driver"), text(report, "device_type"), number(report, "aimed_share"),
                report.at("runs").get<int>());
     const auto each = [&](const Json& of, const char* list, auto&& print) {
@@ -81,6 +82,11 @@ void print_report(const Json& report) {
         fmt::print("  {:.3f} % detected; wall clock {:.4g} s a run, of which the device {:.4g} s\n",
                    100 * number(whole, "detected_share"), number(whole, "wall_seconds"), number(whole, "seconds"));
     }
+    each(report, "forms", [](const Json& entry) {
+        print_timing(fmt::format("{}, g = {:.1f}, {} bounce{}", text(entry, "geometry"), number(entry, "g"),
+                                 entry.at("max_bounces").get<int>(), entry.at("max_bounces").get<int>() > 1 ? "s" : ""),
+                     entry);
+    });
     each(report, "traversals", [](const Json& entry) { print_timing(text(entry, "name"), entry); });
     each(report, "hits", [](const Json& entry) {
         fmt::print("  {:<10} {:<10} {:>8} hits/s at NA {:.1f}, {:.0f} % met, spread {:.1f} %\n",
