@@ -15,7 +15,8 @@
 #include <chrono>
 #include <cmath>
 #include <ctime>
-#include <numeric>
+
+#include <unistd.h>
 
 namespace vkfv::app {
 
@@ -276,6 +277,11 @@ class Bench {
         const auto expose = [&](const trace::TraceOptions& options) {
             return measured(tracer_of(options, rays)->expose(in_focus, image++));
         };
+        // First, since it fails at once if it fails.
+        trace::Measured peer;
+        if (!options_.peer.empty()) {
+            peer = image_of_peer(rays);
+        }
         const auto reference = expose(reference_way.options);
         Json checks = Json::array();
         const auto check = [&](const std::string& what, const trace::Measured& other, bool twin) {
@@ -302,16 +308,22 @@ class Bench {
                   measured(trace::make_device_tracer(instrument_, twin, options)->expose(in_focus, image++)), true);
         }
         if (!options_.peer.empty()) {
-            const auto file = std::filesystem::temp_directory_path() / fmt::format("vkfv_bench_peer_{}.tif", std::time(nullptr));
-            const auto told = run_peer(options_.peer, options_.file, options_.overrides,
-                                       {"--rays", fmt::format("{}", rays), "--gate", "off", "--out", file.string()});
-            const auto flux = surface::read_image(file);
-            std::filesystem::remove(file);
-            Grid<double> watts(flux.columns, flux.rows);
-            std::ranges::copy(flux.values, watts.values.begin());
-            check("the peer", trace::measured_counts(watts, told["watts_per_ray"].get<double>()), false);
+            check("the peer", peer, false);
         }
         return checks;
+    }
+
+    // Without its gate, so that ours is tested too.
+    trace::Measured image_of_peer(std::uint64_t rays) const {
+        const auto file =
+            std::filesystem::temp_directory_path() / fmt::format("vkfv_bench_peer_{}.tif", getpid());
+        const auto told = run_peer(options_.peer, options_.file, options_.overrides,
+                                   {"--rays", fmt::format("{}", rays), "--gate", "off", "--out", file.string()});
+        const auto flux = surface::read_image(file);
+        std::filesystem::remove(file);
+        Grid<double> watts(flux.columns, flux.rows);
+        std::ranges::copy(flux.values, watts.values.begin());
+        return trace::measured_counts(watts, told["watts_per_ray"].get<double>());
     }
 
     Json stages() const {

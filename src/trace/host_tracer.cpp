@@ -89,7 +89,6 @@ class HostTracer final : public Tracer {
         }
         Image result = accounts_.image(counts[0], fates[0], options_.rays);
         result.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
-        result.device_seconds = result.seconds;
         return result;
     }
 

@@ -49,7 +49,7 @@ struct Image {
     std::uint64_t detected = 0; // rays
     double crossings = 0;       // of surfaces in sequence, of all rays together
     double seconds = 0;         // s, wall clock of the trace; enters no image
-    double device_seconds = 0;  // s, the device's part of it by its own clock; the host's reference: as seconds
+    double device_seconds = 0;  // s, the device's part of it by its own clock
 };
 
 // Constructed for one instrument, specimen and device, then const: exposures are independent of each other.
