@@ -35,6 +35,7 @@ void main() {
     echo[k++] = s.rotation_yx; echo[k++] = s.rotation_yy; echo[k++] = s.rotation_yz;
     echo[k++] = s.rotation_zx; echo[k++] = s.rotation_zy; echo[k++] = s.rotation_zz;
     echo[k++] = s.power; echo[k++] = s.reflectance; echo[k++] = s.layer_index; echo[k++] = s.layer_thickness;
+    echo[k++] = s.bend_residual;
     Dispersion d = s.dispersion_before;
     echo[k++] = d.c1; echo[k++] = d.c2; echo[k++] = d.c3; echo[k++] = d.c4; echo[k++] = d.c5; echo[k++] = d.c6;
     d = s.dispersion_after;
@@ -66,7 +67,7 @@ void main() {
     echo[k++] = real(specimen.columns); echo[k++] = real(specimen.rows); echo[k++] = real(specimen.max_bounces);
     echo[k++] = real(specimen.kind); echo[k++] = real(specimen.shape);
     echo[k++] = exposure.top_distance; echo[k++] = real(exposure.seed); echo[k++] = real(exposure.image);
-    echo[k++] = exposure.focal_height;
+    echo[k++] = exposure.focal_height; echo[k++] = exposure.top_distance_residual;
     SpectralBin bin = spectrum[2];
     echo[k++] = bin.cumulative; echo[k++] = bin.start; echo[k++] = bin.stop; echo[k++] = bin.tilt;
     Survivor v = survivors[2];

@@ -1,6 +1,6 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
-// Given rays through the imaging train, from the specimen's side to the detector: --trace-rays --precision float.
+// Given rays through one of the trains and on to a plane behind it: --trace-rays --precision float.
 #extension GL_EXT_scalar_block_layout : require
 #include "physics/lang.glsl"
 #include "physics/all.glsl"
@@ -13,6 +13,7 @@ struct TracedRay {
     real3 direction;
     real path_length;
     uint status;
+    int surface;
 };
 
 layout(set = 0, binding = 2, scalar) readonly buffer Rays { Ray rays[]; }; // in the first vertex' frame
@@ -21,6 +22,10 @@ layout(set = 0, binding = 3, scalar) writeonly buffer TracedRays { TracedRay tra
 layout(push_constant, scalar) uniform Batch {
     uint count;
     uint apertures;
+    int first_surface;
+    int surface_count;
+    real index_before;
+    real plane; // mm, from the last vertex
 };
 
 // The train alone is traced; the physics' other needs are met by nothing.
@@ -35,14 +40,14 @@ void main() {
     uint index = gl_GlobalInvocationID.x;
     if (index < count) {
         Light light = light_of_spectral(instrument, real(0.0));
-        TrainResult train = trace_train(instrument.imaging_first, instrument.imaging_count, rays[index],
-                                        specimen_medium_index(instrument, light), apertures, light);
-        Ray arrived = fly_to_plane(train.ray, instrument.detector_distance, train.index);
+        TrainResult train = trace_train(first_surface, surface_count, rays[index], index_before, apertures, light);
+        Ray arrived = fly_to_plane(train.ray, plane, train.index);
         TracedRay traced;
         traced.position = arrived.position;
         traced.direction = arrived.direction;
         traced.path_length = arrived.path_length;
         traced.status = train.status;
+        traced.surface = train.surface;
         traced_rays[index] = traced;
     }
 }

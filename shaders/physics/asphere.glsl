@@ -41,29 +41,29 @@ const int ASPHERE_NEWTON_STEPS = 8;
 const int ASPHERE_NEWTON_STEPS = 4;
 #endif
 
-struct SurfacePoint {
-    uint found;     // 1: the ray meets the surface near its vertex
-    real parameter; // position + parameter * direction is the point
-    real3 normal;   // not normalised, towards +z
-};
-
-// Meeting with the surface, position and direction in its vertex frame. One flow for conics and aspheres, the loop empty
-// for conics: software devices run both sides of a branch, but not an empty loop.
-VKFV_FUNCTION SurfacePoint meet_surface(real3 position, real3 direction, Surface surface) {
-    Intersection conic = intersect_conic(position, direction, surface.curvature, surface.conic);
-    SurfacePoint result;
-    result.found = conic.found;
-    result.parameter = conic.parameter;
-    result.normal = conic_normal(position + conic.parameter * direction, surface.curvature, surface.conic);
-    int steps = (surface.flags & SURFACE_ASPHERIC) != 0u ? ASPHERE_NEWTON_STEPS : 0;
+// Meeting with the surface, position and direction (of the given length) in its vertex frame. One flow for spheres, conics
+// and aspheres, the loops empty for spheres: software devices run both sides of a branch, but not an empty loop.
+VKFV_FUNCTION SurfacePoint meet_surface(real3 position, real3 direction, real length_squared, Surface surface) {
+    SurfacePoint result = meet_conic(position, direction, length_squared, surface.curvature, surface.conic);
+    bool aspheric = (surface.flags & SURFACE_ASPHERIC) != 0u;
+    real to_plane = -position.z / direction.z;
+    real slope_over_r = surface.curvature;
+    real normal_z = real(1.0) - surface.curvature * (real(1.0) + surface.conic) * result.point.z;
+    int steps = aspheric ? ASPHERE_NEWTON_STEPS : 0;
     for (int step = 0; step < steps; ++step) {
-        real3 point = position + result.parameter * direction;
-        Sag sag = asphere_sag(surface, point.x * point.x + point.y * point.y);
-        real3 normal = real3(-sag.slope_over_r * point.x, -sag.slope_over_r * point.y, real(1.0));
-        real approach = dot(direction, normal);
+        Sag sag = asphere_sag(surface, result.point.x * result.point.x + result.point.y * result.point.y);
+        slope_over_r = sag.slope_over_r;
+        normal_z = real(1.0);
+        real approach = direction.z - slope_over_r * (direction.x * result.point.x + direction.y * result.point.y);
         result.found = sag.defined == 1u && approach > real(0.0) ? result.found : 0u;
-        result.parameter = result.parameter - (result.found == 1u ? (point.z - sag.sag) / approach : real(0.0));
-        result.normal = normal;
+        result.parameter =
+            result.parameter - (result.found == 1u ? (result.point.z - sag.sag) / approach : real(0.0));
+        result.point = real3(position.x + result.parameter * direction.x, position.y + result.parameter * direction.y,
+                             (result.parameter - to_plane) * direction.z);
+    }
+    int normals = aspheric || surface.conic != real(0.0) ? 1 : 0;
+    for (int once = 0; once < normals; ++once) {
+        result = with_normal(result, direction, slope_over_r, normal_z);
     }
     return result;
 }

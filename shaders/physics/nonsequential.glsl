@@ -89,8 +89,9 @@ VKFV_FUNCTION ElementMeeting meet_element(Element element, real3 origin, real3 d
         meeting = meet_barrel(meeting, element, start, least);
     } else {
         Surface surface = seen_from(element.surface, meeting.side);
-        SurfacePoint on = meet_surface(start, meeting.direction, surface);
+        SurfacePoint on = meet_surface(start, meeting.direction, real(1.0), surface);
         meeting.distance = on.parameter;
+        meeting.normal = normal_at(on);
         meeting.found = on.found == 1u && on.parameter > least && !comes_from_it ? 1u : 0u;
         if (comes_from_it && surface.curvature != real(0.0) && (surface.flags & SURFACE_ASPHERIC) == 0u) {
             // On the conic the quadratic's constant term is zero: one root is the start, and this the other.
@@ -102,9 +103,8 @@ VKFV_FUNCTION ElementMeeting meet_element(Element element, real3 origin, real3 d
             real other = real(-2.0) * b / a;
             meeting.distance = other;
             meeting.found = other > least ? 1u : 0u;
-            on.normal = conic_normal(start + other * e, c, surface.conic);
+            meeting.normal = conic_normal(start + other * e, c, surface.conic);
         }
-        meeting.normal = on.normal;
         real3 point = start + meeting.distance * meeting.direction;
         real r_squared = point.x * point.x + point.y * point.y;
         meeting.clear = r_squared <= surface.semi_diameter_squared ? 1u : 0u;

@@ -50,6 +50,19 @@ struct Arrival {
     Light light;
 };
 
+// From the illumination train's last vertex to the specimen's top plane, whose z becomes 0.
+VKFV_FUNCTION Ray fly_to_top(Ray ray, Exposure exposure, real index) {
+    Ray top = fly_to_plane(ray, exposure.top_distance, index);
+    real rest = exposure.top_distance_residual / top.direction.z;
+    top.position = real3(top.position.x + rest * top.direction.x, top.position.y + rest * top.direction.y, real(0.0));
+    return top;
+}
+
+// From the height z in the specimen frame to the plane that stands at z = -top_distance in front of the imaging train.
+VKFV_FUNCTION real rise_to_top(SpecimenRecord specimen, Exposure exposure, real z) {
+    return specimen.top - z + exposure.top_distance_residual;
+}
+
 VKFV_FUNCTION real specimen_medium_index(Instrument instrument, Light light) {
     return instrument.specimen_index + disperse(instrument.specimen_dispersion, light.spectral);
 }
@@ -93,7 +106,7 @@ VKFV_SCENE_FUNCTION VKFV_FUNCTION Arrival illuminate(VKFV_SCENE_PARAMETER Instru
     ray.direction = ray.direction * index;
     TrainResult train = trace_train(VKFV_SCENE instrument.illumination_first, instrument.illumination_count, ray,
                                     index, 1u, arrival.light);
-    Ray down = fly_to_plane(train.ray, exposure.top_distance, specimen_index);
+    Ray down = fly_to_top(train.ray, exposure, specimen_index);
     arrival.fate = make_fate(train.status, train.surface);
     // The specimen frame is the illumination's turned half a turn about x.
     real scale = real(1.0) / specimen_index;
@@ -216,7 +229,7 @@ VKFV_SCENE_FUNCTION VKFV_FUNCTION Detection image_survivor(VKFV_SCENE_PARAMETER 
     real3 direction = survivor_direction(survivor);
     bool occluded = survivor_occluded(VKFV_SCENE survivor);
     // Re-based: on the top plane, whose distance to the front vertex is known in double.
-    real rise = (specimen.top - survivor.position.z) / direction.z;
+    real rise = rise_to_top(specimen, exposure, survivor.position.z) / direction.z;
     Ray ray;
     ray.position = real3(survivor.position.x + rise * direction.x, survivor.position.y + rise * direction.y,
                          -exposure.top_distance);

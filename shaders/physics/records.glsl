@@ -79,6 +79,8 @@ struct Surface {
     real reflectance;     // of a mirror
     real layer_index;     // of the thin layer
     real layer_thickness; // um
+    // 1/mm: what curvature * (index_after - index_before), of the rounded numbers, falls short of; 0 in double.
+    real bend_residual;
     Dispersion dispersion_before;
     Dispersion dispersion_after;
     uint flags; // SURFACE_*
@@ -240,6 +242,7 @@ struct Exposure {
     uint seed;
     uint image;
     real focal_height; // mm, of the focal plane in the specimen frame: z of the image
+    real top_distance_residual; // mm, what rounding took from top_distance; 0 in double
 };
 
 // Where a ray meets the specimen (specimen frame).

@@ -24,9 +24,8 @@ VKFV_FUNCTION real3 to_surface_frame(Surface surface, real3 v) {
 }
 
 // The share that a surface lets pass on, of light that its shape does not stop.
-VKFV_FUNCTION real surface_transmittance(Surface surface, real3 direction, real3 normal, real index_before,
-                                         real index_after, real wave_number) {
-    real cosine = dot(direction, normal) / (index_before * sqrt(dot(normal, normal)));
+VKFV_FUNCTION real surface_transmittance(Surface surface, real cosine, real index_before, real index_after,
+                                         real wave_number) {
     return (surface.flags & SURFACE_MIRROR) != 0u
                ? surface.reflectance
                : real(1.0) - interface_reflectance(surface, index_before, index_after, min(cosine, real(1.0)),
@@ -50,9 +49,10 @@ VKFV_FUNCTION TrainResult trace_surface(Surface surface, int index, TrainResult 
     if ((present & FEATURE_SPECTRUM) != 0u) {
         index_after = index_after + disperse(surface.dispersion_after, light.spectral);
     }
-    SurfacePoint meeting = meet_surface(start, direction, surface);
-    real3 point = start + meeting.parameter * direction;
-    Refraction refraction = refract_scaled(direction, meeting.normal, index_before, index_after);
+    SurfacePoint meeting = meet_surface(start, direction, index_before * index_before, surface);
+    real3 point = meeting.point;
+    Refraction refraction =
+        refract_scaled(direction, meeting, index_before, index_after, surface.bend_residual);
     bool clipped = apertures != 0u && (surface.flags & SURFACE_CLIPPED) != 0u &&
                    point.x * point.x + point.y * point.y > surface.semi_diameter_squared;
     TrainResult result;
@@ -73,7 +73,7 @@ VKFV_FUNCTION TrainResult trace_surface(Surface surface, int index, TrainResult 
     }
     bool lost = false;
     if ((present & FEATURE_LOSSES) != 0u) {
-        result.transmitted = before.transmitted * surface_transmittance(surface, direction, meeting.normal,
+        result.transmitted = before.transmitted * surface_transmittance(surface, meeting.cosine / index_before,
                                                                         index_before, index_after,
                                                                         light.wave_number);
         lost = result.transmitted < light.survival;

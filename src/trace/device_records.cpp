@@ -9,13 +9,13 @@ namespace vkfv::trace {
 
 // The device reads these buffers in scalar layout: every member is four bytes and nothing is padded. The probe
 // kernel probe_records shows that the shaders see the same fields.
-static_assert(sizeof(physics::f32::Surface) == 41 * 4);
+static_assert(sizeof(physics::f32::Surface) == 42 * 4);
 static_assert(sizeof(physics::f32::SpectralBin) == 4 * 4);
 static_assert(sizeof(physics::f32::Instrument) == 32 * 4);
 static_assert(sizeof(physics::f32::SpecimenRecord) == 94 * 4);
-static_assert(sizeof(physics::f32::Exposure) == 4 * 4);
+static_assert(sizeof(physics::f32::Exposure) == 5 * 4);
 static_assert(sizeof(physics::f32::Survivor) == 8 * 4);
-static_assert(sizeof(physics::f32::Element) == (41 + 18) * 4);
+static_assert(sizeof(physics::f32::Element) == (42 + 18) * 4);
 static_assert(sizeof(physics::f32::SourceFrame) == 12 * 4);
 static_assert(sizeof(Parameters) ==
               sizeof(physics::f32::Instrument) + sizeof(physics::f32::SpecimenRecord) + sizeof(physics::f32::Exposure));
@@ -70,6 +70,12 @@ physics::f32::Surface to_float(const physics::f64::Surface& surface) {
     result.reflectance = static_cast<float>(surface.reflectance);
     result.layer_index = static_cast<float>(surface.layer_index);
     result.layer_thickness = static_cast<float>(surface.layer_thickness);
+    // Of spheres alone: elsewhere the curvature that bends is the ray's own.
+    if (surface.conic == 0 && (surface.flags & physics::f64::SURFACE_ASPHERIC) == 0) {
+        const float bend = result.curvature * (result.index_after - result.index_before);
+        result.bend_residual = static_cast<float>(
+            surface.curvature * (surface.index_after - surface.index_before) - static_cast<double>(bend));
+    }
     result.dispersion_before = to_float(surface.dispersion_before);
     result.dispersion_after = to_float(surface.dispersion_after);
     result.flags = surface.flags;
@@ -151,6 +157,8 @@ physics::f32::Instrument to_float(const physics::f64::Instrument& instrument) {
 physics::f32::Exposure to_float(const physics::f64::Exposure& exposure) {
     physics::f32::Exposure result{};
     result.top_distance = static_cast<float>(exposure.top_distance);
+    result.top_distance_residual =
+        static_cast<float>(exposure.top_distance - static_cast<double>(result.top_distance));
     result.seed = exposure.seed;
     result.image = exposure.image;
     result.focal_height = static_cast<float>(exposure.focal_height);

@@ -18,8 +18,36 @@ struct DeviceTracedRay {
     glm::vec3 direction;
     float path_length;
     std::uint32_t status;
+    std::int32_t surface;
 };
-static_assert(sizeof(DeviceTracedRay) == 32);
+static_assert(sizeof(DeviceTracedRay) == 36);
+
+// Its push constants: the train, the index in front of it and the plane behind it.
+struct Passage {
+    std::uint32_t count;
+    std::uint32_t apertures;
+    std::int32_t first_surface;
+    std::int32_t surfaces;
+    float index;
+    float plane; // mm, from the last vertex
+};
+
+// The same in double.
+struct TrainEnds {
+    int first_surface;
+    int surfaces;
+    double index;
+    double plane;
+};
+
+TrainEnds ends_of(const optics::Instrument& instrument, Train train) {
+    const auto& constants = instrument.constants;
+    if (train == Train::imaging) {
+        return {constants.imaging_first, constants.imaging_count, constants.specimen_index,
+                constants.detector_distance};
+    }
+    return {constants.illumination_first, constants.illumination_count, 1.0, instrument.front_vertex_height};
+}
 
 std::string status_name(std::uint32_t status) {
     using namespace physics::f64;
@@ -35,8 +63,9 @@ std::string status_name(std::uint32_t status) {
     }
 }
 
-TracedRay traced(glm::dvec3 position, glm::dvec3 direction, double path_length, std::uint32_t status) {
+TracedRay traced(glm::dvec3 position, glm::dvec3 direction, double path_length, std::uint32_t status, int surface) {
     TracedRay result;
+    result.surface = surface;
     result.status = status_name(status);
     if (status != physics::f64::PATH_ALIVE) {
         const double nan = std::numeric_limits<double>::quiet_NaN();
@@ -53,34 +82,51 @@ TracedRay traced(glm::dvec3 position, glm::dvec3 direction, double path_length, 
 }
 
 // In the frame of the first vertex, direction scaled by the index.
-physics::f64::Ray entering(const optics::Instrument& instrument, const RayInput& input) {
-    physics::f64::Ray ray{};
-    ray.position = {input.x, input.y, input.z - instrument.first_order.working_distance};
-    ray.direction = glm::normalize(glm::dvec3(input.l, input.m, input.n)) * instrument.constants.specimen_index;
-    return ray;
+std::vector<physics::f64::Ray> entering(const optics::Instrument& instrument, std::span<const RayInput> inputs) {
+    std::vector<physics::f64::Ray> rays;
+    rays.reserve(inputs.size());
+    for (const RayInput& input : inputs) {
+        physics::f64::Ray ray{};
+        ray.position = {input.x, input.y, input.z - instrument.first_order.working_distance};
+        ray.direction =
+            glm::normalize(glm::dvec3(input.l, input.m, input.n)) * instrument.constants.specimen_index;
+        rays.push_back(ray);
+    }
+    return rays;
 }
 
 } // namespace
 
 std::vector<TracedRay> trace_rays_on_host(const optics::Instrument& instrument, std::span<const RayInput> rays,
                                           bool apertures) {
+    return trace_train_on_host(instrument, Train::imaging, entering(instrument, rays), apertures);
+}
+
+std::vector<TracedRay> trace_rays_on_device(const optics::Instrument& instrument, std::span<const RayInput> rays,
+                                            bool apertures, const std::string& device) {
+    return trace_train_on_device(instrument, Train::imaging, entering(instrument, rays), apertures, device);
+}
+
+std::vector<TracedRay> trace_train_on_host(const optics::Instrument& instrument, Train train,
+                                           std::span<const physics::f64::Ray> rays, bool apertures) {
     using namespace physics::f64;
-    const auto& constants = instrument.constants;
-    const Light light = light_of_spectral(constants, 0.0);
+    const Light light = light_of_spectral(instrument.constants, 0.0);
+    const TrainEnds ends = ends_of(instrument, train);
     std::vector<TracedRay> result;
     result.reserve(rays.size());
-    for (const RayInput& input : rays) {
-        const TrainResult train =
-            trace_train(instrument.scene(), constants.imaging_first, constants.imaging_count,
-                        entering(instrument, input), constants.specimen_index, apertures ? 1u : 0u, light);
-        const Ray arrived = fly_to_plane(train.ray, constants.detector_distance, train.index);
-        result.push_back(traced(arrived.position, arrived.direction, arrived.path_length, train.status));
+    for (const Ray& ray : rays) {
+        const TrainResult passed = trace_train(instrument.scene(), ends.first_surface, ends.surfaces, ray, ends.index,
+                                               apertures ? 1u : 0u, light);
+        const Ray arrived = fly_to_plane(passed.ray, ends.plane, passed.index);
+        result.push_back(
+            traced(arrived.position, arrived.direction, arrived.path_length, passed.status, passed.surface));
     }
     return result;
 }
 
-std::vector<TracedRay> trace_rays_on_device(const optics::Instrument& instrument, std::span<const RayInput> rays,
-                                            bool apertures, const std::string& device_selector) {
+std::vector<TracedRay> trace_train_on_device(const optics::Instrument& instrument, Train train,
+                                             std::span<const physics::f64::Ray> rays, bool apertures,
+                                             const std::string& device_selector) {
     if (rays.empty()) {
         return {};
     }
@@ -88,8 +134,7 @@ std::vector<TracedRay> trace_rays_on_device(const optics::Instrument& instrument
     const auto surfaces = surface_block(instrument);
     std::vector<physics::f32::Ray> entering_rays;
     entering_rays.reserve(rays.size());
-    for (const RayInput& input : rays) {
-        const auto ray = entering(instrument, input);
+    for (const auto& ray : rays) {
         entering_rays.push_back({glm::vec3(ray.position), glm::vec3(ray.direction), 0.0f});
     }
     Parameters parameters{};
@@ -114,22 +159,28 @@ std::vector<TracedRay> trace_rays_on_device(const optics::Instrument& instrument
                                  {2, storage_buffer},
                                  {3, storage_buffer},
                                  {14, uniform_buffer}},
-                                2 * sizeof(std::uint32_t), constants);
+                                sizeof(Passage), constants);
     const std::array<vulkan::Binding, 5> bindings = {{{0, &surface_buffer},
                                                       {1, &parameter_buffer},
                                                       {2, &ray_buffer},
                                                       {3, &traced_buffer},
                                                       {14, &spectrum_buffer}}};
-    const std::array<std::uint32_t, 2> push = {static_cast<std::uint32_t>(rays.size()), apertures ? 1u : 0u};
+    const TrainEnds ends = ends_of(instrument, train);
+    const Passage push{.count = static_cast<std::uint32_t>(rays.size()),
+                       .apertures = apertures ? 1u : 0u,
+                       .first_surface = ends.first_surface,
+                       .surfaces = ends.surfaces,
+                       .index = static_cast<float>(ends.index),
+                       .plane = static_cast<float>(ends.plane)};
     vulkan::Commands commands(device);
-    commands.dispatch(kernel, bindings, push, (push[0] + 63) / 64);
+    commands.dispatch(kernel, bindings, push, (push.count + 63) / 64);
     commands.barrier();
     commands.submit_and_wait();
 
     std::vector<TracedRay> result;
     result.reserve(rays.size());
     for (const auto& ray : traced_buffer.read_values<DeviceTracedRay>(rays.size())) {
-        result.push_back(traced(ray.position, ray.direction, ray.path_length, ray.status));
+        result.push_back(traced(ray.position, ray.direction, ray.path_length, ray.status, ray.surface));
     }
     return result;
 }

@@ -107,7 +107,7 @@ constexpr SourceFrame below_the_axis() {
 std::vector<Detection> trace_bench(const Bench& bench, const physics::f64::Instrument& instrument, std::uint32_t paths) {
     std::vector<Detection> ends;
     ends.reserve(paths);
-    const Exposure exposure{.top_distance = 0, .seed = 5, .image = 1, .focal_height = 0};
+    const Exposure exposure{.top_distance = 0, .seed = 5, .image = 1, .focal_height = 0, .top_distance_residual = 0};
     for (std::uint32_t path = 0; path < paths; ++path) {
         ends.push_back(trace_nonsequential(bench, instrument, SpecimenRecord{}, exposure, below_the_axis(), uvec2(path, 0)));
     }

@@ -44,7 +44,7 @@ TEST(Records, the_device_sees_every_field_where_the_host_wrote_it) {
     const auto append = [&](const std::vector<float>& numbers) {
         expected.insert(expected.end(), numbers.begin(), numbers.end());
     };
-    append(fill(surfaces[2], {40}, 100));
+    append(fill(surfaces[2], {41}, 100));
     append(fill(parameters.instrument, {24, 25, 26, 27, 28, 29, 30, 31}, 200));
     append(fill(parameters.specimen, {13, 32, 51, 70, 89, 90, 91, 92, 93}, 300));
     append(fill(parameters.exposure, {1, 2}, 400));
