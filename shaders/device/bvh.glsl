@@ -6,7 +6,7 @@
 //         ... walk.primitive; what it meets nearer than `farthest` may shorten `farthest`
 //     }
 //
-// One walk at a time: they share the stack.
+// bvh_another() gives the further primitives of the same node. One walk at a time: they share the stack.
 
 const int BVH_STACK = 32; // hierarchy_depth of src/trace/bounding_volume_hierarchy.hpp: a level leaves one entry
 
@@ -64,21 +64,28 @@ void bvh_visit(inout BvhWalk walk, uint node, real farthest) {
     real3 base_leave = base + walk.margin;
     bvec3 forward = notEqual(uvec3(walk.forward) & uvec3(1u, 2u, 4u), uvec3(0u));
     uint met = 0u;
+    int start = floatBitsToInt(walk.start);
+    int stop = floatBitsToInt(farthest);
     for (int four = 0; four < 2; ++four) {
         uint slot_word = four == 0 ? slots.z : slots.w;
         uvec3 lower = four == 0 ? uvec3(corners_0.xz, corners_1.x) : uvec3(corners_0.yw, corners_1.y);
         uvec3 upper = four == 0 ? uvec3(corners_1.z, corners_2.xz) : uvec3(corners_1.w, corners_2.yw);
         uvec3 first = mix(upper, lower, forward);
         uvec3 last = mix(lower, upper, forward);
+        // Four slots at once. A node's bit stands higher the nearer its slot is; primitives keep theirs.
+        uint inner = ((slot_word & (slot_word << 1)) & 0x10101010u) >> 4;
+        uint places = (slot_word ^ (inner * walk.forward)) & 0x1F1F1F1Fu;
+        uint held = (slot_word >> 5) & 0x07070707u;
         for (int k = 0; k < 4; ++k) {
-            real3 enter = real3(bvh_byte(first.x, k), bvh_byte(first.y, k), bvh_byte(first.z, k)) * pace + base_enter;
-            real3 leave = real3(bvh_byte(last.x, k), bvh_byte(last.y, k), bvh_byte(last.z, k)) * pace + base_leave;
-            uint slot = bitfieldExtract(slot_word, 8 * k, 8);
-            // A node's bit stands higher the nearer its slot is; primitives keep theirs.
-            uint place = (slot & 24u) == 24u ? (slot ^ walk.forward) & 31u : slot & 31u;
-            bool meets = max(max(enter.x, enter.y), max(enter.z, walk.start)) <=
-                         min(min(leave.x, leave.y), min(leave.z, farthest));
-            met |= meets ? (slot >> 5) << place : 0u;
+            ivec3 enter = floatBitsToInt(
+                real3(bvh_byte(first.x, k), bvh_byte(first.y, k), bvh_byte(first.z, k)) * pace + base_enter);
+            ivec3 leave = floatBitsToInt(
+                real3(bvh_byte(last.x, k), bvh_byte(last.y, k), bvh_byte(last.z, k)) * pace + base_leave);
+            // Floats' bits order as integers do where one of the two is positive, as the start is; and some devices take
+            // the largest of three integers at once.
+            bool meets = max(max(max(enter.x, enter.y), enter.z), start) <=
+                         min(min(min(leave.x, leave.y), leave.z), stop);
+            met |= meets ? bitfieldExtract(held, 8 * k, 8) << bitfieldExtract(places, 8 * k, 8) : 0u;
         }
     }
     walk.nodes = uvec2(slots.x, (met & 0xFF000000u) | (frame.w >> 24));
@@ -110,4 +117,12 @@ bool bvh_proceed(inout BvhWalk walk, real farthest) {
     walk.primitive = walk.primitives.x + uint(max(next, 0));
     walk.primitives.y &= walk.primitives.y - 1u; // the lowest one is done; 0 stays 0
     return under_way;
+}
+
+// Whether the last primitive's node holds another one whose box the ray met.
+bool bvh_another(inout BvhWalk walk) {
+    bool another = walk.primitives.y != 0u;
+    walk.primitive = walk.primitives.x + uint(max(findLSB(walk.primitives.y), 0));
+    walk.primitives.y &= walk.primitives.y - 1u;
+    return another;
 }

@@ -4,9 +4,6 @@
 //     Hit meet_triangles(real3 origin, real3 direction, RayInterval over)  the nearest one, from whatever side
 //     Hit meet_tiles(SpecimenRay ray, real rounding)
 
-layout(set = 0, binding = 10, scalar) readonly buffer Vertices { real vertices[]; };  // three a vertex, mm
-layout(set = 0, binding = 11, scalar) readonly buffer Triangles { uint triangles[]; }; // three a triangle
-
 struct SurfaceTile {
     real3 lower; // its box, mm, as the tree's builder had it
     real3 upper;
@@ -16,16 +13,10 @@ layout(set = 0, binding = 13, scalar) readonly buffer Tiles { SurfaceTile tiles[
 // A ray aimed at an edge may slip between its triangles: it is tried again beside itself by this many roundings.
 const int PRIMITIVE_TRIES = 4;
 
-real3 triangle_vertex(uint triangle, uint corner) {
-    uint first = 3u * triangles[3u * triangle + corner];
-    return real3(vertices[first], vertices[first + 1u], vertices[first + 2u]);
-}
-
 // Position and normal from the barycentrics of the second and third corner: on the facet, however far the ray came.
-Hit triangle_hit(uint triangle, vec2 barycentrics, real distance, real3 direction) {
-    real3 corner = triangle_vertex(triangle, 0u);
-    real3 edge_1 = triangle_vertex(triangle, 1u) - corner;
-    real3 edge_2 = triangle_vertex(triangle, 2u) - corner;
+Hit triangle_hit(real3 corner, real3 second, real3 third, vec2 barycentrics, real distance, real3 direction) {
+    real3 edge_1 = second - corner;
+    real3 edge_2 = third - corner;
     real3 normal = normalize(cross(edge_1, edge_2));
     bool turn = specimen_kind == SPECIMEN_MESH ? dot(normal, direction) > real(0.0) : normal.z < real(0.0);
     Hit hit;

@@ -3,6 +3,14 @@
 
 layout(set = 0, binding = 12) uniform accelerationStructureEXT specimen_structure;
 
+layout(set = 0, binding = 10, scalar) readonly buffer Vertices { real vertices[]; };  // three a vertex, mm
+layout(set = 0, binding = 11, scalar) readonly buffer Triangles { uint triangles[]; }; // three a triangle
+
+real3 triangle_vertex(uint triangle, uint corner) {
+    uint first = 3u * triangles[3u * triangle + corner];
+    return real3(vertices[first], vertices[first + 1u], vertices[first + 2u]);
+}
+
 // Bits of AccelerationStructure::join: parts in the order that they were joined in.
 const uint SPECIMEN_MASK = 1u;
 const uint ELEMENT_MASK = 2u; // the instrument's, for non-sequential paths
@@ -15,7 +23,8 @@ Hit meet_triangles(real3 origin, real3 direction, RayInterval over) {
     }
     Hit hit = no_hit();
     if (rayQueryGetIntersectionTypeEXT(query, true) == gl_RayQueryCommittedIntersectionTriangleEXT) {
-        hit = triangle_hit(uint(rayQueryGetIntersectionPrimitiveIndexEXT(query, true)),
+        uint triangle = uint(rayQueryGetIntersectionPrimitiveIndexEXT(query, true));
+        hit = triangle_hit(triangle_vertex(triangle, 0u), triangle_vertex(triangle, 1u), triangle_vertex(triangle, 2u),
                            rayQueryGetIntersectionBarycentricsEXT(query, true), rayQueryGetIntersectionTEXT(query, true),
                            direction);
     }

@@ -4,6 +4,7 @@
 #include "specimen/description.hpp"
 #include "trace/bounding_volume_hierarchy.hpp"
 #include "trace/pyramid.hpp"
+#include "trace/triangle_pairs.hpp"
 
 #include <fmt/format.h>
 
@@ -21,7 +22,7 @@ namespace {
 
 constexpr std::uint32_t heights_slot = 8;
 constexpr std::uint32_t ceilings_slot = 9;
-constexpr std::uint32_t vertices_slot = 10;
+constexpr std::uint32_t vertices_slot = 10; // or pairs of triangles for our own hierarchy
 constexpr std::uint32_t triangles_slot = 11;
 constexpr std::uint32_t structure_slot = 12; // or the nodes of our own hierarchy
 constexpr std::uint32_t tiles_slot = 13;
@@ -136,18 +137,6 @@ std::vector<glm::uvec3> in_median_order(const std::vector<glm::vec3>& vertices,
     return in_order(triangles, vulkan::median_order(centres));
 }
 
-std::vector<vulkan::Box> boxes_of(const std::vector<glm::vec3>& vertices, const std::vector<glm::uvec3>& triangles) {
-    std::vector<vulkan::Box> boxes;
-    boxes.reserve(triangles.size());
-    for (const glm::uvec3& triangle : triangles) {
-        const glm::vec3& a = vertices[triangle.x];
-        const glm::vec3& b = vertices[triangle.y];
-        const glm::vec3& c = vertices[triangle.z];
-        boxes.push_back({glm::min(a, glm::min(b, c)), glm::max(a, glm::max(b, c))});
-    }
-    return boxes;
-}
-
 // Blocks of the pyramid as boxes, in median order.
 std::vector<vulkan::Box> boxes_of(const Pyramid& pyramid, const specimen::Analytic& surface) {
     const PyramidHeader& header = pyramid.header;
@@ -237,14 +226,19 @@ std::vector<glm::uvec3> upload_triangles(Uploader& uploader, const std::vector<g
     return ordered;
 }
 
-// Vertices and triangles in the order of their hierarchy; gives its nodes.
+// Pairs of triangles in the order of their hierarchy; gives its nodes.
 std::vector<HierarchyNode> upload_in_hierarchy(Uploader& uploader, const std::vector<glm::vec3>& vertices,
                                                const std::vector<glm::uvec3>& triangles) {
-    uploader.expect("vertices", vertices.size() * sizeof(glm::vec3));
-    uploader.expect("triangles", triangles.size() * sizeof(glm::uvec3));
-    BoundingVolumeHierarchy hierarchy = build_hierarchy(boxes_of(vertices, triangles), hierarchy_leaf_size);
-    uploader.put(vertices_slot, "vertices", vertices);
-    uploader.put(triangles_slot, "triangles", in_order(triangles, hierarchy.order));
+    const std::vector<TrianglePair> pairs = pair_triangles(vertices, triangles);
+    uploader.expect("triangles", pairs.size() * sizeof(TrianglePair));
+    std::vector<vulkan::Box> boxes;
+    boxes.reserve(pairs.size());
+    for (const TrianglePair& pair : pairs) {
+        boxes.push_back(pair.box());
+    }
+    // More to a slot would save few nodes, as most are not full, and cost more pairs met in vain.
+    BoundingVolumeHierarchy hierarchy = build_hierarchy(boxes, 1);
+    uploader.put(vertices_slot, "triangles", in_order(pairs, hierarchy.order));
     return std::move(hierarchy.nodes);
 }
 
