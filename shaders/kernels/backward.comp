@@ -20,6 +20,31 @@ layout(push_constant, scalar) uniform Batch {
     uint randomisation;
 };
 
+// What only tracing can tell is kept until a lane has no room for more, or no more to come: few directions lie at the rim
+// of the source's cone, and lanes that wait for each one's neighbour would trace for all.
+const uint QUERY_CAPACITY = 12u;
+SourceQuery queries[QUERY_CAPACITY];
+uint query_count = 0u;
+
+real answer_queries() {
+    real sum = real(0.0);
+    for (uint k = 0u; k < query_count; ++k) {
+        sum += trace_to_source(instrument, specimen, exposure, queries[k]);
+    }
+    query_count = 0u;
+    return sum;
+}
+
+real ask_source(Instrument, SpecimenRecord, Exposure, SourceQuery query) {
+    real sum = real(0.0);
+    if (query_count == QUERY_CAPACITY) {
+        sum = answer_queries();
+    }
+    queries[query_count] = query;
+    query_count += 1u;
+    return sum;
+}
+
 void main() {
     uint pixel_count = uint(instrument.detector_pixels * instrument.detector_pixels);
     uint index = gl_GlobalInvocationID.x;
@@ -34,6 +59,7 @@ void main() {
             sum += trace_backward(instrument, backward, specimen, exposure, column, row, randomisation, lattice,
                                   shift, chunk * chunk_points + point);
         }
+        sum += answer_queries();
         atomicAdd(pixels[pixel], uint64_t(sum * BACKWARD_UNIT + real(0.5)));
     }
 }

@@ -72,32 +72,65 @@ VKFV_FUNCTION real object_plane(BackwardOptics backward, SpecimenRecord specimen
     return specimen.top + exposure.top_distance - backward.object_distance;
 }
 
-// The transmittance with which light from the source arrives at `position` from the unit direction; 0: none does.
-VKFV_SCENE_FUNCTION VKFV_FUNCTION real source_transmittance(VKFV_SCENE_PARAMETER Instrument instrument,
-                                                            BackwardOptics backward, SpecimenRecord specimen,
-                                                            Exposure exposure, real3 position, real3 direction,
-                                                            Light light) {
-    real2 slope = real2(direction.x, direction.y) / direction.z;
-    real rise = object_plane(backward, specimen, exposure) - position.z;
-    real2 field = real2(position.x, position.y) + slope * rise;
+// A ray from the specimen that may come from the source, and what it would bring.
+struct SourceQuery {
+    real3 position; // specimen frame
+    real3 direction; // unit, towards the source
+    real weight;    // of the source's radiance
+    Light light;
+};
+
+const uint SOURCE_HIDDEN = 0u;
+const uint SOURCE_SEEN = 1u;
+const uint SOURCE_UNKNOWN = 2u; // only tracing can tell
+
+VKFV_FUNCTION uint source_certainty(BackwardOptics backward, real plane, SourceQuery query) {
+    real2 slope = real2(query.direction.x, query.direction.y) / query.direction.z;
+    real2 field = real2(query.position.x, query.position.y) + slope * (plane - query.position.z);
     real2 crossing = field * backward.source_position + slope;
     real crossing_squared = dot(crossing, crossing);
-    bool possible = direction.z > real(0.0) && crossing_squared <= backward.source_outer * backward.source_outer;
+    bool possible = query.direction.z > real(0.0) &&
+                    crossing_squared <= backward.source_outer * backward.source_outer;
     bool sure = crossing_squared <= backward.source_inner * backward.source_inner &&
                 dot(field, field) <= backward.inner_field * backward.inner_field;
-    real transmittance = possible ? real(1.0) : real(0.0);
-    if (possible && !sure) {
-        real to_top = specimen.top - position.z;
-        real index = specimen_medium_index(instrument, light);
-        Ray ray;
-        ray.position = real3(position.x + slope.x * to_top, position.y + slope.y * to_top, -exposure.top_distance);
-        ray.direction = direction * index;
-        ray.path_length = real(0.0);
-        TrainResult train = trace_train(VKFV_SCENE instrument.imaging_first, instrument.imaging_count, ray, index, 1u,
-                                        light);
-        transmittance = train.status == PATH_ALIVE ? train.transmitted : real(0.0);
+    return !possible ? SOURCE_HIDDEN : sure ? SOURCE_SEEN : SOURCE_UNKNOWN;
+}
+
+// The weight times the transmittance of the way from the source.
+VKFV_SCENE_FUNCTION VKFV_FUNCTION real trace_to_source(VKFV_SCENE_PARAMETER Instrument instrument,
+                                                       SpecimenRecord specimen, Exposure exposure, SourceQuery query) {
+    real rise = (specimen.top - query.position.z) / query.direction.z;
+    real index = specimen_medium_index(instrument, query.light);
+    Ray ray;
+    ray.position = real3(query.position.x + query.direction.x * rise, query.position.y + query.direction.y * rise,
+                         -exposure.top_distance);
+    ray.direction = query.direction * index;
+    ray.path_length = real(0.0);
+    TrainResult train = trace_train(VKFV_SCENE instrument.imaging_first, instrument.imaging_count, ray, index, 1u,
+                                    query.light);
+    return train.status == PATH_ALIVE ? query.weight * train.transmitted : real(0.0);
+}
+
+// What is unknown may be traced at once or kept for later, when more of it is at hand: gives what is added now.
+#ifdef __cplusplus
+template <class Scene>
+real ask_source(const Scene& scene, Instrument instrument, SpecimenRecord specimen, Exposure exposure,
+                SourceQuery query) {
+    return trace_to_source(scene, instrument, specimen, exposure, query);
+}
+#else
+real ask_source(Instrument instrument, SpecimenRecord specimen, Exposure exposure, SourceQuery query);
+#endif
+
+VKFV_SCENE_FUNCTION VKFV_FUNCTION real collect(VKFV_SCENE_PARAMETER Instrument instrument, BackwardOptics backward,
+                                               real plane, SpecimenRecord specimen, Exposure exposure,
+                                               SourceQuery query) {
+    uint certainty = source_certainty(backward, plane, query);
+    real value = certainty == SOURCE_SEEN ? query.weight : real(0.0);
+    if (certainty == SOURCE_UNKNOWN) {
+        value = ask_source(VKFV_SCENE instrument, specimen, exposure, query);
     }
-    return transmittance;
+    return value;
 }
 
 // A direction towards the source, chosen in proportion to the light it would scatter towards the detector, and the estimate of
@@ -199,6 +232,8 @@ VKFV_SCENE_FUNCTION VKFV_FUNCTION real trace_backward(VKFV_SCENE_PARAMETER Instr
     real3 direction = arrival.direction;
     real plane = object_plane(backward, specimen, exposure);
     uvec2 path = uvec2(uint(row * instrument.detector_pixels + column) * 16u + randomisation, 0x80000000u + point);
+    SourceQuery query;
+    query.light = light;
     bool under_way = arrival.status == PATH_ALIVE;
     Hit hit;
     hit.found = 0u;
@@ -242,9 +277,10 @@ VKFV_SCENE_FUNCTION VKFV_FUNCTION real trace_backward(VKFV_SCENE_PARAMETER Instr
         if (connection.weight > real(0.0)) {
             Hit blocker = specimen_hit(VKFV_SCENE origin, connection.direction);
             if (blocker.found == 0u) {
-                value = value + throughput * connection.weight *
-                                    source_transmittance(VKFV_SCENE instrument, backward, specimen, exposure, origin,
-                                                         connection.direction, light);
+                query.position = origin;
+                query.direction = connection.direction;
+                query.weight = throughput * connection.weight;
+                value = value + collect(VKFV_SCENE instrument, backward, plane, specimen, exposure, query);
             }
         }
         if (under_way) {
@@ -256,8 +292,10 @@ VKFV_SCENE_FUNCTION VKFV_FUNCTION real trace_backward(VKFV_SCENE_PARAMETER Instr
             direction = scattered.direction;
             hit = specimen_hit(VKFV_SCENE origin, direction);
             if (hit.found == 0u && delta) {
-                value = value + throughput * source_transmittance(VKFV_SCENE instrument, backward, specimen, exposure,
-                                                                  origin, direction, light);
+                query.position = origin;
+                query.direction = direction;
+                query.weight = throughput;
+                value = value + collect(VKFV_SCENE instrument, backward, plane, specimen, exposure, query);
             }
             under_way = hit.found == 1u && dot(direction, hit.normal) < real(0.0);
         }

@@ -38,7 +38,9 @@ std::vector<vulkan::BindingDeclaration> declarations(const DeviceScene& scene) {
 
 std::vector<vulkan::SpecializationConstant> constants(const DeviceScene& scene, const physics::f64::BackwardOptics& optics) {
     auto all = scene.kernel_constants(0);
-    // A lobe much narrower than the source's cone is found by drawing it, not by drawing the cone.
+    // Where a lobe changes little over the source's cone, one direction keeps the lattice whole, which a choice among
+    // several does not: measured at g = 0.3, 0.67 against 4.0 in variance at 1024 points; at g = 0.8 it is 72 against 21.
+    // A lobe much narrower than the cone is found by drawing it, not by drawing the cone.
     const double cone = 3.14159265358979 * optics.source_outer * optics.source_outer; // sr, about
     const auto& material = scene.constants.specimen.material;
     double peak = 0;
@@ -48,7 +50,7 @@ std::vector<vulkan::SpecializationConstant> constants(const DeviceScene& scene, 
             peak = std::max(peak, (1 + g) / (4 * 3.14159265358979 * (1 - g) * (1 - g)));
         }
     }
-    all.push_back({5, 4});
+    all.push_back({5, peak * cone < 0.3 ? 1u : 8u});
     all.push_back({6, peak * cone > 2 ? 1u : 0u});
     return all;
 }

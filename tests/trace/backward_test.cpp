@@ -1,0 +1,268 @@
+// The backward estimator against the forward one, which is the arbiter, and what it promises of itself.
+#include "trace/microscope.hpp"
+#include "trace/device_tracer.hpp"
+#include "trace/host_tracer.hpp"
+#include "trace/lattice_generators.hpp"
+
+#include "support/statistics.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <numeric>
+#include <random>
+#include <set>
+
+using namespace vkfv;
+using namespace vkfv::physics::f64;
+
+namespace {
+
+constexpr double focal_height = 0.002;
+constexpr double level = 1e-3; // false-positive rate of each chi-square test here, on either side
+
+optics::InstrumentDescription small_description() {
+    auto description = test::microscope_description();
+    description.field_stop_radius = 0.25;
+    description.detector_size = 0.32;
+    description.detector_pixels = 16;
+    description.turned = true;
+    return description;
+}
+
+trace::TraceOptions options(trace::Estimator estimator, std::uint64_t rays, int max_bounces) {
+    trace::TraceOptions result;
+    result.estimator = estimator;
+    result.rays = rays;
+    result.seed = 3;
+    result.max_bounces = max_bounces;
+    return result;
+}
+
+trace::Image backward_image(const optics::Instrument& instrument, const specimen::Specimen& specimen,
+                            int max_bounces, std::uint64_t rays = 1 << 18, std::uint32_t image = 0) {
+    return trace::make_device_tracer(instrument, specimen,
+                                     options(trace::Estimator::backward, rays, max_bounces))
+        ->expose(focal_height, image);
+}
+
+trace::Image forward_image(const optics::Instrument& instrument, const specimen::Specimen& specimen,
+                           int max_bounces) {
+    return trace::make_device_tracer(instrument, specimen,
+                                     options(trace::Estimator::forward, 4'000'000, max_bounces))
+        ->expose(focal_height, 0);
+}
+
+// Probability of a greater sum over the pixels of (difference)^2 / variance. Forward counts are Poisson's about the
+// expectation, which backward knows better; backward's own variance is pooled over the field, as each pixel's has one degree
+// of freedom.
+double agreement(const trace::Image& forward, const trace::Image& backward) {
+    const auto pixels = forward.flux.values.size();
+    const double per_ray = std::accumulate(forward.flux.values.begin(), forward.flux.values.end(), 0.0) /
+                           static_cast<double>(forward.detected);
+    double pooled = 0;
+    for (const double error : backward.standard_error.values) {
+        pooled += error * error / static_cast<double>(pixels);
+    }
+    double chi_square = 0;
+    for (std::size_t pixel = 0; pixel < pixels; ++pixel) {
+        const double difference = forward.flux.values[pixel] - backward.flux.values[pixel];
+        chi_square += difference * difference / (per_ray * backward.flux.values[pixel] + pooled);
+    }
+    return test::chi_square_tail(chi_square, static_cast<double>(pixels));
+}
+
+void expect_agreement(const trace::Image& forward, const trace::Image& backward) {
+    ASSERT_GT(forward.detected, 30'000u);
+    const double p = agreement(forward, backward);
+    EXPECT_GT(p, level);
+    EXPECT_LT(p, 1 - level);
+}
+
+specimen::Specimen with_material(specimen::Specimen specimen, const specimen::Material& material) {
+    specimen.material = material;
+    return specimen;
+}
+
+} // namespace
+
+// One scatter event and up to four, on facets so steep that light meets them again.
+TEST(Backward, estimates_the_image_that_forward_does) {
+    const auto instrument = optics::assemble(small_description());
+    const auto specimen = test::steep_specimen(0.65);
+    for (const int max_bounces : {1, 4}) {
+        SCOPED_TRACE(max_bounces);
+        expect_agreement(forward_image(instrument, specimen, max_bounces),
+                         backward_image(instrument, specimen, max_bounces));
+    }
+}
+
+// Wrong twins: a slightly sharper lobe, and a bounce too few, are told apart.
+TEST(Backward, another_specimen_does_not_pass) {
+    const auto instrument = optics::assemble(small_description());
+    const auto specimen = test::steep_specimen(0.65);
+    const auto forward = forward_image(instrument, specimen, 4);
+    EXPECT_LT(agreement(forward, backward_image(instrument, test::steep_specimen(0.68), 4)), level);
+    EXPECT_LT(agreement(forward, backward_image(instrument, specimen, 1)), level);
+}
+
+TEST(Backward, knows_every_material) {
+    const auto instrument = optics::assemble(small_description());
+    const auto rough = test::rough_specimen();
+    const specimen::Material mixture{
+        {{"lambertian", 0.4, {}}, {"henyey-greenstein", 0.3, {0.95}}, {"mirror", 0.2, {}}}};
+    for (const auto& material : {mixture, specimen::Material::henyey_greenstein(1), specimen::Material::henyey_greenstein(-0.4),
+                                 specimen::Material::henyey_greenstein(0.97)}) {
+        const auto specimen = with_material(rough, material);
+        expect_agreement(forward_image(instrument, specimen, 2), backward_image(instrument, specimen, 2));
+    }
+}
+
+TEST(Backward, every_traversal_gives_the_same_image) {
+    const auto instrument = optics::assemble(small_description());
+    const auto specimen = test::steep_specimen(0.65);
+    auto with = options(trace::Estimator::backward, 1 << 16, 3);
+    std::vector<trace::Image> images;
+    for (const auto traversal : {trace::Traversal::quadtree, trace::Traversal::bvh, trace::Traversal::ray_query}) {
+        with.traversal = traversal;
+        images.push_back(trace::make_device_tracer(instrument, specimen, with)->expose(focal_height, 1));
+    }
+    // The same paths: what differs are those within rounding of an edge, which is fewer than 1 in 1000.
+    const auto& first = images.front().flux.values;
+    const double total = std::accumulate(first.begin(), first.end(), 0.0);
+    for (const auto& image : images) {
+        double difference = 0;
+        for (std::size_t pixel = 0; pixel < first.size(); ++pixel) {
+            difference += std::abs(image.flux.values[pixel] - first[pixel]);
+        }
+        EXPECT_LT(difference, 2e-3 * total);
+    }
+}
+
+// In double and in float: the same points, so the same values but for paths within rounding of an edge, and of the choice
+// between two candidates.
+TEST(Backward, host_and_device_follow_the_same_paths) {
+    const auto instrument = optics::assemble(small_description());
+    const auto specimen = test::steep_specimen(0.65);
+    const auto with = options(trace::Estimator::backward, 1 << 14, 3);
+    const auto device = trace::make_device_tracer(instrument, specimen, with)->expose(focal_height, 1);
+    const auto host = trace::make_host_tracer(instrument, specimen, with)->expose(focal_height, 1);
+    double total = 0;
+    double difference = 0;
+    for (std::size_t pixel = 0; pixel < host.flux.values.size(); ++pixel) {
+        total += host.flux.values[pixel];
+        difference += std::abs(device.flux.values[pixel] - host.flux.values[pixel]);
+    }
+    EXPECT_LT(difference, 5e-3 * total);
+    // Other points: the wrong twin.
+    const auto other = trace::make_device_tracer(instrument, specimen, with)->expose(focal_height, 2);
+    double apart = 0;
+    for (std::size_t pixel = 0; pixel < host.flux.values.size(); ++pixel) {
+        apart += std::abs(other.flux.values[pixel] - host.flux.values[pixel]);
+    }
+    EXPECT_GT(apart, 5e-3 * total);
+}
+
+TEST(Backward, bits_do_not_depend_on_the_batch) {
+    const auto instrument = optics::assemble(small_description());
+    const auto specimen = test::rough_specimen();
+    auto with = options(trace::Estimator::backward, 1 << 16, 2);
+    const auto whole = trace::make_device_tracer(instrument, specimen, with)->expose(focal_height, 4);
+    with.batch = 9000;
+    const auto parts = trace::make_device_tracer(instrument, specimen, with)->expose(focal_height, 4);
+    EXPECT_EQ(whole.flux.values, parts.flux.values);
+    EXPECT_EQ(whole.standard_error.values, parts.standard_error.values);
+}
+
+// The mean of the stated variances is the variance over images: their ratio has a relative spread of about
+// sqrt(2 / 256 (1 / 15 + 1)), the stated one with one degree of freedom a pixel and image; five of those are allowed.
+TEST(Backward, states_its_standard_error) {
+    const auto instrument = optics::assemble(small_description());
+    const auto specimen = test::plane_specimen(0.3);
+    constexpr int images = 16;
+    const auto tracer = trace::make_device_tracer(instrument, specimen, options(trace::Estimator::backward, 1 << 13, 1));
+    std::vector<double> sums(256), squares(256);
+    double stated = 0;
+    for (int image = 0; image < images; ++image) {
+        const auto exposed = tracer->expose(focal_height, static_cast<std::uint32_t>(image));
+        for (std::size_t pixel = 0; pixel < sums.size(); ++pixel) {
+            sums[pixel] += exposed.flux.values[pixel];
+            squares[pixel] += exposed.flux.values[pixel] * exposed.flux.values[pixel];
+            stated += exposed.standard_error.values[pixel] * exposed.standard_error.values[pixel] / images;
+        }
+    }
+    double seen = 0;
+    for (std::size_t pixel = 0; pixel < sums.size(); ++pixel) {
+        seen += (squares[pixel] - sums[pixel] * sums[pixel] / images) / (images - 1);
+    }
+    EXPECT_NEAR(stated / seen, 1.0, 5 * std::sqrt(2.0 / 256 * (1.0 / 15 + 1)));
+}
+
+// What the gates promise, for each microscope of the library, in double: all light within the inner one is from the source,
+// none outside the outer one.
+TEST(Backward, gates_hold_for_every_microscope) {
+    for (const char* objective : {"5x_0.15", "10x_0.28", "20x_0.41", "50x_0.66", "100x_0.83"}) {
+        SCOPED_TRACE(objective);
+        auto description = small_description();
+        const std::filesystem::path base = std::filesystem::path(VKFV_SOURCE_DIR) / "assets" / "stacks";
+        description.objective = optics::load_prescription(objective, "objectives", base);
+        description.field_stop_radius = 2.0;
+        const auto instrument = optics::assemble(description);
+        const auto& optics = instrument.turned.value().optics;
+        const auto turned = optics::turned_round(instrument);
+        const auto scene = turned.scene();
+        SpecimenRecord record{};
+        Exposure exposure{};
+        exposure.top_distance = optics.object_distance; // the top plane is the object plane
+        EXPECT_GT(optics.source_inner, 0.9 * optics.source_outer);
+        std::mt19937 engine(5);
+        std::uniform_real_distribution<double> uniform(0, 1);
+        const auto disc = [&](double radius) {
+            const double rho = radius * std::sqrt(uniform(engine));
+            const double phi = 2 * pi * uniform(engine);
+            return glm::dvec2(rho * std::cos(phi), rho * std::sin(phi));
+        };
+        const auto seen = [&](glm::dvec2 position, glm::dvec2 crossing) {
+            SourceQuery query{};
+            const glm::dvec2 slope = crossing - optics.source_position * position;
+            query.position = glm::dvec3(position, 0);
+            query.direction = glm::normalize(glm::dvec3(slope, 1));
+            query.weight = 1;
+            query.light.wave_number = 1 / 0.587562;
+            return trace_to_source(scene, turned.constants, record, exposure, query) > 0;
+        };
+        int dark_within = 0;
+        int lit_outside = 0;
+        for (int k = 0; k < 4000; ++k) {
+            dark_within += seen(disc(optics.inner_field), disc(optics.source_inner)) ? 0 : 1;
+            const glm::dvec2 direction = disc(1);
+            const glm::dvec2 outside =
+                glm::normalize(direction) * optics.source_outer * (1 + 0.2 * uniform(engine));
+            lit_outside += seen(disc(optics.inner_field), outside) ? 1 : 0;
+        }
+        EXPECT_EQ(dark_within, 0);
+        EXPECT_EQ(lit_outside, 0);
+    }
+}
+
+// Each coordinate alone visits every n-th of the interval once, and no two coordinates are one.
+TEST(Lattice, every_coordinate_is_stratified) {
+    for (std::uint32_t bits = 0; bits < trace::lattice_generators.size(); ++bits) {
+        const auto& z = trace::lattice_generators[bits];
+        const std::uint32_t n = 1u << bits;
+        const Lattice lattice{bits, z[0], z[1], z[2], z[3], z[4], z[5], z[6], z[7]};
+        for (const std::uint32_t component : z) {
+            std::set<std::uint32_t> strata;
+            for (std::uint32_t point = 0; point < n; ++point) {
+                const double u = lattice_coordinate(lattice, point, component, 0x12345678u);
+                EXPECT_GT(u, 0);
+                EXPECT_LT(u, 1);
+                strata.insert(static_cast<std::uint32_t>(u * n + n - 0x12345678p-32 * n + 1e-6) % n);
+            }
+            EXPECT_EQ(strata.size(), n);
+        }
+        if (bits >= 5) {
+            EXPECT_EQ(std::set<std::uint32_t>(z.begin(), z.end()).size(), z.size());
+        }
+    }
+}
