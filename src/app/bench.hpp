@@ -2,7 +2,8 @@
 //   program, commit, date (UTC), device, driver, device_type, configuration, traversal
 //   aimed_share       of the source's flux that launched rays stand for; runs, rays_per_run
 //   validation[]      what, rays, total_z, chi_square, degrees, p, agrees
-//   stages            of one batch: seconds_per_1e9_rays and its shares source, illumination, specimen, imaging, detection
+//   stages            of one batch: seconds_per_1e9_rays and its shares source, illumination, specimen, imaging,
+//                     detection
 //   whole             a timing: rays, seconds, spread ((max - min) / median), wall_seconds, processor_seconds,
 //                     seconds_per_1e9_rays, rays_per_second, surfaces_per_ray, ray_surfaces_per_second, detected_share
 //   forms[]           g, max_bounces, geometry ("as configured", "mesh": the height field's triangles), and a timing
@@ -18,14 +19,16 @@
 
 #include <nlohmann/json.hpp>
 
+#include <functional>
 #include <string>
 
 namespace vkfv::app {
 
 using Json = nlohmann::ordered_json;
 
-// Throws RunError if the validation fails: then nothing is timed.
-Json measure_bench(const CommandOptions& options);
+// Throws RunError if the validation fails: then nothing is timed. after_part: gets the report as far as it is, so that
+// nothing is lost if a later part fails.
+Json measure_bench(const CommandOptions& options, const std::function<void(const Json&)>& after_part);
 
 // The peer's own report (--json of vkfv_bench_peer) on a configuration with overrides. Throws RunError.
 Json run_peer(const std::filesystem::path& program, const std::filesystem::path& configuration,

@@ -26,7 +26,8 @@ const std::vector<std::string> bench_parts = {"validation", "stages", "whole",  
 namespace {
 
 constexpr double in_focus = 0;
-constexpr double warm_up_seconds = 0.5; // an idle GPU's clocks rise as slowly
+constexpr double warm_up_seconds = 0.5;  // an idle GPU's clocks rise as slowly
+constexpr double still_warm_seconds = 0.1; // where the device was busy within the last second
 constexpr double false_alarms = 1e-4;   // of a whole validation
 constexpr int seeds = 8;                // of a variance
 
@@ -95,7 +96,7 @@ class Bench {
   public:
     explicit Bench(const CommandOptions& options)
         : options_(options), configuration_(load_configuration(options.file, options.overrides, Needs::exposure)),
-          device_(report_of(configuration_.trace.device)), run_seconds_(options.quick ? 0.2 : 1.0) {
+          kept_({configuration_.trace.device}), device_(kept_.report()), run_seconds_(options.quick ? 0.2 : 1.0) {
         if (configuration_.trace.nonsequential) {
             throw InputError({.where = configuration_.places.at("trace.mode"),
                               .key = "trace.mode",
@@ -107,7 +108,7 @@ class Bench {
         instrument_ = instrument_of(configuration_, specimen_);
     }
 
-    Json measure() {
+    Json measure(const std::function<void(const Json&)>& after_part) {
         Json report;
         report["program"] = "vkfv " VKFV_VERSION;
         report["commit"] = options_.commit;
@@ -120,13 +121,15 @@ class Bench {
         report["runs"] = options_.runs;
         if (wants("validation")) {
             report["validation"] = validation();
-            if (!std::ranges::all_of(report["validation"], [](const Json& check) { return check["agrees"].get<bool>(); })) {
+            const auto agrees = [](const Json& check) { return check["agrees"].get<bool>(); };
+            if (!std::ranges::all_of(report["validation"], agrees)) {
                 throw RunError(fmt::format("images of one scene do not agree, and nothing was timed:\n{}",
                                            report["validation"].dump(2)));
             }
         }
         if (wants("stages")) {
             report["stages"] = stages();
+            after_part(report);
         }
         const bool exposes = std::ranges::any_of(bench_parts, [&](const std::string& part) {
             return part != "validation" && part != "stages" && part != "hits" && wants(part);
@@ -139,30 +142,39 @@ class Bench {
             const auto tracer = tracer_of(configuration_.trace, rays_);
             report["traversal"] = tracer->description();
             report["whole"] = timing(*tracer);
+            after_part(report);
         }
         if (wants("forms")) {
             report["forms"] = forms();
+            after_part(report);
         }
         if (wants("traversals")) {
             report["traversals"] = traversal_timings();
+            after_part(report);
         }
         if (wants("hits")) {
             report["hits"] = hits();
+            after_part(report);
         }
         if (wants("estimators")) {
             report["estimators"] = estimator_timings();
+            after_part(report);
         }
         if (wants("rays")) {
             report["scaling"]["rays"] = over_rays();
+            after_part(report);
         }
         if (wants("triangles")) {
             report["scaling"]["triangles"] = over_triangles();
+            after_part(report);
         }
         if (wants("surfaces")) {
             report["scaling"]["surfaces"] = over_surfaces();
+            after_part(report);
         }
         if (wants("pixels")) {
             report["scaling"]["pixels"] = over_pixels();
+            after_part(report);
         }
         if (wants("peer") && !options_.peer.empty()) {
             report["peer"] = beside_peer();
@@ -173,11 +185,6 @@ class Bench {
   private:
     bool wants(const std::string& part) const {
         return std::ranges::find(options_.bench_parts, part) != options_.bench_parts.end();
-    }
-
-    static vulkan::DeviceReport report_of(const std::string& selector) {
-        const auto all = vulkan::list_devices();
-        return all[vulkan::choose_device(all, {selector})];
     }
 
     static std::string now() {
@@ -209,10 +216,11 @@ class Bench {
     }
 
     void warm_up(const trace::Tracer& tracer) const {
+        const double wanted = seconds_since(last_busy_) < 1 ? still_warm_seconds : warm_up_seconds;
         const auto start = std::chrono::steady_clock::now();
         do {
             tracer.expose(in_focus, 0);
-        } while (seconds_since(start) < warm_up_seconds);
+        } while (seconds_since(start) < wanted);
     }
 
     Json timing(const trace::Tracer& tracer, int runs) const {
@@ -226,6 +234,7 @@ class Bench {
             device.push_back(image.device_seconds);
             wall.push_back(image.seconds);
         }
+        last_busy_ = std::chrono::steady_clock::now();
         const double rays = static_cast<double>(image.rays);
         const double seconds = median(device);
         return {{"rays", image.rays},
@@ -524,7 +533,8 @@ class Bench {
                 options.rays = rays_;
                 Json entry = {{"objective", objective},
                               {"splitter", glass ? "glass" : "ideal"},
-                              {"surfaces", instrument.constants.illumination_count + instrument.constants.imaging_count},
+                              {"surfaces",
+                               instrument.constants.illumination_count + instrument.constants.imaging_count},
                               {"numerical_aperture", instrument.first_order.numerical_aperture}};
                 entry.update(timing(*trace::make_device_tracer(instrument, specimen_, options), few_runs()));
                 result.push_back(entry);
@@ -584,17 +594,21 @@ class Bench {
 
     const CommandOptions& options_;
     Configuration configuration_;
+    // Each tracer opens the device anew. With one open all along the driver stays loaded: NVIDIA's, loaded
+    // anew some fifty times, was seen to fail.
+    vulkan::Device kept_;
     vulkan::DeviceReport device_;
     double run_seconds_;
     specimen::Specimen specimen_;
     optics::Instrument instrument_;
     std::uint64_t rays_ = 0;
+    mutable std::chrono::steady_clock::time_point last_busy_{};
 };
 
 } // namespace
 
-Json measure_bench(const CommandOptions& options) {
-    return Bench(options).measure();
+Json measure_bench(const CommandOptions& options, const std::function<void(const Json&)>& after_part) {
+    return Bench(options).measure(after_part);
 }
 
 } // namespace vkfv::app

@@ -55,7 +55,8 @@ void print_stages(const Json& stages) {
 void print_report(const Json& report) {
     const auto commit = text(report, "commit");
     fmt::print("{}{}, {}; {} ({}, {}); {:.4g} of the source's flux is aimed at, medians of {} runs\n",
-               text(report, "program"), commit.empty() ? "" : " " + commit, text(report, "date"), text(report, "device"),
+               text(report, "program"), commit.empty() ? "" : " " + commit, text(report, "date"),
+               text(report, "device"),
                text(report, "driver"), text(report, "device_type"), number(report, "aimed_share"),
                report.at("runs").get<int>());
     const auto each = [&](const Json& of, const char* list, auto&& print) {
@@ -104,7 +105,8 @@ void print_report(const Json& report) {
         each(scaling, "rays",
              [](const Json& entry) { print_timing(fmt::format("{:.3g} rays", number(entry, "rays")), entry); });
         each(scaling, "triangles", [](const Json& entry) {
-            print_timing(fmt::format("{:.3g} triangles, {}", number(entry, "triangles"), text(entry, "traversal")), entry);
+            print_timing(fmt::format("{:.3g} triangles, {}", number(entry, "triangles"), text(entry, "traversal")),
+                         entry);
         });
         each(scaling, "surfaces", [](const Json& entry) {
             print_timing(fmt::format("{}, {} splitter, {} surfaces", text(entry, "objective"), text(entry, "splitter"),
@@ -118,7 +120,8 @@ void print_report(const Json& report) {
     if (report.contains("peer")) {
         const auto& peer = report.at("peer");
         fmt::print("peer (Embree, lenses in double, {} threads, packets of {}, blocks of {})\n"
-                   "  {} rays/s; vkfv is {:.2f} times as fast by the clock (spread {:.1f} %), {:.2f} by processor time\n",
+                   "  {} rays/s; vkfv is {:.2f} times as fast by the clock (spread {:.1f} %), {:.2f} by processor "
+                   "time\n",
                    peer.at("threads").get<int>(), peer.at("packet").get<int>(), peer.at("block").get<int>(),
                    with_prefix(number(peer, "rays_per_second")), number(peer, "ratio"),
                    100 * number(peer, "ratio_spread"), number(peer, "processor_ratio"));
@@ -138,16 +141,19 @@ void write(const std::filesystem::path& path, const std::string& content) {
 } // namespace
 
 void run_bench(const CommandOptions& options) {
-    const Json report = measure_bench(options);
+    const auto write_files = [&](const Json& so_far) {
+        if (options.out) {
+            std::filesystem::create_directories(*options.out);
+            write(*options.out / "bench.json", so_far.dump(2) + "\n");
+            write(*options.out / "bench.svg", bench_picture(so_far));
+        }
+    };
+    const Json report = measure_bench(options, write_files);
+    write_files(report);
     if (options.json) {
         fmt::print("{}\n", report.dump(2));
     } else {
         print_report(report);
-    }
-    if (options.out) {
-        std::filesystem::create_directories(*options.out);
-        write(*options.out / "bench.json", report.dump(2) + "\n");
-        write(*options.out / "bench.svg", bench_picture(report));
     }
 }
 

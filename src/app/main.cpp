@@ -92,8 +92,8 @@ void declare(CLI::App& app, Arguments& given) {
 
     const char* common = "Instead of the configuration's values";
     app.add_option("--out", given.out,
-                   "Output folder (--bench: of bench.json and bench.svg); for --image also a .tif file, for --import the "
-                   "prescription")
+                   "Output folder (--bench: of bench.json and bench.svg); for --image also a .tif file, for "
+                   "--import the prescription")
         ->type_name("PATH")
         ->group(common);
     app.add_option("--device", given.device, "Index or part of a name; \"host\": the reference in double")

@@ -21,15 +21,16 @@ TEST(Crossings, are_those_of_the_ledger) {
     double expected = 0;
     for (const auto& entry : image.ledger.entries) {
         const auto at = entry.name.find(" at ");
+        const char* where = at == std::string::npos ? "" : entry.name.c_str() + at;
         int surface = 0;
         double crossings = illumination;
         if (entry.name.starts_with("beam splitter") || entry.name == "not aimed at") {
             crossings = 0; // these rays are counted where they end
         } else if (entry.name == "detected" || entry.name == "beside the detector") {
             crossings = both;
-        } else if (at != std::string::npos && std::sscanf(entry.name.c_str() + at, " at illumination %d", &surface) == 1) {
+        } else if (std::sscanf(where, " at illumination %d", &surface) == 1) {
             crossings = surface;
-        } else if (at != std::string::npos && std::sscanf(entry.name.c_str() + at, " at imaging %d", &surface) == 1) {
+        } else if (std::sscanf(where, " at imaging %d", &surface) == 1) {
             crossings = illumination + surface;
         }
         expected += crossings * static_cast<double>(entry.rays);
