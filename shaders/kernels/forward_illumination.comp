@@ -38,18 +38,23 @@ void main() {
             } else if (stop_after == 1u) {
                 Arrival arrival = illuminate(instrument, specimen, exposure, path);
                 departure.fate = arrival.fate;
+                departure.survives = 0u;
                 // Never so far off; keeps the compiler from dropping what is timed.
                 survives = arrival.position.x + arrival.position.y + arrival.direction.z > real(1e30);
             } else {
                 departure = trace_to_departure(instrument, specimen, exposure, path);
-                survives = departure.fate.status == PATH_ALIVE;
+                survives = departure.survives == 1u;
                 if (stop_after == 2u) {
                     survives = departure.survivor.position.z + departure.survivor.direction_x +
                                departure.survivor.direction_y > real(1e30);
                 }
             }
             if (departure.fate.status != PATH_ALIVE) {
-                tally_fate(departure.fate);
+                tally_fate(departure.fate, WEIGHT_ONE);
+            }
+            if (weighted) {
+                uint own = departure.fate.status != PATH_ALIVE ? WEIGHT_ONE : 0u;
+                tally_sum(ledger_slots, weight_square(own + (survives ? survivor_weight(departure.survivor) : 0u)));
             }
         }
         uvec4 ballot = subgroupBallot(survives);

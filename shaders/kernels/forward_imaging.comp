@@ -25,10 +25,23 @@ void main() {
         }
         bool counted = detection.fate.status == PATH_DETECTED &&
                        (stop_after == 0u || detection.x > real(1e30));
-        if (counted) {
-            atomicAdd(pixels[detection.row * instrument.detector_pixels + detection.column], uint64_t(1));
+        int pixel = detection.row * instrument.detector_pixels + detection.column;
+        uint weight = survivor_weight(survivors[index]);
+        if (counted && weighted) {
+            // Beside the sum that of the squares, in 2^-24: both hold 1e11 rays of weight 1 on one pixel.
+            atomicAdd(pixels[2 * pixel], uint64_t(weight));
+            atomicAdd(pixels[2 * pixel + 1], (uint64_t(weight) * uint64_t(weight)) >> 20);
+        } else if (counted) {
+            atomicAdd(pixels[pixel], uint64_t(1));
         }
-        tally_fate(detection.fate);
+        if (weighted && detection.fate.status == PATH_ALIVE) {
+            // The first half took it for counted.
+            uint own = weight_beside(survivors[index]);
+            atomicAdd(ledger_counts[2u * ledger_slots],
+                      uint64_t(weight_square(own)) - uint64_t(weight_square(own + weight)));
+        } else {
+            tally_fate(detection.fate, weight);
+        }
     }
     tally_flush();
 }

@@ -20,7 +20,7 @@ void main() {
         if (detection.fate.status == PATH_DETECTED) {
             atomicAdd(pixels[detection.row * instrument.detector_pixels + detection.column], uint64_t(1));
         }
-        tally_fate(detection.fate);
+        tally_fate(detection.fate, WEIGHT_ONE);
     }
     tally_flush();
 }

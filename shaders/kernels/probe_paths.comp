@@ -10,6 +10,7 @@ struct PathEnd {
     int surface;
     real x; // mm, as Detection, for light that left the specimen through the gate (of meaning if it arrived), else 0
     real y;
+    real weight; // of the light at x and y
 };
 
 layout(set = 0, binding = 6, scalar) writeonly buffer PathEnds { PathEnd path_ends[]; };
@@ -34,18 +35,23 @@ void main() {
         end.surface = detection.fate.surface;
         end.x = detection.x;
         end.y = detection.y;
+        end.weight = real(1.0);
 #else
         Departure departure = trace_to_departure(instrument, specimen, exposure, path);
         end.status = departure.fate.status;
         end.surface = departure.fate.surface;
         end.x = real(0.0);
         end.y = real(0.0);
-        if (departure.fate.status == PATH_ALIVE) {
+        end.weight = real(1.0);
+        if (departure.survives == 1u) {
             Detection detection = image_survivor(instrument, specimen, exposure, departure.survivor);
             end.status = detection.fate.status;
             end.surface = detection.fate.surface;
             end.x = detection.x;
             end.y = detection.y;
+            if ((scene_features & FEATURE_DIRECTED_SCATTER) != 0u) {
+                end.weight = real(survivor_weight(departure.survivor)) / real(WEIGHT_ONE);
+            }
         }
 #endif
         path_ends[index] = end;

@@ -72,5 +72,5 @@ void main() {
     echo[k++] = bin.cumulative; echo[k++] = bin.start; echo[k++] = bin.stop; echo[k++] = bin.tilt;
     Survivor v = survivors[2];
     echo[k++] = v.position.x; echo[k++] = v.position.y; echo[k++] = v.position.z; echo[k++] = v.direction_x;
-    echo[k++] = v.direction_y; echo[k++] = v.spectral; echo[k++] = v.survival; echo[k++] = real(v.test_occlusion);
+    echo[k++] = v.direction_y; echo[k++] = v.spectral; echo[k++] = v.survival; echo[k++] = real(v.mark);
 }

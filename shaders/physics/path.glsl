@@ -115,31 +115,122 @@ VKFV_SCENE_FUNCTION VKFV_FUNCTION Arrival illuminate(VKFV_SCENE_PARAMETER Instru
     return arrival;
 }
 
-// The first half of a path: fate PATH_ALIVE comes with a survivor.
+// The first half of a path.
 struct Departure {
-    Fate fate;
+    Fate fate; // of its own light; PATH_ALIVE: the survivor stands for it
+    uint survives;
     Survivor survivor;
 };
+
+// Directed scatter. Of what a bounce scatters into the pupil's gate there are two samples: the path's own direction, of
+// density p (the chosen lobe's), and one aimed at the gate, uniform in its slopes, of density q. Each weighs p / (p + q),
+// the balance heuristic of E. Veach and L. J. Guibas, SIGGRAPH 95, 419, and since
+//   E[sum] = integral over the gate of p p / (p + q) + q p / (p + q) = integral over the gate of p,
+// the expectation is the analog one for whatever is seen through the gate. The own direction decides how the path goes
+// on: if it leaves outside the gate, or meets the specimen again before the last bounce, its light is counted, or
+// scattered on, whole as in the analog form. So an aimed sample that turns out to meet the specimen again counts
+// nowhere, but for the last bounce, whose light is nobody's further. A delta has no density: it is never aimed at, and
+// its own light weighs 1.
+// Of all samples of a path one survives, with a chance proportional to its weight and the sum of all weights as its own,
+// at most max_bounces + 1: the expectation stays.
+struct GateDisc {
+    real2 centre; // of the slopes x/z and y/z that pass the gate
+    real radius;
+};
+
+VKFV_FUNCTION GateDisc gate_disc(Instrument instrument, real top, real3 position) {
+    real scale = real(1.0) / (instrument.gate_slope + instrument.gate_position * (top - position.z));
+    GateDisc disc;
+    disc.centre = real2(position.x, position.y) * (-instrument.gate_position * scale);
+    disc.radius = instrument.gate_radius * abs(scale);
+    return disc;
+}
+
+VKFV_FUNCTION real3 direction_in_disc(GateDisc disc, real u0, real u1) {
+    Turn turn = turn_of(u1);
+    real rho = disc.radius * sqrt(u0);
+    real x = disc.centre.x + rho * turn.cosine;
+    real y = disc.centre.y + rho * turn.sine;
+    real z = real(1.0) / sqrt(real(1.0) + x * x + y * y);
+    return real3(x * z, y * z, z);
+}
+
+// p / q of a direction within the gate; d(omega) = z^3 d(slopes). 0 for a delta.
+VKFV_FUNCTION real density_ratio(Lobe lobe, Incidence incidence, GateDisc disc, real3 direction) {
+    real density = lobe_bsdf(lobe, incidence, direction) * max(dot(direction, incidence.normal), real(0.0));
+    return density * (real(3.14159265358979324) * disc.radius * disc.radius) *
+           (direction.z * direction.z * direction.z);
+}
+
+struct Selection {
+    real weight; // of all samples so far
+    Survivor survivor;
+};
+
+VKFV_FUNCTION Selection offer(Selection selection, real weight, real3 position, real3 direction, uint mark, real u) {
+    selection.weight = selection.weight + weight;
+    if (u * selection.weight < weight) {
+        selection.survivor.position = position;
+        selection.survivor.direction_x = direction.x;
+        selection.survivor.direction_y = direction.y;
+        selection.survivor.mark = mark;
+    }
+    return selection;
+}
+
+VKFV_FUNCTION uint survivor_weight(Survivor survivor) { return survivor.mark >> SURVIVOR_WEIGHT_BIT; }
+
+VKFV_FUNCTION uint weight_beside(Survivor survivor) {
+    return (survivor.mark & SURVIVOR_BESIDE) != 0u ? WEIGHT_ONE : 0u;
+}
+
+// Of what a path adds to the ledger in all, in units of 2^-18: below 2^31, as no weight exceeds 66.
+VKFV_FUNCTION uint weight_square(uint weight) {
+    return (multiply_high(weight, weight) << 6) | ((weight * weight) >> 26);
+}
 
 // Scatter at the specimen until the light leaves it. Before the last permitted bounce every ray is tested against
 // the specimen; on the last one the gate comes first and the test is left to the second half.
 VKFV_SCENE_FUNCTION VKFV_FUNCTION Departure scatter_at_specimen(VKFV_SCENE_PARAMETER Instrument instrument,
                                                                 SpecimenRecord specimen, Exposure exposure,
                                                                 uvec2 path, real3 origin, real3 direction) {
+    bool directed = (features(VKFV_SCENE_ALONE) & FEATURE_DIRECTED_SCATTER) != 0u;
     uint status = PATH_ALIVE;
-    uint test_occlusion = 0u;
+    uint mark = 0u;
+    Selection selection;
+    selection.weight = real(0.0);
+    selection.survivor.position = origin;
+    selection.survivor.direction_x = real(0.0);
+    selection.survivor.direction_y = real(0.0);
+    selection.survivor.mark = 0u;
+    real own_share = real(1.0);
+    real own_choice = real(0.0);
     Hit hit = specimen_hit(VKFV_SCENE origin, direction);
     status = hit.found == 1u ? PATH_ALIVE : PATH_OFF_SPECIMEN;
     bool under_way = hit.found == 1u;
     for (int bounce = 0; bounce < specimen.max_bounces && under_way; ++bounce) {
+        uint first_block = 1u + uint(bounce) * SCATTER_BLOCKS;
+        bool last = bounce + 1 == specimen.max_bounces;
+        Incidence incidence = make_incidence(direction, hit.normal);
         Scattered scattered = scatter(specimen.material, direction, hit.normal, exposure.seed, exposure.image, path,
-                                      1u + uint(bounce) * SCATTER_BLOCKS);
+                                      first_block);
         direction = scattered.direction;
         origin = scatter_origin(hit);
         under_way = scattered.accepted == 1u;
         status = under_way ? PATH_ALIVE : scattered.absorbed == 1u ? PATH_ABSORBED : PATH_NUMERICAL;
-        if (bounce + 1 == specimen.max_bounces) {
-            test_occlusion = 1u;
+        if (directed && under_way) {
+            Draws draws = draw(exposure.seed, exposure.image, path, first_block + SCATTER_BLOCKS - 1u);
+            GateDisc disc = gate_disc(instrument, specimen.top, origin);
+            real3 aimed = direction_in_disc(disc, draws.u0, draws.u1);
+            real ratio = density_ratio(scattered.lobe, incidence, disc, aimed);
+            selection = offer(selection, ratio / (real(1.0) + ratio), origin, aimed,
+                              last ? SURVIVOR_TO_TEST : SURVIVOR_TO_TEST | SURVIVOR_TWIN, draws.u2);
+            real own_ratio = density_ratio(scattered.lobe, incidence, disc, direction);
+            own_share = own_ratio > real(0.0) ? own_ratio / (real(1.0) + own_ratio) : real(1.0);
+            own_choice = draws.u3;
+        }
+        if (last) {
+            mark = SURVIVOR_TO_TEST;
             under_way = false;
         } else if (under_way) {
             hit = specimen_hit(VKFV_SCENE origin, direction);
@@ -151,12 +242,23 @@ VKFV_SCENE_FUNCTION VKFV_FUNCTION Departure scatter_at_specimen(VKFV_SCENE_PARAM
     }
     Departure departure;
     departure.fate = make_fate(status, -1);
+    departure.survives = status == PATH_ALIVE ? 1u : 0u;
     departure.survivor.position = origin;
     departure.survivor.direction_x = direction.x;
     departure.survivor.direction_y = direction.y;
+    departure.survivor.mark = mark;
+    if (directed) {
+        if (status == PATH_ALIVE) {
+            selection = offer(selection, own_share, origin, direction, mark, own_choice);
+        }
+        uint weight = uint(selection.weight * real(WEIGHT_ONE) + real(0.5));
+        departure.survives = weight > 0u ? 1u : 0u;
+        departure.survivor = selection.survivor;
+        departure.survivor.mark = selection.survivor.mark | (weight << SURVIVOR_WEIGHT_BIT) |
+                                  (status == PATH_ALIVE ? 0u : SURVIVOR_BESIDE);
+    }
     departure.survivor.spectral = real(0.0);
     departure.survivor.survival = real(0.0);
-    departure.survivor.test_occlusion = test_occlusion;
     return departure;
 }
 
@@ -166,6 +268,7 @@ VKFV_SCENE_FUNCTION VKFV_FUNCTION Departure trace_to_departure(VKFV_SCENE_PARAME
     Arrival arrival = illuminate(VKFV_SCENE instrument, specimen, exposure, path);
     Departure departure;
     departure.fate = arrival.fate;
+    departure.survives = 0u;
     if (arrival.fate.status == PATH_ALIVE) {
         departure = scatter_at_specimen(VKFV_SCENE instrument, specimen, exposure, path, arrival.position,
                                         arrival.direction);
@@ -182,7 +285,7 @@ VKFV_SCENE_FUNCTION VKFV_FUNCTION Departure trace_to_departure(VKFV_SCENE_PARAME
 
 // The second half: where on the detector.
 struct Detection {
-    Fate fate; // PATH_DETECTED comes with a pixel
+    Fate fate; // PATH_DETECTED comes with a pixel; PATH_ALIVE: a twin, not to be counted
     int column;
     int row;
     real x; // detector's plane, axes parallel to the specimen's, inversion not removed, mm
@@ -198,7 +301,7 @@ VKFV_FUNCTION real3 survivor_direction(Survivor survivor) {
 // Whether the light meets the specimen again: the test that the first half left.
 VKFV_SCENE_FUNCTION VKFV_FUNCTION bool survivor_occluded(VKFV_SCENE_PARAMETER Survivor survivor) {
     bool occluded = false;
-    if (survivor.test_occlusion == 1u) {
+    if ((survivor.mark & SURVIVOR_TO_TEST) != 0u) {
         Hit hit = specimen_hit(VKFV_SCENE survivor.position, survivor_direction(survivor));
         occluded = hit.found == 1u;
     }
@@ -242,7 +345,8 @@ VKFV_SCENE_FUNCTION VKFV_FUNCTION Detection image_survivor(VKFV_SCENE_PARAMETER 
                                     light);
     Ray arrived = fly_to_plane(train.ray, instrument.detector_distance, train.index);
     Detection detection = detect(instrument, arrived.position.x, arrived.position.y);
-    detection.fate = occluded                      ? make_fate(PATH_BOUNCE_LIMIT, -1)
+    bool twin = (survivor.mark & SURVIVOR_TWIN) != 0u;
+    detection.fate = occluded                      ? make_fate(twin ? PATH_ALIVE : PATH_BOUNCE_LIMIT, -1)
                      : train.status != PATH_ALIVE ? make_fate(train.status, train.surface)
                                                    : detection.fate;
     return detection;

@@ -32,6 +32,7 @@ const uint FEATURE_LOSSES = 2u;    // interfaces that reflect, mirrors that abso
 const uint FEATURE_SPECTRUM = 4u;  // more than one wavelength
 const uint FEATURE_IDEAL_LENS = 8u;
 const uint FEATURE_RING = 16u;     // a ring light instead of the disc
+const uint FEATURE_DIRECTED_SCATTER = 32u; // of the trace, not of the instrument: survivors have weights
 
 const int SURFACE_CAPACITY = 128; // surfaces of both trains together that the device's uniform block holds
 const int SPECTRUM_CAPACITY = 256; // bins of a spectrum, likewise
@@ -253,6 +254,12 @@ struct Hit {
     real3 normal; // unit, on the side of +z for height fields and analytic surfaces, against the ray for meshes
 };
 
+const uint SURVIVOR_TO_TEST = 1u; // whether it meets the specimen again is not yet known
+const uint SURVIVOR_TWIN = 2u;    // if it does it counts nowhere, since its path's own light went on
+const uint SURVIVOR_BESIDE = 4u;  // its path's own light is counted elsewhere, whole
+const int SURVIVOR_WEIGHT_BIT = 3;
+const uint WEIGHT_ONE = 0x400000u; // weights are multiples of 2^-22, so that their sums do not depend on the order
+
 // Light that leaves the specimen towards the objective, between the two passes.
 struct Survivor {
     real3 position;  // specimen frame, on the specimen
@@ -260,7 +267,7 @@ struct Survivor {
     real direction_y;
     real spectral;    // its Light in the imaging train
     real survival;
-    uint test_occlusion; // 1: whether it meets the specimen again is not yet known
+    uint mark; // SURVIVOR_*, and with directed scatter its weight / 2^-22 from SURVIVOR_WEIGHT_BIT on
 };
 
 // How a path ended, and where the ledger counts it.

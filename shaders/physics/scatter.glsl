@@ -52,12 +52,13 @@ VKFV_FUNCTION real scatter_density(Material material, real3 incoming, real3 norm
 // Henyey-Greenstein's acceptance is no less than about cos(theta_i) for sharp lobes with g > 0, and about 0.01 for
 // g = -0.9, the least that a configuration may ask for: 2048 tries fail less than once in 1e8 for incidence up to 89.4
 // degrees. What fails is counted as numerical.
-const uint SCATTER_BLOCKS = 2048u; // blocks of random numbers a scatter event owns; one try each
+const uint SCATTER_BLOCKS = 2048u; // blocks of random numbers a scatter event owns; a try each, and directed scatter's
 
 struct Scattered {
     uint accepted; // 0: absorbed or tries exhausted
     uint absorbed;
     real3 direction;
+    Lobe lobe; // that was chosen
 };
 
 // incoming: unit, towards the surface; normal: unit, on the incoming side.
@@ -70,7 +71,7 @@ VKFV_FUNCTION Scattered scatter(Material material, real3 incoming, real3 normal,
     result.absorbed = 0u;
     result.direction = incidence.mirror;
     // Light from behind the surface is a rounding fault (it slipped between facets): not scattered, but counted.
-    uint blocks = dot(incoming, normal) < real(0.0) ? SCATTER_BLOCKS : 0u;
+    uint blocks = dot(incoming, normal) < real(0.0) ? SCATTER_BLOCKS - 1u : 0u;
     for (uint block = 0u; block < blocks && result.accepted + result.absorbed == 0u; ++block) {
         Draws draws = draw(seed, image, path, first_block + block);
         if ((scatter_models & SCATTER_CHOICE) != 0u && block == 0u) {
@@ -81,5 +82,6 @@ VKFV_FUNCTION Scattered scatter(Material material, real3 incoming, real3 normal,
         result.accepted = attempt.accepted;
         result.direction = attempt.direction;
     }
+    result.lobe = lobe;
     return result;
 }

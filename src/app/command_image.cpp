@@ -50,6 +50,9 @@ void print_ledger(const trace::Image& image) {
     }
     fmt::print("{:<52} {:>14.6e}\n", "emitted", image.ledger.emitted);
     fmt::print("{:<52} {:>14.6e}\n", "residual", image.ledger.residual());
+    if (image.ledger.residual_error > 0) {
+        fmt::print("{:<52} {:>14.6e}\n", "standard error of the residual", image.ledger.residual_error);
+    }
 }
 
 } // namespace

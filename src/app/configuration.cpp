@@ -299,6 +299,15 @@ void read_trace(const TomlTable& root, Configuration& configuration) {
     }
     configuration.instrument.directed_emission =
         section.choice("emission", {"directed", "analog"}, "directed") == "directed";
+    trace.directed_scatter = section.choice("scattering", {"analog", "directed"}, "analog") == "directed";
+    if (trace.directed_scatter && trace.nonsequential) {
+        table.fail("scattering", "\"analog\" with mode = \"nonsequential\", whose light finds the pupil by itself",
+                   "Choose scattering = \"analog\", or mode = \"sequential\".");
+    }
+    if (trace.directed_scatter && trace.estimator == trace::Estimator::backward) {
+        table.fail("scattering", "\"analog\" with estimator = \"backward\", which starts from the pupil",
+                   "Choose scattering = \"analog\", or estimator = \"forward\".");
+    }
     const std::string traversal =
         section.choice("traversal", {"auto", "ray-query", "quadtree", "bvh"}, "auto", Influence::nothing);
     if (trace.nonsequential && traversal == "quadtree") {

@@ -27,7 +27,9 @@ class DeviceScene {
                 const TraceOptions& options)
         : instrument(instrument), device(vulkan::DeviceOptions{options.device}),
           room(options.nonsequential ? optics::furnish(instrument) : optics::Room{}),
-          accounts(options.nonsequential ? Accounts(instrument, room.names) : Accounts(instrument)),
+          accounts(options.nonsequential ? Accounts(instrument, room.names) : Accounts(instrument, options.directed_scatter)),
+          features(instrument.features |
+                   (options.directed_scatter ? physics::f32::FEATURE_DIRECTED_SCATTER : 0u)),
           traversal(
               choose_traversal(device.report(), specimen, options.traversal, reason, options.nonsequential)),
           device_specimen(device, specimen, traversal, boxes_of(room)),
@@ -92,7 +94,7 @@ class DeviceScene {
         auto all = device_specimen.constants();
         all.push_back({1, static_cast<std::uint32_t>(accounts.slots())});
         all.push_back({2, stop_after});
-        all.push_back({3, instrument.features});
+        all.push_back({3, features});
         return all;
     }
 
@@ -111,6 +113,7 @@ class DeviceScene {
     vulkan::Device device;
     optics::Room room; // of elements; without any for sequential paths
     Accounts accounts;
+    std::uint32_t features; // FEATURE_* of instrument and trace
     Traversal traversal;
     DeviceSpecimen device_specimen;
     physics::f64::SpecimenRecord host_record;

@@ -26,8 +26,9 @@ struct DevicePathEnd {
     std::int32_t surface;
     float x;
     float y;
+    float weight;
 };
-static_assert(sizeof(DevicePathEnd) == 16);
+static_assert(sizeof(DevicePathEnd) == 20);
 
 // Batches a submission: waiting for each costs a GPU 60 us, and a software device's dispatch is long enough.
 constexpr std::uint32_t batches_per_submission_gpu = 8;
@@ -121,7 +122,7 @@ std::vector<PathEnd> device_paths(const optics::Instrument& instrument, const sp
     std::vector<PathEnd> result;
     result.reserve(count);
     for (const DevicePathEnd& end : ends.read_values<DevicePathEnd>(count)) {
-        result.push_back({end.status, end.surface, end.x, end.y});
+        result.push_back({end.status, end.surface, end.x, end.y, end.weight});
     }
     return result;
 }

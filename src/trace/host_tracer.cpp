@@ -38,25 +38,45 @@ uvec2 path_of(std::uint64_t index) {
     return {static_cast<uint>(index), static_cast<uint>(index >> 32)};
 }
 
-Detection path_end(const HostScene& scene, const physics::f64::Instrument& constants, const SpecimenRecord& record,
-                   const Exposure& exposure, const optics::Room& room, bool nonsequential, std::uint64_t index) {
+// What becomes of a path's light: of its own, and with directed scatter of a survivor beside it, with its weight.
+struct HostPath {
+    Fate own{};       // PATH_ALIVE: the survivor stands for it
+    bool survives = false;
+    Survivor survivor{};
+    Detection end{};  // of the survivor, else the own fate
+};
+
+HostPath trace_host_path(const HostScene& scene, const physics::f64::Instrument& constants, const SpecimenRecord& record,
+                         const Exposure& exposure, const optics::Room& room, bool nonsequential, std::uint64_t index) {
+    HostPath path;
     if (nonsequential) {
-        return trace_nonsequential(scene, constants, record, exposure, room.source, path_of(index));
+        path.end = trace_nonsequential(scene, constants, record, exposure, room.source, path_of(index));
+        path.own = path.end.fate;
+        return path;
     }
     const Departure departure = trace_to_departure(scene, constants, record, exposure, path_of(index));
-    Detection end{};
-    end.fate = departure.fate;
-    if (departure.fate.status == PATH_ALIVE) {
-        end = image_survivor(scene, constants, record, exposure, departure.survivor);
+    path.own = departure.fate;
+    path.end.fate = departure.fate;
+    path.survives = departure.survives == 1u;
+    if (path.survives) {
+        path.survivor = departure.survivor;
+        path.end = image_survivor(scene, constants, record, exposure, departure.survivor);
     }
-    return end;
+    return path;
+}
+
+// The trains, and what of the trace the physics asks for.
+optics::TrainScene trains_of(const optics::Instrument& instrument, const TraceOptions& options) {
+    optics::TrainScene trains = instrument.scene();
+    trains.present |= options.directed_scatter ? FEATURE_DIRECTED_SCATTER : 0u;
+    return trains;
 }
 
 class HostTracer final : public Tracer {
   public:
     HostTracer(const optics::Instrument& instrument, const specimen::Specimen& specimen, const TraceOptions& options)
         : instrument_(instrument), record_(specimen::record(specimen, options.max_bounces)), intersector_(specimen),
-          options_(options), accounts_(instrument) {
+          options_(options), accounts_(instrument, options.directed_scatter) {
         if (options.nonsequential) {
             room_ = optics::furnish(instrument);
             accounts_ = Accounts(instrument, room_.names);
@@ -65,14 +85,12 @@ class HostTracer final : public Tracer {
 
     Image expose(double focal_height, std::uint32_t image) const override {
         const auto start = std::chrono::steady_clock::now();
-        const std::size_t pixels = static_cast<std::size_t>(instrument_.constants.detector_pixels) *
-                                   static_cast<std::size_t>(instrument_.constants.detector_pixels);
         const Exposure exposure = make_exposure(instrument_, record_, focal_height, options_.seed, image);
-        const HostScene scene{instrument_.scene(), &intersector_, &room_};
+        const HostScene scene{trains_of(instrument_, options_), &intersector_, &room_};
         const unsigned workers = std::max(1u, std::thread::hardware_concurrency());
-        std::vector<std::vector<std::uint64_t>> counts(workers, std::vector<std::uint64_t>(pixels));
+        std::vector<std::vector<std::uint64_t>> counts(workers, std::vector<std::uint64_t>(accounts_.pixel_numbers()));
         std::vector<std::vector<std::uint64_t>> fates(
-            workers, std::vector<std::uint64_t>(accounts_.slots()));
+            workers, std::vector<std::uint64_t>(accounts_.ledger_numbers()));
         {
             std::vector<std::jthread> threads;
             for (unsigned worker = 0; worker < workers; ++worker) {
@@ -98,13 +116,36 @@ class HostTracer final : public Tracer {
 
   private:
     void trace_path(const HostScene& scene, const Exposure& exposure, std::uint64_t index,
-                    std::vector<std::uint64_t>& counts, std::vector<std::uint64_t>& fates) const {
-        const Detection end =
-            path_end(scene, instrument_.constants, record_, exposure, room_, options_.nonsequential, index);
-        if (end.fate.status == PATH_DETECTED) {
-            counts[static_cast<std::size_t>(end.row * instrument_.constants.detector_pixels + end.column)] += 1;
+                    std::vector<std::uint64_t>& pixels, std::vector<std::uint64_t>& fates) const {
+        const HostPath path =
+            trace_host_path(scene, instrument_.constants, record_, exposure, room_, options_.nonsequential, index);
+        const Fate fate = path.end.fate;
+        const auto pixel =
+            static_cast<std::size_t>(path.end.row * instrument_.constants.detector_pixels + path.end.column);
+        if (!options_.directed_scatter) {
+            pixels[pixel] += fate.status == PATH_DETECTED ? 1 : 0;
+            fates[static_cast<std::size_t>(ledger_slot(fate))] += 1;
+            return;
         }
-        fates[static_cast<std::size_t>(ledger_slot(end.fate))] += 1;
+        std::uint32_t sum = 0;
+        const auto count = [&](const Fate& counted, std::uint32_t weight) {
+            const auto slot = static_cast<std::size_t>(ledger_slot(counted));
+            fates[slot] += 1;
+            fates[accounts_.slots() + slot] += weight;
+            sum += weight;
+        };
+        if (path.own.status != PATH_ALIVE) {
+            count(path.own, WEIGHT_ONE);
+        }
+        if (path.survives && fate.status != PATH_ALIVE) {
+            const std::uint32_t weight = survivor_weight(path.survivor);
+            count(fate, weight);
+            if (fate.status == PATH_DETECTED) {
+                pixels[2 * pixel] += weight;
+                pixels[2 * pixel + 1] += (std::uint64_t{weight} * weight) >> 20;
+            }
+        }
+        fates.back() += weight_square(sum);
     }
 
     optics::Instrument instrument_;
@@ -205,7 +246,7 @@ std::vector<PathEnd> host_paths(const optics::Instrument& instrument, const spec
     if (options.nonsequential) {
         room = optics::furnish(instrument);
     }
-    const HostScene scene{instrument.scene(), &intersector, &room};
+    const HostScene scene{trains_of(instrument, options), &intersector, &room};
     const SpecimenRecord record = specimen::record(specimen, options.max_bounces);
     const Exposure exposure = make_exposure(instrument, record, focal_height, options.seed, image);
     physics::f64::Instrument constants = instrument.constants;
@@ -213,8 +254,12 @@ std::vector<PathEnd> host_paths(const optics::Instrument& instrument, const spec
     constants.emission_sine = std::min(1.0, constants.emission_sine * source_scale);
     std::vector<PathEnd> ends(count);
     for (std::uint64_t index = 0; index < count; ++index) {
-        const Detection end = path_end(scene, constants, record, exposure, room, options.nonsequential, first + index);
-        ends[index] = {end.fate.status, end.fate.surface, end.x, end.y};
+        const HostPath path =
+            trace_host_path(scene, constants, record, exposure, room, options.nonsequential, first + index);
+        const Detection& end = path.end;
+        const bool weighted = options.directed_scatter && path.survives;
+        ends[index] = {end.fate.status, end.fate.surface, end.x, end.y,
+                       weighted ? double(survivor_weight(path.survivor)) / WEIGHT_ONE : 1.0};
     }
     return ends;
 }

@@ -19,6 +19,7 @@ struct PathEnd {
     std::int32_t surface = -1;
     double x = 0;
     double y = 0;
+    double weight = 1; // of the light there; with directed scatter of a path's survivor, if it has one
 };
 
 // Paths first ... first + count - 1 of one exposure at focal_height (mm), one by one. source_scale (about 1) scales the source's radius and

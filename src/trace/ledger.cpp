@@ -1,5 +1,6 @@
 #include "trace/ledger.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <utility>
 
@@ -47,11 +48,11 @@ double Ledger::residual() const {
     return emitted - sum;
 }
 
-Accounts::Accounts(const optics::Instrument& instrument)
+Accounts::Accounts(const optics::Instrument& instrument, bool directed_scatter)
     : flux_(instrument.flux), aimed_(instrument.constants.emission_sine * instrument.constants.emission_sine),
       left_{1.0, instrument.splitter_reflectance,
             instrument.splitter_reflectance * instrument.splitter_transmittance},
-      pixels_(instrument.constants.detector_pixels) {
+      pixels_(instrument.constants.detector_pixels), weighted_(directed_scatter) {
     const auto& constants = instrument.constants;
     add_slots(instrument.surface_names, splitter_passes(instrument), crossings_up_to(instrument),
               constants.illumination_count, constants.illumination_count + constants.imaging_count);
@@ -88,51 +89,74 @@ void Accounts::add_slots(const std::vector<std::string>& names, const std::vecto
     }
 }
 
-Ledger Accounts::ledger(std::span<const std::uint64_t> counts, std::uint64_t rays) const {
+Ledger Accounts::ledger(std::span<const std::uint64_t> numbers, std::uint64_t rays) const {
     const double per_ray = flux_ * aimed_ / static_cast<double>(rays);
+    const auto counts = numbers.first(slots_.size());
+    // In rays of weight 1.
+    const auto amount = [&](std::size_t slot) {
+        return weighted_ ? static_cast<double>(numbers[slots_.size() + slot]) / WEIGHT_ONE
+                         : static_cast<double>(counts[slot]);
+    };
     Ledger ledger;
     ledger.emitted = flux_;
-    const auto add = [&](std::string name, double share, std::uint64_t count) {
-        ledger.entries.push_back({std::move(name), per_ray * share * static_cast<double>(count), count});
-    };
     const auto add_slot = [&](std::size_t slot) {
-        add(slots_[slot].name, left_[slots_[slot].splitter_passes], counts[slot]);
+        ledger.entries.push_back(
+            {slots_[slot].name, per_ray * left_[slots_[slot].splitter_passes] * amount(slot), counts[slot]});
     };
     add_slot(PATH_DETECTED);
     ledger.entries.push_back({"not aimed at", flux_ * (1.0 - aimed_), 0});
     // The splitter takes its share of every ray that passes it, known from the fates beyond.
-    std::array<std::uint64_t, 2> passed = {0, 0};
+    std::array<double, 2> passed = {0, 0};
+    std::array<std::uint64_t, 2> rays_passed = {0, 0};
     for (std::size_t slot = 0; slot < slots_.size(); ++slot) {
         for (std::size_t pass = 0; pass < slots_[slot].splitter_passes; ++pass) {
-            passed[pass] += counts[slot];
+            passed[pass] += amount(slot);
+            rays_passed[pass] += counts[slot];
         }
     }
-    add("beam splitter, towards the specimen", left_[0] - left_[1], passed[0]);
-    add("beam splitter, towards the detector", left_[1] - left_[2], passed[1]);
+    ledger.entries.push_back(
+        {"beam splitter, towards the specimen", per_ray * (left_[0] - left_[1]) * passed[0], rays_passed[0]});
+    ledger.entries.push_back(
+        {"beam splitter, towards the detector", per_ray * (left_[1] - left_[2]) * passed[1], rays_passed[1]});
     for (std::size_t slot = PATH_DETECTED + 1; slot < slots_.size(); ++slot) {
         if (slot < PATH_VIGNETTED || slot >= PATH_STATUS_COUNT) {
             add_slot(slot);
         }
     }
+    if (weighted_) {
+        // A path adds 1 in the mean.
+        const double mean_square = static_cast<double>(numbers.back()) / 262144.0 / static_cast<double>(rays);
+        ledger.residual_error = flux_ * aimed_ * std::sqrt(std::max(mean_square - 1, 0.0) / static_cast<double>(rays));
+    }
     return ledger;
 }
 
-Image Accounts::image(std::span<const std::uint64_t> pixel_counts, std::span<const std::uint64_t> ledger_counts,
+Image Accounts::image(std::span<const std::uint64_t> pixel_numbers, std::span<const std::uint64_t> ledger_numbers,
                       std::uint64_t rays) const {
     const double per_ray = flux_ * aimed_ * left_[2] / static_cast<double>(rays);
     Image image;
     image.flux = Grid<double>(pixels_, pixels_);
     image.standard_error = Grid<double>(pixels_, pixels_);
-    for (std::size_t pixel = 0; pixel < pixel_counts.size(); ++pixel) {
-        const double count = static_cast<double>(pixel_counts[pixel]);
-        image.flux.values[pixel] = per_ray * count;
-        image.standard_error.values[pixel] = per_ray * std::sqrt(count * (1.0 - count / static_cast<double>(rays)));
+    for (std::size_t pixel = 0; pixel < image.flux.values.size(); ++pixel) {
+        // In rays of weight 1; the square of a count's weight is the weight.
+        const double sum = weighted_ ? static_cast<double>(pixel_numbers[2 * pixel]) / WEIGHT_ONE
+                                     : static_cast<double>(pixel_numbers[pixel]);
+        const double squares = weighted_ ? static_cast<double>(pixel_numbers[2 * pixel + 1]) / 16777216.0 : sum;
+        image.flux.values[pixel] = per_ray * sum;
+        image.standard_error.values[pixel] =
+            per_ray * std::sqrt(std::max(squares - sum * sum / static_cast<double>(rays), 0.0));
     }
-    image.ledger = ledger(ledger_counts, rays);
+    image.ledger = ledger(ledger_numbers, rays);
     image.rays = rays;
-    image.detected = ledger_counts[PATH_DETECTED];
+    image.detected = ledger_numbers[PATH_DETECTED];
+    double counted = 0;
     for (std::size_t slot = 0; slot < slots_.size(); ++slot) {
-        image.crossings += static_cast<double>(ledger_counts[slot]) * slots_[slot].crossings;
+        counted += static_cast<double>(ledger_numbers[slot]);
+        image.crossings += static_cast<double>(ledger_numbers[slot]) * slots_[slot].crossings;
+    }
+    if (weighted_) {
+        // A path's own light and its survivor, both counted, have crossed the illumination once.
+        image.crossings -= (counted - static_cast<double>(rays)) * slots_[PATH_ESCAPED].crossings;
     }
     return image;
 }

@@ -16,17 +16,27 @@ namespace vkfv::trace {
 class Accounts {
   public:
     // Sequential: rays pass the trains of surfaces, and the splitter takes its shares of them by calculation.
-    explicit Accounts(const optics::Instrument& instrument);
+    // directed_scatter: of sums of weights.
+    explicit Accounts(const optics::Instrument& instrument, bool directed_scatter = false);
     // Non-sequential: every ray keeps its power to its end, at one of these elements.
     Accounts(const optics::Instrument& instrument, const std::vector<std::string>& element_names);
 
     // Of physics::ledger_slot().
     std::size_t slots() const { return slots_.size(); }
 
-    // Image in W from counts per pixel, with the binomial standard error of each. ledger_counts[slot]: rays of each fate. What
-    // was not aimed at and what the splitter turns away in the sequential trace is added analytically, so the ledger closes
-    // exactly when every launched ray has one fate.
-    Image image(std::span<const std::uint64_t> pixel_counts, std::span<const std::uint64_t> ledger_counts,
+    // How many numbers a trace keeps. Directed scatter: after the counts of the slots their sums of weights (units of
+    // 1 / WEIGHT_ONE) and the sum over the paths of physics::weight_square() of what each adds; a pixel has its sum of
+    // weights and the sum of their squares (units of 2^-24).
+    std::size_t ledger_numbers() const { return weighted_ ? 2 * slots_.size() + 1 : slots_.size(); }
+    std::size_t pixel_numbers() const {
+        return static_cast<std::size_t>(pixels_) * static_cast<std::size_t>(pixels_) * (weighted_ ? 2 : 1);
+    }
+
+    // Image in W from the numbers of the pixels and of the ledger, with the standard error of each pixel. What was not
+    // aimed at and what the splitter turns away in the sequential trace is added analytically, so the ledger closes
+    // exactly when every launched ray has one fate; with directed scatter, whose paths add 1 to it in expectation, it
+    // closes within residual_error.
+    Image image(std::span<const std::uint64_t> pixel_numbers, std::span<const std::uint64_t> ledger_numbers,
                 std::uint64_t rays) const;
 
   private:
@@ -38,13 +48,14 @@ class Accounts {
     // crossings: of the surfaces with these names, and of the illumination and of both trains in whole.
     void add_slots(const std::vector<std::string>& names, const std::vector<std::size_t>& passes,
                    const std::vector<int>& crossings, int illumination, int both);
-    Ledger ledger(std::span<const std::uint64_t> counts, std::uint64_t rays) const;
+    Ledger ledger(std::span<const std::uint64_t> numbers, std::uint64_t rays) const;
 
     double flux_;  // W
     double aimed_; // share of it
     // Of the power a ray starts with: what is left after 0, 1 and 2 passes of the splitter.
     std::array<double, 3> left_ = {1.0, 1.0, 1.0};
     int pixels_; // along one side
+    bool weighted_ = false;
     std::vector<Slot> slots_;
 };
 

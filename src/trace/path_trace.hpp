@@ -27,14 +27,9 @@ inline constexpr std::uint32_t paths_per_group = workgroup_size * rays_per_invoc
 class PathTrace {
   public:
     PathTrace(const DeviceScene& scene, std::uint32_t batch)
-        : scene_(scene), batch_(batch), pixels_(scene.device, pixel_count() * sizeof(std::uint64_t)),
-          fates_(scene.device, scene.accounts.slots() * sizeof(std::uint64_t)) {}
+        : scene_(scene), batch_(batch), pixels_(scene.device, scene.accounts.pixel_numbers() * sizeof(std::uint64_t)),
+          fates_(scene.device, scene.accounts.ledger_numbers() * sizeof(std::uint64_t)) {}
     virtual ~PathTrace() = default;
-
-    std::size_t pixel_count() const {
-        const auto side = static_cast<std::size_t>(scene_.instrument.constants.detector_pixels);
-        return side * side;
-    }
 
     void clear(vulkan::Commands& commands) const {
         commands.fill_zero(pixels_);
@@ -46,9 +41,9 @@ class PathTrace {
     virtual void record(vulkan::Commands& commands, std::uint64_t first, std::uint32_t count,
                         bool timed = false) const = 0;
 
-    std::vector<std::uint64_t> pixels() const { return pixels_.read_values<std::uint64_t>(pixel_count()); }
+    std::vector<std::uint64_t> pixels() const { return pixels_.read_values<std::uint64_t>(scene_.accounts.pixel_numbers()); }
     std::vector<std::uint64_t> fates() const {
-        return fates_.read_values<std::uint64_t>(scene_.accounts.slots());
+        return fates_.read_values<std::uint64_t>(scene_.accounts.ledger_numbers());
     }
     std::uint32_t batch() const { return batch_; }
 

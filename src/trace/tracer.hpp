@@ -26,6 +26,7 @@ struct TraceOptions {
     std::uint64_t batch = 0; // rays in flight at once; 0: what suits the device
     std::string device;      // selector: an index or a part of the name
     bool nonsequential = false; // light finds its own way, and interfaces split it
+    bool directed_scatter = false; // forward, sequential: every bounce also aims at the pupil, and light has weights
 };
 
 // Where the emitted power of one image went; W. emitted = the sum of all others.
@@ -38,6 +39,7 @@ struct Ledger {
     double emitted = 0;
     std::vector<Entry> entries; // always the same names in the same order for one instrument
     double residual() const;    // emitted minus the sum, W
+    double residual_error = 0;  // its standard error, W; 0: the ledger closes exactly
 };
 
 // One exposure. Radiant flux per pixel in W and the standard error of each; rows ascend with y.

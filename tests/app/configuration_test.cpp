@@ -36,6 +36,7 @@ TEST(Configuration, ConvertsUnitsOnceAtTheBorder) {
     EXPECT_EQ(configuration.scan->positions().size(), 5u);
     EXPECT_EQ(configuration.trace.rays, 2000u);
     EXPECT_EQ(configuration.instrument.directed_emission, true);
+    EXPECT_EQ(configuration.trace.directed_scatter, false);
     const auto tilted = load("tilt", replaced(replaced(small_configuration, "\"step\"", "\"plane\""),
                                               "height_um = 2.0", "tilt_x_deg = 45"));
     EXPECT_NEAR(std::tan(tilted.specimen->tilt_x), 1.0, 1e-15); // one rounding of the angle
@@ -90,6 +91,7 @@ TEST(Configuration, IdentityHoldsWhatChangesImagesAndNothingElse) {
         {"trace.seed", "2", ""},
         {"trace.max_bounces", "3", ""},
         {"trace.emission", "\"analog\"", ""},
+        {"trace.scattering", "\"directed\"", ""},
         {"specimen.material.g", "0.81", ""},
         {"specimen.material.reflectance", "0.9", ""},
         {"specimen.representation", "\"analytic\"", ""},
