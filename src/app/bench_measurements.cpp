@@ -73,6 +73,7 @@ std::string name_of(trace::Traversal traversal) {
 struct Way {
     std::string name;
     trace::TraceOptions options;
+    std::uint64_t rays = 0; // of an image; 0: those of a run
 };
 
 specimen::Mesh mesh_of(const specimen::HeightField& field) {
@@ -196,7 +197,9 @@ class Bench {
     }
 
     static optics::Instrument instrument_of(const Configuration& configuration, const specimen::Specimen& specimen) {
-        return assemble_instrument(configuration, specimen, std::span(&in_focus, 1));
+        auto turned = configuration; // for the backward estimator
+        turned.instrument.turned = !configuration.instrument.ring;
+        return assemble_instrument(turned, specimen, std::span(&in_focus, 1));
     }
 
     std::unique_ptr<trace::Tracer> tracer_of(trace::TraceOptions options, std::uint64_t rays) const {
@@ -266,7 +269,22 @@ class Bench {
     }
 
     // The first is what the others' efficiency is relative to.
-    std::vector<Way> estimators() const { return {{"forward", configuration_.trace}}; }
+    std::vector<Way> estimators() const {
+        auto forward = configuration_.trace;
+        forward.estimator = trace::Estimator::forward;
+        std::vector<Way> ways = {{"forward", forward}};
+        if (instrument_.turned) {
+            auto backward = configuration_.trace;
+            backward.estimator = trace::Estimator::backward;
+            const auto side = static_cast<std::uint64_t>(instrument_.constants.detector_pixels);
+            for (const std::uint64_t paths : {32, 1024}) {
+                if (paths == 32 || !software()) {
+                    ways.push_back({fmt::format("backward, {} paths a pixel", paths), backward, paths * side * side});
+                }
+            }
+        }
+        return ways;
+    }
 
     // Every way against the first traversal, each with random numbers of its own; besides a twin whose lobe is wider or
     // narrower than the scene's, which has to be found apart.
@@ -275,23 +293,20 @@ class Bench {
         std::vector<Way> ways = traversals();
         const auto reference_way = ways.front();
         ways.erase(ways.begin());
-        for (auto& way : estimators()) {
-            if (way.name != "forward") {
-                ways.push_back(std::move(way));
-            }
-        }
+        const auto each_estimator = estimators();
+        ways.insert(ways.end(), each_estimator.begin() + 1, each_estimator.end());
         const double level = false_alarms / static_cast<double>(ways.size() + 1);
         spdlog::info("validation: {} rays an image", rays);
         std::uint32_t image = 0;
-        const auto expose = [&](const trace::TraceOptions& options) {
-            return measured(tracer_of(options, rays)->expose(in_focus, image++));
+        const auto expose = [&](const Way& way) {
+            return measured(tracer_of(way.options, way.rays > 0 ? way.rays : rays)->expose(in_focus, image++));
         };
         // First, since it fails at once if it fails.
         trace::Measured peer;
         if (!options_.peer.empty()) {
             peer = image_of_peer(rays);
         }
-        const auto reference = expose(reference_way.options);
+        const auto reference = expose(reference_way);
         Json checks = Json::array();
         const auto check = [&](const std::string& what, const trace::Measured& other, bool twin) {
             const auto agreement = trace::compare(reference, other);
@@ -304,7 +319,7 @@ class Bench {
                               {"agrees", twin ? !agreement.holds(level) : agreement.holds(level)}});
         };
         for (const auto& way : ways) {
-            check(way.name, expose(way.options), false);
+            check(way.name, expose(way), false);
         }
         auto& lobes = specimen_.material.lobes;
         if (lobes.size() == 1 && lobes[0].model == "henyey-greenstein") {
@@ -432,7 +447,7 @@ class Bench {
         double of_first = 0;
         for (const auto& way : estimators()) {
             spdlog::info("estimator {}: variance of {} seeds", way.name, seeds);
-            const auto tracer = tracer_of(way.options, rays_);
+            const auto tracer = tracer_of(way.options, way.rays > 0 ? way.rays : rays_);
             Json entry = {{"name", way.name}};
             entry.update(timing(*tracer));
             std::vector<double> sum, squares;

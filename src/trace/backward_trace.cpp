@@ -125,18 +125,25 @@ class BackwardTracer final : public Tracer {
         const auto start = std::chrono::steady_clock::now();
         scene_.set_exposure(focal_height, image);
         BackwardImage sums(instrument_, plan_);
+        double device_seconds = 0;
         for (std::uint32_t randomisation = 0; randomisation < plan_.randomisations; ++randomisation) {
             for (std::uint32_t first = 0; first < plan_.points; first += trace_.points_per_batch()) {
-                vulkan::Commands commands(scene_.device);
+                vulkan::Commands commands(scene_.device, 2);
+                commands.timestamp();
                 if (first == 0) {
                     trace_.clear(commands);
                 }
                 trace_.record(commands, randomisation, first, std::min(trace_.points_per_batch(), plan_.points - first));
+                commands.timestamp();
                 commands.submit_and_wait();
+                device_seconds += commands.seconds()[1];
             }
             sums.add(trace_.sums());
         }
         Image result = sums.image();
+        result.device_seconds = device_seconds;
+        // Of the imaging train alone: who goes on to the source, no one counts.
+        result.crossings = static_cast<double>(result.rays) * turned_.constants.illumination_count;
         result.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
         return result;
     }
