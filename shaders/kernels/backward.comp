@@ -20,6 +20,10 @@ layout(push_constant, scalar) uniform Batch {
     uint randomisation;
 };
 
+// Of BackwardOptics: loops of known length.
+layout(constant_id = 5) const uint cone_candidates = 1u;
+layout(constant_id = 6) const uint lobe_candidates = 0u;
+
 // What only tracing can tell is kept until a lane has no room for more, or no more to come: few directions lie at the rim
 // of the source's cone, and lanes that wait for each one's neighbour would trace for all.
 const uint QUERY_CAPACITY = 12u;
@@ -54,9 +58,12 @@ void main() {
         LatticeShift shift = lattice_shift(exposure.seed, exposure.image, pixel, randomisation);
         int row = int(pixel) / instrument.detector_pixels;
         int column = int(pixel) - row * instrument.detector_pixels;
+        BackwardOptics known = backward;
+        known.cone_candidates = cone_candidates;
+        known.lobe_candidates = lobe_candidates;
         real sum = real(0.0);
         for (uint point = 0u; point < chunk_points; ++point) {
-            sum += trace_backward(instrument, backward, specimen, exposure, column, row, randomisation, lattice,
+            sum += trace_backward(instrument, known, specimen, exposure, column, row, randomisation, lattice,
                                   shift, chunk * chunk_points + point);
         }
         sum += answer_queries();

@@ -16,16 +16,9 @@ struct BackwardOptics {
     real source_inner;    // and what is within source_inner, from points within inner_field, is from it; 0: nothing is sure
     real inner_field;     // mm
     real object_distance; // mm, from the objective's front vertex (or cover glass) to the paraxial object plane
+    uint cone_candidates; // directions towards the source that are weighed against each other at each scatter event,
+    uint lobe_candidates; //   and directions of the lobe, 0 or 1, besides
 };
-
-// How many directions towards the source are weighed against each other at each scatter event, and how many of the lobe.
-#ifdef __cplusplus
-const uint connection_candidates = 4u;
-const uint lobe_candidates = 1u;
-#else
-layout(constant_id = 5) const uint connection_candidates = 4u;
-layout(constant_id = 6) const uint lobe_candidates = 1u;
-#endif
 
 // Dimensions of the lattice: pixel 0 and 1, pupil 2 and 3, direction to the source 4 and 5, choice among candidates 6,
 // wavelength 7. What comes after the first scatter event is drawn from Philox.
@@ -148,17 +141,17 @@ VKFV_FUNCTION Connection connect(Material material, BackwardOptics backward, rea
     real2 centre = real2(hit.position.x, hit.position.y) * (-backward.source_position * factor);
     real radius = backward.source_outer * factor;
     real radius_squared = radius * radius;
-    real of_disc = real(connection_candidates) / (real(3.14159265358979324) * radius_squared); // density in slopes
+    real of_disc = real(backward.cone_candidates) / (real(3.14159265358979324) * radius_squared); // density in slopes
     Connection connection;
     connection.weight = real(0.0);
     connection.direction = real3(real(0.0), real(0.0), real(1.0));
     real u = choice;
-    for (uint k = 0u; k < connection_candidates + lobe_candidates; ++k) {
+    for (uint k = 0u; k < backward.cone_candidates + backward.lobe_candidates; ++k) {
         real3 direction = of_lobe.direction;
         bool usable = of_lobe.accepted == 1u;
-        if (k < connection_candidates) {
+        if (k < backward.cone_candidates) {
             // Rings of equal area, each turned by the golden angle against the one before.
-            real rho = radius * sqrt((real(k) + u0) / real(connection_candidates));
+            real rho = radius * sqrt((real(k) + u0) / real(backward.cone_candidates));
             Turn turn = turn_of(fract(u1 + real(k) * real(0.61803398874989485)));
             real2 slope = centre + real2(turn.cosine, turn.sine) * rho;
             direction = real3(slope.x, slope.y, real(1.0)) * (real(1.0) / sqrt(real(1.0) + dot(slope, slope)));
@@ -171,9 +164,9 @@ VKFV_FUNCTION Connection connect(Material material, BackwardOptics backward, rea
             real flux = scatter_bsdf(material, -direction, hit.normal, outgoing) * cosine;
             // domega = cos^3 of the slopes' area.
             real density = of_disc / (direction.z * direction.z * direction.z);
-            if (lobe_candidates != 0u) {
+            if (backward.lobe_candidates != 0u) {
                 density = density +
-                          real(lobe_candidates) * scatter_density(material, -outgoing, hit.normal, direction);
+                          real(backward.lobe_candidates) * scatter_density(material, -outgoing, hit.normal, direction);
             }
             real weight = flux / density;
             connection.weight = connection.weight + weight;
@@ -267,7 +260,7 @@ VKFV_SCENE_FUNCTION VKFV_FUNCTION real trace_backward(VKFV_SCENE_PARAMETER Instr
         Scattered scattered;
         scattered.accepted = 0u;
         scattered.direction = outgoing;
-        if (under_way || (lobe_candidates != 0u && !absorbed)) {
+        if (under_way || (backward.lobe_candidates != 0u && !absorbed)) {
             scattered = scatter(alone, direction, hit.normal, exposure.seed, exposure.image, path, block + 1u);
         }
         under_way = under_way && scattered.accepted == 1u;

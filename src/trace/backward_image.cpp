@@ -27,6 +27,26 @@ physics::f64::Lattice BackwardPlan::lattice() const {
     return {bits, z[0], z[1], z[2], z[3], z[4], z[5], z[6], z[7]};
 }
 
+physics::f64::BackwardOptics backward_optics(const optics::Instrument& instrument, const physics::f64::Material& material) {
+    using namespace physics::f64;
+    BackwardOptics optics = instrument.turned.value().optics;
+    // What the sharpest lobe sends into the source's cone along its mirror direction, were it flat over the cone.
+    double peak = 0;
+    for (const Lobe& lobe : {material.lobe_0, material.lobe_1, material.lobe_2, material.lobe_3}) {
+        if (lobe.weight > 0) {
+            const real3 up(0, 0, 1);
+            peak = std::max(peak, scatter_bsdf(material_of_lobe(lobe), -up, up, up) * pi * optics.source_outer *
+                                      optics.source_outer);
+        }
+    }
+    // Where a lobe changes little over the cone, one direction keeps the lattice whole, which a choice among several does
+    // not: measured at g = 0.3 (peak 0.06), 0.67 against 4.0 in variance at 1024 paths a pixel; at g = 0.8 (1.0) it is 72
+    // against 21. A lobe much narrower than the cone is found by drawing it, not by drawing the cone.
+    optics.cone_candidates = peak < 0.3 ? 1 : 8;
+    optics.lobe_candidates = peak > 2 ? 1 : 0;
+    return optics;
+}
+
 BackwardImage::BackwardImage(const optics::Instrument& instrument, const BackwardPlan& plan)
     : plan_(plan), flux_(instrument.flux), pixels_(instrument.constants.detector_pixels), sum_(pixels_, pixels_),
       squares_(pixels_, pixels_) {

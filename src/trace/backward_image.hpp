@@ -21,6 +21,9 @@ struct BackwardPlan {
 // No fewer than `rays` in all.
 BackwardPlan backward_plan(std::uint64_t rays, int detector_pixels);
 
+// Of an instrument that was turned round, with the numbers of candidates that suit a material.
+physics::f64::BackwardOptics backward_optics(const optics::Instrument& instrument, const physics::f64::Material& material);
+
 // Gathers the pixels' sums of one randomisation after another.
 class BackwardImage {
   public:

@@ -38,20 +38,8 @@ std::vector<vulkan::BindingDeclaration> declarations(const DeviceScene& scene) {
 
 std::vector<vulkan::SpecializationConstant> constants(const DeviceScene& scene, const physics::f64::BackwardOptics& optics) {
     auto all = scene.kernel_constants(0);
-    // Where a lobe changes little over the source's cone, one direction keeps the lattice whole, which a choice among
-    // several does not: measured at g = 0.3, 0.67 against 4.0 in variance at 1024 points; at g = 0.8 it is 72 against 21.
-    // A lobe much narrower than the cone is found by drawing it, not by drawing the cone.
-    const double cone = 3.14159265358979 * optics.source_outer * optics.source_outer; // sr, about
-    const auto& material = scene.constants.specimen.material;
-    double peak = 0;
-    for (const auto& lobe : {material.lobe_0, material.lobe_1, material.lobe_2, material.lobe_3}) {
-        if (lobe.weight > 0 && lobe.model == physics::f32::SCATTER_HENYEY_GREENSTEIN && lobe.parameter_0 < 1) {
-            const double g = lobe.parameter_0;
-            peak = std::max(peak, (1 + g) / (4 * 3.14159265358979 * (1 - g) * (1 - g)));
-        }
-    }
-    all.push_back({5, peak * cone < 0.3 ? 1u : 8u});
-    all.push_back({6, peak * cone > 2 ? 1u : 0u});
+    all.push_back({5, optics.cone_candidates});
+    all.push_back({6, optics.lobe_candidates});
     return all;
 }
 
@@ -60,25 +48,25 @@ struct BackwardBlock {
     physics::f32::BackwardOptics optics;
     physics::f32::Lattice lattice;
 };
-static_assert(sizeof(BackwardBlock) == (7 + 9) * 4);
+static_assert(sizeof(BackwardBlock) == (9 + 9) * 4);
 
 physics::f32::BackwardOptics to_float(const physics::f64::BackwardOptics& optics) {
     return {static_cast<float>(optics.pupil_position), static_cast<float>(optics.pupil_radius),
             static_cast<float>(optics.source_position), static_cast<float>(optics.source_outer),
             static_cast<float>(optics.source_inner), static_cast<float>(optics.inner_field),
-            static_cast<float>(optics.object_distance)};
+            static_cast<float>(optics.object_distance),  optics.cone_candidates, optics.lobe_candidates};
 }
 
 } // namespace
 
-BackwardTrace::BackwardTrace(const DeviceScene& scene, const optics::Instrument& instrument, const BackwardPlan& plan,
-                             std::uint64_t asked_batch)
+BackwardTrace::BackwardTrace(const DeviceScene& scene, const physics::f64::BackwardOptics& optics,
+                             const BackwardPlan& plan, std::uint64_t asked_batch)
     : scene_(scene), pixels_(pixel_count(scene)), points_per_chunk_(std::min(plan.points, most_points_per_chunk)),
       sums_(scene.device, std::size_t{pixels_} * sizeof(std::uint64_t)),
       optics_(scene.device, sizeof(BackwardBlock)),
       kernel_(scene.device, "backward", scene.variant(backward_quadtree, backward_ray_query, backward_bvh),
-              declarations(scene), sizeof(Chunks), constants(scene, instrument.turned.value().optics)) {
-    BackwardBlock block{to_float(instrument.turned.value().optics), {}};
+              declarations(scene), sizeof(Chunks), constants(scene, optics)) {
+    BackwardBlock block{to_float(optics), {}};
     const auto lattice = plan.lattice();
     block.lattice = {lattice.size_bits, lattice.z_0, lattice.z_1, lattice.z_2, lattice.z_3,
                      lattice.z_4,       lattice.z_5, lattice.z_6, lattice.z_7};
@@ -118,7 +106,7 @@ class BackwardTracer final : public Tracer {
                    const TraceOptions& options)
         : instrument_(instrument), turned_(optics::turned_round(instrument)),
           plan_(backward_plan(options.rays, instrument.constants.detector_pixels)), scene_(turned_, specimen, options),
-          trace_(scene_, instrument_, plan_, options.batch) {}
+          trace_(scene_, backward_optics(instrument_, scene_.host_record.material), plan_, options.batch) {}
 
     Image expose(double focal_height, std::uint32_t image) const override {
         const std::scoped_lock lock(mutex_);

@@ -13,7 +13,7 @@ namespace vkfv::trace {
 class BackwardTrace {
   public:
     // scene: of turned_round(instrument).
-    BackwardTrace(const DeviceScene& scene, const optics::Instrument& instrument, const BackwardPlan& plan,
+    BackwardTrace(const DeviceScene& scene, const physics::f64::BackwardOptics& optics, const BackwardPlan& plan,
                   std::uint64_t asked_batch);
 
     void clear(vulkan::Commands& commands) const;

@@ -201,7 +201,7 @@ class HostBackwardTracer final : public Tracer {
         const LatticeShift shift = lattice_shift(exposure.seed, exposure.image, pixel, randomisation);
         double sum = 0;
         for (std::uint32_t point = 0; point < plan_.points; ++point) {
-            sum += trace_backward(scene, turned_.constants, instrument_.turned.value().optics, record_, exposure,
+            sum += trace_backward(scene, turned_.constants, optics_, record_, exposure,
                                   static_cast<int>(pixel % side), static_cast<int>(pixel / side), randomisation, lattice_, shift,
                                   point);
         }
@@ -215,6 +215,7 @@ class HostBackwardTracer final : public Tracer {
     std::uint32_t seed_;
     BackwardPlan plan_;
     Lattice lattice_ = plan_.lattice();
+    BackwardOptics optics_ = backward_optics(instrument_, record_.material);
 };
 
 } // namespace

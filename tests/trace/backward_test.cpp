@@ -4,6 +4,8 @@
 #include "trace/host_tracer.hpp"
 #include "trace/lattice_generators.hpp"
 
+#include "core/error.hpp"
+#include "core/units.hpp"
 #include "support/statistics.hpp"
 
 #include <gtest/gtest.h>
@@ -23,7 +25,7 @@ constexpr double level = 1e-3; // false-positive rate of each chi-square test he
 
 optics::InstrumentDescription small_description() {
     auto description = test::microscope_description();
-    description.field_stop_radius = 0.25;
+    description.field_stop_radius = 0.18; // little more than the detector's corners
     description.detector_size = 0.32;
     description.detector_pixels = 16;
     description.turned = true;
@@ -40,7 +42,7 @@ trace::TraceOptions options(trace::Estimator estimator, std::uint64_t rays, int 
 }
 
 trace::Image backward_image(const optics::Instrument& instrument, const specimen::Specimen& specimen,
-                            int max_bounces, std::uint64_t rays = 1 << 18, std::uint32_t image = 0) {
+                            int max_bounces, std::uint64_t rays = 1 << 19, std::uint32_t image = 0) {
     return trace::make_device_tracer(instrument, specimen,
                                      options(trace::Estimator::backward, rays, max_bounces))
         ->expose(focal_height, image);
@@ -54,26 +56,35 @@ trace::Image forward_image(const optics::Instrument& instrument, const specimen:
 }
 
 // Probability of a greater sum over the pixels of (difference)^2 / variance. Forward counts are Poisson's about the
-// expectation, which backward knows better; backward's own variance is pooled over the field, as each pixel's has one degree
-// of freedom.
+// expectation, which backward knows better; backward's own variances have one degree of freedom a pixel, so what is used is
+// their sum over the field, shared out as the light is.
 double agreement(const trace::Image& forward, const trace::Image& backward) {
     const auto pixels = forward.flux.values.size();
-    const double per_ray = std::accumulate(forward.flux.values.begin(), forward.flux.values.end(), 0.0) /
-                           static_cast<double>(forward.detected);
-    double pooled = 0;
+    const auto total = [](const Grid<double>& grid) {
+        return std::accumulate(grid.values.begin(), grid.values.end(), 0.0);
+    };
+    double variance_per_flux = total(forward.flux) / static_cast<double>(forward.detected);
     for (const double error : backward.standard_error.values) {
-        pooled += error * error / static_cast<double>(pixels);
+        variance_per_flux += error * error / total(backward.flux);
     }
     double chi_square = 0;
+    double cells = 0;
+    double seen = 0;
+    double expected = 0;
     for (std::size_t pixel = 0; pixel < pixels; ++pixel) {
-        const double difference = forward.flux.values[pixel] - backward.flux.values[pixel];
-        chi_square += difference * difference / (per_ray * backward.flux.values[pixel] + pooled);
+        seen += forward.flux.values[pixel];
+        expected += backward.flux.values[pixel];
+        if (expected > 10 * variance_per_flux) { // dark pixels, which mirrors leave, join their neighbours
+            chi_square += (seen - expected) * (seen - expected) / (variance_per_flux * expected);
+            cells += 1;
+            seen = expected = 0;
+        }
     }
-    return test::chi_square_tail(chi_square, static_cast<double>(pixels));
+    return test::chi_square_tail(chi_square, cells);
 }
 
 void expect_agreement(const trace::Image& forward, const trace::Image& backward) {
-    ASSERT_GT(forward.detected, 30'000u);
+    ASSERT_GT(forward.detected, 25'000u);
     const double p = agreement(forward, backward);
     EXPECT_GT(p, level);
     EXPECT_LT(p, 1 - level);
@@ -89,21 +100,20 @@ specimen::Specimen with_material(specimen::Specimen specimen, const specimen::Ma
 // One scatter event and up to four, on facets so steep that light meets them again.
 TEST(Backward, estimates_the_image_that_forward_does) {
     const auto instrument = optics::assemble(small_description());
-    const auto specimen = test::steep_specimen(0.65);
-    for (const int max_bounces : {1, 4}) {
-        SCOPED_TRACE(max_bounces);
-        expect_agreement(forward_image(instrument, specimen, max_bounces),
-                         backward_image(instrument, specimen, max_bounces));
-    }
+    const auto rough = test::rough_specimen();
+    expect_agreement(forward_image(instrument, rough, 1), backward_image(instrument, rough, 1));
+    const auto steep = test::steep_specimen(0.65);
+    expect_agreement(forward_image(instrument, steep, 4), backward_image(instrument, steep, 4));
 }
 
 // Wrong twins: a slightly sharper lobe, and a bounce too few, are told apart.
 TEST(Backward, another_specimen_does_not_pass) {
     const auto instrument = optics::assemble(small_description());
-    const auto specimen = test::steep_specimen(0.65);
-    const auto forward = forward_image(instrument, specimen, 4);
-    EXPECT_LT(agreement(forward, backward_image(instrument, test::steep_specimen(0.68), 4)), level);
-    EXPECT_LT(agreement(forward, backward_image(instrument, specimen, 1)), level);
+    const auto rough = test::rough_specimen(0.65);
+    EXPECT_LT(agreement(forward_image(instrument, rough, 1), backward_image(instrument, test::rough_specimen(0.68), 1)),
+              level);
+    const auto steep = test::steep_specimen(0.65);
+    EXPECT_LT(agreement(forward_image(instrument, steep, 4), backward_image(instrument, steep, 3)), level);
 }
 
 TEST(Backward, knows_every_material) {
@@ -111,7 +121,8 @@ TEST(Backward, knows_every_material) {
     const auto rough = test::rough_specimen();
     const specimen::Material mixture{
         {{"lambertian", 0.4, {}}, {"henyey-greenstein", 0.3, {0.95}}, {"mirror", 0.2, {}}}};
-    for (const auto& material : {mixture, specimen::Material::henyey_greenstein(1), specimen::Material::henyey_greenstein(-0.4),
+    for (const auto& material : {mixture, specimen::Material::henyey_greenstein(1),
+                                 specimen::Material::henyey_greenstein(-0.4),
                                  specimen::Material::henyey_greenstein(0.97)}) {
         const auto specimen = with_material(rough, material);
         expect_agreement(forward_image(instrument, specimen, 2), backward_image(instrument, specimen, 2));
@@ -243,6 +254,14 @@ TEST(Backward, gates_hold_for_every_microscope) {
         EXPECT_EQ(dark_within, 0);
         EXPECT_EQ(lit_outside, 0);
     }
+}
+
+TEST(Backward, refuses_a_ring_light) {
+    auto description = small_description();
+    description.ring = optics::RingLightDescription{.distance = 25, .elevation = 0.5, .width = 0.2, .on = {true}, .lit_radius = 0.1};
+    EXPECT_THROW(optics::assemble(description), InputError);
+    description.turned = false;
+    EXPECT_NO_THROW(optics::assemble(description));
 }
 
 // Each coordinate alone visits every n-th of the interval once, and no two coordinates are one.
