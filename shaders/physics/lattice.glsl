@@ -21,8 +21,8 @@ struct LatticeShift {
 // Of `randomisation`, for one pixel of one image. The 2 keeps its counters apart from those of paths.
 VKFV_FUNCTION LatticeShift lattice_shift(uint seed, uint image, uint pixel, uint randomisation) {
     LatticeShift shift;
-    shift.first = philox_4x32_10(uvec4(pixel, randomisation, 0u, 2u), seed, image);
-    shift.second = philox_4x32_10(uvec4(pixel, randomisation, 1u, 2u), seed, image);
+    shift.first = philox_4x32(uvec4(pixel, randomisation, 0u, 2u), seed, image, PHILOX_ROUNDS);
+    shift.second = philox_4x32(uvec4(pixel, randomisation, 1u, 2u), seed, image, PHILOX_ROUNDS);
     return shift;
 }
 

@@ -58,9 +58,10 @@ VKFV_FUNCTION Frame frame_around(real3 w) {
     return frame;
 }
 
-// Unit vector at the angle of the given versine (1 - cos) from the unit vector axis, at the azimuth phi.
-VKFV_FUNCTION real3 direction_around(real3 axis, real versine, real phi) {
+// Unit vector at the angle of the given versine (1 - cos) from the unit vector axis, at the azimuth of a share of a turn.
+VKFV_FUNCTION real3 direction_around(real3 axis, real versine, real azimuth) {
     Frame frame = frame_around(axis);
     real sine = sqrt(max(versine * (real(2.0) - versine), real(0.0)));
-    return axis * (real(1.0) - versine) + frame.first * (sine * cos(phi)) + frame.second * (sine * sin(phi));
+    Turn phi = turn_of(azimuth);
+    return axis * (real(1.0) - versine) + frame.first * (sine * phi.cosine) + frame.second * (sine * phi.sine);
 }

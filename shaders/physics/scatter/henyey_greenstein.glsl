@@ -28,11 +28,10 @@ VKFV_FUNCTION uint henyey_greenstein_proposes_cosine(real g) {
 
 VKFV_FUNCTION ScatterTry henyey_greenstein_try(real g, Incidence incidence, real u0, real u1, real u2) {
     bool cosine_law = henyey_greenstein_proposes_cosine(g) == 1u;
-    // The cosine law: cos^2(theta_o) uniform.
-    real versine = cosine_law ? real(1.0) - sqrt(u0) : draw_henyey_greenstein_versine(g, u0);
+    // The cosine law: cos^2(theta_o) uniform; 1 - sqrt(u) without its cancellation.
+    real versine = cosine_law ? (real(1.0) - u0) / (real(1.0) + sqrt(u0)) : draw_henyey_greenstein_versine(g, u0);
     ScatterTry result;
-    result.direction = direction_around(cosine_law ? incidence.normal : incidence.mirror, versine,
-                                        real(6.283185307179586477) * u1);
+    result.direction = direction_around(cosine_law ? incidence.normal : incidence.mirror, versine, u1);
     real least = real(1.0) - abs(g);
     real ratio = least * least / (real(1.0) + g * g - real(2.0) * g * dot(result.direction, incidence.mirror));
     real cosine = dot(result.direction, incidence.normal);

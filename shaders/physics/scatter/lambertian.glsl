@@ -1,9 +1,9 @@
 // Lambert's cosine law, J. H. Lambert, Photometria (1760): the same radiance in every direction, cos(theta_o) / pi.
 
-// cos^2(theta_o) is uniform.
+// cos^2(theta_o) is uniform; 1 - sqrt(u) without its cancellation.
 VKFV_FUNCTION ScatterTry lambertian_try(Incidence incidence, real u0, real u1, real) {
     ScatterTry result;
-    result.direction = direction_around(incidence.normal, real(1.0) - sqrt(u0), real(6.283185307179586477) * u1);
+    result.direction = direction_around(incidence.normal, (real(1.0) - u0) / (real(1.0) + sqrt(u0)), u1);
     result.accepted = dot(result.direction, incidence.normal) > real(0.0) ? 1u : 0u;
     return result;
 }
