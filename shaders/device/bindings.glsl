@@ -13,3 +13,26 @@ layout(constant_id = 3) const uint scene_features = 0u; // FEATURE_*: what is ab
 Surface surface_at(int index) { return surfaces[index]; }
 SpectralBin spectral_bin(int index) { return spectrum[index]; }
 uint features() { return scene_features; }
+
+// Both with what the kernel knows as constants.
+Instrument known_instrument() {
+    Instrument known = instrument;
+#ifdef VKFV_SPECIALISED
+    known.illumination_first = known_illumination_first;
+    known.illumination_count = known_illumination_count;
+    known.imaging_first = known_imaging_first;
+    known.imaging_count = known_imaging_count;
+#endif
+    return known;
+}
+SpecimenRecord known_specimen() {
+    SpecimenRecord known = specimen;
+#ifdef VKFV_SPECIALISED
+    known.max_bounces = known_max_bounces;
+    known.material.lobe_0.parameter_0 = known_parameter_0;
+    known.material.lobe_0.parameter_1 = known_parameter_1;
+    known.material.lobe_0.parameter_2 = known_parameter_2;
+    known.material.lobe_0.parameter_3 = known_parameter_3;
+#endif
+    return known;
+}

@@ -8,6 +8,9 @@
 #extension GL_EXT_ray_query : require
 #endif
 #include "physics/lang.glsl"
+#ifdef VKFV_SPECIALISED
+#include "device/prescription.glsl"
+#endif
 #include "physics/all.glsl"
 #include "device/bindings.glsl"
 #include "device/specimen_hit.glsl"

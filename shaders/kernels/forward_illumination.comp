@@ -12,13 +12,44 @@ layout(local_size_x = 128) in;
 // 3 after the source (nothing is appended).
 layout(constant_id = 2) const uint stop_after = 0u;
 
+// Survivors are gathered in shared memory and appended a workgroup at a time: one counter in the buffer would be the
+// busiest place of the trace. What does not fit is appended singly.
+const uint KEPT_CAPACITY = 192u;
+shared Survivor kept[KEPT_CAPACITY];
+shared uint kept_count;
+shared uint kept_first;
+
+void keep_survivor(Survivor survivor) {
+    uint place = atomicAdd(kept_count, 1u);
+    if (place < KEPT_CAPACITY) {
+        kept[place] = survivor;
+    } else {
+        survivors[atomicAdd(survivor_count, 1u)] = survivor;
+    }
+}
+
+void append_kept() {
+    barrier();
+    uint count = min(kept_count, KEPT_CAPACITY);
+    if (gl_LocalInvocationIndex == 0u && count > 0u) {
+        kept_first = atomicAdd(survivor_count, count);
+    }
+    barrier();
+    for (uint place = gl_LocalInvocationIndex; place < count; place += gl_WorkGroupSize.x) {
+        survivors[kept_first + place] = kept[place];
+    }
+}
+
 layout(push_constant, scalar) uniform Batch {
     uvec2 first_path; // low and high word
     uint count;       // paths of this batch
 };
 
 void main() {
-    tally_clear();
+    if (gl_LocalInvocationIndex == 0u) {
+        kept_count = 0u;
+    }
+    tally_clear(); // with a barrier
     uint stride = gl_NumWorkGroups.x * gl_WorkGroupSize.x;
     uint rounds = (count + stride - 1u) / stride;
     for (uint round = 0u; round < rounds; ++round) {
@@ -30,19 +61,19 @@ void main() {
             uint low = uaddCarry(first_path.x, index, carry);
             uvec2 path = uvec2(low, first_path.y + carry);
             if (stop_after == 3u) {
-                Emission emission = emit(instrument, draw(exposure.seed, exposure.image, path, 0u));
+                Emission emission = emit(known_instrument(), draw(exposure.seed, exposure.image, path, 0u));
                 departure.fate = make_fate(PATH_ALIVE, -1);
                 // As below.
                 survives = emission.ray.position.x + emission.ray.position.y + emission.ray.direction.x +
                            emission.ray.direction.y + emission.ray.direction.z > real(1e30);
             } else if (stop_after == 1u) {
-                Arrival arrival = illuminate(instrument, specimen, exposure, path);
+                Arrival arrival = illuminate(known_instrument(), known_specimen(), exposure, path);
                 departure.fate = arrival.fate;
                 departure.survives = 0u;
                 // Never so far off; keeps the compiler from dropping what is timed.
                 survives = arrival.position.x + arrival.position.y + arrival.direction.z > real(1e30);
             } else {
-                departure = trace_to_departure(instrument, specimen, exposure, path);
+                departure = trace_to_departure(known_instrument(), known_specimen(), exposure, path);
                 survives = departure.survives == 1u;
                 if (stop_after == 2u) {
                     survives = departure.survivor.position.z + departure.survivor.direction_x +
@@ -57,15 +88,10 @@ void main() {
                 tally_sum(ledger_slots, weight_square(own + (survives ? survivor_weight(departure.survivor) : 0u)));
             }
         }
-        uvec4 ballot = subgroupBallot(survives);
-        uint first = 0u;
-        if (subgroupElect()) {
-            first = atomicAdd(survivor_count, subgroupBallotBitCount(ballot));
-        }
-        first = subgroupBroadcastFirst(first);
         if (survives) {
-            survivors[first + subgroupBallotExclusiveBitCount(ballot)] = departure.survivor;
+            keep_survivor(departure.survivor);
         }
     }
+    append_kept();
     tally_flush();
 }

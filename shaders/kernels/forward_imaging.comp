@@ -21,7 +21,7 @@ void main() {
         if (stop_after == 2u) {
             detection.fate = make_fate(survivor_occluded(survivors[index]) ? PATH_BOUNCE_LIMIT : PATH_OFF_DETECTOR, -1);
         } else {
-            detection = image_survivor(instrument, specimen, exposure, survivors[index]);
+            detection = image_survivor(known_instrument(), known_specimen(), exposure, survivors[index]);
         }
         bool counted = detection.fate.status == PATH_DETECTED &&
                        (stop_after == 0u || detection.x > real(1e30));

@@ -1,6 +1,13 @@
 // Intersection with a conic of revolution in its vertex frame, in the curvature form that stays regular for a plane
 // (curvature 0): W. T. Welford, "Aberrations of Optical Systems" (1986), section 4.3, extended by the conic constant.
 
+// Constants of a kernel fold (device/prescription.glsl); of surfaces from a buffer the general form is as fast as a question.
+#ifdef VKFV_SPECIALISED
+const bool SURFACE_IS_KNOWN = true;
+#else
+const bool SURFACE_IS_KNOWN = false;
+#endif
+
 // Where a ray meets a surface of revolution, in its vertex frame.
 struct SurfacePoint {
     uint found;        // 1: the ray meets the surface near its vertex
@@ -25,12 +32,18 @@ VKFV_FUNCTION SurfacePoint meet_conic(real3 position, real3 direction, real leng
     real cy = curvature * y;
     real f = cx * x + cy * y;
     real g = direction.z - (cx * direction.x + cy * direction.y);
-    real a = curvature * (length_squared + conic * direction.z * direction.z);
+    real a = curvature * (length_squared + (SURFACE_IS_KNOWN && conic == real(0.0) ? real(0.0) : conic * direction.z * direction.z));
     real discriminant = g * g - a * f;
     real root = sqrt(max(discriminant, real(0.0)));
     real further = f / (g + root);
+    bool meets = discriminant >= real(0.0) && g > real(0.0);
+    if (SURFACE_IS_KNOWN && curvature == real(0.0)) {
+        root = direction.z;
+        further = real(0.0);
+        meets = true;
+    }
     SurfacePoint result;
-    result.found = discriminant >= real(0.0) && g > real(0.0) ? 1u : 0u;
+    result.found = meets ? 1u : 0u;
     result.parameter = to_plane + further;
     result.point = real3(position.x + result.parameter * direction.x, position.y + result.parameter * direction.y,
                          further * direction.z);

@@ -35,6 +35,7 @@ const uint FEATURE_RING = 16u;     // a ring light instead of the disc
 const uint FEATURE_DIRECTED_SCATTER = 32u; // of the trace, not of the instrument: survivors have weights
 
 const int SURFACE_CAPACITY = 128; // surfaces of both trains together that the device's uniform block holds
+const int KNOWN_SURFACES = 64;    // of them, that a kernel can have as constants (device/prescription.glsl)
 const int SPECTRUM_CAPACITY = 256; // bins of a spectrum, likewise
 const int RING_CAPACITY = 32;      // segments of a ring light: bits of a mask
 

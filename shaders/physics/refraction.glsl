@@ -25,6 +25,10 @@ VKFV_FUNCTION Refraction refract_scaled(real3 direction, SurfacePoint meeting, r
     real rest = meeting.curvature * h + bend_residual;
     real x = (direction.x - paraxial * meeting.point.x) - rest * meeting.point.x;
     real y = (direction.y - paraxial * meeting.point.y) - rest * meeting.point.y;
+    if (SURFACE_IS_KNOWN && meeting.curvature == real(0.0)) {
+        x = direction.x;
+        y = direction.y;
+    }
     real axial = index_after * index_after - (x * x + y * y);
     // A ray that would travel at right angles to the axis or backward has left the sequential model.
     result.transmitted = axial > real(0.0) ? result.transmitted : 0u;

@@ -33,7 +33,8 @@ VKFV_FUNCTION real surface_transmittance(Surface surface, real cosine, real inde
 }
 
 // One surface: transfer, intersection, edge, refraction. `before` is in the frame of the previous vertex. A plane mirror
-// leaves the light's way as it was: all that follows it stands in the space that the mirror shows.
+// leaves the light's way as it was: all that follows it stands in the space that the mirror shows. Light that has ended
+// keeps its status, and its ray goes on without meaning: to hold it would cost every ray.
 VKFV_FUNCTION TrainResult trace_surface(Surface surface, int index, TrainResult before, uint apertures, Light light,
                                         uint present) {
     real3 start = real3(before.ray.position.x, before.ray.position.y, before.ray.position.z - surface.distance);
@@ -55,21 +56,24 @@ VKFV_FUNCTION TrainResult trace_surface(Surface surface, int index, TrainResult 
         refract_scaled(direction, meeting, index_before, index_after, surface.bend_residual);
     bool clipped = apertures != 0u && (surface.flags & SURFACE_CLIPPED) != 0u &&
                    point.x * point.x + point.y * point.y > surface.semi_diameter_squared;
-    TrainResult result;
+    TrainResult result = before;
     result.ray.position = point;
     result.ray.direction = refraction.direction;
     // The direction has length n, so the geometric way is parameter * n and the optical path parameter * n^2.
     result.ray.path_length = before.ray.path_length + meeting.parameter * index_before * index_before;
     result.index = index_after;
-    result.transmitted = before.transmitted;
-    uint found = direction.z > real(0.0) ? meeting.found : 0u;
-    uint passes = refraction.transmitted;
+    bool found = direction.z > real(0.0) && meeting.found == 1u;
+    bool passes = refraction.transmitted == 1u;
+    if (SURFACE_IS_KNOWN && (present & FEATURE_SPECTRUM) == 0u && index_before == index_after) { // a stop
+        result.ray.direction = direction;
+        passes = true;
+    }
     if ((present & FEATURE_IDEAL_LENS) != 0u && (surface.flags & SURFACE_IDEAL_LENS) != 0u) {
         IdealLens lens = pass_ideal_lens(start, direction, surface.power, index_before, index_after);
         result.ray.position = lens.position;
         result.ray.direction = lens.direction;
         result.ray.path_length = before.ray.path_length + lens.path_length;
-        passes = lens.passes;
+        passes = lens.passes == 1u;
     }
     bool lost = false;
     if ((present & FEATURE_LOSSES) != 0u) {
@@ -78,18 +82,19 @@ VKFV_FUNCTION TrainResult trace_surface(Surface surface, int index, TrainResult 
                                                                         light.wave_number);
         lost = result.transmitted < light.survival;
     }
-    result.status = found == 0u    ? PATH_MISSED_SURFACE
-                    : clipped      ? PATH_VIGNETTED
-                    : passes == 0u ? PATH_TOTAL_REFLECTION
-                    : lost         ? PATH_INTERFACE_LOSS
-                                   : PATH_ALIVE;
-    result.surface = result.status == PATH_ALIVE ? -1 : index;
+    if (before.status == PATH_ALIVE && !(found && !clipped && passes && !lost)) {
+        result.status = !found    ? PATH_MISSED_SURFACE
+                        : clipped ? PATH_VIGNETTED
+                        : !passes ? PATH_TOTAL_REFLECTION
+                                  : PATH_INTERFACE_LOSS;
+        result.surface = index;
+    }
     return result;
 }
 
 // ray enters in the frame of the first vertex (its z there, usually negative), its direction scaled by `index`, that of the
-// medium in front of the train. The loop runs to its end for every ray: an ended one keeps its state. Neighbouring rays
-// seldom all end, and a loop that all leave together reads each surface once for all of them.
+// medium in front of the train. The train is gone through to its end for every ray: neighbouring rays seldom all end,
+// and a loop that all leave together reads each surface once for all of them.
 VKFV_SCENE_FUNCTION VKFV_FUNCTION TrainResult trace_train(VKFV_SCENE_PARAMETER int first, int count, Ray ray,
                                                           real index, uint apertures, Light light) {
     TrainResult result;
@@ -98,13 +103,23 @@ VKFV_SCENE_FUNCTION VKFV_FUNCTION TrainResult trace_train(VKFV_SCENE_PARAMETER i
     result.transmitted = real(1.0);
     result.status = PATH_ALIVE;
     result.surface = -1;
-    for (int i = 0; i < count; ++i) {
-        TrainResult next = trace_surface(surface_at(VKFV_SCENE first + i), first + i, result, apertures, light,
-                                         features(VKFV_SCENE_ALONE));
-        if (result.status == PATH_ALIVE) {
-            result = next;
-        }
+#ifdef VKFV_SPECIALISED
+    // Written out, as constants fold only where each surface has a place of its own (device/prescription.glsl). The outer
+    // question is of constants alone: what fails it costs a driver little time to compile.
+#define VKFV_PASS_SURFACE(k)                                                                        \
+    if (k < known_count) {                                                                          \
+        if (first <= known_first + k && known_first + k < first + count) {                          \
+            Surface surface = surface_at(known_first + k);                                          \
+            VKFV_KNOW_SURFACE(k)                                                                    \
+            result = trace_surface(surface, known_first + k, result, apertures, light, features()); \
+        }                                                                                           \
     }
+    VKFV_EACH_KNOWN_SURFACE(VKFV_PASS_SURFACE)
+#else
+    for (int i = first; i < first + count; ++i) {
+        result = trace_surface(surface_at(VKFV_SCENE i), i, result, apertures, light, features(VKFV_SCENE_ALONE));
+    }
+#endif
     return result;
 }
 

@@ -33,7 +33,8 @@ class DeviceScene {
           traversal(
               choose_traversal(device.report(), specimen, options.traversal, reason, options.nonsequential)),
           device_specimen(device, specimen, traversal, boxes_of(room)),
-          host_record(specimen::record(specimen, options.max_bounces)), seed(options.seed),
+          host_record(specimen::record(specimen, options.max_bounces)), seed(options.seed), rays(options.rays),
+          instrument_in_constants(options.instrument_in_constants),
           surfaces(device, physics::f32::SURFACE_CAPACITY * sizeof(physics::f32::Surface)),
           parameters(device, sizeof(Parameters), vulkan::Buffer::Memory::host),
           spectrum(device, physics::f32::SPECTRUM_CAPACITY * sizeof(physics::f32::SpectralBin)) {
@@ -98,6 +99,13 @@ class DeviceScene {
         return all;
     }
 
+    // Whether the forward kernels have the instrument as constants: if it is small enough, and where that pays or is asked for.
+    bool is_specialised() const;
+    // For such kernels: those of all kernels and of shaders/device/prescription.glsl, for the surfaces first ...
+    // first + count - 1 that the kernel traces through.
+    std::vector<vulkan::SpecializationConstant> specialised_constants(std::uint32_t stop_after, int first,
+                                                                      int count) const;
+
     // The variant of a kernel for the traversal.
     std::span<const std::uint32_t> variant(std::span<const std::uint32_t> by_quadtree,
                                            std::span<const std::uint32_t> by_ray_query,
@@ -118,6 +126,8 @@ class DeviceScene {
     DeviceSpecimen device_specimen;
     physics::f64::SpecimenRecord host_record;
     std::uint32_t seed;
+    std::uint64_t rays; // of an image
+    std::optional<bool> instrument_in_constants; // see TraceOptions
     vulkan::Buffer surfaces;
     vulkan::Buffer parameters;
     vulkan::Buffer spectrum;

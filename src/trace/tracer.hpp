@@ -7,6 +7,7 @@
 
 #include <cstdint>
 #include <functional>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -27,6 +28,7 @@ struct TraceOptions {
     std::string device;      // selector: an index or a part of the name
     bool nonsequential = false; // light finds its own way, and interfaces split it
     bool directed_scatter = false; // forward, sequential: every bounce also aims at the pupil, and light has weights
+    std::optional<bool> instrument_in_constants; // of the forward kernels; none: where it pays
 };
 
 // Where the emitted power of one image went; W. emitted = the sum of all others.

@@ -1,6 +1,7 @@
 #include "vulkan/device.hpp"
 
 #include "core/error.hpp"
+#include "vulkan/pipeline_cache.hpp"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -275,6 +276,16 @@ bool matches(const DeviceReport& report, std::string_view selector, std::size_t 
     return lower(report.name).find(lower(std::string(selector))) != std::string::npos;
 }
 
+// Device, driver and the driver's build.
+std::string pipelines_name(const vk::raii::PhysicalDevice& device) {
+    const auto chain = device.getProperties2<vk::PhysicalDeviceProperties2, vk::PhysicalDeviceIDProperties>();
+    const auto& properties = chain.get<vk::PhysicalDeviceProperties2>().properties;
+    const auto& ids = chain.get<vk::PhysicalDeviceIDProperties>();
+    return fmt::format("pipelines-{:02x}-{:02x}-{:02x}-{:08x}", fmt::join(ids.deviceUUID, ""),
+                       fmt::join(ids.driverUUID, ""), fmt::join(properties.pipelineCacheUUID, ""),
+                       properties.driverVersion);
+}
+
 std::string explain(std::span<const DeviceReport> reports, std::size_t chosen, const DeviceOptions& options) {
     const DeviceReport& report = reports[chosen];
     const auto usable =
@@ -303,12 +314,29 @@ extern "C" const char* __lsan_default_options() {
 #endif
 
 struct Device::State {
+    State() = default;
+    State(const State&) = delete;
+    State& operator=(const State&) = delete;
+    ~State() {
+        // What the driver has compiled besides what was read.
+        try {
+            if (*pipelines && pipelines.getData().size() != pipelines_read) {
+                const auto data = pipelines.getData();
+                write_cached(pipelines_name, std::as_bytes(std::span(data)));
+            }
+        } catch (const std::exception&) { // compiling again is all it costs
+        }
+    }
+
     vk::raii::Context context = make_context();
     vk::raii::Instance instance = make_instance(context);
     vk::raii::DebugUtilsMessengerEXT messenger{nullptr};
     vk::raii::PhysicalDevice physical{nullptr};
     vk::raii::Device device{nullptr};
     vk::raii::Queue queue{nullptr};
+    vk::raii::PipelineCache pipelines{nullptr};
+    std::string pipelines_name; // of this device and driver
+    std::size_t pipelines_read = 0; // bytes
     std::uint32_t queue_family = 0;
     double timestamp_period_ns = 0;
     vk::PhysicalDeviceMemoryProperties memory;
@@ -400,6 +428,12 @@ Device::Device(const DeviceOptions& options) : state_(std::make_unique<State>())
                         state.report.name, error.what()));
     }
     state.queue = vk::raii::Queue(state.device, state.queue_family, 0);
+    state.pipelines_name = pipelines_name(state.physical);
+    const std::vector<std::byte> pipelines = read_cached(state.pipelines_name);
+    state.pipelines_read = pipelines.size();
+    // The driver checks that it wrote them itself.
+    state.pipelines = vk::raii::PipelineCache(
+        state.device, vk::PipelineCacheCreateInfo({}, pipelines.size(), pipelines.data()));
 }
 
 Device::~Device() = default;
@@ -417,6 +451,9 @@ const vk::raii::Device& Device::handle() const {
 }
 const vk::raii::PhysicalDevice& Device::physical() const {
     return state_->physical;
+}
+const vk::raii::PipelineCache& Device::pipelines() const {
+    return state_->pipelines;
 }
 const vk::raii::Queue& Device::queue() const {
     return state_->queue;

@@ -52,6 +52,9 @@ class Device {
     const vk::raii::Device& handle() const;
     const vk::raii::PhysicalDevice& physical() const;
     const vk::raii::Queue& queue() const;
+    // What the driver has compiled, here and in earlier runs on this device and driver (pipeline_cache.hpp); kept on disk
+    // when the device closes.
+    const vk::raii::PipelineCache& pipelines() const;
     std::uint32_t queue_family() const;
     double timestamp_period_ns() const;
     // Index of a memory type among `type_bits` with the properties; throws DeviceError when there is none.

@@ -98,8 +98,8 @@ Kernel::Kernel(const Device& device, std::string name, std::span<const std::uint
         const vk::raii::ShaderModule module(device.handle(), module_info);
         const vk::PipelineShaderStageCreateInfo stage({}, vk::ShaderStageFlagBits::eCompute, *module, "main",
                                                       &specialization);
-        pipeline_ =
-            vk::raii::Pipeline(device.handle(), nullptr, vk::ComputePipelineCreateInfo({}, stage, *layout_));
+        pipeline_ = vk::raii::Pipeline(device.handle(), device.pipelines(),
+                                       vk::ComputePipelineCreateInfo({}, stage, *layout_));
     } catch (const vk::SystemError& error) {
         throw DeviceError(
             fmt::format("{} ({}) does not compile the kernel {}: {}. Update its driver, or choose another "

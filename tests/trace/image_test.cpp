@@ -189,6 +189,35 @@ TEST(Image, traversals_and_host_give_the_same_image) {
     EXPECT_LT(same_expectation_p(quadtree, expose(instrument, test::rough_specimen(0.3), fresh)), 1e-4);
 }
 
+// An instrument of more surfaces than a kernel has as constants is traced from the uniform block. Stops without an edge
+// behind the last lens make it one and change nothing but, within rounding, where a few rays meet a pixel's border.
+TEST(Image, an_instrument_in_constants_gives_the_image_of_one_in_a_buffer) {
+    const auto instrument = test::microscope();
+    auto padded = instrument;
+    const auto& last = instrument.surfaces.back();
+    physics::f64::Surface stop{};
+    stop.index_before = stop.index_after = last.index_after;
+    stop.rotation_xx = stop.rotation_yy = stop.rotation_zz = 1;
+    while (padded.surfaces.size() <= std::size_t{physics::f64::KNOWN_SURFACES}) {
+        padded.surfaces.push_back(stop);
+        padded.surface_names.emplace_back("stop");
+        padded.constants.imaging_count += 1;
+    }
+    const auto specimen = test::rough_specimen();
+    auto in_constants = options();
+    in_constants.instrument_in_constants = true;
+    const auto known = expose(instrument, specimen, in_constants);
+    const auto buffered = expose(padded, specimen, options());
+    double differing = 0;
+    for (std::size_t k = 0; k < known.flux.values.size(); ++k) {
+        differing += std::abs(known.flux.values[k] - buffered.flux.values[k]);
+    }
+    EXPECT_GT(known.detected, 1000U);
+    EXPECT_LT(differing, 1e-3 * known.ledger.entries[0].power);
+    EXPECT_NEAR(static_cast<double>(buffered.detected), static_cast<double>(known.detected),
+                1e-3 * static_cast<double>(known.detected));
+}
+
 // One scatter event on a plane: every ray that comes to the specimen is absorbed or not by its reflectance, and the ledger
 // closes with its power in a row of its own. As many bounces change nothing, as a plane is met once.
 TEST(Image, what_the_specimen_does_not_reflect_is_absorbed) {
