@@ -26,27 +26,14 @@ layout(constant_id = 6) const uint lobe_candidates = 0u;
 
 // What only tracing can tell is kept until a lane has no room for more, or no more to come: few directions lie at the rim
 // of the source's cone, and lanes that wait for each one's neighbour would trace for all.
-const uint QUERY_CAPACITY = 12u;
-SourceQuery queries[QUERY_CAPACITY];
+layout(constant_id = 7) const uint query_capacity = 12u; // more than a path asks: once at each bounce, and at its end
+SourceQuery queries[query_capacity];
 uint query_count = 0u;
 
-real answer_queries() {
-    real sum = real(0.0);
-    for (uint k = 0u; k < query_count; ++k) {
-        sum += trace_to_source(instrument, specimen, exposure, queries[k]);
-    }
-    query_count = 0u;
-    return sum;
-}
-
 real ask_source(Instrument, SpecimenRecord, Exposure, SourceQuery query) {
-    real sum = real(0.0);
-    if (query_count == QUERY_CAPACITY) {
-        sum = answer_queries();
-    }
     queries[query_count] = query;
     query_count += 1u;
-    return sum;
+    return real(0.0);
 }
 
 void main() {
@@ -61,12 +48,19 @@ void main() {
         BackwardOptics known = backward;
         known.cone_candidates = cone_candidates;
         known.lobe_candidates = lobe_candidates;
+        uint most_queries = query_capacity - uint(specimen.max_bounces) - 1u;
         real sum = real(0.0);
-        for (uint point = 0u; point < chunk_points; ++point) {
-            sum += trace_backward(instrument, known, specimen, exposure, column, row, randomisation, lattice,
-                                  shift, chunk * chunk_points + point);
+        for (uint point = 0u; point < chunk_points;) {
+            for (bool room = true; room; ++point) {
+                sum += trace_backward(known_instrument(), known, known_specimen(), exposure, column, row, randomisation,
+                                      lattice, shift, chunk * chunk_points + point);
+                room = query_count <= most_queries && point + 1u < chunk_points;
+            }
+            for (uint k = 0u; k < query_count; ++k) {
+                sum += trace_to_source(known_instrument(), known_specimen(), exposure, queries[k]);
+            }
+            query_count = 0u;
         }
-        sum += answer_queries();
         atomicAdd(pixels[pixel], uint64_t(sum * BACKWARD_UNIT + real(0.5)));
     }
 }

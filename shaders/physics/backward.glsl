@@ -49,7 +49,7 @@ VKFV_SCENE_FUNCTION VKFV_FUNCTION BackwardArrival look_from_detector(VKFV_SCENE_
     real specimen_index = specimen_medium_index(instrument, light);
     TrainResult train = trace_train(VKFV_SCENE instrument.illumination_first, instrument.illumination_count, ray,
                                     real(1.0), 1u, light);
-    Ray down = fly_to_plane(train.ray, exposure.top_distance, specimen_index);
+    Ray down = fly_to_top(train.ray, exposure, specimen_index);
     real scale = real(1.0) / specimen_index;
     BackwardArrival arrival;
     arrival.status = train.status;
@@ -92,15 +92,15 @@ VKFV_FUNCTION uint source_certainty(BackwardOptics backward, real plane, SourceQ
 // The weight times the transmittance of the way from the source.
 VKFV_SCENE_FUNCTION VKFV_FUNCTION real trace_to_source(VKFV_SCENE_PARAMETER Instrument instrument,
                                                        SpecimenRecord specimen, Exposure exposure, SourceQuery query) {
-    real rise = (specimen.top - query.position.z) / query.direction.z;
+    real rise = rise_to_top(specimen, exposure, query.position.z) / query.direction.z;
     real index = specimen_medium_index(instrument, query.light);
     Ray ray;
     ray.position = real3(query.position.x + query.direction.x * rise, query.position.y + query.direction.y * rise,
                          -exposure.top_distance);
     ray.direction = query.direction * index;
     ray.path_length = real(0.0);
-    TrainResult train = trace_train(VKFV_SCENE instrument.imaging_first, instrument.imaging_count, ray, index, 1u,
-                                    query.light);
+    TrainResult train = trace_train_by_loop(VKFV_SCENE instrument.imaging_first, instrument.imaging_count, ray, index,
+                                            1u, query.light);
     return train.status == PATH_ALIVE ? query.weight * train.transmitted : real(0.0);
 }
 

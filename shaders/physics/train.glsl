@@ -95,15 +95,30 @@ VKFV_FUNCTION TrainResult trace_surface(Surface surface, int index, TrainResult 
 // ray enters in the frame of the first vertex (its z there, usually negative), its direction scaled by `index`, that of the
 // medium in front of the train. The train is gone through to its end for every ray: neighbouring rays seldom all end,
 // and a loop that all leave together reads each surface once for all of them.
-VKFV_SCENE_FUNCTION VKFV_FUNCTION TrainResult trace_train(VKFV_SCENE_PARAMETER int first, int count, Ray ray,
-                                                          real index, uint apertures, Light light) {
+VKFV_FUNCTION TrainResult enter_train(Ray ray, real index) {
     TrainResult result;
     result.ray = ray;
     result.index = index;
     result.transmitted = real(1.0);
     result.status = PATH_ALIVE;
     result.surface = -1;
+    return result;
+}
+
+// By a loop, also where the kernel has the instrument as constants: for what few rays need, as its code is short.
+VKFV_SCENE_FUNCTION VKFV_FUNCTION TrainResult trace_train_by_loop(VKFV_SCENE_PARAMETER int first, int count, Ray ray,
+                                                                  real index, uint apertures, Light light) {
+    TrainResult result = enter_train(ray, index);
+    for (int i = first; i < first + count; ++i) {
+        result = trace_surface(surface_at(VKFV_SCENE i), i, result, apertures, light, features(VKFV_SCENE_ALONE));
+    }
+    return result;
+}
+
+VKFV_SCENE_FUNCTION VKFV_FUNCTION TrainResult trace_train(VKFV_SCENE_PARAMETER int first, int count, Ray ray,
+                                                          real index, uint apertures, Light light) {
 #ifdef VKFV_SPECIALISED
+    TrainResult result = enter_train(ray, index);
     // Written out, as constants fold only where each surface has a place of its own (device/prescription.glsl). The outer
     // question is of constants alone: what fails it costs a driver little time to compile.
 #define VKFV_PASS_SURFACE(k)                                                                        \
@@ -115,12 +130,10 @@ VKFV_SCENE_FUNCTION VKFV_FUNCTION TrainResult trace_train(VKFV_SCENE_PARAMETER i
         }                                                                                           \
     }
     VKFV_EACH_KNOWN_SURFACE(VKFV_PASS_SURFACE)
-#else
-    for (int i = first; i < first + count; ++i) {
-        result = trace_surface(surface_at(VKFV_SCENE i), i, result, apertures, light, features(VKFV_SCENE_ALONE));
-    }
-#endif
     return result;
+#else
+    return trace_train_by_loop(VKFV_SCENE first, count, ray, index, apertures, light);
+#endif
 }
 
 // Free flight to the plane z = plane (same frame), in a medium of the given index; z becomes 0 there.

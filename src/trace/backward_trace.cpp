@@ -3,6 +3,9 @@
 #include "spirv/backward_bvh.h"
 #include "spirv/backward_quadtree.h"
 #include "spirv/backward_ray_query.h"
+#include "spirv/backward_specialised_bvh.h"
+#include "spirv/backward_specialised_quadtree.h"
+#include "spirv/backward_specialised_ray_query.h"
 
 #include <fmt/format.h>
 
@@ -37,10 +40,22 @@ std::vector<vulkan::BindingDeclaration> declarations(const DeviceScene& scene) {
 }
 
 std::vector<vulkan::SpecializationConstant> constants(const DeviceScene& scene, const physics::f64::BackwardOptics& optics) {
-    auto all = scene.kernel_constants(0);
+    // The way to the source is traced by a loop.
+    const auto& trains = scene.instrument.constants;
+    auto all = scene.is_specialised()
+                   ? scene.specialised_constants(0, trains.illumination_first, trains.illumination_count)
+                   : scene.kernel_constants(0);
     all.push_back({5, optics.cone_candidates});
     all.push_back({6, optics.lobe_candidates});
+    constexpr std::uint32_t queries_at_hand = 11;
+    all.push_back({7, queries_at_hand + static_cast<std::uint32_t>(scene.constants.specimen.max_bounces)});
     return all;
+}
+
+std::span<const std::uint32_t> variant(const DeviceScene& scene) {
+    return scene.is_specialised() ? scene.variant(backward_specialised_quadtree, backward_specialised_ray_query,
+                                                  backward_specialised_bvh)
+                                  : scene.variant(backward_quadtree, backward_ray_query, backward_bvh);
 }
 
 // The kernel's uniform block.
@@ -64,7 +79,7 @@ BackwardTrace::BackwardTrace(const DeviceScene& scene, const physics::f64::Backw
     : scene_(scene), pixels_(pixel_count(scene)), points_per_chunk_(std::min(plan.points, most_points_per_chunk)),
       sums_(scene.device, std::size_t{pixels_} * sizeof(std::uint64_t)),
       optics_(scene.device, sizeof(BackwardBlock)),
-      kernel_(scene.device, "backward", scene.variant(backward_quadtree, backward_ray_query, backward_bvh),
+      kernel_(scene.device, "backward", variant(scene),
               declarations(scene), sizeof(Chunks), constants(scene, optics)) {
     BackwardBlock block{to_float(optics), {}};
     const auto lattice = plan.lattice();
