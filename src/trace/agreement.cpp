@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
+#include <numeric>
 
 namespace vkfv::trace {
 
@@ -11,6 +13,14 @@ namespace {
 double chi_square_tail(double chi_square, double degrees) {
     const double variance = 2.0 / (9.0 * degrees);
     return 0.5 * std::erfc((std::cbrt(chi_square / degrees) - 1.0 + variance) / std::sqrt(2.0 * variance));
+}
+
+// Variance for each unit of what is measured, over the whole image.
+double variance_rate(const Measured& image) {
+    const auto total = [](const Grid<double>& grid) {
+        return std::accumulate(grid.values.begin(), grid.values.end(), 0.0);
+    };
+    return total(image.variance) / std::max(total(image.value), std::numeric_limits<double>::min());
 }
 
 } // namespace
@@ -24,18 +34,25 @@ Measured measured_counts(const Grid<double>& flux, double per_ray) {
 Agreement compare(const Measured& a, const Measured& b) {
     Agreement result;
     double total = 0, total_variance = 0;
+    const double rate_a = variance_rate(a), rate_b = variance_rate(b);
+    if (!(rate_a + rate_b > 0)) {
+        return result;
+    }
     const int columns = a.value.columns, rows = a.value.rows;
     for (int first_row = 0; first_row < rows; first_row += block_side) {
         for (int first_column = 0; first_column < columns; first_column += block_side) {
-            double difference = 0, variance = 0;
+            double of_a = 0, of_b = 0;
             for (int row = first_row; row < std::min(first_row + block_side, rows); ++row) {
                 for (int column = first_column; column < std::min(first_column + block_side, columns); ++column) {
                     const auto k = static_cast<std::size_t>(row) * static_cast<std::size_t>(columns) +
                                    static_cast<std::size_t>(column);
-                    difference += a.value.values[k] - b.value.values[k];
-                    variance += a.variance.values[k] + b.variance.values[k];
+                    of_a += a.value.values[k];
+                    of_b += b.value.values[k];
                 }
             }
+            const double difference = of_a - of_b;
+            // Each weighs with the other's rate: the best mean of both.
+            const double variance = of_a * rate_b + of_b * rate_a;
             total += difference;
             total_variance += variance;
             if (variance > 0) {

@@ -129,6 +129,27 @@ TEST(Backward, knows_every_material) {
     }
 }
 
+// Losses at interfaces, a spectrum, parts that stand askew, a cube: whatever makes the trains differ.
+TEST(Backward, knows_every_instrument) {
+    const auto rough = test::rough_specimen();
+    auto lossy = small_description();
+    lossy.interfaces.model = optics::Interfaces::Model::fresnel;
+    auto coloured = small_description();
+    coloured.spectrum = optics::Spectrum::gaussian(0.55, 0.08);
+    auto askew = small_description();
+    askew.tube_lens_placement.change.decentre_x = 0.3;
+    askew.objective_placement.change.tilt_y = 0.002;
+    auto cube = small_description();
+    cube.splitter.kind = optics::BeamSplitter::Kind::cube;
+    cube.splitter.glass = optics::Medium::constant("glass", 1.5168);
+    cube.splitter.size = 25;
+    for (const auto& description : {lossy, coloured, askew, cube}) {
+        SCOPED_TRACE(description.splitter.size + description.tube_lens_placement.change.decentre_x);
+        const auto instrument = optics::assemble(description);
+        expect_agreement(forward_image(instrument, rough, 1), backward_image(instrument, rough, 1));
+    }
+}
+
 TEST(Backward, every_traversal_gives_the_same_image) {
     const auto instrument = optics::assemble(small_description());
     const auto specimen = test::steep_specimen(0.65);
