@@ -16,8 +16,8 @@ TEST(Bench, reports_what_it_measured_as_json_and_picture) {
     const auto report = nlohmann::json::parse(result.standard_output);
     EXPECT_EQ(report, nlohmann::json::parse(test::read_file(folder / "out" / "bench.json")));
     EXPECT_EQ(report["commit"], "abc");
-    // Quadtree against bvh and ray query, and the twin that must be found apart.
-    EXPECT_EQ(report["validation"].size(), 3u);
+    // Quadtree against bvh, ray query and backward paths, and the twin that must be found apart.
+    EXPECT_EQ(report["validation"].size(), 4u);
     for (const auto& check : report["validation"]) {
         EXPECT_TRUE(check["agrees"].get<bool>()) << check;
     }

@@ -58,7 +58,8 @@ TEST(HitTimes, TimesTheRaysThatItSays) {
         }
         // From a plane nothing comes back.
         EXPECT_EQ(time_hits(plain(0), options(traversal), 0.4, HitOrder::leaving, 1).share_met, 0);
-        EXPECT_EQ(time_hits(plain(0), options(traversal), 0.4, HitOrder::random, 1).share_met, 1);
+        // Those that start within rounding of a side may leave by it: a draw's last cell, 2^-21 of each of four sides.
+        EXPECT_NEAR(time_hits(plain(0), options(traversal), 0.4, HitOrder::random, 1).share_met, 1, 2e-5);
     }
 }
 
