@@ -19,17 +19,6 @@ using physics::f64::real3;
 // of pupils are smooth but for the corners where two edges meet.
 constexpr double search_margin = 1.02;
 
-// Directions of the field or of the source that a search looks in; without symmetry all round.
-std::vector<glm::dvec2> search_directions(bool symmetric) {
-    constexpr int all_round = 8;
-    std::vector<glm::dvec2> directions = {{1, 0}};
-    for (int i = 1; !symmetric && i < all_round; ++i) {
-        const double angle = 2 * pi * i / all_round;
-        directions.emplace_back(std::cos(angle), std::sin(angle));
-    }
-    return directions;
-}
-
 // The largest t of [0, limit] at which the predicate holds, to rounding: looked for inward in steps of limit / 32, then
 // by bisection. Where it holds only between two steps, and not at 0, it is not found. None: it holds at no step.
 template <class Predicate>
@@ -52,6 +41,16 @@ std::optional<double> farthest(double limit, Predicate holds) {
 }
 
 } // namespace
+
+std::vector<glm::dvec2> search_directions(bool symmetric) {
+    constexpr int all_round = 8;
+    std::vector<glm::dvec2> directions = {{1, 0}};
+    for (int i = 1; !symmetric && i < all_round; ++i) {
+        const double angle = 2 * pi * i / all_round;
+        directions.emplace_back(std::cos(angle), std::sin(angle));
+    }
+    return directions;
+}
 
 std::optional<Imaging::Landing> Imaging::trace(glm::dvec2 position, double height, glm::dvec2 cosines,
                                                std::uint32_t apertures, double spectral) const {

@@ -33,6 +33,9 @@ struct Imaging {
     glm::dvec2 chief_cosines(glm::dvec2 position) const;
 };
 
+// Directions of the field or of the source that a search looks in; without symmetry all round.
+std::vector<glm::dvec2> search_directions(bool symmetric);
+
 // The rim of the cone of light that passes all apertures from a point of the object plane, as radii in direction cosines
 // about the paraxial chief ray.
 struct Outline {

@@ -44,16 +44,6 @@ std::vector<Rim> rims_at_detector(const Imaging& imaging, const Outline& outline
     return rims;
 }
 
-std::vector<glm::dvec2> azimuths(bool symmetric) {
-    constexpr int all_round = 8;
-    std::vector<glm::dvec2> directions = {{1, 0}};
-    for (int i = 1; !symmetric && i < all_round; ++i) {
-        const double angle = 2 * pi * i / all_round;
-        directions.emplace_back(std::cos(angle), std::sin(angle));
-    }
-    return directions;
-}
-
 // The smallest and the largest |curvature * position + slope| on a cone's rim; the smallest is 0 where some of it is dark.
 std::pair<double, double> crossings(const Outline& outline, double curvature) {
     double least = std::numeric_limits<double>::infinity();
@@ -110,7 +100,7 @@ void Assembly::turn_round() {
     }
     const double per_position = glm::dot(mean_slope, mean_position) / glm::dot(mean_position, mean_position);
     constexpr int field_points = 12;
-    for (const glm::dvec2& direction : azimuths(imaging.symmetric)) {
+    for (const glm::dvec2& direction : search_directions(imaging.symmetric)) {
         for (int i = 0; i <= field_points; ++i) {
             for (const Rim& rim : rims_at_detector(
                      imaging, outline_at(imaging, direction * (field_radius * i / field_points)))) {
@@ -141,7 +131,7 @@ void Assembly::turn_round() {
     const double on_axis = crossings(outline_at(seen, {0, 0}), optics.source_position).first;
     double inner = on_axis;
     int sure_points = fine_field_points;
-    for (const glm::dvec2& direction : azimuths(straight)) {
+    for (const glm::dvec2& direction : search_directions(straight)) {
         for (int i = 0; i <= fine_field_points; ++i) {
             const auto [least, most] = crossings(
                 outline_at(seen, direction * (seen_radius * i / fine_field_points)), optics.source_position);

@@ -3,7 +3,8 @@
 #include "optics/room.hpp"
 #include "specimen/description.hpp"
 #include "specimen/intersector.hpp"
-#include "trace/backward_image.hpp"
+#include "trace/host_backward_tracer.hpp"
+#include "trace/host_scene.hpp"
 #include "trace/ledger.hpp"
 
 #include <fmt/format.h>
@@ -17,22 +18,6 @@ namespace vkfv::trace {
 namespace {
 
 using namespace physics::f64;
-
-// What the shared physics asks of a scene.
-struct HostScene {
-    optics::TrainScene trains;
-    const specimen::Intersector* intersector;
-    const optics::Room* room = nullptr; // only for non-sequential paths
-
-    const Surface& surface_at(int index) const { return trains.surface_at(index); }
-    std::uint32_t features() const { return trains.features(); }
-    const SpectralBin& spectral_bin(int index) const { return trains.spectral_bin(index); }
-    Hit specimen_hit(real3 origin, real3 direction) const { return intersector->hit(origin, direction); }
-    const Element& element_at(int index) const { return room->elements[static_cast<std::size_t>(index)]; }
-    ElementHit nearest_element(real3 origin, real3 direction, int left) const {
-        return optics::nearest_element(*room, origin, direction, left);
-    }
-};
 
 uvec2 path_of(std::uint64_t index) {
     return {static_cast<uint>(index), static_cast<uint>(index >> 32)};
@@ -156,68 +141,6 @@ class HostTracer final : public Tracer {
     Accounts accounts_;
 };
 
-// The backward estimator in double, with the same points and numbers.
-class HostBackwardTracer final : public Tracer {
-  public:
-    HostBackwardTracer(const optics::Instrument& instrument, const specimen::Specimen& specimen,
-                       const TraceOptions& options)
-        : instrument_(instrument), turned_(optics::turned_round(instrument)),
-          record_(specimen::record(specimen, options.max_bounces)), intersector_(specimen), seed_(options.seed),
-          plan_(backward_plan(options.rays, instrument.constants.detector_pixels)) {}
-
-    Image expose(double focal_height, std::uint32_t image) const override {
-        const auto start = std::chrono::steady_clock::now();
-        const Exposure exposure = make_exposure(instrument_, record_, focal_height, seed_, image);
-        const HostScene scene{turned_.scene(), &intersector_};
-        const int pixels = turned_.constants.detector_pixels;
-        const unsigned workers = std::max(1u, std::thread::hardware_concurrency());
-        BackwardImage result(instrument_, plan_);
-        for (std::uint32_t randomisation = 0; randomisation < plan_.randomisations; ++randomisation) {
-            std::vector<std::uint64_t> sums(static_cast<std::size_t>(pixels) * static_cast<std::size_t>(pixels));
-            std::vector<std::jthread> threads;
-            for (unsigned worker = 0; worker < workers; ++worker) {
-                threads.emplace_back([&, worker] {
-                    for (std::size_t pixel = worker; pixel < sums.size(); pixel += workers) {
-                        sums[pixel] = sum_of_pixel(scene, exposure, static_cast<std::uint32_t>(pixel), randomisation);
-                    }
-                });
-            }
-            threads.clear();
-            result.add(sums);
-        }
-        Image exposed = result.image();
-        exposed.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
-        return exposed;
-    }
-
-    std::string description() const override {
-        return fmt::format("host reference in double on {} threads; backward", std::thread::hardware_concurrency());
-    }
-
-  private:
-    std::uint64_t sum_of_pixel(const HostScene& scene, const Exposure& exposure, std::uint32_t pixel,
-                               std::uint32_t randomisation) const {
-        const auto side = static_cast<std::uint32_t>(turned_.constants.detector_pixels);
-        const LatticeShift shift = lattice_shift(exposure.seed, exposure.image, pixel, randomisation);
-        double sum = 0;
-        for (std::uint32_t point = 0; point < plan_.points; ++point) {
-            sum += trace_backward(scene, turned_.constants, optics_, record_, exposure,
-                                  static_cast<int>(pixel % side), static_cast<int>(pixel / side), randomisation, lattice_, shift,
-                                  point);
-        }
-        return static_cast<std::uint64_t>(sum * BACKWARD_UNIT + 0.5);
-    }
-
-    optics::Instrument instrument_;
-    optics::Instrument turned_;
-    SpecimenRecord record_;
-    specimen::Intersector intersector_;
-    std::uint32_t seed_;
-    BackwardPlan plan_;
-    Lattice lattice_ = plan_.lattice();
-    BackwardOptics optics_ = backward_optics(instrument_, record_.material);
-};
-
 } // namespace
 
 Exposure make_exposure(const optics::Instrument& instrument, const SpecimenRecord& specimen, double focal_height,
@@ -234,7 +157,7 @@ Exposure make_exposure(const optics::Instrument& instrument, const SpecimenRecor
 std::unique_ptr<Tracer> make_host_tracer(const optics::Instrument& instrument, const specimen::Specimen& specimen,
                                          const TraceOptions& options) {
     if (options.estimator == Estimator::backward) {
-        return std::make_unique<HostBackwardTracer>(instrument, specimen, options);
+        return make_host_backward_tracer(instrument, specimen, options);
     }
     return std::make_unique<HostTracer>(instrument, specimen, options);
 }

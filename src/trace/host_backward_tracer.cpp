@@ -1,0 +1,90 @@
+#include "trace/host_backward_tracer.hpp"
+
+#include "specimen/description.hpp"
+#include "trace/backward_image.hpp"
+#include "trace/host_scene.hpp"
+#include "trace/host_tracer.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <chrono>
+#include <thread>
+#include <vector>
+
+namespace vkfv::trace {
+
+namespace {
+
+using namespace physics::f64;
+
+// The backward estimator in double, with the same points and numbers.
+class HostBackwardTracer final : public Tracer {
+  public:
+    HostBackwardTracer(const optics::Instrument& instrument, const specimen::Specimen& specimen,
+                       const TraceOptions& options)
+        : instrument_(instrument), turned_(optics::turned_round(instrument)),
+          record_(specimen::record(specimen, options.max_bounces)), intersector_(specimen), seed_(options.seed),
+          plan_(backward_plan(options.rays, instrument.constants.detector_pixels)) {}
+
+    Image expose(double focal_height, std::uint32_t image) const override {
+        const auto start = std::chrono::steady_clock::now();
+        const Exposure exposure = make_exposure(instrument_, record_, focal_height, seed_, image);
+        const HostScene scene{turned_.scene(), &intersector_};
+        const int pixels = turned_.constants.detector_pixels;
+        const unsigned workers = std::max(1u, std::thread::hardware_concurrency());
+        BackwardImage result(instrument_, plan_);
+        for (std::uint32_t randomisation = 0; randomisation < plan_.randomisations; ++randomisation) {
+            std::vector<std::uint64_t> sums(static_cast<std::size_t>(pixels) * static_cast<std::size_t>(pixels));
+            std::vector<std::jthread> threads;
+            for (unsigned worker = 0; worker < workers; ++worker) {
+                threads.emplace_back([&, worker] {
+                    for (std::size_t pixel = worker; pixel < sums.size(); pixel += workers) {
+                        sums[pixel] = sum_of_pixel(scene, exposure, static_cast<std::uint32_t>(pixel), randomisation);
+                    }
+                });
+            }
+            threads.clear();
+            result.add(sums);
+        }
+        Image exposed = result.image();
+        exposed.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+        return exposed;
+    }
+
+    std::string description() const override {
+        return fmt::format("host reference in double on {} threads; backward", std::thread::hardware_concurrency());
+    }
+
+  private:
+    std::uint64_t sum_of_pixel(const HostScene& scene, const Exposure& exposure, std::uint32_t pixel,
+                               std::uint32_t randomisation) const {
+        const auto side = static_cast<std::uint32_t>(turned_.constants.detector_pixels);
+        const LatticeShift shift = lattice_shift(exposure.seed, exposure.image, pixel, randomisation);
+        double sum = 0;
+        for (std::uint32_t point = 0; point < plan_.points; ++point) {
+            sum += trace_backward(scene, turned_.constants, optics_, record_, exposure,
+                                  static_cast<int>(pixel % side), static_cast<int>(pixel / side), randomisation, lattice_, shift,
+                                  point);
+        }
+        return static_cast<std::uint64_t>(sum * BACKWARD_UNIT + 0.5);
+    }
+
+    optics::Instrument instrument_;
+    optics::Instrument turned_;
+    SpecimenRecord record_;
+    specimen::Intersector intersector_;
+    std::uint32_t seed_;
+    BackwardPlan plan_;
+    Lattice lattice_ = plan_.lattice();
+    BackwardOptics optics_ = backward_optics(instrument_, record_.material);
+};
+
+} // namespace
+
+std::unique_ptr<Tracer> make_host_backward_tracer(const optics::Instrument& instrument,
+                                                  const specimen::Specimen& specimen, const TraceOptions& options) {
+    return std::make_unique<HostBackwardTracer>(instrument, specimen, options);
+}
+
+} // namespace vkfv::trace

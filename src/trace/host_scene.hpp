@@ -1,0 +1,27 @@
+// The scene that the shared physics asks on the host, in double.
+#pragma once
+
+#include "optics/room.hpp"
+#include "specimen/intersector.hpp"
+
+namespace vkfv::trace {
+
+struct HostScene {
+    optics::TrainScene trains;
+    const specimen::Intersector* intersector;
+    const optics::Room* room = nullptr; // only for non-sequential paths
+
+    const physics::f64::Surface& surface_at(int index) const { return trains.surface_at(index); }
+    std::uint32_t features() const { return trains.features(); }
+    const physics::f64::SpectralBin& spectral_bin(int index) const { return trains.spectral_bin(index); }
+    physics::f64::Hit specimen_hit(physics::f64::real3 origin, physics::f64::real3 direction) const {
+        return intersector->hit(origin, direction);
+    }
+    const physics::f64::Element& element_at(int index) const { return room->elements[static_cast<std::size_t>(index)]; }
+    physics::f64::ElementHit nearest_element(physics::f64::real3 origin, physics::f64::real3 direction,
+                                             int left) const {
+        return optics::nearest_element(*room, origin, direction, left);
+    }
+};
+
+} // namespace vkfv::trace
