@@ -7,7 +7,7 @@
 // uniform over the exit pupil's disc, so that Phi is the mean value times L_source A_pixel (disc's area in slopes).
 //
 // The Instrument is turned round: its illumination train leads from the detector to the specimen, its imaging train from the
-// specimen to the source, where the last surface is the source itself as a stop. trace/backward_scene makes it.
+// specimen to the source, where the last surface is the source itself as a stop: optics::turned_round().
 struct BackwardOptics {
     real pupil_position;  // at the detector, in the reversed frame: light from the specimen is within
     real pupil_radius;    //   |pupil_position * (x, y) + (dx/dz, dy/dz)| <= pupil_radius
@@ -170,10 +170,13 @@ VKFV_FUNCTION Connection connect(Material material, BackwardOptics backward, rea
             }
             real weight = flux / density;
             connection.weight = connection.weight + weight;
-            real share = weight / connection.weight;
-            bool chosen = u * connection.weight < weight;
-            u = chosen ? u / share : (u - share) / (real(1.0) - share);
-            connection.direction = chosen ? direction : connection.direction;
+            if (weight > real(0.0)) {
+                // What the choice leaves of its number is as good as a new one.
+                real share = weight / connection.weight;
+                bool chosen = u < share;
+                u = chosen ? u / share : (u - share) / (real(1.0) - share);
+                connection.direction = chosen ? direction : connection.direction;
+            }
         }
     }
     return connection;
@@ -224,7 +227,8 @@ VKFV_SCENE_FUNCTION VKFV_FUNCTION real trace_backward(VKFV_SCENE_PARAMETER Instr
     real throughput = arrival.weight;
     real3 direction = arrival.direction;
     real plane = object_plane(backward, specimen, exposure);
-    uvec2 path = uvec2(uint(row * instrument.detector_pixels + column) * 16u + randomisation, 0x80000000u + point);
+    // Counters that no forward path has; a lattice has fewer than 2^15 points.
+    uvec2 path = uvec2(uint(row * instrument.detector_pixels + column), 0x80000000u + (randomisation << 15) + point);
     SourceQuery query;
     query.light = light;
     bool under_way = arrival.status == PATH_ALIVE;
@@ -243,7 +247,8 @@ VKFV_SCENE_FUNCTION VKFV_FUNCTION real trace_backward(VKFV_SCENE_PARAMETER Instr
         draws.u1 = lattice_coordinate(lattice, point, lattice.z_5, shift.second.y);
         draws.u2 = lattice_coordinate(lattice, point, lattice.z_6, shift.second.z);
         draws.u3 = real(0.0);
-        if (bounce > 0 || specimen.max_bounces > 1 || (scatter_models & SCATTER_DELTA) != 0u) {
+        if (bounce > 0 || specimen.max_bounces > 1 || backward.lobe_candidates != 0u ||
+            (scatter_models & SCATTER_DELTA) != 0u) {
             Draws further = draw(exposure.seed, exposure.image, path, block);
             draws.u3 = further.u3;
             draws.u0 = bounce == 0 ? draws.u0 : further.u0;
