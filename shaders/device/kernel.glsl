@@ -3,7 +3,6 @@
 #extension GL_EXT_scalar_block_layout : require
 #extension GL_EXT_shader_explicit_arithmetic_types_int64 : require
 #extension GL_EXT_shader_atomic_int64 : require
-#extension GL_KHR_shader_subgroup_ballot : require
 #ifdef VKFV_RAY_QUERY
 #extension GL_EXT_ray_query : require
 #endif

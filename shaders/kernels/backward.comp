@@ -38,7 +38,9 @@ real ask_source(Instrument, SpecimenRecord, Exposure, SourceQuery query) {
 
 void main() {
     uint pixel_count = uint(instrument.detector_pixels * instrument.detector_pixels);
-    uint index = gl_GlobalInvocationID.x;
+    // Workgroups stand in rows: a large detector has more than one row may hold.
+    uint group = gl_WorkGroupID.y * gl_NumWorkGroups.x + gl_WorkGroupID.x;
+    uint index = group * gl_WorkGroupSize.x + gl_LocalInvocationIndex;
     if (index < pixel_count * chunks) {
         uint pixel = index % pixel_count;
         uint chunk = first_chunk + index / pixel_count;

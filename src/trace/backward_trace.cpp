@@ -19,6 +19,7 @@ namespace {
 
 constexpr std::uint32_t most_points_per_chunk = 32;
 constexpr std::uint32_t workgroup = 128;
+constexpr std::uint32_t most_groups_in_a_row = 65535; // Vulkan's promise
 
 // Push constants of the kernel.
 struct Chunks {
@@ -89,8 +90,7 @@ BackwardTrace::BackwardTrace(const DeviceScene& scene, const physics::f64::Backw
     const std::uint64_t wanted = asked_batch > 0     ? asked_batch
                                  : scene.software() ? std::uint64_t{1} << 19
                                                     : std::uint64_t{1} << 27;
-    // Vulkan promises 65535 workgroups a dispatch.
-    const std::uint64_t most_chunks = std::uint64_t{65535} * workgroup / pixels_;
+    const std::uint64_t most_chunks = std::uint64_t{most_groups_in_a_row} * workgroup / pixels_;
     const std::uint64_t chunks =
         std::clamp<std::uint64_t>(wanted / pixels_ / points_per_chunk_, 1, std::max<std::uint64_t>(1, most_chunks));
     points_per_batch_ = static_cast<std::uint32_t>(
@@ -107,7 +107,9 @@ void BackwardTrace::record(vulkan::Commands& commands, std::uint32_t randomisati
     auto bindings = scene_.bindings({{3, &sums_}, {17, &optics_}});
     const Chunks chunks{first / points_per_chunk_, count / points_per_chunk_, points_per_chunk_, randomisation};
     const std::uint64_t invocations = std::uint64_t{chunks.count} * pixels_;
-    commands.dispatch(kernel_, bindings, chunks, static_cast<std::uint32_t>((invocations + workgroup - 1) / workgroup));
+    const auto groups = static_cast<std::uint32_t>((invocations + workgroup - 1) / workgroup);
+    const std::uint32_t rows = (groups + most_groups_in_a_row - 1) / most_groups_in_a_row;
+    commands.dispatch(kernel_, bindings, chunks, (groups + rows - 1) / rows, rows);
     commands.barrier();
 }
 
