@@ -1,0 +1,25 @@
+// The discrete Fourier transform of a grid, through Eigen's FFT.
+#pragma once
+
+#include "core/grid.hpp"
+
+#include <complex>
+
+namespace vkfv {
+
+// In place: F[l, m] = sum over i, k of f[i, k] exp(-2 pi i (i l / columns + k m / rows)), without a factor.
+// Frequencies above half the size are the negative ones. Any size; quick for those of convenient_length().
+void fourier_transform(Grid<std::complex<double>>& grid);
+
+// Its inverse: the factor 1 / (columns rows) is here.
+void inverse_fourier_transform(Grid<std::complex<double>>& grid);
+
+// The smallest number from `least` on with no prime factor above 5.
+int convenient_length(int least);
+
+// Of index k in a transform of n values, in cycles per value: k / n, less 1 from n / 2 on.
+inline double fourier_frequency(int k, int n) {
+    return static_cast<double>(2 * k < n ? k : k - n) / n;
+}
+
+} // namespace vkfv

@@ -1,0 +1,81 @@
+#include "core/fourier.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <limits>
+#include <numbers>
+
+using vkfv::Grid;
+using Complex = std::complex<double>;
+
+namespace {
+
+Grid<Complex> noise(int columns, int rows) {
+    Grid<Complex> grid(columns, rows);
+    std::uint32_t state = 1;
+    for (Complex& value : grid.values) { // a linear congruential generator (Numerical Recipes' constants)
+        const double re = (state = state * 1664525u + 1013904223u);
+        const double im = (state = state * 1664525u + 1013904223u);
+        value = Complex(re, im) / 4294967296.0 - Complex(0.5, 0.5);
+    }
+    return grid;
+}
+
+// The sum as the definition writes it.
+Complex transformed_at(const Grid<Complex>& grid, int l, int m) {
+    Complex sum = 0;
+    for (int row = 0; row < grid.rows; ++row)
+        for (int column = 0; column < grid.columns; ++column)
+            sum += grid(column, row) * std::polar(1.0, -2 * std::numbers::pi *
+                                                           (static_cast<double>(column * l) / grid.columns +
+                                                            static_cast<double>(row * m) / grid.rows));
+    return sum;
+}
+
+// Rounding of a sum of n values below 1, whose phases are rounded at up to 2 pi n: below 2 pi n epsilon each.
+double rounding(const Grid<Complex>& grid) {
+    const auto n = static_cast<double>(grid.values.size());
+    return 2 * std::numbers::pi * n * n * std::numeric_limits<double>::epsilon();
+}
+
+class Fourier : public testing::TestWithParam<std::pair<int, int>> {};
+
+TEST_P(Fourier, is_the_sum_of_its_definition) {
+    const auto [columns, rows] = GetParam();
+    const Grid<Complex> before = noise(columns, rows);
+    Grid<Complex> after = before;
+    vkfv::fourier_transform(after);
+    for (int m = 0; m < rows; ++m)
+        for (int l = 0; l < columns; ++l)
+            EXPECT_LT(std::abs(after(l, m) - transformed_at(before, l, m)), rounding(before)) << l << " " << m;
+}
+
+TEST_P(Fourier, inverse_gives_the_grid_back) {
+    const auto [columns, rows] = GetParam();
+    const Grid<Complex> before = noise(columns, rows);
+    Grid<Complex> grid = before;
+    vkfv::fourier_transform(grid);
+    vkfv::inverse_fourier_transform(grid);
+    for (std::size_t k = 0; k < grid.values.size(); ++k)
+        EXPECT_LT(std::abs(grid.values[k] - before.values[k]), rounding(before));
+}
+
+// A power of two, one of factors 2, 3 and 5, and a prime; a single row.
+INSTANTIATE_TEST_SUITE_P(Sizes, Fourier,
+                         testing::Values(std::pair{8, 4}, std::pair{6, 15}, std::pair{7, 5}, std::pair{16, 1}));
+
+TEST(ConvenientLength, has_no_factor_above_five) {
+    EXPECT_EQ(vkfv::convenient_length(1), 1);
+    EXPECT_EQ(vkfv::convenient_length(7), 8);
+    EXPECT_EQ(vkfv::convenient_length(257), 270);
+    EXPECT_EQ(vkfv::convenient_length(1999), 2000);
+}
+
+TEST(FourierFrequency, is_negative_from_half_the_size_on) {
+    EXPECT_DOUBLE_EQ(vkfv::fourier_frequency(3, 8), 0.375);
+    EXPECT_DOUBLE_EQ(vkfv::fourier_frequency(4, 8), -0.5);
+    EXPECT_DOUBLE_EQ(vkfv::fourier_frequency(3, 5), -0.4);
+}
+
+} // namespace
