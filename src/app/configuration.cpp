@@ -40,7 +40,7 @@ std::filesystem::path without_dots(const std::filesystem::path& path) {
 struct KindRule {
     const char* name;
     specimen::Kind kind;
-    bool generated; // from a formula, so also analytic
+    bool generated; // from a formula, over a square footprint
     std::vector<std::string> keys;
 };
 
@@ -62,6 +62,18 @@ const std::vector<KindRule>& kind_rules() {
          Kind::rough,
          true,
          {"size_mm", "pitch_um", "representation", "sq_um", "correlation_length_um", "seed"}},
+        {"plateaus",
+         Kind::plateaus,
+         true,
+         {"size_mm", "pitch_um", "text", "font", "text_width_mm", "file", "heights_um", "sq_um",
+          "correlation_length_um", "seed"}},
+        {"air",
+         Kind::air,
+         true,
+         {"tiles", "tile_size_mm", "pitch_um", "sq_um", "roll_off_wavelength_um", "shortest_wavelength_um",
+          "hurst_exponent", "seed"}},
+        {"star", Kind::star, true, {"size_mm", "pitch_um", "petals", "radius_um", "height_um"}},
+        {"groove", Kind::groove, true, {"size_mm", "pitch_um", "width_um", "depth_um", "wall_um"}},
         {"image", Kind::image, false, {"file", "pitch_um", "height_um"}},
         {"stl", Kind::stl, false, {"file", "unit", "centre"}},
         {"gltf", Kind::gltf, false, {"file", "unit", "centre"}},
@@ -187,11 +199,18 @@ void read_specimen(const TomlTable& root, Configuration& configuration) {
 
     const auto roughness_table = table.optional_table("roughness");
     if (rule.generated) {
-        const bool analytic =
-            section.choice("representation", {"facets", "analytic"}, "facets") == "analytic";
-        description.representation =
-            analytic ? specimen::Representation::analytic : specimen::Representation::facets;
-        description.size = section.number("size_mm", NumberRange::positive());
+        if (has("representation")) {
+            const bool analytic =
+                section.choice("representation", {"facets", "analytic"}, "facets") == "analytic";
+            description.representation =
+                analytic ? specimen::Representation::analytic : specimen::Representation::facets;
+        }
+        if (rule.kind == specimen::Kind::air) {
+            description.tiles = static_cast<int>(section.integer("tiles", 1, 64, 4));
+            description.size = description.tiles * section.number("tile_size_mm", NumberRange::positive());
+        } else {
+            description.size = section.number("size_mm", NumberRange::positive());
+        }
     }
     if (has("pitch_um")) {
         // Facets as fine as the roughness needs them; else half a micrometre, below what any objective
@@ -221,17 +240,42 @@ void read_specimen(const TomlTable& root, Configuration& configuration) {
     read_um("amplitude_um", description.amplitude, NumberRange::at_least(0));
     read_um("period_um", description.period, NumberRange::positive());
     read_um("period_stop_um", description.period_stop, NumberRange::positive());
-    if (rule.kind == specimen::Kind::rough) {
-        // The lattice of [specimen.roughness] may be all the roughness there is.
-        const std::optional<double> none = roughness_table ? std::optional(0.0) : std::nullopt;
-        read_um("sq_um", description.sq, NumberRange::at_least(0), none);
+    read_um("width_um", description.width, NumberRange::positive());
+    read_um("depth_um", description.depth, NumberRange::finite());
+    if (has("petals")) {
+        description.petals = static_cast<int>(section.integer("petals", 1, 360));
+    }
+    if (has("seed")) {
+        // The lattice of [specimen.roughness] may be all the roughness there is; plateaus may be smooth.
+        const bool needed = rule.kind == specimen::Kind::air || (rule.kind == specimen::Kind::rough && !roughness_table);
+        read_um("sq_um", description.sq, NumberRange::at_least(0), needed ? std::nullopt : std::optional(0.0));
         description.correlation_length = description.pitch; // of heights that are all zero
-        if (description.sq > 0 || table.has("correlation_length_um")) {
+        if (has("correlation_length_um") && (description.sq > 0 || table.has("correlation_length_um"))) {
             read_um("correlation_length_um", description.correlation_length, NumberRange::positive());
         }
         description.seed = static_cast<std::uint32_t>(section.integer("seed", 0, largest_seed, 1));
     }
-    if (has("file")) {
+    read_um("roll_off_wavelength_um", description.roll_off, NumberRange::positive());
+    read_um("shortest_wavelength_um", description.shortest, NumberRange::positive());
+    if (has("hurst_exponent")) {
+        description.hurst = section.number("hurst_exponent", NumberRange::within(0, 1));
+    }
+    if (rule.kind == specimen::Kind::plateaus) {
+        for (const double height : section.numbers("heights_um", NumberRange::finite())) {
+            description.heights.push_back(from_um(height));
+        }
+        if (table.has("text") == table.has("file")) {
+            table.fail(table.has("text") ? "file" : "text", "either text or file",
+                       "Give the letters as text, or a mask of the plateaus as file.");
+        }
+        if (table.has("text")) {
+            description.text = section.string("text");
+            description.font = section.string("font", "DejaVuSans-Bold");
+            description.text_width =
+                section.number("text_width_mm", NumberRange::positive(), 0.8 * description.size);
+        }
+    }
+    if (has("file") && (rule.kind != specimen::Kind::plateaus || table.has("file"))) {
         description.file = table.file_path("file");
         description.where = table.where("file");
         section.record_reference("file", absolute_path(description.file).string());

@@ -104,6 +104,11 @@ std::vector<bool> Section::booleans(const std::string& key, const std::vector<bo
     return record(key, "[" + text + "]", Influence::images), values;
 }
 
+std::string Section::string(const std::string& key, std::optional<std::string> fallback) const {
+    const std::string value = fallback ? table_.optional_string(key).value_or(*fallback) : table_.string(key);
+    return record(key, toml_quoted(value), Influence::images), value;
+}
+
 std::string Section::choice(const std::string& key, const std::vector<std::string>& choices,
                             std::optional<std::string> fallback, Influence influence) const {
     const std::string value =

@@ -47,6 +47,7 @@ class Section {
                          Influence influence = Influence::images) const;
     bool boolean(const std::string& key, bool fallback) const;
     std::vector<bool> booleans(const std::string& key, const std::vector<bool>& fallback) const;
+    std::string string(const std::string& key, std::optional<std::string> fallback = {}) const;
     std::string choice(const std::string& key, const std::vector<std::string>& choices,
                        std::optional<std::string> fallback = {}, Influence influence = Influence::images) const;
     void record(const std::string& key, const std::string& value, Influence influence) const;

@@ -9,10 +9,11 @@
 #include <filesystem>
 #include <optional>
 #include <string>
+#include <vector>
 
 namespace vkfv::specimen {
 
-enum class Kind { plane, step, sphere, sinusoid, chirp, rough, image, stl, gltf };
+enum class Kind { plane, step, sphere, sinusoid, chirp, rough, plateaus, air, star, groove, image, stl, gltf };
 enum class Representation { facets, analytic }; // of generated surfaces; files are always facets
 
 // Gaussian white noise of standard deviation `noise` on a grid of `pitch`, filtered by a Gaussian of standard
@@ -32,15 +33,26 @@ struct Description {
     double tilt_x = 0, tilt_y = 0; // plane: slope angles along x and y
     double height = 0;             // step: upper minus lower level (upper at x > 0); sphere: of the cap over the
                                    // plane (negative: a dimple); image: of the value 1 over the value 0
-    double wall = 0;               // step: width of the flank; 0: one pitch
-    double radius = 0;             // sphere
+    double wall = 0;               // step, groove: width of the flank; 0: one pitch
+    double width = 0;              // groove, between the middles of its flanks
+    double depth = 0;              // groove
+    double radius = 0;             // sphere; star: of its outer end
     double amplitude = 0;          // sinusoid, chirp (half the peak-to-valley height)
     double period = 0;             // sinusoid along x; chirp: at the lowest x
     double period_stop = 0;        // chirp: at the highest x
-    double sq = 0;                 // rough: root mean square height
-    double correlation_length = 0; // rough: Gaussian autocorrelation exp(-(r/l)^2)
-    std::uint32_t seed = 0;        // rough
-    std::filesystem::path file;    // image, stl, gltf
+    double sq = 0;                 // rough, plateaus, air: root mean square height of the roughness
+    double correlation_length = 0; // rough, plateaus: Gaussian autocorrelation exp(-(r/l)^2)
+    std::uint32_t seed = 0;        // rough, plateaus, air
+    std::string text;              // plateaus: what they read; else they are those of `file`
+    std::string font;              // plateaus: a name that OpenImageIO finds, or a file
+    double text_width = 0;         // plateaus
+    std::vector<double> heights;   // plateaus: one for each, or one for all
+    int tiles = 1;                 // air: sub-surfaces along each side
+    double roll_off = 0;           // air: wavelength; longer ones have the power of it
+    double shortest = 0;           // air: wavelength
+    double hurst = 0;              // air: Hurst exponent
+    int petals = 0;                // star
+    std::filesystem::path file;    // plateaus, image, stl, gltf
     double unit = 1;               // stl, gltf: mm per unit of the file
     bool centre = true;            // stl, gltf: move the bounding box's centre to x = y = 0, mean height to z = 0
     std::optional<Roughness> roughness; // added to any kind but stl and gltf

@@ -1,5 +1,6 @@
 #include "specimen/analytic.hpp"
 #include "specimen/files.hpp"
+#include "specimen/standards.hpp"
 
 #include "core/units.hpp"
 
@@ -76,22 +77,6 @@ Analytic shape_of(const Description& d, double pitch) {
     return shape;
 }
 
-// Points of a grid over the square footprint, no further apart than pitch (but for the rounding of a
-// quotient).
-HeightField level_field(const Description& d, double pitch) {
-    require(positive(pitch) && pitch <= d.size, d, "pitch", pitch, "a positive length, at most the size");
-    const double cells = std::ceil(d.size / pitch * (1 - 1e-9));
-    if ((cells + 1) * (cells + 1) > static_cast<double>(largest_point_count)) {
-        throw InputError({d.where, "specimen.pitch", fmt::format("{} over a size of {}", pitch, d.size),
-                          fmt::format("at most {} points", largest_point_count), "Choose a coarser pitch."});
-    }
-    HeightField field;
-    field.heights = Grid<float>(static_cast<int>(cells) + 1, static_cast<int>(cells) + 1);
-    field.x_min = field.y_min = -0.5 * d.size;
-    field.pitch_x = field.pitch_y = d.size / cells;
-    return field;
-}
-
 double root_mean_square(const Grid<double>& grid) {
     const double sum = std::inner_product(grid.values.begin(), grid.values.end(), grid.values.begin(), 0.0);
     return std::sqrt(sum / static_cast<double>(grid.values.size()));
@@ -150,6 +135,20 @@ Grid<double> transposed(const Grid<double>& grid) {
 }
 
 } // namespace
+
+HeightField level_field(const Description& d, double pitch) {
+    require(positive(pitch) && pitch <= d.size, d, "pitch", pitch, "a positive length, at most the size");
+    const double cells = std::ceil(d.size / pitch * (1 - 1e-9));
+    if ((cells + 1) * (cells + 1) > static_cast<double>(largest_point_count)) {
+        throw InputError({d.where, "specimen.pitch", fmt::format("{} over a size of {}", pitch, d.size),
+                          fmt::format("at most {} points", largest_point_count), "Choose a coarser pitch."});
+    }
+    HeightField field;
+    field.heights = Grid<float>(static_cast<int>(cells) + 1, static_cast<int>(cells) + 1);
+    field.x_min = field.y_min = -0.5 * d.size;
+    field.pitch_x = field.pitch_y = d.size / cells;
+    return field;
+}
 
 Grid<double> filtered_noise(int columns, int rows, double kernel, std::uint32_t seed) {
     Grid<double> noise(columns, rows);
@@ -258,7 +257,15 @@ std::variant<HeightField, Mesh, Analytic> generate(const Description& d) {
     if (d.representation == Representation::facets || d.kind == Kind::rough || d.roughness) {
         field = level_field(d, pitch);
     }
-    if (d.representation == Representation::facets) {
+    if (d.kind == Kind::plateaus || d.kind == Kind::air || d.kind == Kind::star || d.kind == Kind::groove) {
+        if (d.representation != Representation::facets)
+            throw InputError({d.where, "specimen.representation", "analytic", "facets, for a specimen of this kind",
+                              "Leave the key out."});
+        field = d.kind == Kind::plateaus ? plateaus(d, pitch)
+                : d.kind == Kind::air    ? sub_surfaces(d, pitch)
+                : d.kind == Kind::star   ? star(d, pitch)
+                                         : groove(d, pitch);
+    } else if (d.representation == Representation::facets) {
         const physics::f64::SpecimenRecord record = specimen::record({analytic, {}}, 1);
         for (int row = 0; row < field->heights.rows; ++row) {
             for (int column = 0; column < field->heights.columns; ++column) {
@@ -269,7 +276,7 @@ std::variant<HeightField, Mesh, Analytic> generate(const Description& d) {
             }
         }
     }
-    if (d.kind == Kind::rough) {
+    if (d.kind == Kind::rough || (d.kind == Kind::plateaus && d.sq > 0)) {
         add_rough(*field, d);
     }
     if (d.roughness) {

@@ -1,0 +1,142 @@
+#include "specimen/files.hpp"
+#include "specimen/standards.hpp"
+
+#include <OpenImageIO/imagebuf.h>
+#include <OpenImageIO/imagebufalgo.h>
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <set>
+
+namespace vkfv::specimen {
+namespace {
+
+[[noreturn]] void fail(const Description& d, const std::string& key, const std::string& found,
+                       const std::string& expected, const std::string& remedy) {
+    throw InputError({d.where, "specimen." + key, found, expected, remedy});
+}
+
+double height_of(const Description& d, std::size_t plateau) {
+    return d.heights[d.heights.size() == 1 ? 0 : plateau];
+}
+
+// Letters one after the other, with a gap of this share of the font's size, as wide as a space.
+constexpr double gap = 0.12;
+constexpr double space = 0.3;
+
+struct Letter {
+    std::string character;
+    OIIO::ROI ink; // of the letter alone, its origin on the baseline
+};
+
+std::vector<Letter> letters_of(const Description& d, int font_size) {
+    std::vector<Letter> letters;
+    for (const char character : d.text) {
+        Letter letter{std::string(1, character), {}};
+        if (character != ' ') {
+            letter.ink = OIIO::ImageBufAlgo::text_size(letter.character, font_size, d.font);
+            if (!letter.ink.defined() || letter.ink.width() < 1) {
+                const std::string reason = OIIO::geterror();
+                fail(d, "font", fmt::format("{}: no letter '{}' ({})", d.font, letter.character, reason),
+                     "a font that has the letters of specimen.text",
+                     "Install the font (tools/setup brings \"DejaVuSans-Bold\"), give the file of one, or draw the "
+                     "letters as an image and name it in specimen.file.");
+            }
+        }
+        letters.push_back(letter);
+    }
+    return letters;
+}
+
+double width_of(const std::vector<Letter>& letters, int font_size) {
+    double width = -gap * font_size;
+    for (const Letter& letter : letters)
+        width += gap * font_size + (letter.ink.defined() ? letter.ink.width() : space * font_size);
+    return width;
+}
+
+void set_text(HeightField& field, const Description& d) {
+    const auto count = static_cast<std::size_t>(
+        std::count_if(d.text.begin(), d.text.end(), [](char character) { return character != ' '; }));
+    if (count == 0)
+        fail(d, "text", '"' + d.text + '"', "at least one letter", "Write what the plateaus are to read.");
+    if (d.heights.size() != 1 && d.heights.size() != count)
+        fail(d, "heights", fmt::format("{} heights", d.heights.size()),
+             fmt::format("one, or one for each of the {} letters", count), "Give each letter its height.");
+    // Widths follow the font's size; it is found from those at a large one.
+    constexpr int trial = 1000;
+    const double wanted = d.text_width / field.pitch_x;
+    const int font_size = static_cast<int>(std::floor(trial * wanted / width_of(letters_of(d, trial), trial)));
+    if (font_size < 8)
+        fail(d, "text_width", fmt::format("{} mm", d.text_width), "letters of at least 8 points of the grid",
+             "Choose wider text, less of it, or a finer pitch.");
+    const std::vector<Letter> letters = letters_of(d, font_size);
+    // The text's bounding box has its middle on the axis.
+    int top = 0, bottom = 0;
+    bool first = true;
+    for (const Letter& letter : letters)
+        if (letter.ink.defined()) {
+            top = first ? letter.ink.ybegin : std::min(top, letter.ink.ybegin);
+            bottom = first ? letter.ink.yend : std::max(bottom, letter.ink.yend);
+            first = false;
+        }
+    const int columns = field.heights.columns, rows = field.heights.rows;
+    const int baseline = static_cast<int>(std::lround(0.5 * rows - 0.5 * (top + bottom)));
+    double x = 0.5 * (columns - width_of(letters, font_size));
+    std::size_t plateau = 0;
+    for (const Letter& letter : letters) {
+        if (letter.ink.defined()) {
+            OIIO::ImageBuf mask(OIIO::ImageSpec(columns, rows, 1, OIIO::TypeDesc::FLOAT));
+            OIIO::ImageBufAlgo::zero(mask);
+            const float white = 1;
+            if (!OIIO::ImageBufAlgo::render_text(mask, static_cast<int>(std::lround(x)) - letter.ink.xbegin, baseline,
+                                                 letter.character, font_size, d.font, OIIO::cspan<float>(&white, 1)))
+                fail(d, "text", letter.character, "a letter that OpenImageIO can draw: " + mask.geterror(),
+                     "Draw the letters as an image and name it in specimen.file.");
+            // The image's first row is the highest.
+            for (int row = 0; row < rows; ++row)
+                for (int column = 0; column < columns; ++column)
+                    if (mask.getchannel(column, rows - 1 - row, 0, 0) >= 0.5f)
+                        field.heights(column, row) = static_cast<float>(height_of(d, plateau));
+            ++plateau;
+        }
+        x += gap * font_size + (letter.ink.defined() ? letter.ink.width() : space * font_size);
+    }
+}
+
+void set_mask(HeightField& field, const Description& d) {
+    const Grid<float> mask = read_image(d.file, d.where);
+    std::set<float> levels(mask.values.begin(), mask.values.end());
+    levels.erase(0.0f);
+    if (levels.empty() || (d.heights.size() != 1 && d.heights.size() != levels.size()))
+        fail(d, "heights", fmt::format("{} heights", d.heights.size()),
+             fmt::format("one, or one for each of the {} grey values other than black in {}", levels.size(),
+                         d.file.string()),
+             "Give each plateau its height; smoothed edges are grey values too, so save the mask without them.");
+    for (int row = 0; row < field.heights.rows; ++row)
+        for (int column = 0; column < field.heights.columns; ++column) {
+            // The pixel that the point lies in.
+            const auto pixel = [](int at, int points, int pixels) {
+                return std::min(pixels - 1, at * pixels / points);
+            };
+            const float value = mask(pixel(column, field.heights.columns, mask.columns),
+                                     pixel(row, field.heights.rows, mask.rows));
+            if (value != 0)
+                field.heights(column, row) = static_cast<float>(
+                    height_of(d, static_cast<std::size_t>(std::distance(levels.begin(), levels.find(value)))));
+        }
+}
+
+} // namespace
+
+HeightField plateaus(const Description& d, double pitch) {
+    HeightField field = level_field(d, pitch);
+    if (d.file.empty())
+        set_text(field, d);
+    else
+        set_mask(field, d);
+    return field;
+}
+
+} // namespace vkfv::specimen

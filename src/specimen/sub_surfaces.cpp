@@ -1,0 +1,74 @@
+#include "core/fourier.hpp"
+#include "specimen/analytic.hpp"
+#include "specimen/standards.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+
+namespace vkfv::specimen {
+namespace {
+
+// Share of the power at a frequency over that at the frequency 0.
+double relative_power(const Description& d, double frequency) {
+    if (frequency == 0 || frequency * d.shortest > 1 + 1e-9)
+        return 0;
+    return std::pow(std::max(1.0, frequency * d.roll_off), -2 * (1 + d.hurst));
+}
+
+Grid<double> sub_surface(const Description& d, int points, double pitch, std::uint32_t seed) {
+    const Grid<double> noise = filtered_noise(points, points, 0, seed);
+    Grid<std::complex<double>> spectrum(points, points);
+    std::copy(noise.values.begin(), noise.values.end(), spectrum.values.begin());
+    fourier_transform(spectrum);
+    for (int m = 0; m < points; ++m)
+        for (int l = 0; l < points; ++l)
+            spectrum(l, m) *= std::sqrt(relative_power(
+                d, std::hypot(fourier_frequency(l, points), fourier_frequency(m, points)) / pitch));
+    inverse_fourier_transform(spectrum);
+    Grid<double> surface(points, points);
+    std::transform(spectrum.values.begin(), spectrum.values.end(), surface.values.begin(),
+                   [](const std::complex<double>& value) { return value.real(); });
+    const double square =
+        std::inner_product(surface.values.begin(), surface.values.end(), surface.values.begin(), 0.0);
+    const double scale = d.sq / std::sqrt(square / static_cast<double>(surface.values.size()));
+    for (double& height : surface.values)
+        height *= scale;
+    return surface;
+}
+
+} // namespace
+
+HeightField sub_surfaces(const Description& d, double pitch) {
+    const auto require = [&](bool condition, const char* key, double found, const std::string& expected) {
+        if (!condition)
+            throw InputError({d.where, fmt::format("specimen.{}", key), fmt::format("{}", found), expected,
+                              "Correct the value in the configuration."});
+    };
+    HeightField field = level_field(d, pitch);
+    const int points = (field.heights.columns - 1) / d.tiles;
+    require(points * d.tiles == field.heights.columns - 1, "pitch", pitch,
+            fmt::format("a length that divides the sub-surface's {} mm", d.size / d.tiles));
+    require(d.shortest >= 2 * field.pitch_x * (1 - 1e-9), "shortest_wavelength", d.shortest,
+            fmt::format("at least two pitches, {} mm", 2 * field.pitch_x));
+    require(d.shortest <= d.roll_off, "shortest_wavelength", d.shortest,
+            fmt::format("at most the roll-off wavelength, {} mm", d.roll_off));
+    require(d.roll_off <= d.size / d.tiles * (1 + 1e-9), "roll_off_wavelength", d.roll_off,
+            fmt::format("at most the sub-surface's {} mm", d.size / d.tiles));
+    for (int tile_row = 0; tile_row < d.tiles; ++tile_row)
+        for (int tile_column = 0; tile_column < d.tiles; ++tile_column) {
+            // Sub-surface k of seed s is no other's of a seed nearby.
+            const auto number = static_cast<std::uint32_t>(tile_row * d.tiles + tile_column);
+            const Grid<double> surface = sub_surface(d, points, field.pitch_x, d.seed * 0x9e3779b1u + number);
+            const auto end = [&](int tile) { return tile + 1 == d.tiles ? points + 1 : points; };
+            for (int row = 0; row < end(tile_row); ++row)
+                for (int column = 0; column < end(tile_column); ++column)
+                    field.heights(tile_column * points + column, tile_row * points + row) =
+                        static_cast<float>(surface(column % points, row % points));
+        }
+    return field;
+}
+
+} // namespace vkfv::specimen
