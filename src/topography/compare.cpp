@@ -1,5 +1,5 @@
 #include "surface/filter.hpp"
-#include "surface/statistics.hpp"
+#include "surface/height_parameters.hpp"
 #include "topography/topography.hpp"
 
 #include <cmath>

@@ -1,36 +1,18 @@
 #include "surface/filter.hpp"
 
 #include "core/units.hpp"
-#include "surface/statistics.hpp"
+#include "surface/maps.hpp"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <limits>
 #include <random>
 #include <stdexcept>
 
 namespace vkfv::surface {
 namespace {
 
-constexpr double not_measured = std::numeric_limits<double>::quiet_NaN();
-
-template <class Function>
-HeightMap sampled(int columns, int rows, double pitch, const Function& function) {
-    HeightMap map{
-        .height = Grid<double>(columns, rows), .x0 = -0.3, .y0 = 0.2, .pitch_x = pitch, .pitch_y = pitch};
-    for (int row = 0; row < rows; ++row)
-        for (int column = 0; column < columns; ++column)
-            map.height(column, row) = function(map.x(column), map.y(row));
-    return map;
-}
-
-void forget_a_third(HeightMap& map) {
-    std::mt19937 random(3);
-    for (double& height : map.height.values)
-        if (random() % 3 == 0)
-            height = not_measured;
-}
+using namespace test;
 
 TEST(Plane, IsFoundToRoundingOverTheMeasuredPoints) {
     auto map = sampled(40, 30, 0.002, [](double x, double y) { return 0.01 + 0.2 * x - 0.05 * y; });
@@ -129,47 +111,6 @@ TEST(GaussianFilter, NeedsAPositiveNestingIndex) {
     const auto map = sampled(3, 3, 0.002, [](double, double) { return 0.0; });
     EXPECT_THROW(gaussian_low_pass(map, 0), std::invalid_argument);
     EXPECT_THROW(gaussian_low_pass(map, not_measured), std::invalid_argument);
-}
-
-TEST(HeightParameters, OfASinusoidAreItsClosedForms) {
-    const double amplitude = 0.003;
-    // Four whole periods of 25 points: sums over whole periods are exact for sin, sin^2, sin^3 and sin^4.
-    const auto map = sampled(100, 7, 0.002, [=](double x, double) {
-        return 0.5 + amplitude * std::sin(2 * pi * (x + 0.3) / 0.05);
-    });
-    const HeightParameters p = height_parameters(map);
-    EXPECT_NEAR(p.mean, 0.5, 1e-14);
-    EXPECT_NEAR(p.sq, amplitude / std::sqrt(2.0), 1e-14);
-    EXPECT_NEAR(p.ssk, 0, 1e-10);
-    EXPECT_NEAR(p.sku, 1.5, 1e-10);
-    // |sin| has kinks: the mean over 25 points a period misses 2/pi by (pi/25)^2 / 12 relative or less.
-    EXPECT_NEAR(p.sa, amplitude * 2 / pi, amplitude * 2 / pi * 1.4e-3);
-    // The highest point lies within half a step, 2 pi / 50, of the crest.
-    EXPECT_NEAR(p.sz, 2 * amplitude, 2 * amplitude * 0.5 * std::pow(2 * pi / 50, 2));
-    EXPECT_DOUBLE_EQ(p.sz, p.sp + p.sv);
-    EXPECT_EQ(p.measured_share, 1);
-}
-
-TEST(HeightParameters, OfFourPointsAreThoseOfTheHand) {
-    HeightMap map{.height = Grid<double>(5, 1), .x0 = 0, .y0 = 0, .pitch_x = 1, .pitch_y = 1};
-    map.height.values = {1, 1, not_measured, 1, 5};
-    const HeightParameters p = height_parameters(map); // deviations -1 -1 -1 3
-    EXPECT_DOUBLE_EQ(p.mean, 2);
-    EXPECT_DOUBLE_EQ(p.sa, 1.5);
-    EXPECT_DOUBLE_EQ(p.sq, std::sqrt(3.0));
-    EXPECT_DOUBLE_EQ(p.ssk, 6 / std::pow(3.0, 1.5));
-    EXPECT_DOUBLE_EQ(p.sku, 21 / 9.0);
-    EXPECT_DOUBLE_EQ(p.sp, 3);
-    EXPECT_DOUBLE_EQ(p.sv, 1);
-    EXPECT_DOUBLE_EQ(p.measured_share, 0.8);
-}
-
-TEST(HeightParameters, AreUndefinedWithoutMeasuredPoints) {
-    const HeightMap map{
-        .height = Grid<double>(2, 2, not_measured), .x0 = 0, .y0 = 0, .pitch_x = 1, .pitch_y = 1};
-    const HeightParameters p = height_parameters(map);
-    EXPECT_TRUE(std::isnan(p.sq));
-    EXPECT_EQ(p.measured_share, 0);
 }
 
 } // namespace

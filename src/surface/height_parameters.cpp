@@ -1,4 +1,4 @@
-#include "surface/statistics.hpp"
+#include "surface/height_parameters.hpp"
 
 #include <algorithm>
 #include <cmath>

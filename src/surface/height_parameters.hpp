@@ -1,4 +1,4 @@
-// Height parameters of ISO 25178-2.
+// Height parameters of ISO 25178-2:2012, 4.1.
 #pragma once
 
 #include "surface/height_map.hpp"

@@ -1,0 +1,39 @@
+#include "surface/areal_parameters.hpp"
+
+namespace vkfv::surface {
+
+ArealParameters areal_parameters(const HeightMap& map) {
+    const MaterialRatioCurve curve(map);
+    return {.height = height_parameters(map),
+            .hybrid = hybrid_parameters(map),
+            .spatial = spatial_parameters(map),
+            .core = core_parameters(curve),
+            .volume = volume_parameters(curve)};
+}
+
+std::vector<NamedParameter> named_parameters(const ArealParameters& p) {
+    using enum ParameterUnit;
+    return {{"Sq", p.height.sq, length},
+            {"Ssk", p.height.ssk, ratio},
+            {"Sku", p.height.sku, ratio},
+            {"Sp", p.height.sp, length},
+            {"Sv", p.height.sv, length},
+            {"Sz", p.height.sz, length},
+            {"Sa", p.height.sa, length},
+            {"Sal", p.spatial.sal, length},
+            {"Str", p.spatial.str, ratio},
+            {"Sdq", p.hybrid.sdq, ratio},
+            {"Sdr", p.hybrid.sdr, ratio},
+            {"Sk", p.core.sk, length},
+            {"Spk", p.core.spk, length},
+            {"Svk", p.core.svk, length},
+            {"Smr1", p.core.smr1, ratio},
+            {"Smr2", p.core.smr2, ratio},
+            {"Vmp", p.volume.vmp, volume_per_area},
+            {"Vmc", p.volume.vmc, volume_per_area},
+            {"Vvc", p.volume.vvc, volume_per_area},
+            {"Vvv", p.volume.vvv, volume_per_area},
+            {"Std", p.spatial.std_angle, angle}};
+}
+
+} // namespace vkfv::surface

@@ -1,0 +1,46 @@
+// The areal material ratio curve and the core parameters drawn from it: ISO 25178-2:2012, 4.4 and 5.
+#pragma once
+
+#include "surface/height_map.hpp"
+
+#include <vector>
+
+namespace vkfv::surface {
+
+// The share of the area on which the surface stands higher than a height, as a function of that height. Every
+// measured point stands for an equal area; not-measured points have none.
+class MaterialRatioCurve {
+  public:
+    explicit MaterialRatioCurve(const HeightMap& map);
+
+    // Smc: the height (mm) exceeded on this share of the area, 0 to 1; between the points, of which the k-th
+    // highest of n stands at the share (k + 1/2) / n, linear. NaN without measured points.
+    double height(double ratio) const;
+    // Smr: the inverse; 0 from the highest point up, 1 from the lowest down.
+    double ratio(double height) const;
+
+    // Volume of material above a height, and of void below it, per unit of the measured area: mm^3/mm^2 = mm.
+    double material_volume(double height) const;
+    double void_volume(double height) const;
+
+    const std::vector<double>& heights() const { return heights_; } // mm, descending
+
+  private:
+    std::vector<double> heights_;
+};
+
+// NaN with fewer than four points. The equivalent straight line is the least-squares line, of heights on ratios,
+// through the 40 % of the points whose secant falls least (the first such from the top); the core lies between its
+// heights at 0 and 100 %. A reduced peak's or dale's height is that of the triangle which has the area between curve
+// and core over the same ratios.
+struct CoreParameters {
+    double sk = 0;   // core height, mm
+    double spk = 0;  // reduced peak height, mm
+    double svk = 0;  // reduced dale height, mm
+    double smr1 = 0; // share of the area above the core, 0 to 1
+    double smr2 = 0; // share of the area above the dales, 0 to 1
+};
+
+CoreParameters core_parameters(const MaterialRatioCurve& curve);
+
+} // namespace vkfv::surface

@@ -1,0 +1,150 @@
+#include "surface/spatial_parameters.hpp"
+
+#include "core/fourier.hpp"
+#include "core/units.hpp"
+#include "surface/height_parameters.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <complex>
+#include <cstdlib>
+#include <limits>
+#include <vector>
+
+namespace vkfv::surface {
+namespace {
+
+using Complex = std::complex<double>;
+
+constexpr double undefined = std::numeric_limits<double>::quiet_NaN();
+
+// A function over whole indices that may be negative, periodic in the grid's size: what a transform is.
+template <class Function>
+double bilinear(const Grid<Complex>& grid, double x, double y, const Function& value) {
+    const double column = std::floor(x), row = std::floor(y);
+    const double u = x - column, v = y - row;
+    const auto at = [&](int i, int k) {
+        return value(grid((i % grid.columns + grid.columns) % grid.columns, (k % grid.rows + grid.rows) % grid.rows));
+    };
+    const int i = static_cast<int>(column), k = static_cast<int>(row);
+    return (1 - v) * ((1 - u) * at(i, k) + u * at(i + 1, k)) + v * ((1 - u) * at(i, k + 1) + u * at(i + 1, k + 1));
+}
+
+// By the theorem of Wiener and Khinchin, for heights and measured points at once: the real part is the sum of the
+// products at a lag, the imaginary part the number of pairs.
+Grid<Complex> sums_and_pairs(const HeightMap& map, double mean) {
+    // Zeros as wide as the greatest lag keep the ends apart.
+    Grid<Complex> grid(convenient_length(map.columns() + map.columns() / 2 + 1),
+                       convenient_length(map.rows() + map.rows() / 2 + 1));
+    for (int row = 0; row < map.rows(); ++row)
+        for (int column = 0; column < map.columns(); ++column)
+            if (const double z = map.height(column, row); std::isfinite(z))
+                grid(column, row) = {z - mean, 1};
+    fourier_transform(grid);
+    // The transform of a + i b, a and b real, is A + i B; at the opposite frequency conj(A) + i conj(B).
+    for (int row = 0; row < grid.rows; ++row)
+        for (int column = 0; column < grid.columns; ++column) {
+            const int opposite_column = column == 0 ? 0 : grid.columns - column;
+            const int opposite_row = row == 0 ? 0 : grid.rows - row;
+            if (grid.index(opposite_column, opposite_row) < grid.index(column, row))
+                continue;
+            const Complex here = grid(column, row), there = std::conj(grid(opposite_column, opposite_row));
+            const Complex power{std::norm((here + there) / 2.0), std::norm((here - there) / 2.0)};
+            grid(column, row) = grid(opposite_column, opposite_row) = power;
+        }
+    inverse_fourier_transform(grid);
+    return grid;
+}
+
+struct Falls {
+    double shortest = undefined;
+    double longest = undefined; // NaN unless every direction has one
+};
+
+Falls falls_of_autocorrelation(const HeightMap& map, const HeightParameters& parameters) {
+    constexpr double s = 0.2;
+    const Grid<Complex> sums = sums_and_pairs(map, parameters.mean);
+    const double mean_square = parameters.sq * parameters.sq;
+    const auto normalised = [&](Complex sum_and_pairs) {
+        // Pairs are whole numbers, but for the transform's rounding.
+        return sum_and_pairs.imag() > 0.5 ? sum_and_pairs.real() / sum_and_pairs.imag() / mean_square : 1;
+    };
+    const int columns = map.columns() / 2, rows = map.rows() / 2;
+    // A point apart at the greatest lag; opposite lags are alike.
+    const int directions = 4 * std::max({columns, rows, 1});
+    Falls falls;
+    bool every = true;
+    for (int direction = 0; direction < directions; ++direction) {
+        const double angle = pi * direction / directions;
+        const double step_x = 0.5 * std::cos(angle), step_y = 0.5 * std::sin(angle);
+        double fall = undefined, before = 1;
+        for (int k = 1; std::abs(k * step_x) <= columns && std::abs(k * step_y) <= rows; ++k) {
+            const double here = bilinear(sums, k * step_x, k * step_y, normalised);
+            if (here < s) {
+                const double steps = k - 1 + (before - s) / (before - here);
+                fall = steps * std::hypot(step_x * map.pitch_x, step_y * map.pitch_y);
+                break;
+            }
+            before = here;
+        }
+        every = every && !std::isnan(fall);
+        falls.shortest = std::fmin(falls.shortest, fall);
+        falls.longest = std::fmax(falls.longest, fall);
+    }
+    if (!every)
+        falls.longest = undefined;
+    return falls;
+}
+
+double hann(int k, int n) {
+    const double wave = std::sin(pi * (k + 0.5) / n);
+    return wave * wave;
+}
+
+double texture_direction(const HeightMap& map, double mean) {
+    Grid<Complex> spectrum(convenient_length(map.columns()), convenient_length(map.rows()));
+    for (int row = 0; row < map.rows(); ++row)
+        for (int column = 0; column < map.columns(); ++column)
+            if (const double z = map.height(column, row); std::isfinite(z))
+                spectrum(column, row) = (z - mean) * hann(column, map.columns()) * hann(row, map.rows());
+    fourier_transform(spectrum);
+
+    const double extent_x = spectrum.columns * map.pitch_x, extent_y = spectrum.rows * map.pitch_y;
+    const double lowest = 2 / std::min(map.columns() * map.pitch_x, map.rows() * map.pitch_y);
+    const double highest = 0.5 / std::max(map.pitch_x, map.pitch_y);
+    const double step = 0.5 / std::max(extent_x, extent_y); // half the finer line distance
+    const int directions = static_cast<int>(std::ceil(2 * pi * highest / (2 * step)));
+    if (!(highest > lowest))
+        return undefined;
+    std::vector<double> power(static_cast<std::size_t>(directions));
+    for (int direction = 0; direction < directions; ++direction) {
+        const double angle = pi * direction / directions;
+        const double cosine = std::cos(angle), sine = std::sin(angle);
+        double sum = 0;
+        for (double frequency = lowest; frequency <= highest; frequency += step)
+            sum += frequency * bilinear(spectrum, frequency * cosine * extent_x, frequency * sine * extent_y,
+                                        [](Complex value) { return std::norm(value); });
+        power[static_cast<std::size_t>(direction)] = sum;
+    }
+    const auto greatest = std::max_element(power.begin(), power.end());
+    const double angle = pi * static_cast<double>(greatest - power.begin()) / directions; // of the waves, 0 to pi
+    return angle > 0 ? angle - pi / 2 : pi / 2;
+}
+
+} // namespace
+
+SpatialParameters spatial_parameters(const HeightMap& map) {
+    // Not by Sq, which the mean's rounding keeps above zero.
+    double lowest = undefined, highest = undefined;
+    for (const double z : map.height.values) {
+        lowest = std::fmin(lowest, z);
+        highest = std::fmax(highest, z);
+    }
+    if (!(highest > lowest))
+        return {undefined, undefined, undefined};
+    const HeightParameters parameters = height_parameters(map);
+    const Falls falls = falls_of_autocorrelation(map, parameters);
+    return {falls.shortest, falls.shortest / falls.longest, texture_direction(map, parameters.mean)};
+}
+
+} // namespace vkfv::surface

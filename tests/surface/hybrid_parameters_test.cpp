@@ -1,0 +1,63 @@
+#include "surface/hybrid_parameters.hpp"
+
+#include "core/units.hpp"
+#include "surface/maps.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+namespace vkfv::surface {
+namespace {
+
+using namespace test;
+
+TEST(HybridParameters, OfATiltedPlaneAreItsSlopeAndItsSecant) {
+    auto map = sampled(40, 30, 0.002, [](double x, double y) { return 0.3 * x - 0.4 * y; });
+    map.pitch_y = 0.004; // half the slope along y
+    map.height(7, 9) = not_measured;
+    const double slope = std::hypot(0.3, 0.2);
+    const HybridParameters p = hybrid_parameters(map);
+    EXPECT_NEAR(p.sdq, slope, 1e-12);
+    EXPECT_NEAR(p.sdr, std::sqrt(1 + slope * slope) - 1, 1e-12);
+}
+
+TEST(HybridParameters, OfASampledSinusoidKeepTheShareOfDifferences) {
+    const double amplitude = 1e-4, pitch = 0.002, n = 16;
+    for (const bool along_x : {true, false}) {
+        // Whole periods between the first and the last point: differences average over all phases alike.
+        const auto map = sampled(65, 65, pitch, [=](double x, double y) {
+            return amplitude * std::sin(2 * pi * (along_x ? x : y) / (n * pitch));
+        });
+        const double sdq = amplitude * 2 * std::sin(pi / n) / pitch / std::sqrt(2.0);
+        const HybridParameters p = hybrid_parameters(map);
+        EXPECT_NEAR(p.sdq, sdq, 1e-9 * sdq);
+        // The next term of the root is less by a quarter of the squared slope, which is at most 2 Sdq^2.
+        EXPECT_NEAR(p.sdr, sdq * sdq / 2, 0.5 * std::pow(sdq, 4));
+    }
+}
+
+TEST(HybridParameters, OfASphereCapGiveItsArea) {
+    // Area 2 pi R h over pi a^2. Sdq^2 is the mean of r^2 / (R^2 - r^2) over the disc, -(R/a)^2 ln(1 - (a/R)^2) - 1.
+    const double r = 1, a = 0.4;
+    const auto map = sampled(803, 803, 1e-3, [=](double x, double y) {
+        const double square = std::pow(x + 0.3 - 0.401, 2) + std::pow(y - 0.2 - 0.401, 2);
+        return square < a * a ? std::sqrt(r * r - square) : not_measured;
+    });
+    const double h = r - std::sqrt(r * r - a * a);
+    const HybridParameters p = hybrid_parameters(map);
+    // Whole cells end about 2/3 of a pitch before the rim, 2 x 1.7e-3 of the area, and with it a rim whose excess is
+    // about twice the mean: the mean of the rest is less by that share.
+    EXPECT_NEAR(p.sdr, 2 * r * h / (a * a) - 1, 4e-3 * p.sdr);
+    EXPECT_NEAR(p.sdq * p.sdq, -std::pow(r / a, 2) * std::log(1 - std::pow(a / r, 2)) - 1, 4e-3 * p.sdq * p.sdq);
+    EXPECT_LT(p.sdr, 2 * r * h / (a * a) - 1);
+}
+
+TEST(HybridParameters, AreUndefinedWithoutAWholeCell) {
+    const auto map = sampled(5, 5, 1, [](double x, double) { return std::fmod(x + 0.3, 2.0) < 0.5 ? 0 : not_measured; });
+    EXPECT_TRUE(std::isnan(hybrid_parameters(map).sdq));
+    EXPECT_TRUE(std::isnan(hybrid_parameters(map).sdr));
+}
+
+} // namespace
+} // namespace vkfv::surface
