@@ -1,13 +1,12 @@
 #include "app/bench.hpp"
 
-#include "report/svg.hpp"
+#include "report/chart.hpp"
 
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <functional>
 
 namespace vkfv::app {
 
@@ -19,29 +18,14 @@ constexpr dvec2 page{1140, 760};
 constexpr dvec2 panel{350, 300};
 constexpr dvec2 margin{30, 90};
 constexpr dvec2 gap{15, 30};
-constexpr std::array<const char*, 4> colours = {"#1f5fa8", "#c8501e", "#2f8f4e", "#7a4fa3"};
-
-std::string with_prefix(double value) {
-    const std::array<const char*, 5> prefixes = {"", " k", " M", " G", " T"};
-    std::size_t thousands = 0;
-    while (value >= 999.5 && thousands + 1 < prefixes.size()) {
-        value /= 1000;
-        ++thousands;
-    }
-    return fmt::format("{:.3g}{}", value, prefixes[thousands]);
-}
+using report::line_colours;
+using report::with_prefix;
 
 struct Bar {
     std::string label;
     double value;
     std::string note;
     std::size_t colour = 0;
-};
-
-struct Series {
-    std::string name;
-    std::vector<dvec2> points;
-    std::vector<double> spreads; // (maximum - minimum) / median
 };
 
 class Picture {
@@ -69,62 +53,17 @@ class Picture {
             svg_.text({corner.x + label_width - 6, base}, bars[k].label,
                       "font-size=\"11\" text-anchor=\"end\" fill=\"#222222\"");
             svg_.rectangle({corner.x + label_width, y + 2}, {std::max(width, 0.5), height - 4},
-                           fmt::format("fill=\"{}\"", colours[bars[k].colour % colours.size()]));
+                           fmt::format("fill=\"{}\"", line_colours[bars[k].colour % line_colours.size()]));
             svg_.text({corner.x + label_width + width + 5, base}, bars[k].note, "font-size=\"11\" fill=\"#222222\"");
         }
     }
 
     // Rays/s over a quantity, both in decades.
-    void curve(const std::string& title, const std::string& quantity, const std::vector<Series>& series) {
-        dvec2 least(1e300), most(-1e300);
-        for (const auto& one : series) {
-            for (const dvec2& point : one.points) {
-                least = glm::min(least, point);
-                most = glm::max(most, point);
-            }
-        }
-        if (least.x > most.x) {
-            return;
-        }
-        const dvec2 corner = next(title);
-        const dvec2 from{std::floor(std::log10(least.x) + 0.05), std::floor(std::log10(least.y))};
-        const dvec2 to{std::max(std::ceil(std::log10(most.x) - 0.05), from.x + 1),
-                       std::max(std::ceil(std::log10(most.y)), from.y + 1)};
-        const dvec2 low{corner.x + 52, corner.y + panel.y - 38}, high{corner.x + panel.x - 12, corner.y + 30};
-        const auto place = [&](dvec2 point) {
-            const dvec2 share = (glm::log(point) / std::log(10.0) - from) / (to - from);
-            return low + share * (high - low);
-        };
-        for (double decade = from.x; decade <= to.x; ++decade) {
-            const double x = place({std::pow(10, decade), 1}).x;
-            svg_.line({x, low.y}, {x, high.y}, "stroke=\"#dddddd\"");
-            svg_.text({x, low.y + 15}, with_prefix(std::pow(10, decade)),
-                      "font-size=\"11\" text-anchor=\"middle\" fill=\"#444444\"");
-        }
-        for (double decade = from.y; decade <= to.y; ++decade) {
-            const double y = place({1, std::pow(10, decade)}).y;
-            svg_.line({low.x, y}, {high.x, y}, "stroke=\"#dddddd\"");
-            svg_.text({low.x - 6, y + 4}, with_prefix(std::pow(10, decade)),
-                      "font-size=\"11\" text-anchor=\"end\" fill=\"#444444\"");
-        }
-        svg_.text({0.5 * (low.x + high.x), low.y + 32}, quantity,
-                  "font-size=\"11\" text-anchor=\"middle\" fill=\"#444444\"");
-        for (std::size_t k = 0; k < series.size(); ++k) {
-            const std::string stroke = fmt::format("stroke=\"{}\" fill=\"none\" stroke-width=\"2\"", colours[k % 4]);
-            std::vector<dvec2> points;
-            for (std::size_t i = 0; i < series[k].points.size(); ++i) {
-                const dvec2 point = series[k].points[i];
-                points.push_back(place(point));
-                const double half = 0.5 * series[k].spreads[i];
-                svg_.line(place({point.x, point.y * std::max(1 - half, 0.1)}), place({point.x, point.y * (1 + half)}),
-                          stroke);
-                svg_.rectangle(points.back() - dvec2(3), {6, 6}, fmt::format("fill=\"{}\"", colours[k % 4]));
-            }
-            svg_.path(points, false, stroke);
-            if (series.size() > 1) {
-                svg_.text({low.x + 6, low.y - 8 - 15 * static_cast<double>(series.size() - 1 - k)}, series[k].name,
-                          fmt::format("font-size=\"11\" fill=\"{}\"", colours[k % 4]));
-            }
+    void curves(const std::string& title, const std::string& quantity, const std::vector<report::Curve>& curves) {
+        if (!curves.empty()) {
+            const dvec2 corner = next("");
+            report::draw_chart(svg_, corner, panel, title, report::axis_over(curves, 0, quantity, true),
+                               report::axis_over(curves, 1, "", true), curves);
         }
     }
 
@@ -143,18 +82,18 @@ class Picture {
     int place_ = 0;
 };
 
-// A series for each value of `by` (one nameless series if there is none).
-std::vector<Series> series_of(const Json& list, const char* quantity, const char* by) {
-    std::vector<Series> result;
+// A curve for each value of `by` (one nameless curve if there is none).
+std::vector<report::Curve> curves_of(const Json& list, const char* quantity, const char* by) {
+    std::vector<report::Curve> result;
     for (const auto& entry : list) {
         const std::string name = by ? entry.at(by).get<std::string>() : "";
-        auto found = std::ranges::find(result, name, &Series::name);
+        auto found = std::ranges::find(result, name, &report::Curve::name);
         if (found == result.end()) {
-            result.push_back({name, {}, {}});
+            result.push_back({.name = name, .points = {}, .spreads = {}, .markers = true});
             found = result.end() - 1;
         }
         found->points.emplace_back(entry.at(quantity).get<double>(), entry.at("rays_per_second").get<double>());
-        found->spreads.push_back(entry.at("spread").get<double>());
+        found->spreads.push_back(entry.at("spread").get<double>()); // (maximum - minimum) / median
     }
     return result;
 }
@@ -211,7 +150,7 @@ std::string bench_picture(const Json& report) {
         const auto draw = [&](const char* list, const char* quantity, const char* by, const char* title,
                               const char* axis) {
             if (scaling.contains(list)) {
-                picture.curve(title, axis, series_of(scaling.at(list), quantity, by));
+                picture.curves(title, axis, curves_of(scaling.at(list), quantity, by));
             }
         };
         draw("rays", "rays", nullptr, "Rays/s over rays of an image", "rays");

@@ -57,28 +57,37 @@ void print_ledger(const trace::Image& image) {
 
 } // namespace
 
-void run_image(const CommandOptions& options) {
-    const auto configuration = load_configuration(options.file, options.overrides, Needs::exposure);
+Exposure expose(const Configuration& configuration, double focal_height) {
     const auto specimen = specimen::make(*configuration.specimen);
     // The scan's positions too, so that the instrument is the stack's.
     auto heights = configuration.scan ? configuration.scan->positions() : std::vector<double>();
-    heights.push_back(options.focal_height);
+    heights.push_back(focal_height);
     const auto instrument = assemble_instrument(configuration, specimen, heights);
     const auto tracer = make_tracer(instrument, specimen, configuration.trace);
-    const auto image = tracer->expose(options.focal_height, image_index(configuration, options.focal_height));
-
-    Grid<float> flux(image.flux.columns, image.flux.rows);
-    std::copy(image.flux.values.begin(), image.flux.values.end(), flux.values.begin());
     const double pitch = instrument.first_order.pixel_pitch;
-    const auto path = image_path(options, configuration);
+    return {tracer->expose(focal_height, image_index(configuration, focal_height)),
+            -0.5 * (configuration.instrument.detector_pixels - 1) * pitch, pitch, tracer->description()};
+}
+
+void write_image(const std::filesystem::path& path, const Exposure& exposure, double focal_height) {
+    const auto& image = exposure.image.flux;
+    Grid<float> flux(image.columns, image.rows);
+    std::copy(image.values.begin(), image.values.end(), flux.values.begin());
     if (path.has_parent_path()) {
         std::filesystem::create_directories(path.parent_path());
     }
-    surface::write_tiff(
-        path, flux,
-        {.pitch_x = pitch,
-         .pitch_y = pitch,
-         .description = fmt::format("radiant flux in W at z = {} um", options.focal_height * um_per_mm)});
+    surface::write_tiff(path, flux,
+                        {.pitch_x = exposure.pitch,
+                         .pitch_y = exposure.pitch,
+                         .description = fmt::format("radiant flux in W at z = {} um", focal_height * um_per_mm)});
+}
+
+void run_image(const CommandOptions& options) {
+    const auto configuration = load_configuration(options.file, options.overrides, Needs::exposure);
+    const auto exposure = expose(configuration, options.focal_height);
+    const auto& image = exposure.image;
+    const auto path = image_path(options, configuration);
+    write_image(path, exposure, options.focal_height);
     const auto pixels = image.flux.values.size();
     if (image.detected < fewest_detected_per_pixel * pixels) {
         spdlog::warn("{} rays detected on {} pixels: below {} a pixel an image is mostly noise. Launch more "

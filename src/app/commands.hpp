@@ -42,6 +42,9 @@ extern const std::vector<std::string> bench_parts;
 void run_stack(const CommandOptions& options);
 // One exposure, as a TIFF and its ledger.
 void run_image(const CommandOptions& options);
+// Images or stacks for every combination of the parameters in [sweep], with a table, charts and a contact sheet;
+// continues one that was interrupted.
+void run_sweep(const CommandOptions& options);
 // Validates, and prints the instrument's first-order data; needs no device.
 void run_check(const CommandOptions& options);
 // Given rays through the imaging train, as CSV.
@@ -75,6 +78,18 @@ std::unique_ptr<trace::Tracer> make_tracer(const optics::Instrument& instrument,
 
 // What of the tracer decides the bits of an image: device and traversal, but not how many threads a host has.
 std::string identity_of_tracer(const trace::Tracer& tracer, const trace::TraceOptions& options);
+
+// One exposure at a height of the focal plane (mm), as an image of the configuration's stack if its scan has that
+// height.
+struct Exposure {
+    trace::Image image;
+    double first = 0; // of the pixels in the object plane, mm: x and y of pixel (0, 0)
+    double pitch = 0;
+    std::string device;
+};
+Exposure expose(const Configuration& configuration, double focal_height);
+// float32 W per pixel.
+void write_image(const std::filesystem::path& path, const Exposure& exposure, double focal_height);
 
 // The true surface on the detector's pixels, in the object plane.
 surface::HeightMap truth_on_pixels(const optics::Instrument& instrument, const Configuration& configuration,

@@ -409,6 +409,34 @@ void read_output(const TomlTable& root, Configuration& configuration) {
     }
 }
 
+void read_sweep(const TomlTable& root, Configuration& configuration) {
+    const auto table = root.optional_table("sweep");
+    if (!table) {
+        return;
+    }
+    Sweep sweep;
+    sweep.stacks = table->optional_choice("of", {"images", "stacks"}).value_or("images") == "stacks";
+    if (!sweep.stacks) {
+        sweep.focal_height = from_um(table->optional_number("z_um").value_or(0));
+    } else if (table->has("z_um")) {
+        table->fail("z_um", "no focal height for a sweep of stacks", "Remove it; [scan] has the heights.");
+    }
+    sweep.repeats = static_cast<int>(table->optional_integer("repeats", 1, 1000).value_or(1));
+    for (const TomlTable& parameter_table : table->tables("parameter")) {
+        Sweep::Parameter parameter;
+        parameter.key = parameter_table.string("key");
+        // The last word of the key, unless there is a better one.
+        parameter.label =
+            parameter_table.optional_string("label").value_or(parameter.key.substr(parameter.key.rfind('.') + 1));
+        if (parameter.label.find_first_of("/\\=") != std::string::npos) {
+            parameter_table.fail("label", "a word without '/', '\\' and '='", "Folders are named after it.");
+        }
+        parameter.values = parameter_table.value_texts("values");
+        sweep.parameters.push_back(std::move(parameter));
+    }
+    configuration.sweep = std::move(sweep);
+}
+
 } // namespace
 
 Configuration load_configuration(const std::filesystem::path& file,
@@ -431,6 +459,7 @@ Configuration read_configuration(const TomlTable& root, Needs needs) {
     read_trace(root, configuration);
     read_topography(root, configuration, needs);
     read_output(root, configuration);
+    read_sweep(root, configuration);
     root.reject_unknown_keys();
     return configuration;
 }

@@ -20,6 +20,19 @@ namespace vkfv::app {
 // Which tables a command cannot do without: [specimen] for an exposure, [scan] besides for a stack.
 enum class Needs { instrument, exposure, stack };
 
+// What `vkfv --sweep` varies: every combination of the values, the first parameter slowest.
+struct Sweep {
+    struct Parameter {
+        std::string key;                 // dotted: "trace.rays"
+        std::string label;               // on axes and in folders' names
+        std::vector<std::string> values; // TOML texts
+    };
+    bool stacks = false;     // else single images
+    double focal_height = 0; // of the images, mm
+    int repeats = 1;         // of each combination, with seeds that follow trace.seed
+    std::vector<Parameter> parameters;
+};
+
 struct Configuration {
     std::filesystem::path file;
     optics::GlassCatalog glasses = optics::GlassCatalog::builtin(); // with the file's glass_catalogs
@@ -30,6 +43,7 @@ struct Configuration {
     topography::TopographyOptions topography;
     double l_filter = 0; // nesting index of the comparison's L-filter, mm; 0: none
     std::filesystem::path output_directory;
+    std::optional<Sweep> sweep; // belongs to no image: neither in `canonical` nor in `identity`
 
     // Where each key and table stands that was read, by dotted key; defaults have the place of their table.
     std::map<std::string, SourceLocation> places;

@@ -1,6 +1,7 @@
 #include "app/evaluation.hpp"
 
 #include "app/commands.hpp"
+#include "app/text_file.hpp"
 #include "core/units.hpp"
 #include "surface/image_file.hpp"
 
@@ -31,23 +32,6 @@ std::string text_of(const char* treatment, const topography::Deviation& deviatio
         "correlation {:.4f}\n",
         treatment, deviation.sq_measured * um_per_mm, deviation.sq_true * um_per_mm,
         deviation.sq_measured / deviation.sq_true, deviation.rms * um_per_mm, deviation.correlation);
-}
-
-void write_text_aside(const std::filesystem::path& path, const std::string& text) {
-    const auto aside = path.parent_path() / ("." + path.filename().string() + ".part");
-    std::ofstream stream(aside, std::ios::binary);
-    stream << text << std::flush;
-    std::error_code code;
-    if (stream) {
-        stream.close();
-        std::filesystem::rename(aside, path, code);
-    }
-    if (!stream || code) {
-        throw RunError(
-            fmt::format("{}: cannot be written. Free space on the disk, check its permissions, and run the "
-                        "same command again.",
-                        path.string()));
-    }
 }
 
 } // namespace

@@ -22,7 +22,7 @@ using vkfv::InputError;
 enum ExitCode { done = 0, wrong_input = 2, no_device = 3, run_failed = 4 };
 
 struct Arguments {
-    std::string stack, image, check, bench, topography, import_lens;
+    std::string stack, image, sweep, check, bench, topography, import_lens;
     std::vector<std::string> trace_rays, layout;
     bool devices = false;
     double z_um = 0;
@@ -59,6 +59,10 @@ void declare(CLI::App& app, Arguments& given) {
         ->type_name("C.toml")
         ->group(commands);
     app.add_option("--image", given.image, "Trace one exposure, at --z")
+        ->type_name("C.toml")
+        ->group(commands);
+    app.add_option("--sweep", given.sweep,
+                   "Images or stacks for every combination of the parameters in [sweep]; continues an interrupted one")
         ->type_name("C.toml")
         ->group(commands);
     app.add_option("--topography", given.topography, "Evaluate an existing stack anew")
@@ -242,6 +246,7 @@ void run(const CLI::App& app, const Arguments& given) {
     const std::vector<Command> commands = {
         {"--stack", given.stack, vkfv::app::run_stack},
         {"--image", given.image, vkfv::app::run_image},
+        {"--sweep", given.sweep, vkfv::app::run_sweep},
         {"--topography", given.topography, vkfv::app::run_topography},
         {"--check", given.check, vkfv::app::run_check},
         {"--trace-rays", given.trace_rays.empty() ? "" : given.trace_rays.front(), vkfv::app::run_trace_rays},
@@ -263,7 +268,7 @@ void run(const CLI::App& app, const Arguments& given) {
     }
     if (!chosen) {
         refuse("no command",
-               "one of --stack, --image, --topography, --check, --trace-rays, --layout, --devices, --bench, --import",
+               "one of --stack, --image, --sweep, --topography, --check, --trace-rays, --layout, --devices, --bench, --import",
                "vkfv --help tells what they do.");
     }
     if ((app.count("--z") > 0) != (chosen->run == vkfv::app::run_image)) {

@@ -561,6 +561,32 @@ std::vector<double> TomlTable::numbers(std::string_view key, const NumberRange& 
     return std::move(*value);
 }
 
+std::vector<std::string> TomlTable::value_texts(std::string_view key) const {
+    constexpr const char* expected = "an array of numbers, strings or booleans";
+    const toml::node* node = state_->find(key);
+    if (!node) {
+        state_->refuse_missing(key, expected);
+    }
+    const auto* array = node->as_array();
+    if (!array || array->empty()) {
+        state_->refuse(key, node, expected, "Put the values in brackets: [1e7, 1e8].");
+    }
+    std::vector<std::string> texts;
+    for (const auto& element : *array) {
+        if (const auto text = element.value_exact<std::string>()) {
+            texts.push_back(toml_quoted(*text));
+        } else if (const auto truth = element.value_exact<bool>()) {
+            texts.emplace_back(*truth ? "true" : "false");
+        } else if (const auto value = as_number(element)) {
+            texts.push_back(fmt::format("{}", *value));
+        } else {
+            state_->refuse(fmt::format("{}[{}]", key, texts.size()), &element, "a number, a string or a boolean",
+                           "Correct this element.");
+        }
+    }
+    return texts;
+}
+
 std::optional<TomlTable> TomlTable::optional_table(std::string_view key) const {
     const toml::node* node = state_->find(key);
     if (!node) {

@@ -89,6 +89,8 @@ class TomlTable {
     std::vector<double> numbers(std::string_view key, const NumberRange& range = NumberRange::finite()) const;
     std::optional<std::vector<double>>
     optional_numbers(std::string_view key, const NumberRange& range = NumberRange::finite()) const;
+    // The elements of an array of numbers, strings and booleans, at least one, as TOML text: what TomlOverride takes.
+    std::vector<std::string> value_texts(std::string_view key) const;
     TomlTable table(std::string_view key) const;
     std::optional<TomlTable> optional_table(std::string_view key) const;
     TomlTable table_or_empty(std::string_view key) const; // a missing table is one without keys

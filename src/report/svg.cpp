@@ -1,5 +1,7 @@
 #include "report/svg.hpp"
 
+#include "report/png.hpp"
+
 #include <fmt/format.h>
 
 #include <cmath>
@@ -65,6 +67,12 @@ void Svg::rectangle(glm::dvec2 corner, glm::dvec2 size, std::string_view attribu
 void Svg::text(glm::dvec2 at, std::string_view content, std::string_view attributes) {
     body_ += fmt::format("<text x=\"{}\" y=\"{}\"{}>{}</text>\n", number(at.x), number(at.y), spaced(attributes),
                          escaped(content));
+}
+
+void Svg::image(glm::dvec2 corner, glm::dvec2 size, const std::string& png) {
+    body_ += fmt::format("<image x=\"{}\" y=\"{}\" width=\"{}\" height=\"{}\" preserveAspectRatio=\"none\" "
+                         "style=\"image-rendering:pixelated\" href=\"data:image/png;base64,{}\"/>\n",
+                         number(corner.x), number(corner.y), number(size.x), number(size.y), base64(png));
 }
 
 void Svg::clip_rectangle(std::string_view id, glm::dvec2 corner, glm::dvec2 size) {

@@ -18,6 +18,8 @@ class Svg {
     void path(std::span<const glm::dvec2> points, bool closed, std::string_view attributes = {});
     void rectangle(glm::dvec2 corner, glm::dvec2 size, std::string_view attributes = {});
     void text(glm::dvec2 at, std::string_view content, std::string_view attributes = {});
+    // A PNG's bytes, stretched over the rectangle without smoothing.
+    void image(glm::dvec2 corner, glm::dvec2 size, const std::string& png);
     // Groups with clip-path="url(#id)" are cut to it.
     void clip_rectangle(std::string_view id, glm::dvec2 corner, glm::dvec2 size);
 

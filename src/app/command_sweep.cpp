@@ -1,0 +1,221 @@
+#include "app/commands.hpp"
+#include "app/digest.hpp"
+#include "app/sweep_report.hpp"
+#include "app/text_file.hpp"
+
+#include "core/units.hpp"
+#include "surface/image_file.hpp"
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+#include <spdlog/spdlog.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <fstream>
+#include <optional>
+
+namespace vkfv::app {
+
+namespace {
+
+namespace fs = std::filesystem;
+using Json = nlohmann::ordered_json;
+
+// A signal-to-noise ratio and a height noise that a user may want; the rays for them follow from those of the run.
+constexpr double wanted_ratio = 100;
+constexpr double wanted_height_noise = 0.1; // um
+
+std::vector<std::vector<std::string>> combinations(const Sweep& sweep) {
+    std::vector<std::vector<std::string>> result = {{}};
+    for (const auto& parameter : sweep.parameters) {
+        std::vector<std::vector<std::string>> longer;
+        for (const auto& begun : result) {
+            for (const auto& value : parameter.values) {
+                longer.push_back(begun);
+                longer.back().push_back(value);
+            }
+        }
+        result = std::move(longer);
+    }
+    return result;
+}
+
+Json read_json(const fs::path& path) {
+    std::ifstream stream(path);
+    auto parsed = stream ? Json::parse(stream, nullptr, false) : Json();
+    return parsed.is_object() ? parsed : Json();
+}
+
+// Of the rays that left the specimen, the share that came through the pupil; none where the ledger does not tell: the
+// backward estimator reports the detected light alone, and directed scatter counts rays of unequal weight.
+std::optional<double> share_collected(const trace::Ledger& ledger, bool tells) {
+    double collected = 0, lost = 0;
+    for (const auto& entry : ledger.entries) {
+        const auto rays = static_cast<double>(entry.rays);
+        if (entry.name == "detected" || entry.name == "beside the detector" ||
+            entry.name.find(" at imaging ") != std::string::npos) {
+            collected += rays;
+        } else if (entry.name.starts_with("escaped") || entry.name.starts_with("bounce limit")) {
+            lost += rays;
+        }
+    }
+    return tells && collected + lost > 0 ? std::optional(collected / (collected + lost)) : std::nullopt;
+}
+
+Json figures_of(const trace::Image& image, bool ledger_tells) {
+    double flux = 0, square = 0, variance = 0;
+    for (std::size_t k = 0; k < image.flux.values.size(); ++k) {
+        const double value = image.flux.values[k], error = image.standard_error.values[k];
+        flux += value;
+        square += value * value;
+        variance += error * error;
+    }
+    const auto pixels = static_cast<double>(image.flux.values.size());
+    const double mean = flux / pixels, noise = std::sqrt(variance / pixels);
+    Json figures;
+    figures["signal to noise"] = mean / noise;
+    // What is left of the spread of the pixels without the noise.
+    figures["contrast"] = std::sqrt(std::max(0.0, square / pixels - mean * mean - noise * noise)) / mean;
+    const auto share = share_collected(image.ledger, ledger_tells);
+    figures["share collected"] = share ? Json(*share) : Json();
+    figures["detected / emitted"] = flux / image.ledger.emitted;
+    figures["detected rays a pixel"] = static_cast<double>(image.detected) / pixels;
+    figures[fmt::format("rays for a ratio of {:g}", wanted_ratio)] =
+        static_cast<double>(image.rays) * std::pow(wanted_ratio * noise / mean, 2);
+    figures["seconds"] = image.seconds;
+    return figures;
+}
+
+// The image and its figures, from an earlier run if they are there.
+SweepRow image_row(const Configuration& configuration, double focal_height, const fs::path& folder) {
+    const fs::path image_file = folder / "image.tif", figures_file = folder / "image.json";
+    const std::string digest =
+        Digest()
+            .add(configuration.identity + fmt::format("z = {}\n", focal_height))
+            .add(geometry_digest(specimen::make(*configuration.specimen)))
+            .text();
+    SweepRow row;
+    const Json earlier = read_json(figures_file);
+    if (earlier.is_object() && earlier.value("digest", "") == digest && fs::exists(image_file)) {
+        row.figures = earlier.at("figures");
+    } else {
+        const Exposure exposure = expose(configuration, focal_height);
+        write_image(image_file, exposure, focal_height);
+        const bool tells = configuration.trace.estimator == trace::Estimator::forward && !configuration.trace.directed_scatter;
+        row.figures = figures_of(exposure.image, tells);
+        write_text_aside(figures_file,
+                         Json{{"digest", digest}, {"device", exposure.device}, {"figures", row.figures}}.dump(2) + "\n");
+    }
+    row.picture = surface::read_image(image_file);
+    return row;
+}
+
+// Stacks of the same surface with different seeds of the trace: how far their heights agree with each other, and their
+// mean figures.
+SweepRow stack_row(const CommandOptions& options, const std::vector<TomlOverride>& overrides, int repeats,
+                   const fs::path& folder) {
+    std::vector<surface::HeightMap> maps;
+    std::vector<Json> results;
+    for (int repeat = 0; repeat < repeats; ++repeat) {
+        CommandOptions one = options;
+        one.overrides = overrides;
+        const auto seed = load_configuration(options.file, overrides).trace.seed;
+        one.overrides.push_back({"trace.seed", fmt::format("{}", seed + static_cast<std::uint32_t>(repeat)), "sweep.repeats"});
+        one.out = repeats == 1 ? folder : folder / fmt::format("repeat_{:03}", repeat);
+        one.overrides.push_back({"output.directory", toml_quoted(one.out->string()), "sweep"});
+        run_stack(one);
+        maps.push_back(surface::read_height_map(*one.out / "topography.tif"));
+        results.push_back(read_json(*one.out / "results.json"));
+    }
+    SweepRow row;
+    const auto mean_of = [&](const char* key) {
+        double sum = 0;
+        for (const Json& result : results) {
+            if (!result.contains(key) || !result.at(key).is_number()) {
+                return Json();
+            }
+            sum += result.at(key).get<double>();
+        }
+        return Json(sum / static_cast<double>(results.size()));
+    };
+    row.figures["rms deviation / um"] = mean_of("rms_deviation_um");
+    row.figures["Sq measured / Sq true"] = mean_of("sq_ratio");
+    row.figures["correlation"] = mean_of("correlation");
+    row.figures["share measured"] = mean_of("measured_share");
+    if (repeats > 1) {
+        double variance = 0, points = 0;
+        for (std::size_t k = 0; k < maps.front().height.values.size(); ++k) {
+            double sum = 0, square = 0;
+            for (const auto& map : maps) {
+                sum += map.height.values[k];
+                square += map.height.values[k] * map.height.values[k];
+            }
+            if (std::isfinite(sum)) {
+                variance += std::max(0.0, square - sum * sum / repeats) / (repeats - 1);
+                points += 1;
+            }
+        }
+        const double noise = std::sqrt(variance / points) * um_per_mm;
+        row.figures["height noise / um"] = noise;
+        const double rays = results.front().at("rays_per_image").get<double>();
+        row.figures[fmt::format("rays for {:g} um", wanted_height_noise)] = rays * std::pow(noise / wanted_height_noise, 2);
+    }
+    const auto& heights = maps.front().height;
+    // The sheet stretches from 0 to twice the mean: heights from the lowest upwards.
+    row.picture = Grid<float>(heights.columns, heights.rows);
+    double lowest = 0;
+    for (const double height : heights.values) {
+        lowest = std::isfinite(height) ? std::min(lowest, height) : lowest;
+    }
+    std::ranges::transform(heights.values, row.picture.values.begin(), [&](double height) {
+        return std::isfinite(height) ? static_cast<float>(height - lowest) : 0.0f;
+    });
+    return row;
+}
+
+} // namespace
+
+void run_sweep(const CommandOptions& options) {
+    const auto base = load_configuration(options.file, options.overrides, Needs::exposure);
+    if (!base.sweep) {
+        throw InputError({{.file = options.file},
+                          "sweep",
+                          "no such table",
+                          "a table [sweep] with [[sweep.parameter]] key and values",
+                          "Add what is to be varied."});
+    }
+    const Sweep& sweep = *base.sweep;
+    const fs::path& folder = base.output_directory;
+    const auto list = combinations(sweep);
+    // Whatever is wrong with a combination is said before the first is traced.
+    const auto overrides_of = [&](const std::vector<std::string>& values) {
+        auto overrides = options.overrides;
+        for (std::size_t k = 0; k < values.size(); ++k) {
+            overrides.push_back({sweep.parameters[k].key, values[k], "sweep"});
+        }
+        return overrides;
+    };
+    for (const auto& values : list) {
+        (void)load_configuration(options.file, overrides_of(values), sweep.stacks ? Needs::stack : Needs::exposure);
+    }
+    std::vector<SweepRow> rows;
+    for (const auto& values : list) {
+        const std::string name = sweep_name(sweep, values);
+        spdlog::info("{} of {}: {}", rows.size() + 1, list.size(), name);
+        const auto overrides = overrides_of(values);
+        rows.push_back(sweep.stacks ? stack_row(options, overrides, sweep.repeats, folder / name)
+                                    : image_row(load_configuration(options.file, overrides, Needs::exposure),
+                                                sweep.focal_height, folder / name));
+        rows.back().values = values;
+    }
+    const std::string title = options.file.stem().string();
+    write_text_aside(folder / "sweep.csv", sweep_csv(sweep, rows));
+    write_text_aside(folder / "sweep.md", sweep_markdown(sweep, rows));
+    write_text_aside(folder / "sweep.svg", sweep_contact_sheet(sweep, rows, title));
+    write_text_aside(folder / "charts.svg", sweep_charts(sweep, rows, title));
+    fmt::print("{}results in {}\n", sweep_markdown(sweep, rows), folder.string());
+}
+
+} // namespace vkfv::app

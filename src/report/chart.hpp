@@ -1,0 +1,70 @@
+// Curves over an axis, and values over an area: the panels that the report's pictures are made of.
+#pragma once
+
+#include "core/grid.hpp"
+#include "report/colours.hpp"
+#include "report/svg.hpp"
+
+#include <optional>
+#include <span>
+#include <string>
+#include <utility>
+#include <vector>
+
+namespace vkfv::report {
+
+// What an axis shows. Equal ends are widened.
+struct Axis {
+    double from = 0;
+    double to = 0;
+    std::string label; // quantity and unit: "x / um"
+    bool decades = false; // logarithmic; ends positive
+};
+
+struct Curve {
+    std::string name; // empty: not in the legend
+    std::vector<glm::dvec2> points; // a NaN breaks the line
+    std::vector<double> spreads;    // relative: a bar of this share of y at each point; empty: none
+    bool line = true;
+    bool markers = false;
+};
+
+// The axis over all finite values of the curves' points in that direction (0: x, 1: y), with a little room in y;
+// decades end at powers of ten.
+Axis axis_over(std::span<const Curve> curves, int direction, std::string label, bool decades = false);
+
+// A chart within the rectangle (labels included); curves take line_colours in their order.
+void draw_chart(Svg& svg, glm::dvec2 corner, glm::dvec2 size, std::string_view title, const Axis& x, const Axis& y,
+                std::span<const Curve> curves);
+
+// Bars that touch, over x; heights of the same count of intervals between from and to.
+void draw_histogram(Svg& svg, glm::dvec2 corner, glm::dvec2 size, std::string_view title, const Axis& x,
+                    std::span<const double> counts);
+
+// Values over an area in micrometres; NaN is shown as not measured.
+struct Map {
+    std::string title;
+    std::string unit = "um"; // beside the colour bar
+    Grid<double> values;
+    double x0 = 0, y0 = 0; // um, middle of value (0, 0)
+    double pitch = 1;      // um
+    double low = 0, high = 1; // of the palette's ends
+    Palette palette = Palette::height;
+    std::optional<Grid<double>> brightness{}; // in [0, 1], dims the colours; none: 1 throughout
+    bool colour_bar = true;
+};
+
+// The map with axes in micrometres, a scale bar and a colour bar. Equal scales in x and y; values are averaged where
+// there are more of them than the picture's pixels.
+void draw_map(Svg& svg, glm::dvec2 corner, glm::dvec2 size, const Map& map);
+
+// The values between which all but `outside` of the finite ones lie, half of them at either end; {0, 1} for none.
+std::pair<double, double> range_of(const Grid<double>& values, double outside);
+
+// Values from `from` to `to` at distances of 1, 2 or 5 times a power of ten, about `count` of them.
+std::vector<double> ticks(double from, double to, int count);
+
+// 1.5 k, 20 M.
+std::string with_prefix(double value);
+
+} // namespace vkfv::report

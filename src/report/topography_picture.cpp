@@ -1,0 +1,130 @@
+#include "report/topography_picture.hpp"
+
+#include "core/units.hpp"
+#include "report/chart.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace vkfv::report {
+namespace {
+
+using glm::dvec2;
+
+constexpr dvec2 panel{420, 360};
+constexpr double margin = 24;
+constexpr double head = 56;
+
+Map map_of(const std::string& title, const surface::HeightMap& heights, double low, double high, Palette palette) {
+    Map map{.title = title, .unit = "um", .values = heights.height};
+    for (double& value : map.values.values)
+        value *= um_per_mm;
+    map.x0 = heights.x0 * um_per_mm;
+    map.y0 = heights.y0 * um_per_mm;
+    map.pitch = heights.pitch_x * um_per_mm;
+    map.low = low;
+    map.high = high;
+    map.palette = palette;
+    return map;
+}
+
+// The axis of brightness runs from black to all but the brightest thousandth.
+Map map_of_image(const std::string& title, const Grid<float>& image, const surface::HeightMap& place) {
+    Map map{.title = title, .unit = "W", .values = Grid<double>(image.columns, image.rows)};
+    std::copy(image.values.begin(), image.values.end(), map.values.values.begin());
+    map.x0 = place.x0 * um_per_mm;
+    map.y0 = place.y0 * um_per_mm;
+    map.pitch = place.pitch_x * um_per_mm;
+    map.low = 0;
+    map.high = range_of(map.values, 2e-3).second;
+    map.palette = Palette::grey;
+    return map;
+}
+
+Curve profile(const std::string& name, const surface::HeightMap& map, int row) {
+    Curve curve{.name = name, .points = {}, .spreads = {}};
+    for (int column = 0; column < map.columns(); ++column)
+        curve.points.emplace_back(map.x(column) * um_per_mm, map.height(column, row) * um_per_mm);
+    return curve;
+}
+
+} // namespace
+
+std::string topography_picture(const TopographyPicture& picture) {
+    Svg svg;
+    int place = 0;
+    const auto next = [&] {
+        const dvec2 corner = dvec2(margin, head) + (panel + dvec2(margin)) * dvec2(place % 3, place / 3);
+        ++place;
+        return corner;
+    };
+    svg.text({margin, 34}, picture.title, "font-size=\"19\" fill=\"#111111\"");
+
+    const Map probe = map_of("", picture.measured, 0, 1, Palette::height);
+    auto [low, high] = range_of(probe.values, 2e-3);
+    if (picture.truth) {
+        const auto [true_low, true_high] = range_of(map_of("", *picture.truth, 0, 1, Palette::height).values, 2e-3);
+        low = std::min(low, true_low);
+        high = std::max(high, true_high);
+    }
+    draw_map(svg, next(), panel, map_of("Measured height", picture.measured, low, high, Palette::height));
+    if (picture.truth)
+        draw_map(svg, next(), panel, map_of("True height", *picture.truth, low, high, Palette::height));
+    if (picture.deviation) {
+        const auto [least, most] = range_of(map_of("", *picture.deviation, 0, 1, Palette::height).values, 1e-2);
+        const double end = std::max(std::abs(least), std::abs(most));
+        draw_map(svg, next(), panel,
+                 map_of("Deviation, measured less true", *picture.deviation, -end, end, Palette::signed_deviation));
+    }
+    if (picture.all_in_focus) {
+        draw_map(svg, next(), panel, map_of_image("All in focus", *picture.all_in_focus, picture.measured));
+        // The heights' colours, as bright as the image.
+        Map overlay = map_of("Heights over the image", picture.measured, low, high, Palette::height);
+        const Map image = map_of_image("", *picture.all_in_focus, picture.measured);
+        overlay.brightness = image.values;
+        for (double& value : overlay.brightness->values)
+            value = std::clamp(value / image.high, 0.0, 1.0);
+        draw_map(svg, next(), panel, overlay);
+    }
+    const int row = picture.measured.rows() / 2;
+    std::vector<Curve> curves{profile("measured", picture.measured, row)};
+    if (picture.truth)
+        curves.push_back(profile("true", *picture.truth, row));
+    draw_chart(svg, next(), panel, fmt::format("Profile at y = {:.4g} um", picture.measured.y(row) * um_per_mm),
+               axis_over(curves, 0, "x / um"), axis_over(curves, 1, "height / um"), curves);
+    const dvec2 page = dvec2(margin, head) +
+                       (panel + dvec2(margin)) * dvec2(std::min(place, 3), (place + 2) / 3);
+    return svg.document(page, picture.title);
+}
+
+std::string image_picture(const std::string& title, const Grid<float>& image, double x0, double y0, double pitch) {
+    const surface::HeightMap place{.height = {}, .x0 = x0, .y0 = y0, .pitch_x = pitch, .pitch_y = pitch};
+    const Map map = map_of_image("Image", image, place);
+    double sum = 0, square = 0;
+    for (const float value : image.values) {
+        sum += static_cast<double>(value);
+        square += static_cast<double>(value) * static_cast<double>(value);
+    }
+    const auto count = static_cast<double>(image.values.size());
+    const double mean = sum / count, deviation = std::sqrt(std::max(0.0, square / count - mean * mean));
+    constexpr int intervals = 100;
+    const double top = range_of(map.values, 2e-4).second;
+    std::vector<double> counts(intervals, 0.0);
+    for (const float value : image.values) {
+        const auto interval = static_cast<int>(std::floor(static_cast<double>(value) / top * intervals));
+        if (interval >= 0 && interval < intervals)
+            counts[static_cast<std::size_t>(interval)] += 1;
+    }
+    Svg svg;
+    svg.text({margin, 34}, title, "font-size=\"19\" fill=\"#111111\"");
+    draw_map(svg, {margin, head}, panel, map);
+    draw_histogram(svg, {margin + panel.x + margin, head}, panel,
+                   fmt::format("Mean {:.4g} W, contrast {:.4f}", mean, deviation / mean),
+                   {0, top, "radiant flux of a pixel / W", false}, counts);
+    return svg.document(dvec2(3 * margin, head + margin) + dvec2(2 * panel.x, panel.y), title);
+}
+
+} // namespace vkfv::report

@@ -1,0 +1,28 @@
+// Pictures of a measurement, as SVG.
+#pragma once
+
+#include "surface/height_map.hpp"
+
+#include <optional>
+#include <string>
+
+namespace vkfv::report {
+
+// What a picture of heights shows; all maps on one grid.
+struct TopographyPicture {
+    std::string title;
+    surface::HeightMap measured;
+    std::optional<surface::HeightMap> truth;
+    std::optional<surface::HeightMap> deviation; // measured less true
+    std::optional<Grid<float>> all_in_focus;
+};
+
+// Measured heights, truth and deviation over x and y (one height scale for the first two), the all-in-focus image
+// alone and under the heights' colours, and the profile along the middle row.
+std::string topography_picture(const TopographyPicture& picture);
+
+// An image (W per pixel; pitch in mm, the middle of pixel (0, 0) at x0, y0) beside the histogram of its pixels, with
+// its contrast: standard deviation over mean.
+std::string image_picture(const std::string& title, const Grid<float>& image, double x0, double y0, double pitch);
+
+} // namespace vkfv::report
