@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cstddef>
+#include <numbers>
 #include <thread>
 #include <vector>
 
@@ -13,15 +14,31 @@ namespace {
 
 using Complex = std::complex<double>;
 
-// Transforms lines of `length` values, `count` of them, a thread's share at a time; value k of line n is at
-// values[n * line_step + k * value_step].
+// Shares `count` lines among threads: task(first, end, fft), where fft holds the twiddle factors of its thread.
+template <class Task>
+void share_lines(int count, std::size_t values, const Task& task) {
+    // Starting a thread takes tens of microseconds, as does transforming this many values.
+    constexpr std::size_t values_a_thread = std::size_t{1} << 14;
+    const std::size_t cores = std::max(1u, std::thread::hardware_concurrency());
+    const int threads = static_cast<int>(std::clamp<std::size_t>(values / values_a_thread, 1, cores));
+    const int share = (count + threads - 1) / threads;
+    const auto run = [&](int first, int end) {
+        Eigen::FFT<double> fft;
+        fft.SetFlag(Eigen::FFT<double>::Unscaled);
+        task(first, end, fft);
+    };
+    std::vector<std::jthread> others;
+    for (int first = share; first < count; first += share)
+        others.emplace_back([&, first] { run(first, std::min(count, first + share)); });
+    run(0, std::min(share, count));
+}
+
+// Transforms `count` lines of `length` values; value k of line n is at values[n * line_step + k * value_step].
 void transform_lines(std::vector<Complex>& values, int count, std::size_t line_step, int length, std::size_t value_step,
                      bool inverse) {
     if (length == 1)
         return; // is its own transform; Eigen's takes none so short
-    const auto transform = [&](int first, int end) {
-        Eigen::FFT<double> fft; // holds the twiddle factors: not for several threads
-        fft.SetFlag(Eigen::FFT<double>::Unscaled);
+    share_lines(count, values.size(), [&](int first, int end, Eigen::FFT<double>& fft) {
         std::vector<Complex> line(static_cast<std::size_t>(length)), transformed(line.size());
         for (int n = first; n < end; ++n) {
             Complex* const begin = values.data() + static_cast<std::size_t>(n) * line_step;
@@ -34,22 +51,66 @@ void transform_lines(std::vector<Complex>& values, int count, std::size_t line_s
             for (std::size_t k = 0; k < line.size(); ++k)
                 begin[k * value_step] = transformed[k];
         }
-    };
-    // Starting a thread takes tens of microseconds, as does transforming this many values.
-    constexpr std::size_t values_a_thread = std::size_t{1} << 14;
-    const std::size_t cores = std::max(1u, std::thread::hardware_concurrency());
-    const int threads = static_cast<int>(std::clamp<std::size_t>(values.size() / values_a_thread, 1, cores));
-    const int share = (count + threads - 1) / threads;
-    std::vector<std::jthread> others;
-    for (int first = share; first < count; first += share)
-        others.emplace_back([&, first] { transform(first, std::min(count, first + share)); });
-    transform(0, std::min(share, count));
+    });
 }
 
 void transform_grid(Grid<Complex>& grid, bool inverse) {
     const auto columns = static_cast<std::size_t>(grid.columns);
     transform_lines(grid.values, grid.rows, columns, grid.columns, 1, inverse);
     transform_lines(grid.values, grid.columns, 1, grid.rows, columns, inverse);
+}
+
+// As transform_lines(), the cosine transform. Two real lines are one complex one.
+void cosine_lines(std::vector<double>& values, int count, std::size_t line_step, int length, std::size_t value_step,
+                  bool inverse) {
+    if (length == 1)
+        return;
+    const auto n = static_cast<std::size_t>(length);
+    std::vector<Complex> turns(n); // exp(-i pi k / (2 n))
+    for (std::size_t k = 0; k < n; ++k)
+        turns[k] = std::polar(1.0, -std::numbers::pi * static_cast<double>(k) / (2.0 * length));
+    // Even places ascend, odd ones descend behind them.
+    const auto place = [n](std::size_t k) { return k % 2 == 0 ? k / 2 : n - 1 - k / 2; };
+    share_lines((count + 1) / 2, values.size(), [&](int first, int end, Eigen::FFT<double>& fft) {
+        std::vector<Complex> line(n), transformed(n);
+        for (int pair = first; pair < end; ++pair) {
+            double* const a = values.data() + static_cast<std::size_t>(2 * pair) * line_step;
+            double* const b = 2 * pair + 1 < count ? a + line_step : nullptr;
+            if (!inverse) {
+                for (std::size_t k = 0; k < n; ++k)
+                    line[place(k)] = {a[k * value_step], b ? b[k * value_step] : 0};
+                fft.fwd(transformed.data(), line.data(), length);
+                for (std::size_t k = 0; k < n; ++k) {
+                    const Complex at = transformed[k], mirrored = std::conj(transformed[(n - k) % n]);
+                    a[k * value_step] = (turns[k] * (at + mirrored)).real() / 2;
+                    if (b)
+                        b[k * value_step] = (turns[k] * (at - mirrored)).imag() / 2;
+                }
+            } else {
+                // V[k] = exp(i pi k / 2n) (X[k] - i X[n - k]), X[n] = 0, of a and i times that of b.
+                for (std::size_t k = 0; k < n; ++k) {
+                    const auto value = [&](const double* x) {
+                        return std::conj(turns[k]) *
+                               Complex(x[k * value_step], k == 0 ? 0 : -x[(n - k) * value_step]);
+                    };
+                    line[k] = value(a) + (b ? Complex(0, 1) * value(b) : 0);
+                }
+                fft.inv(transformed.data(), line.data(), length);
+                for (std::size_t k = 0; k < n; ++k) {
+                    const Complex at = transformed[place(k)] / static_cast<double>(length);
+                    a[k * value_step] = at.real();
+                    if (b)
+                        b[k * value_step] = at.imag();
+                }
+            }
+        }
+    });
+}
+
+void cosine_grid(Grid<double>& grid, bool inverse) {
+    const auto columns = static_cast<std::size_t>(grid.columns);
+    cosine_lines(grid.values, grid.rows, columns, grid.columns, 1, inverse);
+    cosine_lines(grid.values, grid.columns, 1, grid.rows, columns, inverse);
 }
 
 } // namespace
@@ -63,6 +124,14 @@ void inverse_fourier_transform(Grid<Complex>& grid) {
     const double factor = 1.0 / static_cast<double>(grid.values.size());
     for (Complex& value : grid.values)
         value *= factor;
+}
+
+void cosine_transform(Grid<double>& grid) {
+    cosine_grid(grid, false);
+}
+
+void inverse_cosine_transform(Grid<double>& grid) {
+    cosine_grid(grid, true);
 }
 
 int convenient_length(int least) {

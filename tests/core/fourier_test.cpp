@@ -61,6 +61,28 @@ TEST_P(Fourier, inverse_gives_the_grid_back) {
         EXPECT_LT(std::abs(grid.values[k] - before.values[k]), rounding(before));
 }
 
+TEST_P(Fourier, cosine_transform_is_the_sum_of_its_definition) {
+    const auto [columns, rows] = GetParam();
+    Grid<double> before(columns, rows);
+    const Grid<Complex> random = noise(columns, rows);
+    for (std::size_t k = 0; k < before.values.size(); ++k)
+        before.values[k] = random.values[k].real();
+    Grid<double> after = before;
+    vkfv::cosine_transform(after);
+    for (int m = 0; m < rows; ++m)
+        for (int l = 0; l < columns; ++l) {
+            double sum = 0;
+            for (int row = 0; row < rows; ++row)
+                for (int column = 0; column < columns; ++column)
+                    sum += before(column, row) * std::cos(std::numbers::pi * l * (2 * column + 1) / (2.0 * columns)) *
+                           std::cos(std::numbers::pi * m * (2 * row + 1) / (2.0 * rows));
+            EXPECT_NEAR(after(l, m), sum, rounding(random)) << l << " " << m;
+        }
+    vkfv::inverse_cosine_transform(after);
+    for (std::size_t k = 0; k < before.values.size(); ++k)
+        EXPECT_NEAR(after.values[k], before.values[k], rounding(random)) << k;
+}
+
 // A power of two, one of factors 2, 3 and 5, and a prime; a single row.
 INSTANTIATE_TEST_SUITE_P(Sizes, Fourier,
                          testing::Values(std::pair{8, 4}, std::pair{6, 15}, std::pair{7, 5}, std::pair{16, 1}));
