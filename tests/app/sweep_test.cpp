@@ -1,0 +1,121 @@
+// vkfv --sweep: every combination, once, with the noise that its rays make.
+#include "app/program.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <filesystem>
+#include <fstream>
+#include <sstream>
+#include <string>
+#include <vector>
+
+namespace vkfv::test {
+namespace {
+
+namespace fs = std::filesystem;
+using testing::HasSubstr;
+
+std::string with_sweep(const std::string& sweep) {
+    return small_configuration + "\n" + sweep;
+}
+
+const std::string of_rays = R"([sweep]
+z_um = 0.5
+
+[[sweep.parameter]]
+key = "specimen.material.g"
+label = "g"
+values = [0.3, 1.0]
+
+[[sweep.parameter]]
+key = "trace.rays"
+label = "N"
+values = [2e4, 3.2e5]
+)";
+
+// Cells of sweep.csv, the head first.
+std::vector<std::vector<std::string>> table(const fs::path& path) {
+    std::ifstream stream(path);
+    std::vector<std::vector<std::string>> rows;
+    for (std::string line; std::getline(stream, line);) {
+        rows.emplace_back();
+        std::istringstream cells(line);
+        for (std::string cell; std::getline(cells, cell, ',');)
+            rows.back().push_back(cell);
+    }
+    return rows;
+}
+
+TEST(Sweep, ImagesOfEveryCombination) {
+    const auto folder = fresh_folder("sweep");
+    write_file(folder / "c.toml", with_sweep(of_rays));
+    const std::vector<std::string> command = {"--sweep", "c.toml", "--out", "out", "--quiet"};
+    const auto first = run_program(command, folder);
+    ASSERT_EQ(first.exit_code, 0) << first.standard_error;
+    const auto rows = table(folder / "out/sweep.csv");
+    ASSERT_EQ(rows.size(), 5u);
+    ASSERT_EQ(rows[0][0], "g");
+    ASSERT_EQ(rows[0][2], "signal to noise");
+    const auto ratio = [&](std::size_t row) { return std::stod(rows[row][2]); };
+    // Sixteen times the rays, four times the ratio. With n rays detected its own relative error is 1 / (2 sqrt(n)); five
+    // of them for the fewest, some 500, are 11 %.
+    EXPECT_NEAR(ratio(2) / ratio(1), 4, 0.45);
+    EXPECT_NEAR(ratio(4) / ratio(3), 4, 0.45);
+    EXPECT_GT(ratio(3), 1.2 * ratio(1)); // a mirror sends more light back into the pupil
+    EXPECT_TRUE(fs::exists(folder / "out/sweep.svg"));
+    EXPECT_TRUE(fs::exists(folder / "out/charts.svg"));
+
+    // What is there is kept, and what is missing is made as it was.
+    const auto kept = fs::last_write_time(folder / "out/g=0.3,N=20000/image.tif");
+    const auto image = read_file(folder / "out/g=1,N=320000/image.tif");
+    fs::remove_all(folder / "out/g=1,N=320000");
+    const auto again = run_program(command, folder);
+    ASSERT_EQ(again.exit_code, 0) << again.standard_error;
+    EXPECT_EQ(fs::last_write_time(folder / "out/g=0.3,N=20000/image.tif"), kept);
+    EXPECT_EQ(read_file(folder / "out/g=1,N=320000/image.tif"), image);
+
+    // Another seed is another image.
+    auto other = command;
+    other.insert(other.end(), {"--seed", "77"});
+    ASSERT_EQ(run_program(other, folder).exit_code, 0);
+    EXPECT_NE(read_file(folder / "out/g=1,N=320000/image.tif"), image);
+}
+
+TEST(Sweep, StacksTellTheNoiseOfHeights) {
+    const auto folder = fresh_folder("stacks");
+    write_file(folder / "c.toml", with_sweep(R"([sweep]
+of = "stacks"
+repeats = 2
+
+[[sweep.parameter]]
+key = "trace.estimator"
+values = ["backward"]
+)"));
+    const auto result = run_program({"--sweep", "c.toml", "--out", "out", "--quiet", "--rays", "2e4"}, folder);
+    ASSERT_EQ(result.exit_code, 0) << result.standard_error;
+    const auto rows = table(folder / "out/sweep.csv");
+    ASSERT_EQ(rows.size(), 2u);
+    EXPECT_EQ(rows[1][0], "backward");
+    EXPECT_THAT(rows[0], testing::Contains("height noise / um"));
+    EXPECT_TRUE(fs::exists(folder / "out/estimator=backward/repeat_001/topography.tif"));
+}
+
+TEST(Sweep, WrongCombinationsAreRefusedBeforeTheFirstIsTraced) {
+    const auto folder = fresh_folder("wrong");
+    write_file(folder / "none.toml", small_configuration);
+    const auto none = run_program({"--sweep", "none.toml", "--out", "out"}, folder);
+    EXPECT_EQ(none.exit_code, 2);
+    EXPECT_THAT(none.standard_error, HasSubstr("[sweep]"));
+    write_file(folder / "c.toml", with_sweep(replaced(of_rays, "1.0]", "3.0]")));
+    const auto result = run_program({"--sweep", "c.toml", "--out", "out"}, folder);
+    EXPECT_EQ(result.exit_code, 2);
+    EXPECT_THAT(result.standard_error, HasSubstr("specimen.material.g"));
+    EXPECT_FALSE(fs::exists(folder / "out/sweep.csv"));
+    EXPECT_FALSE(fs::exists(folder / "out/g=0.3,N=20000"));
+    write_file(folder / "c.toml", with_sweep(replaced(of_rays, "[2e4, 3.2e5]", "2e4")));
+    EXPECT_EQ(run_program({"--sweep", "c.toml", "--out", "out"}, folder).exit_code, 2);
+}
+
+} // namespace
+} // namespace vkfv::test
