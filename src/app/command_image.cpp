@@ -1,6 +1,8 @@
 #include "app/commands.hpp"
 
+#include "app/text_file.hpp"
 #include "core/units.hpp"
+#include "report/topography_picture.hpp"
 #include "surface/image_file.hpp"
 
 #include <fmt/format.h>
@@ -14,7 +16,7 @@ namespace vkfv::app {
 
 namespace {
 
-constexpr std::uint64_t fewest_detected_per_pixel = 100; // 10 % of noise
+constexpr double least_signal_to_noise = 10; // of 100 detected rays a pixel
 
 // The random numbers of an exposure are keyed by its index: at a position of the scan, that image of the
 // stack is what comes out, bit by bit; anywhere else the index counts on after the scan's.
@@ -37,6 +39,12 @@ std::filesystem::path image_path(const CommandOptions& options, const Configurat
     }
     return configuration.output_directory /
            fmt::format("image_{:+.3f}um.tif", options.focal_height * um_per_mm);
+}
+
+Grid<float> in_float(const Grid<double>& image) {
+    Grid<float> result(image.columns, image.rows);
+    std::copy(image.values.begin(), image.values.end(), result.values.begin());
+    return result;
 }
 
 void print_ledger(const trace::Image& image) {
@@ -65,21 +73,28 @@ Exposure expose(const Configuration& configuration, double focal_height) {
     const auto instrument = assemble_instrument(configuration, specimen, heights);
     const auto tracer = make_tracer(instrument, specimen, configuration.trace);
     const double pitch = instrument.first_order.pixel_pitch;
-    return {tracer->expose(focal_height, image_index(configuration, focal_height)),
-            -0.5 * (configuration.instrument.detector_pixels - 1) * pitch, pitch, tracer->description()};
+    Exposure exposure{tracer->expose(focal_height, image_index(configuration, focal_height)),
+                      -0.5 * (configuration.instrument.detector_pixels - 1) * pitch, pitch, tracer->description(), {}};
+    if (const auto diffraction = make_diffraction(configuration, instrument)) {
+        exposure.diffracted = diffraction->apply(in_float(exposure.image.flux));
+    }
+    return exposure;
 }
 
 void write_image(const std::filesystem::path& path, const Exposure& exposure, double focal_height) {
-    const auto& image = exposure.image.flux;
-    Grid<float> flux(image.columns, image.rows);
-    std::copy(image.values.begin(), image.values.end(), flux.values.begin());
     if (path.has_parent_path()) {
         std::filesystem::create_directories(path.parent_path());
     }
-    surface::write_tiff(path, flux,
-                        {.pitch_x = exposure.pitch,
-                         .pitch_y = exposure.pitch,
-                         .description = fmt::format("radiant flux in W at z = {} um", focal_height * um_per_mm)});
+    const surface::ImageTags tags{.pitch_x = exposure.pitch,
+                                  .pitch_y = exposure.pitch,
+                                  .description =
+                                      fmt::format("radiant flux in W at z = {} um", focal_height * um_per_mm)};
+    surface::write_tiff(path, in_float(exposure.image.flux), tags);
+    if (exposure.diffracted) {
+        auto beside = path;
+        beside.replace_filename(path.stem().string() + "_diffracted" + path.extension().string());
+        surface::write_tiff(beside, *exposure.diffracted, tags);
+    }
 }
 
 void run_image(const CommandOptions& options) {
@@ -88,16 +103,21 @@ void run_image(const CommandOptions& options) {
     const auto& image = exposure.image;
     const auto path = image_path(options, configuration);
     write_image(path, exposure, options.focal_height);
-    const auto pixels = image.flux.values.size();
-    if (image.detected < fewest_detected_per_pixel * pixels) {
-        spdlog::warn("{} rays detected on {} pixels: below {} a pixel an image is mostly noise. Launch more "
-                     "with --rays, "
-                     "or close the field stop to the field of view",
-                     image.detected, pixels, fewest_detected_per_pixel);
+    auto picture = path;
+    picture.replace_extension(".svg");
+    write_text_aside(picture,
+                     report::image_picture(fmt::format("{}, z = {:g} um", options.file.stem().string(),
+                                                       options.focal_height * um_per_mm),
+                                           image.flux, exposure.first, exposure.first, exposure.pitch));
+    if (const double ratio = signal_to_noise(image); ratio < least_signal_to_noise) {
+        spdlog::warn("noise is {:.0f} % of a pixel's mean light. Launch more rays with --rays, close the field stop to the "
+                     "field of view, or take --estimator backward",
+                     100 / ratio);
     }
     print_ledger(image);
-    fmt::print("{} rays, {} detected, {:.3g} rays/s, {:.3g} s\n{}\n", image.rays, image.detected,
-               static_cast<double>(image.rays) / image.seconds, image.seconds, path.string());
+    fmt::print("{} rays, {} detected, {:.3g} rays/s, {:.3g} s\n{}\n{}\n", image.rays, image.detected,
+               static_cast<double>(image.rays) / image.seconds, image.seconds, path.string(),
+               picture.string());
 }
 
 } // namespace vkfv::app

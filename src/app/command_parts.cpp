@@ -1,13 +1,17 @@
 #include "app/commands.hpp"
 
 #include "app/configuration_section.hpp"
+#include "core/units.hpp"
+#include "surface/image_file.hpp"
 #include "trace/device_tracer.hpp"
 #include "trace/host_tracer.hpp"
 
+#include <fmt/format.h>
 #include <spdlog/spdlog.h>
 
 #include <algorithm>
 #include <cmath>
+#include <stdexcept>
 
 namespace vkfv::app {
 
@@ -60,6 +64,40 @@ std::unique_ptr<trace::Tracer> make_tracer(const optics::Instrument& instrument,
 
 std::string identity_of_tracer(const trace::Tracer& tracer, const trace::TraceOptions& options) {
     return options.device == "host" ? "host" : tracer.description();
+}
+
+std::optional<trace::Diffraction> make_diffraction(const Configuration& configuration,
+                                                   const optics::Instrument& instrument) {
+    const auto& options = configuration.diffraction;
+    const int pixels = configuration.instrument.detector_pixels;
+    const double pitch = instrument.first_order.pixel_pitch;
+    if (options.airy) {
+        return trace::Diffraction(
+            optics::AiryPattern(instrument.first_order.numerical_aperture, configuration.instrument.spectrum), pixels,
+            pixels, pitch);
+    }
+    if (options.file.empty()) {
+        return std::nullopt;
+    }
+    const Grid<float> point_spread = surface::read_image(options.file);
+    try {
+        return trace::Diffraction(point_spread, options.pitch, pixels, pixels, pitch);
+    } catch (const std::invalid_argument& error) {
+        throw InputError({configuration.places.at("diffraction.file"), "diffraction.file",
+                          fmt::format("{} of {} x {} pixels of {} um", options.file.string(), point_spread.columns,
+                                      point_spread.rows, options.pitch * um_per_mm),
+                          fmt::format("light whose sum is positive, on pixels of at most {:.4g} um", pitch * um_per_mm),
+                          "Correct the file, or the pitch of its pixels in the object plane."});
+    }
+}
+
+double signal_to_noise(const trace::Image& image) {
+    double flux = 0, variance = 0;
+    for (std::size_t k = 0; k < image.flux.values.size(); ++k) {
+        flux += image.flux.values[k];
+        variance += image.standard_error.values[k] * image.standard_error.values[k];
+    }
+    return flux / std::sqrt(variance * static_cast<double>(image.flux.values.size()));
 }
 
 surface::HeightMap truth_on_pixels(const optics::Instrument& instrument, const Configuration& configuration,

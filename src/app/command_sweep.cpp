@@ -65,25 +65,23 @@ std::optional<double> share_collected(const trace::Ledger& ledger, bool tells) {
 }
 
 Json figures_of(const trace::Image& image, bool ledger_tells) {
-    double flux = 0, square = 0, variance = 0;
-    for (std::size_t k = 0; k < image.flux.values.size(); ++k) {
-        const double value = image.flux.values[k], error = image.standard_error.values[k];
+    double flux = 0, square = 0;
+    for (const double value : image.flux.values) {
         flux += value;
         square += value * value;
-        variance += error * error;
     }
     const auto pixels = static_cast<double>(image.flux.values.size());
-    const double mean = flux / pixels, noise = std::sqrt(variance / pixels);
+    const double mean = flux / pixels, ratio = signal_to_noise(image);
     Json figures;
-    figures["signal to noise"] = mean / noise;
+    figures["signal to noise"] = ratio;
     // What is left of the spread of the pixels without the noise.
-    figures["contrast"] = std::sqrt(std::max(0.0, square / pixels - mean * mean - noise * noise)) / mean;
+    figures["contrast"] = std::sqrt(std::max(0.0, square / pixels / (mean * mean) - 1 - 1 / (ratio * ratio)));
     const auto share = share_collected(image.ledger, ledger_tells);
     figures["share collected"] = share ? Json(*share) : Json();
     figures["detected / emitted"] = flux / image.ledger.emitted;
     figures["detected rays a pixel"] = static_cast<double>(image.detected) / pixels;
     figures[fmt::format("rays for a ratio of {:g}", wanted_ratio)] =
-        static_cast<double>(image.rays) * std::pow(wanted_ratio * noise / mean, 2);
+        static_cast<double>(image.rays) * std::pow(wanted_ratio / ratio, 2);
     figures["seconds"] = image.seconds;
     return figures;
 }

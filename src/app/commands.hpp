@@ -3,6 +3,7 @@
 #pragma once
 
 #include "app/configuration.hpp"
+#include "trace/diffraction.hpp"
 
 #include <cstdint>
 #include <filesystem>
@@ -86,10 +87,18 @@ struct Exposure {
     double first = 0; // of the pixels in the object plane, mm: x and y of pixel (0, 0)
     double pitch = 0;
     std::string device;
+    std::optional<Grid<float>> diffracted; // its light after diffraction, if the configuration has one
 };
 Exposure expose(const Configuration& configuration, double focal_height);
-// float32 W per pixel.
+// The pixels' mean over the root mean square of their standard errors.
+double signal_to_noise(const trace::Image& image);
+// float32 W per pixel; the diffracted image beside it as NAME_diffracted.
 void write_image(const std::filesystem::path& path, const Exposure& exposure, double focal_height);
+
+// The blur that the configuration asks for, on its detector; none if it asks for none. InputError where the file of a
+// point spread function is at fault.
+std::optional<trace::Diffraction> make_diffraction(const Configuration& configuration,
+                                                   const optics::Instrument& instrument);
 
 // The true surface on the detector's pixels, in the object plane.
 surface::HeightMap truth_on_pixels(const optics::Instrument& instrument, const Configuration& configuration,

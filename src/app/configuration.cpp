@@ -396,6 +396,28 @@ void read_topography(const TomlTable& root, Configuration& configuration, Needs 
         from_um(section.number("l_filter_um", NumberRange::at_least(0), 0.0, Influence::nothing));
 }
 
+void read_diffraction(const TomlTable& root, Configuration& configuration) {
+    const TomlTable table = root.table_or_empty("diffraction");
+    const Section section(table, configuration);
+    const std::string kind =
+        section.choice("point_spread", {"none", "airy", "file"}, "none", Influence::nothing);
+    if (kind != "file") {
+        for (const char* key : {"file", "pitch_um"}) {
+            if (table.has(key)) {
+                table.fail(key, fmt::format("no such key with point_spread = \"{}\"", kind),
+                           "Remove it; it belongs to point_spread = \"file\".");
+            }
+        }
+    }
+    configuration.diffraction.airy = kind == "airy";
+    if (kind == "file") {
+        configuration.diffraction.file = table.file_path("file");
+        section.record_reference("file", absolute_path(configuration.diffraction.file).string());
+        configuration.diffraction.pitch =
+            from_um(section.number("pitch_um", NumberRange::positive(), {}, Influence::nothing));
+    }
+}
+
 void read_output(const TomlTable& root, Configuration& configuration) {
     const TomlTable table = root.table_or_empty("output");
     const Section section(table, configuration);
@@ -457,6 +479,7 @@ Configuration read_configuration(const TomlTable& root, Needs needs) {
         read_scan(root, configuration);
     }
     read_trace(root, configuration);
+    read_diffraction(root, configuration);
     read_topography(root, configuration, needs);
     read_output(root, configuration);
     read_sweep(root, configuration);

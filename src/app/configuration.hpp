@@ -20,6 +20,15 @@ namespace vkfv::app {
 // Which tables a command cannot do without: [specimen] for an exposure, [scan] besides for a stack.
 enum class Needs { instrument, exposure, stack };
 
+// How images are blurred after the trace, if at all. Belongs to no traced image.
+struct DiffractionOptions {
+    bool airy = false;
+    std::filesystem::path file; // else a measured point spread function
+    double pitch = 0;           // of the file's pixels, mm in the object plane
+
+    bool wanted() const { return airy || !file.empty(); }
+};
+
 // What `vkfv --sweep` varies: every combination of the values, the first parameter slowest.
 struct Sweep {
     struct Parameter {
@@ -40,6 +49,7 @@ struct Configuration {
     std::optional<specimen::Description> specimen;
     std::optional<scan::ScanPlan> scan;
     trace::TraceOptions trace;
+    DiffractionOptions diffraction;
     topography::TopographyOptions topography;
     double l_filter = 0; // nesting index of the comparison's L-filter, mm; 0: none
     std::filesystem::path output_directory;
@@ -54,7 +64,7 @@ struct Configuration {
 
     // What the images depend on, a line a key, for telling one stack from another. Of the keys of `canonical`
     // it leaves out, with the reason:
-    //   topography.*, output.directory   evaluate or place the images
+    //   diffraction.*, topography.*, output.directory   blur, evaluate or place the images
     //   trace.batch                      the same bits for any batch size
     //   trace.device, trace.traversal    requests; what they resolve to is in the tracer's description
     //   file paths                       the content counts, and stands in its place as a digest

@@ -82,6 +82,12 @@ void draw_axes(Svg& svg, const Frame& frame, bool grid) {
     }
 }
 
+// The largest of 1, 2 and 5 times a power of ten that is no larger.
+double round_below(double value) {
+    const double power = std::pow(10, std::floor(std::log10(value)));
+    return power * (value >= 5 * power ? 5 : value >= 2 * power ? 2 : 1);
+}
+
 Frame chart_frame(dvec2 corner, dvec2 size, const Axis& x, const Axis& y) {
     return {{corner.x + 58, corner.y + size.y - 38}, {corner.x + size.x - 12, corner.y + 26}, widened(x), widened(y)};
 }
@@ -236,9 +242,8 @@ void draw_map(Svg& svg, dvec2 corner, dvec2 size, const Map& map) {
     svg.image({low.x, high.y}, {high.x - low.x, low.y - high.y}, png_bytes(pixels));
     draw_axes(svg, frame, false);
 
-    // A scale bar of a round length, about a quarter of the width.
-    const std::vector<double> lengths = ticks(0, extent.x, 4);
-    const double length = lengths.size() > 1 ? lengths[1] : 0.25 * extent.x;
+    // A scale bar of a round length, a third of the width at most.
+    const double length = round_below(0.3 * extent.x);
     const dvec2 right{high.x - 10, low.y - 10};
     svg.rectangle({right.x - scale * length - 6, right.y - 22}, {scale * length + 12, 28},
                   "fill=\"#ffffff\" fill-opacity=\"0.75\"");
@@ -259,7 +264,7 @@ void draw_map(Svg& svg, dvec2 corner, dvec2 size, const Map& map) {
             svg.line({at.x + 12, y}, {at.x + 16, y}, "stroke=\"#666666\"");
             svg.text({at.x + 19, y + 4}, fmt::format("{:.4g}", value + 0.0), label_style("start"));
         }
-        svg.text({at.x, low.y + 15}, map.unit, label_style("start"));
+        svg.text({at.x, high.y - 5}, map.unit, label_style("start"));
     }
 }
 

@@ -32,7 +32,8 @@ Map map_of(const std::string& title, const surface::HeightMap& heights, double l
 }
 
 // The axis of brightness runs from black to all but the brightest thousandth.
-Map map_of_image(const std::string& title, const Grid<float>& image, const surface::HeightMap& place) {
+template <class Value>
+Map map_of_image(const std::string& title, const Grid<Value>& image, const surface::HeightMap& place) {
     Map map{.title = title, .unit = "W", .values = Grid<double>(image.columns, image.rows)};
     std::copy(image.values.begin(), image.values.end(), map.values.values.begin());
     map.x0 = place.x0 * um_per_mm;
@@ -100,21 +101,21 @@ std::string topography_picture(const TopographyPicture& picture) {
     return svg.document(page, picture.title);
 }
 
-std::string image_picture(const std::string& title, const Grid<float>& image, double x0, double y0, double pitch) {
+std::string image_picture(const std::string& title, const Grid<double>& image, double x0, double y0, double pitch) {
     const surface::HeightMap place{.height = {}, .x0 = x0, .y0 = y0, .pitch_x = pitch, .pitch_y = pitch};
     const Map map = map_of_image("Image", image, place);
     double sum = 0, square = 0;
-    for (const float value : image.values) {
-        sum += static_cast<double>(value);
-        square += static_cast<double>(value) * static_cast<double>(value);
+    for (const double value : image.values) {
+        sum += value;
+        square += value * value;
     }
     const auto count = static_cast<double>(image.values.size());
     const double mean = sum / count, deviation = std::sqrt(std::max(0.0, square / count - mean * mean));
     constexpr int intervals = 100;
     const double top = range_of(map.values, 2e-4).second;
     std::vector<double> counts(intervals, 0.0);
-    for (const float value : image.values) {
-        const auto interval = static_cast<int>(std::floor(static_cast<double>(value) / top * intervals));
+    for (const double value : image.values) {
+        const auto interval = static_cast<int>(std::floor(value / top * intervals));
         if (interval >= 0 && interval < intervals)
             counts[static_cast<std::size_t>(interval)] += 1;
     }

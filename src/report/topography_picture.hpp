@@ -23,6 +23,6 @@ std::string topography_picture(const TopographyPicture& picture);
 
 // An image (W per pixel; pitch in mm, the middle of pixel (0, 0) at x0, y0) beside the histogram of its pixels, with
 // its contrast: standard deviation over mean.
-std::string image_picture(const std::string& title, const Grid<float>& image, double x0, double y0, double pitch);
+std::string image_picture(const std::string& title, const Grid<double>& image, double x0, double y0, double pitch);
 
 } // namespace vkfv::report

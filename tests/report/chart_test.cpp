@@ -173,9 +173,9 @@ TEST(TopographyPicture, has_a_panel_for_each_map_and_the_profile) {
 }
 
 TEST(ImagePicture, states_mean_and_contrast) {
-    Grid<float> image(4, 2, 1.0f);
+    Grid<double> image(4, 2, 1.0);
     for (int column = 0; column < 4; ++column)
-        image(column, 1) = 3.0f;
+        image(column, 1) = 3.0;
     const auto svg = image_picture("t", image, 0, 0, 0.001);
     EXPECT_NE(svg.find("Mean 2 W, contrast 0.5000"), std::string::npos);
 }

@@ -1,0 +1,78 @@
+// [diffraction] blurs images after the trace and leaves the traced ones as they are.
+#include "app/program.hpp"
+#include "surface/image_file.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <numeric>
+
+namespace vkfv::test {
+namespace {
+
+using testing::HasSubstr;
+
+double sum(const Grid<float>& image) {
+    return std::accumulate(image.values.begin(), image.values.end(), 0.0);
+}
+
+double spread(const Grid<float>& image) {
+    const double mean = sum(image) / static_cast<double>(image.values.size());
+    double square = 0;
+    for (const float value : image.values)
+        square += (static_cast<double>(value) - mean) * (static_cast<double>(value) - mean);
+    return std::sqrt(square / static_cast<double>(image.values.size()));
+}
+
+TEST(Diffraction, BlursBesideTheTracedImage) {
+    const auto folder = fresh_folder("airy");
+    write_file(folder / "c.toml", small_configuration);
+    const auto run = [&](const std::string& out, const std::vector<std::string>& more) {
+        std::vector<std::string> command = {"--image", "c.toml", "--z", "0", "--out", out, "--quiet"};
+        command.insert(command.end(), more.begin(), more.end());
+        const auto result = run_program(command, folder);
+        EXPECT_EQ(result.exit_code, 0) << result.standard_error;
+    };
+    run("a.tif", {});
+    run("b.tif", {"--set", "diffraction.point_spread=airy"});
+    EXPECT_EQ(read_file(folder / "a.tif"), read_file(folder / "b.tif"));
+    const auto traced = surface::read_image(folder / "b.tif");
+    const auto blurred = surface::read_image(folder / "b_diffracted.tif");
+    // Rounding to float of each pixel.
+    EXPECT_NEAR(sum(blurred) / sum(traced), 1, 1e-6);
+    EXPECT_LT(spread(blurred), 0.9 * spread(traced));
+
+    // A point spread function of one pixel is none.
+    Grid<float> point(3, 3);
+    point(1, 1) = 2;
+    surface::write_tiff(folder / "point.tif", point);
+    run("c.tif", {"--set", "diffraction.point_spread=file", "--set", "diffraction.file=point.tif", "--set",
+                  "diffraction.pitch_um=0.001"});
+    const auto same = surface::read_image(folder / "c_diffracted.tif");
+    for (std::size_t k = 0; k < same.values.size(); ++k)
+        EXPECT_NEAR(same.values[k], traced.values[k], 1e-6 * sum(traced));
+}
+
+TEST(Diffraction, AWrongPointSpreadFunctionIsRefused) {
+    const auto folder = fresh_folder("wrong");
+    surface::write_tiff(folder / "dark.tif", Grid<float>(3, 3));
+    write_file(folder / "c.toml", small_configuration);
+    const auto run = [&](const std::vector<std::string>& settings) {
+        std::vector<std::string> command = {"--image", "c.toml", "--z", "0", "--out", "a.tif", "--quiet"};
+        for (const auto& setting : settings)
+            command.insert(command.end(), {"--set", setting});
+        const auto result = run_program(command, folder);
+        EXPECT_EQ(result.exit_code, 2);
+        return result.standard_error;
+    };
+    EXPECT_THAT(run({"diffraction.point_spread=file", "diffraction.file=dark.tif", "diffraction.pitch_um=0.1"}),
+                HasSubstr("positive"));
+    EXPECT_THAT(run({"diffraction.point_spread=file", "diffraction.file=none.tif", "diffraction.pitch_um=0.1"}),
+                HasSubstr("none.tif"));
+    EXPECT_THAT(run({"diffraction.point_spread=airy", "diffraction.pitch_um=0.1"}), HasSubstr("pitch_um"));
+    EXPECT_THAT(run({"diffraction.point_spread=gauss"}), HasSubstr("airy"));
+}
+
+} // namespace
+} // namespace vkfv::test
