@@ -25,6 +25,8 @@ struct CommandOptions {
     double focal_height = 0;              // --image; mm
     std::filesystem::path rays_file;      // --trace-rays
     std::filesystem::path picture_file;   // --layout
+    std::vector<std::filesystem::path> compared_files; // --compare: measurements, then the truth
+    bool align = false;                   // --compare: the lateral shift is removed
     bool float_precision = false;         // --trace-rays: on the device
     bool apertures = true;                // --trace-rays
     int runs = 5;                         // --bench
@@ -60,6 +62,10 @@ void run_bench(const CommandOptions& options);
 // Evaluates an existing stack anew; with `shuffle` in a random order of its images, a control that must find
 // nothing.
 void run_topography(const CommandOptions& options);
+
+// Measured against true heights: lateral shift, deviation, its systematic and random part, ISO 25178-2 parameters; with
+// `out`, also deviation by spatial frequency (transfer.csv) and by slope (slope.csv), maps and compare.json there.
+void run_compare(const CommandOptions& options);
 
 // A Zemax lens as a prescription: in the file `out`, else on standard output.
 void run_import(const CommandOptions& options);

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "app/configuration.hpp"
+#include "topography/compare.hpp"
 #include "topography/topography.hpp"
 
 #include <nlohmann/json_fwd.hpp>

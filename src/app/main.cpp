@@ -23,7 +23,8 @@ enum ExitCode { done = 0, wrong_input = 2, no_device = 3, run_failed = 4 };
 
 struct Arguments {
     std::string stack, image, sweep, check, bench, topography, import_lens;
-    std::vector<std::string> trace_rays, layout;
+    std::vector<std::string> trace_rays, layout, compare;
+    bool align = false;
     bool devices = false;
     double z_um = 0;
     std::string precision = "double";
@@ -67,6 +68,12 @@ void declare(CLI::App& app, Arguments& given) {
         ->group(commands);
     app.add_option("--topography", given.topography, "Evaluate an existing stack anew")
         ->type_name("DIR")
+        ->group(commands);
+    app.add_option("--compare", given.compare,
+                   "Height maps against the truth: shift, deviation, transfer, ISO 25178-2 parameters; several "
+                   "measurements of one field also give systematic and random part")
+        ->expected(2, CLI::detail::expected_max_vector_size)
+        ->option_text("MEASURED... TRUTH")
         ->group(commands);
     app.add_option("--check", given.check, "Validate and print first-order data; needs no device")
         ->type_name("C.toml")
@@ -153,13 +160,14 @@ void declare(CLI::App& app, Arguments& given) {
                    "Take the images in a random order: a control, which must find nothing (--topography)")
         ->type_name("SEED")
         ->group(specific);
+    app.add_flag("--align", given.align, "Remove the lateral shift that was found (--compare)")->group(specific);
     app.add_option("--glass-catalog", given.glass_catalogs,
                    "Glasses besides the built-in ones; may be repeated (--import)")
         ->type_name("FILE.agf")
         ->expected(1)
         ->take_all()
         ->group(specific);
-    app.add_flag("--json", given.json, "Machine-readable output (--check, --devices, --bench, --import)")
+    app.add_flag("--json", given.json, "Machine-readable output (--check, --compare, --devices, --bench, --import)")
         ->group(specific);
     app.add_flag("--quiet", given.quiet, "Only warnings and errors, no progress");
 
@@ -202,6 +210,8 @@ vkfv::app::CommandOptions options_from(const Arguments& given) {
     options.peer = given.peer;
     options.commit = given.commit;
     options.shuffle = given.shuffle;
+    options.compared_files.assign(given.compare.begin(), given.compare.end());
+    options.align = given.align;
     options.glass_catalogs.assign(given.glass_catalogs.begin(), given.glass_catalogs.end());
     const auto override_with = [&](const std::string& option, const std::string& key,
                                    const std::string& value) {
@@ -248,6 +258,7 @@ void run(const CLI::App& app, const Arguments& given) {
         {"--image", given.image, vkfv::app::run_image},
         {"--sweep", given.sweep, vkfv::app::run_sweep},
         {"--topography", given.topography, vkfv::app::run_topography},
+        {"--compare", "", vkfv::app::run_compare},
         {"--check", given.check, vkfv::app::run_check},
         {"--trace-rays", given.trace_rays.empty() ? "" : given.trace_rays.front(), vkfv::app::run_trace_rays},
         {"--layout", given.layout.empty() ? "" : given.layout.front(), vkfv::app::run_layout},
@@ -268,7 +279,7 @@ void run(const CLI::App& app, const Arguments& given) {
     }
     if (!chosen) {
         refuse("no command",
-               "one of --stack, --image, --sweep, --topography, --check, --trace-rays, --layout, --devices, --bench, --import",
+               "one of --stack, --image, --sweep, --topography, --compare, --check, --trace-rays, --layout, --devices, --bench, --import",
                "vkfv --help tells what they do.");
     }
     if ((app.count("--z") > 0) != (chosen->run == vkfv::app::run_image)) {

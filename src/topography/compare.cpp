@@ -1,6 +1,7 @@
+#include "topography/compare.hpp"
+
 #include "surface/filter.hpp"
 #include "surface/height_parameters.hpp"
-#include "topography/topography.hpp"
 
 #include <cmath>
 #include <limits>
@@ -11,13 +12,17 @@ namespace {
 
 using surface::HeightMap;
 
-// Both maps with the points that both have, levelled and filtered alike.
-struct Treated {
-    HeightMap measured;
-    HeightMap truth;
-};
+HeightMap difference(const LevelledPair& treated) {
+    HeightMap result = treated.measured;
+    for (std::size_t k = 0; k < result.height.values.size(); ++k)
+        result.height.values[k] -= treated.truth.height.values[k];
+    // Levelled maps differ by a levelled map; after an L-filter a rest of offset and tilt may remain.
+    return surface::remove_plane(result, surface::least_squares_plane(result));
+}
 
-Treated treat(HeightMap measured, HeightMap truth, double l_filter) {
+} // namespace
+
+LevelledPair levelled_pair(HeightMap measured, HeightMap truth, double l_filter) {
     if (measured.columns() != truth.columns() || measured.rows() != truth.rows())
         throw std::invalid_argument("compare: both height maps must stand on the same grid");
     for (std::size_t k = 0; k < measured.height.values.size(); ++k) {
@@ -34,18 +39,8 @@ Treated treat(HeightMap measured, HeightMap truth, double l_filter) {
     return {level(std::move(measured)), level(std::move(truth))};
 }
 
-HeightMap difference(const Treated& treated) {
-    HeightMap result = treated.measured;
-    for (std::size_t k = 0; k < result.height.values.size(); ++k)
-        result.height.values[k] -= treated.truth.height.values[k];
-    // Levelled maps differ by a levelled map; after an L-filter a rest of offset and tilt may remain.
-    return surface::remove_plane(result, surface::least_squares_plane(result));
-}
-
-} // namespace
-
 Deviation compare(const HeightMap& measured, const HeightMap& truth, double l_filter) {
-    const Treated treated = treat(measured, truth, l_filter);
+    const LevelledPair treated = levelled_pair(measured, truth, l_filter);
     const auto a = surface::height_parameters(treated.measured);
     const auto b = surface::height_parameters(treated.truth);
     double covariance = 0, count = 0;
@@ -67,7 +62,7 @@ Deviation compare(const HeightMap& measured, const HeightMap& truth, double l_fi
 }
 
 HeightMap deviation_map(const HeightMap& measured, const HeightMap& truth, double l_filter) {
-    return difference(treat(measured, truth, l_filter));
+    return difference(levelled_pair(measured, truth, l_filter));
 }
 
 } // namespace vkfv::topography

@@ -1,4 +1,4 @@
-// From a focus stack to a height map, and from two height maps to their deviation.
+// From a focus stack to a height map.
 //
 // How a height is found, for every pixel:
 //
@@ -94,22 +94,5 @@ double quality_threshold(int images, double false_peak_rate);
 // A whole stack in memory: stack[k] is the image at z[k] (mm, ascending, equidistant).
 Topography reconstruct(std::span<const Grid<float>> stack, std::span<const double> z, double x0, double y0,
                        double pitch, const TopographyOptions& options);
-
-// Statistics of measured against true over the points present in both, after the same levelling (and, with a
-// positive nesting index in mm, the same L-filter) of both. Lengths in mm; NaN where no point is present.
-struct Deviation {
-    double sq_measured = 0;
-    double sq_true = 0;
-    double rms = 0;            // of the difference, offset and tilt removed
-    double correlation = 0;    // Pearson; 0 where either is flat
-    double measured_share = 0; // points present in both, of all points
-};
-
-// Both maps stand on the same grid: std::invalid_argument otherwise.
-Deviation compare(const surface::HeightMap& measured, const surface::HeightMap& truth, double l_filter);
-
-// Measured less true after the treatment of compare(); its root mean square is Deviation::rms.
-surface::HeightMap deviation_map(const surface::HeightMap& measured, const surface::HeightMap& truth,
-                                 double l_filter);
 
 } // namespace vkfv::topography

@@ -2,6 +2,7 @@
 
 #include "core/error.hpp"
 #include "core/units.hpp"
+#include "topography/compare.hpp"
 
 #include <gtest/gtest.h>
 

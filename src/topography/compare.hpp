@@ -1,0 +1,34 @@
+// Measured against true heights.
+#pragma once
+
+#include "surface/height_map.hpp"
+
+namespace vkfv::topography {
+
+// Statistics of measured against true over the points present in both, after the same levelling (and, with a
+// positive nesting index in mm, the same L-filter) of both. Lengths in mm; NaN where no point is present.
+struct Deviation {
+    double sq_measured = 0;
+    double sq_true = 0;
+    double rms = 0;            // of the difference, offset and tilt removed
+    double correlation = 0;    // Pearson; 0 where either is flat
+    double measured_share = 0; // points present in both, of all points
+};
+
+// The treatment itself: what is not measured in one is so in both; the least-squares plane of each is removed.
+struct LevelledPair {
+    surface::HeightMap measured;
+    surface::HeightMap truth;
+};
+
+// Both maps stand on the same grid (surface/resample.hpp brings them there): std::invalid_argument otherwise, here and
+// below.
+LevelledPair levelled_pair(surface::HeightMap measured, surface::HeightMap truth, double l_filter);
+
+Deviation compare(const surface::HeightMap& measured, const surface::HeightMap& truth, double l_filter);
+
+// Measured less true after the treatment of compare(); its root mean square is Deviation::rms.
+surface::HeightMap deviation_map(const surface::HeightMap& measured, const surface::HeightMap& truth,
+                                 double l_filter);
+
+} // namespace vkfv::topography

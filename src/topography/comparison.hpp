@@ -1,0 +1,40 @@
+// One measurement or repeated ones against the truth: all that is said of it.
+#pragma once
+
+#include "surface/areal_parameters.hpp"
+#include "topography/compare.hpp"
+#include "topography/height_transfer.hpp"
+#include "topography/lateral_shift.hpp"
+#include "topography/repeatability.hpp"
+#include "topography/slope_deviation.hpp"
+
+#include <optional>
+#include <span>
+#include <vector>
+
+namespace vkfv::topography {
+
+// One measurement, over the points present in it and in the truth, both levelled alike (levelled_pair()).
+struct MeasurementComparison {
+    LateralShift shift; // as found, removed or not
+    Deviation deviation;
+    surface::ArealParameters measured;
+    surface::ArealParameters truth;
+};
+
+struct Comparison {
+    std::vector<MeasurementComparison> measurements;
+    LateralShift removed_shift;               // their mean shift, if it was to be removed; otherwise 0
+    surface::HeightMap truth;                 // under the measurements, on their grid
+    surface::HeightMap deviation;             // of the measurement; of repeated ones their mean (repeatability.hpp)
+    std::optional<SystematicAndRandom> parts; // of two measurements or more
+    std::vector<TransferBand> transfer;       // from `truth` to truth + deviation
+    std::vector<SlopeBin> slopes;             // of `deviation`, in bins of two degrees
+};
+
+// All measurements stand on one grid (std::invalid_argument otherwise), the truth on any. `align` moves the truth by
+// the mean of the shifts found; a measurement without one does not count there.
+Comparison compare_with_truth(std::span<const surface::HeightMap> measurements, const surface::HeightMap& truth,
+                              bool align);
+
+} // namespace vkfv::topography
