@@ -23,8 +23,7 @@ struct ArealParameters {
 // No levelling, no filter: the caller's business.
 ArealParameters areal_parameters(const HeightMap& map);
 
-// mm, mm^3/mm^2, radians; shares are usually given in per cent, numbers as they are.
-enum class ParameterUnit { length, volume_per_area, angle, share, number };
+enum class ParameterUnit { length, volume_per_area, angle, ratio }; // mm, mm^3/mm^2, radians, 1
 
 struct NamedParameter {
     std::string_view name; // "Sa"

@@ -2,21 +2,18 @@
 
 #include "core/error.hpp"
 #include "core/units.hpp"
+#include "surface/aside_file.hpp"
 
 #include <OpenImageIO/imageio.h>
 
-#include <fcntl.h>
 #include <fmt/format.h>
-#include <unistd.h>
 
 #include <algorithm>
-#include <cerrno>
 #include <charconv>
 #include <cmath>
 #include <limits>
 #include <memory>
 #include <string_view>
-#include <system_error>
 #include <vector>
 
 namespace vkfv::surface {
@@ -65,47 +62,6 @@ std::vector<Value> flipped_rows(const Grid<Value>& grid) {
     }
     return result;
 }
-
-// Makes a file's content or a folder's entries durable.
-void sync_to_disk(const std::filesystem::path& path) {
-    const int descriptor = ::open(path.c_str(), O_RDONLY);
-    const bool synced = descriptor >= 0 && ::fsync(descriptor) == 0;
-    const int error = errno;
-    if (descriptor >= 0)
-        ::close(descriptor);
-    if (!synced)
-        throw RunError(fmt::format("{}: cannot be synced to disk: {}", path.string(),
-                                   std::generic_category().message(error)));
-}
-
-// Removes the file put aside unless it was renamed.
-class AsideFile {
-  public:
-    explicit AsideFile(const std::filesystem::path& final_path) : final_path_(final_path), path_(final_path) {
-        path_.replace_filename(fmt::format(".{}.part", final_path.filename().string()));
-    }
-    AsideFile(const AsideFile&) = delete;
-    AsideFile& operator=(const AsideFile&) = delete;
-    ~AsideFile() {
-        std::error_code ignored;
-        std::filesystem::remove(path_, ignored);
-    }
-    const std::filesystem::path& path() const { return path_; }
-    void publish() {
-        sync_to_disk(path_);
-        std::error_code error;
-        std::filesystem::rename(path_, final_path_, error);
-        if (error)
-            throw RunError(fmt::format("{}: cannot be renamed to {}: {}", path_.string(),
-                                       final_path_.string(), error.message()));
-        const auto folder = final_path_.parent_path();
-        sync_to_disk(folder.empty() ? std::filesystem::path(".") : folder);
-    }
-
-  private:
-    std::filesystem::path final_path_;
-    std::filesystem::path path_;
-};
 
 template <class Value>
 void write_single_page(const std::filesystem::path& path, const Grid<Value>& image, const ImageTags& tags) {
@@ -158,6 +114,20 @@ std::unique_ptr<OIIO::ImageInput> open_image(const std::filesystem::path& path) 
     return input;
 }
 
+// No packing in use makes images smaller than by this factor: a header that names more pixels is a wrong one.
+constexpr double largest_packing = 1e4;
+constexpr double largest_pixel_count = 1 << 28;
+
+void check_size(const std::filesystem::path& path, const OIIO::ImageSpec& spec) {
+    const double pixels = static_cast<double>(spec.width) * spec.height;
+    const double bytes = pixels * static_cast<double>(spec.format.size());
+    if (!(spec.width > 0 && spec.height > 0 && pixels <= largest_pixel_count &&
+          bytes <= largest_packing * static_cast<double>(std::filesystem::file_size(path))))
+        reject(path, "size", fmt::format("{} x {} pixels", spec.width, spec.height),
+               fmt::format("at most {} pixels, and no more than the file has room for", largest_pixel_count),
+               "The file is truncated or damaged: write or copy it anew.");
+}
+
 template <class Stored>
 Grid<float> read_values(OIIO::ImageInput& input, const OIIO::ImageSpec& spec,
                         const std::filesystem::path& path, int page) {
@@ -183,6 +153,7 @@ Grid<float> read_page(OIIO::ImageInput& input, const std::filesystem::path& path
         reject(path, fmt::format("page {}", page),
                fmt::format("{} channels, depth {}", spec.nchannels, spec.depth),
                "one channel and two dimensions", "Convert the image to greyscale without alpha.");
+    check_size(path, spec);
     switch (spec.format.basetype) {
     case OIIO::TypeDesc::UINT8:
         return read_values<std::uint8_t>(input, spec, path, page);
@@ -242,7 +213,11 @@ Grid<float> read_image(const std::filesystem::path& path, int page) {
     return read_page(*open_image(path), path, page);
 }
 
-void write_height_map(const std::filesystem::path& path, const HeightMap& map) {
+std::string image_description(const std::filesystem::path& path) {
+    return open_image(path)->spec().get_string_attribute("ImageDescription");
+}
+
+void write_height_map(const std::filesystem::path& path, const HeightMap& map, const Provenance& provenance) {
     Grid<float> heights(map.columns(), map.rows());
     std::transform(map.height.values.begin(), map.height.values.end(), heights.values.begin(),
                    [](double height) {
@@ -255,8 +230,8 @@ void write_height_map(const std::filesystem::path& path, const HeightMap& map) {
          .pitch_y = map.pitch_y,
          .description = fmt::format("vkfv height map: heights in um, NaN is not measured, the first row has "
                                     "the highest y; x0 and y0 are of the last row's first pixel\n"
-                                    "x0_mm={}\ny0_mm={}\npitch_x_mm={}\npitch_y_mm={}\n",
-                                    map.x0, map.y0, map.pitch_x, map.pitch_y)});
+                                    "x0_mm={}\ny0_mm={}\npitch_x_mm={}\npitch_y_mm={}\n{}",
+                                    map.x0, map.y0, map.pitch_x, map.pitch_y, provenance_text(provenance))});
 }
 
 HeightMap read_height_map(const std::filesystem::path& path) {

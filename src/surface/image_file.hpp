@@ -11,6 +11,7 @@
 
 #include "core/grid.hpp"
 #include "surface/height_map.hpp"
+#include "surface/provenance.hpp"
 
 #include <cstdint>
 #include <filesystem>
@@ -38,9 +39,12 @@ int page_count(const std::filesystem::path& path);
 // (they are not scaled to 0..1). `page` counts from 0.
 Grid<float> read_image(const std::filesystem::path& path, int page = 0);
 
+// The first page's ImageDescription; empty without one.
+std::string image_description(const std::filesystem::path& path);
+
 // float32 heights in micrometres; NaN means "not measured". The grid's origin and pitch stand in the
 // description as text that reads back exactly, since resolution tags are rounded.
-void write_height_map(const std::filesystem::path& path, const HeightMap& map);
+void write_height_map(const std::filesystem::path& path, const HeightMap& map, const Provenance& provenance = {});
 // Reads what write_height_map wrote; heights come back rounded to float32 micrometres.
 HeightMap read_height_map(const std::filesystem::path& path);
 

@@ -1,0 +1,17 @@
+// Height maps as images: those that vkfv wrote, and any other single-channel TIFF or OpenEXR with its scale given.
+#pragma once
+
+#include "surface/surface_file.hpp"
+
+#include <string_view>
+
+namespace vkfv::surface {
+
+// By a file's first bytes.
+bool looks_like_height_image(std::string_view bytes);
+
+// The first page. Every value that is not finite is not measured. Without vkfv's own text about pitch and position the
+// scale must be given, and the first pixel of the last row stands at x = y = 0. Throws InputError.
+SurfaceFile read_height_image(const std::filesystem::path& path, const ImageScale& scale);
+
+} // namespace vkfv::surface

@@ -1,0 +1,90 @@
+#include "surface/surface_file.hpp"
+
+#include "core/error.hpp"
+#include "surface/al3d.hpp"
+#include "surface/aside_file.hpp"
+#include "surface/height_image.hpp"
+#include "surface/image_file.hpp"
+#include "surface/ply.hpp"
+#include "surface/sdf.hpp"
+#include "surface/sur.hpp"
+#include "surface/x3p.hpp"
+
+#include <algorithm>
+#include <cctype>
+#include <fstream>
+#include <iterator>
+
+namespace vkfv::surface {
+namespace {
+
+[[noreturn]] void reject(const std::filesystem::path& path, std::string key, std::string found, std::string expected,
+                         std::string remedy) {
+    throw InputError({.where = {.file = path, .line = 0, .column = 0, .byte_offset = {}},
+                      .key = std::move(key),
+                      .found = std::move(found),
+                      .expected = std::move(expected),
+                      .remedy = std::move(remedy)});
+}
+
+std::string whole_file(const std::filesystem::path& path) {
+    std::error_code error;
+    std::ifstream stream;
+    if (std::filesystem::is_regular_file(path, error))
+        stream.open(path, std::ios::binary);
+    if (!stream.is_open())
+        reject(path, "", "no file that can be read", "a surface file",
+               "Check the path; it is relative to the file that names it.");
+    std::string bytes(std::filesystem::file_size(path), '\0');
+    stream.read(bytes.data(), static_cast<std::streamsize>(bytes.size()));
+    bytes.resize(static_cast<std::size_t>(stream.gcount()));
+    return bytes;
+}
+
+// Lower case.
+std::string name_of(const std::filesystem::path& path) {
+    std::string name = path.filename().string();
+    std::ranges::transform(name, name.begin(), [](unsigned char c) { return std::tolower(c); });
+    return name;
+}
+
+} // namespace
+
+SurfaceFile read_surface(const std::filesystem::path& path, const ImageScale& scale) {
+    const std::string bytes = whole_file(path);
+    if (looks_like_height_image(bytes))
+        return read_height_image(path, scale);
+    if (scale.pitch || scale.unit)
+        reject(path, scale.pitch ? "pitch" : "unit", "given", "no second scale: the file states its own", "Leave it out.");
+    if (looks_like_x3p(bytes))
+        return parse_x3p(bytes, path);
+    if (looks_like_sur(bytes))
+        return parse_sur(bytes, path);
+    if (looks_like_sdf(bytes))
+        return parse_sdf(bytes, path);
+    if (looks_like_al3d(bytes))
+        return parse_al3d(bytes, path);
+    reject(path, "", "a file of unknown kind", "an X3P, SUR, SDF, AL3D, TIFF or OpenEXR file",
+           "Export the surface in one of these formats.");
+}
+
+void write_surface(const std::filesystem::path& path, const HeightMap& map, const Provenance& provenance) {
+    const std::string name = name_of(path);
+    if (name.ends_with(".x3p"))
+        write_file_aside(path, x3p_bytes(map, provenance));
+    else if (name.ends_with(".sur"))
+        write_file_aside(path, sur_bytes(map, provenance));
+    else if (name.ends_with(".asc.sdf"))
+        write_file_aside(path, sdf_text(map, provenance));
+    else if (name.ends_with(".sdf"))
+        write_file_aside(path, sdf_bytes(map, provenance));
+    else if (name.ends_with(".tif") || name.ends_with(".tiff"))
+        write_height_map(path, map, provenance);
+    else if (name.ends_with(".ply"))
+        write_file_aside(path, ply_bytes(map, provenance));
+    else
+        reject(path, "", "a name that ends otherwise", "one that ends in .x3p, .sur, .sdf, .tif or .ply",
+               "Choose one of these formats by the name's ending.");
+}
+
+} // namespace vkfv::surface

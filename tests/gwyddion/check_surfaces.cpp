@@ -1,0 +1,135 @@
+// Real surface files: what vkfv reads of them, beside what Gwyddion reads of them and, for those named here, beside
+// published figures. The files are given by their folder and belong to others: tools/check_surfaces FOLDER.
+#include "core/units.hpp"
+#include "gwyddion/gwyddion.hpp"
+#include "surface/filter.hpp"
+#include "surface/height_parameters.hpp"
+#include "surface/surface_file.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <limits>
+#include <vector>
+
+namespace {
+
+using namespace vkfv;
+
+// The roundings on the way from metres to mm and back, as a share of a metre
+constexpr double same_height = 1e-15;
+constexpr double six_digits = 5e-7;
+
+// Gwyddion 2.62's figures of the valid points, um; of the Ski file only Sa and Sq are known, and of the raw heights.
+struct Figures {
+    const char* name;
+    int columns, rows, gaps;
+    double sa, sq, ssk, sku, sq_levelled; // 0: not known
+};
+constexpr Figures published[] = {
+    {"KautschukInfiniteFocus.x3p", 860, 634, 5296, 2.705277, 3.398872, 0.732665, 3.686634, 3.398380},
+    {"SkiInfiniteFocus.x3p", 1197, 940, 4272, 15.23741, 18.15497, 0, 0, 0}};
+
+int failures = 0;
+
+void check(bool good, const std::string& what) {
+    fmt::print("  {} {}\n", good ? "ok    " : "FAILED", what);
+    failures += good ? 0 : 1;
+}
+
+int gaps_of(const surface::HeightMap& map) {
+    return static_cast<int>(std::ranges::count_if(map.height.values, [](double z) { return !std::isfinite(z); }));
+}
+
+// Half a unit of the sixth digit of a rounded figure.
+void check_figure(const char* name, double found, double expected) {
+    const double half = 5 * std::pow(10.0, std::floor(std::log10(std::abs(expected))) - 6);
+    check(std::abs(found - expected) <= half, fmt::format("{} {:.7g}, expected {:.7g}", name, found, expected));
+}
+
+void check_published(const Figures& figures, const surface::HeightMap& map) {
+    check(map.columns() == figures.columns && map.rows() == figures.rows && gaps_of(map) == figures.gaps,
+          fmt::format("{} x {} points, {} not measured, expected", figures.columns, figures.rows, figures.gaps));
+    const auto raw = surface::height_parameters(map);
+    check_figure("Sa um", raw.sa * um_per_mm, figures.sa);
+    check_figure("Sq um", raw.sq * um_per_mm, figures.sq);
+    if (figures.ssk != 0)
+        check_figure("Ssk", raw.ssk, figures.ssk);
+    if (figures.sku != 0)
+        check_figure("Sku", raw.sku, figures.sku);
+    if (figures.sq_levelled != 0) {
+        const auto levelled = surface::height_parameters(remove_plane(map, surface::least_squares_plane(map)));
+        check_figure("Sq um, levelled", levelled.sq * um_per_mm, figures.sq_levelled);
+    }
+}
+
+void check_against_gwyddion(const std::filesystem::path& file, const surface::HeightMap& map) {
+    const auto loaded = test::load_in_gwyddion(file);
+    GwyDataField* heights = test::gwyddion_field(loaded, "/0/data");
+    GwyDataField* mask = test::gwyddion_field(loaded, "/0/mask");
+    const bool same_size = heights && gwy_data_field_get_xres(heights) == map.columns() &&
+                           gwy_data_field_get_yres(heights) == map.rows();
+    check(same_size, fmt::format("Gwyddion's {} has the same size", test::gwyddion_import(file)));
+    if (!same_size)
+        return;
+    check(std::abs(gwy_data_field_get_dx(heights) * 1e3 / map.pitch_x - 1) < six_digits &&
+              std::abs(gwy_data_field_get_dy(heights) * 1e3 / map.pitch_y - 1) < six_digits,
+          fmt::format("and pitch: {:.9g} x {:.9g} um", gwy_data_field_get_dx(heights) * 1e6,
+                      gwy_data_field_get_dy(heights) * 1e6));
+    int masked = 0, other_mask = 0;
+    double largest = 0;
+    double lowest = std::numeric_limits<double>::infinity(), highest = -lowest;
+    for (int row = 0; row < map.rows(); ++row)
+        for (int column = 0; column < map.columns(); ++column) {
+            const int line = map.rows() - 1 - row;
+            const double metres = gwy_data_field_get_val(heights, column, line), mm = map.height(column, row);
+            const bool gap = mask && gwy_data_field_get_val(mask, column, line) > 0;
+            masked += gap ? 1 : 0;
+            other_mask += mask && gap == std::isfinite(mm) ? 1 : 0;
+            if (!gap && std::isfinite(mm)) {
+                largest = std::max(largest, std::abs(metres * 1e3 - mm));
+                lowest = std::min(lowest, mm);
+                highest = std::max(highest, mm);
+            }
+        }
+    check(other_mask == 0, fmt::format("{} points masked there, {} not measured here", masked, gaps_of(map)));
+    check(largest <= same_height * 1e3 + 1e-7 * (highest - lowest),
+          fmt::format("heights from {:.6f} to {:.6f} um differ by at most {:.3g} um", lowest * um_per_mm,
+                      highest * um_per_mm, largest * um_per_mm));
+}
+
+} // namespace
+
+int main(int argument_count, char** arguments) {
+    if (argument_count != 2) {
+        fmt::print(stderr, "usage: check_surfaces FOLDER\n");
+        return 2;
+    }
+    test::start_gwyddion();
+    std::vector<std::filesystem::path> files;
+    for (const auto& entry : std::filesystem::directory_iterator(arguments[1]))
+        files.push_back(entry.path());
+    std::ranges::sort(files);
+    for (const auto& file : files) {
+        try {
+            const auto surface = surface::read_surface(file);
+            const auto parameters = surface::height_parameters(surface.map);
+            fmt::print("{}: {} x {} points, pitch {:.9g} x {:.9g} um, {} not measured, Sa {:.7g} um, Sq {:.7g} um; by "
+                       "{} {}, {}\n",
+                       file.filename().string(), surface.map.columns(), surface.map.rows(),
+                       surface.map.pitch_x * um_per_mm, surface.map.pitch_y * um_per_mm, gaps_of(surface.map),
+                       parameters.sa * um_per_mm, parameters.sq * um_per_mm, surface.provenance.manufacturer,
+                       surface.provenance.model, surface.provenance.date);
+            check_against_gwyddion(file, surface.map);
+            for (const Figures& figures : published)
+                if (file.filename() == figures.name)
+                    check_published(figures, surface.map);
+        } catch (const std::exception& error) {
+            check(false, error.what());
+        }
+    }
+    fmt::print("{} files, {} failures\n", files.size(), failures);
+    return files.empty() || failures > 0 ? 1 : 0;
+}
