@@ -23,7 +23,8 @@ struct ArealParameters {
 // No levelling, no filter: the caller's business.
 ArealParameters areal_parameters(const HeightMap& map);
 
-enum class ParameterUnit { length, volume_per_area, angle, ratio }; // mm, mm^3/mm^2, radians, 1
+// mm, mm^3/mm^2, radians; shares are usually given in per cent, numbers as they are.
+enum class ParameterUnit { length, volume_per_area, angle, share, number };
 
 struct NamedParameter {
     std::string_view name; // "Sa"

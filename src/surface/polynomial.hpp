@@ -1,0 +1,30 @@
+// Form removal by a polynomial of two variables.
+#pragma once
+
+#include "surface/height_map.hpp"
+
+#include <vector>
+
+namespace vkfv::surface {
+
+// A sum of all x^i y^j with i + j <= degree, held as products of Legendre polynomials over the map's extent, which
+// keep the fit well conditioned.
+struct Polynomial {
+    int degree = 0;
+    double x_centre = 0;
+    double y_centre = 0;
+    double half_x = 1; // mm from the centre to the outermost points
+    double half_y = 1;
+    std::vector<double> coefficients; // mm; of P_i(u) P_j(v), j ascending within i ascending
+
+    double height(double x, double y) const;
+};
+
+// Least squares along z over the measured points; degree 0 to 20, std::invalid_argument otherwise. What the points
+// leave open (points on one line, fewer points than terms) is settled by the smallest coefficients. Without measured
+// points the heights are NaN.
+Polynomial least_squares_polynomial(const HeightMap& map, int degree);
+
+HeightMap remove_polynomial(HeightMap map, const Polynomial& polynomial);
+
+} // namespace vkfv::surface
