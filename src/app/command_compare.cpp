@@ -4,6 +4,7 @@
 #include "core/units.hpp"
 #include "surface/image_file.hpp"
 #include "surface/resample.hpp"
+#include "surface/surface_file.hpp"
 #include "topography/comparison.hpp"
 
 #include <fmt/format.h>
@@ -22,8 +23,6 @@ namespace {
 namespace fs = std::filesystem;
 using Json = nlohmann::ordered_json;
 using surface::HeightMap;
-
-HeightMap read_surface(const fs::path& file) { return surface::read_height_map(file); }
 
 [[noreturn]] void refuse_file(const fs::path& file, std::string found, std::string expected, std::string remedy) {
     throw InputError({.where = {.file = file},
@@ -226,10 +225,10 @@ std::string slope_csv(const topography::Comparison& comparison) {
 
 void run_compare(const CommandOptions& options) {
     const auto& files = options.compared_files;
-    const HeightMap truth = read_surface(files.back());
+    const HeightMap truth = surface::read_surface(files.back()).map;
     std::vector<HeightMap> measurements;
     for (std::size_t k = 0; k + 1 < files.size(); ++k) {
-        measurements.push_back(read_surface(files[k]));
+        measurements.push_back(surface::read_surface(files[k]).map);
         if (!same_grid(measurements.front(), measurements.back())) {
             refuse_file(files[k], grid_text(measurements.back()),
                         fmt::format("the grid of {}: {}", files.front().string(), grid_text(measurements.front())),

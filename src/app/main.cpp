@@ -70,7 +70,7 @@ void declare(CLI::App& app, Arguments& given) {
         ->type_name("DIR")
         ->group(commands);
     app.add_option("--compare", given.compare,
-                   "Height maps against the truth: shift, deviation, transfer, ISO 25178-2 parameters; several "
+                   "Height maps (any format that vkfv reads) against the truth: shift, deviation, transfer, ISO 25178-2 parameters; several "
                    "measurements of one field also give systematic and random part")
         ->expected(2, CLI::detail::expected_max_vector_size)
         ->option_text("MEASURED... TRUTH")

@@ -1,0 +1,86 @@
+#include "surface/spline_filter.hpp"
+
+#include "core/fourier.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <complex>
+#include <limits>
+#include <stdexcept>
+#include <vector>
+
+namespace vkfv::surface {
+namespace {
+
+// The filter of a whole map: the inverse of 1 + mu Laplacian^2 under mirrored borders.
+std::vector<double> whole_low_pass(const std::vector<double>& heights, const HeightMap& map, double nesting_index) {
+    const int columns = map.columns(), rows = map.rows();
+    Grid<std::complex<double>> mirrored(2 * columns, 2 * rows);
+    for (int row = 0; row < mirrored.rows; ++row)
+        for (int column = 0; column < mirrored.columns; ++column)
+            mirrored(column, row) =
+                heights[map.height.index(std::min(column, 2 * columns - 1 - column), std::min(row, 2 * rows - 1 - row))];
+    fourier_transform(mirrored);
+    for (int row = 0; row < mirrored.rows; ++row)
+        for (int column = 0; column < mirrored.columns; ++column) {
+            const double frequency = std::hypot(fourier_frequency(column, mirrored.columns) / map.pitch_x,
+                                                fourier_frequency(row, mirrored.rows) / map.pitch_y);
+            mirrored(column, row) /= 1 + std::pow(nesting_index * frequency, 4);
+        }
+    inverse_fourier_transform(mirrored);
+    std::vector<double> result(heights.size());
+    for (int row = 0; row < rows; ++row)
+        for (int column = 0; column < columns; ++column)
+            result[map.height.index(column, row)] = mirrored(column, row).real();
+    return result;
+}
+
+double dot(const std::vector<double>& a, const std::vector<double>& b) {
+    double sum = 0;
+    for (std::size_t k = 0; k < a.size(); ++k)
+        sum += a[k] * b[k];
+    return sum;
+}
+
+} // namespace
+
+HeightMap spline_low_pass(const HeightMap& map, double nesting_index) {
+    if (!(nesting_index > 0))
+        throw std::invalid_argument("spline_low_pass: the nesting index must be positive");
+    // (W + mu B) s = W z, W 1 at measured points and 0 elsewhere, B the squared Laplacian: conjugate gradients with the
+    // filter of a whole map, (1 + mu B)^-1, as preconditioner. Without gaps its first step is the solution.
+    const std::size_t points = map.height.values.size();
+    std::vector<double> weight(points), residual(points), spline(points);
+    for (std::size_t k = 0; k < points; ++k)
+        if (const double z = map.height.values[k]; std::isfinite(z)) {
+            weight[k] = 1;
+            residual[k] = z;
+        }
+    const double goal = 1e-10 * dot(residual, residual); // squared: a relative 1e-5
+    std::vector<double> direction(points), stretched(points); // stretched = (1 + mu B) direction
+    double before = 0;
+    // As many steps as points would end it but for rounding, which must not keep it going.
+    for (std::size_t step = 0; step < points && dot(residual, residual) > goal; ++step) {
+        const std::vector<double> smooth = whole_low_pass(residual, map, nesting_index);
+        const double now = dot(residual, smooth);
+        const double share = step == 0 ? 0 : now / before;
+        before = now;
+        std::vector<double> image(points); // (W + mu B) direction
+        for (std::size_t k = 0; k < points; ++k) {
+            direction[k] = smooth[k] + share * direction[k];
+            stretched[k] = residual[k] + share * stretched[k];
+            image[k] = stretched[k] + (weight[k] - 1) * direction[k];
+        }
+        const double length = now / dot(direction, image);
+        for (std::size_t k = 0; k < points; ++k) {
+            spline[k] += length * direction[k];
+            residual[k] -= length * image[k];
+        }
+    }
+    HeightMap result = map;
+    for (std::size_t k = 0; k < points; ++k)
+        result.height.values[k] = weight[k] > 0 ? spline[k] : std::numeric_limits<double>::quiet_NaN();
+    return result;
+}
+
+} // namespace vkfv::surface

@@ -1,0 +1,124 @@
+#include "surface/spline_filter.hpp"
+
+#include "core/units.hpp"
+#include "surface/maps.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <stdexcept>
+#include <vector>
+
+namespace vkfv::surface {
+namespace {
+
+using namespace test;
+
+constexpr double pitch = 0.002;
+
+// Mirrored at its borders this wave goes on as it is.
+double mode(int k, int point, int points) { return std::cos(pi * k * (point + 0.5) / points); }
+
+HeightMap mode_map(int k, int l) {
+    return sampled(40, 30, pitch, [=](double x, double y) {
+        return mode(k, static_cast<int>(std::lround((x + 0.3) / pitch)), 40) *
+               mode(l, static_cast<int>(std::lround((y - 0.2) / pitch)), 30);
+    });
+}
+
+TEST(SplineFilter, PassesEveryDirectionByItsTransmission) {
+    for (const auto& [k, l] : {std::pair(4, 0), std::pair(0, 4), std::pair(8, 6), std::pair(3, 9)}) {
+        const HeightMap wave = mode_map(k, l);
+        const double frequency = std::hypot(k / (2 * 40 * pitch), l / (2 * 30 * pitch));
+        for (const double ratio : {0.5, 1.0, 2.0}) { // nesting index over wavelength
+            const HeightMap low = spline_low_pass(wave, ratio / frequency);
+            for (std::size_t i = 0; i < low.height.values.size(); ++i)
+                EXPECT_NEAR(low.height.values[i], wave.height.values[i] / (1 + std::pow(ratio, 4)), 1e-12);
+        }
+    }
+    // The wrong twin, the Gaussian filter, passes 2^-(1/4) of twice the nesting index.
+    const HeightMap wave = mode_map(4, 0);
+    EXPECT_GT(std::abs(spline_low_pass(wave, 0.5 * 40 * pitch / 2).height(0, 0) / wave.height(0, 0) -
+                       std::pow(0.5, 0.25)),
+              0.05);
+}
+
+// Gauss's elimination with pivots.
+std::vector<double> solved(std::vector<std::vector<double>> matrix, std::vector<double> right) {
+    const std::size_t n = right.size();
+    for (std::size_t k = 0; k < n; ++k) {
+        std::size_t pivot = k;
+        for (std::size_t i = k; i < n; ++i)
+            if (std::abs(matrix[i][k]) > std::abs(matrix[pivot][k]))
+                pivot = i;
+        std::swap(matrix[k], matrix[pivot]);
+        std::swap(right[k], right[pivot]);
+        for (std::size_t i = k + 1; i < n; ++i) {
+            const double factor = matrix[i][k] / matrix[k][k];
+            for (std::size_t j = k; j < n; ++j)
+                matrix[i][j] -= factor * matrix[k][j];
+            right[i] -= factor * right[k];
+        }
+    }
+    for (std::size_t k = n; k-- > 0;) {
+        for (std::size_t j = k + 1; j < n; ++j)
+            right[k] -= matrix[k][j] * right[j];
+        right[k] /= matrix[k][k];
+    }
+    return right;
+}
+
+TEST(SplineFilter, LeavesGapsOutOfTheFit) {
+    const int columns = 9, rows = 8;
+    auto map = sampled(columns, rows, pitch, [](double x, double y) { return std::sin(900 * x) + y * y + 3 * x; });
+    forget_a_third(map);
+    const double nesting_index = 5 * pitch;
+    // mu times the squared Laplacian as a matrix, mode by mode.
+    const auto n = static_cast<std::size_t>(columns * rows);
+    std::vector<std::vector<double>> matrix(n, std::vector<double>(n));
+    for (int k = 0; k < columns; ++k)
+        for (int l = 0; l < rows; ++l) {
+            const double frequency = std::hypot(k / (2 * columns * pitch), l / (2 * rows * pitch));
+            const double norm = (k == 0 ? 1.0 : 2.0) / columns * (l == 0 ? 1.0 : 2.0) / rows;
+            for (std::size_t i = 0; i < n; ++i)
+                for (std::size_t j = 0; j < n; ++j) {
+                    const auto value = [&](std::size_t point) {
+                        return mode(k, static_cast<int>(point) % columns, columns) *
+                               mode(l, static_cast<int>(point) / columns, rows);
+                    };
+                    matrix[i][j] += std::pow(nesting_index * frequency, 4) * norm * value(i) * value(j);
+                }
+        }
+    std::vector<double> right(n);
+    for (std::size_t i = 0; i < n; ++i)
+        if (!std::isnan(map.height.values[i])) {
+            matrix[i][i] += 1;
+            right[i] = map.height.values[i];
+        }
+    const std::vector<double> expected = solved(matrix, right);
+    const HeightMap low = spline_low_pass(map, nesting_index);
+    for (std::size_t i = 0; i < n; ++i) {
+        EXPECT_EQ(std::isnan(low.height.values[i]), std::isnan(map.height.values[i]));
+        if (!std::isnan(low.height.values[i])) {
+            // The residual ends at 1e-5 of the heights' norm, that of 50 of about 1.
+            EXPECT_NEAR(low.height.values[i], expected[i], 1e-4);
+        }
+    }
+}
+
+TEST(SplineFilter, KeepsConstantsAndNeedsAPositiveNestingIndex) {
+    auto map = sampled(30, 20, pitch, [](double, double) { return 0.7; });
+    forget_a_third(map);
+    for (const double z : spline_low_pass(map, 0.02).height.values)
+        if (!std::isnan(z)) {
+            EXPECT_NEAR(z, 0.7, 1e-4);
+        }
+    EXPECT_THROW(spline_low_pass(map, 0), std::invalid_argument);
+    EXPECT_THROW(spline_low_pass(map, not_measured), std::invalid_argument);
+    std::fill(map.height.values.begin(), map.height.values.end(), not_measured);
+    EXPECT_TRUE(std::isnan(spline_low_pass(map, 0.02).height(3, 3)));
+}
+
+} // namespace
+} // namespace vkfv::surface
