@@ -42,13 +42,17 @@ void run_stack(const CommandOptions& options) {
                             .rows = configuration.instrument.detector_pixels,
                             .pitch = instrument.first_order.pixel_pitch});
     auto progress = Progress::on_standard_error(options.quiet);
-    const auto traced = scan::run_stack(*tracer, store, progress);
+    // Evaluated as they are traced: no second pass over the disk.
+    StackEvaluation stack_evaluation(configuration.topography,
+                                     focus_planes_for(configuration.evaluate_on, configuration.trace.device));
+    const auto traced = scan::run_stack(*tracer, store, progress, {}, [&](int image, Grid<float> flux) {
+        stack_evaluation.add({std::move(flux)}, positions[static_cast<std::size_t>(image)]);
+    });
     spdlog::info("{} images traced, {} kept from before", traced.traced, traced.kept);
 
     const auto& folder = store.folder();
-    const auto evaluation = evaluate(configuration, instrument, specimen, [&](int image) {
-        return scan::read_frame(folder, image, positions[static_cast<std::size_t>(image)]);
-    });
+    const auto evaluation =
+        stack_evaluation.finish(truth_on_pixels(instrument, configuration, specimen), configuration.l_filter);
     nlohmann::ordered_json run = {{"device", tracer->description()},
                                   {"stack_digest", store.description().digest},
                                   {"seed", configuration.trace.seed},

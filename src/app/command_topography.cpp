@@ -1,6 +1,8 @@
 #include "app/commands.hpp"
 #include "app/evaluation.hpp"
+#include "app/image_series.hpp"
 
+#include "core/units.hpp"
 #include "scan/store.hpp"
 
 #include <fmt/format.h>
@@ -28,28 +30,86 @@ std::vector<int> order_of_images(std::size_t count, const std::optional<std::uin
     return order;
 }
 
-} // namespace
+[[noreturn]] void refuse(std::string found, std::string expected, std::string remedy) {
+    throw InputError({.where = {.file = "command line", .line = 0, .column = 0, .byte_offset = {}},
+                      .key = "",
+                      .found = std::move(found),
+                      .expected = std::move(expected),
+                      .remedy = std::move(remedy)});
+}
 
-void run_topography(const CommandOptions& options) {
-    // stack.toml is a configuration; --set topography.window_px=9 and its like evaluate otherwise.
+// Images from a disk come slower than the host evaluates them: a device only when asked for.
+topography::FocusPlanesMaker planes_for(const Configuration& configuration) {
+    return focus_planes_for(configuration.evaluate_on == "device" ? "device" : "host", configuration.trace.device);
+}
+
+// A stack with its stack.toml; --set topography.window_px=9 and its like evaluate otherwise.
+Evaluation evaluate_own(const CommandOptions& options) {
+    if (options.z_step || options.pitch || options.z_start) {
+        refuse("--z_step_um, --pitch_um or --z_start_um with a stack that has a stack.toml", "neither of them",
+               "Leave them out: they stand in stack.toml.");
+    }
     const auto& folder = options.file;
     const auto configuration = load_configuration(folder / "stack.toml", options.overrides, Needs::stack);
     const auto positions = configuration.scan->positions();
     const auto specimen = specimen::make(*configuration.specimen);
     const auto instrument = assemble_instrument(configuration, specimen, positions);
     const auto order = order_of_images(positions.size(), options.shuffle);
-    const auto evaluation = evaluate(configuration, instrument, specimen, [&](int place) {
-        const int image = order[static_cast<std::size_t>(place)];
-        return scan::read_frame(folder, image, positions[static_cast<std::size_t>(image)]);
-    });
+    StackEvaluation evaluation(configuration.topography, planes_for(configuration));
+    for (std::size_t place = 0; place < positions.size(); ++place) {
+        const int image = order[place];
+        evaluation.add({scan::read_frame(folder, image, positions[static_cast<std::size_t>(image)])},
+                       positions[place]);
+    }
+    return evaluation.finish(truth_on_pixels(instrument, configuration, specimen), configuration.l_filter);
+}
+
+// Images alone: what an instrument's file says of them, the command line must say.
+Evaluation evaluate_foreign(const CommandOptions& options) {
+    const ImageSeries series(options.file);
+    if (!options.z_step || *options.z_step == 0 || !options.pitch || *options.pitch <= 0) {
+        refuse(!options.z_step || *options.z_step == 0 ? "no --z_step_um" : "no --pitch_um",
+               fmt::format("both, for the {} images in {}, which has no stack.toml", series.size(),
+                           options.file.string()),
+               "Give --z_step_um UM, the step from image to image (negative if they descend), and --pitch_um UM > 0, "
+               "the distance of the pixels on the specimen.");
+    }
+    if (!options.out && !options.shuffle) {
+        refuse("no --out", "a folder for the results of a stack that vkfv did not make", "Give --out FOLDER.");
+    }
+    // The keys of [topography] alone; --out is no key of it.
+    auto overrides = options.overrides;
+    std::erase_if(overrides, [](const TomlOverride& given) { return given.origin == "--out"; });
+    const auto configuration = topography_configuration(overrides);
+    StackEvaluation evaluation(configuration.topography, planes_for(configuration));
+    const auto order = order_of_images(static_cast<std::size_t>(series.size()), options.shuffle);
+    const double start = options.z_start.value_or(0);
+    for (int place = 0; place < series.size(); ++place) {
+        // Heights ascend, whichever way the instrument went.
+        const int image = *options.z_step > 0 ? place : series.size() - 1 - place;
+        evaluation.add(series.read(order[static_cast<std::size_t>(image)]), start + image * *options.z_step);
+    }
+    return evaluation.finish(*options.pitch);
+}
+
+} // namespace
+
+void run_topography(const CommandOptions& options) {
+    const bool own = std::filesystem::exists(options.file / "stack.toml");
+    const auto evaluation = own ? evaluate_own(options) : evaluate_foreign(options);
     if (options.shuffle && !options.out) {
         // A control is no result of the stack.
         fmt::print("{}images shuffled, nothing written\n", summary(evaluation));
         return;
     }
-    const auto destination = options.out.value_or(folder);
+    const auto destination = options.out.value_or(options.file);
     std::filesystem::create_directories(destination);
     auto more = nlohmann::ordered_json::object();
+    if (!own) {
+        more["stack"] = options.file.string();
+        more["z_step_um"] = *options.z_step * um_per_mm;
+        more["pitch_um"] = *options.pitch * um_per_mm;
+    }
     if (options.shuffle) {
         more["shuffle_seed"] = *options.shuffle;
     }

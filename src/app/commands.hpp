@@ -17,7 +17,7 @@ namespace vkfv::app {
 
 // What the command line says, as far as it does not override the configuration.
 struct CommandOptions {
-    std::filesystem::path file; // configuration; for --topography the stack's folder
+    std::filesystem::path file; // configuration; for --topography the stack
     std::vector<TomlOverride> overrides;
     std::optional<std::filesystem::path> out;
     bool quiet = false;
@@ -36,6 +36,10 @@ struct CommandOptions {
     std::string commit;                   // --bench: for the report
     std::vector<std::filesystem::path> glass_catalogs; // --import
     std::optional<std::uint64_t> shuffle; // --topography: seed of the order in which the images are taken
+    // --topography of a stack that vkfv did not make: mm
+    std::optional<double> z_step; // negative: the images descend
+    std::optional<double> pitch;
+    std::optional<double> z_start; // of the first image; none: 0
 };
 
 // The parts of --bench, in the order in which they are measured.
@@ -59,7 +63,8 @@ void run_devices(const CommandOptions& options);
 // Rays per second of the configuration's chain, by stages and whatever else bench.hpp tells of; with `out`, also as
 // bench.json and bench.svg in that folder.
 void run_bench(const CommandOptions& options);
-// Evaluates an existing stack anew; with `shuffle` in a random order of its images, a control that must find
+// Evaluates an existing stack: one of vkfv anew, by its stack.toml, or the images of another instrument in a folder or a
+// file of several pages. With `shuffle` in a random order of its images, a control that must find
 // nothing.
 void run_topography(const CommandOptions& options);
 

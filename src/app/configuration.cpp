@@ -23,6 +23,7 @@ constexpr std::int64_t most_bounces = 64;           // a Lambertian pit loses al
 constexpr double most_facets = 16384;               // a side: the largest image of a common device
 constexpr std::int64_t fewest_positions = 3;        // the peak is a fit through three points
 constexpr double most_smoothing_steps = 100;        // 1202 images in memory
+constexpr std::int64_t most_peak_range_steps = 100;
 constexpr std::int64_t largest_seed = 0xffffffffll; // seeds are 32-bit words of the counter-based generator
 constexpr std::array length_units = {std::pair{"mm", 1.0}, std::pair{"um", 1e-3}, std::pair{"m", 1e3},
                                      std::pair{"inch", 25.4}};
@@ -373,7 +374,7 @@ void read_topography(const TomlTable& root, Configuration& configuration, Needs 
     const TomlTable table = root.table_or_empty("topography");
     const Section section(table, configuration);
     auto& options = configuration.topography;
-    options.focus_measure = section.choice("focus_measure", {"standard-deviation", "modified-laplacian"},
+    options.focus_measure = section.choice("focus_measure", topography::focus_measure_names(),
                                            options.focus_measure, Influence::nothing);
     options.window_px =
         static_cast<int>(section.integer("window_px", 3, 255, options.window_px, Influence::nothing));
@@ -387,11 +388,25 @@ void read_topography(const TomlTable& root, Configuration& configuration, Needs 
             fmt::format("an integer <= detector.pixels = {}", configuration.instrument.detector_pixels),
             "Choose a smaller window or more pixels.");
     }
+    options.window_shape =
+        section.choice("window_shape", {"box", "gaussian"}, options.window_shape, Influence::nothing);
     options.smoothing_steps = section.number("smoothing_steps", NumberRange::within(0, most_smoothing_steps),
                                              options.smoothing_steps, Influence::nothing);
     options.false_peak_rate = section.number("false_peak_rate", NumberRange::between(0, 1),
                                              options.false_peak_rate, Influence::nothing);
-    options.peak = section.choice("peak", {"gaussian"}, options.peak, Influence::nothing);
+    options.peak =
+        section.choice("peak", topography::peak_method_names(), options.peak, Influence::nothing);
+    options.peak_range_steps = static_cast<int>(
+        section.integer("peak_range_steps", 1, most_peak_range_steps, options.peak_range_steps, Influence::nothing));
+    options.least_contrast = section.number("least_contrast", NumberRange::at_least(0), options.least_contrast,
+                                            Influence::nothing);
+    options.most_fit_residual = section.number("most_fit_residual", NumberRange::positive(),
+                                               options.most_fit_residual, Influence::nothing);
+    options.most_peaks =
+        static_cast<int>(section.integer("most_peaks", 1, 4, options.most_peaks, Influence::nothing));
+    options.repair_outliers = section.boolean("repair_outliers", options.repair_outliers, Influence::nothing);
+    configuration.evaluate_on = section.choice("evaluate_on", {"auto", "host", "device"}, configuration.evaluate_on,
+                                               Influence::nothing);
     configuration.l_filter =
         from_um(section.number("l_filter_um", NumberRange::at_least(0), 0.0, Influence::nothing));
 }
@@ -483,6 +498,14 @@ Configuration read_configuration(const TomlTable& root, Needs needs) {
     read_topography(root, configuration, needs);
     read_output(root, configuration);
     read_sweep(root, configuration);
+    root.reject_unknown_keys();
+    return configuration;
+}
+
+Configuration topography_configuration(const std::vector<TomlOverride>& overrides) {
+    const TomlTable root = TomlTable::parse("", "command line", overrides);
+    Configuration configuration;
+    read_topography(root, configuration, Needs::exposure);
     root.reject_unknown_keys();
     return configuration;
 }

@@ -51,6 +51,7 @@ struct Configuration {
     trace::TraceOptions trace;
     DiffractionOptions diffraction;
     topography::TopographyOptions topography;
+    std::string evaluate_on = "auto"; // or "host", "device"
     double l_filter = 0; // nesting index of the comparison's L-filter, mm; 0: none
     std::filesystem::path output_directory;
     std::optional<Sweep> sweep; // belongs to no image: neither in `canonical` nor in `identity`
@@ -78,6 +79,10 @@ Configuration load_configuration(const std::filesystem::path& file,
 
 // The same of a document; relative paths start at its file.
 Configuration read_configuration(const TomlTable& root, Needs needs = Needs::stack);
+
+// [topography] alone, with these overrides of its keys: for a stack without a configuration; all else has its default.
+// Throws InputError.
+Configuration topography_configuration(const std::vector<TomlOverride>& overrides);
 
 // The surface as it was made, vertex by vertex: what an STL, a glTF with its buffers or an image contributes
 // to the identity of a stack.

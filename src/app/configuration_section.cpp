@@ -90,9 +90,9 @@ std::int64_t Section::integer(const std::string& key, std::int64_t minimum, std:
     return record(key, fmt::format("{}", value), influence), value;
 }
 
-bool Section::boolean(const std::string& key, bool fallback) const {
+bool Section::boolean(const std::string& key, bool fallback, Influence influence) const {
     const bool value = table_.optional_boolean(key).value_or(fallback);
-    return record(key, value ? "true" : "false", Influence::images), value;
+    return record(key, value ? "true" : "false", influence), value;
 }
 
 std::vector<bool> Section::booleans(const std::string& key, const std::vector<bool>& fallback) const {

@@ -45,7 +45,7 @@ class Section {
     std::int64_t integer(const std::string& key, std::int64_t minimum, std::int64_t maximum,
                          std::optional<std::int64_t> fallback = {},
                          Influence influence = Influence::images) const;
-    bool boolean(const std::string& key, bool fallback) const;
+    bool boolean(const std::string& key, bool fallback, Influence influence = Influence::images) const;
     std::vector<bool> booleans(const std::string& key, const std::vector<bool>& fallback) const;
     std::string string(const std::string& key, std::optional<std::string> fallback = {}) const;
     std::string choice(const std::string& key, const std::vector<std::string>& choices,

@@ -8,7 +8,6 @@
 #include <nlohmann/json_fwd.hpp>
 
 #include <filesystem>
-#include <functional>
 #include <optional>
 
 namespace vkfv::app {
@@ -16,20 +15,40 @@ namespace vkfv::app {
 struct Evaluation {
     topography::TopographyOptions options; // that the heights were found by
     topography::Topography topography;
-    surface::HeightMap truth;
-    topography::Deviation deviation;                         // levelled
+    std::optional<surface::HeightMap> truth; // none of a stack that another instrument took; nor deviations
+    std::optional<topography::Deviation> deviation;          // levelled
     std::optional<topography::Deviation> filtered_deviation; // and L-filtered; none without a nesting index
     double l_filter = 0;                                     // nesting index, mm
     double seconds = 0;                                      // wall clock
 };
 
-// `image(k)` is the image at the k-th position of the configuration's scan, in W.
-Evaluation evaluate(const Configuration& configuration, const optics::Instrument& instrument,
-                    const specimen::Specimen& specimen, const std::function<Grid<float>(int)>& image);
+// Where a stack is evaluated by this choice of [topography] evaluate_on while a device traces it (selector: of the device,
+// or "host"): "auto" means the device if it has cores of its own. Throws DeviceError.
+topography::FocusPlanesMaker focus_planes_for(const std::string& evaluate_on, const std::string& device_selector);
 
-// Writes topography.tif, truth.tif, deviation.tif (float32 um, the first row has the highest y) and
-// results.json into the folder; `more` joins the figures in results.json, whose other entries of an earlier
-// run stay.
+// Takes a stack's images in their order, as they come, and keeps the time that this takes.
+class StackEvaluation {
+  public:
+    // make_planes: where the work is done.
+    StackEvaluation(const topography::TopographyOptions& options, topography::FocusPlanesMaker make_planes);
+
+    // z: mm.
+    void add(topography::Channels image, double z);
+    // On the truth's grid, with the deviation from it.
+    Evaluation finish(surface::HeightMap truth, double l_filter);
+    // Without a truth; the grid's middle is the origin, pitch in mm.
+    Evaluation finish(double pitch);
+
+  private:
+    topography::StackEvaluator evaluator_;
+    int columns_ = 0;
+    int rows_ = 0;
+    Evaluation evaluation_;
+};
+
+// Writes into the folder, the first row of each with the highest y: topography.tif (float32 um), quality.tif (contrast),
+// fit_residual.tif, mask.tif (uint16: topography::PointState), all_in_focus.tif; with a truth also truth.tif and
+// deviation.tif (float32 um); and results.json, which `more` joins, and whose other entries of an earlier run stay.
 void write_evaluation(const std::filesystem::path& folder, const Evaluation& evaluation,
                       const nlohmann::ordered_json& more);
 

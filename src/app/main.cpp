@@ -27,6 +27,7 @@ struct Arguments {
     bool align = false;
     bool devices = false;
     double z_um = 0;
+    std::optional<double> z_step_um, pitch_um, z_start_um;
     std::string precision = "double";
     bool apertures = true;
     bool json = false, quiet = false;
@@ -66,8 +67,8 @@ void declare(CLI::App& app, Arguments& given) {
                    "Images or stacks for every combination of the parameters in [sweep]; continues an interrupted one")
         ->type_name("C.toml")
         ->group(commands);
-    app.add_option("--topography", given.topography, "Evaluate an existing stack anew")
-        ->type_name("DIR")
+    app.add_option("--topography", given.topography, "Evaluate an existing stack: of vkfv, or images in a folder or a TIFF file")
+        ->type_name("STACK")
         ->group(commands);
     app.add_option("--compare", given.compare,
                    "Height maps (any format that vkfv reads) against the truth: shift, deviation, transfer, ISO 25178-2 parameters; several "
@@ -129,6 +130,17 @@ void declare(CLI::App& app, Arguments& given) {
     app.add_option("--z", given.z_um, "Height of the focal plane over best focus, um (--image)")
         ->type_name("UM")
         ->group(specific);
+    // Options are dashed; these three are spelled like the keys whose units they carry, and dashed too.
+    app.add_option("--z_step_um,--z-step-um", given.z_step_um,
+                   "Step from image to image of a stack without stack.toml; negative: they descend (--topography)")
+        ->type_name("UM")
+        ->group(specific);
+    app.add_option("--pitch_um,--pitch-um", given.pitch_um, "Distance of its pixels on the specimen (--topography)")
+        ->type_name("UM")
+        ->group(specific);
+    app.add_option("--z_start_um,--z-start-um", given.z_start_um, "Height of its first image, 0 unless given (--topography)")
+        ->type_name("UM")
+        ->group(specific);
     app.add_option("--precision", given.precision, "double: on the host; float: on the device (--trace-rays)")
         ->check(CLI::IsMember({"double", "float"}))
         ->option_text("double|float")
@@ -175,6 +187,7 @@ void declare(CLI::App& app, Arguments& given) {
                "  vkfv --stack assets/stacks/demo.toml --out demo\n"
                "  vkfv --check assets/stacks/demo.toml --json\n"
                "  vkfv --image assets/stacks/demo.toml --z -3.2 --rays 1e8\n"
+               "  vkfv --topography images.tif --z_step_um 0.5 --pitch_um 0.9 --out measured\n"
                "\nExit codes: 0 done, 2 the input is wrong, 3 no usable device, 4 the run failed and can be "
                "resumed.");
 }
@@ -212,6 +225,12 @@ vkfv::app::CommandOptions options_from(const Arguments& given) {
     options.shuffle = given.shuffle;
     options.compared_files.assign(given.compare.begin(), given.compare.end());
     options.align = given.align;
+    const auto in_mm = [](const std::optional<double>& um) {
+        return um ? std::optional(*um / vkfv::um_per_mm) : std::nullopt;
+    };
+    options.z_step = in_mm(given.z_step_um);
+    options.pitch = in_mm(given.pitch_um);
+    options.z_start = in_mm(given.z_start_um);
     options.glass_catalogs.assign(given.glass_catalogs.begin(), given.glass_catalogs.end());
     const auto override_with = [&](const std::string& option, const std::string& key,
                                    const std::string& value) {
@@ -285,6 +304,10 @@ void run(const CLI::App& app, const Arguments& given) {
     if ((app.count("--z") > 0) != (chosen->run == vkfv::app::run_image)) {
         refuse(app.count("--z") > 0 ? "--z" : "--image without --z", "--z with --image, and only with it",
                "Give --z UM, the height of the focal plane over best focus, to --image.");
+    }
+    if ((given.z_step_um || given.pitch_um || given.z_start_um) && chosen->run != vkfv::app::run_topography) {
+        refuse(fmt::format("--z_step_um, --pitch_um or --z_start_um with {}", chosen->option), "--topography",
+               "Leave it out, or evaluate a stack of images.");
     }
     options.file = chosen->file;
     chosen->run(options);

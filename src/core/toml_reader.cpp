@@ -316,10 +316,14 @@ std::string described(const char* what, const NumberRange& range) {
 
 TomlTable::TomlTable(std::shared_ptr<State> state) : state_(std::move(state)) {}
 
-TomlTable TomlTable::parse(std::string_view text, const std::filesystem::path& name) {
+TomlTable TomlTable::parse(std::string_view text, const std::filesystem::path& name,
+                           const std::vector<TomlOverride>& overrides) {
     auto document = std::make_shared<Document>();
     document->root = parse_text(text, name);
     document->file = name;
+    for (const auto& given : overrides) {
+        merge(document->root, parse_override(given));
+    }
     auto state = std::make_shared<State>();
     state->table = &document->root;
     state->where = {.file = name, .line = 1, .column = 1};
@@ -328,17 +332,7 @@ TomlTable TomlTable::parse(std::string_view text, const std::filesystem::path& n
 }
 
 TomlTable TomlTable::open(const std::filesystem::path& file, const std::vector<TomlOverride>& overrides) {
-    auto document = std::make_shared<Document>();
-    document->root = parse_text(read_text(file), file);
-    document->file = file;
-    for (const auto& given : overrides) {
-        merge(document->root, parse_override(given));
-    }
-    auto state = std::make_shared<State>();
-    state->table = &document->root;
-    state->where = {.file = file, .line = 1, .column = 1};
-    state->document = std::move(document);
-    return TomlTable(std::move(state));
+    return parse(read_text(file), file, overrides);
 }
 
 const std::string& TomlTable::path() const {

@@ -53,7 +53,8 @@ class TomlTable {
     // cannot be read and for text that is not TOML.
     static TomlTable open(const std::filesystem::path& file, const std::vector<TomlOverride>& overrides = {});
     // The same of a text; `name` stands for the file in messages.
-    static TomlTable parse(std::string_view text, const std::filesystem::path& name);
+    static TomlTable parse(std::string_view text, const std::filesystem::path& name,
+                           const std::vector<TomlOverride>& overrides = {});
 
     // Dotted key of this table; empty for the root.
     const std::string& path() const;

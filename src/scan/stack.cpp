@@ -11,7 +11,8 @@
 
 namespace vkfv::scan {
 
-StackSummary run_stack(const trace::Tracer& tracer, ImageStore& store, Progress& progress, Shard shard) {
+StackSummary run_stack(const trace::Tracer& tracer, ImageStore& store, Progress& progress, Shard shard,
+                       const ImageVisitor& visit) {
     if (shard.count < 1 || shard.index < 0 || shard.index >= shard.count) {
         throw std::invalid_argument("a shard is one of 0 .. count - 1");
     }
@@ -19,17 +20,13 @@ StackSummary run_stack(const trace::Tracer& tracer, ImageStore& store, Progress&
         spdlog::warn("{}; it is traced again", sentence);
     }
     const auto& positions = store.description().positions;
-    std::vector<int> missing;
-    int images = 0;
-    for (int image = shard.index; image < static_cast<int>(positions.size()); image += shard.count) {
-        ++images;
-        if (!store.stored(image)) {
-            missing.push_back(image);
-        }
-    }
-
+    std::vector<int> of_shard;
     StackSummary summary;
-    summary.kept = images - static_cast<int>(missing.size());
+    for (int image = shard.index; image < static_cast<int>(positions.size()); image += shard.count) {
+        of_shard.push_back(image);
+        summary.kept += store.stored(image) ? 1 : 0;
+    }
+    const int images = static_cast<int>(of_shard.size());
     progress.begin(images, summary.kept);
 
     // At most one image waits to be written: a second would only hold memory while the disk is the slower
@@ -52,15 +49,25 @@ StackSummary run_stack(const trace::Tracer& tracer, ImageStore& store, Progress&
         summary.rays += rays_in_writing;
         progress.advance(rays_in_writing);
     };
-    for (const int image : missing) {
-        trace::Image exposure =
-            tracer.expose(positions[static_cast<std::size_t>(image)], static_cast<std::uint32_t>(image));
+    for (const int image : of_shard) {
+        const double z = positions[static_cast<std::size_t>(image)];
+        if (store.stored(image)) {
+            if (visit) {
+                visit(image, read_frame(store.folder(), image, z));
+            }
+            continue;
+        }
+        trace::Image exposure = tracer.expose(z, static_cast<std::uint32_t>(image));
         summary.trace_seconds += exposure.seconds;
         finish_writing();
         rays_in_writing = exposure.rays;
+        Grid<float> flux = visit ? as_stored(exposure.flux) : Grid<float>();
         writing = std::async(std::launch::async, [&store, image, exposure = std::move(exposure)] {
             store.store(image, exposure);
         });
+        if (visit) {
+            visit(image, std::move(flux)); // while it is written
+        }
     }
     finish_writing();
     store.write_ledger();

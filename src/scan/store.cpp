@@ -269,6 +269,13 @@ fs::path image_path(int image) {
     return fs::path(images_name) / fmt::format("z_{:04}.tif", image);
 }
 
+Grid<float> as_stored(const Grid<double>& flux) {
+    Grid<float> stored(flux.columns, flux.rows);
+    std::transform(flux.values.begin(), flux.values.end(), stored.values.begin(),
+                   [](double power) { return static_cast<float>(power); });
+    return stored;
+}
+
 Grid<float> read_frame(const fs::path& folder, int image, double z) {
     const fs::path path = folder / image_path(image);
     Grid<float> frame = surface::read_image(path);
@@ -392,9 +399,7 @@ void ImageStore::store(int image, const trace::Image& exposure) {
     const std::string header = ledger_header(exposure.ledger);
     const std::string row = ledger_row(image, z, exposure);
 
-    Grid<float> flux(exposure.flux.columns, exposure.flux.rows);
-    std::transform(exposure.flux.values.begin(), exposure.flux.values.end(), flux.values.begin(),
-                   [](double power) { return static_cast<float>(power); });
+    const Grid<float> flux = as_stored(exposure.flux);
     // The first lines are what ImageJ and Fiji take the distance of the images from; it is in the unit of the
     // resolution tags. A stack of one image has none.
     std::string text = "ImageJ=1.11a\nunit=cm\n";

@@ -79,6 +79,9 @@ class ImageStore {
 // The file of an image, relative to the stack's folder: "images/z_0007.tif".
 std::filesystem::path image_path(int image);
 
+// Flux as it is stored, in float32.
+Grid<float> as_stored(const Grid<double>& flux);
+
 // Radiant flux per pixel in W of a stored image; row 0 at the lowest y. `z` is its focal height (mm) as
 // planned. Throws InputError, with the remedy, if the image is missing, not whole or of another height:
 // frames are read from finished stacks, one at a time, without a store.

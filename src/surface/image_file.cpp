@@ -13,6 +13,7 @@
 #include <cmath>
 #include <limits>
 #include <memory>
+#include <span>
 #include <string_view>
 #include <vector>
 
@@ -64,14 +65,17 @@ std::vector<Value> flipped_rows(const Grid<Value>& grid) {
 }
 
 template <class Value>
-void write_single_page(const std::filesystem::path& path, const Grid<Value>& image, const ImageTags& tags) {
+void write_single_page(const std::filesystem::path& path, std::span<const Grid<Value>> channels,
+                       const ImageTags& tags) {
+    const Grid<Value>& image = channels.front();
+    const std::size_t count = channels.size();
     AsideFile aside(path);
     // By format name, not by extension: the name aside has none of its own.
     const std::unique_ptr<OIIO::ImageOutput> output = OIIO::ImageOutput::create("tiff");
     if (!output)
         throw RunError(fmt::format("OpenImageIO offers no TIFF writer: {}", OIIO::geterror()));
 
-    OIIO::ImageSpec spec(image.columns, image.rows, 1, type_of<Value>());
+    OIIO::ImageSpec spec(image.columns, image.rows, static_cast<int>(count), type_of<Value>());
     spec.attribute("compression", "none");
     // One strip: Gwyddion 2.62 crashes on float images of several.
     spec.attribute("tiff:RowsPerStrip", image.rows);
@@ -87,7 +91,12 @@ void write_single_page(const std::filesystem::path& path, const Grid<Value>& ima
         // OpenImageIO writes the y resolution as this times that of x.
         spec.attribute("PixelAspectRatio", static_cast<float>(tags.pitch_x / tags.pitch_y));
     }
-    const std::vector<Value> values = flipped_rows(image);
+    std::vector<Value> values(count * image.values.size());
+    for (std::size_t channel = 0; channel < count; ++channel) {
+        const std::vector<Value> rows = flipped_rows(channels[channel]);
+        for (std::size_t k = 0; k < rows.size(); ++k)
+            values[k * count + channel] = rows[k];
+    }
     if (!output->open(aside.path().string(), spec) || !output->write_image(type_of<Value>(), values.data()) ||
         !output->close())
         throw RunError(fmt::format("{}: cannot be written: {}", path.string(), output->geterror()));
@@ -130,10 +139,10 @@ void check_size(const std::filesystem::path& path, const OIIO::ImageSpec& spec) 
 
 template <class Stored>
 Grid<float> read_values(OIIO::ImageInput& input, const OIIO::ImageSpec& spec,
-                        const std::filesystem::path& path, int page) {
+                        const std::filesystem::path& path, int page, int channel) {
     Grid<Stored> stored(spec.width, spec.height);
     // A strip that cannot be read leaves an error and zeros, but counts as success.
-    if (!input.read_image(page, 0, 0, 1, type_of<Stored>(), stored.values.data()) || input.has_error())
+    if (!input.read_image(page, 0, channel, channel + 1, type_of<Stored>(), stored.values.data()) || input.has_error())
         reject(path, fmt::format("page {}", page), input.geterror(),
                "pixel values up to the end of the image",
                "The file is truncated or damaged: write or copy it anew.");
@@ -144,32 +153,41 @@ Grid<float> read_values(OIIO::ImageInput& input, const OIIO::ImageSpec& spec,
     return image;
 }
 
-Grid<float> read_page(OIIO::ImageInput& input, const std::filesystem::path& path, int page) {
+Grid<float> read_channel(OIIO::ImageInput& input, const OIIO::ImageSpec& spec, const std::filesystem::path& path,
+                         int page, int channel) {
+    switch (spec.format.basetype) {
+    case OIIO::TypeDesc::UINT8:
+        return read_values<std::uint8_t>(input, spec, path, page, channel);
+    case OIIO::TypeDesc::INT8:
+        return read_values<std::int8_t>(input, spec, path, page, channel);
+    case OIIO::TypeDesc::UINT16:
+        return read_values<std::uint16_t>(input, spec, path, page, channel);
+    case OIIO::TypeDesc::INT16:
+        return read_values<std::int16_t>(input, spec, path, page, channel);
+    case OIIO::TypeDesc::UINT32:
+        return read_values<std::uint32_t>(input, spec, path, page, channel);
+    case OIIO::TypeDesc::INT32:
+        return read_values<std::int32_t>(input, spec, path, page, channel);
+    default:
+        return read_values<float>(input, spec, path, page, channel);
+    }
+}
+
+OIIO::ImageSpec spec_of_page(OIIO::ImageInput& input, const std::filesystem::path& path, int page) {
     if (!input.seek_subimage(page, 0))
         reject(path, fmt::format("page {}", page), "no such page", "an image with that page",
                "Count the pages of the file; the first is page 0.");
-    const OIIO::ImageSpec spec = input.spec();
+    return input.spec();
+}
+
+Grid<float> read_page(OIIO::ImageInput& input, const std::filesystem::path& path, int page) {
+    const OIIO::ImageSpec spec = spec_of_page(input, path, page);
     if (spec.nchannels != 1 || spec.depth > 1)
         reject(path, fmt::format("page {}", page),
                fmt::format("{} channels, depth {}", spec.nchannels, spec.depth),
                "one channel and two dimensions", "Convert the image to greyscale without alpha.");
     check_size(path, spec);
-    switch (spec.format.basetype) {
-    case OIIO::TypeDesc::UINT8:
-        return read_values<std::uint8_t>(input, spec, path, page);
-    case OIIO::TypeDesc::INT8:
-        return read_values<std::int8_t>(input, spec, path, page);
-    case OIIO::TypeDesc::UINT16:
-        return read_values<std::uint16_t>(input, spec, path, page);
-    case OIIO::TypeDesc::INT16:
-        return read_values<std::int16_t>(input, spec, path, page);
-    case OIIO::TypeDesc::UINT32:
-        return read_values<std::uint32_t>(input, spec, path, page);
-    case OIIO::TypeDesc::INT32:
-        return read_values<std::int32_t>(input, spec, path, page);
-    default:
-        return read_values<float>(input, spec, path, page);
-    }
+    return read_channel(input, spec, path, page, 0);
 }
 
 // The value of "key=value" on a line of its own.
@@ -194,11 +212,15 @@ double described_number(const std::filesystem::path& path, std::string_view desc
 } // namespace
 
 void write_tiff(const std::filesystem::path& path, const Grid<float>& image, const ImageTags& tags) {
-    write_single_page(path, image, tags);
+    write_single_page(path, std::span(&image, 1), tags);
+}
+
+void write_tiff(const std::filesystem::path& path, const std::vector<Grid<float>>& channels, const ImageTags& tags) {
+    write_single_page(path, std::span(channels), tags);
 }
 
 void write_tiff(const std::filesystem::path& path, const Grid<std::uint16_t>& image, const ImageTags& tags) {
-    write_single_page(path, image, tags);
+    write_single_page(path, std::span(&image, 1), tags);
 }
 
 int page_count(const std::filesystem::path& path) {
@@ -211,6 +233,20 @@ int page_count(const std::filesystem::path& path) {
 
 Grid<float> read_image(const std::filesystem::path& path, int page) {
     return read_page(*open_image(path), path, page);
+}
+
+std::vector<Grid<float>> read_channels(const std::filesystem::path& path, int page) {
+    const auto input = open_image(path);
+    const OIIO::ImageSpec spec = spec_of_page(*input, path, page);
+    if (spec.depth > 1)
+        reject(path, fmt::format("page {}", page), fmt::format("depth {}", spec.depth), "two dimensions",
+               "Write every plane as a page or file of its own.");
+    check_size(path, spec);
+    std::vector<Grid<float>> channels;
+    for (int channel = 0; channel < spec.nchannels; ++channel)
+        if (channel != spec.alpha_channel)
+            channels.push_back(read_channel(*input, spec, path, page, channel));
+    return channels;
 }
 
 std::string image_description(const std::filesystem::path& path) {

@@ -16,6 +16,7 @@
 #include <cstdint>
 #include <filesystem>
 #include <string>
+#include <vector>
 
 namespace vkfv::surface {
 
@@ -28,6 +29,9 @@ struct ImageTags {
 
 // float32, one page.
 void write_tiff(const std::filesystem::path& path, const Grid<float>& image, const ImageTags& tags = {});
+// The same with several channels a pixel, as many as there are images; all of one size.
+void write_tiff(const std::filesystem::path& path, const std::vector<Grid<float>>& channels,
+                const ImageTags& tags = {});
 // uint16, one page.
 void write_tiff(const std::filesystem::path& path, const Grid<std::uint16_t>& image,
                 const ImageTags& tags = {});
@@ -38,6 +42,9 @@ int page_count(const std::filesystem::path& path);
 // One page of a single-channel image in any format that OpenImageIO reads; integers keep their stored value
 // (they are not scaled to 0..1). `page` counts from 0.
 Grid<float> read_image(const std::filesystem::path& path, int page = 0);
+
+// The same of grey or colour, a grid a channel; an alpha channel is left out.
+std::vector<Grid<float>> read_channels(const std::filesystem::path& path, int page = 0);
 
 // The first page's ImageDescription; empty without one.
 std::string image_description(const std::filesystem::path& path);

@@ -1,38 +1,22 @@
-// The Gaussian average along z of images that come one at a time.
+// The Gaussian average along z: image k becomes the mean of images k + d with weights exp(-d^2 / (2 s^2)), |d| <= 3 s
+// (where the weight is 1 %), over the images there are: at the ends of the stack the weights present are normalised to
+// one.
 #pragma once
 
-#include "core/grid.hpp"
-
-#include <deque>
-#include <functional>
 #include <vector>
 
 namespace vkfv::topography {
 
-// Image k becomes the mean of images k + d with weights exp(-d^2 / (2 s^2)), |d| <= 3 s (where the weight is
-// 1 %), over the images there are: at the ends of the stack the weights present are normalised to one.
-class AxialAverage {
-  public:
-    using Sink = std::function<void(const Grid<float>&)>;
+// weights[d] of an image d steps away, d = 0..radius; not normalised. s in images; 0: the image itself alone.
+std::vector<double> axial_weights(double standard_deviation);
 
-    // s in images; 0 passes the images through unchanged.
-    explicit AxialAverage(double standard_deviation);
-
-    // Takes the next image and hands on the average that it completes, if any. All images have one size.
-    void push(const Grid<float>& image, const Sink& sink);
-    // Hands on the averages that still wait for images which do not come.
-    void flush(const Sink& sink);
-
-    // weights()[d] of an image d steps away, d = 0..radius; not normalised.
-    const std::vector<double>& weights() const { return weights_; }
-
-  private:
-    void emit(const Sink& sink);
-
-    std::vector<double> weights_;
-    std::deque<Grid<float>> images_; // the last 2 radius + 1 at most
-    int first_ = 0;                  // which image images_.front() is
-    int next_ = 0;                   // the average to be handed on next
+// What an image contributes to a weighted mean.
+struct Share {
+    int image;
+    float weight; // all of one mean add up to one
 };
+
+// The average at image `at` of a stack of `images`, in ascending order of the images.
+std::vector<Share> axial_shares(const std::vector<double>& weights, int at, int images);
 
 } // namespace vkfv::topography

@@ -3,138 +3,171 @@
 #include "core/error.hpp"
 #include "topography/parallel_rows.hpp"
 
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
 #include <algorithm>
 #include <cmath>
-#include <string>
-#include <vector>
 
 namespace vkfv::topography {
 namespace {
 
-// |2I - I(x-1) - I(x+1)| + |2I - I(y-1) - I(y+1)|
-Grid<float> modified_laplacian(const Grid<float>& image) {
-    const auto mirrored = [](int k, int count) {
-        const int folded = k < 0 ? -k : k >= count ? 2 * (count - 1) - k : k;
-        return std::clamp(folded, 0, count - 1); // a single row or column has no neighbour but itself
-    };
-    Grid<float> result(image.columns, image.rows);
-    parallel_rows(image.columns, image.rows, [&](int first, int end) {
-        for (int row = first; row < end; ++row) {
-            const int below = mirrored(row - 1, image.rows), above = mirrored(row + 1, image.rows);
-            for (int column = 0; column < image.columns; ++column) {
-                const int left = mirrored(column - 1, image.columns),
-                          right = mirrored(column + 1, image.columns);
-                const float twice = 2 * image(column, row);
-                result(column, row) = std::abs(twice - image(left, row) - image(right, row)) +
-                                      std::abs(twice - image(column, below) - image(column, above));
-            }
-        }
-    });
-    return result;
-}
+namespace f64 = focus::f64;
 
-// Calls visit(column, row, mean) for the mean of value(column, row) over the window, cut off at the border.
-// Columns are summed anew for every row and rows by a running sum: O(window) a pixel, no matter which thread.
-template <class Value, class Visit>
-void window_means(int columns, int rows, int window_px, const Value& value, const Visit& visit) {
-    const int radius = window_px / 2;
+struct ImageScene {
+    const Channels& image;
+    double image_value(int channel, int column, int row) const {
+        return image[static_cast<std::size_t>(channel)](column, row);
+    }
+};
+
+// The standard deviation gathers the channels; all other measures their mean and the response.
+struct ChannelSource {
+    const Channels& image;
+    const std::vector<double>& weights;
+    double window_weight(int distance) const { return weights[static_cast<std::size_t>(distance)]; }
+    f64::WindowSums window_source(int field, int column, int row) const {
+        return {image[static_cast<std::size_t>(field)](column, row), 0};
+    }
+};
+
+struct ResponseSource {
+    const Grid<f64::WindowSums>& pixels;
+    const std::vector<double>& weights;
+    double window_weight(int distance) const { return weights[static_cast<std::size_t>(distance)]; }
+    f64::WindowSums window_source(int, int column, int row) const { return pixels(column, row); }
+};
+
+struct RowScene {
+    const std::vector<Grid<f64::WindowSums>>& fields;
+    const std::vector<double>& weights;
+    double window_weight(int distance) const { return weights[static_cast<std::size_t>(distance)]; }
+    f64::WindowSums window_row(int field, int column, int row) const {
+        return fields[static_cast<std::size_t>(field)](column, row);
+    }
+};
+
+// Calls task(column, row) for every pixel.
+template <class Task>
+void every_pixel(int columns, int rows, const Task& task) {
     parallel_rows(columns, rows, [&](int first, int end) {
-        std::vector<double> column_sum(static_cast<std::size_t>(columns));
-        for (int row = first; row < end; ++row) {
-            const int bottom = std::max(0, row - radius), top = std::min(rows - 1, row + radius);
-            std::fill(column_sum.begin(), column_sum.end(), 0.0);
-            for (int source = bottom; source <= top; ++source)
-                for (int column = 0; column < columns; ++column)
-                    column_sum[static_cast<std::size_t>(column)] += value(column, source);
-            double sum = 0;
-            for (int column = 0; column < std::min(radius, columns); ++column)
-                sum += column_sum[static_cast<std::size_t>(column)];
-            for (int column = 0; column < columns; ++column) {
-                if (column + radius < columns)
-                    sum += column_sum[static_cast<std::size_t>(column + radius)];
-                if (column - radius - 1 >= 0)
-                    sum -= column_sum[static_cast<std::size_t>(column - radius - 1)];
-                visit(column, row, sum / window_pixels(columns, rows, column, row, window_px));
-            }
-        }
+        for (int row = first; row < end; ++row)
+            for (int column = 0; column < columns; ++column)
+                task(column, row);
     });
 }
 
-double mean(const Grid<float>& image) {
-    double sum = 0;
-    for (const float value : image.values)
-        sum += value;
-    return image.values.empty() ? 0 : sum / static_cast<double>(image.values.size());
+template <class Source>
+std::vector<Grid<f64::WindowSums>> along_rows(const f64::FocusPlan& plan, const Source& source) {
+    std::vector<Grid<f64::WindowSums>> fields;
+    for (int field = 0; field < f64::focus_fields(plan); ++field) {
+        Grid<f64::WindowSums>& sums = fields.emplace_back(plan.columns, plan.rows);
+        every_pixel(plan.columns, plan.rows, [&](int column, int row) {
+            sums(column, row) = f64::window_along_row(source, plan, field, column, row);
+        });
+    }
+    return fields;
+}
+
+f64::FocusPlan plan_of(const Channels& image, FocusMeasure measure, const FocusWindow& window) {
+    f64::FocusPlan plan{};
+    plan.columns = image.front().columns;
+    plan.rows = image.front().rows;
+    plan.channels = static_cast<int>(image.size());
+    plan.measure = static_cast<int>(measure);
+    plan.window_radius = window.radius();
+    return plan;
 }
 
 } // namespace
 
+const std::vector<std::string>& focus_measure_names() {
+    static const std::vector<std::string> names = {"standard-deviation", "tenengrad", "modified-laplacian",
+                                                   "brenner", "wavelet"};
+    return names;
+}
+
 FocusMeasure focus_measure_from_name(std::string_view name) {
-    if (name == "standard-deviation")
-        return FocusMeasure::standard_deviation;
-    if (name == "modified-laplacian")
-        return FocusMeasure::modified_laplacian;
-    throw InputError({.where = {},
-                      .key = "topography.focus_measure",
-                      .found = std::string(name),
-                      .expected = "\"standard-deviation\" or \"modified-laplacian\"",
-                      .remedy = "Name one of the focus measures."});
+    const auto& names = focus_measure_names();
+    const auto found = std::ranges::find(names, name);
+    if (found == names.end())
+        throw InputError({.where = {},
+                          .key = "topography.focus_measure",
+                          .found = std::string(name),
+                          .expected = fmt::format("\"{}\"", fmt::join(names, "\", \"")),
+                          .remedy = "Name one of the focus measures."});
+    return static_cast<FocusMeasure>(found - names.begin());
 }
 
-Grid<float> focus_measure(const Grid<float>& image, FocusMeasure measure, int window_px) {
-    Grid<float> result(image.columns, image.rows);
-    Grid<double> local_mean(image.columns, image.rows);
-    // Sums of deviations from the image's mean do not cancel.
-    const double centre = mean(image);
-    const auto deviation = [&](int column, int row) { return image(column, row) - centre; };
-    window_means(image.columns, image.rows, window_px, deviation,
-                 [&](int column, int row, double value) { local_mean(column, row) = value; });
+FocusWindow::FocusWindow(int width_px, WindowShape shape) {
+    for (int d = 0; d <= width_px / 2; ++d)
+        weights_.push_back(shape == WindowShape::box ? 1 : std::exp(-0.5 * std::pow(5.0 * d / width_px, 2)));
+}
 
-    const auto over_mean = [&](int column, int row, double value) {
-        const double brightness = centre + local_mean(column, row);
-        result(column, row) = brightness > 0 ? static_cast<float>(value / brightness) : 0.0f;
+double FocusWindow::pixels(int columns, int rows, int column, int row) const {
+    const auto along = [this](int at, int count) {
+        double sum = 0, squares = 0;
+        for (int k = std::max(0, at - radius()); k <= std::min(count - 1, at + radius()); ++k) {
+            const double weight = weights_[static_cast<std::size_t>(std::abs(k - at))];
+            sum += weight;
+            squares += weight * weight;
+        }
+        return sum * sum / squares;
     };
-    switch (measure) {
-    case FocusMeasure::standard_deviation: {
-        const auto squared = [&](int column, int row) {
-            const double d = deviation(column, row);
-            return d * d;
-        };
-        window_means(image.columns, image.rows, window_px, squared, [&](int column, int row, double value) {
-            const double d = local_mean(column, row);
-            over_mean(column, row, std::sqrt(std::max(0.0, value - d * d)));
+    return along(column, columns) * along(row, rows);
+}
+
+Grid<float> focus_measure(const Channels& image, FocusMeasure measure, const FocusWindow& window) {
+    const f64::FocusPlan plan = plan_of(image, measure, window);
+    std::vector<Grid<f64::WindowSums>> fields;
+    if (measure == FocusMeasure::standard_deviation) {
+        fields = along_rows(plan, ChannelSource{image, window.weights()});
+    } else {
+        const ImageScene scene{image};
+        Grid<f64::WindowSums> responses(plan.columns, plan.rows);
+        every_pixel(plan.columns, plan.rows, [&](int column, int row) {
+            responses(column, row) = {f64::brightness_at(scene, plan, column, row),
+                                      f64::focus_response(scene, plan, column, row)};
         });
-        break;
+        fields = along_rows(plan, ResponseSource{responses, window.weights()});
     }
-    case FocusMeasure::modified_laplacian: {
-        const Grid<float> laplacian = modified_laplacian(image);
-        window_means(
-            image.columns, image.rows, window_px, [&](int column, int row) { return laplacian(column, row); },
-            over_mean);
-        break;
-    }
-    }
+    const RowScene rows{fields, window.weights()};
+    Grid<float> result(plan.columns, plan.rows);
+    every_pixel(plan.columns, plan.rows, [&](int column, int row) {
+        result(column, row) = static_cast<float>(f64::focus_value(rows, plan, column, row));
+    });
     return result;
 }
 
-Grid<float> window_mean(const Grid<float>& image, int window_px) {
-    Grid<float> result(image.columns, image.rows);
-    window_means(
-        image.columns, image.rows, window_px, [&](int column, int row) { return image(column, row); },
-        [&](int column, int row, double value) { result(column, row) = static_cast<float>(value); });
+Grid<float> window_mean(const Grid<float>& image, const FocusWindow& window) {
+    const Channels channels = {image};
+    const f64::FocusPlan plan = plan_of(channels, FocusMeasure::standard_deviation, window);
+    const auto fields = along_rows(plan, ChannelSource{channels, window.weights()});
+    const RowScene rows{fields, window.weights()};
+    Grid<float> result(plan.columns, plan.rows);
+    every_pixel(plan.columns, plan.rows, [&](int column, int row) {
+        result(column, row) = static_cast<float>(f64::window_along_column(rows, plan, 0, column, row).level);
+    });
     return result;
 }
 
-int window_pixels(int columns, int rows, int column, int row, int window_px) {
-    const int radius = window_px / 2;
-    const auto extent = [radius](int at, int count) {
-        return std::min(count - 1, at + radius) - std::max(0, at - radius) + 1;
+double noise_gain(FocusMeasure measure, double window_pixels) {
+    const auto variance = [measure] {
+        switch (measure) {
+        case FocusMeasure::standard_deviation:
+            return 1.0;
+        case FocusMeasure::tenengrad:
+            return 130.0 / 3;
+        case FocusMeasure::modified_laplacian:
+            return 12.0;
+        case FocusMeasure::brenner:
+            return 5.0;
+        case FocusMeasure::wavelet:
+            return 269165.0 / 36096;
+        }
+        return 0.0;
     };
-    return extent(column, columns) * extent(row, rows);
-}
-
-double noise_gain(FocusMeasure measure, int window_pixels) {
-    return std::sqrt((measure == FocusMeasure::modified_laplacian ? 12.0 : 1.0) / window_pixels);
+    return std::sqrt(variance() / window_pixels);
 }
 
 } // namespace vkfv::topography

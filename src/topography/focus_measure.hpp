@@ -1,40 +1,71 @@
-// Focus measures: how much lateral texture an image has around each pixel.
+// Focus measures: how much lateral texture an image has around each pixel. What they compute stands in shaders/focus/, a
+// file each, shared with the device.
 #pragma once
 
 #include "core/grid.hpp"
+#include "focus/focus.hpp"
 
+#include <string>
 #include <string_view>
+#include <vector>
 
 namespace vkfv::topography {
 
+// The channels of one image, all of one size: one of grey, three of colour.
+using Channels = std::vector<Grid<float>>;
+
+// In the order of the constants FOCUS_*.
 enum class FocusMeasure {
-    standard_deviation, // local standard deviation over local mean
-    modified_laplacian, // local mean of |2I - I(x-1) - I(x+1)| + |2I - I(y-1) - I(y+1)| over local mean
-                        // (Nayar and Nakagawa, "Shape from focus", 1994); blind to linear gradients of
-                        // brightness
+    standard_deviation = focus::f64::FOCUS_STANDARD_DEVIATION, // local standard deviation
+    tenengrad = focus::f64::FOCUS_TENENGRAD,                   // root mean square of Sobel's gradient
+    modified_laplacian = focus::f64::FOCUS_MODIFIED_LAPLACIAN, // mean of the modified Laplacian
+    brenner = focus::f64::FOCUS_BRENNER, // root mean square of differences of pixels two apart
+    wavelet = focus::f64::FOCUS_WAVELET, // root mean square of the detail bands
 };
 
-// "standard-deviation" or "modified-laplacian"; InputError otherwise.
+// "standard-deviation", "tenengrad", "modified-laplacian", "brenner", "wavelet".
+const std::vector<std::string>& focus_measure_names();
+// InputError for any other.
 FocusMeasure focus_measure_from_name(std::string_view name);
 
-// The measure over window_px x window_px pixels (odd) around every pixel; dimensionless, so that a slowly
-// varying illumination cancels. At the border the window is cut off (at least (window_px + 1) / 2 pixels
-// remain either way), and the Laplacian mirrors the image at its outermost pixels. Where the local mean is
-// not positive the measure is 0. Rows are shared among threads; the result does not depend on how.
-Grid<float> focus_measure(const Grid<float>& image, FocusMeasure measure, int window_px);
+enum class WindowShape { box, gaussian };
 
-// Mean over the same windows.
-Grid<float> window_mean(const Grid<float>& image, int window_px);
+// What a focus measure is gathered over, around every pixel; cut off at the border of the image.
+class FocusWindow {
+  public:
+    // width_px: odd. A Gaussian of standard deviation width_px / 5, so that its weight falls to 4 % at the window's
+    // edge; box: all weights are 1.
+    FocusWindow(int width_px, WindowShape shape);
 
-// Pixels in the window around a pixel, less than window_px^2 near the border.
-int window_pixels(int columns, int rows, int column, int row, int window_px);
+    int radius() const { return static_cast<int>(weights_.size()) - 1; }
+    // Of a row or column at this distance from the middle, 0..radius; a pixel's weight is the product of both.
+    const std::vector<double>& weights() const { return weights_; }
+    // Pixels of equal weight that average independent noise as well: (sum w)^2 / sum w^2.
+    double pixels(int columns, int rows, int column, int row) const;
 
-// Standard deviation of the measure over a window of n pixels, for independent image noise of relative
-// standard deviation 1 in every pixel; noise passes linearly for small values. Standard deviation: at most 1
-// / sqrt(n) (that is its value where texture exceeds noise; 1 / sqrt(2 n) without texture). Modified
-// Laplacian: sqrt(12 / n): the second differences along x and y each have the variance 6, and their absolute
-// values, with signs from texture, do not correlate between pixels on average; without texture the
-// covariances (2/pi)(sqrt(1 - r^2) + r asin r - 1) of absolute normal variables add up to 12.02 / n.
-double noise_gain(FocusMeasure measure, int window_pixels);
+  private:
+    std::vector<double> weights_;
+};
+
+// The measure over the window around every pixel, over all channels (response.glsl), divided by the brightness there and
+// so dimensionless: a slowly varying illumination cancels. Where the local mean is not positive the measure is 0. In
+// double; rows are shared among threads, and the result does not depend on how.
+Grid<float> focus_measure(const Channels& image, FocusMeasure measure, const FocusWindow& window);
+
+// Weighted mean over the same windows.
+Grid<float> window_mean(const Grid<float>& image, const FocusWindow& window);
+
+// Standard deviation of the measure over a window of n pixels, for independent image noise of relative standard deviation 1
+// in every pixel; noise passes linearly for small values. Narrow windows average less of what correlates between pixels,
+// and have up to a fifth less.
+//
+// Roots of energies: sqrt(<e^2> / <e> / n) with the power response e of the measure's masks to waves of all directions and
+// lengths: 1 (standard deviation), 130/3 (Tenengrad), 5 (Brenner), 269165/36096 (wavelet). That is the noise where white
+// texture exceeds it; without texture it is 1 / sqrt(2) of that.
+//
+// Modified Laplacian: sqrt(12 / n): the second differences along x and y each have the variance 6, and their absolute
+// values, without texture, have the covariances (2/pi)(sqrt(1 - r^2) + r asin r - 1) between pixels, which add up to
+// 12.02 / n. On white texture the differences keep its signs, and sums of 6 r (2/pi) asin r make it 27.9 / n.
+double noise_gain(FocusMeasure measure, double window_pixels);
 
 } // namespace vkfv::topography

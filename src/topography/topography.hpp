@@ -8,12 +8,13 @@
 //
 // - A windowed focus measure of every averaged image (focus_measure.hpp) gives the focus curve along z.
 //
-// - The curve is averaged with the same weights, and the three points around its maximum give the height by a
-//   Gaussian fit (peak.hpp).
+// - The curve is averaged with the same weights, and its maximum is found to a fraction of a step
+//   (peak_method.hpp).
 //
 // - The point is "not measured" where the maximum lies at either end of the scan, or stands no further above
 //   the curve's mean than image noise alone would bring it at `false_peak_rate`. The noise is taken from the
-//   stack itself: from second differences along z, in which texture that changes slowly cancels.
+//   stack itself: from second differences along z, in which texture that changes slowly cancels. Further limits
+//   of quality can be set.
 //
 // Near the ends of the scan the averages hold only the images there are, which draws heights within about two
 // smoothing_steps of an end inwards: plan the scan a depth of focus wider than the specimen at either side.
@@ -21,11 +22,12 @@
 
 #include "core/grid.hpp"
 #include "surface/height_map.hpp"
-#include "topography/axial_average.hpp"
 #include "topography/focus_measure.hpp"
-#include "topography/peak.hpp"
+#include "topography/focus_planes.hpp"
+#include "topography/host_focus_planes.hpp"
+#include "topography/peak_method.hpp"
 
-#include <deque>
+#include <cstdint>
 #include <span>
 #include <string>
 #include <vector>
@@ -33,9 +35,12 @@
 namespace vkfv::topography {
 
 struct TopographyOptions {
-    std::string focus_measure = "standard-deviation"; // or "modified-laplacian"
+    std::string focus_measure = "standard-deviation"; // one of focus_measure_names()
     int window_px = 7;                                // odd, at least 3
-    std::string peak = "gaussian";                    // the only one
+    std::string window_shape = "box";                 // or "gaussian"; see FocusWindow
+    std::string peak = "gaussian";                    // one of peak_method_names()
+    // Half width of the range around the maximum that fits, fit_residual and the number of peaks are of, in steps.
+    int peak_range_steps = 3;
     // Standard deviation, in steps of the scan, of the Gaussian average along z; 0 switches it off. Best at
     // about half the half width of the focus curve: 3 for steps of an eighth of it, less for coarser steps.
     double smoothing_steps = 3;
@@ -43,53 +48,89 @@ struct TopographyOptions {
     // bound for normal sums: with windows below 7 pixels and no average along z the skew of the measure may
     // double it.
     double false_peak_rate = 1e-3;
+    // What a point must keep to count as measured, beside false_peak_rate; these values let all pass.
+    double least_contrast = 0;
+    double most_fit_residual = 1;
+    int most_peaks = 4;
+    bool repair_outliers = false; // see repair_outliers()
+};
+
+// What became of a point.
+enum class PointState : std::uint16_t {
+    measured = 0,
+    no_peak = 1,      // the largest value stands at an end of the scan, or the method finds no maximum
+    low_contrast = 2, // below what noise brings, or least_contrast
+    poor_fit = 3,     // fit residual above most_fit_residual
+    many_peaks = 4,   // more than most_peaks
+    repaired = 5,     // an outlier; its height is the median of its neighbours
 };
 
 struct Topography {
     surface::HeightMap height; // NaN: not measured
     // Height of the focus curve's maximum over its mean in standard deviations of the curve's noise:
     // dimensionless; infinite on a stack without any noise.
-    Grid<double> quality;
+    Grid<double> contrast;
+    // RMS distance of the curve from a Gaussian over the range around its maximum, in units of the maximum.
+    Grid<double> fit_residual;
+    // Local maxima, each the largest within the range around it, that stand at least half as high above the curve's
+    // mean as the largest; 4 means "or more".
+    Grid<std::uint16_t> peaks;
+    Grid<PointState> state;
+    // Every pixel from the image nearest its height; where nothing was measured, from the image in which the focus
+    // measure is largest. In the images' unit; as many channels as they have.
+    Channels all_in_focus;
 };
 
-// Evaluates a stack whose images come one at a time: beside a few numbers a pixel it holds
-// 2 (6 smoothing_steps + 2) images, however long the stack.
+// Evaluates a stack whose images come one at a time, in one pass. With r = ceil(3 smoothing_steps), R =
+// peak_range_steps and C channels it holds, however long the stack, for every pixel about 4 bytes for each of
+// C (2r + 2R + 2) values of images and 2r + 2R + 2 of curves, and 100 + 50 C bytes besides: 280 MB for 1000 x 1000
+// grey pixels with the default options.
 class StackEvaluator {
   public:
-    // Throws InputError where an option is out of its range.
-    explicit StackEvaluator(const TopographyOptions& options);
+    // `make_planes` makes what does the work: the host's cores unless a device is given. Throws InputError where an
+    // option is out of its range.
+    explicit StackEvaluator(const TopographyOptions& options,
+                            FocusPlanesMaker make_planes = make_host_focus_planes);
 
     // The image at height z (mm). Images come in ascending z, equidistant to a hundredth of a step and all of
-    // one size, with finite values: InputError otherwise.
-    void add(const Grid<float>& image, double z);
+    // one size and number of channels, with finite values: InputError otherwise.
+    void add(const Grid<float>& image, double z) { add(Channels{image}, z); }
+    void add(Channels image, double z);
 
     // The heights of all images added; pixel (0, 0) stands at (x0, y0), pitch in mm. At least three images:
     // InputError otherwise. Ends the evaluation: call it once.
     Topography finish(double x0, double y0, double pitch);
 
   private:
-    void measure(const Grid<float>& averaged_image);
-    void observe_noise(const Grid<float>& image);
-    Grid<float> relative_noise() const;
+    void check(const Channels& image, double z) const;
+    void begin(const Channels& first);
+    void advance(bool all_taken);
 
-    FocusMeasure focus_measure_;
-    int window_px_;
-    double false_peak_rate_;
-    AxialAverage images_;
-    AxialAverage curves_;
+    TopographyOptions options_;
+    FocusMeasure measure_;
+    FocusWindow window_;
+    std::vector<double> axial_weights_;
+    FocusPlanesMaker make_planes_;
+    std::unique_ptr<FocusPlanes> planes_; // from the first image on
     int columns_ = 0;
     int rows_ = 0;
+    std::size_t channels_ = 0;
+    float scale_ = 1; // a power of two that brings the images near 1: squares of fluxes would leave a float's range
     std::vector<double> z_;
-    std::deque<Grid<float>> latest_;  // the last two images
-    Grid<float> brightness_;          // sum of all images
-    Grid<float> squared_differences_; // sum of (I[k-1] - 2 I[k] + I[k+1])^2
-    PeakTracker peaks_;
+    int measured_ = 0; // images
+    int averaged_ = 0;
+    int followed_ = 0;
 };
 
-// The smallest quality that counts as a peak among so many images. The largest of n normal values exceeds t
+// The smallest contrast that counts as a peak among so many images. The largest of n normal values exceeds t
 // standard deviations with probability below n exp(-t^2 / 2) / 2, the union bound with Chernoff's tail;
 // solved for t.
-double quality_threshold(int images, double false_peak_rate);
+double contrast_threshold(int images, double false_peak_rate);
+
+// Gives outliers the median height of their neighbours, and marks them. An outlier is a measured point with at least 5
+// of its 8 neighbours measured whose distance from their median exceeds 6 robust standard deviations (1.4826 times the
+// median absolute distance of all such points): of normal distances 2e-9 do.
+void repair_outliers(Topography& topography);
 
 // A whole stack in memory: stack[k] is the image at z[k] (mm, ascending, equidistant).
 Topography reconstruct(std::span<const Grid<float>> stack, std::span<const double> z, double x0, double y0,

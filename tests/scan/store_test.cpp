@@ -187,6 +187,31 @@ TEST(ImageStore, ShardsOfSeparateFoldersMakeOneStack) {
     EXPECT_EQ(differing_files(result_of(even.path()), result_of(whole.path())), "");
 }
 
+TEST(Stack, ShowsEveryImageOnceInOrderAsItIsStored) {
+    const FreshFolder folder("shown");
+    const auto show = [&](const FakeTracer& tracer) {
+        ImageStore store(folder.path(), describe());
+        std::ostringstream nowhere;
+        Progress progress(nowhere, Progress::Style::quiet);
+        std::vector<int> images;
+        std::vector<std::vector<float>> fluxes;
+        run_stack(tracer, store, progress, {}, [&](int image, Grid<float> flux) {
+            images.push_back(image);
+            fluxes.push_back(std::move(flux.values));
+        });
+        EXPECT_THAT(images, ElementsAre(0, 1, 2, 3));
+        for (std::size_t k = 0; k < fluxes.size(); ++k) {
+            EXPECT_EQ(fluxes[k],
+                      read_frame(folder.path(), static_cast<int>(k), describe().positions[k]).values);
+        }
+    };
+    show(FakeTracer());
+    fs::remove(folder.path() / "images/z_0002.tif");
+    const FakeTracer again;
+    show(again);
+    EXPECT_THAT(again.exposed, ElementsAre(2));
+}
+
 // Every state that a kill or a disk may leave behind heals to the bytes of an undisturbed run.
 TEST(ImageStore, HealsWhatIsDamaged) {
     const FreshFolder whole("undisturbed");

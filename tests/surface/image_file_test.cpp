@@ -242,5 +242,21 @@ TEST_F(ImageFile, UnwritableFolderIsARunError) {
     EXPECT_THROW(write_tiff(file("no_such_folder") / "a.tif", letter_grid(1.0f, 0.0f)), RunError);
 }
 
+TEST_F(ImageFile, ChannelsComeBackOneByOne) {
+    const auto path = std::filesystem::path(testing::TempDir()) / "channels.tif";
+    std::vector<Grid<float>> channels(3, Grid<float>(4, 3));
+    for (std::size_t channel = 0; channel < 3; ++channel)
+        for (std::size_t k = 0; k < 12; ++k)
+            channels[channel].values[k] = static_cast<float>(100 * channel + k);
+    write_tiff(path, channels);
+    const auto read = read_channels(path);
+    ASSERT_EQ(read.size(), 3u);
+    for (std::size_t channel = 0; channel < 3; ++channel)
+        EXPECT_EQ(read[channel].values, channels[channel].values);
+    EXPECT_THROW(read_image(path), InputError); // of grey alone
+    write_tiff(path, channels[1]);
+    EXPECT_EQ(read_channels(path).size(), 1u);
+}
+
 } // namespace
 } // namespace vkfv::surface

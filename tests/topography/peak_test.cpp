@@ -1,186 +1,212 @@
-#include "topography/axial_average.hpp"
-#include "topography/focus_measure.hpp"
-#include "topography/peak.hpp"
-
 #include "core/error.hpp"
+#include "focus/focus.hpp"
+#include "topography/peak_method.hpp"
 
 #include <gtest/gtest.h>
 
-#include <algorithm>
 #include <cmath>
+#include <functional>
 #include <random>
 #include <vector>
 
 namespace vkfv::topography {
 namespace {
 
-TEST(GaussianPeak, IsExactForAGaussianAnywhereBetweenSteps) {
+using namespace focus::f64;
+
+struct Curve {
+    std::vector<double> values;
+    double curve_value(int image) const { return values.at(static_cast<std::size_t>(image)); }
+};
+
+// f(-range) ... f(range), the maximum at the image `range`.
+Curve sampled(const std::function<double(double)>& f, int range) {
+    Curve curve;
+    for (int x = -range; x <= range; ++x)
+        curve.values.push_back(f(x));
+    return curve;
+}
+
+std::function<double(double)> gaussian(double centre, double width) {
+    return [=](double z) { return 5 * std::exp(-0.5 * std::pow((z - centre) / width, 2)); };
+}
+
+FocusPlan plan_of(int method, int range) {
+    FocusPlan plan{};
+    plan.peak = method;
+    plan.peak_range = range;
+    return plan;
+}
+
+double located(int method, const Curve& curve, int range) {
+    const PeakFit fit = locate_peak(curve, plan_of(method, range), static_cast<int>(curve.values.size()) / 2, range);
+    EXPECT_EQ(fit.found, 1);
+    return fit.offset;
+}
+
+TEST(Peak, ThreePointAndFittedGaussiansAreExactForAGaussianAnywhereBetweenSteps) {
     for (double centre = -0.5; centre <= 0.5; centre += 0.0625)
         for (const double width : {0.7, 3.0, 10.0}) {
-            const auto value = [=](double z) {
-                return 5 * std::exp(-0.5 * std::pow((z - centre) / width, 2));
-            };
             // The logarithms' rounding, 2e-16, is divided by the curvature 1 / width^2 >= 0.01.
-            EXPECT_NEAR(gaussian_peak_offset(value(-1), value(0), value(1)), centre, 1e-13);
+            EXPECT_NEAR(located(PEAK_GAUSSIAN, sampled(gaussian(centre, width), 1), 1), centre, 1e-13);
+            for (const int range : {1, 2, 6}) {
+                const Curve curve = sampled(gaussian(centre, width), range);
+                EXPECT_NEAR(located(PEAK_GAUSSIAN_FIT, curve, range), centre, 1e-12); // sums of 13 such
+                EXPECT_NEAR(gaussian_residual(curve, range, range), 0, 1e-14);
+            }
         }
     // The wrong twin, a parabola through the values themselves, is off by more than 0.02 steps.
-    const auto value = [](double z) { return std::exp(-0.5 * std::pow((z - 0.3) / 0.7, 2)); };
-    const double a = value(-1), b = value(0), c = value(1);
-    EXPECT_GT(std::abs((a - c) / (2 * (a - 2 * b + c)) - 0.3), 0.02);
+    EXPECT_GT(std::abs(located(PEAK_PARABOLA, sampled(gaussian(0.3, 0.7), 1), 1) - 0.3), 0.02);
 }
 
-TEST(GaussianPeak, HasNoOffsetWithoutAPeak) {
-    EXPECT_TRUE(std::isnan(gaussian_peak_offset(1, 1, 1)));
-    EXPECT_TRUE(std::isnan(gaussian_peak_offset(1, 2, 3)));
-    EXPECT_TRUE(std::isnan(gaussian_peak_offset(2, 1, 2)));
-    EXPECT_TRUE(std::isnan(gaussian_peak_offset(0, 1, 0.5)));
-    EXPECT_DOUBLE_EQ(gaussian_peak_offset(1, 2, 2), 0.5);
+TEST(Peak, ParabolasAreExactForAParabola) {
+    for (double centre = -0.5; centre <= 0.5; centre += 0.0625) {
+        const auto parabola = [=](double z) { return 50 - std::pow(z - centre, 2); };
+        // Values of 50 to 1e-14, a curvature of 2.
+        EXPECT_NEAR(located(PEAK_PARABOLA, sampled(parabola, 1), 1), centre, 1e-14);
+        for (const int range : {1, 3, 6})
+            EXPECT_NEAR(located(PEAK_POLYNOMIAL_FIT, sampled(parabola, range), range), centre, 1e-13);
+    }
+    // The wrong twin.
+    const auto parabola = [](double z) { return 50 - std::pow(z - 0.3, 2); };
+    EXPECT_GT(std::abs(located(PEAK_GAUSSIAN, sampled(parabola, 1), 1) - 0.3), 1e-4);
 }
 
-double tracked_position(const std::vector<float>& curve) {
-    PeakTracker tracker;
-    for (const float value : curve)
-        tracker.add(Grid<float>(1, 1, value));
-    return tracker.position(0, 0);
-}
-
-TEST(PeakTracker, FindsTheHighestOfSeveralPeaksAndNoneAtTheEnds) {
-    EXPECT_DOUBLE_EQ(tracked_position({1, 2, 1, 1, 4, 1}), 4);
-    EXPECT_DOUBLE_EQ(tracked_position({1, 4, 1, 1, 2, 1}), 1);
-    EXPECT_TRUE(std::isnan(tracked_position({5, 4, 3, 2, 1})));
-    EXPECT_TRUE(std::isnan(tracked_position({1, 2, 3, 4, 5})));
-    EXPECT_TRUE(std::isnan(tracked_position({3, 3, 3, 3})));
-    PeakTracker tracker;
-    for (const float value : {1.0f, 4.0f, 1.0f})
-        tracker.add(Grid<float>(1, 1, value));
-    EXPECT_DOUBLE_EQ(tracker.prominence(0, 0), 2);
-}
-
-TEST(AxialAverage, IsTheNormalisedWeightedMeanAlsoAtTheEnds) {
-    const std::vector<float> values = {3, -1, 4, 1, -5, 9, 2, 6};
-    for (const double s : {0.0, 0.5, 1.0, 4.0}) {
-        AxialAverage average(s);
-        std::vector<float> result;
-        const auto sink = [&](const Grid<float>& image) { result.push_back(image(0, 0)); };
-        for (const float value : values)
-            average.push(Grid<float>(1, 1, value), sink);
-        average.flush(sink);
-        ASSERT_EQ(result.size(), values.size());
-        for (int k = 0; k < static_cast<int>(values.size()); ++k) {
-            double sum = 0, weights = 0;
-            for (int i = 0; i < static_cast<int>(values.size()); ++i) {
-                const double weight = i == k ? 1
-                                      : std::abs(i - k) <= std::ceil(3 * s)
-                                          ? std::exp(-0.5 * std::pow((i - k) / s, 2))
-                                          : 0;
-                sum += weight * values[static_cast<std::size_t>(i)];
-                weights += weight;
-            }
-            // Eight float32 terms below 9.
-            EXPECT_NEAR(result[static_cast<std::size_t>(k)], sum / weights, 9 * 8 * 6e-8);
+TEST(Peak, APolynomialFitIsThatOfTheNormalEquations) {
+    // Over -R..R with S2 = sum x^2, S4 = sum x^4, n = 2 R + 1: the slope at the middle is sum x y / S2, and half the
+    // curvature (n sum x^2 y - S2 sum y) / (n S4 - S2^2).
+    std::mt19937 random(5);
+    std::normal_distribution<double> normal(0, 0.05);
+    for (const int range : {2, 5}) {
+        const Curve curve = sampled([&](double z) { return gaussian(0.2, 3)(z) + normal(random); }, range);
+        double n = 0, s2 = 0, s4 = 0, y = 0, xy = 0, xxy = 0;
+        for (int x = -range; x <= range; ++x) {
+            const double value = curve.values[static_cast<std::size_t>(x + range)];
+            n += 1, s2 += x * x, s4 += x * x * x * x, y += value, xy += x * value, xxy += x * x * value;
         }
+        const double bend = (n * xxy - s2 * y) / (n * s4 - s2 * s2);
+        EXPECT_NEAR(located(PEAK_POLYNOMIAL_FIT, curve, range), -xy / s2 / (2 * bend), 1e-12);
     }
 }
 
-Grid<float> noise_image(int columns, int rows, double mean, double deviation, unsigned seed) {
-    std::mt19937 random(seed);
-    std::normal_distribution<double> normal(mean, deviation);
-    Grid<float> image(columns, rows);
-    for (float& value : image.values)
-        value = static_cast<float>(normal(random));
-    return image;
+TEST(Peak, TheCentreOfGravityIsThatOfWhatStandsAboveTheSmallestValue) {
+    // A triangle of height 4 and half width 4, shifted by a half, above a pedestal of 7: values 7 + (0.5 1.5 2.5 3.5 3.5 2.5
+    // 1.5), of which the smallest falls away: (1*-2 + 2*-1 + 3*0 + 3*1 + 2*2 + 1*3) / 12.
+    EXPECT_NEAR(located(PEAK_CENTRE_OF_GRAVITY, Curve{{7.5, 8.5, 9.5, 10.5, 10.5, 9.5, 8.5}}, 3), 6.0 / 12, 1e-15);
+    // Of a Gaussian whose feet are in the range: its centre, but for the tail cut off, exp(-0.5 (5.7/1.2)^2) = 1e-5.
+    EXPECT_NEAR(located(PEAK_CENTRE_OF_GRAVITY, sampled(gaussian(0.3, 1.2), 6), 6), 0.3, 1e-3);
 }
 
-// The definition, window by window.
-double direct_measure(const Grid<float>& image, FocusMeasure measure, int window, int column, int row) {
-    const int radius = window / 2;
-    const auto at = [&](int i, int j) {
-        const auto mirror = [](int k, int n) { return k < 0 ? -k : k >= n ? 2 * n - 2 - k : k; };
-        return static_cast<double>(image(mirror(i, image.columns), mirror(j, image.rows)));
+TEST(Peak, FitsHaveTheNoiseOfTheirClosedForms) {
+    // 4000 noisy Gaussians: each standard deviation is known to 1 / sqrt(8000) = 1.1 %.
+    std::mt19937 random(7);
+    std::normal_distribution<double> normal(0, 0.02);
+    const auto deviation = [&](int method) {
+        double sum = 0, squares = 0;
+        constexpr int curves = 4000;
+        for (int k = 0; k < curves; ++k) {
+            const Curve curve = sampled([&](double z) { return gaussian(0.2, 6)(z) + normal(random); }, 5);
+            const double offset = located(method, curve, 5);
+            sum += offset;
+            squares += offset * offset;
+        }
+        return std::sqrt(squares / curves - std::pow(sum / curves, 2));
     };
-    double n = 0, sum = 0, squares = 0, laplacian = 0;
-    for (int j = std::max(0, row - radius); j <= std::min(image.rows - 1, row + radius); ++j)
-        for (int i = std::max(0, column - radius); i <= std::min(image.columns - 1, column + radius); ++i) {
-            n += 1;
-            sum += at(i, j);
-            squares += at(i, j) * at(i, j);
-            laplacian += std::abs(2 * at(i, j) - at(i - 1, j) - at(i + 1, j)) +
-                         std::abs(2 * at(i, j) - at(i, j - 1) - at(i, j + 1));
-        }
-    return measure == FocusMeasure::standard_deviation
-               ? std::sqrt(squares / n - sum * sum / n / n) / (sum / n)
-               : laplacian / sum;
+    // The Gaussian fit's weights are those of least noise: 0.02 / sqrt(sum (dy/dcentre)^2) by Cramer and Rao, with
+    // dy/dcentre = y x / 6^2.
+    double information = 0;
+    for (int x = -5; x <= 5; ++x)
+        information += std::pow(gaussian(0.2, 6)(x) * (x - 0.2) / 36, 2);
+    EXPECT_NEAR(deviation(PEAK_GAUSSIAN_FIT) / (0.02 / std::sqrt(information)), 1, 0.055); // five of 1.1 %: rate 6e-7
+    // The parabola's vertex has the noise of its slope, 0.02 / sqrt(sum x^2), over twice its bend.
+    const double bend = 5 * fit_parabola(sampled(gaussian(0.2, 6), 5), 5, 5, 0).bend;
+    EXPECT_NEAR(deviation(PEAK_POLYNOMIAL_FIT) / (0.02 / std::sqrt(110) / (2 * std::abs(bend))), 1, 0.055);
 }
 
-TEST(FocusMeasure, IsItsDefinitionInEveryWindow) {
-    const auto image = noise_image(23, 17, 200, 15, 1);
-    for (const auto measure : {FocusMeasure::standard_deviation, FocusMeasure::modified_laplacian})
-        for (const int window : {3, 7, 15, 41}) {
-            const auto result = focus_measure(image, measure, window);
-            for (int row = 0; row < image.rows; ++row)
-                for (int column = 0; column < image.columns; ++column)
-                    // float32 of the Laplacian and of the result, each to 6e-8 of at most 0.5
-                    EXPECT_NEAR(result(column, row), direct_measure(image, measure, window, column, row),
-                                1e-7)
-                        << window << " " << column << " " << row;
-        }
-}
-
-TEST(FocusMeasure, DoesNotDependOnBrightness) {
-    const auto image = noise_image(16, 16, 200, 15, 2);
-    Grid<float> brighter = image;
-    for (float& value : brighter.values)
-        value *= 1024; // exact
-    for (const auto measure : {FocusMeasure::standard_deviation, FocusMeasure::modified_laplacian})
-        EXPECT_EQ(focus_measure(image, measure, 5).values, focus_measure(brighter, measure, 5).values);
-    EXPECT_EQ(focus_measure(Grid<float>(9, 9), FocusMeasure::standard_deviation, 3).values,
-              std::vector<float>(81, 0.0f));
-}
-
-TEST(FocusMeasure, RowsSharedAmongThreadsGiveWhatOneRowAloneGives) {
-    // Large enough for several threads; a strip cut out with its margins stays on one.
-    const auto image = noise_image(512, 600, 200, 15, 3);
-    Grid<float> strip(512, 40);
-    std::copy_n(image.values.begin() + 512 * 290, strip.values.size(), strip.values.begin());
-    const auto whole = focus_measure(image, FocusMeasure::modified_laplacian, 7);
-    const auto part = focus_measure(strip, FocusMeasure::modified_laplacian, 7);
-    for (int row = 5; row < 35; ++row)
-        for (int column = 0; column < 512; ++column)
-            // The sums are taken about different image means: float32 of the result.
-            EXPECT_NEAR(whole(column, 290 + row), part(column, row), 1e-7);
-    EXPECT_EQ(whole.values, focus_measure(image, FocusMeasure::modified_laplacian, 7).values);
-}
-
-TEST(FocusMeasure, NoiseGainIsThatOfNoise) {
-    // Windows that do not overlap: m = (280/14)^2 = 400 independent measures in each of 5 images; the
-    // standard deviation of 2000 normal values is known to 1 / sqrt(4000) = 1.6 %; five of these (rate 6e-7)
-    // are 8 %.
-    const int window = 7;
-    for (const auto measure : {FocusMeasure::standard_deviation, FocusMeasure::modified_laplacian}) {
-        const double relative_noise = 0.01;
-        double sum = 0, squares = 0, n = 0;
-        for (unsigned seed = 0; seed < 5; ++seed) {
-            const auto result =
-                focus_measure(noise_image(280, 280, 100, 100 * relative_noise, 10 + seed), measure, window);
-            for (int row = 7; row < 280; row += 14)
-                for (int column = 7; column < 280; column += 14) {
-                    sum += result(column, row);
-                    squares += static_cast<double>(result(column, row)) * result(column, row);
-                    n += 1;
-                }
-        }
-        const double deviation = std::sqrt(squares / n - sum * sum / n / n);
-        double gain = noise_gain(measure, window * window) * relative_noise;
-        if (measure == FocusMeasure::standard_deviation)
-            gain /= std::sqrt(2.0); // without texture
-        EXPECT_NEAR(deviation / gain, 1, 0.08);
+TEST(Peak, ThereIsNoneWithoutAMaximum) {
+    EXPECT_EQ(gaussian_peak(1.0, 1.0, 1.0).found, 0);
+    EXPECT_EQ(gaussian_peak(1.0, 2.0, 3.0).found, 0);
+    EXPECT_EQ(gaussian_peak(2.0, 1.0, 2.0).found, 0);
+    EXPECT_EQ(gaussian_peak(0.0, 1.0, 0.5).found, 0);
+    EXPECT_DOUBLE_EQ(gaussian_peak(1.0, 2.0, 2.0).offset, 0.5);
+    EXPECT_EQ(parabola_peak(1.0, 1.0, 1.0).found, 0);
+    for (int method = 0; method < PEAK_METHOD_COUNT; ++method) {
+        EXPECT_EQ(locate_peak(Curve{{0, 0, 0}}, plan_of(method, 1), 1, 1).found, 0);
+        EXPECT_EQ(locate_peak(Curve{{1}}, plan_of(method, 1), 0, 0).found, 0);
     }
+    EXPECT_EQ(locate_peak(Curve{{2, 2, 2}}, plan_of(PEAK_POLYNOMIAL_FIT, 1), 1, 1).found, 0);
+    EXPECT_EQ(locate_peak(Curve{{9, 2, 3, 2, 9}}, plan_of(PEAK_POLYNOMIAL_FIT, 2), 2, 2).found, 0);
 }
 
-TEST(FocusMeasure, IsKnownByName) {
-    EXPECT_EQ(focus_measure_from_name("standard-deviation"), FocusMeasure::standard_deviation);
-    EXPECT_EQ(focus_measure_from_name("modified-laplacian"), FocusMeasure::modified_laplacian);
-    EXPECT_THROW(focus_measure_from_name("sharpness"), InputError);
+TEST(Peak, OutsideTheRangeThereIsNone) {
+    // The largest value stands in the middle of a rise that bends downwards: the fit's maximum lies beyond the range, and no
+    // image out there is taken for the sharpest.
+    const Curve curve{{1, 11, 19, 26.9, 26.8, 30, 34}};
+    const FocusPlan plan = plan_of(PEAK_POLYNOMIAL_FIT, 3);
+    const PeakFit fit = locate_peak(curve, plan, 3, 3);
+    EXPECT_EQ(fit.found, 0);
+    EXPECT_EQ(fit.offset, 0);
+    EXPECT_EQ(follow_curve(curve, plan, empty_curve(), 3, 7).sharpest, 3);
+    // The wrong twin: the parabola does have a maximum.
+    const ParabolaFit parabola = fit_parabola(curve, 3, 3, 0);
+    EXPECT_LT(parabola.bend, 0);
+    EXPECT_GT((parabola.middle_1 + parabola.middle_2) / 2 - parabola.slope / (2 * parabola.bend), 3);
+}
+
+CurveRecord followed(const std::vector<double>& values, int range) {
+    const Curve curve{values};
+    const int images = static_cast<int>(values.size());
+    CurveRecord record = empty_curve();
+    for (int at = 0; at < images; ++at)
+        record = follow_curve(curve, plan_of(PEAK_GAUSSIAN, range), record, at, std::min(images, at + range + 1)).curve;
+    return record;
+}
+
+double position(const std::vector<double>& values) {
+    const CurveRecord record = followed(values, 2);
+    return record.found == 1 ? record.at + record.offset : std::nan("");
+}
+
+TEST(FocusCurve, FindsTheHighestOfSeveralPeaksAndNoneAtTheEnds) {
+    EXPECT_DOUBLE_EQ(position({1, 2, 1, 1, 4, 1}), 4);
+    EXPECT_DOUBLE_EQ(position({1, 4, 1, 1, 2, 1}), 1);
+    EXPECT_DOUBLE_EQ(position({1, 2, 4, 4, 2, 1}), 2.5);
+    EXPECT_TRUE(std::isnan(position({5, 4, 3, 2, 1})));
+    EXPECT_TRUE(std::isnan(position({1, 2, 3, 4, 5})));
+    EXPECT_TRUE(std::isnan(position({1, 4, 1, 1, 2, 5})));
+    EXPECT_TRUE(std::isnan(position({3, 3, 3, 3})));
+    EXPECT_DOUBLE_EQ(followed({1, 4, 1}, 2).sum, 6);
+    EXPECT_DOUBLE_EQ(followed({1, 2, 3}, 2).largest, 3);
+}
+
+TEST(FocusCurve, CountsItsPeaks) {
+    const auto peaks = [](const std::vector<double>& values, int range) {
+        return count_peaks(followed(values, range), static_cast<int>(values.size()));
+    };
+    EXPECT_EQ(peaks({1, 1, 9, 1, 1, 1, 1, 1}, 2), 1);
+    EXPECT_EQ(peaks({1, 1, 9, 1, 1, 8, 1, 1}, 2), 2);
+    EXPECT_EQ(peaks({1, 1, 9, 1, 1, 3, 1, 1}, 2), 1); // the mean is 2.25, half way 5.6
+    EXPECT_EQ(peaks({1, 1, 9, 1, 8, 1, 1, 1}, 2), 1); // within the range of the other
+    EXPECT_EQ(peaks({1, 1, 9, 1, 8, 1, 1, 1}, 1), 2);
+    EXPECT_EQ(peaks({1, 1, 9, 9, 1, 1, 1, 1}, 2), 1); // a plateau is one
+    EXPECT_EQ(peaks({1, 9, 1, 9, 1, 9, 1, 9, 1, 9, 1}, 1), 4); // or more
+}
+
+TEST(FocusCurve, TheResidualTellsASinglePeakFromOthers) {
+    std::vector<double> one, two;
+    for (int k = 0; k < 21; ++k) {
+        one.push_back(gaussian(10.2, 3)(k));
+        two.push_back(gaussian(8, 1.5)(k) + gaussian(12.5, 1.5)(k));
+    }
+    EXPECT_LT(followed(one, 6).residual, 1e-12); // exact but for rounding
+    EXPECT_GT(followed(two, 6).residual, 0.05);
+}
+
+TEST(PeakMethod, IsKnownByName) {
+    EXPECT_EQ(peak_method_from_name("gaussian"), PEAK_GAUSSIAN);
+    EXPECT_EQ(peak_method_from_name("centre-of-gravity"), PEAK_CENTRE_OF_GRAVITY);
+    EXPECT_EQ(peak_method_names().size(), static_cast<std::size_t>(PEAK_METHOD_COUNT));
+    EXPECT_THROW(peak_method_from_name("highest"), InputError);
 }
 
 } // namespace

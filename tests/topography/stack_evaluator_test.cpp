@@ -85,7 +85,7 @@ Topography evaluate(const SyntheticStack& stack, const TopographyOptions& option
 
 TEST(Reconstruct, FindsTheHeightsOfASyntheticStack) {
     const SyntheticStack stack = make_stack(300, 1);
-    for (const char* measure : {"standard-deviation", "modified-laplacian"}) {
+    for (const std::string& measure : focus_measure_names()) {
         const Topography topography = evaluate(stack, {.focus_measure = measure});
         EXPECT_EQ(topography.height.x0, stack.truth.x0);
         EXPECT_EQ(topography.height.pitch_y, pitch);
@@ -101,10 +101,10 @@ TEST(Reconstruct, FindsTheHeightsOfASyntheticStack) {
         EXPECT_NEAR(deviation.rms / deviation.sq_true,
                     std::sqrt(1 + ratio * ratio - 2 * deviation.correlation * ratio), 1e-9)
             << measure;
-        RecordProperty(std::string(measure) + "_correlation", std::to_string(deviation.correlation));
-        RecordProperty(std::string(measure) + "_sq_ratio",
+        RecordProperty(measure + "_correlation", std::to_string(deviation.correlation));
+        RecordProperty(measure + "_sq_ratio",
                        std::to_string(deviation.sq_measured / deviation.sq_true));
-        RecordProperty(std::string(measure) + "_rms_um", std::to_string(deviation.rms * um_per_mm));
+        RecordProperty(measure + "_rms_um", std::to_string(deviation.rms * um_per_mm));
     }
 }
 
@@ -149,7 +149,7 @@ TEST(Reconstruct, NoiseWithoutTextureIsNotMeasured) {
     for (auto& image : stack.images)
         for (float& value : image.values)
             value = static_cast<float>(poisson(random));
-    const auto measured = [&](const char* measure, double smoothing_steps, double rate) {
+    const auto measured = [&](const std::string& measure, double smoothing_steps, double rate) {
         const auto topography = evaluate(
             stack, {.focus_measure = measure, .smoothing_steps = smoothing_steps, .false_peak_rate = rate});
         return std::count_if(topography.height.height.values.begin(), topography.height.height.values.end(),
@@ -157,7 +157,7 @@ TEST(Reconstruct, NoiseWithoutTextureIsNotMeasured) {
     };
     // 2304 pixels at a rate of at most 1e-3 are 2.3; neighbouring windows share pixels, so that false peaks
     // come in groups of some ten: 1 % is two groups.
-    for (const char* measure : {"standard-deviation", "modified-laplacian"})
+    for (const std::string& measure : focus_measure_names())
         for (const double smoothing_steps : {0.0, 3.0})
             EXPECT_LE(measured(measure, smoothing_steps, 1e-3), pixels * pixels / 100) << measure;
     // The wrong twin: with hardly any test for significance many of the same pixels get a height.
@@ -206,10 +206,15 @@ TEST(Reconstruct, RejectsWhatItCannotEvaluate) {
     rejects({.focus_measure = "entropy"});
     rejects({.window_px = 4});
     rejects({.window_px = 1});
-    rejects({.peak = "parabola"});
+    rejects({.window_shape = "round"});
+    rejects({.peak = "highest"});
+    rejects({.peak_range_steps = 0});
     rejects({.smoothing_steps = -1});
     rejects({.smoothing_steps = not_measured});
     rejects({.false_peak_rate = 0});
+    rejects({.least_contrast = -1});
+    rejects({.most_fit_residual = 0});
+    rejects({.most_peaks = 0});
 
     const Grid<float> image(8, 8, 1.0f);
     const auto stack = [&](std::vector<double> z, const Grid<float>& last) {
@@ -225,9 +230,180 @@ TEST(Reconstruct, RejectsWhatItCannotEvaluate) {
     EXPECT_THROW(stack({0, 1, 2.5}, image), InputError);
     EXPECT_THROW(stack({0, 1, 2}, Grid<float>(8, 7, 1.0f)), InputError);
     EXPECT_THROW(stack({0}, Grid<float>()), InputError);
+    StackEvaluator coloured({});
+    coloured.add(Channels{image, image, image}, 0);
+    EXPECT_THROW(coloured.add(image, 1), InputError);
     Grid<float> broken = image;
     broken(3, 3) = std::numeric_limits<float>::infinity();
     EXPECT_THROW(stack({0, 1, 2}, broken), InputError);
+}
+
+// What the evaluator asks for, and when.
+class WatchedPlanes final : public FocusPlanes {
+  public:
+    explicit WatchedPlanes(const FocusPlanesPlan& plan) : plan_(plan), planes_(make_host_focus_planes(plan)) {}
+    void take(int image, Channels channels) override {
+        EXPECT_EQ(image, taken_++);
+        planes_->take(image, std::move(channels));
+    }
+    void measure(int image, std::span<const Share> shares) override {
+        EXPECT_EQ(image, measured_++);
+        for (const Share& share : shares) {
+            EXPECT_LT(share.image, taken_);
+            EXPECT_GE(share.image, taken_ - plan_.images_kept);
+        }
+        planes_->measure(image, shares);
+    }
+    void average(int image, std::span<const Share> shares) override {
+        EXPECT_EQ(image, averaged_++);
+        for (const Share& share : shares) {
+            EXPECT_LT(share.image, measured_);
+            EXPECT_GE(share.image, measured_ - plan_.curves_kept);
+        }
+        planes_->average(image, shares);
+    }
+    void follow(int image, int images) override {
+        EXPECT_EQ(image, followed_++);
+        EXPECT_EQ(images, averaged_);
+        const int range = plan_.plan.peak_range;
+        EXPECT_GE(std::max(0, image - range), averaged_ - plan_.averaged_curves_kept);
+        EXPECT_GE(std::max(0, image - range), taken_ - plan_.images_kept);
+        planes_->follow(image, images);
+    }
+    StackSummary summary() override {
+        EXPECT_EQ(followed_, taken_);
+        return planes_->summary();
+    }
+
+  private:
+    FocusPlanesPlan plan_;
+    std::unique_ptr<FocusPlanes> planes_;
+    int taken_ = 0, measured_ = 0, averaged_ = 0, followed_ = 0;
+};
+
+TEST(Reconstruct, HoldsFewImagesHoweverLongTheStack) {
+    // No plane is asked for that has left its ring, and the rings do not grow with the stack.
+    std::mt19937 random(2);
+    for (const int images : {3, 4, 9, 200})
+        for (const double smoothing : {0.0, 0.5, 2.0})
+            for (const int range : {1, 4}) {
+                int kept = 0;
+                StackEvaluator evaluator({.peak_range_steps = range, .smoothing_steps = smoothing},
+                                         [&](const FocusPlanesPlan& plan) {
+                                             kept = plan.images_kept + plan.curves_kept + plan.averaged_curves_kept;
+                                             return std::make_unique<WatchedPlanes>(plan);
+                                         });
+                for (int k = 0; k < images; ++k) {
+                    Grid<float> image(5, 4);
+                    for (float& value : image.values)
+                        value = 1 + static_cast<float>(random() % 100);
+                    evaluator.add(image, 0.001 * k);
+                }
+                EXPECT_EQ(evaluator.finish(0, 0, pitch).height.columns(), 5);
+                EXPECT_LE(kept, 4 * static_cast<int>(std::ceil(3 * smoothing)) + 4 * range + 3);
+            }
+}
+
+TEST(Reconstruct, AnImageAtATimeGivesWhatTheWholeStackGives) {
+    // The definition, with all curves in memory and no ring: a wrong index anywhere would show.
+    const SyntheticStack stack = make_stack(300, 7);
+    const TopographyOptions options{.peak = "gaussian-fit", .peak_range_steps = 2, .smoothing_steps = 0.6};
+    const Topography streamed = evaluate(stack, options);
+    const int images = static_cast<int>(stack.images.size());
+    const auto weights = axial_weights(options.smoothing_steps);
+    const auto averaged = [&](const std::vector<Grid<float>>& planes, int at) {
+        Grid<float> mean(pixels, pixels);
+        for (const Share& share : axial_shares(weights, at, images))
+            for (std::size_t p = 0; p < mean.values.size(); ++p)
+                mean.values[p] += share.weight * planes[static_cast<std::size_t>(share.image)].values[p];
+        return mean;
+    };
+    std::vector<Grid<float>> curves, smooth;
+    for (int k = 0; k < images; ++k)
+        curves.push_back(focus_measure({averaged(stack.images, k)}, FocusMeasure::standard_deviation,
+                                       FocusWindow(options.window_px, WindowShape::box)));
+    for (int k = 0; k < images; ++k)
+        smooth.push_back(averaged(curves, k));
+    struct Scene {
+        const std::vector<Grid<float>>& curves;
+        std::size_t pixel;
+        double curve_value(int image) const { return curves[static_cast<std::size_t>(image)].values[pixel]; }
+    };
+    focus::f64::FocusPlan plan{};
+    plan.peak = focus::f64::PEAK_GAUSSIAN_FIT;
+    plan.peak_range = 2;
+    int compared = 0;
+    for (std::size_t p = 0; p < streamed.height.height.values.size(); ++p) {
+        const Scene scene{smooth, p};
+        int at = 0;
+        for (int k = 1; k < images; ++k)
+            if (scene.curve_value(k) > scene.curve_value(at))
+                at = k;
+        const int range = std::min({2, at, images - 1 - at});
+        const auto fit = focus::f64::locate_peak(scene, plan, at, range);
+        const double height = streamed.height.height.values[p];
+        if (std::isnan(height))
+            continue;
+        ASSERT_EQ(fit.found, 1);
+        // The images are scaled by a power of two; curves differ in their float32 sums' last digits, over curvatures of the
+        // peak of some 0.02: 1e-5 steps of 0.8 um.
+        EXPECT_NEAR(height, stack.z[0] + 0.0008 * (at + fit.offset), 1e-5 * 0.0008);
+        const auto nearest = static_cast<std::size_t>(std::lround(at + fit.offset));
+        if (std::abs(at + fit.offset - std::floor(at + fit.offset) - 0.5) > 1e-4) {
+            EXPECT_EQ(streamed.all_in_focus[0].values[p], stack.images[nearest].values[p]);
+        }
+        ++compared;
+    }
+    EXPECT_GT(compared, pixels * pixels / 2);
+}
+
+TEST(Reconstruct, LimitsOfQualityTakePointsOut) {
+    const SyntheticStack stack = make_stack(300, 8);
+    const auto count = [&](const TopographyOptions& options, PointState state) {
+        const Topography topography = evaluate(stack, options);
+        for (std::size_t k = 0; k < topography.state.values.size(); ++k)
+            EXPECT_EQ(topography.state.values[k] == PointState::measured,
+                      std::isfinite(topography.height.height.values[k]));
+        return std::ranges::count(topography.state.values, state);
+    };
+    const TopographyOptions options{.smoothing_steps = 1};
+    const Topography all = evaluate(stack, options);
+    // Half the points have less than the median.
+    std::vector<double> contrasts = all.contrast.values, residuals = all.fit_residual.values;
+    std::ranges::nth_element(contrasts, contrasts.begin() + pixels * pixels / 2);
+    std::ranges::nth_element(residuals, residuals.begin() + pixels * pixels / 2);
+    EXPECT_NEAR(count({.smoothing_steps = 1, .least_contrast = contrasts[pixels * pixels / 2]}, PointState::low_contrast),
+                pixels * pixels / 2, pixels * pixels / 20); // some have no peak at all
+    EXPECT_NEAR(count({.smoothing_steps = 1, .most_fit_residual = residuals[pixels * pixels / 2]}, PointState::poor_fit),
+                pixels * pixels / 2, pixels * pixels / 20);
+    EXPECT_EQ(count({.smoothing_steps = 1, .most_peaks = 1}, PointState::many_peaks),
+              std::ranges::count_if(all.peaks.values, [](int peaks) { return peaks > 1; }));
+}
+
+TEST(Reconstruct, RepairsOutliersOnlyWhenAsked) {
+    SyntheticStack stack = make_stack(3000, 9);
+    Topography topography = evaluate(stack);
+    const double right = topography.height.height(20, 20);
+    topography.height.height(20, 20) += 0.02;
+    topography.height.height(30, 10) = not_measured;
+    Topography repaired = topography;
+    repair_outliers(repaired);
+    EXPECT_EQ(repaired.state(20, 20), PointState::repaired);
+    EXPECT_NEAR(repaired.height.height(20, 20), right, 0.001); // its neighbours' slope is 0.3 um a pixel at most
+    EXPECT_TRUE(std::isnan(repaired.height.height(30, 10)));   // nothing is made up
+    int changed = 0;
+    for (std::size_t k = 0; k < repaired.state.values.size(); ++k) {
+        const bool differs = repaired.height.height.values[k] != topography.height.height.values[k] &&
+                             !std::isnan(topography.height.height.values[k]);
+        EXPECT_EQ(differs, repaired.state.values[k] == PointState::repaired);
+        changed += differs;
+    }
+    EXPECT_LT(changed, pixels * pixels / 50);
+    const auto marked = [&](bool repair) {
+        return std::ranges::count(evaluate(stack, {.smoothing_steps = 0, .repair_outliers = repair}).state.values,
+                                  PointState::repaired);
+    };
+    EXPECT_EQ(marked(false), 0);
 }
 
 HeightMap wave(double scale, double offset, double tilt) {

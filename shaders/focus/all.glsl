@@ -1,0 +1,11 @@
+// Every file of the evaluation of focus stacks, in the order of their dependence.
+#include "focus/records.glsl"
+#include "focus/image.glsl"
+#include "focus/tenengrad.glsl"
+#include "focus/modified_laplacian.glsl"
+#include "focus/brenner.glsl"
+#include "focus/wavelet.glsl"
+#include "focus/response.glsl"
+#include "focus/window.glsl"
+#include "focus/peak.glsl"
+#include "focus/curve.glsl"

@@ -1,0 +1,85 @@
+// A focus curve as it passes by: each image's value is judged once those within the range after it are there too.
+
+VKFV_FUNCTION CurveRecord empty_curve() {
+    CurveRecord curve;
+    curve.largest = real(0.0);
+    curve.sum = real(0.0);
+    curve.offset = real(0.0);
+    curve.residual = real(1.0);
+    curve.at = 0;
+    curve.found = 0;
+    curve.peak_1 = real(0.0);
+    curve.peak_2 = real(0.0);
+    curve.peak_3 = real(0.0);
+    curve.peak_4 = real(0.0);
+    return curve;
+}
+
+// Larger than all values within the range before it, and no smaller than those after it; never the first or last image.
+VKFV_SCENE_FUNCTION bool is_local_maximum(VKFV_SCENE_PARAMETER FocusPlan plan, int at, int images) {
+    if (at == 0 || at == images - 1) {
+        return false;
+    }
+    real value = curve_value(VKFV_SCENE at);
+    if (!(value > curve_value(VKFV_SCENE at - 1)) || value < curve_value(VKFV_SCENE at + 1)) {
+        return false; // most are
+    }
+    for (int d = 2; d <= plan.peak_range; ++d) {
+        if (at - d >= 0 && !(value > curve_value(VKFV_SCENE at - d))) {
+            return false;
+        }
+        if (at + d < images && value < curve_value(VKFV_SCENE at + d)) {
+            return false;
+        }
+    }
+    return true;
+}
+
+struct CurveStep {
+    CurveRecord curve;
+    int sharpest; // the image that is sharpest now; NO_IMAGE: the one before still is
+};
+
+// The curve with the image `at` added. images: how many values are there, at least to at + peak_range, or all.
+// Fits are made only where the curve turns: the largest value of all is one of these, or stands at an end. Near the ends
+// the range is as far as it goes on both sides.
+VKFV_SCENE_FUNCTION CurveStep follow_curve(VKFV_SCENE_PARAMETER FocusPlan plan, CurveRecord before, int at, int images) {
+    CurveStep step;
+    step.curve = before;
+    step.sharpest = NO_IMAGE;
+    real value = curve_value(VKFV_SCENE at);
+    step.curve.sum = before.sum + value;
+    bool turns = at == images - 1 || value >= curve_value(VKFV_SCENE min(at + 1, images - 1));
+    if (at == 0 || (value > before.largest && turns)) {
+        int range = min(plan.peak_range, min(at, images - 1 - at));
+        PeakFit fit = locate_peak(VKFV_SCENE plan, at, range);
+        step.curve.largest = value;
+        step.curve.at = at;
+        step.curve.offset = fit.offset;
+        step.curve.found = fit.found;
+        step.curve.residual = gaussian_residual(VKFV_SCENE at, range);
+        step.sharpest = at + int(floor(fit.offset + real(0.5)));
+    }
+    if (is_local_maximum(VKFV_SCENE plan, at, images)) {
+        real falling = value;
+        real kept = max(step.curve.peak_1, falling);
+        falling = min(step.curve.peak_1, falling);
+        step.curve.peak_1 = kept;
+        kept = max(step.curve.peak_2, falling);
+        falling = min(step.curve.peak_2, falling);
+        step.curve.peak_2 = kept;
+        kept = max(step.curve.peak_3, falling);
+        falling = min(step.curve.peak_3, falling);
+        step.curve.peak_3 = kept;
+        step.curve.peak_4 = max(step.curve.peak_4, falling);
+    }
+    return step;
+}
+
+// Local maxima that stand at least half as high above the curve's mean as the largest, counted to 4.
+VKFV_FUNCTION int count_peaks(CurveRecord curve, int images) {
+    real mean = curve.sum / real(images);
+    real least = mean + (curve.largest - mean) / real(2.0);
+    return (curve.peak_1 >= least ? 1 : 0) + (curve.peak_2 >= least ? 1 : 0) + (curve.peak_3 >= least ? 1 : 0) +
+           (curve.peak_4 >= least ? 1 : 0);
+}

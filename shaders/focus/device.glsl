@@ -1,0 +1,8 @@
+// What the kernels of the evaluation begin with: an invocation a pixel, workgroups in rows where one row holds too few.
+#extension GL_EXT_scalar_block_layout : require
+#include "physics/lang.glsl"
+#include "focus/all.glsl"
+
+uint invocation() {
+    return (gl_WorkGroupID.y * gl_NumWorkGroups.x + gl_WorkGroupID.x) * gl_WorkGroupSize.x + gl_LocalInvocationIndex;
+}

@@ -1,0 +1,26 @@
+// What a focus measure finds at one pixel, before it is gathered over the window. The energies (squared responses) of
+// all channels are added. The modified Laplacian is a sum of magnitudes, so the root is taken at the pixel; all others
+// are energies, and the root is taken after the window. The standard deviation has no response of its own: it is made
+// in the window (window.glsl).
+
+VKFV_SCENE_FUNCTION real focus_response(VKFV_SCENE_PARAMETER FocusPlan plan, int column, int row) {
+    real energy = real(0.0);
+    for (int channel = 0; channel < plan.channels; ++channel) {
+        if (plan.measure == FOCUS_TENENGRAD) {
+            energy = energy + tenengrad_energy(VKFV_SCENE plan, channel, column, row);
+        } else if (plan.measure == FOCUS_MODIFIED_LAPLACIAN) {
+            real magnitude = modified_laplacian(VKFV_SCENE plan, channel, column, row);
+            energy = energy + magnitude * magnitude;
+        } else if (plan.measure == FOCUS_BRENNER) {
+            energy = energy + brenner_energy(VKFV_SCENE plan, channel, column, row);
+        } else if (plan.measure == FOCUS_WAVELET) {
+            energy = energy + wavelet_energy(VKFV_SCENE plan, channel, column, row);
+        }
+    }
+    return plan.measure == FOCUS_MODIFIED_LAPLACIAN ? sqrt(energy) : energy;
+}
+
+// Fields that the window gathers apart: each channel for the standard deviation, else the response of all channels.
+VKFV_FUNCTION int focus_fields(FocusPlan plan) {
+    return plan.measure == FOCUS_STANDARD_DEVIATION ? plan.channels : 1;
+}

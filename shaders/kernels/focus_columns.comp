@@ -1,0 +1,27 @@
+#version 460
+#extension GL_GOOGLE_include_directive : require
+// The window along columns, and the measure.
+layout(local_size_x = 128) in;
+
+#include "focus/device.glsl"
+
+layout(set = 0, binding = 0, scalar) readonly buffer Rows { WindowSums row_sums[]; };
+layout(set = 0, binding = 1, scalar) readonly buffer Weights { float weights[]; };
+layout(set = 0, binding = 2, scalar) writeonly buffer Curve { float curve[]; };
+
+layout(push_constant, scalar) uniform Plan { FocusPlan plan; };
+
+real window_weight(int distance) { return weights[distance]; }
+
+WindowSums window_row(int field, int column, int row) {
+    return row_sums[(field * plan.rows + row) * plan.columns + column];
+}
+
+void main() {
+    int k = int(invocation());
+    if (k < plan.columns * plan.rows) {
+        int row = k / plan.columns;
+        int column = k - row * plan.columns;
+        curve[k] = focus_value(plan, column, row);
+    }
+}

@@ -1,0 +1,37 @@
+#version 460
+#extension GL_GOOGLE_include_directive : require
+// The window along rows: of the responses, for the standard deviation of the channels.
+layout(local_size_x = 128) in;
+
+#include "focus/device.glsl"
+
+layout(set = 0, binding = 0, scalar) readonly buffer Image { float image[]; };
+layout(set = 0, binding = 1, scalar) readonly buffer Responses { WindowSums responses[]; };
+layout(set = 0, binding = 2, scalar) readonly buffer Weights { float weights[]; };
+layout(set = 0, binding = 3, scalar) writeonly buffer Rows { WindowSums row_sums[]; };
+
+layout(push_constant, scalar) uniform Plan { FocusPlan plan; };
+
+real window_weight(int distance) { return weights[distance]; }
+
+WindowSums window_source(int field, int column, int row) {
+    WindowSums source;
+    if (plan.measure == FOCUS_STANDARD_DEVIATION) {
+        source.level = image[(field * plan.rows + row) * plan.columns + column];
+        source.energy = real(0.0);
+    } else {
+        source = responses[row * plan.columns + column];
+    }
+    return source;
+}
+
+void main() {
+    int k = int(invocation());
+    if (k < plan.columns * plan.rows) {
+        int row = k / plan.columns;
+        int column = k - row * plan.columns;
+        for (int field = 0; field < focus_fields(plan); ++field) {
+            row_sums[field * plan.columns * plan.rows + k] = window_along_row(plan, field, column, row);
+        }
+    }
+}

@@ -1,0 +1,69 @@
+#include "app/image_series.hpp"
+
+#include "app/natural_order.hpp"
+#include "core/error.hpp"
+#include "surface/image_file.hpp"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <array>
+#include <cctype>
+#include <string>
+
+namespace vkfv::app {
+
+namespace {
+
+constexpr std::array extensions = {".tif", ".tiff", ".png", ".bmp", ".jpg", ".jpeg", ".exr", ".pgm", ".ppm"};
+
+bool is_image(const std::filesystem::path& file) {
+    std::string extension = file.extension().string();
+    std::ranges::transform(extension, extension.begin(), [](unsigned char c) { return std::tolower(c); });
+    return std::ranges::find(extensions, extension) != extensions.end() && file.filename().string().front() != '.';
+}
+
+[[noreturn]] void refuse(const std::filesystem::path& path, std::string found, std::string expected,
+                         std::string remedy) {
+    throw InputError({.where = {.file = path, .line = 0, .column = 0, .byte_offset = {}},
+                      .key = "",
+                      .found = std::move(found),
+                      .expected = std::move(expected),
+                      .remedy = std::move(remedy)});
+}
+
+} // namespace
+
+ImageSeries::ImageSeries(const std::filesystem::path& path) {
+    if (std::filesystem::is_directory(path)) {
+        for (const auto& entry : std::filesystem::directory_iterator(path)) {
+            if (entry.is_regular_file() && is_image(entry.path())) {
+                images_.push_back({entry.path(), 0});
+            }
+        }
+        std::ranges::sort(images_, [](const Place& a, const Place& b) {
+            return naturally_before(a.file.filename().string(), b.file.filename().string());
+        });
+        if (images_.empty()) {
+            refuse(path, "no stack.toml and no image", fmt::format("stack.toml or files {}", fmt::join(extensions, ", ")),
+                   "Give the folder of a stack of vkfv, one with the images of another, or a TIFF file of several pages.");
+        }
+        return;
+    }
+    if (!std::filesystem::exists(path)) {
+        refuse(path, "no such file or folder",
+               "the folder of a stack (with its stack.toml), a folder of images, or a TIFF file of several pages",
+               "Check the path.");
+    }
+    for (int page = 0, pages = surface::page_count(path); page < pages; ++page) {
+        images_.push_back({path, page});
+    }
+}
+
+std::vector<Grid<float>> ImageSeries::read(int image) const {
+    const Place& place = images_.at(static_cast<std::size_t>(image));
+    return surface::read_channels(place.file, place.page);
+}
+
+} // namespace vkfv::app

@@ -1,0 +1,48 @@
+// The work on a stack's images and focus curves, plane by plane: what is to be done when is StackEvaluator's, how it is
+// done is the host's (host_focus_planes.hpp) or a device's.
+#pragma once
+
+#include "topography/axial_average.hpp"
+#include "topography/focus_measure.hpp"
+
+#include <functional>
+#include <memory>
+#include <span>
+#include <vector>
+
+namespace vkfv::topography {
+
+// What one pass over a stack leaves of it, pixel by pixel.
+struct StackSummary {
+    Grid<float> brightness;          // sum over the images of the channels' mean
+    Grid<float> squared_differences; // sum over images and channels of (I[k-1] - 2 I[k] + I[k+1])^2
+    Grid<focus::f64::CurveRecord> curves;
+    Channels all_in_focus; // each pixel from the image nearest its maximum
+};
+
+struct FocusPlanesPlan {
+    focus::f64::FocusPlan plan{};
+    FocusWindow window;
+    // How many of the last images and curves are asked for again.
+    int images_kept = 0;
+    int curves_kept = 0;
+    int averaged_curves_kept = 0;
+};
+
+class FocusPlanes {
+  public:
+    virtual ~FocusPlanes() = default;
+    // The next image; they come in order.
+    virtual void take(int image, Channels channels) = 0;
+    // The focus measure of the weighted mean of images taken: the curves' values at `image`.
+    virtual void measure(int image, std::span<const Share> shares) = 0;
+    // The weighted mean of curves measured: the averaged curves' values at `image`.
+    virtual void average(int image, std::span<const Share> shares) = 0;
+    // follow_curve() of every pixel; `images` averaged curves are there.
+    virtual void follow(int image, int images) = 0;
+    virtual StackSummary summary() = 0;
+};
+
+using FocusPlanesMaker = std::function<std::unique_ptr<FocusPlanes>(const FocusPlanesPlan&)>;
+
+} // namespace vkfv::topography

@@ -1,0 +1,122 @@
+#include "topography/host_focus_planes.hpp"
+
+#include "topography/parallel_rows.hpp"
+
+namespace vkfv::topography {
+namespace {
+
+namespace f64 = focus::f64;
+
+// The last few of a series.
+template <class Item>
+class Ring {
+  public:
+    explicit Ring(int kept) : items_(static_cast<std::size_t>(kept)) {}
+    Item& operator[](int index) { return items_[static_cast<std::size_t>(index) % items_.size()]; }
+    const Item& operator[](int index) const { return items_[static_cast<std::size_t>(index) % items_.size()]; }
+
+  private:
+    std::vector<Item> items_;
+};
+
+struct CurveScene {
+    const Ring<Grid<float>>& curves;
+    std::size_t pixel;
+    double curve_value(int image) const { return curves[image].values[pixel]; }
+};
+
+class HostFocusPlanes final : public FocusPlanes {
+  public:
+    explicit HostFocusPlanes(const FocusPlanesPlan& plan)
+        : plan_(plan.plan), window_(plan.window), images_(plan.images_kept), curves_(plan.curves_kept),
+          averaged_(plan.averaged_curves_kept) {
+        summary_.brightness = summary_.squared_differences = Grid<float>(plan_.columns, plan_.rows);
+        summary_.curves = Grid<f64::CurveRecord>(plan_.columns, plan_.rows, f64::empty_curve());
+        summary_.all_in_focus.assign(static_cast<std::size_t>(plan_.channels),
+                                     Grid<float>(plan_.columns, plan_.rows));
+    }
+
+    void take(int image, Channels channels) override {
+        images_[image] = std::move(channels);
+        const float share = 1.0f / static_cast<float>(plan_.channels);
+        for (std::size_t channel = 0; channel < images_[image].size(); ++channel)
+            pixels([&, channel](std::size_t k) {
+                const float value = images_[image][channel].values[k];
+                summary_.brightness.values[k] += share * value;
+                if (image >= 2) {
+                    const float difference = images_[image - 2][channel].values[k] -
+                                             2 * images_[image - 1][channel].values[k] + value;
+                    summary_.squared_differences.values[k] += difference * difference;
+                }
+            });
+    }
+
+    void measure(int image, std::span<const Share> shares) override {
+        const auto measure = static_cast<FocusMeasure>(plan_.measure);
+        if (shares.size() == 1) {
+            curves_[image] = focus_measure(images_[shares[0].image], measure, window_);
+            return;
+        }
+        Channels mean;
+        for (std::size_t channel = 0; channel < static_cast<std::size_t>(plan_.channels); ++channel)
+            mean.push_back(weighted_mean(
+                shares, [&](int k) -> const Grid<float>& { return images_[k][channel]; }));
+        curves_[image] = focus_measure(mean, measure, window_);
+    }
+
+    void average(int image, std::span<const Share> shares) override {
+        averaged_[image] = weighted_mean(shares, [&](int k) -> const Grid<float>& { return curves_[k]; });
+    }
+
+    void follow(int image, int images) override {
+        pixels([&](std::size_t k) {
+            const auto step =
+                f64::follow_curve(CurveScene{averaged_, k}, plan_, summary_.curves.values[k], image, images);
+            summary_.curves.values[k] = step.curve;
+            if (step.sharpest != f64::NO_IMAGE)
+                for (std::size_t channel = 0; channel < summary_.all_in_focus.size(); ++channel)
+                    summary_.all_in_focus[channel].values[k] = images_[step.sharpest][channel].values[k];
+        });
+    }
+
+    StackSummary summary() override { return std::move(summary_); }
+
+  private:
+    template <class Task>
+    void pixels(const Task& task) const {
+        parallel_rows(plan_.columns, plan_.rows, [&](int first, int end) {
+            const auto columns = static_cast<std::size_t>(plan_.columns);
+            for (std::size_t k = columns * static_cast<std::size_t>(first);
+                 k < columns * static_cast<std::size_t>(end); ++k)
+                task(k);
+        });
+    }
+
+    template <class Plane>
+    Grid<float> weighted_mean(std::span<const Share> shares, const Plane& plane) const {
+        Grid<float> mean(plan_.columns, plan_.rows);
+        parallel_rows(plan_.columns, plan_.rows, [&](int first, int end) {
+            for (const Share& share : shares) {
+                const Grid<float>& from = plane(share.image);
+                for (std::size_t k = mean.index(0, first); k < mean.index(0, end); ++k)
+                    mean.values[k] += share.weight * from.values[k];
+            }
+        });
+        return mean;
+    }
+
+    f64::FocusPlan plan_;
+    FocusWindow window_;
+    Ring<Channels> images_;
+    Ring<Grid<float>> curves_;
+    Ring<Grid<float>> averaged_;
+    StackSummary summary_;
+};
+
+} // namespace
+
+std::unique_ptr<FocusPlanes> make_host_focus_planes(const FocusPlanesPlan& plan) {
+    return std::make_unique<HostFocusPlanes>(plan);
+}
+
+} // namespace vkfv::topography

@@ -1,0 +1,257 @@
+#include "core/error.hpp"
+#include "topography/topography.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numeric>
+#include <stdexcept>
+
+namespace vkfv::topography {
+namespace {
+
+constexpr int most_peak_range_steps = 100; // 202 curves in memory
+
+void require(bool good, std::string key, std::string found, std::string expected, std::string remedy) {
+    if (!good)
+        throw InputError({.where = {},
+                          .key = std::move(key),
+                          .found = std::move(found),
+                          .expected = std::move(expected),
+                          .remedy = std::move(remedy)});
+}
+
+// The options' ranges are checked before anything is built from them.
+const TopographyOptions& checked(const TopographyOptions& options) {
+    focus_measure_from_name(options.focus_measure);
+    peak_method_from_name(options.peak);
+    require(options.window_px >= 3 && options.window_px % 2 == 1, "topography.window_px",
+            fmt::format("{}", options.window_px), "an odd number of at least 3",
+            "Give the width of the focus window in pixels.");
+    require(options.window_shape == "box" || options.window_shape == "gaussian", "topography.window_shape",
+            options.window_shape, "\"box\" or \"gaussian\"", "Name one of the shapes.");
+    require(options.peak_range_steps >= 1 && options.peak_range_steps <= most_peak_range_steps,
+            "topography.peak_range_steps", fmt::format("{}", options.peak_range_steps),
+            fmt::format("an integer in [1, {}]", most_peak_range_steps),
+            "Give the half width of the range around the maximum in steps of the scan.");
+    require(options.smoothing_steps >= 0 && options.smoothing_steps <= 100, "topography.smoothing_steps",
+            fmt::format("{}", options.smoothing_steps), "a number in [0, 100]",
+            "Give the average's standard deviation in steps of the scan.");
+    require(options.false_peak_rate > 0 && options.false_peak_rate < 1, "topography.false_peak_rate",
+            fmt::format("{}", options.false_peak_rate), "a number in (0, 1)",
+            "Give the probability with which noise may pass as a height.");
+    require(options.least_contrast >= 0, "topography.least_contrast", fmt::format("{}", options.least_contrast),
+            "a number >= 0", "Give it in standard deviations of the focus curve's noise.");
+    require(options.most_fit_residual > 0, "topography.most_fit_residual",
+            fmt::format("{}", options.most_fit_residual), "a number > 0",
+            "Give it as a share of the focus curve's maximum.");
+    require(options.most_peaks >= 1, "topography.most_peaks", fmt::format("{}", options.most_peaks),
+            "an integer >= 1", "Give how many peaks a focus curve may have.");
+    return options;
+}
+
+// Variance of the averaged focus curve over that of the measure of single images. Images averaged with
+// weights w have the variance sum w^2 / (sum w)^2 and correlate at a lag by r = sum w w / sum w^2; the
+// measure, linear in small noise, correlates alike, and the second average takes the mean over its pairs.
+double averaged_variance(const std::vector<double>& one_sided) {
+    const int radius = static_cast<int>(one_sided.size()) - 1;
+    const auto weight = [&](int d) {
+        return std::abs(d) <= radius ? one_sided[static_cast<std::size_t>(std::abs(d))] : 0.0;
+    };
+    double total = 0;
+    for (int d = -radius; d <= radius; ++d)
+        total += weight(d);
+    const auto overlap = [&](int lag) {
+        double sum = 0;
+        for (int d = -radius; d <= radius; ++d)
+            sum += weight(d) * weight(d + lag);
+        return sum / (total * total);
+    };
+    double variance = 0;
+    for (int lag = -2 * radius; lag <= 2 * radius; ++lag)
+        variance += overlap(lag) * overlap(lag);
+    return variance;
+}
+
+// Standard deviation of a single image's noise over brightness, both over the window and all images. The variances of the
+// channels are added, as their energies are: that is the noise of the measure if the channels' noises agree, as after
+// demosaicing, and an upper bound of it if not.
+Grid<float> relative_noise(const StackSummary& stack, const FocusWindow& window, int images, std::size_t channels) {
+    const Grid<float> brightness = window_mean(stack.brightness, window);
+    Grid<float> noise = window_mean(stack.squared_differences, window);
+    constexpr double gain = 1 + 4 + 1; // of the second difference on the variance of independent values
+    for (std::size_t k = 0; k < noise.values.size(); ++k) {
+        const double mean = brightness.values[k] / images * std::sqrt(static_cast<double>(channels));
+        noise.values[k] =
+            mean > 0 ? static_cast<float>(std::sqrt(noise.values[k] / (images - 2) / gain) / mean) : 0.0f;
+    }
+    return noise;
+}
+
+} // namespace
+
+double contrast_threshold(int images, double false_peak_rate) {
+    return std::sqrt(2 * std::max(0.0, std::log(images / (2 * false_peak_rate))));
+}
+
+StackEvaluator::StackEvaluator(const TopographyOptions& options, FocusPlanesMaker make_planes)
+    : options_(checked(options)), measure_(focus_measure_from_name(options.focus_measure)),
+      window_(options.window_px,
+              options.window_shape == "gaussian" ? WindowShape::gaussian : WindowShape::box),
+      axial_weights_(axial_weights(options.smoothing_steps)), make_planes_(std::move(make_planes)) {}
+
+void StackEvaluator::check(const Channels& image, double z) const {
+    const std::string which = fmt::format("image {}", z_.size());
+    require(!image.empty() && image[0].columns > 0 && image[0].rows > 0, which, "no pixels",
+            "at least one pixel", "Check the image.");
+    for (const Grid<float>& channel : image)
+        require(std::all_of(channel.values.begin(), channel.values.end(), [](float v) { return std::isfinite(v); }),
+                which, "a value that is not finite", "finite values", "Take or trace the image anew.");
+    if (z_.empty())
+        return;
+    require(image[0].columns == columns_ && image[0].rows == rows_, which,
+            fmt::format("{} x {} pixels", image[0].columns, image[0].rows),
+            fmt::format("{} x {} as the images before", columns_, rows_), "Use images of one size only.");
+    require(image.size() == channels_, which, fmt::format("{} channels", image.size()),
+            fmt::format("{} as the images before", channels_), "Use images of one kind only.");
+    require(z > z_.back(), which, fmt::format("z = {} mm after {} mm", z, z_.back()), "ascending z",
+            "Order the images by z.");
+    if (z_.size() >= 2) {
+        constexpr double tolerance = 0.01; // of a step: far below the noise of any height
+        const double expected = z_[0] + static_cast<double>(z_.size()) * (z_[1] - z_[0]);
+        require(std::abs(z - expected) <= tolerance * (z_[1] - z_[0]), which, fmt::format("z = {} mm", z),
+                fmt::format("z = {} mm, equidistant", expected), "Use a stack with one step.");
+    }
+}
+
+void StackEvaluator::begin(const Channels& first) {
+    columns_ = first[0].columns;
+    rows_ = first[0].rows;
+    channels_ = first.size();
+    double sum = 0;
+    for (const Grid<float>& channel : first)
+        sum = std::accumulate(channel.values.begin(), channel.values.end(), sum);
+    const double mean = sum / static_cast<double>(first[0].values.size() * channels_);
+    if (mean > 0)
+        scale_ = std::exp2(static_cast<float>(-std::clamp(std::ilogb(mean), -100, 100)));
+    const int radius = static_cast<int>(axial_weights_.size()) - 1;
+    focus::f64::FocusPlan plan{};
+    plan.columns = columns_;
+    plan.rows = rows_;
+    plan.channels = static_cast<int>(channels_);
+    plan.measure = static_cast<int>(measure_);
+    plan.window_radius = window_.radius();
+    plan.peak = peak_method_from_name(options_.peak);
+    plan.peak_range = options_.peak_range_steps;
+    // An image is judged once the curve's average has passed it by the range: its own neighbours are asked for then.
+    planes_ = make_planes_({.plan = plan,
+                            .window = window_,
+                            .images_kept = 2 * radius + 2 * plan.peak_range + 1,
+                            .curves_kept = 2 * radius + 1,
+                            .averaged_curves_kept = 2 * plan.peak_range + 1});
+}
+
+void StackEvaluator::add(Channels image, double z) {
+    check(image, z);
+    if (z_.empty())
+        begin(image);
+    for (Grid<float>& channel : image)
+        for (float& value : channel.values)
+            value *= scale_;
+    planes_->take(static_cast<int>(z_.size()), std::move(image));
+    z_.push_back(z);
+    advance(false);
+}
+
+// Does what the images at hand allow, each step as soon as it can be done: no plane is asked for that has left its ring.
+void StackEvaluator::advance(bool all_taken) {
+    const int radius = static_cast<int>(axial_weights_.size()) - 1;
+    const int images = static_cast<int>(z_.size());
+    const auto average = [&](bool all_measured) {
+        while (averaged_ < (all_measured ? measured_ : measured_ - radius)) {
+            planes_->average(averaged_, axial_shares(axial_weights_, averaged_, measured_));
+            ++averaged_;
+            while (followed_ < averaged_ - options_.peak_range_steps) {
+                planes_->follow(followed_, averaged_);
+                ++followed_;
+            }
+        }
+    };
+    while (measured_ < (all_taken ? images : images - radius)) {
+        planes_->measure(measured_, axial_shares(axial_weights_, measured_, images));
+        ++measured_;
+        average(false);
+    }
+    if (!all_taken)
+        return;
+    average(true);
+    for (; followed_ < averaged_; ++followed_)
+        planes_->follow(followed_, averaged_);
+}
+
+Topography StackEvaluator::finish(double x0, double y0, double pitch) {
+    require(z_.size() >= 3, "stack", fmt::format("{} images", z_.size()), "at least 3 images",
+            "A peak needs an image on either side: widen the scan.");
+    advance(true);
+    StackSummary stack = planes_->summary();
+    planes_.reset();
+
+    const int images = static_cast<int>(z_.size());
+    const double threshold =
+        std::max(contrast_threshold(images, options_.false_peak_rate), options_.least_contrast);
+    const double averaging = std::sqrt(averaged_variance(axial_weights_));
+    const Grid<float> noise = relative_noise(stack, window_, images, channels_);
+    const double step = (z_.back() - z_.front()) / (images - 1);
+    Topography result;
+    result.height = {.height = Grid<double>(columns_, rows_, std::numeric_limits<double>::quiet_NaN()),
+                     .x0 = x0,
+                     .y0 = y0,
+                     .pitch_x = pitch,
+                     .pitch_y = pitch};
+    result.contrast = result.fit_residual = Grid<double>(columns_, rows_);
+    result.peaks = Grid<std::uint16_t>(columns_, rows_);
+    result.state = Grid<PointState>(columns_, rows_, PointState::measured);
+    for (int row = 0; row < rows_; ++row)
+        for (int column = 0; column < columns_; ++column) {
+            const auto& curve = stack.curves(column, row);
+            const double pixels = window_.pixels(columns_, rows_, column, row);
+            const double curve_noise = noise(column, row) * noise_gain(measure_, pixels) * averaging;
+            const double contrast = (curve.largest - curve.sum / images) / curve_noise;
+            const int peaks = focus::f64::count_peaks(curve, images);
+            result.contrast(column, row) = contrast;
+            result.fit_residual(column, row) = curve.residual;
+            result.peaks(column, row) = static_cast<std::uint16_t>(peaks);
+            PointState& state = result.state(column, row);
+            if (curve.found == 0)
+                state = PointState::no_peak;
+            else if (!(contrast >= threshold))
+                state = PointState::low_contrast;
+            else if (curve.residual > options_.most_fit_residual)
+                state = PointState::poor_fit;
+            else if (peaks > options_.most_peaks)
+                state = PointState::many_peaks;
+            else
+                result.height.height(column, row) = z_.front() + step * (curve.at + curve.offset);
+        }
+    for (Grid<float>& channel : stack.all_in_focus)
+        for (float& value : channel.values)
+            value /= scale_;
+    result.all_in_focus = std::move(stack.all_in_focus);
+    if (options_.repair_outliers)
+        repair_outliers(result);
+    return result;
+}
+
+Topography reconstruct(std::span<const Grid<float>> stack, std::span<const double> z, double x0, double y0,
+                       double pitch, const TopographyOptions& options) {
+    if (stack.size() != z.size())
+        throw std::invalid_argument("reconstruct: as many heights as images are needed");
+    StackEvaluator evaluator(options);
+    for (std::size_t k = 0; k < stack.size(); ++k)
+        evaluator.add(stack[k], z[k]);
+    return evaluator.finish(x0, y0, pitch);
+}
+
+} // namespace vkfv::topography

@@ -1,0 +1,193 @@
+// --topography of stacks that vkfv did not make.
+#include "app/natural_order.hpp"
+#include "app/program.hpp"
+#include "surface/image_file.hpp"
+
+#include <OpenImageIO/imageio.h>
+#include <fmt/format.h>
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <nlohmann/json.hpp>
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+#include <random>
+
+namespace vkfv::test {
+namespace {
+
+using ::testing::HasSubstr;
+
+constexpr int side = 24, images = 12;
+
+// Texture whose contrast is exp(-(k - height)^2 / 4) in image k: sharp at 4 on the left and at 7.25 on the right.
+double height_at(int column) { return column < side / 2 ? 4 : 7.25; }
+
+std::vector<std::vector<int>> stack_values(int largest) {
+    std::mt19937 random(3);
+    std::vector<double> texture(side * side);
+    for (double& value : texture)
+        value = static_cast<double>(random() % 1000) / 1000 - 0.5;
+    std::vector<std::vector<int>> stack;
+    for (int k = 0; k < images; ++k) {
+        std::vector<int>& image = stack.emplace_back();
+        for (int p = 0; p < side * side; ++p)
+            image.push_back(static_cast<int>(std::lround(
+                largest * (0.5 + texture[static_cast<std::size_t>(p)] *
+                                     std::exp(-std::pow(k - height_at(p % side), 2) / 4)))));
+    }
+    return stack;
+}
+
+template <class Value>
+void write_pages(const std::filesystem::path& path, const std::vector<std::vector<int>>& stack, int channels,
+                 OIIO::TypeDesc type) {
+    const auto output = OIIO::ImageOutput::create("tiff");
+    OIIO::ImageSpec spec(side, side, channels, type);
+    std::vector<OIIO::ImageSpec> specs(stack.size(), spec);
+    ASSERT_TRUE(output->open(path.string(), static_cast<int>(specs.size()), specs.data()));
+    for (std::size_t k = 0; k < stack.size(); ++k) {
+        if (k > 0) {
+            ASSERT_TRUE(output->open(path.string(), spec, OIIO::ImageOutput::AppendSubimage));
+        }
+        std::vector<Value> values;
+        for (const int value : stack[k])
+            values.insert(values.end(), static_cast<std::size_t>(channels), static_cast<Value>(value));
+        ASSERT_TRUE(output->write_image(type, values.data()));
+    }
+    ASSERT_TRUE(output->close());
+}
+
+ProgramResult evaluate(const std::filesystem::path& folder, const std::string& stack, const std::string& out,
+                       const std::vector<std::string>& further = {}) {
+    std::vector<std::string> arguments = {"--topography", stack, "--z_step_um", "0.5", "--pitch_um", "2", "--out", out,
+                                          "--set", "topography.window_px=3", "--set", "topography.smoothing_steps=0"};
+    arguments.insert(arguments.end(), further.begin(), further.end());
+    return run_program(arguments, folder);
+}
+
+TEST(Topography, ATiffOfPagesAndAFolderInNaturalOrderGiveTheSameHeights) {
+    const auto folder = fresh_folder("foreign");
+    const auto stack = stack_values(60000);
+    write_pages<std::uint16_t>(folder / "stack.tif", stack, 1, OIIO::TypeDesc::UINT16);
+    std::filesystem::create_directory(folder / "images");
+    write_file(folder / "images/notes.txt", "no image");
+    for (std::size_t k = 0; k < stack.size(); ++k)
+        write_pages<std::uint16_t>(folder / "images" / fmt::format("z{}.tif", k), {stack[k]}, 1,
+                                   OIIO::TypeDesc::UINT16);
+    for (const char* name : {"stack.tif", "images"}) {
+        const auto result = evaluate(folder, name, std::string("of_") + name);
+        ASSERT_EQ(result.exit_code, 0) << result.standard_error;
+    }
+    for (const char* file : {"topography.tif", "quality.tif", "fit_residual.tif", "mask.tif", "all_in_focus.tif"})
+        EXPECT_EQ(read_file(folder / "of_stack.tif" / file), read_file(folder / "of_images" / file)) << file;
+    EXPECT_FALSE(std::filesystem::exists(folder / "of_images/truth.tif"));
+
+    const auto map = surface::read_height_map(folder / "of_images/topography.tif");
+    EXPECT_NEAR(map.pitch_x, 0.002, 1e-15);
+    // The contrast is Gaussian along z, but it is divided by a brightness that rises with it by up to 0.2 of 0.5 (the mean
+    // of 9 texture values of standard deviation 0.29): a symmetric change of the curve's shape, which between steps shifts
+    // the three-point fit by less than a hundredth of a step of 0.5 um.
+    for (const int column : {5, 18})
+        for (const int row : {5, 18})
+            EXPECT_NEAR(map.height(column, row), height_at(column) * 0.5e-3, 5e-6) << column << " " << row;
+    // Each pixel is from the image nearest its height: the fourth on the left, the seventh on the right.
+    const auto focused = surface::read_image(folder / "of_images/all_in_focus.tif");
+    for (const int row : {5, 18}) {
+        const auto in_file = static_cast<std::size_t>((side - 1 - row) * side);
+        EXPECT_EQ(focused(5, row), stack[4][in_file + 5]);
+        EXPECT_EQ(focused(18, row), stack[7][in_file + 18]);
+    }
+    const auto results = nlohmann::json::parse(read_file(folder / "of_images/results.json"));
+    EXPECT_EQ(results["z_step_um"], 0.5);
+    EXPECT_GT(results["measured_share"], 0.9);
+    EXPECT_FALSE(results.contains("correlation"));
+}
+
+TEST(Topography, DepthOfPixelsAndColourDoNotChangeHeights) {
+    const auto folder = fresh_folder("kinds");
+    const auto stack = stack_values(255);
+    write_pages<std::uint8_t>(folder / "grey.tif", stack, 1, OIIO::TypeDesc::UINT8);
+    write_pages<std::uint8_t>(folder / "colour.tif", stack, 3, OIIO::TypeDesc::UINT8);
+    write_pages<float>(folder / "float.tif", stack, 1, OIIO::TypeDesc::FLOAT);
+    for (const char* name : {"grey", "colour", "float"}) {
+        const auto result = evaluate(folder, std::string(name) + ".tif", name);
+        ASSERT_EQ(result.exit_code, 0) << result.standard_error;
+    }
+    const auto grey = surface::read_height_map(folder / "grey/topography.tif").height.values;
+    const auto colour = surface::read_height_map(folder / "colour/topography.tif").height.values;
+    EXPECT_EQ(read_file(folder / "float/topography.tif"), read_file(folder / "grey/topography.tif"));
+    for (std::size_t k = 0; k < grey.size(); ++k) {
+        ASSERT_EQ(std::isnan(grey[k]), std::isnan(colour[k]));
+        if (!std::isnan(grey[k])) {
+            EXPECT_NEAR(colour[k], grey[k], 1e-8); // the curve's float32 over the peak's curvature of some 0.2, in 0.5 um
+        }
+    }
+    EXPECT_EQ(surface::read_channels(folder / "colour/all_in_focus.tif").size(), 3u);
+}
+
+TEST(Topography, ADescendingStackHasItsHeightsTheOtherWay) {
+    const auto folder = fresh_folder("descending");
+    write_pages<std::uint16_t>(folder / "up.tif", stack_values(60000), 1, OIIO::TypeDesc::UINT16);
+    auto reversed = stack_values(60000);
+    std::ranges::reverse(reversed);
+    write_pages<std::uint16_t>(folder / "down.tif", reversed, 1, OIIO::TypeDesc::UINT16);
+    ASSERT_EQ(evaluate(folder, "up.tif", "up").exit_code, 0);
+    const auto result = run_program({"--topography", "down.tif", "--z-step-um", "-0.5", "--pitch-um", "2",
+                                     "--z-start-um", "5.5", "--out", "down", "--set", "topography.window_px=3", "--set",
+                                     "topography.smoothing_steps=0"},
+                                    folder);
+    ASSERT_EQ(result.exit_code, 0) << result.standard_error;
+    EXPECT_EQ(read_file(folder / "up/topography.tif"), read_file(folder / "down/topography.tif"));
+}
+
+TEST(Topography, WhatIsMissingIsNamed) {
+    const auto folder = fresh_folder("missing");
+    write_pages<std::uint8_t>(folder / "stack.tif", stack_values(255), 1, OIIO::TypeDesc::UINT8);
+    write_pages<std::uint8_t>(folder / "two.tif", {stack_values(255)[0], stack_values(255)[1]}, 1, OIIO::TypeDesc::UINT8);
+    std::filesystem::create_directory(folder / "empty");
+    const auto refused = [&](std::vector<std::string> arguments, const std::string& words) {
+        arguments.insert(arguments.begin(), "--topography");
+        const auto result = run_program(arguments, folder);
+        EXPECT_EQ(result.exit_code, 2) << words;
+        EXPECT_THAT(result.standard_error, HasSubstr(words));
+    };
+    refused({"stack.tif"}, "--z_step_um");
+    refused({"stack.tif", "--z_step_um", "1"}, "no --pitch_um");
+    refused({"stack.tif", "--z_step_um", "1", "--pitch_um", "-1", "--out", "out"}, "no --pitch_um");
+    refused({"stack.tif", "--z_step_um", "1", "--pitch_um", "1"}, "no --out");
+    refused({"empty", "--z_step_um", "1", "--pitch_um", "1", "--out", "out"}, "no stack.toml and no image");
+    refused({"two.tif", "--z_step_um", "1", "--pitch_um", "1", "--out", "out"}, "at least 3 images");
+    refused({"stack.tif", "--z_step_um", "1", "--pitch_um", "1", "--out", "out", "--set", "topography.peak=top"},
+            "centre-of-gravity");
+    refused({"stack.tif", "--z_step_um", "1", "--pitch_um", "1", "--out", "out", "--set", "trace.rays=5"}, "trace");
+    const auto elsewhere = run_program({"--devices", "--pitch_um", "1"}, folder);
+    EXPECT_EQ(elsewhere.exit_code, 2);
+    EXPECT_THAT(elsewhere.standard_error, HasSubstr("--topography"));
+}
+
+TEST(NaturalOrder, CountsNumbers) {
+    using app::naturally_before;
+    EXPECT_TRUE(naturally_before("image_9.tif", "image_10.tif"));
+    EXPECT_FALSE(naturally_before("image_10.tif", "image_9.tif"));
+    EXPECT_TRUE(naturally_before("a2b10", "a2b11"));
+    EXPECT_TRUE(naturally_before("a", "a1"));
+    EXPECT_TRUE(naturally_before("a007", "a8"));
+    EXPECT_TRUE(naturally_before("9", "99999999999999999999999999999"));
+    EXPECT_NE(naturally_before("a01", "a1"), naturally_before("a1", "a01"));
+    EXPECT_FALSE(naturally_before("a1", "a1"));
+    EXPECT_TRUE(naturally_before("a1z", "b0"));
+    // A strict weak order: sorted is sorted, whatever the order before.
+    std::vector<std::string> names = {"z1", "z2", "z10", "z10a", "z11", "z100"};
+    const auto sorted = names;
+    std::mt19937 random(1);
+    for (int k = 0; k < 20; ++k) {
+        std::ranges::shuffle(names, random);
+        std::ranges::sort(names, naturally_before);
+        EXPECT_EQ(names, sorted);
+    }
+}
+
+} // namespace
+} // namespace vkfv::test
