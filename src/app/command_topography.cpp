@@ -113,7 +113,9 @@ void run_topography(const CommandOptions& options) {
     if (options.shuffle) {
         more["shuffle_seed"] = *options.shuffle;
     }
-    write_evaluation(destination, evaluation, more);
+    write_evaluation(destination, evaluation, more,
+                     own ? topography_files(load_configuration(options.file / "stack.toml", options.overrides))
+                         : TopographyFiles{});
     fmt::print("{}results in {}\n", summary(evaluation), destination.string());
 }
 

@@ -76,6 +76,7 @@ const std::vector<KindRule>& kind_rules() {
         {"star", Kind::star, true, {"size_mm", "pitch_um", "petals", "radius_um", "height_um"}},
         {"groove", Kind::groove, true, {"size_mm", "pitch_um", "width_um", "depth_um", "wall_um"}},
         {"image", Kind::image, false, {"file", "pitch_um", "height_um"}},
+        {"surface", Kind::surface, false, {"file", "pitch_um", "unit", "size_mm", "level"}},
         {"stl", Kind::stl, false, {"file", "unit", "centre"}},
         {"gltf", Kind::gltf, false, {"file", "unit", "centre"}},
     };
@@ -213,7 +214,13 @@ void read_specimen(const TomlTable& root, Configuration& configuration) {
             description.size = section.number("size_mm", NumberRange::positive());
         }
     }
-    if (has("pitch_um")) {
+    if (rule.kind == specimen::Kind::surface) {
+        // What is not given is the file's own.
+        description.pitch = from_um(section.number_if_given("pitch_um", NumberRange::positive()).value_or(0));
+        description.size = section.number_if_given("size_mm", NumberRange::positive()).value_or(0);
+        description.level = section.boolean("level", true);
+        description.unit = 0;
+    } else if (has("pitch_um")) {
         // Facets as fine as the roughness needs them; else half a micrometre, below what any objective
         // resolves.
         std::optional<double> fallback;
@@ -281,7 +288,7 @@ void read_specimen(const TomlTable& root, Configuration& configuration) {
         description.where = table.where("file");
         section.record_reference("file", absolute_path(description.file).string());
     }
-    if (has("unit")) {
+    if (has("unit") && (rule.kind != specimen::Kind::surface || table.has("unit"))) {
         std::vector<std::string> units;
         for (const auto& [unit, mm] : length_units) {
             units.emplace_back(unit);
@@ -294,7 +301,9 @@ void read_specimen(const TomlTable& root, Configuration& configuration) {
                 description.unit = mm;
             }
         }
-        description.centre = section.boolean("centre", true);
+        if (has("centre")) {
+            description.centre = section.boolean("centre", true);
+        }
     }
     description.roughness = read_roughness(table, rule, configuration);
     description.material = read_material(table.table_or_empty("material"), configuration);
@@ -440,6 +449,22 @@ void read_output(const TomlTable& root, Configuration& configuration) {
         table.optional_file_path("directory").value_or(configuration.file.parent_path() / "vkfv-out"));
     // The canonical text lies in the folder itself, wherever that is moved to.
     section.record_reference("directory", ".");
+    constexpr std::array files = {std::pair{"tiff", "topography.tif"}, std::pair{"x3p", "topography.x3p"},
+                                  std::pair{"sur", "topography.sur"}, std::pair{"sdf", "topography.sdf"},
+                                  std::pair{"ply", "topography.ply"}};
+    const std::vector<std::string> formats = table.has("surfaces")
+                                                 ? table.value_texts("surfaces")
+                                                 : std::vector{toml_quoted("tiff"), toml_quoted("x3p")};
+    for (const std::string& format : formats) {
+        const auto* file =
+            std::ranges::find_if(files, [&](const auto& candidate) { return toml_quoted(candidate.first) == format; });
+        if (file == files.end()) {
+            table.fail("surfaces", "\"tiff\", \"x3p\", \"sur\", \"sdf\" or \"ply\"",
+                       fmt::format("Remove {}.", format));
+        }
+        configuration.topography_files.emplace_back(file->second);
+    }
+    section.record("surfaces", fmt::format("[{}]", fmt::join(formats, ", ")), Influence::nothing);
     if (section.choice("images", {"float32", "uint16"}, "float32") != "float32") {
         table.fail("images", "\"float32\"; 16-bit counts are not available yet",
                    "Choose images = \"float32\".");

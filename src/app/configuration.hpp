@@ -54,6 +54,7 @@ struct Configuration {
     std::string evaluate_on = "auto"; // or "host", "device"
     double l_filter = 0; // nesting index of the comparison's L-filter, mm; 0: none
     std::filesystem::path output_directory;
+    std::vector<std::string> topography_files; // names under which the topography is written
     std::optional<Sweep> sweep; // belongs to no image: neither in `canonical` nor in `identity`
 
     // Where each key and table stands that was read, by dotted key; defaults have the place of their table.

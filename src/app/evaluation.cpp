@@ -1,12 +1,14 @@
 #include "app/evaluation.hpp"
 
 #include "app/commands.hpp"
+#include "app/digest.hpp"
 #include "app/text_file.hpp"
 #include "app/device_focus_planes.hpp"
 #include "core/units.hpp"
 #include "surface/filter.hpp"
 #include "surface/height_parameters.hpp"
 #include "surface/image_file.hpp"
+#include "surface/surface_file.hpp"
 #include "trace/focus_kernels.hpp"
 
 #include <fmt/format.h>
@@ -126,10 +128,19 @@ Evaluation StackEvaluation::finish(double pitch) {
     return std::move(evaluation_);
 }
 
+TopographyFiles topography_files(const Configuration& configuration) {
+    TopographyFiles files{.names = configuration.topography_files};
+    files.provenance.comment =
+        fmt::format("configuration digest {}", Digest().add(configuration.identity).text());
+    return files;
+}
+
 void write_evaluation(const std::filesystem::path& folder, const Evaluation& evaluation,
-                      const nlohmann::ordered_json& more) {
+                      const nlohmann::ordered_json& more, const TopographyFiles& files) {
     const auto& topography = evaluation.topography;
-    surface::write_height_map(folder / "topography.tif", topography.height);
+    for (const std::string& file : files.names) {
+        surface::write_surface(folder / file, topography.height, files.provenance);
+    }
     const surface::ImageTags pitch{
         .pitch_x = topography.height.pitch_x, .pitch_y = topography.height.pitch_y, .description = {}};
     surface::write_tiff(folder / "quality.tif", converted<float>(topography.contrast), pitch);

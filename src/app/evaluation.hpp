@@ -2,6 +2,7 @@
 #pragma once
 
 #include "app/configuration.hpp"
+#include "surface/provenance.hpp"
 #include "topography/compare.hpp"
 #include "topography/topography.hpp"
 
@@ -46,11 +47,23 @@ class StackEvaluation {
     Evaluation evaluation_;
 };
 
-// Writes into the folder, the first row of each with the highest y: topography.tif (float32 um), quality.tif (contrast),
+// What the topography is written to and what its files say of it, nothing that differs from run to run.
+struct TopographyFiles {
+    std::vector<std::string> names = {"topography.tif", "topography.x3p"};
+    surface::Provenance provenance = {.creator = "vkfv " VKFV_VERSION,
+                                      .manufacturer = "vkfv",
+                                      .model = "virtual focus-variation microscope",
+                                      .version = VKFV_VERSION};
+};
+
+// Those of [output] surfaces, with the configuration's digest.
+TopographyFiles topography_files(const Configuration& configuration);
+
+// Writes into the folder, the first row of each with the highest y: the topography's files, quality.tif (contrast),
 // fit_residual.tif, mask.tif (uint16: topography::PointState), all_in_focus.tif; with a truth also truth.tif and
 // deviation.tif (float32 um); and results.json, which `more` joins, and whose other entries of an earlier run stay.
 void write_evaluation(const std::filesystem::path& folder, const Evaluation& evaluation,
-                      const nlohmann::ordered_json& more);
+                      const nlohmann::ordered_json& more, const TopographyFiles& files = {});
 
 // The figures as a text of a few lines.
 std::string summary(const Evaluation& evaluation);

@@ -13,7 +13,7 @@
 
 namespace vkfv::specimen {
 
-enum class Kind { plane, step, sphere, sinusoid, chirp, rough, plateaus, air, star, groove, image, stl, gltf };
+enum class Kind { plane, step, sphere, sinusoid, chirp, rough, plateaus, air, star, groove, image, surface, stl, gltf };
 enum class Representation { facets, analytic }; // of generated surfaces; files are always facets
 
 // Gaussian white noise of standard deviation `noise` on a grid of `pitch`, filtered by a Gaussian of standard
@@ -28,8 +28,8 @@ struct Roughness {
 struct Description {
     Kind kind = Kind::plane;
     Representation representation = Representation::facets;
-    double size = 0;  // side of the square footprint, centred on the axis
-    double pitch = 0; // of the facets' grid (generated kinds) or of the image's pixels
+    double size = 0;  // side of the square footprint, centred on the axis; surface: 0 for all of it
+    double pitch = 0; // of the facets' grid (generated kinds) or of the image's pixels; surface: 0 for the file's own
     double tilt_x = 0, tilt_y = 0; // plane: slope angles along x and y
     double height = 0;             // step: upper minus lower level (upper at x > 0); sphere: of the cap over the
                                    // plane (negative: a dimple); image: of the value 1 over the value 0
@@ -52,8 +52,9 @@ struct Description {
     double shortest = 0;           // air: wavelength
     double hurst = 0;              // air: Hurst exponent
     int petals = 0;                // star
-    std::filesystem::path file;    // plateaus, image, stl, gltf
-    double unit = 1;               // stl, gltf: mm per unit of the file
+    std::filesystem::path file;    // plateaus, image, surface, stl, gltf
+    double unit = 1;               // stl, gltf: mm per unit of the file; surface: of an image's values, else 0
+    bool level = true;             // surface: remove the least-squares plane, mean height to z = 0
     bool centre = true;            // stl, gltf: move the bounding box's centre to x = y = 0, mean height to z = 0
     std::optional<Roughness> roughness; // added to any kind but stl and gltf
     Material material;

@@ -35,6 +35,13 @@ FileMesh read_gltf(const std::filesystem::path& file, const SourceLocation& ment
 // y).
 Grid<float> read_image(const std::filesystem::path& file, const SourceLocation& mention);
 
+struct HeightField;
+struct Description;
+
+// The surface in any file that surface::read_surface() knows, cropped around its centre, which comes to x = y = 0, and
+// levelled. Not-measured points cannot be traced: they are interpolated, and the log says how many.
+HeightField read_surface_field(const Description& description);
+
 // More points than this are a mistake in the file or the configuration (1 GiB of heights).
 inline constexpr std::uint64_t largest_point_count = std::uint64_t{1} << 28;
 

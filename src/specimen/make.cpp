@@ -316,8 +316,9 @@ Specimen make(const Description& d) {
     case Kind::gltf:
         specimen.geometry = place(read_gltf(d.file, d.where), d);
         break;
-    case Kind::image: {
-        HeightField field = field_from_image(d);
+    case Kind::image:
+    case Kind::surface: {
+        HeightField field = d.kind == Kind::image ? field_from_image(d) : read_surface_field(d);
         if (d.roughness) {
             add_roughness(field, *d.roughness, d.where);
         }

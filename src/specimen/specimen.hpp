@@ -24,6 +24,9 @@ struct HeightField {
     double y_min = 0;
     double pitch_x = 0; // mm
     double pitch_y = 0;
+    // Points whose heights were interpolated, since nobody measured them: traced like others, but of unknown truth.
+    // Empty: none.
+    std::vector<bool> interpolated{};
 
     double x_max() const { return x_min + (heights.columns - 1) * pitch_x; }
     double y_max() const { return y_min + (heights.rows - 1) * pitch_y; }

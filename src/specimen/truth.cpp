@@ -68,6 +68,12 @@ struct Fill {
             const int j = std::min(static_cast<int>(v), h.rows - 2);
             const double a = u - i;
             const double b = v - j;
+            const auto known = [&](int column, int row) {
+                return field.interpolated.empty() || !field.interpolated[h.index(column, row)];
+            };
+            if (!known(i, j) || !known(i + 1, j + 1) || !(a >= b ? known(i + 1, j) : known(i, j + 1))) {
+                return;
+            }
             const double low = static_cast<double>(h(i, j));
             const double high = static_cast<double>(h(i + 1, j + 1));
             // The diagonal runs from (i, j) to (i+1, j+1): below it the corner (i+1, j), above it (i, j+1).

@@ -40,8 +40,8 @@ double between(const Grid<double>& coarse, int column, int row) {
     const double v = std::clamp((row - 0.5) / 2, 0.0, coarse.rows - 1.0);
     const int i = static_cast<int>(u), j = static_cast<int>(v);
     const int right = std::min(i + 1, coarse.columns - 1), above = std::min(j + 1, coarse.rows - 1);
-    return std::lerp(std::lerp(coarse(i, j), coarse(right, j), u - i), std::lerp(coarse(i, above), coarse(right, above), u - i),
-                     v - j);
+    return std::lerp(std::lerp(coarse(i, j), coarse(right, j), u - i),
+                     std::lerp(coarse(i, above), coarse(right, above), u - i), v - j);
 }
 
 void fill_from_coarse(Grid<double>& grid) {
@@ -69,7 +69,8 @@ HeightMap fill_not_measured(HeightMap map) {
     for (int sweep = 0; sweep < sweeps; ++sweep)
         for (const auto& [column, row] : gaps) {
             double sum = 0, count = 0;
-            for (const auto& [i, j] : {std::pair{column - 1, row}, {column + 1, row}, {column, row - 1}, {column, row + 1}})
+            for (const auto& [i, j] :
+                 {std::pair{column - 1, row}, {column + 1, row}, {column, row - 1}, {column, row + 1}})
                 if (i >= 0 && j >= 0 && i < map.columns() && j < map.rows()) {
                     sum += map.height(i, j);
                     count += 1;

@@ -42,7 +42,8 @@ SurfaceFile read_height_image(const std::filesystem::path& path, const ImageScal
     }
     const auto check = [&](const char* key, const std::optional<double>& value) {
         if (!value || !(std::isfinite(*value) && *value > 0))
-            reject(key, value ? fmt::format("{}", *value) : "not given", "a positive length, which an image does not state",
+            reject(key, value ? fmt::format("{}", *value) : "not given",
+                   "a positive length, which an image does not state",
                    fmt::format("Give the {} that belongs to this image.", key));
     };
     check("pitch", scale.pitch);

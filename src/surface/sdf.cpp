@@ -61,7 +61,8 @@ void read_heights(std::string_view points, double scale, Grid<double>& heights) 
 
 SurfaceFile parse_binary(const ByteReader& file) {
     (void)file.bytes(0, header_size, "header");
-    const auto columns = file.at<std::uint16_t>(columns_at, "points"), rows = file.at<std::uint16_t>(rows_at, "profiles");
+    const auto columns = file.at<std::uint16_t>(columns_at, "points"),
+               rows = file.at<std::uint16_t>(rows_at, "profiles");
     file.check_size(columns, rows, columns_at);
     const double x_scale = mm_from_metres(file.at<double>(x_scale_at, "Xscale"));
     const double y_scale = mm_from_metres(file.at<double>(y_scale_at, "Yscale"));
@@ -213,11 +214,12 @@ std::string sdf_text(const HeightMap& map, const Provenance& provenance) {
         return line;
     };
     const std::string date = date_digits(provenance.date);
-    std::string text = fmt::format("{}\nManufacID = {:.10}\nCreateDate = {}\nModDate = {}\nNumPoints = {}\nNumProfiles = "
-                                   "{}\nXscale = {}\nYscale = {}\nZscale = 1\nZresolution = 0\nCompression = 0\n"
-                                   "DataType = {}\nCheckType = 0\n*\n",
-                                   text_magic, without_stars(plain_line(provenance.manufacturer)), date, date, map.columns(),
-                                   map.rows(), metres_from_mm(map.pitch_x), metres_from_mm(map.pitch_y), double_type);
+    std::string text =
+        fmt::format("{}\nManufacID = {:.10}\nCreateDate = {}\nModDate = {}\nNumPoints = {}\nNumProfiles = "
+                    "{}\nXscale = {}\nYscale = {}\nZscale = 1\nZresolution = 0\nCompression = 0\n"
+                    "DataType = {}\nCheckType = 0\n*\n",
+                    text_magic, without_stars(plain_line(provenance.manufacturer)), date, date, map.columns(),
+                    map.rows(), metres_from_mm(map.pitch_x), metres_from_mm(map.pitch_y), double_type);
     for (int row = map.rows() - 1; row >= 0; --row)
         for (int column = 0; column < map.columns(); ++column) {
             const double height = map.height(column, row);

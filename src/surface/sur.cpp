@@ -28,11 +28,11 @@ constexpr double deflate_ratio = 1032; // zlib's largest: 258 bytes by two bits
 
 // mm per unit; the sign for micro as UTF-8, in both of Unicode's forms, and as Latin-1.
 constexpr std::array length_units = {
-    std::pair{std::string_view("m"), 1e3},        std::pair{std::string_view("cm"), 1e1},
-    std::pair{std::string_view("mm"), 1.0},       std::pair{std::string_view("um"), 1e-3},
+    std::pair{std::string_view("m"), 1e3},          std::pair{std::string_view("cm"), 1e1},
+    std::pair{std::string_view("mm"), 1.0},         std::pair{std::string_view("um"), 1e-3},
     std::pair{std::string_view("\xC2\xB5m"), 1e-3}, std::pair{std::string_view("\xCE\xBCm"), 1e-3},
-    std::pair{std::string_view("\xB5m"), 1e-3},   std::pair{std::string_view("nm"), 1e-6},
-    std::pair{std::string_view("pm"), 1e-9},      std::pair{std::string_view("inch"), 25.4}};
+    std::pair{std::string_view("\xB5m"), 1e-3},     std::pair{std::string_view("nm"), 1e-6},
+    std::pair{std::string_view("pm"), 1e-9},        std::pair{std::string_view("inch"), 25.4}};
 
 double unit_at(const ByteReader& file, std::size_t offset) {
     std::string_view text = file.bytes(offset, axis_length, "unit");
@@ -112,7 +112,8 @@ SurfaceFile parse_sur(std::string_view bytes, const std::filesystem::path& path)
             file.fail(offset, what, fmt::format("{}", value), "a finite length");
         return value;
     };
-    const double x_unit = unit_at(file, dx_unit_at), y_unit = unit_at(file, dy_unit_at), z_unit = unit_at(file, dz_unit_at);
+    const double x_unit = unit_at(file, dx_unit_at), y_unit = unit_at(file, dy_unit_at),
+                 z_unit = unit_at(file, dz_unit_at);
     result.map.pitch_x = length(dx_at, x_unit, "spacing along x");
     result.map.pitch_y = length(dy_at, y_unit, "spacing along y");
     file.check_spacing(result.map.pitch_x, "spacing along x", dx_at);
@@ -203,7 +204,8 @@ std::string sur_bytes(const HeightMap& map, const Provenance& provenance) {
     const auto put = [&](std::size_t offset, auto value) { std::memcpy(bytes.data() + offset, &value, sizeof value); };
     const auto put_text = [&](std::size_t offset, std::size_t length, std::string_view text) {
         text = text.substr(0, length);
-        std::ranges::fill_n(bytes.begin() + static_cast<std::ptrdiff_t>(offset), static_cast<std::ptrdiff_t>(length), ' ');
+        std::ranges::fill_n(bytes.begin() + static_cast<std::ptrdiff_t>(offset), static_cast<std::ptrdiff_t>(length),
+                            ' ');
         std::ranges::copy(text, bytes.begin() + static_cast<std::ptrdiff_t>(offset));
     };
     std::ranges::copy(magic, bytes.begin());

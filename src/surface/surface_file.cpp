@@ -55,7 +55,8 @@ SurfaceFile read_surface(const std::filesystem::path& path, const ImageScale& sc
     if (looks_like_height_image(bytes))
         return read_height_image(path, scale);
     if (scale.pitch || scale.unit)
-        reject(path, scale.pitch ? "pitch" : "unit", "given", "no second scale: the file states its own", "Leave it out.");
+        reject(path, scale.pitch ? "pitch" : "unit", "given", "no second scale: the file states its own",
+               "Leave it out.");
     if (looks_like_x3p(bytes))
         return parse_x3p(bytes, path);
     if (looks_like_sur(bytes))

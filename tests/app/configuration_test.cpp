@@ -82,6 +82,7 @@ TEST(Configuration, IdentityHoldsWhatChangesImagesAndNothingElse) {
         {"trace.batch", "4096", ""},       {"trace.traversal", "\"quadtree\"", ""},
         {"trace.device", "\"host\"", ""},  {"output.directory", "\"other\"", ""},
         {"topography.window_px", "5", ""}, {"topography.l_filter_um", "80", ""},
+        {"output.surfaces", "[\"sur\"]", ""},
     };
     for (const auto& change : neutral) {
         EXPECT_EQ(load("identity", small_configuration, {change}).identity, reference) << change.key;
@@ -108,6 +109,19 @@ TEST(Configuration, IdentityHoldsWhatChangesImagesAndNothingElse) {
     for (const auto& change : influential) {
         EXPECT_NE(load("identity", small_configuration, {change}).identity, reference) << change.key;
     }
+}
+
+TEST(Configuration, TopographyIsWrittenInTheFormatsAskedFor) {
+    EXPECT_THAT(load("surfaces", small_configuration).topography_files,
+                testing::ElementsAre("topography.tif", "topography.x3p"));
+    const auto load_with = [](const std::string& value) {
+        return load("surfaces", small_configuration, {{"output.surfaces", value, ""}});
+    };
+    const auto all = load_with("[\"ply\", \"sdf\", \"sur\"]");
+    EXPECT_THAT(all.topography_files, testing::ElementsAre("topography.ply", "topography.sdf", "topography.sur"));
+    EXPECT_EQ(load("surfaces_again", all.canonical).topography_files, all.topography_files);
+    EXPECT_THROW((void)load_with("[\"stl\"]"), InputError);
+    EXPECT_THROW((void)load_with("\"x3p\""), InputError);
 }
 
 TEST(Configuration, IdentityFollowsAPrescriptionsContentNotItsPlace) {
@@ -380,6 +394,7 @@ TEST(Configuration, EveryKindOfSpecimenIsRead) {
         {"chirp", "size_mm = 0.2\namplitude_um = 1\nperiod_um = 30\nperiod_stop_um = 10\n"},
         {"rough", "size_mm = 0.2\nsq_um = 1\ncorrelation_length_um = 5\nseed = 3\n"},
         {"image", "file = \"a.png\"\npitch_um = 1\nheight_um = 4\n"},
+        {"surface", "file = \"a.tif\"\npitch_um = 2\nunit = \"um\"\nsize_mm = 0.1\nlevel = false\n"},
         {"stl", "file = \"a.stl\"\nunit = \"um\"\ncentre = false\n"},
         {"gltf", "file = \"a.glb\"\n"},
     };

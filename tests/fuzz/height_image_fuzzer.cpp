@@ -14,7 +14,8 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     using namespace vkfv;
     static const auto file =
         std::filesystem::temp_directory_path() / ("vkfv_height_image_fuzzer_" + std::to_string(::getpid()));
-    std::ofstream(file, std::ios::binary).write(reinterpret_cast<const char*>(data), static_cast<std::streamsize>(size));
+    std::ofstream(file, std::ios::binary)
+        .write(reinterpret_cast<const char*>(data), static_cast<std::streamsize>(size));
     for (const surface::ImageScale& scale : {surface::ImageScale{}, surface::ImageScale{1e-3, 1e-3}}) {
         try {
             (void)surface::read_surface(file, scale);

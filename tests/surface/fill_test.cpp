@@ -18,9 +18,9 @@ HeightMap plane(int columns, int rows) {
     return map;
 }
 
-// A plane solves Laplace's equation, so gaps inside it end as the plane. Successive over-relaxation by 1.5 in a gap of n
-// points multiplies what is left by at most 1 - (pi/(n+1))^2 in each sweep before the best factor, much less for n = 7:
-// 200 sweeps leave below (1 - 0.15)^200 = 8e-15 of the start, which is below the plane's extent of 20.
+// A plane solves Laplace's equation, so gaps inside it end as the plane. Successive over-relaxation by 1.5 in a gap of
+// n points multiplies what is left by at most 1 - (pi/(n+1))^2 in each sweep before the best factor, much less for n =
+// 7: 200 sweeps leave below (1 - 0.15)^200 = 8e-15 of the start, which is below the plane's extent of 20.
 TEST(Fill, GapsInAPlaneAreFilledWithThePlane) {
     const HeightMap whole = plane(40, 30);
     HeightMap map = whole;

@@ -1,5 +1,5 @@
-// Surface files: what is written reads back and is written the same again, their bytes are what the formats say, foreign
-// files of every variant are read, and hostile ones are refused before they cost anything.
+// Surface files: what is written reads back and is written the same again, their bytes are what the formats say,
+// foreign files of every variant are read, and hostile ones are refused before they cost anything.
 #include "surface/surface_file.hpp"
 
 #include "core/error.hpp"
@@ -89,7 +89,10 @@ std::string seen(const HeightMap& map, double tolerance = 1e-9) {
     for (int row = map.rows() - 1; row >= 0; --row)
         for (int column = 0; column < map.columns(); ++column) {
             const double z = map.height(column, row);
-            text += std::isnan(z) ? '?' : std::abs(z - ink) < tolerance ? '#' : std::abs(z - paper) < tolerance ? '.' : '!';
+            text += std::isnan(z)                     ? '?'
+                    : std::abs(z - ink) < tolerance   ? '#'
+                    : std::abs(z - paper) < tolerance ? '.'
+                                                      : '!';
         }
     return text;
 }
@@ -130,7 +133,8 @@ const std::vector<std::string> read_back = {"a.x3p", "a.sur", "a.sdf", "a.asc.sd
 
 TEST_F(SurfaceFiles, WriteReadWriteGivesTheSameBytes) {
     for (const std::string& name : read_back)
-        for (const Provenance& provenance : {Provenance{}, full_provenance, Provenance{.date = "yesterday", .comment = "*"}})
+        for (const Provenance& provenance :
+             {Provenance{}, full_provenance, Provenance{.date = "yesterday", .comment = "*"}})
             for (const double largest : {0.0, 1e-9, 0.00390625, 0.1, 3.7}) {
                 const auto first = folder_ / name, second = folder_ / ("b" + name.substr(1));
                 write_surface(first, wild_map(3, largest), provenance);
@@ -291,13 +295,22 @@ struct ForeignX3p {
 
     std::string xml() const {
         return "<?xml version='1.0' encoding='UTF-8'?>\n<q:ISO5436_2 xmlns:q='http://www.opengps.eu/2008/ISO5436_2'>"
-               "<Record1><Revision>" + revision + "</Revision><FeatureType>SUR</FeatureType><Axes>"
-               "<CX><AxisType>I</AxisType><DataType>F</DataType><Increment>" + increment + "</Increment>"
+               "<Record1><Revision>" +
+               revision +
+               "</Revision><FeatureType>SUR</FeatureType><Axes>"
+               "<CX><AxisType>I</AxisType><DataType>F</DataType><Increment>" +
+               increment +
+               "</Increment>"
                "<Offset>0</Offset></CX><CY><AxisType>I</AxisType><Increment>2e-6</Increment></CY>"
-               "<CZ><AxisType>A</AxisType><DataType>" + type + "</DataType>" + cz + "</CZ></Axes></Record1>"
-               "<Record3><MatrixDimension><SizeX>" + size_x + "</SizeX><SizeY>" + size_y + "</SizeY><SizeZ>1</SizeZ>"
-               "</MatrixDimension><DataLink><PointDataLink>" + link + "</PointDataLink><MD5ChecksumPointData>" +
-               points_md5 + "</MD5ChecksumPointData>" + valid_link + "</DataLink></Record3>"
+               "<CZ><AxisType>A</AxisType><DataType>" +
+               type + "</DataType>" + cz +
+               "</CZ></Axes></Record1>"
+               "<Record3><MatrixDimension><SizeX>" +
+               size_x + "</SizeX><SizeY>" + size_y +
+               "</SizeY><SizeZ>1</SizeZ>"
+               "</MatrixDimension><DataLink><PointDataLink>" +
+               link + "</PointDataLink><MD5ChecksumPointData>" + points_md5 + "</MD5ChecksumPointData>" + valid_link +
+               "</DataLink></Record3>"
                "<Record4><ChecksumFile>md5checksum.hex</ChecksumFile></Record4></q:ISO5436_2>";
     }
     Entries entries() const {
@@ -395,7 +408,8 @@ TEST_F(SurfaceFiles, X3pChecksumsAreChecked) {
         return folder_ / "changed.x3p";
     };
     expect_refused(with("bindata/data.bin", [](std::string& content) { content[7] ^= 1; }), "MD5 of bindata/data.bin");
-    expect_refused(with("bindata/valid.bin", [](std::string& content) { content[0] ^= 1; }), "MD5 of bindata/valid.bin");
+    expect_refused(with("bindata/valid.bin", [](std::string& content) { content[0] ^= 1; }),
+                   "MD5 of bindata/valid.bin");
     expect_refused(with("main.xml", [](std::string& content) { content += ' '; }), "MD5 of main.xml");
     // Hash-only files are read, and files without checksums.
     EXPECT_NO_THROW((void)read_surface(with("md5checksum.hex", [](std::string& content) { content.resize(32); })));
@@ -450,7 +464,8 @@ std::string with_text(std::string bytes, std::size_t offset, const std::string& 
 }
 
 TEST_F(SurfaceFiles, SurOf16BitsInOtherUnitsIsRead) {
-    // Micrometres with the sign of Latin-1, NULs after the names, an offset, special points, a comment and a private zone.
+    // Micrometres with the sign of Latin-1, NULs after the names, an offset, special points, a comment and a private
+    // zone.
     std::string bytes = sur_bytes(letter_map(), {}).substr(0, 512);
     bytes = with(bytes, 98, std::int16_t{16});
     bytes = with(with(with(bytes, 108, std::int32_t{3}), 112, std::int32_t{2}), 116, std::int32_t{6});
@@ -534,8 +549,8 @@ TEST_F(SurfaceFiles, SdfOfEveryTypeIsRead) {
                 um.push_back(map.height(column, row) * 1e3);
         return um;
     };
-    const auto are = testing::ElementsAre(testing::DoubleNear(1, 1e-12), testing::IsNan(), testing::DoubleNear(-2, 1e-12),
-                                          testing::DoubleNear(0, 0));
+    const auto are = testing::ElementsAre(testing::DoubleNear(1, 1e-12), testing::IsNan(),
+                                          testing::DoubleNear(-2, 1e-12), testing::DoubleNear(0, 0));
     EXPECT_THAT(heights(3, points_of<float>({1, std::numeric_limits<float>::infinity(), -2, 0})), are);
     EXPECT_THAT(heights(5, points_of<std::int16_t>({1, std::numeric_limits<std::int16_t>::min(), -2, 0})), are);
     EXPECT_THAT(heights(6, points_of<std::int32_t>({1, std::numeric_limits<std::int32_t>::min(), -2, 0})), are);
@@ -543,13 +558,16 @@ TEST_F(SurfaceFiles, SdfOfEveryTypeIsRead) {
 }
 
 std::string sdf_of(const std::string& points, const std::string& profiles, const std::string& heights) {
-    return "aISO-1.0\r\nManufacID = someone\r\nCreateDate = 090620091340\r\nModDate = 090620091340\r\nNumPoints = " + points +
-           "\r\nNumProfiles = " + profiles + "\r\nXscale = 1.0E-6\r\nYscale = +2e-6\r\nZscale = 1e-6\r\nZresolution = -1\r\n"
-           "Compression = 0\r\nDataType = 7\r\nCheckType = 0\r\n*\r\n" + heights;
+    return "aISO-1.0\r\nManufacID = someone\r\nCreateDate = 090620091340\r\nModDate = 090620091340\r\nNumPoints = " +
+           points + "\r\nNumProfiles = " + profiles +
+           "\r\nXscale = 1.0E-6\r\nYscale = +2e-6\r\nZscale = 1e-6\r\nZresolution = -1\r\n"
+           "Compression = 0\r\nDataType = 7\r\nCheckType = 0\r\n*\r\n" +
+           heights;
 }
 
 TEST_F(SurfaceFiles, SdfTextIsRead) {
-    const SurfaceFile file = read_surface(write("a.sdf", sdf_of("3", "2", "1.5 BAD\t-2\r\n 3 4e0\n5\r\n*\r\n<Operator> x\r\n*")));
+    const SurfaceFile file =
+        read_surface(write("a.sdf", sdf_of("3", "2", "1.5 BAD\t-2\r\n 3 4e0\n5\r\n*\r\n<Operator> x\r\n*")));
     EXPECT_DOUBLE_EQ(file.map.pitch_x, 1e-3);
     EXPECT_DOUBLE_EQ(file.map.pitch_y, 2e-3);
     EXPECT_EQ(file.provenance.manufacturer, "someone");

@@ -1,0 +1,78 @@
+#include "specimen/description.hpp"
+#include "specimen/files.hpp"
+
+#include "core/units.hpp"
+#include "surface/fill.hpp"
+#include "surface/filter.hpp"
+#include "surface/surface_file.hpp"
+
+#include <fmt/format.h>
+#include <spdlog/spdlog.h>
+
+#include <algorithm>
+#include <cmath>
+
+namespace vkfv::specimen {
+namespace {
+
+// As many points as fit into `size`, around the centre.
+surface::HeightMap cropped(const surface::HeightMap& map, double size, const Description& d) {
+    const auto points = [size](double pitch) { return static_cast<int>(std::floor(size / pitch * (1 + 1e-9))) + 1; };
+    const double width = (map.columns() - 1) * map.pitch_x, height = (map.rows() - 1) * map.pitch_y;
+    const double largest = std::min(width, height);
+    if (!(size <= largest * (1 + 1e-9))) {
+        throw InputError({d.where, "specimen.size_mm", fmt::format("{}", size),
+                          fmt::format("at most {:.6g}: the surface is {:.6g} x {:.6g} mm", largest, width, height),
+                          "Choose a smaller size, or leave it out for the whole surface."});
+    }
+    surface::HeightMap part = map;
+    const int columns = std::min(points(map.pitch_x), map.columns()), rows = std::min(points(map.pitch_y), map.rows());
+    part.height = Grid<double>(columns, rows);
+    const int first_column = (map.columns() - columns) / 2, first_row = (map.rows() - rows) / 2;
+    for (int row = 0; row < rows; ++row) {
+        for (int column = 0; column < columns; ++column) {
+            part.height(column, row) = map.height(first_column + column, first_row + row);
+        }
+    }
+    return part;
+}
+
+} // namespace
+
+HeightField read_surface_field(const Description& d) {
+    const auto given = [](double value) { return value > 0 ? std::optional(value) : std::nullopt; };
+    surface::HeightMap map = surface::read_surface(d.file, {.pitch = given(d.pitch), .unit = given(d.unit)}).map;
+    if (d.size > 0) {
+        map = cropped(map, d.size, d);
+    }
+    const auto gaps = std::ranges::count_if(map.height.values, [](double z) { return !std::isfinite(z); });
+    const auto points = std::ssize(map.height.values);
+    if (map.columns() < 2 || map.rows() < 2 || gaps == points) {
+        throw InputError({{d.file, 0, 0, {}}, "surface",
+                          fmt::format("{} x {} points, {} of them measured", map.columns(), map.rows(), points - gaps),
+                          "at least 2 x 2 points, not all of them gaps", "Name another file or choose a larger size."});
+    }
+    if (d.level) {
+        map = remove_plane(map, surface::least_squares_plane(map));
+    }
+    HeightField field;
+    field.pitch_x = map.pitch_x;
+    field.pitch_y = map.pitch_y;
+    field.x_min = -0.5 * (map.columns() - 1) * map.pitch_x;
+    field.y_min = -0.5 * (map.rows() - 1) * map.pitch_y;
+    if (gaps > 0) {
+        for (const double z : map.height.values) {
+            field.interpolated.push_back(!std::isfinite(z));
+        }
+        map = fill_not_measured(std::move(map));
+    }
+    field.heights = Grid<float>(map.columns(), map.rows());
+    std::ranges::transform(map.height.values, field.heights.values.begin(),
+                           [](double z) { return static_cast<float>(z); });
+    spdlog::info("{}: {} x {} points, pitch {:.6g} x {:.6g} um; {:.3g} % not measured and interpolated",
+                 d.file.string(), map.columns(), map.rows(), map.pitch_x * um_per_mm, map.pitch_y * um_per_mm,
+                 100.0 * static_cast<double>(gaps) / static_cast<double>(points));
+    return field;
+}
+
+} // namespace vkfv::specimen
