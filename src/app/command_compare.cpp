@@ -2,6 +2,7 @@
 #include "app/text_file.hpp"
 
 #include "core/units.hpp"
+#include "report/topography_picture.hpp"
 #include "surface/image_file.hpp"
 #include "surface/resample.hpp"
 #include "surface/surface_file.hpp"
@@ -221,6 +222,34 @@ std::string slope_csv(const topography::Comparison& comparison) {
     return text;
 }
 
+// Of the first measurement and the truth under it, levelled.
+std::string picture_of(const topography::Comparison& comparison, const HeightMap& measured, const std::string& title) {
+    auto pair = topography::levelled_pair(measured, comparison.truth);
+    report::Curve transfer{.name = "transfer", .points = {}, .spreads = {}};
+    report::Curve coherence{.name = "coherence", .points = {}, .spreads = {}};
+    for (const auto& band : comparison.transfer) {
+        transfer.points.emplace_back(band.frequency, band.transfer);
+        coherence.points.emplace_back(band.frequency, band.coherence);
+    }
+    report::Curve bias{.name = "bias / um", .points = {}, .spreads = {}};
+    report::Curve rms{.name = "RMS / um", .points = {}, .spreads = {}};
+    report::Curve share{.name = "share measured", .points = {}, .spreads = {}};
+    for (const auto& bin : comparison.slopes) {
+        const double middle = 0.5 * (bin.from + bin.to) / radians_per_degree;
+        bias.points.emplace_back(middle, bin.bias * um_per_mm);
+        rms.points.emplace_back(middle, bin.rms * um_per_mm);
+        share.points.emplace_back(middle, bin.measured_share);
+    }
+    return report::topography_picture(
+        {.title = title,
+         .measured = std::move(pair.measured),
+         .truth = std::move(pair.truth),
+         .deviation = comparison.deviation,
+         .all_in_focus = {},
+         .charts = {{"Height transfer", "spatial frequency / (1/mm)", "", {transfer, coherence}, true},
+                    {"Deviation by slope", "slope of the truth / deg", "", {bias, rms, share}}}});
+}
+
 } // namespace
 
 void run_compare(const CommandOptions& options) {
@@ -254,6 +283,9 @@ void run_compare(const CommandOptions& options) {
         write_text_aside(*options.out / "transfer.csv", transfer_csv(comparison));
         write_text_aside(*options.out / "slope.csv", slope_csv(comparison));
         surface::write_height_map(*options.out / "deviation.tif", comparison.deviation);
+        write_text_aside(*options.out / "compare.svg",
+                         picture_of(comparison, measurements.front(),
+                                    fmt::format("{} against {}", files.front().string(), files.back().string())));
         if (comparison.parts) {
             surface::write_height_map(*options.out / "random.tif", comparison.parts->standard_deviation);
         }

@@ -44,7 +44,8 @@ void run_stack(const CommandOptions& options) {
     auto progress = Progress::on_standard_error(options.quiet);
     // Evaluated as they are traced: no second pass over the disk.
     StackEvaluation stack_evaluation(configuration.topography,
-                                     focus_planes_for(configuration.evaluate_on, configuration.trace.device));
+                                     focus_planes_for(configuration.evaluate_on, configuration.trace.device),
+                                     make_diffraction(configuration, instrument));
     const auto traced = scan::run_stack(*tracer, store, progress, {}, [&](int image, Grid<float> flux) {
         stack_evaluation.add({std::move(flux)}, positions[static_cast<std::size_t>(image)]);
     });
@@ -52,7 +53,7 @@ void run_stack(const CommandOptions& options) {
 
     const auto& folder = store.folder();
     const auto evaluation =
-        stack_evaluation.finish(truth_on_pixels(instrument, configuration, specimen), configuration.l_filter);
+        stack_evaluation.finish(truth_on_pixels(instrument, configuration, specimen), configuration.band);
     nlohmann::ordered_json run = {{"device", tracer->description()},
                                   {"stack_digest", store.description().digest},
                                   {"seed", configuration.trace.seed},

@@ -5,6 +5,7 @@
 
 #include "core/units.hpp"
 #include "surface/image_file.hpp"
+#include "surface/surface_file.hpp"
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
@@ -116,15 +117,24 @@ SweepRow stack_row(const CommandOptions& options, const std::vector<TomlOverride
                    const fs::path& folder) {
     std::vector<surface::HeightMap> maps;
     std::vector<Json> results;
+    const auto configuration = load_configuration(options.file, overrides);
+    // A mesh is for viewers alone.
+    const auto readable = std::ranges::find_if(configuration.topography_files,
+                                               [](const std::string& name) { return !name.ends_with(".ply"); });
+    if (readable == configuration.topography_files.end()) {
+        throw InputError({configuration.places.at("output.surfaces"), "output.surfaces", "no heights that can be read back",
+                          "one of \"tiff\", \"x3p\", \"sur\" and \"sdf\" for a sweep of stacks",
+                          "Add one of them."});
+    }
     for (int repeat = 0; repeat < repeats; ++repeat) {
         CommandOptions one = options;
         one.overrides = overrides;
-        const auto seed = load_configuration(options.file, overrides).trace.seed;
+        const auto seed = configuration.trace.seed;
         one.overrides.push_back({"trace.seed", fmt::format("{}", seed + static_cast<std::uint32_t>(repeat)), "sweep.repeats"});
         one.out = repeats == 1 ? folder : folder / fmt::format("repeat_{:03}", repeat);
         one.overrides.push_back({"output.directory", toml_quoted(one.out->string()), "sweep"});
         run_stack(one);
-        maps.push_back(surface::read_height_map(*one.out / "topography.tif"));
+        maps.push_back(surface::read_surface(*one.out / *readable).map);
         results.push_back(read_json(*one.out / "results.json"));
     }
     SweepRow row;

@@ -55,13 +55,14 @@ Evaluation evaluate_own(const CommandOptions& options) {
     const auto specimen = specimen::make(*configuration.specimen);
     const auto instrument = assemble_instrument(configuration, specimen, positions);
     const auto order = order_of_images(positions.size(), options.shuffle);
-    StackEvaluation evaluation(configuration.topography, planes_for(configuration));
+    StackEvaluation evaluation(configuration.topography, planes_for(configuration),
+                               make_diffraction(configuration, instrument));
     for (std::size_t place = 0; place < positions.size(); ++place) {
         const int image = order[place];
         evaluation.add({scan::read_frame(folder, image, positions[static_cast<std::size_t>(image)])},
                        positions[place]);
     }
-    return evaluation.finish(truth_on_pixels(instrument, configuration, specimen), configuration.l_filter);
+    return evaluation.finish(truth_on_pixels(instrument, configuration, specimen), configuration.band);
 }
 
 // Images alone: what an instrument's file says of them, the command line must say.

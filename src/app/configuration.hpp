@@ -6,6 +6,7 @@
 #include "optics/instrument.hpp"
 #include "scan/plan.hpp"
 #include "specimen/description.hpp"
+#include "topography/compare.hpp"
 #include "topography/topography.hpp"
 #include "trace/tracer.hpp"
 
@@ -52,7 +53,7 @@ struct Configuration {
     DiffractionOptions diffraction;
     topography::TopographyOptions topography;
     std::string evaluate_on = "auto"; // or "host", "device"
-    double l_filter = 0; // nesting index of the comparison's L-filter, mm; 0: none
+    topography::Band band; // of the second comparison with the truth; unlimited: there is none
     std::filesystem::path output_directory;
     std::vector<std::string> topography_files; // names under which the topography is written
     std::optional<Sweep> sweep; // belongs to no image: neither in `canonical` nor in `identity`

@@ -5,6 +5,7 @@
 #include "app/text_file.hpp"
 #include "app/device_focus_planes.hpp"
 #include "core/units.hpp"
+#include "report/topography_picture.hpp"
 #include "surface/filter.hpp"
 #include "surface/height_parameters.hpp"
 #include "surface/image_file.hpp"
@@ -79,6 +80,75 @@ std::string text_of(const char* treatment, const topography::Deviation& deviatio
         deviation.sq_measured / deviation.sq_true, deviation.rms * um_per_mm, deviation.correlation);
 }
 
+// With the truth or without, and filtered as well.
+nlohmann::ordered_json figures_of(const Evaluation& evaluation) {
+    auto figures = evaluation.deviation ? json_of(*evaluation.deviation) : json_of(evaluation.topography.height);
+    if (evaluation.filtered_deviation) {
+        auto filtered = json_of(*evaluation.filtered_deviation);
+        filtered["s_filter_um"] = evaluation.band.s_filter * um_per_mm;
+        filtered["l_filter_um"] = evaluation.band.l_filter * um_per_mm;
+        figures["filtered"] = std::move(filtered);
+    }
+    return figures;
+}
+
+// Mean of the channels.
+Grid<float> grey(const topography::Channels& channels) {
+    Grid<float> result(channels.front().columns, channels.front().rows);
+    for (const auto& channel : channels) {
+        for (std::size_t k = 0; k < result.values.size(); ++k) {
+            result.values[k] += channel.values[k] / static_cast<float>(channels.size());
+        }
+    }
+    return result;
+}
+
+std::string picture_of(const std::filesystem::path& folder, const Evaluation& evaluation) {
+    const auto level = [](const surface::HeightMap& map) {
+        return surface::remove_plane(map, surface::least_squares_plane(map));
+    };
+    report::TopographyPicture picture;
+    picture.title = folder.filename().string();
+    picture.measured = level(evaluation.topography.height);
+    if (evaluation.truth) {
+        picture.truth = level(*evaluation.truth);
+        picture.deviation = topography::deviation_map(evaluation.topography.height, *evaluation.truth);
+    }
+    picture.all_in_focus = grey(evaluation.topography.all_in_focus);
+    return report::topography_picture(picture);
+}
+
+void write_maps(const std::filesystem::path& folder, const Evaluation& evaluation, const TopographyFiles& files) {
+    const auto& topography = evaluation.topography;
+    for (const std::string& file : files.names) {
+        surface::write_surface(folder / file, topography.height, files.provenance);
+    }
+    const surface::ImageTags pitch{
+        .pitch_x = topography.height.pitch_x, .pitch_y = topography.height.pitch_y, .description = {}};
+    surface::write_tiff(folder / "quality.tif", converted<float>(topography.contrast), pitch);
+    surface::write_tiff(folder / "fit_residual.tif", converted<float>(topography.fit_residual), pitch);
+    surface::write_tiff(folder / "mask.tif", converted<std::uint16_t>(topography.state), pitch);
+    surface::write_tiff(folder / "all_in_focus.tif", topography.all_in_focus, pitch);
+    if (evaluation.truth) {
+        surface::write_height_map(folder / "truth.tif", *evaluation.truth);
+        surface::write_height_map(
+            folder / "deviation.tif",
+            topography::deviation_map(topography.height, *evaluation.truth, evaluation.band));
+    }
+    write_text_aside(folder / "topography.svg", picture_of(folder, evaluation));
+}
+
+std::string band_text(const topography::Band& band) {
+    std::string text = "and filtered";
+    if (band.s_filter > 0) {
+        text += fmt::format(", S {:g} um", band.s_filter * um_per_mm);
+    }
+    if (band.l_filter > 0) {
+        text += fmt::format(", L {:g} um", band.l_filter * um_per_mm);
+    }
+    return text + ":";
+}
+
 } // namespace
 
 topography::FocusPlanesMaker focus_planes_for(const std::string& evaluate_on, const std::string& device_selector) {
@@ -90,9 +160,13 @@ topography::FocusPlanesMaker focus_planes_for(const std::string& evaluate_on, co
 }
 
 StackEvaluation::StackEvaluation(const topography::TopographyOptions& options,
-                                 topography::FocusPlanesMaker make_planes)
-    : evaluator_(options, std::move(make_planes)) {
+                                 topography::FocusPlanesMaker make_planes,
+                                 std::optional<trace::Diffraction> diffraction)
+    : evaluator_(options, make_planes), diffraction_(std::move(diffraction)) {
     evaluation_.options = options;
+    if (diffraction_) {
+        diffracted_ = std::make_unique<StackEvaluation>(options, std::move(make_planes));
+    }
 }
 
 void StackEvaluation::add(topography::Channels image, double z) {
@@ -101,18 +175,24 @@ void StackEvaluation::add(topography::Channels image, double z) {
         columns_ = image.front().columns;
         rows_ = image.front().rows;
     }
+    if (diffraction_) {
+        diffracted_->add({diffraction_->apply(image.front())}, z);
+    }
     evaluator_.add(std::move(image), z);
 }
 
-Evaluation StackEvaluation::finish(surface::HeightMap truth, double l_filter) {
+Evaluation StackEvaluation::finish(surface::HeightMap truth, const topography::Band& band) {
+    if (diffracted_) {
+        evaluation_.diffracted = std::make_shared<Evaluation>(diffracted_->finish(truth, band));
+    }
     {
         const Stopwatch stopwatch(evaluation_.seconds);
         evaluation_.topography = evaluator_.finish(truth.x0, truth.y0, truth.pitch_x);
         const auto& measured = evaluation_.topography.height;
-        evaluation_.deviation = topography::compare(measured, truth, 0);
-        evaluation_.l_filter = l_filter;
-        if (l_filter > 0) {
-            evaluation_.filtered_deviation = topography::compare(measured, truth, l_filter);
+        evaluation_.deviation = topography::compare(measured, truth);
+        evaluation_.band = band;
+        if (band.limited()) {
+            evaluation_.filtered_deviation = topography::compare(measured, truth, band);
         }
         evaluation_.truth = std::move(truth);
     }
@@ -137,23 +217,7 @@ TopographyFiles topography_files(const Configuration& configuration) {
 
 void write_evaluation(const std::filesystem::path& folder, const Evaluation& evaluation,
                       const nlohmann::ordered_json& more, const TopographyFiles& files) {
-    const auto& topography = evaluation.topography;
-    for (const std::string& file : files.names) {
-        surface::write_surface(folder / file, topography.height, files.provenance);
-    }
-    const surface::ImageTags pitch{
-        .pitch_x = topography.height.pitch_x, .pitch_y = topography.height.pitch_y, .description = {}};
-    surface::write_tiff(folder / "quality.tif", converted<float>(topography.contrast), pitch);
-    surface::write_tiff(folder / "fit_residual.tif", converted<float>(topography.fit_residual), pitch);
-    surface::write_tiff(folder / "mask.tif", converted<std::uint16_t>(topography.state), pitch);
-    surface::write_tiff(folder / "all_in_focus.tif", topography.all_in_focus, pitch);
-    if (evaluation.truth) {
-        surface::write_height_map(folder / "truth.tif", *evaluation.truth);
-        surface::write_height_map(
-            folder / "deviation.tif",
-            topography::deviation_map(topography.height, *evaluation.truth, evaluation.l_filter));
-    }
-
+    write_maps(folder, evaluation, files);
     const auto path = folder / "results.json";
     auto results = nlohmann::ordered_json::object();
     if (std::ifstream earlier(path); earlier) {
@@ -162,12 +226,14 @@ void write_evaluation(const std::filesystem::path& folder, const Evaluation& eva
             results = std::move(parsed);
         }
     }
-    results.update(evaluation.deviation ? json_of(*evaluation.deviation) : json_of(topography.height));
-    results.erase("l_filtered");
-    if (evaluation.filtered_deviation) {
-        auto filtered = json_of(*evaluation.filtered_deviation);
-        filtered["nesting_index_um"] = evaluation.l_filter * um_per_mm;
-        results["l_filtered"] = std::move(filtered);
+    for (const char* key : {"filtered", "diffracted"}) {
+        results.erase(key);
+    }
+    results.update(figures_of(evaluation));
+    if (evaluation.diffracted) {
+        results["diffracted"] = figures_of(*evaluation.diffracted);
+        std::filesystem::create_directories(folder / "diffracted");
+        write_maps(folder / "diffracted", *evaluation.diffracted, files);
     }
     const auto& options = evaluation.options;
     results["topography"] = {{"focus_measure", options.focus_measure},
@@ -181,7 +247,7 @@ void write_evaluation(const std::filesystem::path& folder, const Evaluation& eva
                              {"most_fit_residual", options.most_fit_residual},
                              {"most_peaks", options.most_peaks},
                              {"repair_outliers", options.repair_outliers}};
-    results["points"] = point_counts(topography.state);
+    results["points"] = point_counts(evaluation.topography.state);
     results["evaluation_seconds"] = evaluation.seconds;
     results["evaluated_by"] = fmt::format("vkfv {}", VKFV_VERSION);
     results.update(more);
@@ -200,8 +266,10 @@ std::string summary(const Evaluation& evaluation) {
         text += text_of("levelled:", *evaluation.deviation);
     }
     if (evaluation.filtered_deviation) {
-        text += text_of(fmt::format("and L-filtered at {:g} um:", evaluation.l_filter * um_per_mm).c_str(),
-                        *evaluation.filtered_deviation);
+        text += text_of(band_text(evaluation.band).c_str(), *evaluation.filtered_deviation);
+    }
+    if (evaluation.diffracted) {
+        text += "with diffraction: " + summary(*evaluation.diffracted);
     }
     return text;
 }

@@ -5,10 +5,12 @@
 #include "surface/provenance.hpp"
 #include "topography/compare.hpp"
 #include "topography/topography.hpp"
+#include "trace/diffraction.hpp"
 
 #include <nlohmann/json_fwd.hpp>
 
 #include <filesystem>
+#include <memory>
 #include <optional>
 
 namespace vkfv::app {
@@ -18,9 +20,10 @@ struct Evaluation {
     topography::Topography topography;
     std::optional<surface::HeightMap> truth; // none of a stack that another instrument took; nor deviations
     std::optional<topography::Deviation> deviation;          // levelled
-    std::optional<topography::Deviation> filtered_deviation; // and L-filtered; none without a nesting index
-    double l_filter = 0;                                     // nesting index, mm
-    double seconds = 0;                                      // wall clock
+    std::optional<topography::Deviation> filtered_deviation; // and filtered; none if the band has no limit
+    topography::Band band;
+    double seconds = 0;                     // wall clock
+    std::shared_ptr<Evaluation> diffracted; // the same of the images after diffraction; none without [diffraction]
 };
 
 // Where a stack is evaluated by this choice of [topography] evaluate_on while a device traces it (selector: of the device,
@@ -31,18 +34,22 @@ topography::FocusPlanesMaker focus_planes_for(const std::string& evaluate_on, co
 // Takes a stack's images in their order, as they come, and keeps the time that this takes.
 class StackEvaluation {
   public:
-    // make_planes: where the work is done.
-    StackEvaluation(const topography::TopographyOptions& options, topography::FocusPlanesMaker make_planes);
+    // make_planes: where the work is done. With diffraction the images are evaluated twice, without and with it; they
+    // have its size and one channel then.
+    StackEvaluation(const topography::TopographyOptions& options, topography::FocusPlanesMaker make_planes,
+                    std::optional<trace::Diffraction> diffraction = {});
 
     // z: mm.
     void add(topography::Channels image, double z);
     // On the truth's grid, with the deviation from it.
-    Evaluation finish(surface::HeightMap truth, double l_filter);
+    Evaluation finish(surface::HeightMap truth, const topography::Band& band);
     // Without a truth; the grid's middle is the origin, pitch in mm.
     Evaluation finish(double pitch);
 
   private:
     topography::StackEvaluator evaluator_;
+    std::optional<trace::Diffraction> diffraction_;
+    std::unique_ptr<StackEvaluation> diffracted_;
     int columns_ = 0;
     int rows_ = 0;
     Evaluation evaluation_;
@@ -62,7 +69,8 @@ TopographyFiles topography_files(const Configuration& configuration);
 
 // Writes into the folder, the first row of each with the highest y: the topography's files, quality.tif (contrast),
 // fit_residual.tif, mask.tif (uint16: topography::PointState), all_in_focus.tif; with a truth also truth.tif and
-// deviation.tif (float32 um); and results.json, which `more` joins, and whose other entries of an earlier run stay.
+// deviation.tif (float32 um); topography.svg, a picture of them, levelled; and results.json, which `more` joins, and whose
+// other entries of an earlier run stay. What diffraction changes stands in a folder `diffracted` in it.
 void write_evaluation(const std::filesystem::path& folder, const Evaluation& evaluation,
                       const nlohmann::ordered_json& more, const TopographyFiles& files = {});
 

@@ -37,6 +37,13 @@ Axis axis_over(std::span<const Curve> curves, int direction, std::string label, 
 void draw_chart(Svg& svg, glm::dvec2 corner, glm::dvec2 size, std::string_view title, const Axis& x, const Axis& y,
                 std::span<const Curve> curves);
 
+// A chart for a picture of several.
+struct Chart {
+    std::string title, x_label, y_label;
+    std::vector<Curve> curves;
+    bool x_decades = false;
+};
+
 // Bars that touch, over x; heights of the same count of intervals between from and to.
 void draw_histogram(Svg& svg, glm::dvec2 corner, glm::dvec2 size, std::string_view title, const Axis& x,
                     std::span<const double> counts);

@@ -96,6 +96,9 @@ std::string topography_picture(const TopographyPicture& picture) {
         curves.push_back(profile("true", *picture.truth, row));
     draw_chart(svg, next(), panel, fmt::format("Profile at y = {:.4g} um", picture.measured.y(row) * um_per_mm),
                axis_over(curves, 0, "x / um"), axis_over(curves, 1, "height / um"), curves);
+    for (const Chart& chart : picture.charts)
+        draw_chart(svg, next(), panel, chart.title, axis_over(chart.curves, 0, chart.x_label, chart.x_decades),
+                   axis_over(chart.curves, 1, chart.y_label), chart.curves);
     const dvec2 page = dvec2(margin, head) +
                        (panel + dvec2(margin)) * dvec2(std::min(place, 3), (place + 2) / 3);
     return svg.document(page, picture.title);

@@ -1,10 +1,12 @@
 // Pictures of a measurement, as SVG.
 #pragma once
 
+#include "report/chart.hpp"
 #include "surface/height_map.hpp"
 
 #include <optional>
 #include <string>
+#include <vector>
 
 namespace vkfv::report {
 
@@ -15,10 +17,11 @@ struct TopographyPicture {
     std::optional<surface::HeightMap> truth;
     std::optional<surface::HeightMap> deviation; // measured less true
     std::optional<Grid<float>> all_in_focus;
+    std::vector<Chart> charts; // besides
 };
 
 // Measured heights, truth and deviation over x and y (one height scale for the first two), the all-in-focus image
-// alone and under the heights' colours, and the profile along the middle row.
+// alone and under the heights' colours, the profile along the middle row, and the charts.
 std::string topography_picture(const TopographyPicture& picture);
 
 // An image (W per pixel; pitch in mm, the middle of pixel (0, 0) at x0, y0) beside the histogram of its pixels, with

@@ -22,7 +22,7 @@ HeightMap difference(const LevelledPair& treated) {
 
 } // namespace
 
-LevelledPair levelled_pair(HeightMap measured, HeightMap truth, double l_filter) {
+LevelledPair levelled_pair(HeightMap measured, HeightMap truth, const Band& band) {
     if (measured.columns() != truth.columns() || measured.rows() != truth.rows())
         throw std::invalid_argument("compare: both height maps must stand on the same grid");
     for (std::size_t k = 0; k < measured.height.values.size(); ++k) {
@@ -31,16 +31,18 @@ LevelledPair levelled_pair(HeightMap measured, HeightMap truth, double l_filter)
         if (!std::isfinite(a) || !std::isfinite(b))
             a = b = std::numeric_limits<double>::quiet_NaN();
     }
-    const auto level = [l_filter](HeightMap map) {
+    const auto level = [&band](HeightMap map) {
         const surface::Plane plane = surface::least_squares_plane(map);
         map = surface::remove_plane(std::move(map), plane);
-        return l_filter > 0 ? surface::remove_long_waves(map, l_filter) : map;
+        if (band.s_filter > 0)
+            map = surface::gaussian_low_pass(map, band.s_filter);
+        return band.l_filter > 0 ? surface::remove_long_waves(map, band.l_filter) : map;
     };
     return {level(std::move(measured)), level(std::move(truth))};
 }
 
-Deviation compare(const HeightMap& measured, const HeightMap& truth, double l_filter) {
-    const LevelledPair treated = levelled_pair(measured, truth, l_filter);
+Deviation compare(const HeightMap& measured, const HeightMap& truth, const Band& band) {
+    const LevelledPair treated = levelled_pair(measured, truth, band);
     const auto a = surface::height_parameters(treated.measured);
     const auto b = surface::height_parameters(treated.truth);
     double covariance = 0, count = 0;
@@ -61,8 +63,8 @@ Deviation compare(const HeightMap& measured, const HeightMap& truth, double l_fi
     return result;
 }
 
-HeightMap deviation_map(const HeightMap& measured, const HeightMap& truth, double l_filter) {
-    return difference(levelled_pair(measured, truth, l_filter));
+HeightMap deviation_map(const HeightMap& measured, const HeightMap& truth, const Band& band) {
+    return difference(levelled_pair(measured, truth, band));
 }
 
 } // namespace vkfv::topography

@@ -5,8 +5,17 @@
 
 namespace vkfv::topography {
 
-// Statistics of measured against true over the points present in both, after the same levelling (and, with a
-// positive nesting index in mm, the same L-filter) of both. Lengths in mm; NaN where no point is present.
+// Which waves of both surfaces are compared: nesting indices of the Gaussian S-filter and L-filter (ISO 16610-61), mm;
+// 0: none.
+struct Band {
+    double s_filter = 0; // shorter waves are removed
+    double l_filter = 0; // longer waves are removed
+
+    bool limited() const { return s_filter > 0 || l_filter > 0; }
+};
+
+// Statistics of measured against true over the points present in both, after the same levelling and filters of both.
+// Lengths in mm; NaN where no point is present.
 struct Deviation {
     double sq_measured = 0;
     double sq_true = 0;
@@ -23,12 +32,11 @@ struct LevelledPair {
 
 // Both maps stand on the same grid (surface/resample.hpp brings them there): std::invalid_argument otherwise, here and
 // below.
-LevelledPair levelled_pair(surface::HeightMap measured, surface::HeightMap truth, double l_filter);
+LevelledPair levelled_pair(surface::HeightMap measured, surface::HeightMap truth, const Band& band = {});
 
-Deviation compare(const surface::HeightMap& measured, const surface::HeightMap& truth, double l_filter);
+Deviation compare(const surface::HeightMap& measured, const surface::HeightMap& truth, const Band& band = {});
 
 // Measured less true after the treatment of compare(); its root mean square is Deviation::rms.
-surface::HeightMap deviation_map(const surface::HeightMap& measured, const surface::HeightMap& truth,
-                                 double l_filter);
+surface::HeightMap deviation_map(const surface::HeightMap& measured, const surface::HeightMap& truth, const Band& band = {});
 
 } // namespace vkfv::topography

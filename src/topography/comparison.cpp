@@ -39,11 +39,11 @@ Comparison compare_with_truth(std::span<const HeightMap> measurements, const Hei
     std::vector<HeightMap> deviations;
     for (std::size_t k = 0; k < measurements.size(); ++k) {
         MeasurementComparison& comparison = result.measurements[k];
-        const LevelledPair pair = levelled_pair(measurements[k], result.truth, 0);
-        comparison.deviation = compare(measurements[k], result.truth, 0);
+        const LevelledPair pair = levelled_pair(measurements[k], result.truth);
+        comparison.deviation = compare(measurements[k], result.truth);
         comparison.measured = surface::areal_parameters(pair.measured);
         comparison.truth = surface::areal_parameters(pair.truth);
-        deviations.push_back(deviation_map(measurements[k], result.truth, 0));
+        deviations.push_back(deviation_map(measurements[k], result.truth));
     }
     if (deviations.size() > 1) {
         result.parts = systematic_and_random(deviations);

@@ -28,7 +28,7 @@ struct Ring {
 } // namespace
 
 std::vector<TransferBand> height_transfer(const surface::HeightMap& measured, const surface::HeightMap& truth) {
-    const LevelledPair pair = levelled_pair(measured, truth, 0);
+    const LevelledPair pair = levelled_pair(measured, truth);
     const int columns = measured.columns(), rows = measured.rows();
     Grid<Complex> grid(convenient_length(columns), convenient_length(rows));
     double window_power = 0;

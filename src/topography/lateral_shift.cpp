@@ -102,7 +102,7 @@ LateralShift lateral_shift(const HeightMap& measured, const HeightMap& truth) {
     constexpr double settled = 1e-4; // pitches
     constexpr double basin = 2;      // pitches: farther from the start lies another peak
     const LateralShift none{undefined, undefined, undefined};
-    const LateralShift start = nearest_shift(levelled_pair(measured, surface::resampled(truth, measured), 0));
+    const LateralShift start = nearest_shift(levelled_pair(measured, surface::resampled(truth, measured)));
     if (!std::isfinite(start.x))
         return none;
     LateralShift shift = start;
@@ -117,7 +117,7 @@ LateralShift lateral_shift(const HeightMap& measured, const HeightMap& truth) {
               std::abs(shift.y - start.y) <= basin * measured.pitch_y))
             return none;
         if (pitches < settled) {
-            shift.correlation = compare(measured, shifted_onto(truth, measured, shift), 0).correlation;
+            shift.correlation = compare(measured, shifted_onto(truth, measured, shift)).correlation;
             return shift;
         }
     }

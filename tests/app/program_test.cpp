@@ -186,7 +186,7 @@ TEST(Program, TopographyEvaluatesAStackAnew) {
         folder);
     ASSERT_EQ(other.exit_code, 0) << other.standard_error;
     EXPECT_NE(read_file(folder / "out/topography.tif"), height_map);
-    EXPECT_EQ(nlohmann::json::parse(read_file(folder / "out/results.json"))["l_filtered"]["nesting_index_um"],
+    EXPECT_EQ(nlohmann::json::parse(read_file(folder / "out/results.json"))["filtered"]["l_filter_um"],
               10.0);
 }
 

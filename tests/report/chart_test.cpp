@@ -166,7 +166,7 @@ TEST(TopographyPicture, has_a_panel_for_each_map_and_the_profile) {
     surface::HeightMap heights{.height = Grid<double>(8, 6, 0.001), .x0 = -0.01, .y0 = 0, .pitch_x = 0.002, .pitch_y = 0.002};
     heights.height(3, 3) = nan;
     const auto document = parsed(topography_picture(
-        {.title = "a < b", .measured = heights, .truth = heights, .deviation = heights, .all_in_focus = Grid<float>(8, 6, 1.0f)}));
+        {.title = "a < b", .measured = heights, .truth = heights, .deviation = heights, .all_in_focus = Grid<float>(8, 6, 1.0f), .charts = {}}));
     // Five maps and the colour bars of them all.
     EXPECT_EQ(all(document, "image").size(), 10u);
     EXPECT_STREQ(document.child("svg").child("title").child_value(), "a < b");

@@ -89,7 +89,7 @@ TEST(Reconstruct, FindsTheHeightsOfASyntheticStack) {
         const Topography topography = evaluate(stack, {.focus_measure = measure});
         EXPECT_EQ(topography.height.x0, stack.truth.x0);
         EXPECT_EQ(topography.height.pitch_y, pitch);
-        const Deviation deviation = compare(topography.height, stack.truth, 0);
+        const Deviation deviation = compare(topography.height, stack.truth);
         EXPECT_GT(deviation.measured_share, 0.98) << measure;
         EXPECT_GT(deviation.correlation, 0.95) << measure;
         // The window averages the heights over 14 um of waves of 96 and 48 um: sinc(14/96) sinc(14/48) = 0.84
@@ -120,10 +120,10 @@ TEST(Reconstruct, HeightsAreNotMirroredOrTransposed) {
             transposed.height(i, j) = stack.truth.height(j, i);
             negative.height(i, j) = -stack.truth.height(i, j);
         }
-    EXPECT_GT(compare(height, stack.truth, 0).correlation, 0.95);
+    EXPECT_GT(compare(height, stack.truth).correlation, 0.95);
     // The truth correlates with its transposed by 0 and with the others by less than -0.99.
     for (const HeightMap& twin : {mirrored_x, mirrored_y, transposed, negative})
-        EXPECT_LT(compare(height, twin, 0).correlation, 0.3);
+        EXPECT_LT(compare(height, twin).correlation, 0.3);
 }
 
 TEST(Reconstruct, HeightsFromShuffledFramesDoNotCorrelateWithTheTruth) {
@@ -136,7 +136,7 @@ TEST(Reconstruct, HeightsFromShuffledFramesDoNotCorrelateWithTheTruth) {
     constexpr int shuffles = 200;
     for (int k = 0; k < shuffles; ++k) {
         std::shuffle(stack.images.begin(), stack.images.end(), random);
-        const Deviation deviation = compare(evaluate(stack).height, stack.truth, 0);
+        const Deviation deviation = compare(evaluate(stack).height, stack.truth);
         sum += std::isfinite(deviation.correlation) ? deviation.correlation : 0;
     }
     EXPECT_LT(std::abs(sum / shuffles), 0.1);
@@ -420,12 +420,12 @@ TEST(Compare, LevelsBothAndUsesCommonPointsOnly) {
         for (int i = 0; i < 12; ++i) // one whole period
             measured.height(i, j) = not_measured;
     truth.height(30, 20) = not_measured;
-    const Deviation deviation = compare(measured, truth, 0);
+    const Deviation deviation = compare(measured, truth);
     EXPECT_NEAR(deviation.measured_share, 48.0 / 60 - 1.0 / 3000, 1e-12);
     EXPECT_NEAR(deviation.correlation, 1, 1e-12);
     EXPECT_NEAR(deviation.sq_measured / deviation.sq_true, 0.9, 1e-12);
     EXPECT_NEAR(deviation.rms / deviation.sq_true, 0.1, 1e-12);
-    const HeightMap map = deviation_map(measured, truth, 0);
+    const HeightMap map = deviation_map(measured, truth);
     EXPECT_TRUE(std::isnan(map.height(0, 0)));
     EXPECT_TRUE(std::isnan(map.height(30, 20)));
     EXPECT_NEAR(map.height(40, 7), -0.1 * (deviation.sq_true * std::sqrt(2.0)) * std::sin(2 * pi * 40 / 12.0),
@@ -437,22 +437,36 @@ TEST(Compare, TheLFilterRemovesWhatIsLongInBoth) {
     for (int j = 0; j < 50; ++j)
         for (int i = 0; i < 60; ++i)
             measured.height(i, j) += 3e-3 * std::cos(2 * pi * j / 50.0);
-    EXPECT_LT(compare(measured, truth, 0).correlation, 0.5);
+    EXPECT_LT(compare(measured, truth).correlation, 0.5);
     // Waves of 24 um stay, those of 100 um go: at an index of 40 um the high-pass keeps 1 - 2^-(40/24)^2 =
     // 0.85 of the one and 1 - 2^-(40/100)^2 = 0.105 of the other, 0.3e-3 mm; the correlation is 0.85 /
     // hypot(0.85, 0.31).
-    EXPECT_GT(compare(measured, truth, 0.04).correlation, 0.9);
+    EXPECT_GT(compare(measured, truth, {.s_filter = 0, .l_filter = 0.04}).correlation, 0.9);
+}
+
+TEST(Compare, TheSFilterRemovesWhatIsShortInBoth) {
+    HeightMap measured = wave(0, 0, 0), truth = measured;
+    for (int j = 0; j < 50; ++j)
+        for (int i = 0; i < 60; ++i) {
+            truth.height(i, j) = 1e-3 * std::cos(2 * pi * j / 50.0);
+            measured.height(i, j) = truth.height(i, j) + (i % 2 == 0 ? 2e-3 : -2e-3);
+        }
+    EXPECT_LT(compare(measured, truth).correlation, 0.5);
+    // Waves of two points (4 um) go: at an index of 24 um the filter keeps 2^-36 of them.
+    const Deviation filtered = compare(measured, truth, {.s_filter = 0.024, .l_filter = 0});
+    EXPECT_GT(filtered.correlation, 0.99); // a cut-off window at the border leaves some
+    EXPECT_NEAR(filtered.sq_measured / filtered.sq_true, 1, 0.01);
 }
 
 TEST(Compare, NeedsOneGridAndSaysWhenNothingIsMeasured) {
-    EXPECT_THROW(compare(wave(1, 0, 0), HeightMap{}, 0), std::invalid_argument);
+    EXPECT_THROW(compare(wave(1, 0, 0), HeightMap{}), std::invalid_argument);
     HeightMap nothing = wave(1, 0, 0);
     std::fill(nothing.height.values.begin(), nothing.height.values.end(), not_measured);
-    const Deviation deviation = compare(nothing, wave(1, 0, 0), 0);
+    const Deviation deviation = compare(nothing, wave(1, 0, 0));
     EXPECT_EQ(deviation.measured_share, 0);
     EXPECT_TRUE(std::isnan(deviation.correlation));
     EXPECT_TRUE(std::isnan(deviation.rms));
-    EXPECT_EQ(compare(wave(0, 0.1, 0), wave(1, 0, 0), 0).measured_share, 1);
+    EXPECT_EQ(compare(wave(0, 0.1, 0), wave(1, 0, 0)).measured_share, 1);
 }
 
 } // namespace
