@@ -26,6 +26,9 @@ std::variant<HeightField, Mesh, Analytic> generate(const Description& descriptio
 // Roughness added to a height field whose pitch is no coarser; else InputError.
 void add_roughness(HeightField& field, const Roughness& roughness, const SourceLocation& where);
 
+// The field on a grid of a finer pitch around the same centre, by cubic convolution (surface/resample.hpp).
+HeightField refined(const HeightField& field, double pitch);
+
 // White Gaussian noise of unit standard deviation, filtered by a Gaussian of standard deviation `kernel` (in
 // points; 0: not at all) whose weights have the sum 1; periodic. Bits depend on std::mt19937_64 and the C
 // library's log, sin and cos alone.

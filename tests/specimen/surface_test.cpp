@@ -1,4 +1,5 @@
 // A surface file as specimen: where its points come to stand, levelled, cropped and filled.
+#include "specimen/analytic.hpp"
 #include "specimen/description.hpp"
 #include "surface/image_file.hpp"
 #include "surface/surface_file.hpp"
@@ -7,6 +8,7 @@
 
 #include <unistd.h>
 
+#include <algorithm>
 #include <cmath>
 #include <functional>
 #include <limits>
@@ -143,6 +145,28 @@ TEST_F(SurfaceSpecimen, NothingMeasuredIsRefused) {
     for (double& z : map.height.values)
         z = std::numeric_limits<double>::quiet_NaN();
     EXPECT_THROW(field(map, [](Description&) {}), InputError);
+}
+
+// A file's points may lie further apart than the roughness needs them.
+TEST(RefinedField, KeepsTheSurfaceAndItsGaps) {
+    HeightField coarse{.heights = Grid<float>(41, 41), .x_min = -0.02, .y_min = -0.02, .pitch_x = 0.001, .pitch_y = 0.001};
+    for (int row = 0; row < 41; ++row)
+        for (int column = 0; column < 41; ++column)
+            coarse.heights(column, row) = static_cast<float>(0.002 * std::sin(2 * M_PI * (column - 20) / 16.0));
+    coarse.interpolated.assign(41 * 41, false);
+    coarse.interpolated[coarse.heights.index(20, 20)] = true;
+    const HeightField fine = refined(coarse, 0.0003);
+    EXPECT_EQ(fine.heights.columns, 134); // 0.04 / 0.0003 = 133.3 cells
+    EXPECT_NEAR(fine.x_min + fine.x_max(), 0, 1e-15);
+    double worst = 0;
+    for (int column = 5; column < 129; ++column)
+        worst = std::max(worst, std::abs(static_cast<double>(fine.heights(column, 60)) -
+                                         0.002 * std::sin(2 * M_PI * (fine.x_min + column * 0.0003) / 0.016)));
+    // Keys' cubic convolution errs by about (pi p / l)^3 of the amplitude at a wavelength l: 0.0076 here.
+    EXPECT_LT(worst, 0.002 * 0.0076);
+    const auto gaps = std::count(fine.interpolated.begin(), fine.interpolated.end(), true);
+    EXPECT_GE(gaps, 9); // a square of one pitch, 3.3 of the fine ones
+    EXPECT_LE(gaps, 16);
 }
 
 } // namespace
