@@ -8,6 +8,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <optional>
 
 namespace vkfv::surface {
 namespace {
@@ -15,26 +16,36 @@ namespace {
 // Of the text that write_height_map() begins an image's description with.
 constexpr std::string_view own_title = "vkfv height map", last_grid_key = "pitch_y_mm=";
 
+std::optional<ImageFormat> format_of(std::string_view bytes) {
+    using namespace std::string_view_literals;
+    for (const std::string_view magic : {"II*\0"sv, "MM\0*"sv, "II+\0"sv, "MM\0+"sv})
+        if (bytes.starts_with(magic))
+            return ImageFormat::tiff;
+    if (bytes.starts_with("\x76\x2f\x31\x01"sv))
+        return ImageFormat::openexr;
+    return std::nullopt;
+}
+
 } // namespace
 
 bool looks_like_height_image(std::string_view bytes) {
-    using namespace std::string_view_literals;
-    for (const std::string_view magic : {"II*\0"sv, "MM\0*"sv, "II+\0"sv, "MM\0+"sv, "\x76\x2f\x31\x01"sv})
-        if (bytes.starts_with(magic))
-            return true;
-    return false;
+    return format_of(bytes).has_value();
 }
 
-SurfaceFile read_height_image(const std::filesystem::path& path, const ImageScale& scale) {
+SurfaceFile parse_height_image(std::string_view bytes, const std::filesystem::path& path, const ImageScale& scale) {
     const auto reject = [&](std::string key, std::string found, std::string expected, std::string remedy) {
         throw InputError({{path, 0, 0, {}}, std::move(key), std::move(found), std::move(expected), std::move(remedy)});
     };
-    const std::string description = image_description(path);
+    const std::optional<ImageFormat> format = format_of(bytes);
+    if (!format)
+        reject("", "a file of unknown kind", "a TIFF or OpenEXR file", "Export the surface in one of these formats.");
+    const DescribedImage image = parse_image(bytes, *format, path);
+    const std::string& description = image.description;
     if (description.starts_with(own_title)) {
         if (scale.pitch || scale.unit)
             reject(scale.pitch ? "pitch" : "unit", "given", "no second scale: the file states its own",
                    "Leave it out.");
-        SurfaceFile result{.map = read_height_map(path), .provenance = {}};
+        SurfaceFile result{.map = height_map_of(image, path), .provenance = {}};
         const auto grid = description.find(last_grid_key);
         const auto rest = std::min(description.find('\n', grid), description.size());
         result.provenance = parse_provenance(std::string_view(description).substr(rest));
@@ -48,12 +59,11 @@ SurfaceFile read_height_image(const std::filesystem::path& path, const ImageScal
     };
     check("pitch", scale.pitch);
     check("unit", scale.unit);
-    const Grid<float> values = read_image(path);
     SurfaceFile result;
     result.map.pitch_x = result.map.pitch_y = *scale.pitch;
-    result.map.height = Grid<double>(values.columns, values.rows);
-    for (std::size_t k = 0; k < values.values.size(); ++k) {
-        const double height = static_cast<double>(values.values[k]) * *scale.unit;
+    result.map.height = Grid<double>(image.values.columns, image.values.rows);
+    for (std::size_t k = 0; k < image.values.values.size(); ++k) {
+        const double height = static_cast<double>(image.values.values[k]) * *scale.unit;
         result.map.height.values[k] = std::isfinite(height) ? height : std::numeric_limits<double>::quiet_NaN();
     }
     return result;

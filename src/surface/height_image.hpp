@@ -3,6 +3,7 @@
 
 #include "surface/surface_file.hpp"
 
+#include <filesystem>
 #include <string_view>
 
 namespace vkfv::surface {
@@ -11,7 +12,8 @@ namespace vkfv::surface {
 bool looks_like_height_image(std::string_view bytes);
 
 // The first page. Every value that is not finite is not measured. Without vkfv's own text about pitch and position the
-// scale must be given, and the first pixel of the last row stands at x = y = 0. Throws InputError.
-SurfaceFile read_height_image(const std::filesystem::path& path, const ImageScale& scale);
+// scale must be given, and the first pixel of the last row stands at x = y = 0. Throws InputError; `path` names the
+// file in its message.
+SurfaceFile parse_height_image(std::string_view bytes, const std::filesystem::path& path, const ImageScale& scale);
 
 } // namespace vkfv::surface

@@ -4,6 +4,7 @@
 #include "core/units.hpp"
 #include "surface/aside_file.hpp"
 
+#include <OpenImageIO/filesystem.h>
 #include <OpenImageIO/imageio.h>
 
 #include <fmt/format.h>
@@ -112,26 +113,47 @@ void write_single_page(const std::filesystem::path& path, std::span<const Grid<V
                       .remedy = std::move(remedy)});
 }
 
-std::unique_ptr<OIIO::ImageInput> open_image(const std::filesystem::path& path) {
+struct OpenImage {
+    std::unique_ptr<OIIO::Filesystem::IOMemReader> memory; // outlives the input that reads it
+    std::unique_ptr<OIIO::ImageInput> input;
+    double bytes; // of the whole file
+};
+
+OpenImage open_image(const std::filesystem::path& path) {
     if (!std::filesystem::is_regular_file(path))
         reject(path, "", "no such file", "an image file",
                "Check the path; it is relative to the file that names it.");
-    auto input = OIIO::ImageInput::open(path.string());
-    if (!input)
+    OpenImage image{.memory = nullptr,
+                    .input = OIIO::ImageInput::open(path.string()),
+                    .bytes = static_cast<double>(std::filesystem::file_size(path))};
+    if (!image.input)
         reject(path, "", OIIO::geterror(), "a readable image",
                "Write the file anew, as single-channel TIFF.");
-    return input;
+    return image;
+}
+
+OpenImage open_image(std::string_view bytes, ImageFormat format, const std::filesystem::path& path) {
+    // By format name: tried one after the other, every reader that OpenImageIO has would be offered the bytes.
+    OpenImage image{.memory = std::make_unique<OIIO::Filesystem::IOMemReader>(bytes.data(), bytes.size()),
+                    .input = OIIO::ImageInput::create(format == ImageFormat::tiff ? "tiff" : "openexr"),
+                    .bytes = static_cast<double>(bytes.size())};
+    if (!image.input)
+        throw RunError(fmt::format("OpenImageIO cannot read the kind of {}: {}", path.string(), OIIO::geterror()));
+    OIIO::ImageSpec spec;
+    if (!image.input->set_ioproxy(image.memory.get()) || !image.input->open(path.string(), spec))
+        reject(path, "", image.input->geterror(), "a readable image", "Write the file anew, as single-channel TIFF.");
+    return image;
 }
 
 // No packing in use makes images smaller than by this factor: a header that names more pixels is a wrong one.
 constexpr double largest_packing = 1e4;
 constexpr double largest_pixel_count = 1 << 28;
 
-void check_size(const std::filesystem::path& path, const OIIO::ImageSpec& spec) {
+void check_size(const OpenImage& image, const OIIO::ImageSpec& spec, const std::filesystem::path& path) {
     const double pixels = static_cast<double>(spec.width) * spec.height;
     const double bytes = pixels * static_cast<double>(spec.format.size());
     if (!(spec.width > 0 && spec.height > 0 && pixels <= largest_pixel_count &&
-          bytes <= largest_packing * static_cast<double>(std::filesystem::file_size(path))))
+          bytes <= largest_packing * image.bytes))
         reject(path, "size", fmt::format("{} x {} pixels", spec.width, spec.height),
                fmt::format("at most {} pixels, and no more than the file has room for", largest_pixel_count),
                "The file is truncated or damaged: write or copy it anew.");
@@ -180,14 +202,18 @@ OIIO::ImageSpec spec_of_page(OIIO::ImageInput& input, const std::filesystem::pat
     return input.spec();
 }
 
-Grid<float> read_page(OIIO::ImageInput& input, const std::filesystem::path& path, int page) {
-    const OIIO::ImageSpec spec = spec_of_page(input, path, page);
+Grid<float> read_page(const OpenImage& image, const std::filesystem::path& path, int page) {
+    const OIIO::ImageSpec spec = spec_of_page(*image.input, path, page);
     if (spec.nchannels != 1 || spec.depth > 1)
         reject(path, fmt::format("page {}", page),
                fmt::format("{} channels, depth {}", spec.nchannels, spec.depth),
                "one channel and two dimensions", "Convert the image to greyscale without alpha.");
-    check_size(path, spec);
-    return read_channel(input, spec, path, page, 0);
+    check_size(image, spec, path);
+    return read_channel(*image.input, spec, path, page, 0);
+}
+
+std::string description_of(const OpenImage& image) {
+    return image.input->spec().get_string_attribute("ImageDescription");
 }
 
 // The value of "key=value" on a line of its own.
@@ -224,33 +250,33 @@ void write_tiff(const std::filesystem::path& path, const Grid<std::uint16_t>& im
 }
 
 int page_count(const std::filesystem::path& path) {
-    const auto input = open_image(path);
+    const OpenImage image = open_image(path);
     int count = 1;
-    while (input->seek_subimage(count, 0))
+    while (image.input->seek_subimage(count, 0))
         ++count;
     return count;
 }
 
 Grid<float> read_image(const std::filesystem::path& path, int page) {
-    return read_page(*open_image(path), path, page);
+    return read_page(open_image(path), path, page);
 }
 
 std::vector<Grid<float>> read_channels(const std::filesystem::path& path, int page) {
-    const auto input = open_image(path);
-    const OIIO::ImageSpec spec = spec_of_page(*input, path, page);
+    const OpenImage image = open_image(path);
+    const OIIO::ImageSpec spec = spec_of_page(*image.input, path, page);
     if (spec.depth > 1)
         reject(path, fmt::format("page {}", page), fmt::format("depth {}", spec.depth), "two dimensions",
                "Write every plane as a page or file of its own.");
-    check_size(path, spec);
+    check_size(image, spec, path);
     std::vector<Grid<float>> channels;
     for (int channel = 0; channel < spec.nchannels; ++channel)
         if (channel != spec.alpha_channel)
-            channels.push_back(read_channel(*input, spec, path, page, channel));
+            channels.push_back(read_channel(*image.input, spec, path, page, channel));
     return channels;
 }
 
 std::string image_description(const std::filesystem::path& path) {
-    return open_image(path)->spec().get_string_attribute("ImageDescription");
+    return description_of(open_image(path));
 }
 
 void write_height_map(const std::filesystem::path& path, const HeightMap& map, const Provenance& provenance) {
@@ -270,23 +296,32 @@ void write_height_map(const std::filesystem::path& path, const HeightMap& map, c
                                     map.x0, map.y0, map.pitch_x, map.pitch_y, provenance_text(provenance))});
 }
 
-HeightMap read_height_map(const std::filesystem::path& path) {
-    const auto input = open_image(path);
-    const std::string description = input->spec().get_string_attribute("ImageDescription");
+DescribedImage parse_image(std::string_view bytes, ImageFormat format, const std::filesystem::path& path) {
+    const OpenImage image = open_image(bytes, format, path);
+    std::string description = description_of(image);
+    return {.values = read_page(image, path, 0), .description = std::move(description)};
+}
+
+HeightMap height_map_of(const DescribedImage& image, const std::filesystem::path& path) {
     HeightMap map;
-    map.x0 = described_number(path, description, "x0_mm");
-    map.y0 = described_number(path, description, "y0_mm");
-    map.pitch_x = described_number(path, description, "pitch_x_mm");
-    map.pitch_y = described_number(path, description, "pitch_y_mm");
+    map.x0 = described_number(path, image.description, "x0_mm");
+    map.y0 = described_number(path, image.description, "y0_mm");
+    map.pitch_x = described_number(path, image.description, "pitch_x_mm");
+    map.pitch_y = described_number(path, image.description, "pitch_y_mm");
     if (map.pitch_x <= 0 || map.pitch_y <= 0)
         reject(path, "pitch_x_mm, pitch_y_mm", fmt::format("{}, {}", map.pitch_x, map.pitch_y),
                "positive pitches", "Use a height map that vkfv wrote.");
-    const Grid<float> heights = read_page(*input, path, 0);
-    map.height = Grid<double>(heights.columns, heights.rows);
-    std::transform(heights.values.begin(), heights.values.end(), map.height.values.begin(), [](float height) {
+    map.height = Grid<double>(image.values.columns, image.values.rows);
+    std::transform(image.values.values.begin(), image.values.values.end(), map.height.values.begin(), [](float height) {
         return std::isfinite(height) ? height * mm_per_um : std::numeric_limits<double>::quiet_NaN();
     });
     return map;
+}
+
+HeightMap read_height_map(const std::filesystem::path& path) {
+    const OpenImage image = open_image(path);
+    std::string description = description_of(image);
+    return height_map_of({.values = read_page(image, path, 0), .description = std::move(description)}, path);
 }
 
 } // namespace vkfv::surface

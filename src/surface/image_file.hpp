@@ -16,6 +16,7 @@
 #include <cstdint>
 #include <filesystem>
 #include <string>
+#include <string_view>
 #include <vector>
 
 namespace vkfv::surface {
@@ -49,10 +50,22 @@ std::vector<Grid<float>> read_channels(const std::filesystem::path& path, int pa
 // The first page's ImageDescription; empty without one.
 std::string image_description(const std::filesystem::path& path);
 
+enum class ImageFormat { tiff, openexr };
+
+struct DescribedImage {
+    Grid<float> values;
+    std::string description; // ImageDescription; empty without one
+};
+
+// The first page of a whole single-channel file in memory; `path` names it in messages.
+DescribedImage parse_image(std::string_view bytes, ImageFormat format, const std::filesystem::path& path);
+
 // float32 heights in micrometres; NaN means "not measured". The grid's origin and pitch stand in the
 // description as text that reads back exactly, since resolution tags are rounded.
 void write_height_map(const std::filesystem::path& path, const HeightMap& map, const Provenance& provenance = {});
 // Reads what write_height_map wrote; heights come back rounded to float32 micrometres.
 HeightMap read_height_map(const std::filesystem::path& path);
+// The same of an image whose description is the one that write_height_map wrote.
+HeightMap height_map_of(const DescribedImage& image, const std::filesystem::path& path);
 
 } // namespace vkfv::surface

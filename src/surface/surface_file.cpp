@@ -53,7 +53,7 @@ std::string name_of(const std::filesystem::path& path) {
 SurfaceFile read_surface(const std::filesystem::path& path, const ImageScale& scale) {
     const std::string bytes = whole_file(path);
     if (looks_like_height_image(bytes))
-        return read_height_image(path, scale);
+        return parse_height_image(bytes, path, scale);
     if (scale.pitch || scale.unit)
         reject(path, scale.pitch ? "pitch" : "unit", "given", "no second scale: the file states its own",
                "Leave it out.");

@@ -1,5 +1,6 @@
 // Writes the corpus of the surface readers' fuzzers into a folder: small whole files of every format, and the same
 // truncated and with headers that lie.
+#include "surface/exr_bytes.hpp"
 #include "surface/surface_file.hpp"
 
 #include <cmath>
@@ -135,5 +136,20 @@ int main(int argument_count, char** arguments) {
     whole("height_image", "full.tif", false);
     const std::string tiff = whole("height_image", "gaps.tif", true);
     write(root / "height_image" / "foreign.tif", replaced(tiff, "vkfv height map", "other height map"));
+    using vkfv::test::ExrBytes;
+    const std::string exr = ExrBytes{}.bytes();
+    write(root / "height_image" / "lines.exr", exr);
+    write_cuts(root / "height_image", "lines.exr", exr);
+    write(root / "height_image" / "tiles.exr", ExrBytes{.tile = 2}.bytes());
+    write(root / "height_image" / "parts.exr", ExrBytes{.parts = 2}.bytes());
+    write(root / "height_image" / "parts_of_tiles.exr", ExrBytes{.tile = 2, .parts = 2}.bytes());
+    write(root / "height_image" / "chunks_many.exr", ExrBytes{.parts = 2, .chunks = largest}.bytes());
+    write(root / "height_image" / "window_2_20.exr", ExrBytes{.window = {0, 0, 2, 1 << 20}}.bytes());
+    write(root / "height_image" / "window_largest.exr", ExrBytes{.window = {0, 0, largest, largest}}.bytes());
+    write(root / "height_image" / "window_negative.exr", ExrBytes{.window = {2, 1, 0, 0}}.bytes());
+    write(root / "height_image" / "tile_largest.exr", ExrBytes{.tile = 0xffffffff}.bytes());
+    const auto description = tiff.find("vkfv height map");
+    write(root / "height_image" / "own.exr",
+          ExrBytes{.description = tiff.substr(description, tiff.find('\0', description) - description)}.bytes());
     return 0;
 }
