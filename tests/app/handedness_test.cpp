@@ -12,15 +12,15 @@ namespace vkfv::test {
 static const std::filesystem::path source_folder = VKFV_SOURCE_DIR;
 
 // The letter F of assets/specimens, raised: what a viewer shows (the file's first row on top) has its stem on the left,
-// its bars to the right, the upper one at the top, in the topography's truth for each of its three makers.
-TEST(Handedness, ALetterReadsCorrectlyAsImageMeshAndGltf) {
-    for (const char* name : {"image_letter", "stl_letter", "gltf_letter"}) {
+// its bars to the right, the upper one at the top, in the topography's truth for each of its four makers.
+TEST(Handedness, ALetterReadsCorrectlyAsImageMeshGltfAndSurface) {
+    for (const char* name : {"image_letter", "stl_letter", "gltf_letter", "surface_letter"}) {
         const auto folder = fresh_folder(std::string("hand_") + name);
         std::vector<std::string> arguments = {
             "--stack", (source_folder / "assets/stacks" / name).string() + ".toml",
             "--out", "out", "--rays", "2e6", "--quiet", "--set", "scan.z_start_um=-12",
             "--set", "scan.z_stop_um=12", "--set", "scan.z_step_um=12"};
-        if (name == std::string("image_letter")) {
+        if (name == std::string("image_letter") || name == std::string("surface_letter")) {
             arguments.insert(arguments.end(), {"--set", "specimen.roughness.noise_um=0.01"}); // the relief alone
         }
         const auto result = run_program(arguments, folder);
