@@ -1,6 +1,7 @@
 // Every file of the evaluation of focus stacks, in the order of their dependence.
 #include "focus/records.glsl"
 #include "focus/image.glsl"
+#include "focus/standard_deviation.glsl"
 #include "focus/tenengrad.glsl"
 #include "focus/modified_laplacian.glsl"
 #include "focus/brenner.glsl"

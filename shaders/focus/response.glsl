@@ -1,7 +1,7 @@
 // What a focus measure finds at one pixel, before it is gathered over the window. The energies (squared responses) of
 // all channels are added. The modified Laplacian is a sum of magnitudes, so the root is taken at the pixel; all others
 // are energies, and the root is taken after the window. The standard deviation has no response of its own: it is made
-// in the window (window.glsl).
+// in the window (standard_deviation.glsl).
 
 VKFV_SCENE_FUNCTION real focus_response(VKFV_SCENE_PARAMETER FocusPlan plan, int column, int row) {
     real energy = real(0.0);

@@ -1,6 +1,5 @@
 // From responses to the measure: weighted means over the window, first along rows, then along columns, cut off at the
-// border. The standard deviation is gathered with them: the variance over a window is the mean of its rows' variances
-// plus the variance of their means, and no difference of large sums is taken.
+// border. The standard deviation (standard_deviation.glsl) is gathered with them.
 
 struct WindowSums {
     real level;  // mean brightness
@@ -46,8 +45,8 @@ VKFV_SCENE_FUNCTION WindowSums window_along_row(VKFV_SCENE_PARAMETER FocusPlan p
     if (plan.measure == FOCUS_STANDARD_DEVIATION) {
         sums.energy = real(0.0);
         for (int d = first; d <= last; ++d) {
-            real deviation = window_source(VKFV_SCENE field, column + d, row).level - sums.level;
-            sums.energy = sums.energy + window_weight(VKFV_SCENE abs(d)) * deviation * deviation;
+            real level = window_source(VKFV_SCENE field, column + d, row).level;
+            sums.energy = sums.energy + window_weight(VKFV_SCENE abs(d)) * squared_deviation(level, sums.level);
         }
     }
     sums.energy = sums.energy / total;
@@ -72,8 +71,8 @@ VKFV_SCENE_FUNCTION WindowSums window_along_column(VKFV_SCENE_PARAMETER FocusPla
     sums.level = sums.level / total;
     if (plan.measure == FOCUS_STANDARD_DEVIATION) {
         for (int d = first; d <= last; ++d) {
-            real deviation = window_row(VKFV_SCENE field, column, row + d).level - sums.level;
-            sums.energy = sums.energy + window_weight(VKFV_SCENE abs(d)) * deviation * deviation;
+            real level = window_row(VKFV_SCENE field, column, row + d).level;
+            sums.energy = sums.energy + window_weight(VKFV_SCENE abs(d)) * squared_deviation(level, sums.level);
         }
     }
     sums.energy = sums.energy / total;
