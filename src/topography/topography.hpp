@@ -35,7 +35,7 @@
 namespace vkfv::topography {
 
 struct TopographyOptions {
-    std::string focus_measure = "standard-deviation"; // one of focus_measure_names()
+    std::string focus_measure = "wavelet"; // one of focus_measure_names(); the least noise in tools/focus_table
     int window_px = 7;                                // odd, at least 3
     std::string window_shape = "box";                 // or "gaussian"; see FocusWindow
     std::string peak = "gaussian";                    // one of peak_method_names()

@@ -307,7 +307,7 @@ TEST(Reconstruct, HoldsFewImagesHoweverLongTheStack) {
 TEST(Reconstruct, AnImageAtATimeGivesWhatTheWholeStackGives) {
     // The definition, with all curves in memory and no ring: a wrong index anywhere would show.
     const SyntheticStack stack = make_stack(300, 7);
-    const TopographyOptions options{.peak = "gaussian-fit", .peak_range_steps = 2, .smoothing_steps = 0.6};
+    const TopographyOptions options{.focus_measure = "standard-deviation", .peak = "gaussian-fit", .peak_range_steps = 2, .smoothing_steps = 0.6};
     const Topography streamed = evaluate(stack, options);
     const int images = static_cast<int>(stack.images.size());
     const auto weights = axial_weights(options.smoothing_steps);
