@@ -72,7 +72,7 @@ const std::vector<KindRule>& kind_rules() {
          Kind::air,
          true,
          {"tiles", "tile_size_mm", "pitch_um", "sq_um", "roll_off_wavelength_um", "shortest_wavelength_um",
-          "hurst_exponent", "seed"}},
+          "hurst_exponent", "seed", "file"}},
         {"star", Kind::star, true, {"size_mm", "pitch_um", "petals", "radius_um", "height_um"}},
         {"groove", Kind::groove, true, {"size_mm", "pitch_um", "width_um", "depth_um", "wall_um"}},
         {"image", Kind::image, false, {"file", "pitch_um", "height_um"}},
@@ -200,6 +200,7 @@ void read_specimen(const TomlTable& root, Configuration& configuration) {
     };
 
     const auto roughness_table = table.optional_table("roughness");
+    const bool measured_air = rule.kind == specimen::Kind::air && table.has("file");
     if (rule.generated) {
         if (has("representation")) {
             const bool analytic =
@@ -253,9 +254,10 @@ void read_specimen(const TomlTable& root, Configuration& configuration) {
     if (has("petals")) {
         description.petals = static_cast<int>(section.integer("petals", 1, 360));
     }
-    if (has("seed")) {
+    if (has("seed") && !measured_air) {
         // The lattice of [specimen.roughness] may be all the roughness there is; plateaus may be smooth.
-        const bool needed = rule.kind == specimen::Kind::air || (rule.kind == specimen::Kind::rough && !roughness_table);
+        const bool needed = (rule.kind == specimen::Kind::air && !measured_air) ||
+                            (rule.kind == specimen::Kind::rough && !roughness_table);
         read_um("sq_um", description.sq, NumberRange::at_least(0), needed ? std::nullopt : std::optional(0.0));
         description.correlation_length = description.pitch; // of heights that are all zero
         if (has("correlation_length_um") && (description.sq > 0 || table.has("correlation_length_um"))) {
@@ -263,9 +265,16 @@ void read_specimen(const TomlTable& root, Configuration& configuration) {
         }
         description.seed = static_cast<std::uint32_t>(section.integer("seed", 0, largest_seed, 1));
     }
-    read_um("roll_off_wavelength_um", description.roll_off, NumberRange::positive());
-    read_um("shortest_wavelength_um", description.shortest, NumberRange::positive());
-    if (has("hurst_exponent")) {
+    if (measured_air) {
+        for (const char* key : {"sq_um", "seed", "roll_off_wavelength_um", "shortest_wavelength_um", "hurst_exponent"}) {
+            if (table.has(key)) {
+                table.fail(key, "no such key with a file of a measured surface",
+                           "Remove it, or remove file for sub-surfaces from a power spectrum.");
+            }
+        }
+    } else if (rule.kind == specimen::Kind::air) {
+        read_um("roll_off_wavelength_um", description.roll_off, NumberRange::positive());
+        read_um("shortest_wavelength_um", description.shortest, NumberRange::positive());
         description.hurst = section.number("hurst_exponent", NumberRange::within(0, 1));
     }
     if (rule.kind == specimen::Kind::plateaus) {
@@ -283,7 +292,8 @@ void read_specimen(const TomlTable& root, Configuration& configuration) {
                 section.number("text_width_mm", NumberRange::positive(), 0.8 * description.size);
         }
     }
-    if (has("file") && (rule.kind != specimen::Kind::plateaus || table.has("file"))) {
+    const bool file_optional = rule.kind == specimen::Kind::plateaus || rule.kind == specimen::Kind::air;
+    if (has("file") && (!file_optional || table.has("file"))) {
         description.file = table.file_path("file");
         description.where = table.where("file");
         section.record_reference("file", absolute_path(description.file).string());

@@ -26,7 +26,11 @@ std::variant<HeightField, Mesh, Analytic> generate(const Description& descriptio
 // Roughness added to a height field whose pitch is no coarser; else InputError.
 void add_roughness(HeightField& field, const Roughness& roughness, const SourceLocation& where);
 
-// The field on a grid of a finer pitch around the same centre, by cubic convolution (surface/resample.hpp).
+// The field at the points of another grid within it, by surface/resample.hpp; a point is interpolated where the nearest
+// one of the field is.
+HeightField on_grid(const HeightField& field, double x0, double y0, int columns, int rows, double pitch);
+
+// The same on a grid of a finer pitch around the same centre.
 HeightField refined(const HeightField& field, double pitch);
 
 // White Gaussian noise of unit standard deviation, filtered by a Gaussian of standard deviation `kernel` (in

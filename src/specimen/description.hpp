@@ -52,7 +52,7 @@ struct Description {
     double shortest = 0;           // air: wavelength
     double hurst = 0;              // air: Hurst exponent
     int petals = 0;                // star
-    std::filesystem::path file;    // plateaus, image, surface, stl, gltf
+    std::filesystem::path file;    // plateaus, air, image, surface, stl, gltf
     double unit = 1;               // stl, gltf: mm per unit of the file; surface: of an image's values, else 0
     bool level = true;             // surface: remove the least-squares plane, mean height to z = 0
     bool centre = true;            // stl, gltf: move the bounding box's centre to x = y = 0, mean height to z = 0

@@ -1,5 +1,6 @@
 #include "core/fourier.hpp"
 #include "specimen/analytic.hpp"
+#include "specimen/files.hpp"
 #include "specimen/standards.hpp"
 
 #include <fmt/format.h>
@@ -7,6 +8,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numeric>
+#include <optional>
 
 namespace vkfv::specimen {
 namespace {
@@ -18,7 +20,7 @@ double relative_power(const Description& d, double frequency) {
     return std::pow(std::max(1.0, frequency * d.roll_off), -2 * (1 + d.hurst));
 }
 
-Grid<double> sub_surface(const Description& d, int points, double pitch, std::uint32_t seed) {
+HeightField generated(const Description& d, int points, double pitch, std::uint32_t seed) {
     const Grid<double> noise = filtered_noise(points, points, 0, seed);
     Grid<std::complex<double>> spectrum(points, points);
     std::copy(noise.values.begin(), noise.values.end(), spectrum.values.begin());
@@ -34,9 +36,31 @@ Grid<double> sub_surface(const Description& d, int points, double pitch, std::ui
     const double square =
         std::inner_product(surface.values.begin(), surface.values.end(), surface.values.begin(), 0.0);
     const double scale = d.sq / std::sqrt(square / static_cast<double>(surface.values.size()));
-    for (double& height : surface.values)
-        height *= scale;
-    return surface;
+    HeightField field{.heights = Grid<float>(points, points)};
+    std::transform(surface.values.begin(), surface.values.end(), field.heights.values.begin(),
+                   [scale](double height) { return static_cast<float>(scale * height); });
+    return field;
+}
+
+HeightField measured(const Description& d, int points, double pitch) {
+    Description whole = d;
+    whole.size = whole.pitch = whole.unit = 0; // all of the file, in its own scale
+    whole.level = true;
+    const HeightField surface = read_surface_field(whole);
+    const double side = (points - 1) * pitch, tolerance = 1e-9 * side;
+    if (surface.x_max() - surface.x_min < side - tolerance || surface.y_max() - surface.y_min < side - tolerance)
+        throw InputError({d.where, "specimen.tile_size_mm", fmt::format("{}", d.size / d.tiles),
+                          fmt::format("at most the surface's {:.6g} x {:.6g} mm", surface.x_max() - surface.x_min,
+                                      surface.y_max() - surface.y_min),
+                          "Choose a smaller sub-surface or a larger file."});
+    HeightField field = on_grid(surface, -0.5 * side, -0.5 * side, points, points, pitch);
+    double sum = 0;
+    for (const float height : field.heights.values)
+        sum += static_cast<double>(height);
+    const double mean = sum / static_cast<double>(field.heights.values.size());
+    for (float& height : field.heights.values)
+        height = static_cast<float>(static_cast<double>(height) - mean);
+    return field;
 }
 
 } // namespace
@@ -51,22 +75,35 @@ HeightField sub_surfaces(const Description& d, double pitch) {
     const int points = (field.heights.columns - 1) / d.tiles;
     require(points * d.tiles == field.heights.columns - 1, "pitch", pitch,
             fmt::format("a length that divides the sub-surface's {} mm", d.size / d.tiles));
-    require(d.shortest >= 2 * field.pitch_x * (1 - 1e-9), "shortest_wavelength", d.shortest,
-            fmt::format("at least two pitches, {} mm", 2 * field.pitch_x));
-    require(d.shortest <= d.roll_off, "shortest_wavelength", d.shortest,
-            fmt::format("at most the roll-off wavelength, {} mm", d.roll_off));
-    require(d.roll_off <= d.size / d.tiles * (1 + 1e-9), "roll_off_wavelength", d.roll_off,
-            fmt::format("at most the sub-surface's {} mm", d.size / d.tiles));
+    if (d.file.empty()) {
+        require(d.shortest >= 2 * field.pitch_x * (1 - 1e-9), "shortest_wavelength", d.shortest,
+                fmt::format("at least two pitches, {} mm", 2 * field.pitch_x));
+        require(d.shortest <= d.roll_off, "shortest_wavelength", d.shortest,
+                fmt::format("at most the roll-off wavelength, {} mm", d.roll_off));
+        require(d.roll_off <= d.size / d.tiles * (1 + 1e-9), "roll_off_wavelength", d.roll_off,
+                fmt::format("at most the sub-surface's {} mm", d.size / d.tiles));
+    }
+    std::optional<HeightField> repeated;
+    if (!d.file.empty())
+        repeated = measured(d, points, field.pitch_x);
+    if (repeated && !repeated->interpolated.empty())
+        field.interpolated.assign(field.heights.values.size(), false);
     for (int tile_row = 0; tile_row < d.tiles; ++tile_row)
         for (int tile_column = 0; tile_column < d.tiles; ++tile_column) {
             // Sub-surface k of seed s is no other's of a seed nearby.
             const auto number = static_cast<std::uint32_t>(tile_row * d.tiles + tile_column);
-            const Grid<double> surface = sub_surface(d, points, field.pitch_x, d.seed * 0x9e3779b1u + number);
-            const auto end = [&](int tile) { return tile + 1 == d.tiles ? points + 1 : points; };
+            const HeightField tile =
+                repeated ? *repeated : generated(d, points, field.pitch_x, d.seed * 0x9e3779b1u + number);
+            // The last row and column close the footprint with the first ones of their sub-surface.
+            const auto end = [&](int at) { return at + 1 == d.tiles ? points + 1 : points; };
             for (int row = 0; row < end(tile_row); ++row)
-                for (int column = 0; column < end(tile_column); ++column)
-                    field.heights(tile_column * points + column, tile_row * points + row) =
-                        static_cast<float>(surface(column % points, row % points));
+                for (int column = 0; column < end(tile_column); ++column) {
+                    const std::size_t to = field.heights.index(tile_column * points + column, tile_row * points + row);
+                    const std::size_t from = tile.heights.index(column % points, row % points);
+                    field.heights.values[to] = tile.heights.values[from];
+                    if (!tile.interpolated.empty())
+                        field.interpolated[to] = tile.interpolated[from];
+                }
         }
     return field;
 }
