@@ -4,6 +4,7 @@
 #include "core/units.hpp"
 #include "report/topography_picture.hpp"
 #include "surface/image_file.hpp"
+#include "surface/profile.hpp"
 #include "surface/resample.hpp"
 #include "surface/surface_file.hpp"
 #include "topography/comparison.hpp"
@@ -222,6 +223,66 @@ std::string slope_csv(const topography::Comparison& comparison) {
     return text;
 }
 
+// Along the middle row, of the first measurement and of the truth under it, levelled; roughness after the Gaussian filter
+// whose nesting index is the section length, a fifth of the profile (ISO 21920-2).
+struct ComparedProfile {
+    double y = 0;             // mm
+    double section_length = 0; // mm
+    surface::Profile measured, truth; // before the filter
+    surface::ProfileParameters measured_parameters, true_parameters;
+};
+
+ComparedProfile compared_profile(const topography::Comparison& comparison, const HeightMap& measured) {
+    const auto pair = topography::levelled_pair(measured, comparison.truth);
+    ComparedProfile result;
+    const int row = measured.rows() / 2, last = measured.columns() - 1;
+    result.y = measured.y(row);
+    result.section_length = last * measured.pitch_x / 5;
+    const auto along = [&](const HeightMap& map) {
+        return surface::extract_profile(map, map.x(0), result.y, map.x(last), result.y, map.pitch_x);
+    };
+    const auto parameters = [&](const surface::Profile& profile) {
+        return surface::profile_parameters(surface::remove_long_waves(profile, result.section_length));
+    };
+    result.measured = along(pair.measured);
+    result.truth = along(pair.truth);
+    result.measured_parameters = parameters(result.measured);
+    result.true_parameters = parameters(result.truth);
+    return result;
+}
+
+Json profile_json(const ComparedProfile& profile) {
+    const auto of = [](const surface::ProfileParameters& parameters) {
+        return Json{{"Ra_um", parameters.ra * um_per_mm}, {"Rq_um", parameters.rq * um_per_mm}, {"Rz_um", parameters.rz * um_per_mm}};
+    };
+    return {{"y_um", profile.y * um_per_mm},
+            {"section_length_um", profile.section_length * um_per_mm},
+            {"measured", of(profile.measured_parameters)},
+            {"true", of(profile.true_parameters)}};
+}
+
+std::string profile_text(const ComparedProfile& profile) {
+    const auto line = [](const char* name, double measured, double truth) {
+        return fmt::format("{:<5} {:<12} {:>12.6g} {:>12} {:>12.6g} {:>8.3f}\n", name, "um", measured * um_per_mm, "-",
+                           truth * um_per_mm, measured / truth);
+    };
+    const auto &a = profile.measured_parameters, &b = profile.true_parameters;
+    return fmt::format("\nISO 21920-2, profile at y = {:.4g} um, section length {:.4g} um\n", profile.y * um_per_mm,
+                       profile.section_length * um_per_mm) +
+           line("Ra", a.ra, b.ra) + line("Rq", a.rq, b.rq) + line("Rz", a.rz, b.rz);
+}
+
+// An empty field where no point was measured.
+std::string profile_csv(const ComparedProfile& profile, const HeightMap& measured) {
+    std::string text = "x_um,measured_um,true_um\n";
+    const auto um = [](double value) { return std::isnan(value) ? "" : fmt::format("{:.6g}", value * um_per_mm); };
+    for (std::size_t k = 0; k < std::min(profile.measured.height.size(), profile.truth.height.size()); ++k) {
+        text += fmt::format("{:.6g},{},{}\n", measured.x(static_cast<int>(k)) * um_per_mm, um(profile.measured.height[k]),
+                            um(profile.truth.height[k]));
+    }
+    return text;
+}
+
 // Of the first measurement and the truth under it, levelled.
 std::string picture_of(const topography::Comparison& comparison, const HeightMap& measured, const std::string& title) {
     auto pair = topography::levelled_pair(measured, comparison.truth);
@@ -276,12 +337,16 @@ void run_compare(const CommandOptions& options) {
     }
 
     const auto comparison = topography::compare_with_truth(measurements, truth, options.align);
-    const auto report = json_of(comparison, options).dump(2) + "\n";
+    const auto profile = compared_profile(comparison, measurements.front());
+    auto figures = json_of(comparison, options);
+    figures["profile"] = profile_json(profile);
+    const auto report = figures.dump(2) + "\n";
     if (options.out) {
         fs::create_directories(*options.out);
         write_text_aside(*options.out / "compare.json", report);
         write_text_aside(*options.out / "transfer.csv", transfer_csv(comparison));
         write_text_aside(*options.out / "slope.csv", slope_csv(comparison));
+        write_text_aside(*options.out / "profile.csv", profile_csv(profile, measurements.front()));
         surface::write_height_map(*options.out / "deviation.tif", comparison.deviation);
         write_text_aside(*options.out / "compare.svg",
                          picture_of(comparison, measurements.front(),
@@ -290,7 +355,7 @@ void run_compare(const CommandOptions& options) {
             surface::write_height_map(*options.out / "random.tif", comparison.parts->standard_deviation);
         }
     }
-    fmt::print("{}", options.json ? report : text_of(comparison, options));
+    fmt::print("{}", options.json ? report : text_of(comparison, options) + profile_text(profile));
 }
 
 } // namespace vkfv::app

@@ -426,6 +426,8 @@ void read_topography(const TomlTable& root, Configuration& configuration, Needs 
     options.repair_outliers = section.boolean("repair_outliers", options.repair_outliers, Influence::nothing);
     configuration.evaluate_on = section.choice("evaluate_on", {"auto", "host", "device"}, configuration.evaluate_on,
                                                Influence::nothing);
+    configuration.band.spline =
+        section.choice("filter", {"gaussian", "spline"}, "gaussian", Influence::nothing) == "spline";
     configuration.band.s_filter =
         from_um(section.number("s_filter_um", NumberRange::at_least(0), 0.0, Influence::nothing));
     configuration.band.l_filter =

@@ -2,6 +2,7 @@
 
 #include "surface/filter.hpp"
 #include "surface/height_parameters.hpp"
+#include "surface/spline_filter.hpp"
 
 #include <cmath>
 #include <limits>
@@ -12,10 +13,18 @@ namespace {
 
 using surface::HeightMap;
 
+HeightMap less(HeightMap a, const HeightMap& b) {
+    for (std::size_t k = 0; k < a.height.values.size(); ++k)
+        a.height.values[k] -= b.height.values[k];
+    return a;
+}
+
+HeightMap low_pass(const HeightMap& map, double nesting_index, bool spline) {
+    return spline ? surface::spline_low_pass(map, nesting_index) : surface::gaussian_low_pass(map, nesting_index);
+}
+
 HeightMap difference(const LevelledPair& treated) {
-    HeightMap result = treated.measured;
-    for (std::size_t k = 0; k < result.height.values.size(); ++k)
-        result.height.values[k] -= treated.truth.height.values[k];
+    const HeightMap result = less(treated.measured, treated.truth);
     // Levelled maps differ by a levelled map; after an L-filter a rest of offset and tilt may remain.
     return surface::remove_plane(result, surface::least_squares_plane(result));
 }
@@ -35,8 +44,10 @@ LevelledPair levelled_pair(HeightMap measured, HeightMap truth, const Band& band
         const surface::Plane plane = surface::least_squares_plane(map);
         map = surface::remove_plane(std::move(map), plane);
         if (band.s_filter > 0)
-            map = surface::gaussian_low_pass(map, band.s_filter);
-        return band.l_filter > 0 ? surface::remove_long_waves(map, band.l_filter) : map;
+            map = low_pass(map, band.s_filter, band.spline);
+        if (band.l_filter > 0)
+            map = less(map, low_pass(map, band.l_filter, band.spline));
+        return map;
     };
     return {level(std::move(measured)), level(std::move(truth))};
 }

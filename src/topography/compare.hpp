@@ -5,11 +5,11 @@
 
 namespace vkfv::topography {
 
-// Which waves of both surfaces are compared: nesting indices of the Gaussian S-filter and L-filter (ISO 16610-61), mm;
-// 0: none.
+// Which waves of both surfaces are compared: nesting indices of the S-filter and L-filter, mm; 0: none.
 struct Band {
     double s_filter = 0; // shorter waves are removed
     double l_filter = 0; // longer waves are removed
+    bool spline = false; // by surface/spline_filter.hpp, not by the Gaussian of ISO 16610-61
 
     bool limited() const { return s_filter > 0 || l_filter > 0; }
 };

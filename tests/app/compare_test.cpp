@@ -102,6 +102,11 @@ TEST_F(Compare, WritesMapsAndTables) {
     EXPECT_THAT(read_file(folder / "out/transfer.csv"), HasSubstr("frequency_per_mm,wavelength_um,transfer,"));
     EXPECT_THAT(read_file(folder / "out/slope.csv"), HasSubstr("slope_from_deg,slope_to_deg,points,measured_share,"));
     EXPECT_NEAR(Json::parse(read_file(folder / "out/compare.json"))["rms_deviation_um"], 0.080, 0.002);
+    // Along a row only the wave of 12 um is seen, 0.989 of it after the mean over 1 um; sections are 23.8 um long, at which
+    // the Gaussian leaves 1 - 2^-(23.8/12)^2 = 0.935 of its amplitude. Ra is 2 / pi of that; ends are given 0.01 um.
+    const auto profile = Json::parse(read_file(folder / "out/compare.json"))["profile"];
+    EXPECT_NEAR(profile["true"]["Ra_um"], 2 / M_PI * 0.5 * 0.989 * 0.935, 0.01);
+    EXPECT_GT(profile["measured"]["Rq_um"], profile["true"]["Rq_um"]); // it has noise
 }
 
 TEST_F(Compare, RefusesWhatCannotBeCompared) {
