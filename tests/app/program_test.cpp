@@ -166,7 +166,7 @@ TEST(Program, TopographyEvaluatesAStackAnew) {
     // heights.
     const auto stack =
         run_program({"--stack", "c.toml", "--rays", "2e5", "--set", "topography.smoothing_steps=0", "--set",
-                     "topography.false_peak_rate=0.999"},
+                     "topography.false_peak_rate=0.999", "--set", "topography.focus_measure=standard-deviation"},
                     folder);
     ASSERT_EQ(stack.exit_code, 0) << stack.standard_error;
     const auto results = nlohmann::json::parse(read_file(folder / "out/results.json"));
