@@ -26,8 +26,6 @@ struct DiffractionOptions {
     bool airy = false;
     std::filesystem::path file; // else a measured point spread function
     double pitch = 0;           // of the file's pixels, mm in the object plane
-
-    bool wanted() const { return airy || !file.empty(); }
 };
 
 // What `vkfv --sweep` varies: every combination of the values, the first parameter slowest.
