@@ -1,6 +1,7 @@
 #include "surface/height_image.hpp"
 
 #include "core/error.hpp"
+#include "surface/exr_header.hpp"
 #include "surface/image_file.hpp"
 
 #include <fmt/format.h>
@@ -21,7 +22,7 @@ std::optional<ImageFormat> format_of(std::string_view bytes) {
     for (const std::string_view magic : {"II*\0"sv, "MM\0*"sv, "II+\0"sv, "MM\0+"sv})
         if (bytes.starts_with(magic))
             return ImageFormat::tiff;
-    if (bytes.starts_with("\x76\x2f\x31\x01"sv))
+    if (looks_like_exr(bytes))
         return ImageFormat::openexr;
     return std::nullopt;
 }

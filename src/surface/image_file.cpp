@@ -3,6 +3,8 @@
 #include "core/error.hpp"
 #include "core/units.hpp"
 #include "surface/aside_file.hpp"
+#include "surface/exr_header.hpp"
+#include "surface/whole_file.hpp"
 
 #include <OpenImageIO/filesystem.h>
 #include <OpenImageIO/imageio.h>
@@ -10,8 +12,10 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <charconv>
 #include <cmath>
+#include <fstream>
 #include <limits>
 #include <memory>
 #include <span>
@@ -114,27 +118,18 @@ void write_single_page(const std::filesystem::path& path, std::span<const Grid<V
 }
 
 struct OpenImage {
+    std::unique_ptr<std::string> owned; // what `memory` reads, unless a caller keeps it
     std::unique_ptr<OIIO::Filesystem::IOMemReader> memory; // outlives the input that reads it
     std::unique_ptr<OIIO::ImageInput> input;
     double bytes; // of the whole file
 };
 
-OpenImage open_image(const std::filesystem::path& path) {
-    if (!std::filesystem::is_regular_file(path))
-        reject(path, "", "no such file", "an image file",
-               "Check the path; it is relative to the file that names it.");
-    OpenImage image{.memory = nullptr,
-                    .input = OIIO::ImageInput::open(path.string()),
-                    .bytes = static_cast<double>(std::filesystem::file_size(path))};
-    if (!image.input)
-        reject(path, "", OIIO::geterror(), "a readable image",
-               "Write the file anew, as single-channel TIFF.");
-    return image;
-}
-
 OpenImage open_image(std::string_view bytes, ImageFormat format, const std::filesystem::path& path) {
+    if (format == ImageFormat::openexr)
+        check_exr_attributes(bytes, path);
     // By format name: tried one after the other, every reader that OpenImageIO has would be offered the bytes.
-    OpenImage image{.memory = std::make_unique<OIIO::Filesystem::IOMemReader>(bytes.data(), bytes.size()),
+    OpenImage image{.owned = nullptr,
+                    .memory = std::make_unique<OIIO::Filesystem::IOMemReader>(bytes.data(), bytes.size()),
                     .input = OIIO::ImageInput::create(format == ImageFormat::tiff ? "tiff" : "openexr"),
                     .bytes = static_cast<double>(bytes.size())};
     if (!image.input)
@@ -142,6 +137,32 @@ OpenImage open_image(std::string_view bytes, ImageFormat format, const std::file
     OIIO::ImageSpec spec;
     if (!image.input->set_ioproxy(image.memory.get()) || !image.input->open(path.string(), spec))
         reject(path, "", image.input->geterror(), "a readable image", "Write the file anew, as single-channel TIFF.");
+    return image;
+}
+
+bool is_exr(const std::filesystem::path& path) {
+    std::array<char, 4> begin{};
+    std::ifstream(path, std::ios::binary).read(begin.data(), begin.size());
+    return looks_like_exr({begin.data(), begin.size()});
+}
+
+OpenImage open_image(const std::filesystem::path& path) {
+    if (!std::filesystem::is_regular_file(path))
+        reject(path, "", "no such file", "an image file",
+               "Check the path; it is relative to the file that names it.");
+    if (is_exr(path)) {
+        auto owned = std::make_unique<std::string>(whole_file(path));
+        OpenImage image = open_image(*owned, ImageFormat::openexr, path);
+        image.owned = std::move(owned);
+        return image;
+    }
+    OpenImage image{.owned = nullptr,
+                    .memory = nullptr,
+                    .input = OIIO::ImageInput::open(path.string()),
+                    .bytes = static_cast<double>(std::filesystem::file_size(path))};
+    if (!image.input)
+        reject(path, "", OIIO::geterror(), "a readable image",
+               "Write the file anew, as single-channel TIFF.");
     return image;
 }
 

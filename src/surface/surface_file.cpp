@@ -8,12 +8,11 @@
 #include "surface/ply.hpp"
 #include "surface/sdf.hpp"
 #include "surface/sur.hpp"
+#include "surface/whole_file.hpp"
 #include "surface/x3p.hpp"
 
 #include <algorithm>
 #include <cctype>
-#include <fstream>
-#include <iterator>
 
 namespace vkfv::surface {
 namespace {
@@ -25,20 +24,6 @@ namespace {
                       .found = std::move(found),
                       .expected = std::move(expected),
                       .remedy = std::move(remedy)});
-}
-
-std::string whole_file(const std::filesystem::path& path) {
-    std::error_code error;
-    std::ifstream stream;
-    if (std::filesystem::is_regular_file(path, error))
-        stream.open(path, std::ios::binary);
-    if (!stream.is_open())
-        reject(path, "", "no file that can be read", "a surface file",
-               "Check the path; it is relative to the file that names it.");
-    std::string bytes(std::filesystem::file_size(path), '\0');
-    stream.read(bytes.data(), static_cast<std::streamsize>(bytes.size()));
-    bytes.resize(static_cast<std::size_t>(stream.gcount()));
-    return bytes;
 }
 
 // Lower case.

@@ -148,6 +148,8 @@ int main(int argument_count, char** arguments) {
     write(root / "height_image" / "window_largest.exr", ExrBytes{.window = {0, 0, largest, largest}}.bytes());
     write(root / "height_image" / "window_negative.exr", ExrBytes{.window = {2, 1, 0, 0}}.bytes());
     write(root / "height_image" / "tile_largest.exr", ExrBytes{.tile = 0xffffffff}.bytes());
+    constexpr std::string_view compression("compression\0compression\0", 24);
+    write(root / "height_image" / "attribute_long.exr", with(exr, exr.find(compression) + compression.size() + 2, 0x68));
     const auto description = tiff.find("vkfv height map");
     write(root / "height_image" / "own.exr",
           ExrBytes{.description = tiff.substr(description, tiff.find('\0', description) - description)}.bytes());

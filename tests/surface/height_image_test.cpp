@@ -91,5 +91,22 @@ TEST(HeightImage, ExrWhoseHeaderLiesIsRefused) {
         expect_refused(ExrBytes{.tile = tile}.bytes(), fmt::format("tile {}", tile));
 }
 
+// The library would make room for the text before it looks for it; 1.7 GB of it were found by fuzzing.
+TEST(HeightImage, ExrWithAnAttributeLongerThanTheFileIsRefusedAtItsLength) {
+    for (const int parts : {1, 2})
+        for (const std::int32_t length : {-1, 400, 0x68680000, std::numeric_limits<std::int32_t>::max()}) {
+            std::string bytes = ExrBytes{.parts = parts}.bytes();
+            constexpr std::string_view before("compression\0compression\0", 24);
+            const std::size_t place = bytes.rfind(before) + before.size();
+            std::memcpy(bytes.data() + place, &length, sizeof length);
+            try {
+                (void)parse_height_image(bytes, "bad.exr", scale);
+                ADD_FAILURE() << length << " was accepted";
+            } catch (const InputError& error) {
+                EXPECT_EQ(error.problem().where.byte_offset, place);
+            }
+        }
+}
+
 } // namespace
 } // namespace vkfv::surface
