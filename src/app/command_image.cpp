@@ -65,8 +65,7 @@ void print_ledger(const trace::Image& image) {
 
 } // namespace
 
-Exposure expose(const Configuration& configuration, double focal_height) {
-    const auto specimen = specimen::make(*configuration.specimen);
+Exposure expose(const Configuration& configuration, const specimen::Specimen& specimen, double focal_height) {
     // The scan's positions too, so that the instrument is the stack's.
     auto heights = configuration.scan ? configuration.scan->positions() : std::vector<double>();
     heights.push_back(focal_height);
@@ -99,7 +98,7 @@ void write_image(const std::filesystem::path& path, const Exposure& exposure, do
 
 void run_image(const CommandOptions& options) {
     const auto configuration = load_configuration(options.file, options.overrides, Needs::exposure);
-    const auto exposure = expose(configuration, options.focal_height);
+    const auto exposure = expose(configuration, specimen::make(*configuration.specimen), options.focal_height);
     const auto& image = exposure.image;
     const auto path = image_path(options, configuration);
     write_image(path, exposure, options.focal_height);

@@ -29,6 +29,8 @@ void run_stack(const CommandOptions& options) {
     const auto positions = configuration.scan->positions();
     const auto specimen = specimen::make(*configuration.specimen);
     const auto instrument = assemble_instrument(configuration, specimen, positions);
+    const int pixels = configuration.instrument.detector_pixels;
+    const auto flat = read_flat(configuration, pixels, pixels, instrument.first_order.pixel_pitch);
     const auto tracer = make_tracer(instrument, specimen, configuration.trace);
     const std::string identity =
         stack_identity(configuration, specimen, identity_of_tracer(*tracer, configuration.trace));
@@ -38,8 +40,8 @@ void run_stack(const CommandOptions& options) {
                             .identity = identity,
                             .digest = Digest().add(identity).text(),
                             .positions = positions,
-                            .columns = configuration.instrument.detector_pixels,
-                            .rows = configuration.instrument.detector_pixels,
+                            .columns = pixels,
+                            .rows = pixels,
                             .pitch = instrument.first_order.pixel_pitch});
     auto progress = Progress::on_standard_error(options.quiet);
     // Evaluated as they are traced: no second pass over the disk.
@@ -53,7 +55,7 @@ void run_stack(const CommandOptions& options) {
 
     const auto& folder = store.folder();
     const auto evaluation =
-        stack_evaluation.finish(truth_on_pixels(instrument, configuration, specimen), configuration.band);
+        stack_evaluation.finish(truth_on_pixels(instrument, configuration, specimen), configuration.band, flat);
     nlohmann::ordered_json run = {{"device", tracer->description()},
                                   {"stack_digest", store.description().digest},
                                   {"seed", configuration.trace.seed},

@@ -87,20 +87,54 @@ Json figures_of(const trace::Image& image, bool ledger_tells) {
     return figures;
 }
 
+// Most sweeps vary something else than the surface, which may take longer to make than an image to trace.
+class Surfaces {
+  public:
+    struct Surface {
+        specimen::Specimen specimen; // with the material asked for
+        std::string digest;          // of the geometry
+    };
+    const Surface& of(const specimen::Description& description) {
+        specimen::Description geometry = description;
+        geometry.material = {};
+        geometry.where = {};
+        if (!made_of_ || *made_of_ != geometry) {
+            surface_.specimen = specimen::make(description);
+            surface_.digest = geometry_digest(surface_.specimen);
+            made_of_ = std::move(geometry);
+        }
+        surface_.specimen.material = description.material;
+        return surface_;
+    }
+
+  private:
+    std::optional<specimen::Description> made_of_;
+    Surface surface_;
+};
+
+// What an image of the sweep is known again by: all that decides its bits, and what is written beside it.
+std::string image_digest(const Configuration& configuration, double focal_height, const std::string& surface_digest) {
+    const auto& blur = configuration.diffraction;
+    return Digest()
+        .add(configuration.identity + fmt::format("z = {}\n", focal_height))
+        .add(surface_digest)
+        .add(fmt::format("{} {}", configuration.trace.device, static_cast<int>(configuration.trace.traversal)))
+        .add(fmt::format("{} {} {}", blur.airy, blur.file.string(), blur.pitch))
+        .text();
+}
+
 // The image and its figures, from an earlier run if they are there.
-SweepRow image_row(const Configuration& configuration, double focal_height, const fs::path& folder) {
+SweepRow image_row(const Configuration& configuration, double focal_height, const fs::path& folder,
+                   Surfaces& surfaces) {
     const fs::path image_file = folder / "image.tif", figures_file = folder / "image.json";
-    const std::string digest =
-        Digest()
-            .add(configuration.identity + fmt::format("z = {}\n", focal_height))
-            .add(geometry_digest(specimen::make(*configuration.specimen)))
-            .text();
+    const auto& surface = surfaces.of(*configuration.specimen);
+    const std::string digest = image_digest(configuration, focal_height, surface.digest);
     SweepRow row;
     const Json earlier = read_json(figures_file);
     if (earlier.is_object() && earlier.value("digest", "") == digest && fs::exists(image_file)) {
         row.figures = earlier.at("figures");
     } else {
-        const Exposure exposure = expose(configuration, focal_height);
+        const Exposure exposure = expose(configuration, surface.specimen, focal_height);
         write_image(image_file, exposure, focal_height);
         const bool tells = configuration.trace.estimator == trace::Estimator::forward && !configuration.trace.directed_scatter;
         row.figures = figures_of(exposure.image, tells);
@@ -208,6 +242,7 @@ void run_sweep(const CommandOptions& options) {
     for (const auto& values : list) {
         (void)load_configuration(options.file, overrides_of(values), sweep.stacks ? Needs::stack : Needs::exposure);
     }
+    Surfaces surfaces;
     std::vector<SweepRow> rows;
     for (const auto& values : list) {
         const std::string name = sweep_name(sweep, values);
@@ -215,7 +250,7 @@ void run_sweep(const CommandOptions& options) {
         const auto overrides = overrides_of(values);
         rows.push_back(sweep.stacks ? stack_row(options, overrides, sweep.repeats, folder / name)
                                     : image_row(load_configuration(options.file, overrides, Needs::exposure),
-                                                sweep.focal_height, folder / name));
+                                                sweep.focal_height, folder / name, surfaces));
         rows.back().values = values;
     }
     const std::string title = options.file.stem().string();

@@ -54,6 +54,8 @@ Evaluation evaluate_own(const CommandOptions& options) {
     const auto positions = configuration.scan->positions();
     const auto specimen = specimen::make(*configuration.specimen);
     const auto instrument = assemble_instrument(configuration, specimen, positions);
+    const int pixels = configuration.instrument.detector_pixels;
+    const auto flat = read_flat(configuration, pixels, pixels, instrument.first_order.pixel_pitch);
     const auto order = order_of_images(positions.size(), options.shuffle);
     StackEvaluation evaluation(configuration.topography, planes_for(configuration),
                                make_diffraction(configuration, instrument));
@@ -62,7 +64,7 @@ Evaluation evaluate_own(const CommandOptions& options) {
         evaluation.add({scan::read_frame(folder, image, positions[static_cast<std::size_t>(image)])},
                        positions[place]);
     }
-    return evaluation.finish(truth_on_pixels(instrument, configuration, specimen), configuration.band);
+    return evaluation.finish(truth_on_pixels(instrument, configuration, specimen), configuration.band, flat);
 }
 
 // Images alone: what an instrument's file says of them, the command line must say.
@@ -85,12 +87,17 @@ Evaluation evaluate_foreign(const CommandOptions& options) {
     StackEvaluation evaluation(configuration.topography, planes_for(configuration));
     const auto order = order_of_images(static_cast<std::size_t>(series.size()), options.shuffle);
     const double start = options.z_start.value_or(0);
+    std::optional<surface::HeightMap> flat;
     for (int place = 0; place < series.size(); ++place) {
         // Heights ascend, whichever way the instrument went.
         const int image = *options.z_step > 0 ? place : series.size() - 1 - place;
-        evaluation.add(series.read(order[static_cast<std::size_t>(image)]), start + image * *options.z_step);
+        auto channels = series.read(order[static_cast<std::size_t>(image)]);
+        if (place == 0) {
+            flat = read_flat(configuration, channels.front().columns, channels.front().rows, *options.pitch);
+        }
+        evaluation.add(std::move(channels), start + image * *options.z_step);
     }
-    return evaluation.finish(*options.pitch);
+    return evaluation.finish(*options.pitch, flat);
 }
 
 } // namespace

@@ -100,7 +100,7 @@ struct Exposure {
     std::string device;
     std::optional<Grid<float>> diffracted; // its light after diffraction, if the configuration has one
 };
-Exposure expose(const Configuration& configuration, double focal_height);
+Exposure expose(const Configuration& configuration, const specimen::Specimen& specimen, double focal_height);
 // The pixels' mean over the root mean square of their standard errors.
 double signal_to_noise(const trace::Image& image);
 // float32 W per pixel; the diffracted image beside it as NAME_diffracted.
@@ -110,6 +110,10 @@ void write_image(const std::filesystem::path& path, const Exposure& exposure, do
 // point spread function is at fault.
 std::optional<trace::Diffraction> make_diffraction(const Configuration& configuration,
                                                    const optics::Instrument& instrument);
+
+// The measured flat that the configuration names, for stacks of this grid (pitch in mm); none if it names none. InputError
+// where its grid is another: it must have been measured by the same instrument.
+std::optional<surface::HeightMap> read_flat(const Configuration& configuration, int columns, int rows, double pitch);
 
 // The true surface on the detector's pixels, in the object plane.
 surface::HeightMap truth_on_pixels(const optics::Instrument& instrument, const Configuration& configuration,

@@ -51,6 +51,7 @@ struct Configuration {
     DiffractionOptions diffraction;
     topography::TopographyOptions topography;
     std::string evaluate_on = "auto"; // or "host", "device"
+    std::filesystem::path flatness_file; // a flat measured by the same instrument; empty: no correction
     topography::Band band; // of the second comparison with the truth; unlimited: there is none
     std::filesystem::path output_directory;
     std::vector<std::string> topography_files; // names under which the topography is written

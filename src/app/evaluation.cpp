@@ -10,6 +10,7 @@
 #include "surface/height_parameters.hpp"
 #include "surface/image_file.hpp"
 #include "surface/surface_file.hpp"
+#include "topography/flatness.hpp"
 #include "trace/focus_kernels.hpp"
 
 #include <fmt/format.h>
@@ -181,13 +182,23 @@ void StackEvaluation::add(topography::Channels image, double z) {
     evaluator_.add(std::move(image), z);
 }
 
-Evaluation StackEvaluation::finish(surface::HeightMap truth, const topography::Band& band) {
+void StackEvaluation::reconstruct(double x0, double y0, double pitch, const std::optional<surface::HeightMap>& flat) {
+    evaluation_.topography = evaluator_.finish(x0, y0, pitch);
+    if (flat) {
+        auto corrected = topography::correct_flatness(std::move(evaluation_.topography.height), *flat);
+        evaluation_.topography.height = std::move(corrected.heights);
+        evaluation_.flatness_deviation = corrected.peak_to_valley;
+    }
+}
+
+Evaluation StackEvaluation::finish(surface::HeightMap truth, const topography::Band& band,
+                                   const std::optional<surface::HeightMap>& flat) {
     if (diffracted_) {
-        evaluation_.diffracted = std::make_shared<Evaluation>(diffracted_->finish(truth, band));
+        evaluation_.diffracted = std::make_shared<Evaluation>(diffracted_->finish(truth, band, flat));
     }
     {
         const Stopwatch stopwatch(evaluation_.seconds);
-        evaluation_.topography = evaluator_.finish(truth.x0, truth.y0, truth.pitch_x);
+        reconstruct(truth.x0, truth.y0, truth.pitch_x, flat);
         const auto& measured = evaluation_.topography.height;
         evaluation_.deviation = topography::compare(measured, truth);
         evaluation_.band = band;
@@ -199,11 +210,10 @@ Evaluation StackEvaluation::finish(surface::HeightMap truth, const topography::B
     return std::move(evaluation_);
 }
 
-Evaluation StackEvaluation::finish(double pitch) {
+Evaluation StackEvaluation::finish(double pitch, const std::optional<surface::HeightMap>& flat) {
     {
         const Stopwatch stopwatch(evaluation_.seconds);
-        evaluation_.topography =
-            evaluator_.finish(-0.5 * (columns_ - 1) * pitch, -0.5 * (rows_ - 1) * pitch, pitch);
+        reconstruct(-0.5 * (columns_ - 1) * pitch, -0.5 * (rows_ - 1) * pitch, pitch, flat);
     }
     return std::move(evaluation_);
 }
@@ -226,7 +236,7 @@ void write_evaluation(const std::filesystem::path& folder, const Evaluation& eva
             results = std::move(parsed);
         }
     }
-    for (const char* key : {"filtered", "diffracted"}) {
+    for (const char* key : {"filtered", "diffracted", "flatness_deviation_um"}) {
         results.erase(key);
     }
     results.update(figures_of(evaluation));
@@ -247,6 +257,9 @@ void write_evaluation(const std::filesystem::path& folder, const Evaluation& eva
                              {"most_fit_residual", options.most_fit_residual},
                              {"most_peaks", options.most_peaks},
                              {"repair_outliers", options.repair_outliers}};
+    if (evaluation.flatness_deviation) {
+        results["flatness_deviation_um"] = *evaluation.flatness_deviation * um_per_mm;
+    }
     results["points"] = point_counts(evaluation.topography.state);
     results["evaluation_seconds"] = evaluation.seconds;
     results["evaluated_by"] = fmt::format("vkfv {}", VKFV_VERSION);
@@ -262,6 +275,10 @@ std::string summary(const Evaluation& evaluation) {
                "finer steps, or give the specimen texture.\n";
     }
     std::string text = fmt::format("measured {:.1f} % of the points\n", 100 * measured);
+    if (evaluation.flatness_deviation) {
+        text += fmt::format("field curvature removed by the flat: {:.3g} um peak to valley\n",
+                            *evaluation.flatness_deviation * um_per_mm);
+    }
     if (evaluation.deviation) {
         text += text_of("levelled:", *evaluation.deviation);
     }

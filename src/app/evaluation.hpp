@@ -18,6 +18,7 @@ namespace vkfv::app {
 struct Evaluation {
     topography::TopographyOptions options; // that the heights were found by
     topography::Topography topography;
+    std::optional<double> flatness_deviation; // mm, peak to valley, removed from the heights; none: no correction
     std::optional<surface::HeightMap> truth; // none of a stack that another instrument took; nor deviations
     std::optional<topography::Deviation> deviation;          // levelled
     std::optional<topography::Deviation> filtered_deviation; // and filtered; none if the band has no limit
@@ -41,12 +42,15 @@ class StackEvaluation {
 
     // z: mm.
     void add(topography::Channels image, double z);
-    // On the truth's grid, with the deviation from it.
-    Evaluation finish(surface::HeightMap truth, const topography::Band& band);
+    // On the truth's grid, with the deviation from it. Flat: topography/flatness.hpp; none: no correction.
+    Evaluation finish(surface::HeightMap truth, const topography::Band& band,
+                      const std::optional<surface::HeightMap>& flat = {});
     // Without a truth; the grid's middle is the origin, pitch in mm.
-    Evaluation finish(double pitch);
+    Evaluation finish(double pitch, const std::optional<surface::HeightMap>& flat = {});
 
   private:
+    void reconstruct(double x0, double y0, double pitch, const std::optional<surface::HeightMap>& flat);
+
     topography::StackEvaluator evaluator_;
     std::optional<trace::Diffraction> diffraction_;
     std::unique_ptr<StackEvaluation> diffracted_;

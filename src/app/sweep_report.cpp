@@ -33,10 +33,24 @@ struct Extent {
 };
 
 std::string cell_text(const nlohmann::ordered_json& value) {
-    return value.is_number_float() ? fmt::format("{:.5g}", value.get<double>())
+    return value.is_number_float() ? (std::isfinite(value.get<double>()) ? fmt::format("{:.5g}", value.get<double>()) : "")
            : value.is_string()     ? value.get<std::string>()
            : value.is_null()       ? ""
                                    : value.dump();
+}
+
+// A cell of a CSV file (RFC 4180) or of a Markdown table, whatever its text holds.
+std::string escaped(const std::string& text, bool markdown) {
+    std::string result;
+    for (const char character : text) {
+        if (markdown && character == '|') {
+            result += '\\';
+        } else if (!markdown && character == '"') {
+            result += '"';
+        }
+        result += character;
+    }
+    return !markdown && text.find_first_of(",\"\n") != std::string::npos ? '"' + result + '"' : result;
 }
 
 std::string table_text(const Sweep& sweep, const std::vector<SweepRow>& rows, bool markdown) {
@@ -52,7 +66,7 @@ std::string table_text(const Sweep& sweep, const std::vector<SweepRow>& rows, bo
     const auto line = [&](const std::vector<std::string>& cells) {
         std::string text = markdown ? "| " : "";
         for (std::size_t k = 0; k < cells.size(); ++k) {
-            text += (k == 0 ? "" : between) + cells[k];
+            text += (k == 0 ? "" : between) + escaped(cells[k], markdown);
         }
         return text + (markdown ? " |\n" : "\n");
     };

@@ -17,6 +17,8 @@ struct SourceLocation {
     int column = 0;
     std::optional<std::uint64_t> byte_offset{};
 
+    bool operator==(const SourceLocation&) const = default;
+
     // "file:line:column" or "file@offset", as far as known.
     std::string to_string() const;
 };

@@ -23,6 +23,8 @@ struct Roughness {
     double kernel = 0;
     double pitch = 0;
     std::uint32_t seed = 0;
+
+    bool operator==(const Roughness&) const = default;
 };
 
 struct Description {
@@ -59,6 +61,8 @@ struct Description {
     std::optional<Roughness> roughness; // added to any kind but stl and gltf
     Material material;
     SourceLocation where; // of the [specimen] table, for messages
+
+    bool operator==(const Description&) const = default;
 };
 
 // Throws InputError: missing or damaged files (with the byte offset), empty meshes, non-finite numbers, a

@@ -53,6 +53,8 @@ struct Lobe {
     std::string model = "henyey-greenstein";
     double weight = 1; // share of the incident light, in (0, 1]
     std::vector<double> parameters = {0};
+
+    bool operator==(const Lobe&) const = default;
 };
 
 inline constexpr std::size_t most_lobes = 4;    // as many as physics' Material holds
@@ -62,6 +64,7 @@ inline constexpr double weight_rounding = 1e-9; // of weights that are meant to 
 struct Material {
     std::vector<Lobe> lobes = {Lobe{}}; // none: everything is absorbed
 
+    bool operator==(const Material&) const = default;
     static Material henyey_greenstein(double g) { return {{{"henyey-greenstein", 1, {g}}}}; }
 };
 

@@ -1,0 +1,31 @@
+#include "topography/flatness.hpp"
+
+#include "surface/polynomial.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <stdexcept>
+
+namespace vkfv::topography {
+
+FlatnessCorrected correct_flatness(surface::HeightMap measured, const surface::HeightMap& flat) {
+    if (measured.columns() != flat.columns() || measured.rows() != flat.rows())
+        throw std::invalid_argument("correct_flatness: both height maps must stand on the same grid");
+    const surface::Polynomial deviation = surface::least_squares_polynomial(flat, flatness_degree);
+    double lowest = std::numeric_limits<double>::infinity(), highest = -lowest;
+    // By the flat's positions: the instrument's field is the same, whatever origin a file gives it.
+    for (int row = 0; row < measured.rows(); ++row)
+        for (int column = 0; column < measured.columns(); ++column) {
+            double& height = measured.height(column, row);
+            const double removed = deviation.height(flat.x(column), flat.y(row));
+            if (std::isfinite(height)) {
+                lowest = std::min(lowest, removed);
+                highest = std::max(highest, removed);
+            }
+            height -= removed;
+        }
+    return {.heights = std::move(measured), .peak_to_valley = highest > lowest ? highest - lowest : 0};
+}
+
+} // namespace vkfv::topography
