@@ -52,29 +52,6 @@ const TopographyOptions& checked(const TopographyOptions& options) {
     return options;
 }
 
-// Variance of the averaged focus curve over that of the measure of single images. Images averaged with
-// weights w have the variance sum w^2 / (sum w)^2 and correlate at a lag by r = sum w w / sum w^2; the
-// measure, linear in small noise, correlates alike, and the second average takes the mean over its pairs.
-double averaged_variance(const std::vector<double>& one_sided) {
-    const int radius = static_cast<int>(one_sided.size()) - 1;
-    const auto weight = [&](int d) {
-        return std::abs(d) <= radius ? one_sided[static_cast<std::size_t>(std::abs(d))] : 0.0;
-    };
-    double total = 0;
-    for (int d = -radius; d <= radius; ++d)
-        total += weight(d);
-    const auto overlap = [&](int lag) {
-        double sum = 0;
-        for (int d = -radius; d <= radius; ++d)
-            sum += weight(d) * weight(d + lag);
-        return sum / (total * total);
-    };
-    double variance = 0;
-    for (int lag = -2 * radius; lag <= 2 * radius; ++lag)
-        variance += overlap(lag) * overlap(lag);
-    return variance;
-}
-
 // Standard deviation of a single image's noise over brightness, both over the window and all images. The variances of the
 // channels are added, as their energies are: that is the noise of the measure if the channels' noises agree, as after
 // demosaicing, and an upper bound of it if not.
@@ -201,7 +178,7 @@ Topography StackEvaluator::finish(double x0, double y0, double pitch) {
     const int images = static_cast<int>(z_.size());
     const double threshold =
         std::max(contrast_threshold(images, options_.false_peak_rate), options_.least_contrast);
-    const double averaging = std::sqrt(averaged_variance(axial_weights_));
+    const std::vector<double> variances = averaged_variances(axial_weights_, images);
     const Grid<float> noise = relative_noise(stack, window_, images, channels_);
     const double step = (z_.back() - z_.front()) / (images - 1);
     Topography result;
@@ -217,6 +194,7 @@ Topography StackEvaluator::finish(double x0, double y0, double pitch) {
         for (int column = 0; column < columns_; ++column) {
             const auto& curve = stack.curves(column, row);
             const double pixels = window_.pixels(columns_, rows_, column, row);
+            const double averaging = std::sqrt(variances[static_cast<std::size_t>(curve.at)]);
             const double curve_noise = noise(column, row) * noise_gain(measure_, pixels) * averaging;
             const double contrast = (curve.largest - curve.sum / images) / curve_noise;
             const int peaks = focus::f64::count_peaks(curve, images);

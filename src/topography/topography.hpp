@@ -16,8 +16,8 @@
 //   stack itself: from second differences along z, in which texture that changes slowly cancels. Further limits
 //   of quality can be set.
 //
-// Near the ends of the scan the averages hold only the images there are, which draws heights within about two
-// smoothing_steps of an end inwards: plan the scan a depth of focus wider than the specimen at either side.
+// Near the ends of the scan the averages hold only the images there are: without bias, but with more noise, which the
+// limit knows. Plan the scan a depth of focus wider than the specimen at either side.
 #pragma once
 
 #include "core/grid.hpp"
@@ -84,7 +84,7 @@ struct Topography {
 // Evaluates a stack whose images come one at a time, in one pass. With r = ceil(3 smoothing_steps), R =
 // peak_range_steps and C channels it holds, however long the stack, for every pixel about 4 bytes for each of
 // C (2r + 2R + 2) values of images and 2r + 2R + 2 of curves, and 100 + 50 C bytes besides: 280 MB for 1000 x 1000
-// grey pixels with the default options.
+// grey pixels with the default options, 1.2 GB with smoothing_steps = 20 (measured: 1.2 GB).
 class StackEvaluator {
   public:
     // `make_planes` makes what does the work: the host's cores unless a device is given. Throws InputError where an

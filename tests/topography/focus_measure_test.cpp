@@ -1,7 +1,6 @@
 #include "topography/focus_measure.hpp"
 
 #include "core/error.hpp"
-#include "topography/axial_average.hpp"
 
 #include <gtest/gtest.h>
 
@@ -17,29 +16,6 @@ namespace {
 
 constexpr std::array all_measures = {FocusMeasure::standard_deviation, FocusMeasure::tenengrad,
                                      FocusMeasure::modified_laplacian, FocusMeasure::brenner, FocusMeasure::wavelet};
-
-TEST(AxialAverage, IsTheNormalisedWeightedMeanAlsoAtTheEnds) {
-    constexpr int images = 8;
-    for (const double s : {0.0, 0.5, 1.0, 4.0})
-        for (int k = 0; k < images; ++k) {
-            const auto shares = axial_shares(axial_weights(s), k, images);
-            std::vector<double> expected(images);
-            double total = 0;
-            for (int i = 0; i < images; ++i) {
-                const bool within = i == k || std::abs(i - k) <= std::ceil(3 * s);
-                expected[static_cast<std::size_t>(i)] =
-                    !within ? 0 : i == k ? 1 : std::exp(-0.5 * std::pow((i - k) / s, 2));
-                total += expected[static_cast<std::size_t>(i)];
-            }
-            for (const Share& share : shares) {
-                double& of_image = expected[static_cast<std::size_t>(share.image)];
-                EXPECT_NEAR(share.weight, of_image / total, 6e-8); // float32 of a number below 1
-                of_image = 0;
-            }
-            for (const double left_out : expected)
-                EXPECT_EQ(left_out, 0);
-        }
-}
 
 Grid<float> noise_image(int columns, int rows, double mean, double deviation, unsigned seed) {
     std::mt19937 random(seed);
