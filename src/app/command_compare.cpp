@@ -1,10 +1,10 @@
 #include "app/commands.hpp"
+#include "app/parameter_table.hpp"
 #include "app/text_file.hpp"
 
 #include "core/units.hpp"
 #include "report/topography_picture.hpp"
 #include "surface/image_file.hpp"
-#include "surface/profile.hpp"
 #include "surface/resample.hpp"
 #include "surface/surface_file.hpp"
 #include "topography/comparison.hpp"
@@ -76,36 +76,31 @@ MeanAndError over(const topography::Comparison& comparison, const Figure& figure
     return mean_and_error(values);
 }
 
-struct ParameterRow {
-    std::string name; // "Sa"
-    std::string unit; // "um"
+// One parameter over the measurements, and of the truth under them.
+struct ComparedParameter {
+    ParameterRow named; // its value does not count
     MeanAndError measured;
     double truth = 0;
 };
 
-std::vector<ParameterRow> parameter_rows(const topography::Comparison& comparison) {
-    using surface::ParameterUnit;
-    std::vector<ParameterRow> rows;
-    for (std::size_t k = 0; k < surface::named_parameters({}).size(); ++k) {
-        const auto named = surface::named_parameters(comparison.measurements.front().measured)[k];
-        const bool length = named.unit == ParameterUnit::length || named.unit == ParameterUnit::volume_per_area;
-        const double factor = length                               ? um_per_mm
-                              : named.unit == ParameterUnit::angle ? 1 / radians_per_degree
-                              : named.unit == ParameterUnit::share ? 100
-                                                                   : 1;
-        const char* unit = named.unit == ParameterUnit::length            ? "um"
-                           : named.unit == ParameterUnit::volume_per_area ? "um3_per_um2"
-                           : named.unit == ParameterUnit::angle           ? "deg"
-                           : named.unit == ParameterUnit::share           ? "percent"
-                                                                          : "";
-        const auto of = [&](const surface::ArealParameters& parameters) {
-            return surface::named_parameters(parameters)[k].value * factor;
-        };
-        rows.push_back({std::string(named.name), unit,
-                        over(comparison, [&](const auto& measurement) { return of(measurement.measured); }),
-                        over(comparison, [&](const auto& measurement) { return of(measurement.truth); }).mean});
+std::vector<ComparedParameter> compared_parameters(const topography::Comparison& comparison) {
+    std::vector<std::vector<ParameterRow>> measured, truth;
+    for (const auto& measurement : comparison.measurements) {
+        measured.push_back(parameter_rows(measurement.measured));
+        truth.push_back(parameter_rows(measurement.truth));
     }
-    return rows;
+    const auto of = [](const std::vector<std::vector<ParameterRow>>& rows, std::size_t k) {
+        std::vector<double> values;
+        for (const auto& row : rows) {
+            values.push_back(row[k].value);
+        }
+        return mean_and_error(values);
+    };
+    std::vector<ComparedParameter> result;
+    for (std::size_t k = 0; k < measured.front().size(); ++k) {
+        result.push_back({measured.front()[k], of(measured, k), of(truth, k).mean});
+    }
+    return result;
 }
 
 Json shift_json(const topography::LateralShift& shift) {
@@ -132,6 +127,7 @@ Json json_of(const topography::Comparison& comparison, const CommandOptions& opt
     }
     report["measured"] = std::move(measured);
     report["truth"] = options.compared_files.back().string();
+    report["treatment"] = treatment_json(options.band);
     report["aligned"] = options.align;
     report["removed_shift_um"] = {comparison.removed_shift.x * um_per_mm, comparison.removed_shift.y * um_per_mm};
     add(report, "measured_share", over(comparison, [](const auto& one) { return one.deviation.measured_share; }));
@@ -144,9 +140,9 @@ Json json_of(const topography::Comparison& comparison, const CommandOptions& opt
         report["random_um_standard_error"] = comparison.parts->random_error * um_per_mm;
         report["repeated_points"] = comparison.parts->points;
     }
-    for (const auto& row : parameter_rows(comparison)) {
-        auto& entry = report["parameters"][row.unit.empty() ? row.name : row.name + "_" + row.unit];
-        entry = {{"measured", row.measured.mean}, {"standard_error", row.measured.error}, {"true", row.truth}};
+    for (const auto& row : compared_parameters(comparison)) {
+        report["parameters"][row.named.key()] = {
+            {"measured", row.measured.mean}, {"standard_error", row.measured.error}, {"true", row.truth}};
     }
     report["compared_by"] = fmt::format("vkfv {}", VKFV_VERSION);
     return report;
@@ -156,6 +152,10 @@ std::string with_error(const MeanAndError& value, double factor, const char* uni
     return std::isnan(value.error)
                ? fmt::format("{:.4g} {}", value.mean * factor, unit)
                : fmt::format("{:.4g} +- {:.2g} {}", value.mean * factor, value.error * factor, unit);
+}
+
+std::string ratio_text(double ratio) {
+    return std::isnan(ratio) ? "-" : fmt::format("{:.3f}", ratio);
 }
 
 std::string text_of(const topography::Comparison& comparison, const CommandOptions& options) {
@@ -178,6 +178,7 @@ std::string text_of(const topography::Comparison& comparison, const CommandOptio
                                                     comparison.removed_shift.x * um_per_mm,
                                                     comparison.removed_shift.y * um_per_mm)
                                       : "not removed (--align removes it)");
+    text += fmt::format("{:<22} {}\n", "treatment", treatment_text(options.band));
     text += fmt::format("{:<22} {}\n", "RMS deviation",
                         with_error(over(comparison, [](const auto& one) { return one.deviation.rms; }), um_per_mm, "um"));
     if (comparison.parts) {
@@ -190,12 +191,11 @@ std::string text_of(const topography::Comparison& comparison, const CommandOptio
                         with_error(over(comparison, [](const auto& one) { return one.deviation.correlation; }), 1, ""));
     text += fmt::format("\n{:<18} {:>12} {:>12} {:>12} {:>8}\n", "ISO 25178-2", "measured", "std. error", "true",
                         "ratio");
-    for (const auto& row : parameter_rows(comparison)) {
-        const auto number = [](double value) { return std::isnan(value) ? std::string("-") : fmt::format("{:.6g}", value); };
+    for (const auto& row : compared_parameters(comparison)) {
         const double ratio = row.measured.mean / row.truth;
-        text += fmt::format("{:<5} {:<12} {:>12} {:>12} {:>12} {:>8}\n", row.name, row.unit, number(row.measured.mean),
-                            number(row.measured.error), number(row.truth),
-                            std::isnan(ratio) || row.unit == "deg" ? "-" : fmt::format("{:.3f}", ratio));
+        text += fmt::format("{:<5} {:<12} {:>12} {:>12} {:>12} {:>8}\n", row.named.name, row.named.unit,
+                            number_text(row.measured.mean), number_text(row.measured.error), number_text(row.truth),
+                            row.named.unit == "deg" ? "-" : ratio_text(ratio));
     }
     return text;
 }
@@ -223,69 +223,50 @@ std::string slope_csv(const topography::Comparison& comparison) {
     return text;
 }
 
-// Along the middle row, of the first measurement and of the truth under it, levelled; roughness after the Gaussian filter
-// whose nesting index is the section length, a fifth of the profile (ISO 21920-2).
+// Along the middle row, of the first measurement and of the truth under it, treated.
 struct ComparedProfile {
-    double y = 0;             // mm
-    double section_length = 0; // mm
-    surface::Profile measured, truth; // before the filter
-    surface::ProfileParameters measured_parameters, true_parameters;
+    ProfileLine line;
+    RoughnessProfile measured, truth;
 };
 
-ComparedProfile compared_profile(const topography::Comparison& comparison, const HeightMap& measured) {
-    const auto pair = topography::levelled_pair(measured, comparison.truth);
-    ComparedProfile result;
-    const int row = measured.rows() / 2, last = measured.columns() - 1;
-    result.y = measured.y(row);
-    result.section_length = last * measured.pitch_x / 5;
-    const auto along = [&](const HeightMap& map) {
-        return surface::extract_profile(map, map.x(0), result.y, map.x(last), result.y, map.pitch_x);
-    };
-    const auto parameters = [&](const surface::Profile& profile) {
-        return surface::profile_parameters(surface::remove_long_waves(profile, result.section_length));
-    };
-    result.measured = along(pair.measured);
-    result.truth = along(pair.truth);
-    result.measured_parameters = parameters(result.measured);
-    result.true_parameters = parameters(result.truth);
-    return result;
+ComparedProfile compared_profile(const topography::LevelledPair& pair) {
+    const ProfileLine line = middle_row(pair.measured);
+    return {line, roughness_profile(pair.measured, line), roughness_profile(pair.truth, line)};
 }
 
 Json profile_json(const ComparedProfile& profile) {
-    const auto of = [](const surface::ProfileParameters& parameters) {
-        return Json{{"Ra_um", parameters.ra * um_per_mm}, {"Rq_um", parameters.rq * um_per_mm}, {"Rz_um", parameters.rz * um_per_mm}};
-    };
-    return {{"y_um", profile.y * um_per_mm},
-            {"section_length_um", profile.section_length * um_per_mm},
-            {"measured", of(profile.measured_parameters)},
-            {"true", of(profile.true_parameters)}};
+    return {{"y_um", profile.line.y_start * um_per_mm},
+            {"section_length_um", profile.measured.section_length * um_per_mm},
+            {"measured", json_of(parameter_rows(profile.measured.parameters))},
+            {"true", json_of(parameter_rows(profile.truth.parameters))}};
 }
 
 std::string profile_text(const ComparedProfile& profile) {
-    const auto line = [](const char* name, double measured, double truth) {
-        return fmt::format("{:<5} {:<12} {:>12.6g} {:>12} {:>12.6g} {:>8.3f}\n", name, "um", measured * um_per_mm, "-",
-                           truth * um_per_mm, measured / truth);
-    };
-    const auto &a = profile.measured_parameters, &b = profile.true_parameters;
-    return fmt::format("\nISO 21920-2, profile at y = {:.4g} um, section length {:.4g} um\n", profile.y * um_per_mm,
-                       profile.section_length * um_per_mm) +
-           line("Ra", a.ra, b.ra) + line("Rq", a.rq, b.rq) + line("Rz", a.rz, b.rz);
+    std::string text =
+        fmt::format("\nISO 21920-2, profile at y = {:.4g} um, section length {:.4g} um\n",
+                    profile.line.y_start * um_per_mm, profile.measured.section_length * um_per_mm);
+    const auto measured = parameter_rows(profile.measured.parameters), truth = parameter_rows(profile.truth.parameters);
+    for (std::size_t k = 0; k < measured.size(); ++k) {
+        const double ratio = measured[k].value / truth[k].value;
+        text += fmt::format("{:<5} {:<12} {:>12} {:>12} {:>12} {:>8}\n", measured[k].name, measured[k].unit,
+                            number_text(measured[k].value), "-", number_text(truth[k].value), ratio_text(ratio));
+    }
+    return text;
 }
 
 // An empty field where no point was measured.
 std::string profile_csv(const ComparedProfile& profile, const HeightMap& measured) {
     std::string text = "x_um,measured_um,true_um\n";
     const auto um = [](double value) { return std::isnan(value) ? "" : fmt::format("{:.6g}", value * um_per_mm); };
-    for (std::size_t k = 0; k < std::min(profile.measured.height.size(), profile.truth.height.size()); ++k) {
-        text += fmt::format("{:.6g},{},{}\n", measured.x(static_cast<int>(k)) * um_per_mm, um(profile.measured.height[k]),
-                            um(profile.truth.height[k]));
+    const auto &a = profile.measured.profile.height, &b = profile.truth.profile.height;
+    for (std::size_t k = 0; k < std::min(a.size(), b.size()); ++k) {
+        text += fmt::format("{:.6g},{},{}\n", measured.x(static_cast<int>(k)) * um_per_mm, um(a[k]), um(b[k]));
     }
     return text;
 }
 
-// Of the first measurement and the truth under it, levelled.
-std::string picture_of(const topography::Comparison& comparison, const HeightMap& measured, const std::string& title) {
-    auto pair = topography::levelled_pair(measured, comparison.truth);
+// `pair`: the first measurement and the truth under it, treated.
+std::string picture_of(const topography::Comparison& comparison, topography::LevelledPair pair, const std::string& title) {
     report::Curve transfer{.name = "transfer", .points = {}, .spreads = {}};
     report::Curve coherence{.name = "coherence", .points = {}, .spreads = {}};
     for (const auto& band : comparison.transfer) {
@@ -336,8 +317,14 @@ void run_compare(const CommandOptions& options) {
                     "Give the truth of the same field, in the same frame.");
     }
 
-    const auto comparison = topography::compare_with_truth(measurements, truth, options.align);
-    const auto profile = compared_profile(comparison, measurements.front());
+    const auto comparison = topography::compare_with_truth(measurements, truth, options.align, options.band);
+    auto pair = topography::levelled_pair(measurements.front(), comparison.truth, options.band);
+    if (options.band.form.kind == surface::Form::Kind::sphere &&
+        std::ranges::any_of(comparison.measurements, [](const auto& one) { return one.deviation.measured_share == 0; })) {
+        refuse_file(files.front(), "no point on both spheres", "a form that the points of both surfaces settle",
+                    "Choose --form plane or --form polynomial-2.");
+    }
+    const auto profile = compared_profile(pair);
     auto figures = json_of(comparison, options);
     figures["profile"] = profile_json(profile);
     const auto report = figures.dump(2) + "\n";
@@ -349,7 +336,7 @@ void run_compare(const CommandOptions& options) {
         write_text_aside(*options.out / "profile.csv", profile_csv(profile, measurements.front()));
         surface::write_height_map(*options.out / "deviation.tif", comparison.deviation);
         write_text_aside(*options.out / "compare.svg",
-                         picture_of(comparison, measurements.front(),
+                         picture_of(comparison, std::move(pair),
                                     fmt::format("{} against {}", files.front().string(), files.back().string())));
         if (comparison.parts) {
             surface::write_height_map(*options.out / "random.tif", comparison.parts->standard_deviation);

@@ -3,6 +3,8 @@
 #pragma once
 
 #include "app/configuration.hpp"
+#include "app/roughness_profile.hpp"
+#include "surface/band.hpp"
 #include "trace/diffraction.hpp"
 
 #include <cstdint>
@@ -17,7 +19,7 @@ namespace vkfv::app {
 
 // What the command line says, as far as it does not override the configuration.
 struct CommandOptions {
-    std::filesystem::path file; // configuration; for --topography the stack
+    std::filesystem::path file; // configuration; for --topography the stack, for --surface the surface
     std::vector<TomlOverride> overrides;
     std::optional<std::filesystem::path> out;
     bool quiet = false;
@@ -27,6 +29,8 @@ struct CommandOptions {
     std::filesystem::path picture_file;   // --layout
     std::vector<std::filesystem::path> compared_files; // --compare: measurements, then the truth
     bool align = false;                   // --compare: the lateral shift is removed
+    surface::Band band;                   // --compare, --surface: form and filters
+    std::optional<ProfileLine> profile_line; // --surface; none: the middle row
     bool float_precision = false;         // --trace-rays: on the device
     bool apertures = true;                // --trace-rays
     int runs = 5;                         // --bench
@@ -38,7 +42,8 @@ struct CommandOptions {
     std::optional<std::uint64_t> shuffle; // --topography: seed of the order in which the images are taken
     // --topography of a stack that vkfv did not make: mm
     std::optional<double> z_step; // negative: the images descend
-    std::optional<double> pitch;
+    std::optional<double> pitch; // --surface too, of an image
+    std::optional<double> unit;  // --surface: mm per unit of an image's value
     std::optional<double> z_start; // of the first image; none: 0
 };
 
@@ -67,6 +72,10 @@ void run_bench(const CommandOptions& options);
 // file of several pages. With `shuffle` in a random order of its images, a control that must find
 // nothing.
 void run_topography(const CommandOptions& options);
+
+// A surface file: form removed and filtered, its ISO 25178-2 parameters and a profile's; with `out`, written in the format
+// that the name's ending tells.
+void run_surface(const CommandOptions& options);
 
 // Measured against true heights: lateral shift, deviation, its systematic and random part, ISO 25178-2 parameters; with
 // `out`, also deviation by spatial frequency (transfer.csv) and by slope (slope.csv), maps and compare.json there.

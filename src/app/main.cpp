@@ -11,6 +11,9 @@
 #include <spdlog/spdlog.h>
 
 #include <algorithm>
+#include <array>
+#include <charconv>
+#include <cmath>
 #include <cstdio>
 #include <map>
 #include <new>
@@ -22,12 +25,14 @@ using vkfv::InputError;
 enum ExitCode { done = 0, wrong_input = 2, no_device = 3, run_failed = 4 };
 
 struct Arguments {
-    std::string stack, image, sweep, check, bench, topography, import_lens;
+    std::string stack, image, sweep, check, bench, topography, surface, import_lens;
     std::vector<std::string> trace_rays, layout, compare;
     bool align = false;
     bool devices = false;
     double z_um = 0;
-    std::optional<double> z_step_um, pitch_um, z_start_um;
+    std::optional<double> z_step_um, pitch_um, z_start_um, unit_um;
+    std::string form = "plane", filter = "gaussian", profile;
+    double s_filter_um = 0, l_filter_um = 0;
     std::string precision = "double";
     bool apertures = true;
     bool json = false, quiet = false;
@@ -76,6 +81,11 @@ void declare(CLI::App& app, Arguments& given) {
         ->expected(2, CLI::detail::expected_max_vector_size)
         ->option_text("MEASURED... TRUTH")
         ->group(commands);
+    app.add_option("--surface", given.surface,
+                   "A surface file (X3P, SUR, SDF, AL3D, TIFF, EXR): form removed and filtered, its ISO 25178-2 parameters; with "
+                   "--out also written, in another format if so named")
+        ->type_name("FILE")
+        ->group(commands);
     app.add_option("--check", given.check, "Validate and print first-order data; needs no device")
         ->type_name("C.toml")
         ->group(commands);
@@ -105,7 +115,7 @@ void declare(CLI::App& app, Arguments& given) {
     const char* common = "Instead of the configuration's values";
     app.add_option("--out", given.out,
                    "Output folder (--bench: of bench.json and bench.svg); for --image also a .tif file, for "
-                   "--import the prescription")
+                   "--import the prescription, for --surface a .x3p, .sur, .sdf, .tif or .ply file")
         ->type_name("PATH")
         ->group(common);
     app.add_option("--device", given.device, "Index or part of a name; \"host\": the reference in double")
@@ -130,16 +140,40 @@ void declare(CLI::App& app, Arguments& given) {
     app.add_option("--z", given.z_um, "Height of the focal plane over best focus, um (--image)")
         ->type_name("UM")
         ->group(specific);
-    // Options are dashed; these three are spelled like the keys whose units they carry, and dashed too.
+    // Options are dashed; those with a unit are spelled like the keys that carry it, and dashed too.
     app.add_option("--z_step_um,--z-step-um", given.z_step_um,
                    "Step from image to image of a stack without stack.toml; negative: they descend (--topography)")
         ->type_name("UM")
         ->group(specific);
-    app.add_option("--pitch_um,--pitch-um", given.pitch_um, "Distance of its pixels on the specimen (--topography)")
+    app.add_option("--pitch_um,--pitch-um", given.pitch_um,
+                   "Distance of its pixels on the specimen (--topography; --surface of an image)")
         ->type_name("UM")
         ->group(specific);
     app.add_option("--z_start_um,--z-start-um", given.z_start_um, "Height of its first image, 0 unless given (--topography)")
         ->type_name("UM")
+        ->group(specific);
+    app.add_option("--unit_um,--unit-um", given.unit_um, "Height of a pixel's value of one (--surface of an image)")
+        ->type_name("UM")
+        ->group(specific);
+    app.add_option("--form", given.form,
+                   "Removed first: none, plane (unless given), polynomial-1 to polynomial-20, sphere (--surface, --compare)")
+        ->type_name("NAME")
+        ->group(specific);
+    app.add_option("--s_filter_um,--s-filter-um", given.s_filter_um,
+                   "Nesting index of the S-filter: shorter waves are removed (--surface, --compare)")
+        ->type_name("UM")
+        ->group(specific);
+    app.add_option("--l_filter_um,--l-filter-um", given.l_filter_um,
+                   "Nesting index of the L-filter: longer waves are removed (--surface, --compare)")
+        ->type_name("UM")
+        ->group(specific);
+    app.add_option("--filter", given.filter, "Which S-filter and L-filter (--surface, --compare)")
+        ->check(CLI::IsMember({"gaussian", "spline"}))
+        ->option_text("gaussian|spline")
+        ->group(specific);
+    app.add_option("--profile", given.profile,
+                   "Ends of the profile in um, the middle row unless given (--surface)")
+        ->type_name("X0,Y0,X1,Y1")
         ->group(specific);
     app.add_option("--precision", given.precision, "double: on the host; float: on the device (--trace-rays)")
         ->check(CLI::IsMember({"double", "float"}))
@@ -179,7 +213,7 @@ void declare(CLI::App& app, Arguments& given) {
         ->expected(1)
         ->take_all()
         ->group(specific);
-    app.add_flag("--json", given.json, "Machine-readable output (--check, --compare, --devices, --bench, --import)")
+    app.add_flag("--json", given.json, "Machine-readable output (--check, --compare, --surface, --devices, --bench, --import)")
         ->group(specific);
     app.add_flag("--quiet", given.quiet, "Only warnings and errors, no progress");
 
@@ -188,6 +222,7 @@ void declare(CLI::App& app, Arguments& given) {
                "  vkfv --check assets/stacks/demo.toml --json\n"
                "  vkfv --image assets/stacks/demo.toml --z -3.2 --rays 1e8\n"
                "  vkfv --topography images.tif --z_step_um 0.5 --pitch_um 0.9 --out measured\n"
+               "  vkfv --surface measured.x3p --form polynomial-2 --s_filter_um 5 --out treated.sur\n"
                "\nExit codes: 0 done, 2 the input is wrong, 3 no usable device, 4 the run failed and can be "
                "resumed.");
 }
@@ -205,6 +240,46 @@ void refuse_leftovers(const CLI::App& app) {
     const auto meant = vkfv::nearest_word(leftovers.front(), known);
     refuse(leftovers.front(), "a known option",
            meant ? fmt::format("Did you mean {}? vkfv --help lists all.", *meant) : "vkfv --help lists all.");
+}
+
+vkfv::surface::Band band_from(const Arguments& given) {
+    const auto form = vkfv::surface::parse_form(given.form);
+    if (!form) {
+        refuse("--form " + given.form, "none, plane, polynomial-1 to polynomial-20 or sphere",
+               "Name one of these, or leave it out for a plane.");
+    }
+    for (const double um : {given.s_filter_um, given.l_filter_um}) {
+        if (!(std::isfinite(um) && um >= 0)) {
+            refuse(fmt::format("a nesting index of {} um", um), "a positive length, or 0 for no filter",
+                   "Correct --s_filter_um or --l_filter_um.");
+        }
+    }
+    if (given.l_filter_um > 0 && given.l_filter_um <= given.s_filter_um) {
+        refuse(fmt::format("--s_filter_um {} with --l_filter_um {}", given.s_filter_um, given.l_filter_um),
+               "an L-filter longer than the S-filter", "Exchange them, or leave one out.");
+    }
+    return {.s_filter = given.s_filter_um / vkfv::um_per_mm,
+            .l_filter = given.l_filter_um / vkfv::um_per_mm,
+            .spline = given.filter == "spline",
+            .form = *form};
+}
+
+std::optional<vkfv::app::ProfileLine> profile_line_from(const std::string& text) {
+    if (text.empty()) {
+        return std::nullopt;
+    }
+    std::array<double, 4> ends{};
+    const char *at = text.data(), *end = text.data() + text.size();
+    for (std::size_t k = 0; k < ends.size(); ++k) {
+        const auto [after, error] = std::from_chars(at, end, ends[k]);
+        const bool last = k + 1 == ends.size();
+        if (error != std::errc() || !std::isfinite(ends[k]) || (last ? after != end : after == end || *after != ',')) {
+            refuse("--profile " + text, "four numbers X0,Y0,X1,Y1 in um", "Write for example --profile 0,50,100,50.");
+        }
+        ends[k] /= vkfv::um_per_mm;
+        at = after + 1;
+    }
+    return vkfv::app::ProfileLine{ends[0], ends[1], ends[2], ends[3]};
 }
 
 vkfv::app::CommandOptions options_from(const Arguments& given) {
@@ -231,6 +306,9 @@ vkfv::app::CommandOptions options_from(const Arguments& given) {
     options.z_step = in_mm(given.z_step_um);
     options.pitch = in_mm(given.pitch_um);
     options.z_start = in_mm(given.z_start_um);
+    options.unit = in_mm(given.unit_um);
+    options.band = band_from(given);
+    options.profile_line = profile_line_from(given.profile);
     options.glass_catalogs.assign(given.glass_catalogs.begin(), given.glass_catalogs.end());
     const auto override_with = [&](const std::string& option, const std::string& key,
                                    const std::string& value) {
@@ -258,6 +336,31 @@ vkfv::app::CommandOptions options_from(const Arguments& given) {
     return options;
 }
 
+// What would be without effect, or mean another thing than was meant.
+void refuse_strays(const CLI::App& app, const std::string& command) {
+    struct Owned {
+        const char* option;
+        std::vector<std::string> commands;
+    };
+    const std::vector<Owned> table = {
+        {"--z_step_um", {"--topography"}},
+        {"--z_start_um", {"--topography"}},
+        {"--pitch_um", {"--topography", "--surface"}},
+        {"--unit_um", {"--surface"}},
+        {"--profile", {"--surface"}},
+        {"--form", {"--surface", "--compare"}},
+        {"--filter", {"--surface", "--compare"}},
+        {"--s_filter_um", {"--surface", "--compare"}},
+        {"--l_filter_um", {"--surface", "--compare"}},
+    };
+    for (const auto& [option, commands] : table) {
+        if (app.count(option) > 0 && std::ranges::find(commands, command) == commands.end()) {
+            refuse(fmt::format("{} with {}", option, command), fmt::format("{}", fmt::join(commands, " or ")),
+                   fmt::format("Leave {} out.", option));
+        }
+    }
+}
+
 void run(const CLI::App& app, const Arguments& given) {
     refuse_leftovers(app);
     auto options = options_from(given);
@@ -278,6 +381,7 @@ void run(const CLI::App& app, const Arguments& given) {
         {"--sweep", given.sweep, vkfv::app::run_sweep},
         {"--topography", given.topography, vkfv::app::run_topography},
         {"--compare", "", vkfv::app::run_compare},
+        {"--surface", given.surface, vkfv::app::run_surface},
         {"--check", given.check, vkfv::app::run_check},
         {"--trace-rays", given.trace_rays.empty() ? "" : given.trace_rays.front(), vkfv::app::run_trace_rays},
         {"--layout", given.layout.empty() ? "" : given.layout.front(), vkfv::app::run_layout},
@@ -298,17 +402,14 @@ void run(const CLI::App& app, const Arguments& given) {
     }
     if (!chosen) {
         refuse("no command",
-               "one of --stack, --image, --sweep, --topography, --compare, --check, --trace-rays, --layout, --devices, --bench, --import",
+               "one of --stack, --image, --sweep, --topography, --compare, --surface, --check, --trace-rays, --layout, --devices, --bench, --import",
                "vkfv --help tells what they do.");
     }
     if ((app.count("--z") > 0) != (chosen->run == vkfv::app::run_image)) {
         refuse(app.count("--z") > 0 ? "--z" : "--image without --z", "--z with --image, and only with it",
                "Give --z UM, the height of the focal plane over best focus, to --image.");
     }
-    if ((given.z_step_um || given.pitch_um || given.z_start_um) && chosen->run != vkfv::app::run_topography) {
-        refuse(fmt::format("--z_step_um, --pitch_um or --z_start_um with {}", chosen->option), "--topography",
-               "Leave it out, or evaluate a stack of images.");
-    }
+    refuse_strays(app, chosen->option);
     options.file = chosen->file;
     chosen->run(options);
 }

@@ -12,11 +12,11 @@
 namespace vkfv::surface {
 namespace {
 
-// weights[r + k] of points k pitches away, k in -r..r. Not normalised: the caller divides by the weights
-// present.
-std::vector<double> gaussian_weights(double nesting_index, double pitch) {
+// weights[r + k] of points k pitches away, k in -r..r; r reaches no further than an axis of so many points. Not
+// normalised: the caller divides by the weights present.
+std::vector<double> gaussian_weights(double nesting_index, double pitch, int points) {
     const double alpha = std::sqrt(std::numbers::ln2 / pi);
-    const int radius = static_cast<int>(std::floor(nesting_index / pitch));
+    const int radius = static_cast<int>(std::min(std::floor(nesting_index / pitch), std::max(points - 1.0, 0.0)));
     std::vector<double> weights(static_cast<std::size_t>(2 * radius + 1));
     for (int k = -radius; k <= radius; ++k) {
         const double u = k * pitch / (alpha * nesting_index);
@@ -112,8 +112,8 @@ HeightMap gaussian_low_pass(const HeightMap& map, double nesting_index) {
             values.values[k] = z;
             present.values[k] = 1;
         }
-    const auto along_x = gaussian_weights(nesting_index, map.pitch_x);
-    const auto along_y = gaussian_weights(nesting_index, map.pitch_y);
+    const auto along_x = gaussian_weights(nesting_index, map.pitch_x, map.columns());
+    const auto along_y = gaussian_weights(nesting_index, map.pitch_y, map.rows());
     const auto convolve = [&](const Grid<double>& grid) {
         return convolve_columns(convolve_rows(grid, along_x), along_y);
     };

@@ -2,31 +2,25 @@
 
 #include "surface/filter.hpp"
 #include "surface/height_parameters.hpp"
-#include "surface/spline_filter.hpp"
 
 #include <cmath>
 #include <limits>
 #include <stdexcept>
+#include <utility>
 
 namespace vkfv::topography {
 namespace {
 
 using surface::HeightMap;
 
-HeightMap less(HeightMap a, const HeightMap& b) {
-    for (std::size_t k = 0; k < a.height.values.size(); ++k)
-        a.height.values[k] -= b.height.values[k];
-    return a;
-}
-
-HeightMap low_pass(const HeightMap& map, double nesting_index, bool spline) {
-    return spline ? surface::spline_low_pass(map, nesting_index) : surface::gaussian_low_pass(map, nesting_index);
-}
-
-HeightMap difference(const LevelledPair& treated) {
-    const HeightMap result = less(treated.measured, treated.truth);
-    // Levelled maps differ by a levelled map; after an L-filter a rest of offset and tilt may remain.
-    return surface::remove_plane(result, surface::least_squares_plane(result));
+// What is not measured in one is so in both.
+void keep_common_points(HeightMap& measured, HeightMap& truth) {
+    for (std::size_t k = 0; k < measured.height.values.size(); ++k) {
+        double& a = measured.height.values[k];
+        double& b = truth.height.values[k];
+        if (!std::isfinite(a) || !std::isfinite(b))
+            a = b = std::numeric_limits<double>::quiet_NaN();
+    }
 }
 
 } // namespace
@@ -34,26 +28,16 @@ HeightMap difference(const LevelledPair& treated) {
 LevelledPair levelled_pair(HeightMap measured, HeightMap truth, const Band& band) {
     if (measured.columns() != truth.columns() || measured.rows() != truth.rows())
         throw std::invalid_argument("compare: both height maps must stand on the same grid");
-    for (std::size_t k = 0; k < measured.height.values.size(); ++k) {
-        double& a = measured.height.values[k];
-        double& b = truth.height.values[k];
-        if (!std::isfinite(a) || !std::isfinite(b))
-            a = b = std::numeric_limits<double>::quiet_NaN();
-    }
-    const auto level = [&band](HeightMap map) {
-        const surface::Plane plane = surface::least_squares_plane(map);
-        map = surface::remove_plane(std::move(map), plane);
-        if (band.s_filter > 0)
-            map = low_pass(map, band.s_filter, band.spline);
-        if (band.l_filter > 0)
-            map = less(map, low_pass(map, band.l_filter, band.spline));
-        return map;
-    };
-    return {level(std::move(measured)), level(std::move(truth))};
+    keep_common_points(measured, truth);
+    measured = remove_form(std::move(measured), band.form);
+    truth = remove_form(std::move(truth), band.form);
+    keep_common_points(measured, truth); // a sphere ends
+    return {.measured = filtered(std::move(measured), band),
+            .truth = filtered(std::move(truth), band),
+            .form_removed = band.form.kind != surface::Form::Kind::none};
 }
 
-Deviation compare(const HeightMap& measured, const HeightMap& truth, const Band& band) {
-    const LevelledPair treated = levelled_pair(measured, truth, band);
+Deviation compare(const LevelledPair& treated) {
     const auto a = surface::height_parameters(treated.measured);
     const auto b = surface::height_parameters(treated.truth);
     double covariance = 0, count = 0;
@@ -62,10 +46,12 @@ Deviation compare(const HeightMap& measured, const HeightMap& truth, const Band&
             covariance += (z - a.mean) * (treated.truth.height.values[k] - b.mean);
             count += 1;
         }
+    const auto difference = surface::height_parameters(deviation_map(treated));
     Deviation result;
     result.sq_measured = a.sq;
     result.sq_true = b.sq;
-    result.rms = surface::height_parameters(difference(treated)).sq;
+    // Sq is taken about the mean, which belongs to the deviation where nothing was removed.
+    result.rms = treated.form_removed ? difference.sq : std::hypot(difference.sq, difference.mean);
     if (count == 0)
         result.correlation = std::numeric_limits<double>::quiet_NaN();
     else if (a.sq > 0 && b.sq > 0)
@@ -74,8 +60,20 @@ Deviation compare(const HeightMap& measured, const HeightMap& truth, const Band&
     return result;
 }
 
+Deviation compare(const HeightMap& measured, const HeightMap& truth, const Band& band) {
+    return compare(levelled_pair(measured, truth, band));
+}
+
+HeightMap deviation_map(const LevelledPair& treated) {
+    HeightMap result = treated.measured;
+    for (std::size_t k = 0; k < result.height.values.size(); ++k)
+        result.height.values[k] -= treated.truth.height.values[k];
+    // Levelled maps differ by a levelled map; after other forms or an L-filter a rest of offset and tilt may remain.
+    return treated.form_removed ? surface::remove_plane(result, surface::least_squares_plane(result)) : result;
+}
+
 HeightMap deviation_map(const HeightMap& measured, const HeightMap& truth, const Band& band) {
-    return difference(levelled_pair(measured, truth, band));
+    return deviation_map(levelled_pair(measured, truth, band));
 }
 
 } // namespace vkfv::topography

@@ -24,9 +24,17 @@ LateralShift mean_shift(const std::vector<MeasurementComparison>& measurements) 
     return count > 0 ? LateralShift{mean.x / count, mean.y / count, mean.correlation / count} : mean;
 }
 
+HeightMap mean_levelled_deviation(std::span<const HeightMap> measurements, const HeightMap& truth) {
+    std::vector<HeightMap> deviations;
+    for (const HeightMap& measured : measurements)
+        deviations.push_back(deviation_map(measured, truth));
+    return deviations.size() > 1 ? systematic_and_random(deviations).mean_deviation : std::move(deviations.front());
+}
+
 } // namespace
 
-Comparison compare_with_truth(std::span<const HeightMap> measurements, const HeightMap& truth, bool align) {
+Comparison compare_with_truth(std::span<const HeightMap> measurements, const HeightMap& truth, bool align,
+                              const Band& band) {
     Comparison result;
     for (const HeightMap& measured : measurements) {
         result.measurements.emplace_back();
@@ -39,11 +47,11 @@ Comparison compare_with_truth(std::span<const HeightMap> measurements, const Hei
     std::vector<HeightMap> deviations;
     for (std::size_t k = 0; k < measurements.size(); ++k) {
         MeasurementComparison& comparison = result.measurements[k];
-        const LevelledPair pair = levelled_pair(measurements[k], result.truth);
-        comparison.deviation = compare(measurements[k], result.truth);
+        const LevelledPair pair = levelled_pair(measurements[k], result.truth, band);
+        comparison.deviation = compare(pair);
         comparison.measured = surface::areal_parameters(pair.measured);
         comparison.truth = surface::areal_parameters(pair.truth);
-        deviations.push_back(deviation_map(measurements[k], result.truth));
+        deviations.push_back(deviation_map(pair));
     }
     if (deviations.size() > 1) {
         result.parts = systematic_and_random(deviations);
@@ -52,11 +60,13 @@ Comparison compare_with_truth(std::span<const HeightMap> measurements, const Hei
         result.deviation = std::move(deviations.front());
     }
 
+    const HeightMap levelled =
+        band == Band{} ? result.deviation : mean_levelled_deviation(measurements, result.truth);
     HeightMap mean_measurement = result.truth;
     for (std::size_t k = 0; k < mean_measurement.height.values.size(); ++k)
-        mean_measurement.height.values[k] += result.deviation.height.values[k];
+        mean_measurement.height.values[k] += levelled.height.values[k];
     result.transfer = height_transfer(mean_measurement, result.truth);
-    result.slopes = deviation_by_slope(result.deviation, result.truth, 2 * radians_per_degree);
+    result.slopes = deviation_by_slope(levelled, result.truth, 2 * radians_per_degree);
     return result;
 }
 

@@ -14,7 +14,7 @@
 
 namespace vkfv::topography {
 
-// One measurement, over the points present in it and in the truth, both levelled alike (levelled_pair()).
+// One measurement, over the points present in it and in the truth, both treated alike (levelled_pair()).
 struct MeasurementComparison {
     LateralShift shift; // as found, removed or not
     Deviation deviation;
@@ -25,16 +25,18 @@ struct MeasurementComparison {
 struct Comparison {
     std::vector<MeasurementComparison> measurements;
     LateralShift removed_shift;               // their mean shift, if it was to be removed; otherwise 0
-    surface::HeightMap truth;                 // under the measurements, on their grid
+    surface::HeightMap truth;                 // under the measurements, on their grid, untreated
     surface::HeightMap deviation;             // of the measurement; of repeated ones their mean (repeatability.hpp)
     std::optional<SystematicAndRandom> parts; // of two measurements or more
-    std::vector<TransferBand> transfer;       // from `truth` to truth + deviation
-    std::vector<SlopeBin> slopes;             // of `deviation`, in bins of two degrees
+    // Of the deviation after levelling alone, whatever the band: a filter or form would hide what they show.
+    std::vector<TransferBand> transfer; // from `truth` to truth + deviation
+    std::vector<SlopeBin> slopes;       // in bins of two degrees
 };
 
 // All measurements stand on one grid (std::invalid_argument otherwise), the truth on any. `align` moves the truth by
-// the mean of the shifts found; a measurement without one does not count there.
+// the mean of the shifts found; a measurement without one does not count there. The shift is that of the levelled
+// surfaces, whatever the band.
 Comparison compare_with_truth(std::span<const surface::HeightMap> measurements, const surface::HeightMap& truth,
-                              bool align);
+                              bool align, const Band& band = {});
 
 } // namespace vkfv::topography

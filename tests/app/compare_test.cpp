@@ -1,11 +1,15 @@
 // vkfv --compare through the real program.
 #include "app/program.hpp"
+#include "surface/filter.hpp"
+#include "surface/height_parameters.hpp"
 #include "surface/image_file.hpp"
+#include "surface/polynomial.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
 
+#include <algorithm>
 #include <cmath>
 #include <random>
 
@@ -110,6 +114,46 @@ TEST_F(Compare, WritesMapsAndTables) {
     EXPECT_GT(profile["measured"]["Rq_um"], profile["true"]["Rq_um"]); // it has noise
 }
 
+TEST_F(Compare, IsOfTheSurfacesAsTreated) {
+    write_map(folder / "same_grid.tif", 120, 0, 1, 0, 0, 0);
+    const auto plain = report({"measured_0.tif", "same_grid.tif"});
+    const auto treated = report({"measured_0.tif", "same_grid.tif", "--form", "polynomial-3", "--s_filter_um", "6",
+                                 "--l-filter-um", "30", "--out", "treated"});
+    EXPECT_EQ(plain["treatment"], Json({{"form", "plane"}, {"s_filter_um", 0}, {"l_filter_um", 0}, {"filter", "gaussian"}}));
+    EXPECT_EQ(treated["treatment"],
+              Json({{"form", "polynomial-3"}, {"s_filter_um", 6}, {"l_filter_um", 30}, {"filter", "gaussian"}}));
+
+    HeightMap truth = surface::read_height_map(folder / "same_grid.tif");
+    const HeightMap measured = surface::read_height_map(folder / "measured_0.tif");
+    for (std::size_t k = 0; k < truth.height.values.size(); ++k) {
+        if (std::isnan(measured.height.values[k])) {
+            truth.height.values[k] = std::nan("");
+        }
+    }
+    const auto by_hand = [](const HeightMap& map) {
+        const auto level = surface::remove_polynomial(map, surface::least_squares_polynomial(map, 3));
+        return surface::remove_long_waves(surface::gaussian_low_pass(level, 6 * um), 30 * um);
+    };
+    const auto a = by_hand(measured), b = by_hand(truth);
+    const auto& sq = treated["parameters"]["Sq_um"];
+    EXPECT_NEAR(sq["measured"], surface::height_parameters(a).sq / um, 1e-9);
+    EXPECT_NEAR(sq["true"], surface::height_parameters(b).sq / um, 1e-9);
+    EXPECT_GT(std::abs(sq["true"].get<double>() - plain["parameters"]["Sq_um"]["true"].get<double>()), 0.05);
+    HeightMap difference = a;
+    for (std::size_t k = 0; k < difference.height.values.size(); ++k) {
+        difference.height.values[k] -= b.height.values[k];
+    }
+    difference = surface::remove_plane(difference, surface::least_squares_plane(difference));
+    EXPECT_NEAR(treated["rms_deviation_um"], surface::height_parameters(difference).sq / um, 1e-9);
+    const HeightMap written = surface::read_height_map(folder / "treated/deviation.tif");
+    EXPECT_NEAR(written.height(60, 60), difference.height(60, 60), 1e-9);
+    // The smoothed truth along the middle row, and the shift, which no filter changes.
+    EXPECT_LT(treated["profile"]["true"]["Rq_um"], plain["profile"]["true"]["Rq_um"]);
+    EXPECT_EQ(treated["measured"][0]["lateral_shift"], plain["measured"][0]["lateral_shift"]);
+    const auto text = run_program({"--compare", "measured_0.tif", "same_grid.tif", "--s_filter_um", "6", "--filter", "spline"}, folder);
+    EXPECT_THAT(text.standard_output, HasSubstr("form plane, S-filter 6 um (spline)"));
+}
+
 TEST_F(Compare, RefusesWhatCannotBeCompared) {
     write_map(folder / "other.tif", 100, 0, 1, 0, 0, 0);
     const auto grids = run_program({"--compare", "measured_0.tif", "other.tif", "truth.tif"}, folder);
@@ -122,6 +166,13 @@ TEST_F(Compare, RefusesWhatCannotBeCompared) {
     const auto apart = run_program({"--compare", "measured_0.tif", "elsewhere.tif"}, folder);
     EXPECT_EQ(apart.exit_code, 2);
     EXPECT_THAT(apart.standard_error, HasSubstr("heights where measured_0.tif has them"));
+
+    HeightMap flat = surface::read_height_map(folder / "other.tif");
+    std::ranges::fill(flat.height.values, 1 * um);
+    surface::write_height_map(folder / "flat.tif", flat);
+    const auto sphere = run_program({"--compare", "flat.tif", "truth.tif", "--form", "sphere"}, folder);
+    EXPECT_EQ(sphere.exit_code, 2);
+    EXPECT_THAT(sphere.standard_error, HasSubstr("--form plane"));
 
     EXPECT_EQ(run_program({"--compare", "measured_0.tif"}, folder).exit_code, 2);
     EXPECT_EQ(run_program({"--compare", "measured_0.tif", "nowhere.tif"}, folder).exit_code, 2);

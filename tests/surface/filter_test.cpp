@@ -113,5 +113,15 @@ TEST(GaussianFilter, NeedsAPositiveNestingIndex) {
     EXPECT_THROW(gaussian_low_pass(map, not_measured), std::invalid_argument);
 }
 
+TEST(GaussianFilter, OfAnIndexFarBeyondTheMapIsItsMean) {
+    const auto map = sampled(7, 5, 0.002, [](double x, double y) { return x * x - y; });
+    double sum = 0;
+    for (const double height : map.height.values)
+        sum += height;
+    // A weighting window of as many points would not fit into memory.
+    for (const double height : gaussian_low_pass(map, 1e9).height.values)
+        EXPECT_NEAR(height, sum / 35, 1e-15);
+}
+
 } // namespace
 } // namespace vkfv::surface

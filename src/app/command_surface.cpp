@@ -1,0 +1,168 @@
+#include "app/commands.hpp"
+#include "app/parameter_table.hpp"
+
+#include "core/units.hpp"
+#include "surface/surface_file.hpp"
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+
+namespace vkfv::app {
+
+namespace {
+
+using Json = nlohmann::ordered_json;
+using surface::HeightMap;
+
+[[noreturn]] void refuse(const CommandOptions& options, std::string key, std::string found, std::string expected,
+                         std::string remedy) {
+    throw InputError({.where = {.file = options.file},
+                      .key = std::move(key),
+                      .found = std::move(found),
+                      .expected = std::move(expected),
+                      .remedy = std::move(remedy)});
+}
+
+surface::SurfaceFile read_file(const CommandOptions& options) {
+    const auto check = [&](const char* option, const std::optional<double>& length) {
+        if (length && !(std::isfinite(*length) && *length > 0)) {
+            refuse(options, option, fmt::format("{:g}", *length * um_per_mm), "a positive length",
+                   "Give the one that belongs to this image.");
+        }
+    };
+    check("--pitch_um", options.pitch);
+    check("--unit_um", options.unit);
+    try {
+        return surface::read_surface(options.file, {.pitch = options.pitch, .unit = options.unit});
+    } catch (const InputError& error) {
+        auto problem = error.problem();
+        if (problem.key == "pitch" || problem.key == "unit") { // the reader does not know the command line
+            problem.key = "--" + problem.key + "_um";
+            throw InputError(problem);
+        }
+        throw;
+    }
+}
+
+std::ptrdiff_t measured_points(const HeightMap& map) {
+    return std::ranges::count_if(map.height.values, [](double z) { return std::isfinite(z); });
+}
+
+HeightMap treated(const CommandOptions& options, const HeightMap& map) {
+    if (measured_points(map) == 0) {
+        refuse(options, "", "no measured point", "a surface with heights", "Measure again.");
+    }
+    HeightMap result = surface::scale_limited(map, options.band);
+    if (measured_points(result) == 0) {
+        refuse(options, "--form", surface::form_name(options.band.form), "a form that the measured points settle",
+               "Choose --form plane or --form polynomial-2.");
+    }
+    return result;
+}
+
+ProfileLine line_of(const CommandOptions& options, const HeightMap& map) {
+    if (!options.profile_line) {
+        return middle_row(map);
+    }
+    const auto& line = *options.profile_line;
+    const auto within = [](double value, double first, double last, double pitch) {
+        return value >= first - 1e-6 * pitch && value <= last + 1e-6 * pitch;
+    };
+    const double x_last = map.x(map.columns() - 1), y_last = map.y(map.rows() - 1);
+    const bool inside =
+        within(line.x_start, map.x0, x_last, map.pitch_x) && within(line.x_end, map.x0, x_last, map.pitch_x) &&
+        within(line.y_start, map.y0, y_last, map.pitch_y) && within(line.y_end, map.y0, y_last, map.pitch_y);
+    if (!inside || !(std::hypot(line.x_end - line.x_start, line.y_end - line.y_start) >
+                     std::min(map.pitch_x, map.pitch_y))) {
+        refuse(options, "--profile",
+               fmt::format("{:.6g},{:.6g},{:.6g},{:.6g}", line.x_start * um_per_mm, line.y_start * um_per_mm,
+                           line.x_end * um_per_mm, line.y_end * um_per_mm),
+               fmt::format("a line longer than a pitch on the surface: x from {:.6g} to {:.6g} um, y from {:.6g} to {:.6g} um",
+                           map.x0 * um_per_mm, x_last * um_per_mm, map.y0 * um_per_mm, y_last * um_per_mm),
+               "Choose both ends on the surface, or leave it out for the middle row.");
+    }
+    return line;
+}
+
+// All that is said of the surface.
+struct Figures {
+    std::ptrdiff_t not_measured = 0; // beyond a sphere too
+    std::vector<ParameterRow> parameters;
+    ProfileLine line;
+    double section_length = 0; // mm
+    std::vector<ParameterRow> profile;
+};
+
+Figures figures_of(const HeightMap& map, const ProfileLine& line) {
+    const auto profile = roughness_profile(map, line);
+    return {.not_measured = std::ssize(map.height.values) - measured_points(map),
+            .parameters = parameter_rows(surface::areal_parameters(map)),
+            .line = line,
+            .section_length = profile.section_length,
+            .profile = parameter_rows(profile.parameters)};
+}
+
+std::string json_text(const CommandOptions& options, const HeightMap& map, const Figures& figures) {
+    Json report;
+    report["file"] = options.file.string();
+    report["columns"] = map.columns();
+    report["rows"] = map.rows();
+    report["pitch_um"] = {map.pitch_x * um_per_mm, map.pitch_y * um_per_mm};
+    report["first_point_um"] = {map.x0 * um_per_mm, map.y0 * um_per_mm};
+    report["not_measured_points"] = figures.not_measured;
+    report["treatment"] = treatment_json(options.band);
+    report["parameters"] = json_of(figures.parameters);
+    const auto& line = figures.line;
+    report["profile"] = {{"start_um", {line.x_start * um_per_mm, line.y_start * um_per_mm}},
+                         {"end_um", {line.x_end * um_per_mm, line.y_end * um_per_mm}},
+                         {"section_length_um", figures.section_length * um_per_mm}};
+    report["profile"].update(json_of(figures.profile));
+    report["evaluated_by"] = fmt::format("vkfv {}", VKFV_VERSION);
+    return report.dump(2) + "\n";
+}
+
+std::string text_of(const CommandOptions& options, const HeightMap& map, const Figures& figures) {
+    const auto size = [](int points, double pitch) { return points * pitch * um_per_mm; };
+    std::string text = fmt::format("{:<14} {} x {} points, {:.6g} x {:.6g} um\n", "size", map.columns(), map.rows(),
+                                   size(map.columns(), map.pitch_x), size(map.rows(), map.pitch_y));
+    text += fmt::format("{:<14} {:.6g} x {:.6g} um, from x = {:.6g} um, y = {:.6g} um\n", "pitch",
+                        map.pitch_x * um_per_mm, map.pitch_y * um_per_mm, map.x0 * um_per_mm, map.y0 * um_per_mm);
+    text += fmt::format("{:<14} {} points ({:.3g} %)\n", "not measured", figures.not_measured,
+                        100.0 * static_cast<double>(figures.not_measured) /
+                            static_cast<double>(map.height.values.size()));
+    text += fmt::format("{:<14} {}\n", "treatment", treatment_text(options.band));
+    const auto table = [&text](const std::vector<ParameterRow>& rows) {
+        for (const auto& row : rows) {
+            text += fmt::format("{:<5} {:<12} {:>12}\n", row.name, row.unit, number_text(row.value));
+        }
+    };
+    text += "\nISO 25178-2\n";
+    table(figures.parameters);
+    const auto& line = figures.line;
+    text += fmt::format("\nISO 21920-2, profile from ({:.6g}, {:.6g}) um to ({:.6g}, {:.6g}) um, section length {:.4g} um\n",
+                        line.x_start * um_per_mm, line.y_start * um_per_mm, line.x_end * um_per_mm,
+                        line.y_end * um_per_mm, figures.section_length * um_per_mm);
+    table(figures.profile);
+    return text;
+}
+
+} // namespace
+
+void run_surface(const CommandOptions& options) {
+    auto [original, provenance] = read_file(options);
+    const HeightMap map = treated(options, original);
+    const ProfileLine line = line_of(options, map);
+    if (options.out) {
+        provenance.comment += fmt::format("\nvkfv {}: {}, {}", VKFV_VERSION, options.file.filename().string(),
+                                          treatment_text(options.band));
+        surface::write_surface(*options.out, map, provenance);
+    }
+    const Figures figures = figures_of(map, line);
+    fmt::print("{}", options.json ? json_text(options, map, figures) : text_of(options, map, figures));
+}
+
+} // namespace vkfv::app

@@ -1,0 +1,28 @@
+// A profile of a surface and its roughness.
+#pragma once
+
+#include "surface/profile.hpp"
+
+namespace vkfv::app {
+
+// In mm of the map's frame.
+struct ProfileLine {
+    double x_start = 0;
+    double y_start = 0;
+    double x_end = 0;
+    double y_end = 0;
+};
+
+ProfileLine middle_row(const surface::HeightMap& map);
+
+struct RoughnessProfile {
+    surface::Profile profile;              // before the filter
+    double section_length = 0;             // mm
+    surface::ProfileParameters parameters; // NaN for a profile of one point
+};
+
+// Points one pitch apart, the shorter pitch unless the line lies along an axis; roughness after the Gaussian filter whose
+// nesting index is the section length, a fifth of the profile (ISO 21920-2).
+RoughnessProfile roughness_profile(const surface::HeightMap& map, const ProfileLine& line);
+
+} // namespace vkfv::app

@@ -1,0 +1,28 @@
+#include "surface/band.hpp"
+
+#include "surface/filter.hpp"
+#include "surface/spline_filter.hpp"
+
+#include <utility>
+
+namespace vkfv::surface {
+
+HeightMap filtered(HeightMap map, const Band& band) {
+    const auto low_pass = [&](double nesting_index) {
+        return band.spline ? spline_low_pass(map, nesting_index) : gaussian_low_pass(map, nesting_index);
+    };
+    if (band.s_filter > 0)
+        map = low_pass(band.s_filter);
+    if (band.l_filter > 0) {
+        const HeightMap long_waves = low_pass(band.l_filter);
+        for (std::size_t k = 0; k < map.height.values.size(); ++k)
+            map.height.values[k] -= long_waves.height.values[k];
+    }
+    return map;
+}
+
+HeightMap scale_limited(HeightMap map, const Band& band) {
+    return filtered(remove_form(std::move(map), band.form), band);
+}
+
+} // namespace vkfv::surface

@@ -1,0 +1,25 @@
+// Surfaces limited in scale as ISO 25178-2 has it: form removed, short and long waves filtered out.
+#pragma once
+
+#include "surface/form.hpp"
+
+namespace vkfv::surface {
+
+// What is left of a surface. Nesting indices of the S-filter and L-filter in mm; 0: none.
+struct Band {
+    double s_filter = 0; // shorter waves are removed
+    double l_filter = 0; // longer waves are removed
+    bool spline = false; // by spline_filter.hpp, not by the Gaussian of ISO 16610-61
+    Form form = {};      // removed before both
+
+    bool limited() const { return s_filter > 0 || l_filter > 0; } // by a filter
+    bool operator==(const Band&) const = default;
+};
+
+// The filters alone: S, then L.
+HeightMap filtered(HeightMap map, const Band& band);
+
+// Form and filters.
+HeightMap scale_limited(HeightMap map, const Band& band);
+
+} // namespace vkfv::surface

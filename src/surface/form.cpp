@@ -1,0 +1,50 @@
+#include "surface/form.hpp"
+
+#include "surface/filter.hpp"
+#include "surface/polynomial.hpp"
+#include "surface/sphere.hpp"
+
+#include <utility>
+
+namespace vkfv::surface {
+namespace {
+
+constexpr int largest_degree = 20; // of least_squares_polynomial()
+
+} // namespace
+
+std::optional<Form> parse_form(std::string_view text) {
+    using enum Form::Kind;
+    for (const Form::Kind kind : {none, plane, sphere})
+        if (const Form form{.kind = kind}; text == form_name(form))
+            return form;
+    for (int degree = 1; degree <= largest_degree; ++degree)
+        if (const Form form{.kind = polynomial, .degree = degree}; text == form_name(form))
+            return form;
+    return std::nullopt;
+}
+
+std::string form_name(const Form& form) {
+    using enum Form::Kind;
+    return form.kind == none     ? "none"
+           : form.kind == plane  ? "plane"
+           : form.kind == sphere ? "sphere"
+                                 : "polynomial-" + std::to_string(form.degree);
+}
+
+HeightMap remove_form(HeightMap map, const Form& form) {
+    using enum Form::Kind;
+    if (form.kind == plane) {
+        const Plane fitted = least_squares_plane(map);
+        map = remove_plane(std::move(map), fitted);
+    } else if (form.kind == polynomial) {
+        const Polynomial fitted = least_squares_polynomial(map, form.degree);
+        map = remove_polynomial(std::move(map), fitted);
+    } else if (form.kind == sphere) {
+        const Sphere fitted = least_squares_sphere(map);
+        map = remove_sphere(std::move(map), fitted);
+    }
+    return map;
+}
+
+} // namespace vkfv::surface

@@ -1,0 +1,30 @@
+// Form removal chosen by name.
+#pragma once
+
+#include "surface/height_map.hpp"
+
+#include <optional>
+#include <string>
+#include <string_view>
+
+namespace vkfv::surface {
+
+// What is taken for the form of a surface, fitted by least squares: the F-operator of ISO 25178-2.
+struct Form {
+    enum class Kind { none, plane, polynomial, sphere };
+    Kind kind = Kind::plane;
+    int degree = 0; // of the polynomial
+
+    bool operator==(const Form&) const = default;
+};
+
+// "none", "plane", "polynomial-1" to "polynomial-20" or "sphere"; nothing for any other text.
+std::optional<Form> parse_form(std::string_view text);
+// The text that parse_form() reads.
+std::string form_name(const Form& form);
+
+// By filter.hpp, polynomial.hpp and sphere.hpp. Where the points settle no sphere none is left measured, and none beyond
+// the sphere's radius.
+HeightMap remove_form(HeightMap map, const Form& form);
+
+} // namespace vkfv::surface
