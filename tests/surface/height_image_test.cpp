@@ -94,7 +94,7 @@ TEST(HeightImage, ExrWhoseHeaderLiesIsRefused) {
 // The library would make room for the text before it looks for it; 1.7 GB of it were found by fuzzing.
 TEST(HeightImage, ExrWithAnAttributeLongerThanTheFileIsRefusedAtItsLength) {
     for (const int parts : {1, 2})
-        for (const std::int32_t length : {-1, 400, 0x68680000, std::numeric_limits<std::int32_t>::max()}) {
+        for (const std::int32_t length : {-1, 500, 0x68680000, std::numeric_limits<std::int32_t>::max()}) {
             std::string bytes = ExrBytes{.parts = parts}.bytes();
             constexpr std::string_view before("compression\0compression\0", 24);
             const std::size_t place = bytes.rfind(before) + before.size();
