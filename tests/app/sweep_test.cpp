@@ -82,6 +82,29 @@ TEST(Sweep, ImagesOfEveryCombination) {
     EXPECT_NE(read_file(folder / "out/g=1,N=320000/image.tif"), image);
 }
 
+// What decides an image or stands beside it makes it anew; commas and bars in a label do not break the tables.
+TEST(Sweep, AnotherDeviceOrBlurIsAnotherImage) {
+    const auto folder = fresh_folder("again");
+    write_file(folder / "c.toml", with_sweep(replaced(replaced(of_rays, "label = \"g\"", "label = \"g, \\\"|\\\"\""),
+                                                      "[2e4, 3.2e5]", "[2e4]")));
+    const std::vector<std::string> command = {"--sweep", "c.toml", "--out", "out", "--quiet"};
+    ASSERT_EQ(run_program(command, folder).exit_code, 0);
+    EXPECT_THAT(read_file(folder / "out/sweep.csv"), testing::StartsWith("\"g, \"\"|\"\"\",N,"));
+    EXPECT_THAT(read_file(folder / "out/sweep.md"), testing::StartsWith("| g, \"\\|\" | N |"));
+    const auto digest_with = [&](const std::vector<std::string>& more) {
+        auto with = command;
+        with.insert(with.end(), more.begin(), more.end());
+        EXPECT_EQ(run_program(with, folder).exit_code, 0);
+        const auto text = read_file(folder / "out/g, \"|\"=1,N=20000/image.json");
+        return text.substr(text.find("digest"), 30);
+    };
+    const auto first = digest_with({});
+    EXPECT_EQ(digest_with({}), first);
+    EXPECT_NE(digest_with({"--device", "host"}), first);
+    EXPECT_NE(digest_with({"--set", "diffraction.point_spread=airy"}), first);
+    EXPECT_TRUE(fs::exists(folder / "out/g, \"|\"=1,N=20000/image_diffracted.tif"));
+}
+
 TEST(Sweep, StacksTellTheNoiseOfHeights) {
     const auto folder = fresh_folder("stacks");
     write_file(folder / "c.toml", with_sweep(R"([sweep]

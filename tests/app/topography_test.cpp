@@ -142,6 +142,40 @@ TEST(Topography, ADescendingStackHasItsHeightsTheOtherWay) {
     EXPECT_EQ(read_file(folder / "up/topography.tif"), read_file(folder / "down/topography.tif"));
 }
 
+// A flat of the same instrument: what a polynomial of it is comes off; another grid is not the same instrument.
+TEST(Topography, AMeasuredFlatTakesTheFieldCurvatureOff) {
+    const auto folder = fresh_folder("flat");
+    write_pages<std::uint16_t>(folder / "stack.tif", stack_values(60000), 1, OIIO::TypeDesc::UINT16);
+    surface::HeightMap flat{.height = Grid<double>(side, side), .x0 = 7, .y0 = -3, .pitch_x = 0.002, .pitch_y = 0.002};
+    const auto curvature = [](int column, int row) { return 1e-5 * column - 1e-6 * row * row; }; // mm
+    for (int row = 0; row < side; ++row)
+        for (int column = 0; column < side; ++column)
+            flat.height(column, row) = curvature(column, row);
+    surface::write_height_map(folder / "flat.tif", flat);
+    ASSERT_EQ(evaluate(folder, "stack.tif", "raw").exit_code, 0);
+    const auto result = evaluate(folder, "stack.tif", "corrected", {"--set", "topography.flatness_file=flat.tif"});
+    ASSERT_EQ(result.exit_code, 0) << result.standard_error;
+    const auto raw = surface::read_height_map(folder / "raw/topography.tif");
+    const auto corrected = surface::read_height_map(folder / "corrected/topography.tif");
+    for (const int column : {0, 5, 18})
+        for (const int row : {2, 18})
+            if (const double height = raw.height(column, row); !std::isnan(height)) {
+                // Files hold float32: 6e-8 of 4 um.
+                EXPECT_NEAR(corrected.height(column, row), height - curvature(column, row), 1e-9) << column << " " << row;
+            }
+    const auto results = nlohmann::json::parse(read_file(folder / "corrected/results.json"));
+    EXPECT_NEAR(results["flatness_deviation_um"], 0.23 + 0.529, 1e-3); // over columns and rows of 0 to 23
+    EXPECT_FALSE(nlohmann::json::parse(read_file(folder / "raw/results.json")).contains("flatness_deviation_um"));
+
+    flat.pitch_x = 0.0021;
+    surface::write_height_map(folder / "other.tif", flat);
+    const auto other = evaluate(folder, "stack.tif", "other", {"--set", "topography.flatness_file=other.tif"});
+    EXPECT_EQ(other.exit_code, 2);
+    EXPECT_THAT(other.standard_error, HasSubstr("same instrument"));
+    EXPECT_EQ(evaluate(folder, "stack.tif", "none", {"--set", "topography.flatness_file=none.tif"}).exit_code, 2);
+    EXPECT_EQ(evaluate(folder, "stack.tif", "empty", {"--set", "topography.flatness_file=\"\""}).exit_code, 0);
+}
+
 TEST(Topography, WhatIsMissingIsNamed) {
     const auto folder = fresh_folder("missing");
     write_pages<std::uint8_t>(folder / "stack.tif", stack_values(255), 1, OIIO::TypeDesc::UINT8);
