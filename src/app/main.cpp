@@ -352,6 +352,16 @@ void refuse_strays(const CLI::App& app, const std::string& command) {
         {"--filter", {"--surface", "--compare"}},
         {"--s_filter_um", {"--surface", "--compare"}},
         {"--l_filter_um", {"--surface", "--compare"}},
+        {"--align", {"--compare"}},
+        {"--shuffle", {"--topography"}},
+        {"--precision", {"--trace-rays"}},
+        {"--apertures", {"--trace-rays"}},
+        {"--runs", {"--bench"}},
+        {"--bench-parts", {"--bench"}},
+        {"--quick", {"--bench"}},
+        {"--peer", {"--bench"}},
+        {"--commit", {"--bench"}},
+        {"--glass-catalog", {"--import"}},
     };
     for (const auto& [option, commands] : table) {
         if (app.count(option) > 0 && std::ranges::find(commands, command) == commands.end()) {

@@ -623,6 +623,8 @@ std::vector<Case> cases() {
          2,
          {"--profile with --compare", "Leave --profile out"},
          {"--compare", "a.x3p", "b.x3p", "--profile", "1,2,3,4"}},
+        {"AlignElsewhere", {}, 2, {"--align with --check", "--compare"}, {"--check", "c.toml", "--align"}},
+        {"ShuffleElsewhere", {}, 2, {"--shuffle with --check", "--topography"}, {"--check", "c.toml", "--shuffle", "1"}},
         {"UnitElsewhere", {}, 2, {"--unit_um with --check", "--surface"}, {"--check", "c.toml", "--unit_um", "1"}},
         {"StepElsewhere",
          {},

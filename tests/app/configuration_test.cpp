@@ -81,8 +81,24 @@ TEST(Configuration, IdentityHoldsWhatChangesImagesAndNothingElse) {
     const std::vector<TomlOverride> neutral = {
         {"trace.batch", "4096", ""},       {"trace.traversal", "\"quadtree\"", ""},
         {"trace.device", "\"host\"", ""},  {"output.directory", "\"other\"", ""},
-        {"topography.window_px", "5", ""}, {"topography.l_filter_um", "80", ""},
         {"output.surfaces", "[\"sur\"]", ""},
+        {"diffraction.point_spread", "\"airy\"", ""},
+        {"topography.focus_measure", "\"brenner\"", ""},
+        {"topography.window_px", "5", ""},
+        {"topography.window_shape", "\"gaussian\"", ""},
+        {"topography.smoothing_steps", "1.5", ""},
+        {"topography.false_peak_rate", "0.01", ""},
+        {"topography.peak", "\"parabola\"", ""},
+        {"topography.peak_range_steps", "2", ""},
+        {"topography.least_contrast", "3", ""},
+        {"topography.most_fit_residual", "0.5", ""},
+        {"topography.most_peaks", "2", ""},
+        {"topography.repair_outliers", "true", ""},
+        {"topography.evaluate_on", "\"host\"", ""},
+        {"topography.flatness_file", "\"flat.tif\"", ""},
+        {"topography.s_filter_um", "5", ""},
+        {"topography.l_filter_um", "80", ""},
+        {"topography.filter", "\"spline\"", ""},
     };
     for (const auto& change : neutral) {
         EXPECT_EQ(load("identity", small_configuration, {change}).identity, reference) << change.key;

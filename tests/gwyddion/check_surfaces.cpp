@@ -4,7 +4,10 @@
 #include "gwyddion/gwyddion.hpp"
 #include "surface/filter.hpp"
 #include "surface/height_parameters.hpp"
+#include "surface/hybrid_parameters.hpp"
 #include "surface/surface_file.hpp"
+
+#include <libprocess/stats.h>
 
 #include <fmt/format.h>
 
@@ -100,6 +103,42 @@ void check_against_gwyddion(const std::filesystem::path& file, const surface::He
                       highest * um_per_mm, largest * um_per_mm));
 }
 
+// Every parameter that both have. Gwyddion's area has half a level cell more around the map, and its gradient is that of
+// the cells' edges; the others are sums over the same points.
+void check_parameters(const std::filesystem::path& file, const surface::HeightMap& map) {
+    constexpr double same_sum = 1e-10;
+    const double other_definition = 0.01 + 1.0 / map.columns() + 1.0 / map.rows();
+    const auto loaded = test::load_in_gwyddion(file);
+    GwyDataField* heights = test::gwyddion_field(loaded, "/0/data");
+    GwyDataField* mask = test::gwyddion_field(loaded, "/0/mask");
+    const auto masking = mask ? GWY_MASK_EXCLUDE : GWY_MASK_IGNORE;
+    const int columns = map.columns(), rows = map.rows();
+    double mean, sa, sq, skewness, excess, lowest, highest;
+    gwy_data_field_area_get_stats_mask(heights, mask, masking, 0, 0, columns, rows, &mean, &sa, &sq, &skewness, &excess);
+    gwy_data_field_area_get_min_max_mask(heights, mask, masking, 0, 0, columns, rows, &lowest, &highest);
+    double measured = 0;
+    for (const double height : map.height.values)
+        measured += std::isfinite(height) ? 1 : 0;
+    const double area = measured * gwy_data_field_get_dx(heights) * gwy_data_field_get_dy(heights);
+    const double sdr = gwy_data_field_area_get_surface_area_mask(heights, mask, masking, 0, 0, columns, rows) / area - 1;
+    const double sdq = gwy_data_field_area_get_surface_slope_mask(heights, mask, masking, 0, 0, columns, rows);
+    const auto ours = surface::height_parameters(map);
+    const auto hybrid = surface::hybrid_parameters(map);
+    const auto compare = [](const char* name, double found, double expected, double tolerance) {
+        const double apart = std::abs(found / expected - 1);
+        check(apart <= tolerance, fmt::format("{:<6} {:>14.8g}, Gwyddion {:>14.8g}, {:.1e} apart", name, found, expected, apart));
+    };
+    compare("Sq um", ours.sq * um_per_mm, sq * 1e6, same_sum);
+    compare("Ssk", ours.ssk, skewness, same_sum);
+    compare("Sku", ours.sku, excess + 3, same_sum);
+    compare("Sp um", ours.sp * um_per_mm, (highest - mean) * 1e6, same_sum);
+    compare("Sv um", ours.sv * um_per_mm, (mean - lowest) * 1e6, same_sum);
+    compare("Sz um", ours.sz * um_per_mm, (highest - lowest) * 1e6, same_sum);
+    compare("Sa um", ours.sa * um_per_mm, sa * 1e6, same_sum);
+    compare("Sdq", hybrid.sdq, sdq, other_definition);
+    compare("Sdr", hybrid.sdr, sdr, other_definition);
+}
+
 } // namespace
 
 int main(int argument_count, char** arguments) {
@@ -123,6 +162,7 @@ int main(int argument_count, char** arguments) {
                        parameters.sa * um_per_mm, parameters.sq * um_per_mm, surface.provenance.manufacturer,
                        surface.provenance.model, surface.provenance.date);
             check_against_gwyddion(file, surface.map);
+            check_parameters(file, surface.map);
             for (const Figures& figures : published)
                 if (file.filename() == figures.name)
                     check_published(figures, surface.map);
