@@ -20,20 +20,13 @@ Shares shares_at(const std::vector<double>& weights, int at, int images) {
     const int radius = static_cast<int>(weights.size()) - 1;
     const int first = std::max(0, at - radius), last = std::min(images - 1, at + radius);
     Shares shares{.first = first, .values = {}};
-    double moments[3] = {};
+    double total = 0;
     for (int image = first; image <= last; ++image) {
-        const double d = image - at, weight = weights[static_cast<std::size_t>(std::abs(image - at))];
-        moments[0] += weight;
-        moments[1] += weight * d;
-        moments[2] += weight * d * d;
-        shares.values.push_back(weight);
+        shares.values.push_back(weights[static_cast<std::size_t>(std::abs(image - at))]);
+        total += shares.values.back();
     }
-    const double determinant = moments[0] * moments[2] - moments[1] * moments[1];
-    for (int image = first; image <= last; ++image) {
-        double& share = shares.values[static_cast<std::size_t>(image - first)];
-        // One image alone has no slope.
-        share *= determinant > 0 ? (moments[2] - (image - at) * moments[1]) / determinant : 1 / moments[0];
-    }
+    for (double& share : shares.values)
+        share /= total;
     return shares;
 }
 
@@ -62,6 +55,25 @@ std::vector<Share> axial_shares(const std::vector<double>& weights, int at, int 
     return shares;
 }
 
+std::vector<double> averaged_positions(const std::vector<double>& weights, int images) {
+    const int radius = static_cast<int>(weights.size()) - 1;
+    std::vector<double> positions;
+    for (int at = 0; at < images; ++at)
+        positions.push_back(at);
+    for (int average = 1; average <= 2; ++average) {
+        const std::vector<double> before = positions;
+        // Elsewhere weights and places are symmetric.
+        for (int at = 0; at < images; ++at)
+            if (at < average * radius || at >= images - average * radius) {
+                const Shares shares = shares_at(weights, at, images);
+                double& position = positions[static_cast<std::size_t>(at)] = 0;
+                for (int image = shares.first; image < shares.end(); ++image)
+                    position += shares[image] * before[static_cast<std::size_t>(image)];
+            }
+    }
+    return positions;
+}
+
 std::vector<double> averaged_variances(const std::vector<double>& weights, int images) {
     const int radius = static_cast<int>(weights.size()) - 1;
     // From twice the radius on, the ends are not felt; the other end mirrors this one.
@@ -76,10 +88,9 @@ std::vector<double> averaged_variances(const std::vector<double>& weights, int i
                            static_cast<std::size_t>(j)];
     };
     for (int i = 0; i < reached; ++i)
-        for (int j = 0; j <= i; ++j) {
-            const double shared = overlap(shares[static_cast<std::size_t>(i)], shares[static_cast<std::size_t>(j)]);
-            covariance(i, j) = covariance(j, i) = shared * shared;
-        }
+        for (int j = 0; j <= i; ++j)
+            covariance(i, j) = covariance(j, i) =
+                overlap(shares[static_cast<std::size_t>(i)], shares[static_cast<std::size_t>(j)]);
     std::vector<double> variances(static_cast<std::size_t>(images));
     for (int at = 0; at < images; ++at) {
         const int alike = std::min({at, images - 1 - at, different - 1});

@@ -1,8 +1,8 @@
-// The Gaussian average along z: image k becomes a weighted mean of images k + d, |d| <= 3 s, with weights exp(-d^2 / (2 s^2))
-// (1 % at the rim). At the ends of the stack, where images are missing on one side, a straight line is fitted with these
-// weights and its value at k taken (local linear regression; Fan and Gijbels, "Local Polynomial Modelling and Its
-// Applications", 1996, chapter 2): the mean of those present would be of images further inside, which moves peaks near
-// an end towards it.
+// The Gaussian average along z: image k becomes the mean of images k + d with weights exp(-d^2 / (2 s^2)), |d| <= 3 s
+// (where the weight is 1 %), over the images there are: at the ends of the stack the weights present are normalised to
+// one. There the mean stands for a place further inside, which averaged_positions() tells. (A local line instead of the
+// mean would stand for k itself, but with several times the noise, whose energy passes for texture: weak texture in the
+// middle of the scan would be lost.)
 #pragma once
 
 #include <vector>
@@ -15,15 +15,18 @@ std::vector<double> axial_weights(double standard_deviation);
 // What an image contributes to a weighted mean.
 struct Share {
     int image;
-    float weight; // all of one mean add up to one; some are negative at the ends
+    float weight; // all of one mean add up to one
 };
 
 // The average at image `at` of a stack of `images`, in ascending order of the images.
 std::vector<Share> axial_shares(const std::vector<double>& weights, int at, int images);
 
-// Of each image: the variance of the focus curve after both averages, first of the images, then of the curve, over that of
-// the measure of single images. Averaged images i and j share noise with the covariance c of their weights, and the
-// measure, quadratic in the noise, varies together by c^2.
+// What the focus curve is after both averages, first of the images, then of the curve, at each of its points.
+//
+// The place in steps of the scan that it stands for: what the averages make of a straight line.
+std::vector<double> averaged_positions(const std::vector<double>& weights, int images);
+// Its variance over that of the measure of single images: averaged images share noise by the overlap of their weights, and
+// the measure, linear in small noise beside texture, alike. (Noise alone correlates less, by the square: an upper bound.)
 std::vector<double> averaged_variances(const std::vector<double>& weights, int images);
 
 } // namespace vkfv::topography

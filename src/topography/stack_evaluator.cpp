@@ -179,6 +179,13 @@ Topography StackEvaluator::finish(double x0, double y0, double pitch) {
     const double threshold =
         std::max(contrast_threshold(images, options_.false_peak_rate), options_.least_contrast);
     const std::vector<double> variances = averaged_variances(axial_weights_, images);
+    const std::vector<double> positions = averaged_positions(axial_weights_, images);
+    // Of a place between the curve's points.
+    const auto position = [&](double at) {
+        const int before = std::clamp(static_cast<int>(std::floor(at)), 0, images - 2);
+        const double here = positions[static_cast<std::size_t>(before)];
+        return here + (at - before) * (positions[static_cast<std::size_t>(before + 1)] - here);
+    };
     const Grid<float> noise = relative_noise(stack, window_, images, channels_);
     const double step = (z_.back() - z_.front()) / (images - 1);
     Topography result;
@@ -211,7 +218,7 @@ Topography StackEvaluator::finish(double x0, double y0, double pitch) {
             else if (peaks > options_.most_peaks)
                 state = PointState::many_peaks;
             else
-                result.height.height(column, row) = z_.front() + step * (curve.at + curve.offset);
+                result.height.height(column, row) = z_.front() + step * position(curve.at + curve.offset);
         }
     for (Grid<float>& channel : stack.all_in_focus)
         for (float& value : channel.values)

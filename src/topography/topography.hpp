@@ -16,9 +16,10 @@
 //   stack itself: from second differences along z, in which texture that changes slowly cancels. Further limits
 //   of quality can be set.
 //
-// Near the ends of the scan the averages hold only the images there are: with more noise, which the limit knows, and
-// without bias on a straight curve, but a bent one is blunted less there. The two averages reach 6 smoothing_steps: plan
-// the scan so much wider than the specimen at either side, and a depth of focus at least.
+// Near the ends of the scan the averages hold only the images there are. The places that they stand for, and their larger
+// noise, are reckoned with, but a curve is blunted less there than elsewhere, which draws peaks towards the end. The two
+// averages reach 6 smoothing_steps: plan the scan so much wider than the specimen at either side, and a depth of focus
+// at least.
 #pragma once
 
 #include "core/grid.hpp"
