@@ -3,7 +3,6 @@
 #include "app/configuration_section.hpp"
 #include "core/units.hpp"
 #include "surface/image_file.hpp"
-#include "surface/surface_file.hpp"
 #include "trace/device_tracer.hpp"
 #include "trace/host_tracer.hpp"
 
@@ -90,30 +89,6 @@ std::optional<trace::Diffraction> make_diffraction(const Configuration& configur
                           fmt::format("light whose sum is positive, on pixels of at most {:.4g} um", pitch * um_per_mm),
                           "Correct the file, or the pitch of its pixels in the object plane."});
     }
-}
-
-std::optional<surface::HeightMap> read_flat(const Configuration& configuration, int columns, int rows, double pitch) {
-    const auto& file = configuration.flatness_file;
-    if (file.empty()) {
-        return std::nullopt;
-    }
-    constexpr double tolerance = 1e-3; // of a pitch: files round theirs
-    auto flat = surface::read_surface(file).map;
-    if (flat.columns() != columns || flat.rows() != rows || std::abs(flat.pitch_x - pitch) > tolerance * pitch ||
-        std::abs(flat.pitch_y - pitch) > tolerance * pitch) {
-        throw InputError({configuration.places.at("topography.flatness_file"), "topography.flatness_file",
-                          fmt::format("{}: {} x {} points, {:.6g} x {:.6g} um apart", file.string(), flat.columns(),
-                                      flat.rows(), flat.pitch_x * um_per_mm, flat.pitch_y * um_per_mm),
-                          fmt::format("the stack's grid, {} x {} points, {:.6g} um apart", columns, rows,
-                                      pitch * um_per_mm),
-                          "Measure the flat with the same instrument."});
-    }
-    if (std::ranges::none_of(flat.height.values, [](double z) { return std::isfinite(z); })) {
-        throw InputError({configuration.places.at("topography.flatness_file"), "topography.flatness_file",
-                          fmt::format("{}: no measured point", file.string()), "heights of a flat",
-                          "Give the flat texture and light enough to be measured."});
-    }
-    return flat;
 }
 
 double signal_to_noise(const trace::Image& image) {

@@ -157,6 +157,11 @@ void run_surface(const CommandOptions& options) {
     const HeightMap map = treated(options, original);
     const ProfileLine line = line_of(options, map);
     if (options.out) {
+        std::error_code none;
+        if (std::filesystem::equivalent(*options.out, options.file, none)) {
+            refuse(options, "--out", options.out->string(), "another file than the measurement itself",
+                   "Name a new one.");
+        }
         provenance.comment += fmt::format("\nvkfv {}: {}, {}", VKFV_VERSION, options.file.filename().string(),
                                           treatment_text(options.band));
         surface::write_surface(*options.out, map, provenance);

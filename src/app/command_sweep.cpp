@@ -16,6 +16,7 @@
 #include <cstdio>
 #include <fstream>
 #include <optional>
+#include <sstream>
 
 namespace vkfv::app {
 
@@ -115,11 +116,16 @@ class Surfaces {
 // What an image of the sweep is known again by: all that decides its bits, and what is written beside it.
 std::string image_digest(const Configuration& configuration, double focal_height, const std::string& surface_digest) {
     const auto& blur = configuration.diffraction;
+    std::ostringstream point_spread;
+    if (!blur.file.empty()) {
+        point_spread << std::ifstream(blur.file, std::ios::binary).rdbuf();
+    }
     return Digest()
         .add(configuration.identity + fmt::format("z = {}\n", focal_height))
         .add(surface_digest)
         .add(fmt::format("{} {}", configuration.trace.device, static_cast<int>(configuration.trace.traversal)))
-        .add(fmt::format("{} {} {}", blur.airy, blur.file.string(), blur.pitch))
+        .add(fmt::format("{} {}", blur.airy, blur.pitch))
+        .add(point_spread.str())
         .text();
 }
 
@@ -131,7 +137,8 @@ SweepRow image_row(const Configuration& configuration, double focal_height, cons
     const std::string digest = image_digest(configuration, focal_height, surface.digest);
     SweepRow row;
     const Json earlier = read_json(figures_file);
-    if (earlier.is_object() && earlier.value("digest", "") == digest && fs::exists(image_file)) {
+    if (earlier.is_object() && earlier.value("digest", "") == digest && fs::exists(image_file) &&
+        (fs::exists(folder / "image_diffracted.tif") || !configuration.diffraction.any())) {
         row.figures = earlier.at("figures");
     } else {
         const Exposure exposure = expose(configuration, surface.specimen, focal_height);

@@ -87,7 +87,7 @@ Evaluation evaluate_foreign(const CommandOptions& options) {
     StackEvaluation evaluation(configuration.topography, planes_for(configuration));
     const auto order = order_of_images(static_cast<std::size_t>(series.size()), options.shuffle);
     const double start = options.z_start.value_or(0);
-    std::optional<surface::HeightMap> flat;
+    std::optional<Flat> flat;
     for (int place = 0; place < series.size(); ++place) {
         // Heights ascend, whichever way the instrument went.
         const int image = *options.z_step > 0 ? place : series.size() - 1 - place;

@@ -120,10 +120,6 @@ void write_image(const std::filesystem::path& path, const Exposure& exposure, do
 std::optional<trace::Diffraction> make_diffraction(const Configuration& configuration,
                                                    const optics::Instrument& instrument);
 
-// The measured flat that the configuration names, for stacks of this grid (pitch in mm); none if it names none. InputError
-// where its grid is another: it must have been measured by the same instrument.
-std::optional<surface::HeightMap> read_flat(const Configuration& configuration, int columns, int rows, double pitch);
-
 // The true surface on the detector's pixels, in the object plane.
 surface::HeightMap truth_on_pixels(const optics::Instrument& instrument, const Configuration& configuration,
                                    const specimen::Specimen& specimen);

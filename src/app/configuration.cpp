@@ -426,10 +426,10 @@ void read_topography(const TomlTable& root, Configuration& configuration, Needs 
     options.repair_outliers = section.boolean("repair_outliers", options.repair_outliers, Influence::nothing);
     configuration.evaluate_on = section.choice("evaluate_on", {"auto", "host", "device"}, configuration.evaluate_on,
                                                Influence::nothing);
-    // "" is none, so that --set can take it back.
-    if (const auto file = table.optional_file_path("flatness_file"); file && file->has_filename()) {
-        configuration.flatness_file = *file;
-        section.record_reference("flatness_file", absolute_path(*file).string());
+    // "none", so that --set can take it back.
+    if (const auto name = table.optional_string("flatness_file"); name && *name != "none") {
+        configuration.flatness_file = table.file_path("flatness_file");
+        section.record_reference("flatness_file", absolute_path(configuration.flatness_file).string());
     }
     configuration.band.spline =
         section.choice("filter", {"gaussian", "spline"}, "gaussian", Influence::nothing) == "spline";

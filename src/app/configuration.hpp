@@ -26,6 +26,8 @@ struct DiffractionOptions {
     bool airy = false;
     std::filesystem::path file; // else a measured point spread function
     double pitch = 0;           // of the file's pixels, mm in the object plane
+
+    bool any() const { return airy || !file.empty(); }
 };
 
 // What `vkfv --sweep` varies: every combination of the values, the first parameter slowest.

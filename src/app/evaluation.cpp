@@ -160,6 +160,34 @@ topography::FocusPlanesMaker focus_planes_for(const std::string& evaluate_on, co
     return device_focus_planes(traced_on_host ? std::string() : device_selector);
 }
 
+std::optional<Flat> read_flat(const Configuration& configuration, int columns, int rows, double pitch) {
+    const auto& file = configuration.flatness_file;
+    if (file.empty()) {
+        return std::nullopt;
+    }
+    constexpr double tolerance = 1e-3; // of a pitch: files round theirs
+    auto flat = surface::read_surface(file).map;
+    if (flat.columns() != columns || flat.rows() != rows || std::abs(flat.pitch_x - pitch) > tolerance * pitch ||
+        std::abs(flat.pitch_y - pitch) > tolerance * pitch) {
+        throw InputError({configuration.places.at("topography.flatness_file"), "topography.flatness_file",
+                          fmt::format("{}: {} x {} points, {:.6g} x {:.6g} um apart", file.string(), flat.columns(),
+                                      flat.rows(), flat.pitch_x * um_per_mm, flat.pitch_y * um_per_mm),
+                          fmt::format("the stack's grid, {} x {} points, {:.6g} um apart", columns, rows,
+                                      pitch * um_per_mm),
+                          "Measure the flat with the same instrument."});
+    }
+    // A polynomial knows nothing of places where nothing was measured.
+    constexpr double least_share = 0.9;
+    const double measured = surface::height_parameters(flat).measured_share;
+    if (!(measured >= least_share)) {
+        throw InputError({configuration.places.at("topography.flatness_file"), "topography.flatness_file",
+                          fmt::format("{}: {:.0f} % of the points measured", file.string(), 100 * measured),
+                          fmt::format("at least {:.0f} %", 100 * least_share),
+                          "Give the flat texture and light enough to be measured, and scan as far as the field curves."});
+    }
+    return Flat{.file = file, .heights = std::move(flat)};
+}
+
 StackEvaluation::StackEvaluation(const topography::TopographyOptions& options,
                                  topography::FocusPlanesMaker make_planes,
                                  std::optional<trace::Diffraction> diffraction)
@@ -182,17 +210,17 @@ void StackEvaluation::add(topography::Channels image, double z) {
     evaluator_.add(std::move(image), z);
 }
 
-void StackEvaluation::reconstruct(double x0, double y0, double pitch, const std::optional<surface::HeightMap>& flat) {
+void StackEvaluation::reconstruct(double x0, double y0, double pitch, const std::optional<Flat>& flat) {
     evaluation_.topography = evaluator_.finish(x0, y0, pitch);
     if (flat) {
-        auto corrected = topography::correct_flatness(std::move(evaluation_.topography.height), *flat);
+        auto corrected = topography::correct_flatness(std::move(evaluation_.topography.height), flat->heights);
         evaluation_.topography.height = std::move(corrected.heights);
-        evaluation_.flatness_deviation = corrected.peak_to_valley;
+        evaluation_.flatness = {.file = flat->file, .deviation = corrected.peak_to_valley};
     }
 }
 
 Evaluation StackEvaluation::finish(surface::HeightMap truth, const topography::Band& band,
-                                   const std::optional<surface::HeightMap>& flat) {
+                                   const std::optional<Flat>& flat) {
     if (diffracted_) {
         evaluation_.diffracted = std::make_shared<Evaluation>(diffracted_->finish(truth, band, flat));
     }
@@ -210,7 +238,7 @@ Evaluation StackEvaluation::finish(surface::HeightMap truth, const topography::B
     return std::move(evaluation_);
 }
 
-Evaluation StackEvaluation::finish(double pitch, const std::optional<surface::HeightMap>& flat) {
+Evaluation StackEvaluation::finish(double pitch, const std::optional<Flat>& flat) {
     {
         const Stopwatch stopwatch(evaluation_.seconds);
         reconstruct(-0.5 * (columns_ - 1) * pitch, -0.5 * (rows_ - 1) * pitch, pitch, flat);
@@ -236,7 +264,7 @@ void write_evaluation(const std::filesystem::path& folder, const Evaluation& eva
             results = std::move(parsed);
         }
     }
-    for (const char* key : {"filtered", "diffracted", "flatness_deviation_um"}) {
+    for (const char* key : {"filtered", "diffracted", "flatness"}) {
         results.erase(key);
     }
     results.update(figures_of(evaluation));
@@ -257,8 +285,9 @@ void write_evaluation(const std::filesystem::path& folder, const Evaluation& eva
                              {"most_fit_residual", options.most_fit_residual},
                              {"most_peaks", options.most_peaks},
                              {"repair_outliers", options.repair_outliers}};
-    if (evaluation.flatness_deviation) {
-        results["flatness_deviation_um"] = *evaluation.flatness_deviation * um_per_mm;
+    if (evaluation.flatness) {
+        results["flatness"] = {{"file", evaluation.flatness->file.string()},
+                               {"deviation_um", evaluation.flatness->deviation * um_per_mm}};
     }
     results["points"] = point_counts(evaluation.topography.state);
     results["evaluation_seconds"] = evaluation.seconds;
@@ -275,9 +304,9 @@ std::string summary(const Evaluation& evaluation) {
                "finer steps, or give the specimen texture.\n";
     }
     std::string text = fmt::format("measured {:.1f} % of the points\n", 100 * measured);
-    if (evaluation.flatness_deviation) {
+    if (evaluation.flatness) {
         text += fmt::format("field curvature removed by the flat: {:.3g} um peak to valley\n",
-                            *evaluation.flatness_deviation * um_per_mm);
+                            evaluation.flatness->deviation * um_per_mm);
     }
     if (evaluation.deviation) {
         text += text_of("levelled:", *evaluation.deviation);

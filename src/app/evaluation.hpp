@@ -15,10 +15,26 @@
 
 namespace vkfv::app {
 
+// A flat that the same instrument measured (topography/flatness.hpp).
+struct Flat {
+    std::filesystem::path file;
+    surface::HeightMap heights;
+};
+
+// That the configuration names, for stacks of this grid (pitch in mm); none if it names none. Throws InputError where its
+// grid is another, since it must have been measured by the same instrument, or where too little of it was measured.
+std::optional<Flat> read_flat(const Configuration& configuration, int columns, int rows, double pitch);
+
+// What it took off.
+struct Flatness {
+    std::filesystem::path file;
+    double deviation = 0; // mm, peak to valley
+};
+
 struct Evaluation {
     topography::TopographyOptions options; // that the heights were found by
     topography::Topography topography;
-    std::optional<double> flatness_deviation; // mm, peak to valley, removed from the heights; none: no correction
+    std::optional<Flatness> flatness; // of `diffracted` too, by the same flat; none: no correction
     std::optional<surface::HeightMap> truth; // none of a stack that another instrument took; nor deviations
     std::optional<topography::Deviation> deviation;          // levelled
     std::optional<topography::Deviation> filtered_deviation; // and filtered; none if the band has no limit
@@ -44,12 +60,12 @@ class StackEvaluation {
     void add(topography::Channels image, double z);
     // On the truth's grid, with the deviation from it. Flat: topography/flatness.hpp; none: no correction.
     Evaluation finish(surface::HeightMap truth, const topography::Band& band,
-                      const std::optional<surface::HeightMap>& flat = {});
+                      const std::optional<Flat>& flat = {});
     // Without a truth; the grid's middle is the origin, pitch in mm.
-    Evaluation finish(double pitch, const std::optional<surface::HeightMap>& flat = {});
+    Evaluation finish(double pitch, const std::optional<Flat>& flat = {});
 
   private:
-    void reconstruct(double x0, double y0, double pitch, const std::optional<surface::HeightMap>& flat);
+    void reconstruct(double x0, double y0, double pitch, const std::optional<Flat>& flat);
 
     topography::StackEvaluator evaluator_;
     std::optional<trace::Diffraction> diffraction_;

@@ -342,7 +342,17 @@ void refuse_strays(const CLI::App& app, const std::string& command) {
         const char* option;
         std::vector<std::string> commands;
     };
+    const std::vector<std::string> configured = {"--stack", "--image",      "--sweep",  "--topography",
+                                                 "--check", "--trace-rays", "--layout", "--bench"};
     const std::vector<Owned> table = {
+        {"--set", configured},
+        {"--rays", configured},
+        {"--seed", configured},
+        {"--estimator", configured},
+        {"--traversal", configured},
+        {"--device", configured},
+        {"--json", {"--check", "--compare", "--surface", "--devices", "--bench", "--import"}},
+        {"--out", {"--stack", "--image", "--sweep", "--topography", "--compare", "--surface", "--bench", "--import"}},
         {"--z_step_um", {"--topography"}},
         {"--z_start_um", {"--topography"}},
         {"--pitch_um", {"--topography", "--surface"}},

@@ -19,8 +19,9 @@ RoughnessProfile roughness_profile(const surface::HeightMap& map, const ProfileL
     const auto points = result.profile.height.size();
     result.section_length = static_cast<double>(points - 1) * spacing / 5;
     constexpr double undefined = std::numeric_limits<double>::quiet_NaN();
+    // Of a section no longer than a spacing the filter leaves nothing.
     result.parameters =
-        points > 1 ? surface::profile_parameters(surface::remove_long_waves(result.profile, result.section_length))
+        result.section_length > spacing ? surface::profile_parameters(surface::remove_long_waves(result.profile, result.section_length))
                    : surface::ProfileParameters{.ra = undefined, .rq = undefined, .rz = undefined};
     return result;
 }

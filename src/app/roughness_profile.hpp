@@ -18,7 +18,7 @@ ProfileLine middle_row(const surface::HeightMap& map);
 struct RoughnessProfile {
     surface::Profile profile;              // before the filter
     double section_length = 0;             // mm
-    surface::ProfileParameters parameters; // NaN for a profile of one point
+    surface::ProfileParameters parameters; // NaN for a profile of six points or fewer
 };
 
 // Points one pitch apart, the shorter pitch unless the line lies along an axis; roughness after the Gaussian filter whose

@@ -39,10 +39,14 @@ std::string cell_text(const nlohmann::ordered_json& value) {
                                    : value.dump();
 }
 
-// A cell of a CSV file (RFC 4180) or of a Markdown table, whatever its text holds.
+// A cell of a CSV file (RFC 4180) or of a Markdown table.
 std::string escaped(const std::string& text, bool markdown) {
     std::string result;
     for (const char character : text) {
+        if (markdown && (character == '\n' || character == '\r')) {
+            result += ' ';
+            continue;
+        }
         if (markdown && character == '|') {
             result += '\\';
         } else if (!markdown && character == '"') {
@@ -50,7 +54,7 @@ std::string escaped(const std::string& text, bool markdown) {
         }
         result += character;
     }
-    return !markdown && text.find_first_of(",\"\n") != std::string::npos ? '"' + result + '"' : result;
+    return !markdown && text.find_first_of(",\"\r\n") != std::string::npos ? '"' + result + '"' : result;
 }
 
 std::string table_text(const Sweep& sweep, const std::vector<SweepRow>& rows, bool markdown) {
@@ -104,10 +108,9 @@ std::string plain_text(const std::string& toml_text) {
 std::string sweep_name(const Sweep& sweep, const std::vector<std::string>& values) {
     std::string name;
     for (std::size_t k = 0; k < values.size(); ++k) {
-        std::string value = plain_text(values[k]);
-        std::ranges::replace(value, '/', '_');
-        name += fmt::format("{}{}={}", k == 0 ? "" : ",", sweep.parameters[k].label, value);
+        name += fmt::format("{}{}={}", k == 0 ? "" : ",", sweep.parameters[k].label, plain_text(values[k]));
     }
+    std::ranges::replace(name, '/', '_');
     return name;
 }
 

@@ -11,6 +11,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <numeric>
 #include <random>
 
@@ -164,16 +165,33 @@ TEST(Topography, AMeasuredFlatTakesTheFieldCurvatureOff) {
                 EXPECT_NEAR(corrected.height(column, row), height - curvature(column, row), 1e-9) << column << " " << row;
             }
     const auto results = nlohmann::json::parse(read_file(folder / "corrected/results.json"));
-    EXPECT_NEAR(results["flatness_deviation_um"], 0.23 + 0.529, 1e-3); // over columns and rows of 0 to 23
-    EXPECT_FALSE(nlohmann::json::parse(read_file(folder / "raw/results.json")).contains("flatness_deviation_um"));
+    EXPECT_NEAR(results["flatness"]["deviation_um"], 0.23 + 0.529, 1e-3); // over columns and rows of 0 to 23
+    EXPECT_EQ(results["flatness"]["file"], "flat.tif");
+    EXPECT_FALSE(nlohmann::json::parse(read_file(folder / "raw/results.json")).contains("flatness"));
 
     flat.pitch_x = 0.0021;
     surface::write_height_map(folder / "other.tif", flat);
     const auto other = evaluate(folder, "stack.tif", "other", {"--set", "topography.flatness_file=other.tif"});
     EXPECT_EQ(other.exit_code, 2);
     EXPECT_THAT(other.standard_error, HasSubstr("same instrument"));
+    // A few gaps are no matter, a missing quarter is.
+    flat.pitch_x = 0.002;
+    flat.height(3, 3) = flat.height(20, 5) = std::numeric_limits<double>::quiet_NaN();
+    surface::write_height_map(folder / "gaps.tif", flat);
+    ASSERT_EQ(evaluate(folder, "stack.tif", "gaps", {"--set", "topography.flatness_file=gaps.tif"}).exit_code, 0);
+    const auto over_gaps = surface::read_height_map(folder / "gaps/topography.tif");
+    if (const double height = raw.height(5, 18); !std::isnan(height)) {
+        EXPECT_NEAR(over_gaps.height(5, 18), height - curvature(5, 18), 1e-9);
+    }
+    for (int row = 0; row < side / 2; ++row)
+        for (int column = 0; column < side / 2; ++column)
+            flat.height(column, row) = std::numeric_limits<double>::quiet_NaN();
+    surface::write_height_map(folder / "quarter.tif", flat);
+    const auto quarter = evaluate(folder, "stack.tif", "quarter", {"--set", "topography.flatness_file=quarter.tif"});
+    EXPECT_EQ(quarter.exit_code, 2);
+    EXPECT_THAT(quarter.standard_error, HasSubstr("75 % of the points"));
     EXPECT_EQ(evaluate(folder, "stack.tif", "none", {"--set", "topography.flatness_file=none.tif"}).exit_code, 2);
-    EXPECT_EQ(evaluate(folder, "stack.tif", "empty", {"--set", "topography.flatness_file=\"\""}).exit_code, 0);
+    EXPECT_EQ(evaluate(folder, "stack.tif", "empty", {"--set", "topography.flatness_file=none"}).exit_code, 0);
 }
 
 TEST(Topography, WhatIsMissingIsNamed) {
