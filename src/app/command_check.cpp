@@ -94,6 +94,7 @@ std::vector<Group> groups_of(const Configuration& configuration, const optics::I
           {"strehl_edge", quality.edge.strehl, "the same at the edge"},
           {"strehl_corner", quality.corner.strehl, "the same in the corner"},
           {"field_curvature_um", first_order.field_curvature * um_per_mm, "best focus at the edge over that on the axis"},
+          {"field_curvature_corner_um", first_order.field_curvature_corner * um_per_mm, "the same in the corner"},
           {"distortion_edge_percent", quality.edge_distortion * percent, "against the paraxial magnification"},
           {"distortion_corner_percent", quality.corner_distortion * percent, "positive: pincushion"},
           {"relative_light_edge_percent", quality.edge.relative_light * percent, "its cone over that on the axis"},
@@ -205,12 +206,21 @@ void run_check(const CommandOptions& options) {
         } else {
             warnings.push_back("the detector does not see the specimen");
         }
-        if (!positions.empty() && relief.seen_share > 0 &&
-            (relief.lowest < positions.front() || relief.highest > positions.back())) {
+        const auto beyond_scan = [&](double lowest, double highest) {
+            return !positions.empty() && relief.seen_share > 0 &&
+                   (lowest < positions.front() || highest > positions.back());
+        };
+        const auto [lower, higher] = std::minmax(
+            {0.0, -instrument.first_order.field_curvature, -instrument.first_order.field_curvature_corner});
+        if (beyond_scan(relief.lowest, relief.highest)) {
             warnings.push_back(
                 fmt::format("the specimen reaches from {:.3g} to {:.3g} um, beyond the scan: what lies "
                             "outside will not be measured",
                             relief.lowest * um_per_mm, relief.highest * um_per_mm));
+        } else if (beyond_scan(relief.lowest + lower, relief.highest + higher)) {
+            warnings.push_back(fmt::format("The field is curved: the specimen comes into focus between {:.3g} and {:.3g} um "
+                                           "there, beyond the scan.",
+                                           (relief.lowest + lower) * um_per_mm, (relief.highest + higher) * um_per_mm));
         }
     }
     report["warnings"] = warnings;

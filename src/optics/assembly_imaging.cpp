@@ -193,6 +193,7 @@ void Assembly::measure_imaging() {
     instrument.front_vertex_height = first_order.working_distance - first_order.best_focus_offset;
 
     const Outline at_corner = outline_at(imaging, {field_half_diagonal, 0});
+    first_order.field_curvature_corner = best_focus(imaging, at_corner) - first_order.best_focus_offset;
     const double relative_light = at_corner.area() / on_axis.area();
     if (relative_light < 0.9) {
         instrument.warnings.push_back(fmt::format(

@@ -106,6 +106,7 @@ struct FirstOrder {
     // density in direction cosines, as the light of a Lambertian specimen does.
     double best_focus_offset = 0;
     double field_curvature = 0; // the same at the field's edge, from the on-axis best focus (+z)
+    double field_curvature_corner = 0; // in the field's corners
     double field_edge = 0;      // the field height that belongs to it: half the detector's side in the object
     double pupil_radius_in_source = 0;    // radius of source that fills the objective's pupil; 0: a ring light
     double illumination_to_objective = 0; // as resolved

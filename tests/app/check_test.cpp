@@ -40,7 +40,7 @@ const std::vector<std::string> figures = {
     "depth_of_field_um", "detector_depth_of_field_um", "field_edge_um", "rms_spot_axis_um", "rms_spot_edge_um",
     "rms_spot_corner_um", "detector_rms_spot_axis_um", "detector_rms_spot_edge_um", "detector_rms_spot_corner_um",
     "wavefront_rms_axis_waves", "wavefront_rms_edge_waves", "wavefront_rms_corner_waves", "strehl_axis", "strehl_edge",
-    "strehl_corner", "field_curvature_um", "distortion_edge_percent", "distortion_corner_percent",
+    "strehl_corner", "field_curvature_um", "field_curvature_corner_um", "distortion_edge_percent", "distortion_corner_percent",
     "relative_light_edge_percent", "relative_light_corner_percent", "axial_colour_um", "lateral_colour_um"};
 
 TEST(Check, EveryMicroscopeHasEveryFigure) {
@@ -123,6 +123,18 @@ TEST(Check, NamesTheLensThatClipsTheCorner) {
     EXPECT_THAT(warnings_of(wide), Contains(::testing::AllOf(HasSubstr("from the field's corner is clipped by imaging"),
                                                              HasSubstr("% of the rim"))));
     EXPECT_THAT(warnings_of(check(small_configuration)), Not(Contains(HasSubstr("clipped"))));
+}
+
+// The corners of 1 mm by 1 mm come into focus 14.7 um below the middle.
+TEST(Check, WarnsOfAScanThatTheFieldCurvatureLeaves) {
+    const auto wide_with = [](const std::string& start) {
+        return check(small_configuration, {"--set", "detector.size_mm=10", "--set", "detector.pixels=1000", "--set",
+                                           "scan.z_start_um=" + start, "--set", "scan.z_stop_um=5", "--set", "scan.z_step_um=1"});
+    };
+    const auto cut = wide_with("-10");
+    EXPECT_NEAR(cut["field_curvature_corner_um"], 14.7, 0.1);
+    EXPECT_THAT(warnings_of(cut), Contains(HasSubstr("The field is curved")));
+    EXPECT_THAT(warnings_of(wide_with("-20")), Not(Contains(HasSubstr("The field is curved"))));
 }
 
 // The demo's specimen goes on beyond its field on purpose; nothing else is amiss.

@@ -167,6 +167,9 @@ TEST_F(Surface, GivesImagesTheirScale) {
 }
 
 TEST_F(Surface, RefusesWhatItCannotDo) {
+    const auto original = read_file(folder / "wavy.x3p");
+    refused({"wavy.x3p", "--out", "./wavy.x3p"}, {"--out = ./wavy.x3p", "Name a new one"});
+    EXPECT_EQ(read_file(folder / "wavy.x3p"), original);
     refused({"wavy.x3p", "--out", "picture.png"}, {"picture.png", ".x3p, .sur, .sdf, .tif or .ply"});
     refused({"wavy.x3p", "--profile", "0,0,500,0"}, {"--profile = 0,0,500,0", "x from 10 to 129 um, y from -20 to 78 um"});
     refused({"wavy.x3p", "--profile", "20,0,20,0"}, {"longer than a pitch"});
