@@ -21,8 +21,9 @@ RoughnessProfile roughness_profile(const surface::HeightMap& map, const ProfileL
     constexpr double undefined = std::numeric_limits<double>::quiet_NaN();
     // Of a section no longer than a spacing the filter leaves nothing.
     result.parameters =
-        result.section_length > spacing ? surface::profile_parameters(surface::remove_long_waves(result.profile, result.section_length))
-                   : surface::ProfileParameters{.ra = undefined, .rq = undefined, .rz = undefined};
+        result.section_length > spacing
+            ? surface::profile_parameters(surface::remove_long_waves(result.profile, result.section_length))
+            : surface::ProfileParameters{.ra = undefined, .rq = undefined, .rz = undefined};
     return result;
 }
 

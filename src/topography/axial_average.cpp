@@ -30,11 +30,18 @@ Shares shares_at(const std::vector<double>& weights, int at, int images) {
     return shares;
 }
 
-double overlap(const Shares& a, const Shares& b) {
-    double sum = 0;
-    for (int image = std::max(a.first, b.first); image < std::min(a.end(), b.end()); ++image)
-        sum += a[image] * b[image];
-    return sum;
+// The shares of both averages, one after the other.
+Shares twice_shares_at(const std::vector<double>& weights, int at, int images) {
+    const int reach = 2 * (static_cast<int>(weights.size()) - 1);
+    const int first = std::max(0, at - reach), last = std::min(images - 1, at + reach);
+    Shares result{.first = first, .values = std::vector<double>(static_cast<std::size_t>(last - first + 1))};
+    const Shares curve = shares_at(weights, at, images);
+    for (int point = curve.first; point < curve.end(); ++point) {
+        const Shares averaged = shares_at(weights, point, images);
+        for (int image = averaged.first; image < averaged.end(); ++image)
+            result.values[static_cast<std::size_t>(image - first)] += curve[point] * averaged[image];
+    }
+    return result;
 }
 
 } // namespace
@@ -55,56 +62,26 @@ std::vector<Share> axial_shares(const std::vector<double>& weights, int at, int 
     return shares;
 }
 
-std::vector<double> averaged_positions(const std::vector<double>& weights, int images) {
-    const int radius = static_cast<int>(weights.size()) - 1;
-    std::vector<double> positions;
-    for (int at = 0; at < images; ++at)
-        positions.push_back(at);
-    for (int average = 1; average <= 2; ++average) {
-        const std::vector<double> before = positions;
-        // Elsewhere weights and places are symmetric.
-        for (int at = 0; at < images; ++at)
-            if (at < average * radius || at >= images - average * radius) {
-                const Shares shares = shares_at(weights, at, images);
-                double& position = positions[static_cast<std::size_t>(at)] = 0;
-                for (int image = shares.first; image < shares.end(); ++image)
-                    position += shares[image] * before[static_cast<std::size_t>(image)];
-            }
-    }
-    return positions;
-}
-
-std::vector<double> averaged_variances(const std::vector<double>& weights, int images) {
-    const int radius = static_cast<int>(weights.size()) - 1;
-    // From twice the radius on, the ends are not felt; the other end mirrors this one.
-    const int different = std::min(2 * radius + 1, (images + 1) / 2);
-    const int reached = std::min(different + radius, images);
-    std::vector<Shares> shares;
-    for (int at = 0; at < reached; ++at)
-        shares.push_back(shares_at(weights, at, images));
-    std::vector<double> covariances(static_cast<std::size_t>(reached) * static_cast<std::size_t>(reached));
-    const auto covariance = [&](int i, int j) -> double& {
-        return covariances[static_cast<std::size_t>(i) * static_cast<std::size_t>(reached) +
-                           static_cast<std::size_t>(j)];
-    };
-    for (int i = 0; i < reached; ++i)
-        for (int j = 0; j <= i; ++j)
-            covariance(i, j) = covariance(j, i) =
-                overlap(shares[static_cast<std::size_t>(i)], shares[static_cast<std::size_t>(j)]);
-    std::vector<double> variances(static_cast<std::size_t>(images));
+std::vector<AveragedPoint> averaged_points(const std::vector<double>& weights, int images) {
+    const int reach = 2 * (static_cast<int>(weights.size()) - 1);
+    std::vector<AveragedPoint> points;
     for (int at = 0; at < images; ++at) {
-        const int alike = std::min({at, images - 1 - at, different - 1});
-        double& variance = variances[static_cast<std::size_t>(at)];
-        if (alike < at) {
-            variance = variances[static_cast<std::size_t>(alike)];
+        // Where the ends are not felt, every point is like the one before it.
+        if (at > reach && at < images - reach) {
+            points.push_back({static_cast<double>(at), points.back().variance});
             continue;
         }
-        const Shares& curve = shares[static_cast<std::size_t>(at)];
-        for (int i = curve.first; i < curve.end(); ++i)
-            for (int j = curve.first; j < curve.end(); ++j)
-                variance += curve[i] * curve[j] * covariance(i, j);
+        const Shares shares = twice_shares_at(weights, at, images);
+        AveragedPoint point;
+        for (int image = shares.first; image < shares.end(); ++image) {
+            point.position += shares[image] * image;
+            point.variance += shares[image] * shares[image];
+        }
+        if (at == reach && at < images - reach)
+            point.position = at; // without the sum's rounding, as its neighbours
+        points.push_back(point);
     }
-    return variances;
+    return points;
 }
 
 } // namespace vkfv::topography

@@ -1,6 +1,6 @@
 // The Gaussian average along z: image k becomes the mean of images k + d with weights exp(-d^2 / (2 s^2)), |d| <= 3 s
 // (where the weight is 1 %), over the images there are: at the ends of the stack the weights present are normalised to
-// one. There the mean stands for a place further inside, which averaged_positions() tells. (A local line instead of the
+// one. There the mean stands for a place further inside, which averaged_points() tells. (A local line instead of the
 // mean would stand for k itself, but with several times the noise, whose energy passes for texture: weak texture in the
 // middle of the scan would be lost.)
 #pragma once
@@ -21,12 +21,13 @@ struct Share {
 // The average at image `at` of a stack of `images`, in ascending order of the images.
 std::vector<Share> axial_shares(const std::vector<double>& weights, int at, int images);
 
-// What the focus curve is after both averages, first of the images, then of the curve, at each of its points.
-//
-// The place in steps of the scan that it stands for: what the averages make of a straight line.
-std::vector<double> averaged_positions(const std::vector<double>& weights, int images);
-// Its variance over that of the measure of single images: averaged images share noise by the overlap of their weights, and
-// the measure, linear in small noise beside texture, alike. (Noise alone correlates less, by the square: an upper bound.)
-std::vector<double> averaged_variances(const std::vector<double>& weights, int images);
+// What a point of the focus curve is after both averages, first of the images, then of the curve.
+struct AveragedPoint {
+    double position = 0; // that it stands for, in steps of the scan: what the averages make of a straight line
+    // Over that of the measure of single images, which is linear in small noise beside texture. (Noise alone correlates
+    // less from image to image: an upper bound.)
+    double variance = 0;
+};
+std::vector<AveragedPoint> averaged_points(const std::vector<double>& weights, int images);
 
 } // namespace vkfv::topography

@@ -178,13 +178,12 @@ Topography StackEvaluator::finish(double x0, double y0, double pitch) {
     const int images = static_cast<int>(z_.size());
     const double threshold =
         std::max(contrast_threshold(images, options_.false_peak_rate), options_.least_contrast);
-    const std::vector<double> variances = averaged_variances(axial_weights_, images);
-    const std::vector<double> positions = averaged_positions(axial_weights_, images);
+    const std::vector<AveragedPoint> points = averaged_points(axial_weights_, images);
     // Of a place between the curve's points.
     const auto position = [&](double at) {
         const int before = std::clamp(static_cast<int>(std::floor(at)), 0, images - 2);
-        const double here = positions[static_cast<std::size_t>(before)];
-        return here + (at - before) * (positions[static_cast<std::size_t>(before + 1)] - here);
+        const double here = points[static_cast<std::size_t>(before)].position;
+        return here + (at - before) * (points[static_cast<std::size_t>(before + 1)].position - here);
     };
     const Grid<float> noise = relative_noise(stack, window_, images, channels_);
     const double step = (z_.back() - z_.front()) / (images - 1);
@@ -201,7 +200,7 @@ Topography StackEvaluator::finish(double x0, double y0, double pitch) {
         for (int column = 0; column < columns_; ++column) {
             const auto& curve = stack.curves(column, row);
             const double pixels = window_.pixels(columns_, rows_, column, row);
-            const double averaging = std::sqrt(variances[static_cast<std::size_t>(curve.at)]);
+            const double averaging = std::sqrt(points[static_cast<std::size_t>(curve.at)].variance);
             const double curve_noise = noise(column, row) * noise_gain(measure_, pixels) * averaging;
             const double contrast = (curve.largest - curve.sum / images) / curve_noise;
             const int peaks = focus::f64::count_peaks(curve, images);

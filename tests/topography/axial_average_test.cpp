@@ -50,14 +50,14 @@ TEST(AxialAverage, PositionsAreWhatTheAveragesMakeOfAStraightLine) {
                     line[static_cast<std::size_t>(k)] += share.weight * before[static_cast<std::size_t>(share.image)];
             }
         }
-        const auto positions = averaged_positions(weights, images);
+        const auto points = averaged_points(weights, images);
         for (int k = 0; k < images; ++k)
-            EXPECT_NEAR(positions[static_cast<std::size_t>(k)], line[static_cast<std::size_t>(k)], 1e-5) << s; // float32
-        EXPECT_EQ(positions[0] > 0.5, s > 0.5); // further inside, unless hardly anything is averaged
+            EXPECT_NEAR(points[static_cast<std::size_t>(k)].position, line[static_cast<std::size_t>(k)], 1e-5) << s; // float32
+        EXPECT_EQ(points[0].position > 0.5, s > 0.5); // further inside, unless hardly anything is averaged
     }
-    const auto far = averaged_positions(axial_weights(2), 60);
+    const auto far = averaged_points(axial_weights(2), 60);
     for (int k = 12; k < 48; ++k)
-        EXPECT_EQ(far[static_cast<std::size_t>(k)], k);
+        EXPECT_EQ(far[static_cast<std::size_t>(k)].position, k);
 }
 
 // White noise, averaged as images and as a curve that is linear in it.
@@ -86,11 +86,11 @@ TEST(AxialAverage, VariancesAreThoseOfAveragedNoise) {
             for (std::size_t k = 0; k < images; ++k)
                 square[k] += curve[k] * curve[k];
         }
-        const auto variances = averaged_variances(weights, images);
+        const auto points = averaged_points(weights, images);
         for (std::size_t k = 0; k < images; ++k) // five standard errors: 5 sqrt(2 / 40000)
-            EXPECT_NEAR(square[k] / trials / variances[k], 1, 0.036) << k << " " << s;
+            EXPECT_NEAR(square[k] / trials / points[k].variance, 1, 0.036) << k << " " << s;
         if (s > 0) {
-            EXPECT_GT(variances[0], 1.5 * variances[images / 2]); // the ends average less
+            EXPECT_GT(points[0].variance, 1.5 * points[images / 2].variance); // the ends average less
         }
     }
 }
