@@ -2,37 +2,30 @@
 
 #include "core/fourier.hpp"
 
-#include <algorithm>
 #include <cmath>
-#include <complex>
 #include <limits>
 #include <stdexcept>
+#include <utility>
 #include <vector>
 
 namespace vkfv::surface {
 namespace {
 
 // The filter of a whole map: the inverse of 1 + mu Laplacian^2 under mirrored borders.
-std::vector<double> whole_low_pass(const std::vector<double>& heights, const HeightMap& map, double nesting_index) {
-    const int columns = map.columns(), rows = map.rows();
-    Grid<std::complex<double>> mirrored(2 * columns, 2 * rows);
-    for (int row = 0; row < mirrored.rows; ++row)
-        for (int column = 0; column < mirrored.columns; ++column)
-            mirrored(column, row) =
-                heights[map.height.index(std::min(column, 2 * columns - 1 - column), std::min(row, 2 * rows - 1 - row))];
-    fourier_transform(mirrored);
-    for (int row = 0; row < mirrored.rows; ++row)
-        for (int column = 0; column < mirrored.columns; ++column) {
-            const double frequency = std::hypot(fourier_frequency(column, mirrored.columns) / map.pitch_x,
-                                                fourier_frequency(row, mirrored.rows) / map.pitch_y);
-            mirrored(column, row) /= 1 + std::pow(nesting_index * frequency, 4);
+std::vector<double> whole_low_pass(std::vector<double> heights, const HeightMap& map, double nesting_index) {
+    Grid<double> grid;
+    grid.columns = map.columns();
+    grid.rows = map.rows();
+    grid.values = std::move(heights);
+    cosine_transform(grid);
+    for (int row = 0; row < grid.rows; ++row)
+        for (int column = 0; column < grid.columns; ++column) {
+            const double frequency =
+                std::hypot(column / (2 * grid.columns * map.pitch_x), row / (2 * grid.rows * map.pitch_y));
+            grid(column, row) /= 1 + std::pow(nesting_index * frequency, 4);
         }
-    inverse_fourier_transform(mirrored);
-    std::vector<double> result(heights.size());
-    for (int row = 0; row < rows; ++row)
-        for (int column = 0; column < columns; ++column)
-            result[map.height.index(column, row)] = mirrored(column, row).real();
-    return result;
+    inverse_cosine_transform(grid);
+    return std::move(grid.values);
 }
 
 double dot(const std::vector<double>& a, const std::vector<double>& b) {
