@@ -67,7 +67,7 @@ void run_stack(const CommandOptions& options) {
         run["trace_seconds"] = traced.trace_seconds;
         run["rays_per_second"] = static_cast<double>(traced.rays) / traced.trace_seconds;
     }
-    write_evaluation(folder, evaluation, run, topography_files(configuration));
+    write_evaluation(folder, evaluation, run, stack_source(configuration, instrument), topography_files(configuration));
 
     fmt::print("{}", summary(evaluation));
     if (traced.traced > 0) {

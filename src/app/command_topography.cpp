@@ -43,8 +43,16 @@ topography::FocusPlanesMaker planes_for(const Configuration& configuration) {
     return focus_planes_for(configuration.evaluate_on == "device" ? "device" : "host", configuration.trace.device);
 }
 
+// An evaluation and what its files say beside it.
+struct Evaluated {
+    Evaluation evaluation;
+    nlohmann::ordered_json more = nlohmann::ordered_json::object();
+    StackSource source;
+    TopographyFiles files;
+};
+
 // A stack with its stack.toml; --set topography.window_px=9 and its like evaluate otherwise.
-Evaluation evaluate_own(const CommandOptions& options) {
+Evaluated evaluate_own(const CommandOptions& options) {
     if (options.z_step || options.pitch || options.z_start) {
         refuse("--z_step_um, --pitch_um or --z_start_um with a stack that has a stack.toml", "neither of them",
                "Leave them out: they stand in stack.toml.");
@@ -64,11 +72,22 @@ Evaluation evaluate_own(const CommandOptions& options) {
         evaluation.add({scan::read_frame(folder, image, positions[static_cast<std::size_t>(image)])},
                        positions[place]);
     }
-    return evaluation.finish(truth_on_pixels(instrument, configuration, specimen), configuration.band, flat);
+    auto more = nlohmann::ordered_json::object();
+    if (options.out) { // the stack's own folder says it already
+        more = {{"stack", folder.string()},
+                {"images", positions.size()},
+                {"rays_per_image", configuration.trace.rays},
+                {"seed", configuration.trace.seed}};
+    }
+    return {.evaluation =
+                evaluation.finish(truth_on_pixels(instrument, configuration, specimen), configuration.band, flat),
+            .more = std::move(more),
+            .source = stack_source(configuration, instrument),
+            .files = topography_files(configuration)};
 }
 
 // Images alone: what an instrument's file says of them, the command line must say.
-Evaluation evaluate_foreign(const CommandOptions& options) {
+Evaluated evaluate_foreign(const CommandOptions& options) {
     const ImageSeries series(options.file);
     if (!options.z_step || *options.z_step == 0 || !options.pitch || *options.pitch <= 0) {
         refuse(!options.z_step || *options.z_step == 0 ? "no --z_step_um" : "no --pitch_um",
@@ -97,14 +116,19 @@ Evaluation evaluate_foreign(const CommandOptions& options) {
         }
         evaluation.add(std::move(channels), start + image * *options.z_step);
     }
-    return evaluation.finish(*options.pitch, flat);
+    return {.evaluation = evaluation.finish(*options.pitch, flat),
+            .more = {{"stack", options.file.string()},
+                     {"z_step_um", *options.z_step * um_per_mm},
+                     {"pitch_um", *options.pitch * um_per_mm}},
+            .source = {},
+            .files = {}};
 }
 
 } // namespace
 
 void run_topography(const CommandOptions& options) {
     const bool own = std::filesystem::exists(options.file / "stack.toml");
-    const auto evaluation = own ? evaluate_own(options) : evaluate_foreign(options);
+    auto [evaluation, more, source, files] = own ? evaluate_own(options) : evaluate_foreign(options);
     if (options.shuffle && !options.out) {
         // A control is no result of the stack.
         fmt::print("{}images shuffled, nothing written\n", summary(evaluation));
@@ -112,18 +136,10 @@ void run_topography(const CommandOptions& options) {
     }
     const auto destination = options.out.value_or(options.file);
     std::filesystem::create_directories(destination);
-    auto more = nlohmann::ordered_json::object();
-    if (!own) {
-        more["stack"] = options.file.string();
-        more["z_step_um"] = *options.z_step * um_per_mm;
-        more["pitch_um"] = *options.pitch * um_per_mm;
-    }
     if (options.shuffle) {
         more["shuffle_seed"] = *options.shuffle;
     }
-    write_evaluation(destination, evaluation, more,
-                     own ? topography_files(load_configuration(options.file / "stack.toml", options.overrides))
-                         : TopographyFiles{});
+    write_evaluation(destination, evaluation, more, source, files);
     fmt::print("{}results in {}\n", summary(evaluation), destination.string());
 }
 

@@ -1,10 +1,13 @@
 #include "app/evaluation.hpp"
 
 #include "app/commands.hpp"
-#include "app/digest.hpp"
-#include "app/text_file.hpp"
 #include "app/device_focus_planes.hpp"
+#include "app/digest.hpp"
+#include "app/evaluation_figures.hpp"
+#include "app/stack_page.hpp"
+#include "app/text_file.hpp"
 #include "core/units.hpp"
+#include "report/layout.hpp"
 #include "report/topography_picture.hpp"
 #include "surface/filter.hpp"
 #include "surface/height_parameters.hpp"
@@ -24,23 +27,6 @@
 namespace vkfv::app {
 
 namespace {
-
-nlohmann::ordered_json json_of(const topography::Deviation& deviation) {
-    // NaN (nothing measured) becomes null in JSON.
-    return {{"sq_measured_um", deviation.sq_measured * um_per_mm},
-            {"sq_true_um", deviation.sq_true * um_per_mm},
-            {"sq_ratio", deviation.sq_measured / deviation.sq_true},
-            {"rms_deviation_um", deviation.rms * um_per_mm},
-            {"correlation", deviation.correlation},
-            {"measured_share", deviation.measured_share}};
-}
-
-// Of a map without a truth, levelled.
-nlohmann::ordered_json json_of(const surface::HeightMap& map) {
-    const auto parameters =
-        surface::height_parameters(surface::remove_plane(map, surface::least_squares_plane(map)));
-    return {{"sq_measured_um", parameters.sq * um_per_mm}, {"measured_share", parameters.measured_share}};
-}
 
 // How many points are in each state.
 nlohmann::ordered_json point_counts(const Grid<topography::PointState>& state) {
@@ -81,16 +67,13 @@ std::string text_of(const char* treatment, const topography::Deviation& deviatio
         deviation.sq_measured / deviation.sq_true, deviation.rms * um_per_mm, deviation.correlation);
 }
 
-// With the truth or without, and filtered as well.
-nlohmann::ordered_json figures_of(const Evaluation& evaluation) {
-    auto figures = evaluation.deviation ? json_of(*evaluation.deviation) : json_of(evaluation.topography.height);
-    if (evaluation.filtered_deviation) {
-        auto filtered = json_of(*evaluation.filtered_deviation);
-        filtered["s_filter_um"] = evaluation.band.s_filter * um_per_mm;
-        filtered["l_filter_um"] = evaluation.band.l_filter * um_per_mm;
-        figures["filtered"] = std::move(filtered);
+// Levelled, with the filtered ones within.
+nlohmann::ordered_json json_of(const std::vector<Figures>& figures) {
+    auto json = json_of(figures.front());
+    if (figures.size() > 1) {
+        json["filtered"] = json_of(figures[1]);
     }
-    return figures;
+    return json;
 }
 
 // Mean of the channels.
@@ -104,12 +87,18 @@ Grid<float> grey(const topography::Channels& channels) {
     return result;
 }
 
+// A folder's own name, also of "out/" and ".".
+std::string name_of(const std::filesystem::path& folder) {
+    const auto whole = std::filesystem::absolute(folder).lexically_normal();
+    return (whole.has_filename() ? whole : whole.parent_path()).filename().string();
+}
+
 std::string picture_of(const std::filesystem::path& folder, const Evaluation& evaluation) {
     const auto level = [](const surface::HeightMap& map) {
         return surface::remove_plane(map, surface::least_squares_plane(map));
     };
     report::TopographyPicture picture;
-    picture.title = folder.filename().string();
+    picture.title = name_of(folder);
     picture.measured = level(evaluation.topography.height);
     if (evaluation.truth) {
         picture.truth = level(*evaluation.truth);
@@ -119,7 +108,8 @@ std::string picture_of(const std::filesystem::path& folder, const Evaluation& ev
     return report::topography_picture(picture);
 }
 
-void write_maps(const std::filesystem::path& folder, const Evaluation& evaluation, const TopographyFiles& files) {
+// Returns the picture.
+std::string write_maps(const std::filesystem::path& folder, const Evaluation& evaluation, const TopographyFiles& files) {
     const auto& topography = evaluation.topography;
     for (const std::string& file : files.names) {
         surface::write_surface(folder / file, topography.height, files.provenance);
@@ -136,7 +126,9 @@ void write_maps(const std::filesystem::path& folder, const Evaluation& evaluatio
             folder / "deviation.tif",
             topography::deviation_map(topography.height, *evaluation.truth, evaluation.band));
     }
-    write_text_aside(folder / "topography.svg", picture_of(folder, evaluation));
+    const std::string picture = picture_of(folder, evaluation);
+    write_text_aside(folder / "topography.svg", picture);
+    return picture;
 }
 
 std::string band_text(const topography::Band& band) {
@@ -253,9 +245,19 @@ TopographyFiles topography_files(const Configuration& configuration) {
     return files;
 }
 
+StackSource stack_source(const Configuration& configuration, const optics::Instrument& instrument) {
+    return {.layout = report::layout_svg(instrument, name_of(configuration.output_directory)),
+            .configuration = configuration.canonical};
+}
+
 void write_evaluation(const std::filesystem::path& folder, const Evaluation& evaluation,
-                      const nlohmann::ordered_json& more, const TopographyFiles& files) {
-    write_maps(folder, evaluation, files);
+                      const nlohmann::ordered_json& more, const StackSource& source, const TopographyFiles& files) {
+    StackPage page{.title = name_of(folder),
+                   .plain = {.figures = figures_of(evaluation), .svg = write_maps(folder, evaluation, files)},
+                   .diffracted = {},
+                   .results = {},
+                   .layout = source.layout,
+                   .configuration = source.configuration};
     const auto path = folder / "results.json";
     auto results = nlohmann::ordered_json::object();
     if (std::ifstream earlier(path); earlier) {
@@ -267,11 +269,12 @@ void write_evaluation(const std::filesystem::path& folder, const Evaluation& eva
     for (const char* key : {"filtered", "diffracted", "flatness"}) {
         results.erase(key);
     }
-    results.update(figures_of(evaluation));
+    results.update(json_of(page.plain.figures));
     if (evaluation.diffracted) {
-        results["diffracted"] = figures_of(*evaluation.diffracted);
         std::filesystem::create_directories(folder / "diffracted");
-        write_maps(folder / "diffracted", *evaluation.diffracted, files);
+        page.diffracted = {.figures = figures_of(*evaluation.diffracted),
+                           .svg = write_maps(folder / "diffracted", *evaluation.diffracted, files)};
+        results["diffracted"] = json_of(page.diffracted->figures);
     }
     const auto& options = evaluation.options;
     results["topography"] = {{"focus_measure", options.focus_measure},
@@ -294,6 +297,8 @@ void write_evaluation(const std::filesystem::path& folder, const Evaluation& eva
     results["evaluated_by"] = fmt::format("vkfv {}", VKFV_VERSION);
     results.update(more);
     write_text_aside(path, results.dump(2) + "\n");
+    page.results = std::move(results);
+    write_text_aside(folder / "report.html", stack_page(page));
 }
 
 std::string summary(const Evaluation& evaluation) {

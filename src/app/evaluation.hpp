@@ -87,12 +87,22 @@ struct TopographyFiles {
 // Those of [output] surfaces, with the configuration's digest.
 TopographyFiles topography_files(const Configuration& configuration);
 
+// What the report shows of a stack beside its evaluation.
+struct StackSource {
+    std::string layout;        // the instrument as SVG; empty: not known
+    std::string configuration; // TOML; empty: none
+};
+
+// Of a stack of vkfv's own.
+StackSource stack_source(const Configuration& configuration, const optics::Instrument& instrument);
+
 // Writes into the folder, the first row of each with the highest y: the topography's files, quality.tif (contrast),
 // fit_residual.tif, mask.tif (uint16: topography::PointState), all_in_focus.tif; with a truth also truth.tif and
-// deviation.tif (float32 um); topography.svg, a picture of them, levelled; and results.json, which `more` joins, and whose
-// other entries of an earlier run stay. What diffraction changes stands in a folder `diffracted` in it.
+// deviation.tif (float32 um); topography.svg, a picture of them, levelled; results.json, which `more` joins, and whose other
+// entries of an earlier run stay; and report.html, all of it on a page. What diffraction changes stands in a folder
+// `diffracted` in it.
 void write_evaluation(const std::filesystem::path& folder, const Evaluation& evaluation,
-                      const nlohmann::ordered_json& more, const TopographyFiles& files = {});
+                      const nlohmann::ordered_json& more, const StackSource& source = {}, const TopographyFiles& files = {});
 
 // The figures as a text of a few lines.
 std::string summary(const Evaluation& evaluation);

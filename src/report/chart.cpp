@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstdint>
 #include <limits>
 
 namespace vkfv::report {
@@ -92,14 +93,18 @@ Frame chart_frame(dvec2 corner, dvec2 size, const Axis& x, const Axis& y) {
     return {{corner.x + 58, corner.y + size.y - 38}, {corner.x + size.x - 12, corner.y + 26}, widened(x), widened(y)};
 }
 
-// Means of blocks of `factor` values along each side; NaN where no value of a block is finite.
-Grid<double> averaged(const Grid<double>& values, int factor) {
-    Grid<double> result((values.columns + factor - 1) / factor, (values.rows + factor - 1) / factor);
-    for (int row = 0; row < result.rows; ++row)
-        for (int column = 0; column < result.columns; ++column) {
+// Means over the blocks that divide the values into `columns` by `rows`, no more than there are; NaN where no value of a
+// block is finite.
+Grid<double> averaged(const Grid<double>& values, int columns, int rows) {
+    const auto edge = [](int block, int blocks, int points) {
+        return static_cast<int>(std::int64_t{block} * points / blocks);
+    };
+    Grid<double> result(columns, rows);
+    for (int row = 0; row < rows; ++row)
+        for (int column = 0; column < columns; ++column) {
             double sum = 0, count = 0;
-            for (int j = row * factor; j < std::min(values.rows, (row + 1) * factor); ++j)
-                for (int i = column * factor; i < std::min(values.columns, (column + 1) * factor); ++i)
+            for (int j = edge(row, rows, values.rows); j < edge(row + 1, rows, values.rows); ++j)
+                for (int i = edge(column, columns, values.columns); i < edge(column + 1, columns, values.columns); ++i)
                     if (std::isfinite(values(i, j))) {
                         sum += values(i, j);
                         count += 1;
@@ -225,16 +230,18 @@ void draw_map(Svg& svg, dvec2 corner, dvec2 size, const Map& map) {
     const Frame frame{low, high, {first.x, first.x + extent.x, "x / um", false}, {first.y, first.y + extent.y, "y / um", false}};
 
     // Twice the picture's pixels keep their sharpness on screens of high resolution.
-    const int factor = std::max(
-        1, static_cast<int>(std::floor(static_cast<double>(map.values.columns) / (2 * (high.x - low.x)))));
-    const Grid<double> shown = averaged(map.values, factor);
+    const auto blocks = [](int points, double length) {
+        return std::clamp(static_cast<int>(std::ceil(2 * length)), 1, points);
+    };
+    const int columns = blocks(map.values.columns, high.x - low.x), rows = blocks(map.values.rows, low.y - high.y);
+    const Grid<double> shown = averaged(map.values, columns, rows);
     Grid<Rgb> pixels(shown.columns, shown.rows);
     std::transform(shown.values.begin(), shown.values.end(), pixels.values.begin(), [&](double value) {
         return std::isfinite(value) ? colour_of(map.palette, (value - map.low) / (map.high - map.low))
                                     : not_measured_colour;
     });
     if (map.brightness) {
-        const Grid<double> brightness = averaged(*map.brightness, factor);
+        const Grid<double> brightness = averaged(*map.brightness, columns, rows);
         for (std::size_t k = 0; k < pixels.values.size(); ++k)
             for (std::uint8_t* const channel : {&pixels.values[k].red, &pixels.values[k].green, &pixels.values[k].blue})
                 *channel = static_cast<std::uint8_t>(std::lround(*channel * brightness.values[k]));

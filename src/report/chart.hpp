@@ -54,7 +54,7 @@ struct Map {
     std::string unit = "um"; // beside the colour bar
     Grid<double> values;
     double x0 = 0, y0 = 0; // um, middle of value (0, 0)
-    double pitch = 1;      // um
+    glm::dvec2 pitch{1, 1}; // um
     double low = 0, high = 1; // of the palette's ends
     Palette palette = Palette::height;
     std::optional<Grid<double>> brightness{}; // in [0, 1], dims the colours; none: 1 throughout
@@ -62,7 +62,7 @@ struct Map {
 };
 
 // The map with axes in micrometres, a scale bar and a colour bar. Equal scales in x and y; values are averaged where
-// there are more of them than the picture's pixels.
+// there are more than two of them to a pixel of the picture, along either side.
 void draw_map(Svg& svg, glm::dvec2 corner, glm::dvec2 size, const Map& map);
 
 // The values between which all but `outside` of the finite ones lie, half of them at either end; {0, 1} for none.

@@ -1,5 +1,6 @@
 #include "report/svg.hpp"
 
+#include "report/markup.hpp"
 #include "report/png.hpp"
 
 #include <fmt/format.h>
@@ -17,27 +18,6 @@ std::string number(double value) {
 
 std::string spaced(std::string_view attributes) {
     return attributes.empty() ? "" : fmt::format(" {}", attributes);
-}
-
-std::string escaped(std::string_view text) {
-    std::string result;
-    for (const char c : text) {
-        switch (c) {
-        case '&':
-            result += "&amp;";
-            break;
-        case '<':
-            result += "&lt;";
-            break;
-        case '>':
-            result += "&gt;";
-            break;
-        default:
-            // XML has no other control characters.
-            result += static_cast<unsigned char>(c) < 0x20 ? ' ' : c;
-        }
-    }
-    return result;
 }
 
 } // namespace

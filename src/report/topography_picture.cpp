@@ -24,7 +24,7 @@ Map map_of(const std::string& title, const surface::HeightMap& heights, double l
         value *= um_per_mm;
     map.x0 = heights.x0 * um_per_mm;
     map.y0 = heights.y0 * um_per_mm;
-    map.pitch = heights.pitch_x * um_per_mm;
+    map.pitch = dvec2(heights.pitch_x, heights.pitch_y) * um_per_mm;
     map.low = low;
     map.high = high;
     map.palette = palette;
@@ -38,7 +38,7 @@ Map map_of_image(const std::string& title, const Grid<Value>& image, const surfa
     std::copy(image.values.begin(), image.values.end(), map.values.values.begin());
     map.x0 = place.x0 * um_per_mm;
     map.y0 = place.y0 * um_per_mm;
-    map.pitch = place.pitch_x * um_per_mm;
+    map.pitch = dvec2(place.pitch_x, place.pitch_y) * um_per_mm;
     map.low = 0;
     map.high = range_of(map.values, 2e-3).second;
     map.palette = Palette::grey;

@@ -2,9 +2,11 @@
 #include "app/program.hpp"
 #include "surface/image_file.hpp"
 
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
+#include <pugixml.hpp>
 
 #include <algorithm>
 #include <cmath>
@@ -175,10 +177,18 @@ TEST(Program, TopographyEvaluatesAStackAnew) {
         EXPECT_TRUE(results.contains(name)) << name;
     }
     EXPECT_GT(results["measured_share"].get<double>(), 0);
+    // Of the same points, levelled: Sq by way of the parameters is that of the comparison.
+    EXPECT_NEAR(results["parameters"]["Sq_um"]["measured"].get<double>(), results["sq_measured_um"].get<double>(), 1e-9);
+    EXPECT_NEAR(results["parameters"]["Sq_um"]["true"].get<double>(), results["sq_true_um"].get<double>(), 1e-9);
+    const auto page = read_file(folder / "out/report.html");
+    EXPECT_TRUE(pugi::xml_document().load_string(page.c_str()));
+    EXPECT_THAT(page, HasSubstr(fmt::format("<td>{:.6g}</td>", results["rms_deviation_um"].get<double>())));
+    EXPECT_THAT(page, HasSubstr(results["device"].get<std::string>()));
     const auto height_map = read_file(folder / "out/topography.tif");
     const auto again = run_program({"--topography", "out"}, folder);
     ASSERT_EQ(again.exit_code, 0) << again.standard_error;
     EXPECT_EQ(read_file(folder / "out/topography.tif"), height_map);
+    EXPECT_EQ(read_file(folder / "out/report.html"), page);
     EXPECT_EQ(nlohmann::json::parse(read_file(folder / "out/results.json"))["device"], results["device"]);
     // Evaluated otherwise, it is another map.
     const auto other = run_program(
@@ -188,6 +198,7 @@ TEST(Program, TopographyEvaluatesAStackAnew) {
     EXPECT_NE(read_file(folder / "out/topography.tif"), height_map);
     EXPECT_EQ(nlohmann::json::parse(read_file(folder / "out/results.json"))["filtered"]["l_filter_um"],
               10.0);
+    EXPECT_THAT(read_file(folder / "out/report.html"), HasSubstr("L-filter 10 um"));
 }
 
 TEST(Program, AStackOfAnotherConfigurationIsRefusedWithTheDifference) {

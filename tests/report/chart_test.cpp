@@ -162,6 +162,28 @@ TEST(Map, shows_the_upper_row_on_top_and_gaps_in_their_colour) {
                                                  not_measured_colour.green, not_measured_colour.blue}));
 }
 
+TEST(Map, keeps_its_shape_and_its_places_when_its_values_are_averaged) {
+    // 3000 x 500 values, twice as high as wide: 3 by 1. The block of ones ends at three eighths of the width.
+    Map map{.title = "", .values = Grid<double>(3000, 500, 0.0), .pitch = {1, 2}};
+    for (int row = 0; row < 500; ++row)
+        for (int column = 0; column < 1125; ++column)
+            map.values(column, row) = 1;
+    map.palette = Palette::grey;
+    Svg svg;
+    draw_map(svg, {0, 0}, {300, 300}, map);
+    const auto document = parsed(svg.document({300, 300}, ""));
+    const auto image = all(document, "image").front();
+    EXPECT_NEAR(image.attribute("width").as_double(), 3 * image.attribute("height").as_double(), 0.02);
+    int columns = 0, rows = 0;
+    const auto values = decoded(png_of(image), columns, rows);
+    EXPECT_LE(columns, std::ceil(2 * image.attribute("width").as_double()));
+    EXPECT_LE(rows, std::ceil(2 * image.attribute("height").as_double()));
+    int ones = 0;
+    for (int column = 0; column < columns; ++column)
+        ones += values[static_cast<std::size_t>(3 * column)] == 255;
+    EXPECT_NEAR(ones, 0.375 * columns, 1);
+}
+
 TEST(TopographyPicture, has_a_panel_for_each_map_and_the_profile) {
     surface::HeightMap heights{.height = Grid<double>(8, 6, 0.001), .x0 = -0.01, .y0 = 0, .pitch_x = 0.002, .pitch_y = 0.002};
     heights.height(3, 3) = nan;
