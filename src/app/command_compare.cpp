@@ -12,6 +12,7 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 #include <nlohmann/json.hpp>
+#include <spdlog/spdlog.h>
 
 #include <algorithm>
 #include <cmath>
@@ -307,6 +308,17 @@ void run_compare(const CommandOptions& options) {
         }
         if (std::ranges::none_of(measurements.back().height.values, [](double z) { return std::isfinite(z); })) {
             refuse_file(files[k], "no measured point", "a height map with heights", "Measure again, or leave it out.");
+        }
+    }
+    const HeightMap& first = measurements.front();
+    if (HeightMap moved = truth; !same_grid(first, truth)) {
+        moved.x0 = first.x0;
+        moved.y0 = first.y0;
+        if (same_grid(first, moved)) {
+            spdlog::warn("The grids are alike but begin at different places, {} at ({:.6g}, {:.6g}) um, {} at ({:.6g}, "
+                         "{:.6g}) um: points at the same place are compared. SDF and AL3D files hold no place.",
+                         files.front().string(), first.x0 * um_per_mm, first.y0 * um_per_mm, files.back().string(),
+                         truth.x0 * um_per_mm, truth.y0 * um_per_mm);
         }
     }
     const HeightMap under = surface::resampled(truth, measurements.front());

@@ -56,11 +56,12 @@ void run_stack(const CommandOptions& options) {
     const auto& folder = store.folder();
     const auto evaluation =
         stack_evaluation.finish(truth_on_pixels(instrument, configuration, specimen), configuration.band, flat);
-    nlohmann::ordered_json run = {{"device", tracer->description()},
-                                  {"stack_digest", store.description().digest},
-                                  {"seed", configuration.trace.seed},
-                                  {"images", positions.size()},
-                                  {"rays_per_image", configuration.trace.rays}};
+    auto run = run_of(folder); // a run that traces nothing leaves the times of the one that did
+    run.update({{"device", tracer->description()},
+                {"stack_digest", store.description().digest},
+                {"seed", configuration.trace.seed},
+                {"images", positions.size()},
+                {"rays_per_image", configuration.trace.rays}});
     if (traced.traced > 0) {
         // Of this run: an interrupted stack has the others in timings.csv.
         run["images_traced"] = traced.traced;

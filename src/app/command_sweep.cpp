@@ -130,8 +130,8 @@ std::string image_digest(const Configuration& configuration, double focal_height
 }
 
 // The image and its figures, from an earlier run if they are there.
-SweepRow image_row(const Configuration& configuration, double focal_height, const fs::path& folder,
-                   Surfaces& surfaces) {
+SweepRow image_row(const Configuration& configuration, const fs::path& folder, Surfaces& surfaces) {
+    const double focal_height = configuration.sweep->focal_height;
     const fs::path image_file = folder / "image.tif", figures_file = folder / "image.json";
     const auto& surface = surfaces.of(*configuration.specimen);
     const std::string digest = image_digest(configuration, focal_height, surface.digest);
@@ -257,7 +257,7 @@ void run_sweep(const CommandOptions& options) {
         const auto overrides = overrides_of(values);
         rows.push_back(sweep.stacks ? stack_row(options, overrides, sweep.repeats, folder / name)
                                     : image_row(load_configuration(options.file, overrides, Needs::exposure),
-                                                sweep.focal_height, folder / name, surfaces));
+                                                folder / name, surfaces));
         rows.back().values = values;
     }
     const std::string title = options.file.stem().string();

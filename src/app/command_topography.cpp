@@ -7,10 +7,14 @@
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
+#include <spdlog/spdlog.h>
 
+#include <algorithm>
+#include <cmath>
 #include <cstdio>
 #include <numeric>
 #include <random>
+#include <sstream>
 
 namespace vkfv::app {
 
@@ -51,6 +55,17 @@ struct Evaluated {
     TopographyFiles files;
 };
 
+// The first line of the identity that an override changes: "key = value"; empty: none.
+std::string changed_line(const Configuration& configuration, const Configuration& overridden) {
+    std::istringstream before(configuration.identity), after(overridden.identity);
+    for (std::string line, other; std::getline(after, other);) {
+        if (!std::getline(before, line) || line != other) {
+            return other;
+        }
+    }
+    return {};
+}
+
 // A stack with its stack.toml; --set topography.window_px=9 and its like evaluate otherwise.
 Evaluated evaluate_own(const CommandOptions& options) {
     if (options.z_step || options.pitch || options.z_start) {
@@ -58,7 +73,13 @@ Evaluated evaluate_own(const CommandOptions& options) {
                "Leave them out: they stand in stack.toml.");
     }
     const auto& folder = options.file;
+    std::error_code none;
     const auto configuration = load_configuration(folder / "stack.toml", options.overrides, Needs::stack);
+    if (const auto line = changed_line(load_configuration(folder / "stack.toml", {}, Needs::stack), configuration);
+        !line.empty()) {
+        refuse(line, "the value that the images were traced with, in " + (folder / "stack.toml").string(),
+               "Set keys of [topography], [diffraction] and [output] alone; --stack traces other images.");
+    }
     const auto positions = configuration.scan->positions();
     const auto specimen = specimen::make(*configuration.specimen);
     const auto instrument = assemble_instrument(configuration, specimen, positions);
@@ -72,8 +93,8 @@ Evaluated evaluate_own(const CommandOptions& options) {
         evaluation.add({scan::read_frame(folder, image, positions[static_cast<std::size_t>(image)])},
                        positions[place]);
     }
-    auto more = nlohmann::ordered_json::object();
-    if (options.out) { // the stack's own folder says it already
+    auto more = run_of(folder);
+    if (options.out && !std::filesystem::equivalent(*options.out, folder, none)) {
         more = {{"stack", folder.string()},
                 {"images", positions.size()},
                 {"rays_per_image", configuration.trace.rays},
@@ -89,12 +110,23 @@ Evaluated evaluate_own(const CommandOptions& options) {
 // Images alone: what an instrument's file says of them, the command line must say.
 Evaluated evaluate_foreign(const CommandOptions& options) {
     const ImageSeries series(options.file);
-    if (!options.z_step || *options.z_step == 0 || !options.pitch || *options.pitch <= 0) {
-        refuse(!options.z_step || *options.z_step == 0 ? "no --z_step_um" : "no --pitch_um",
+    const bool step_good = options.z_step && std::isfinite(*options.z_step) && *options.z_step != 0;
+    if (!step_good || !options.pitch || !std::isfinite(*options.pitch) || *options.pitch <= 0) {
+        refuse(!step_good ? "no --z_step_um, or none that steps" : "no --pitch_um, or none above 0",
                fmt::format("both, for the {} images in {}, which has no stack.toml", series.size(),
                            options.file.string()),
                "Give --z_step_um UM, the step from image to image (negative if they descend), and --pitch_um UM > 0, "
                "the distance of the pixels on the specimen.");
+    }
+    const double start = options.z_start.value_or(0);
+    if (!std::isfinite(start)) {
+        refuse("--z_start_um " + fmt::format("{}", start), "a height", "Give that of the first image, or leave it out.");
+    }
+    std::error_code none;
+    if (options.out && (std::filesystem::equivalent(*options.out, options.file, none) ||
+                        std::filesystem::exists(*options.out / "stack.toml"))) {
+        refuse("--out " + options.out->string(), "a folder other than that of any images",
+               "Name another: results would be mixed with the stack that is there.");
     }
     if (!options.out && !options.shuffle) {
         refuse("no --out", "a folder for the results of a stack that vkfv did not make", "Give --out FOLDER.");
@@ -105,8 +137,9 @@ Evaluated evaluate_foreign(const CommandOptions& options) {
     const auto configuration = topography_configuration(overrides);
     StackEvaluation evaluation(configuration.topography, planes_for(configuration));
     const auto order = order_of_images(static_cast<std::size_t>(series.size()), options.shuffle);
-    const double start = options.z_start.value_or(0);
+    spdlog::info("{} images, {} to {}", series.size(), series.name(0), series.name(series.size() - 1));
     std::optional<Flat> flat;
+    bool negative = false;
     for (int place = 0; place < series.size(); ++place) {
         // Heights ascend, whichever way the instrument went.
         const int image = *options.z_step > 0 ? place : series.size() - 1 - place;
@@ -114,10 +147,22 @@ Evaluated evaluate_foreign(const CommandOptions& options) {
         if (place == 0) {
             flat = read_flat(configuration, channels.front().columns, channels.front().rows, *options.pitch);
         }
+        negative = negative || std::ranges::any_of(channels, [](const Grid<float>& channel) {
+            return std::ranges::any_of(channel.values, [](float value) { return value < 0; });
+        });
         evaluation.add(std::move(channels), start + image * *options.z_step);
+    }
+    if (negative) {
+        spdlog::warn("{}: there are pixels below zero. Focus is contrast relative to brightness: give the images without "
+                     "any background subtracted.",
+                     options.file.string());
     }
     return {.evaluation = evaluation.finish(*options.pitch, flat),
             .more = {{"stack", options.file.string()},
+                     {"images", series.size()},
+                     {"first_image", series.name(0)},
+                     {"last_image", series.name(series.size() - 1)},
+                     {"z_start_um", start * um_per_mm},
                      {"z_step_um", *options.z_step * um_per_mm},
                      {"pitch_um", *options.pitch * um_per_mm}},
             .source = {},

@@ -502,10 +502,20 @@ void read_sweep(const TomlTable& root, Configuration& configuration) {
     } else if (table->has("z_um")) {
         table->fail("z_um", "no focal height for a sweep of stacks", "Remove it; [scan] has the heights.");
     }
-    sweep.repeats = static_cast<int>(table->optional_integer("repeats", 1, 1000).value_or(1));
+    if (sweep.stacks) {
+        sweep.repeats = static_cast<int>(table->optional_integer("repeats", 1, 1000).value_or(1));
+    } else if (table->has("repeats")) {
+        table->fail("repeats", "no repeats of a sweep of images", "Remove it; vary trace.seed instead.");
+    }
     for (const TomlTable& parameter_table : table->tables("parameter")) {
         Sweep::Parameter parameter;
         parameter.key = parameter_table.string("key");
+        if ((parameter.key.starts_with("sweep.") && parameter.key != "sweep.z_um") || parameter.key.starts_with("output.")) {
+            parameter_table.fail("key", "a key that decides what is traced or evaluated", "Choose another.");
+        }
+        if (std::ranges::find(sweep.parameters, parameter.key, &Sweep::Parameter::key) != sweep.parameters.end()) {
+            parameter_table.fail("key", "each key once", "Put all values into one parameter.");
+        }
         // The last word of the key, unless there is a better one.
         parameter.label =
             parameter_table.optional_string("label").value_or(parameter.key.substr(parameter.key.rfind('.') + 1));

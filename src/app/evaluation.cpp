@@ -258,18 +258,7 @@ void write_evaluation(const std::filesystem::path& folder, const Evaluation& eva
                    .results = {},
                    .layout = source.layout,
                    .configuration = source.configuration};
-    const auto path = folder / "results.json";
-    auto results = nlohmann::ordered_json::object();
-    if (std::ifstream earlier(path); earlier) {
-        auto parsed = nlohmann::ordered_json::parse(earlier, nullptr, false);
-        if (parsed.is_object()) {
-            results = std::move(parsed);
-        }
-    }
-    for (const char* key : {"filtered", "diffracted", "flatness"}) {
-        results.erase(key);
-    }
-    results.update(json_of(page.plain.figures));
+    auto results = json_of(page.plain.figures);
     if (evaluation.diffracted) {
         std::filesystem::create_directories(folder / "diffracted");
         page.diffracted = {.figures = figures_of(*evaluation.diffracted),
@@ -296,9 +285,22 @@ void write_evaluation(const std::filesystem::path& folder, const Evaluation& eva
     results["evaluation_seconds"] = evaluation.seconds;
     results["evaluated_by"] = fmt::format("vkfv {}", VKFV_VERSION);
     results.update(more);
-    write_text_aside(path, results.dump(2) + "\n");
+    write_text_aside(folder / "results.json", results.dump(2) + "\n");
     page.results = std::move(results);
     write_text_aside(folder / "report.html", stack_page(page));
+}
+
+nlohmann::ordered_json run_of(const std::filesystem::path& folder) {
+    auto run = nlohmann::ordered_json::object();
+    std::ifstream stream(folder / "results.json");
+    const auto results = nlohmann::ordered_json::parse(stream, nullptr, false);
+    for (const char* key : {"device", "stack_digest", "seed", "images", "rays_per_image", "images_traced",
+                            "trace_seconds", "rays_per_second"}) {
+        if (results.is_object() && results.contains(key)) {
+            run[key] = results.at(key);
+        }
+    }
+    return run;
 }
 
 std::string summary(const Evaluation& evaluation) {

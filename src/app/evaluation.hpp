@@ -98,11 +98,15 @@ StackSource stack_source(const Configuration& configuration, const optics::Instr
 
 // Writes into the folder, the first row of each with the highest y: the topography's files, quality.tif (contrast),
 // fit_residual.tif, mask.tif (uint16: topography::PointState), all_in_focus.tif; with a truth also truth.tif and
-// deviation.tif (float32 um); topography.svg, a picture of them, levelled; results.json, which `more` joins, and whose other
-// entries of an earlier run stay; and report.html, all of it on a page. What diffraction changes stands in a folder
+// deviation.tif (float32 um); topography.svg, a picture of them, levelled; results.json, which `more` joins;
+// and report.html, all of it on a page. What diffraction changes stands in a folder
 // `diffracted` in it.
 void write_evaluation(const std::filesystem::path& folder, const Evaluation& evaluation,
                       const nlohmann::ordered_json& more, const StackSource& source = {}, const TopographyFiles& files = {});
+
+// What the results in a stack's folder say of the run that traced it, or the last part of it: device, digest, seed, counts
+// and times; none if there are no results.
+nlohmann::ordered_json run_of(const std::filesystem::path& folder);
 
 // The figures as a text of a few lines.
 std::string summary(const Evaluation& evaluation);

@@ -1,11 +1,12 @@
 #include "app/image_series.hpp"
 
-#include "app/natural_order.hpp"
+#include "app/image_order.hpp"
 #include "core/error.hpp"
 #include "surface/image_file.hpp"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
+#include <spdlog/spdlog.h>
 
 #include <algorithm>
 #include <array>
@@ -37,14 +38,22 @@ bool is_image(const std::filesystem::path& file) {
 
 ImageSeries::ImageSeries(const std::filesystem::path& path) {
     if (std::filesystem::is_directory(path)) {
+        std::vector<std::filesystem::path> files;
         for (const auto& entry : std::filesystem::directory_iterator(path)) {
             if (entry.is_regular_file() && is_image(entry.path())) {
-                images_.push_back({entry.path(), 0});
+                files.push_back(entry.path());
             }
         }
-        std::ranges::sort(images_, [](const Place& a, const Place& b) {
-            return naturally_before(a.file.filename().string(), b.file.filename().string());
-        });
+        std::ranges::sort(files); // the folder has no order of its own
+        std::vector<std::string> names;
+        std::ranges::transform(files, std::back_inserter(names), [](const auto& file) { return file.stem().string(); });
+        const auto [order, doubt] = order_of_images(names);
+        for (const std::size_t place : order) {
+            images_.push_back({files[place], 0});
+        }
+        if (!doubt.empty()) {
+            spdlog::warn("{}: the heights of the images are in doubt: {}", path.string(), doubt);
+        }
         if (images_.empty()) {
             refuse(path, "no stack.toml and no image", fmt::format("stack.toml or files {}", fmt::join(extensions, ", ")),
                    "Give the folder of a stack of vkfv, one with the images of another, or a TIFF file of several pages.");
@@ -59,6 +68,12 @@ ImageSeries::ImageSeries(const std::filesystem::path& path) {
     for (int page = 0, pages = surface::page_count(path); page < pages; ++page) {
         images_.push_back({path, page});
     }
+}
+
+std::string ImageSeries::name(int image) const {
+    const Place& place = images_.at(static_cast<std::size_t>(image));
+    const std::string file = place.file.filename().string();
+    return images_.front().file == images_.back().file ? fmt::format("{}, page {}", file, place.page) : file;
 }
 
 std::vector<Grid<float>> ImageSeries::read(int image) const {

@@ -4,6 +4,7 @@
 #include "core/grid.hpp"
 
 #include <filesystem>
+#include <string>
 #include <vector>
 
 namespace vkfv::app {
@@ -11,10 +12,13 @@ namespace vkfv::app {
 class ImageSeries {
   public:
     // A multi-page image file; or a folder, whose image files (by their extension, hidden ones left out) are taken in the
-    // natural order of their names, one page each. Throws InputError for a path without images.
+    // order of image_order.hpp, with a warning where that is in doubt, one page each. Throws InputError for a path without
+    // images.
     explicit ImageSeries(const std::filesystem::path& path);
 
     int size() const { return static_cast<int>(images_.size()); }
+    // "z_0007.tif", "stack.tif, page 7"; pages count from 0.
+    std::string name(int image) const;
     // The channels of an image; integers keep their stored values. Throws InputError.
     std::vector<Grid<float>> read(int image) const;
 

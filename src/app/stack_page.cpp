@@ -120,7 +120,7 @@ std::string stack_page(const StackPage& content) {
     }
     page.heading("Images");
     add_members(page, content.results,
-                {"stack", "z_step_um", "pitch_um", "shuffle_seed", "images", "rays_per_image", "seed", "device",
+                {"stack", "first_image", "last_image", "z_start_um", "z_step_um", "pitch_um", "shuffle_seed", "images", "rays_per_image", "seed", "device",
                  "stack_digest", "evaluated_by"});
     if (!content.layout.empty()) {
         page.heading("Instrument");

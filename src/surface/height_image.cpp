@@ -56,7 +56,9 @@ SurfaceFile parse_height_image(std::string_view bytes, const std::filesystem::pa
         if (!value || !(std::isfinite(*value) && *value > 0))
             reject(key, value ? fmt::format("{}", *value) : "not given",
                    "a positive length, which an image does not state",
-                   fmt::format("Give the {} that belongs to this image.", key));
+                   fmt::format("Give the {} that belongs to this image; vkfv --surface IMAGE --pitch_um P --unit_um U --out "
+                               "NAME.x3p writes a file that states its own.",
+                               key));
     };
     check("pitch", scale.pitch);
     check("unit", scale.unit);
@@ -64,7 +66,7 @@ SurfaceFile parse_height_image(std::string_view bytes, const std::filesystem::pa
     result.map.pitch_x = result.map.pitch_y = *scale.pitch;
     result.map.height = Grid<double>(image.values.columns, image.values.rows);
     for (std::size_t k = 0; k < image.values.values.size(); ++k) {
-        const double height = static_cast<double>(image.values.values[k]) * *scale.unit;
+        const double height = image.values.values[k] * *scale.unit;
         result.map.height.values[k] = std::isfinite(height) ? height : std::numeric_limits<double>::quiet_NaN();
     }
     return result;

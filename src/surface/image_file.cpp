@@ -57,6 +57,10 @@ template <>
 constexpr OIIO::TypeDesc type_of<float>() {
     return OIIO::TypeDesc::FLOAT;
 }
+template <>
+constexpr OIIO::TypeDesc type_of<double>() {
+    return OIIO::TypeDesc::DOUBLE;
+}
 
 template <class Value>
 std::vector<Value> flipped_rows(const Grid<Value>& grid) {
@@ -156,9 +160,11 @@ OpenImage open_image(const std::filesystem::path& path) {
         image.owned = std::move(owned);
         return image;
     }
+    OIIO::ImageSpec as_stored;
+    as_stored.attribute("oiio:UnassociatedAlpha", 1); // colours are not multiplied by their opacity
     OpenImage image{.owned = nullptr,
                     .memory = nullptr,
-                    .input = OIIO::ImageInput::open(path.string()),
+                    .input = OIIO::ImageInput::open(path.string(), &as_stored),
                     .bytes = static_cast<double>(std::filesystem::file_size(path))};
     if (!image.input)
         reject(path, "", OIIO::geterror(), "a readable image",
@@ -180,8 +186,8 @@ void check_size(const OpenImage& image, const OIIO::ImageSpec& spec, const std::
                "The file is truncated or damaged: write or copy it anew.");
 }
 
-template <class Stored>
-Grid<float> read_values(OIIO::ImageInput& input, const OIIO::ImageSpec& spec,
+template <class Value, class Stored>
+Grid<Value> read_values(OIIO::ImageInput& input, const OIIO::ImageSpec& spec,
                         const std::filesystem::path& path, int page, int channel) {
     Grid<Stored> stored(spec.width, spec.height);
     // A strip that cannot be read leaves an error and zeros, but counts as success.
@@ -190,29 +196,32 @@ Grid<float> read_values(OIIO::ImageInput& input, const OIIO::ImageSpec& spec,
                "pixel values up to the end of the image",
                "The file is truncated or damaged: write or copy it anew.");
     const std::vector<Stored> rows = flipped_rows(stored);
-    Grid<float> image(spec.width, spec.height);
+    Grid<Value> image(spec.width, spec.height);
     std::transform(rows.begin(), rows.end(), image.values.begin(),
-                   [](Stored value) { return static_cast<float>(value); });
+                   [](Stored value) { return static_cast<Value>(value); });
     return image;
 }
 
-Grid<float> read_channel(OIIO::ImageInput& input, const OIIO::ImageSpec& spec, const std::filesystem::path& path,
+template <class Value>
+Grid<Value> read_channel(OIIO::ImageInput& input, const OIIO::ImageSpec& spec, const std::filesystem::path& path,
                          int page, int channel) {
     switch (spec.format.basetype) {
     case OIIO::TypeDesc::UINT8:
-        return read_values<std::uint8_t>(input, spec, path, page, channel);
+        return read_values<Value, std::uint8_t>(input, spec, path, page, channel);
     case OIIO::TypeDesc::INT8:
-        return read_values<std::int8_t>(input, spec, path, page, channel);
+        return read_values<Value, std::int8_t>(input, spec, path, page, channel);
     case OIIO::TypeDesc::UINT16:
-        return read_values<std::uint16_t>(input, spec, path, page, channel);
+        return read_values<Value, std::uint16_t>(input, spec, path, page, channel);
     case OIIO::TypeDesc::INT16:
-        return read_values<std::int16_t>(input, spec, path, page, channel);
+        return read_values<Value, std::int16_t>(input, spec, path, page, channel);
     case OIIO::TypeDesc::UINT32:
-        return read_values<std::uint32_t>(input, spec, path, page, channel);
+        return read_values<Value, std::uint32_t>(input, spec, path, page, channel);
     case OIIO::TypeDesc::INT32:
-        return read_values<std::int32_t>(input, spec, path, page, channel);
+        return read_values<Value, std::int32_t>(input, spec, path, page, channel);
+    case OIIO::TypeDesc::DOUBLE:
+        return read_values<Value, Value>(input, spec, path, page, channel);
     default:
-        return read_values<float>(input, spec, path, page, channel);
+        return read_values<Value, float>(input, spec, path, page, channel);
     }
 }
 
@@ -223,14 +232,15 @@ OIIO::ImageSpec spec_of_page(OIIO::ImageInput& input, const std::filesystem::pat
     return input.spec();
 }
 
-Grid<float> read_page(const OpenImage& image, const std::filesystem::path& path, int page) {
+template <class Value>
+Grid<Value> read_page(const OpenImage& image, const std::filesystem::path& path, int page) {
     const OIIO::ImageSpec spec = spec_of_page(*image.input, path, page);
     if (spec.nchannels != 1 || spec.depth > 1)
         reject(path, fmt::format("page {}", page),
                fmt::format("{} channels, depth {}", spec.nchannels, spec.depth),
                "one channel and two dimensions", "Convert the image to greyscale without alpha.");
     check_size(image, spec, path);
-    return read_channel(*image.input, spec, path, page, 0);
+    return read_channel<Value>(*image.input, spec, path, page, 0);
 }
 
 std::string description_of(const OpenImage& image) {
@@ -279,7 +289,7 @@ int page_count(const std::filesystem::path& path) {
 }
 
 Grid<float> read_image(const std::filesystem::path& path, int page) {
-    return read_page(open_image(path), path, page);
+    return read_page<float>(open_image(path), path, page);
 }
 
 std::vector<Grid<float>> read_channels(const std::filesystem::path& path, int page) {
@@ -292,7 +302,7 @@ std::vector<Grid<float>> read_channels(const std::filesystem::path& path, int pa
     std::vector<Grid<float>> channels;
     for (int channel = 0; channel < spec.nchannels; ++channel)
         if (channel != spec.alpha_channel)
-            channels.push_back(read_channel(*image.input, spec, path, page, channel));
+            channels.push_back(read_channel<float>(*image.input, spec, path, page, channel));
     return channels;
 }
 
@@ -320,7 +330,7 @@ void write_height_map(const std::filesystem::path& path, const HeightMap& map, c
 DescribedImage parse_image(std::string_view bytes, ImageFormat format, const std::filesystem::path& path) {
     const OpenImage image = open_image(bytes, format, path);
     std::string description = description_of(image);
-    return {.values = read_page(image, path, 0), .description = std::move(description)};
+    return {.values = read_page<double>(image, path, 0), .description = std::move(description)};
 }
 
 HeightMap height_map_of(const DescribedImage& image, const std::filesystem::path& path) {
@@ -333,7 +343,7 @@ HeightMap height_map_of(const DescribedImage& image, const std::filesystem::path
         reject(path, "pitch_x_mm, pitch_y_mm", fmt::format("{}, {}", map.pitch_x, map.pitch_y),
                "positive pitches", "Use a height map that vkfv wrote.");
     map.height = Grid<double>(image.values.columns, image.values.rows);
-    std::transform(image.values.values.begin(), image.values.values.end(), map.height.values.begin(), [](float height) {
+    std::transform(image.values.values.begin(), image.values.values.end(), map.height.values.begin(), [](double height) {
         return std::isfinite(height) ? height * mm_per_um : std::numeric_limits<double>::quiet_NaN();
     });
     return map;
@@ -342,7 +352,7 @@ HeightMap height_map_of(const DescribedImage& image, const std::filesystem::path
 HeightMap read_height_map(const std::filesystem::path& path) {
     const OpenImage image = open_image(path);
     std::string description = description_of(image);
-    return height_map_of({.values = read_page(image, path, 0), .description = std::move(description)}, path);
+    return height_map_of({.values = read_page<double>(image, path, 0), .description = std::move(description)}, path);
 }
 
 } // namespace vkfv::surface

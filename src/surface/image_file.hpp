@@ -53,7 +53,7 @@ std::string image_description(const std::filesystem::path& path);
 enum class ImageFormat { tiff, openexr };
 
 struct DescribedImage {
-    Grid<float> values;
+    Grid<double> values; // as stored
     std::string description; // ImageDescription; empty without one
 };
 

@@ -154,6 +154,15 @@ TEST_F(Compare, IsOfTheSurfacesAsTreated) {
     EXPECT_THAT(text.standard_output, HasSubstr("form plane, S-filter 6 um (spline)"));
 }
 
+TEST_F(Compare, WarnsOfAFileWithoutAPlace) {
+    write_map(folder / "same.tif", 120, 7, 1, 0, 0, 0);
+    const auto moved = run_program({"--compare", "measured_0.tif", "same.tif"}, folder);
+    EXPECT_EQ(moved.exit_code, 0);
+    EXPECT_THAT(moved.standard_error, HasSubstr("begin at different places"));
+    const auto other = run_program({"--compare", "measured_0.tif", "truth.tif"}, folder);
+    EXPECT_THAT(other.standard_error, testing::Not(HasSubstr("places")));
+}
+
 TEST_F(Compare, RefusesWhatCannotBeCompared) {
     write_map(folder / "other.tif", 100, 0, 1, 0, 0, 0);
     const auto grids = run_program({"--compare", "measured_0.tif", "other.tif", "truth.tif"}, folder);

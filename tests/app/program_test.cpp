@@ -199,6 +199,12 @@ TEST(Program, TopographyEvaluatesAStackAnew) {
     EXPECT_EQ(nlohmann::json::parse(read_file(folder / "out/results.json"))["filtered"]["l_filter_um"],
               10.0);
     EXPECT_THAT(read_file(folder / "out/report.html"), HasSubstr("L-filter 10 um"));
+    // What the images depend on has been decided.
+    for (const char* setting : {"detector.size_mm=2.5", "specimen.material.g=0.1", "trace.seed=99"}) {
+        const auto changed = run_program({"--topography", "out", "--set", setting}, folder);
+        EXPECT_EQ(changed.exit_code, 2) << setting;
+        EXPECT_THAT(changed.standard_error, HasSubstr("traced with"));
+    }
 }
 
 TEST(Program, AStackOfAnotherConfigurationIsRefusedWithTheDifference) {

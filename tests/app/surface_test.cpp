@@ -4,6 +4,7 @@
 #include "surface/image_file.hpp"
 #include "surface/surface_file.hpp"
 
+#include <OpenImageIO/imageio.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
@@ -199,6 +200,21 @@ TEST_F(Surface, OfOneRowHasWhatOneRowHas) {
     std::swap(column.height.columns, column.height.rows);
     surface::write_surface(folder / "column.sdf", column);
     EXPECT_TRUE(report({"column.sdf"})["profile"]["Ra_um"].is_null());
+}
+
+// float32 would leave nothing of waves of a nanometre on an offset of 25 mm.
+TEST_F(Surface, DoublesOfAnImageKeepTheirDigits) {
+    const auto output = OIIO::ImageOutput::create("tiff");
+    ASSERT_TRUE(output->open((folder / "doubles.tif").string(), OIIO::ImageSpec(120, 4, 1, OIIO::TypeDesc::DOUBLE)));
+    std::vector<double> heights; // um
+    for (int k = 0; k < 480; ++k) {
+        heights.push_back(25000 + 1e-3 * std::cos(2 * pi * (k % 120 - 59.5) / 12));
+    }
+    ASSERT_TRUE(output->write_image(OIIO::TypeDesc::DOUBLE, heights.data()));
+    ASSERT_TRUE(output->close());
+    const auto figures = report({"doubles.tif", "--pitch_um", "1", "--unit_um", "1"});
+    // Of rounding 25000 um to double 4e-12 um are left.
+    EXPECT_NEAR(figures["parameters"]["Sq_um"].get<double>(), 1e-3 / std::sqrt(2.0), 1e-9);
 }
 
 } // namespace

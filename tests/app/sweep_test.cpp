@@ -1,5 +1,6 @@
 // vkfv --sweep: every combination, once, with the noise that its rays make.
 #include "app/program.hpp"
+#include "surface/image_file.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -105,6 +106,17 @@ TEST(Sweep, AnotherDeviceOrBlurIsAnotherImage) {
     EXPECT_TRUE(fs::exists(folder / "out/g, \"|\"=1,N=20000/image_diffracted.tif"));
 }
 
+TEST(Sweep, ImagesAtSeveralHeightsAreThoseImages) {
+    const auto folder = fresh_folder("heights");
+    write_file(folder / "c.toml", with_sweep("[sweep]\n\n[[sweep.parameter]]\nkey = \"sweep.z_um\"\nlabel = \"z\"\nvalues = [0.0, 1.5]\n"));
+    const auto sweep = run_program({"--sweep", "c.toml", "--out", "out", "--quiet", "--rays", "2e4"}, folder);
+    ASSERT_EQ(sweep.exit_code, 0) << sweep.standard_error;
+    const auto image = run_program({"--image", "c.toml", "--z", "1.5", "--out", "one.tif", "--rays", "2e4"}, folder);
+    ASSERT_EQ(image.exit_code, 0) << image.standard_error;
+    EXPECT_EQ(surface::read_image(folder / "out/z=1.5/image.tif").values, surface::read_image(folder / "one.tif").values);
+    EXPECT_NE(surface::read_image(folder / "out/z=0/image.tif").values, surface::read_image(folder / "one.tif").values);
+}
+
 TEST(Sweep, StacksTellTheNoiseOfHeights) {
     const auto folder = fresh_folder("stacks");
     write_file(folder / "c.toml", with_sweep(R"([sweep]
@@ -136,6 +148,14 @@ TEST(Sweep, WrongCombinationsAreRefusedBeforeTheFirstIsTraced) {
     EXPECT_THAT(result.standard_error, HasSubstr("specimen.material.g"));
     EXPECT_FALSE(fs::exists(folder / "out/sweep.csv"));
     EXPECT_FALSE(fs::exists(folder / "out/g=0.3,N=20000"));
+    for (const char* key : {"sweep.of", "output.directory", "specimen.material.g"}) { // the last a second time
+        write_file(folder / "c.toml", with_sweep(replaced(of_rays, "trace.rays", key)));
+        const auto refused = run_program({"--sweep", "c.toml", "--out", "out"}, folder);
+        EXPECT_EQ(refused.exit_code, 2) << key;
+        EXPECT_THAT(refused.standard_error, HasSubstr(key));
+    }
+    write_file(folder / "c.toml", with_sweep(replaced(of_rays, "z_um", "repeats = 2\nz_um")));
+    EXPECT_EQ(run_program({"--sweep", "c.toml", "--out", "out"}, folder).exit_code, 2);
     write_file(folder / "c.toml", with_sweep(replaced(of_rays, "[2e4, 3.2e5]", "2e4")));
     EXPECT_EQ(run_program({"--sweep", "c.toml", "--out", "out"}, folder).exit_code, 2);
 }

@@ -1,5 +1,5 @@
 // --topography of stacks that vkfv did not make.
-#include "app/natural_order.hpp"
+#include "app/image_order.hpp"
 #include "app/program.hpp"
 #include "surface/image_file.hpp"
 
@@ -194,6 +194,83 @@ TEST(Topography, AMeasuredFlatTakesTheFieldCurvatureOff) {
     EXPECT_EQ(evaluate(folder, "stack.tif", "empty", {"--set", "topography.flatness_file=none"}).exit_code, 0);
 }
 
+// A grey image with an opacity that is nowhere whole.
+void write_transparent_png(const std::filesystem::path& path, const std::vector<int>& image) {
+    const auto output = OIIO::ImageOutput::create("png");
+    OIIO::ImageSpec spec(side, side, 2, OIIO::TypeDesc::UINT8);
+    spec.alpha_channel = 1;
+    spec.attribute("oiio:UnassociatedAlpha", 1);
+    std::vector<std::uint8_t> values;
+    for (std::size_t k = 0; k < image.size(); ++k) {
+        values.push_back(static_cast<std::uint8_t>(image[k]));
+        values.push_back(static_cast<std::uint8_t>(k % 7 * 30));
+    }
+    ASSERT_TRUE(output->open(path.string(), spec));
+    ASSERT_TRUE(output->write_image(OIIO::TypeDesc::UINT8, values.data()));
+    ASSERT_TRUE(output->close());
+}
+
+TEST(Topography, OpacityDoesNotChangeHeights) {
+    const auto folder = fresh_folder("opacity");
+    const auto stack = stack_values(255);
+    write_pages<std::uint8_t>(folder / "stack.tif", stack, 1, OIIO::TypeDesc::UINT8);
+    std::filesystem::create_directory(folder / "images");
+    for (std::size_t k = 0; k < stack.size(); ++k)
+        write_transparent_png(folder / fmt::format("images/{}.png", k), stack[k]);
+    for (const char* name : {"stack.tif", "images"}) {
+        const auto result = evaluate(folder, name, std::string("of_") + name);
+        ASSERT_EQ(result.exit_code, 0) << result.standard_error;
+    }
+    EXPECT_EQ(read_file(folder / "of_images/topography.tif"), read_file(folder / "of_stack.tif/topography.tif"));
+}
+
+TEST(Topography, DoubtsAboutTheHeightsOfImagesAreTold) {
+    const auto folder = fresh_folder("doubts");
+    const auto stack = stack_values(255);
+    std::filesystem::create_directory(folder / "images");
+    const auto write = [&](const std::string& name, std::size_t k) {
+        write_pages<std::uint8_t>(folder / "images" / name, {stack[k]}, 1, OIIO::TypeDesc::UINT8);
+    };
+    for (std::size_t k = 0; k < stack.size(); ++k)
+        write(fmt::format("z{:+}.tif", static_cast<int>(k) - 5), k);
+    const auto whole = evaluate(folder, "images", "whole");
+    ASSERT_EQ(whole.exit_code, 0) << whole.standard_error;
+    EXPECT_THAT(whole.standard_error, Not(HasSubstr("warning")));
+    const auto results = nlohmann::json::parse(read_file(folder / "whole/results.json"));
+    EXPECT_EQ(results["first_image"], "z-5.tif");
+    EXPECT_EQ(results["last_image"], "z+6.tif");
+    EXPECT_EQ(results["images"], images);
+
+    std::filesystem::remove(folder / "images/z+2.tif");
+    const auto gap = evaluate(folder, "images", "gap");
+    EXPECT_EQ(gap.exit_code, 0);
+    EXPECT_THAT(gap.standard_error, HasSubstr("z+3 follows z+1"));
+    write("z+2 copy.tif", 7);
+    EXPECT_THAT(evaluate(folder, "images", "copy").standard_error, HasSubstr("natural order"));
+
+    write_pages<std::int16_t>(folder / "negative.tif", [&] {
+        auto lower = stack;
+        for (auto& image : lower)
+            for (int& value : image)
+                value -= 128;
+        return lower;
+    }(), 1, OIIO::TypeDesc::INT16);
+    EXPECT_THAT(evaluate(folder, "negative.tif", "negative").standard_error, HasSubstr("below zero"));
+}
+
+// Nothing of another stack or of a control stays among the results.
+TEST(Topography, ResultsAreOfTheLastEvaluationAlone) {
+    const auto folder = fresh_folder("last");
+    write_pages<std::uint8_t>(folder / "stack.tif", stack_values(255), 1, OIIO::TypeDesc::UINT8);
+    ASSERT_EQ(evaluate(folder, "stack.tif", "out", {"--shuffle", "3"}).exit_code, 0);
+    write_file(folder / "out/results.json",
+               replaced(read_file(folder / "out/results.json"), "\"shuffle_seed\"", "\"device\": \"another\", \"shuffle_seed\""));
+    ASSERT_EQ(evaluate(folder, "stack.tif", "out").exit_code, 0);
+    const auto results = nlohmann::json::parse(read_file(folder / "out/results.json"));
+    EXPECT_FALSE(results.contains("shuffle_seed"));
+    EXPECT_FALSE(results.contains("device"));
+}
+
 TEST(Topography, WhatIsMissingIsNamed) {
     const auto folder = fresh_folder("missing");
     write_pages<std::uint8_t>(folder / "stack.tif", stack_values(255), 1, OIIO::TypeDesc::UINT8);
@@ -208,7 +285,14 @@ TEST(Topography, WhatIsMissingIsNamed) {
     refused({"stack.tif"}, "--z_step_um");
     refused({"stack.tif", "--z_step_um", "1"}, "no --pitch_um");
     refused({"stack.tif", "--z_step_um", "1", "--pitch_um", "-1", "--out", "out"}, "no --pitch_um");
+    refused({"stack.tif", "--z_step_um", "1", "--pitch_um", "nan", "--out", "out"}, "no --pitch_um");
+    refused({"stack.tif", "--z_step_um", "inf", "--pitch_um", "1", "--out", "out"}, "no --z_step_um");
+    refused({"stack.tif", "--z_step_um", "1", "--pitch_um", "1", "--z_start_um", "nan", "--out", "out"}, "--z_start_um");
     refused({"stack.tif", "--z_step_um", "1", "--pitch_um", "1"}, "no --out");
+    refused({".", "--z_step_um", "1", "--pitch_um", "1", "--out", "../missing"}, "mixed");
+    std::filesystem::create_directory(folder / "another");
+    write_file(folder / "another/stack.toml", "");
+    refused({"stack.tif", "--z_step_um", "1", "--pitch_um", "1", "--out", "another"}, "mixed");
     refused({"empty", "--z_step_um", "1", "--pitch_um", "1", "--out", "out"}, "no stack.toml and no image");
     refused({"two.tif", "--z_step_um", "1", "--pitch_um", "1", "--out", "out"}, "at least 3 images");
     refused({"stack.tif", "--z_step_um", "1", "--pitch_um", "1", "--out", "out", "--set", "topography.peak=top"},
@@ -239,6 +323,29 @@ TEST(NaturalOrder, CountsNumbers) {
         std::ranges::sort(names, naturally_before);
         EXPECT_EQ(names, sorted);
     }
+}
+
+// Names in the order of their heights, whatever the order that they are given in; doubtful ones say so.
+TEST(ImageOrder, IsThatOfTheNumberInWhichNamesDiffer) {
+    std::mt19937 random(1);
+    const auto ordered = [&](std::vector<std::string> names) {
+        std::ranges::shuffle(names, random);
+        const auto found = app::order_of_images(names);
+        std::vector<std::string> result;
+        for (const std::size_t place : found.order)
+            result.push_back(names[place]);
+        return std::pair(result, found.doubt.empty());
+    };
+    using Names = std::vector<std::string>;
+    for (const Names& names : {Names{"z_0", "z_0.25", "z_0.5", "z_0.75", "z_1"}, Names{"z-1 um", "z-0.5 um", "z0 um", "z+0.5 um"},
+                               Names{"image-8", "image-9", "image-10"}, Names{"x2_9", "x2_10", "x2_11"}, Names{"-2", "-1", "0", "1"},
+                               Names{"a08", "a09", "a10"}, Names{"s.001", "s.002", "s.003"}, Names{"z0.333", "z0.667", "z1.000"}})
+        for (int k = 0; k < 5; ++k)
+            EXPECT_EQ(ordered(names), std::pair(names, true));
+    for (const Names& names : {Names{"a1", "a2", "a4"}, Names{"a1", "a2", "b3"}, Names{"v1.9", "v1.10", "v1.11"},
+                               Names{"a01", "a1"}, Names{"t1_z2", "t2_z1"}, Names{"bright", "dark"},
+                               Names{"1", "99999999999999999998", "99999999999999999999"}})
+        EXPECT_EQ(ordered(names), std::pair(names, false)) << names.back();
 }
 
 } // namespace

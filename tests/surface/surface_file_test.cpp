@@ -602,7 +602,8 @@ TEST_F(SurfaceFiles, HostileSdfIsRefused) {
 
 // --- AL3D ---
 
-std::string al3d(const std::string& rows = "2", const std::string& offset = "489") {
+std::string al3d(const std::string& rows = "2", const std::string& offset = "489", const std::string& gap_text = "-1",
+                 float gap = -1) {
     const auto tag = [](std::string key, std::string value) {
         key.resize(20, '\0');
         value.resize(30, '\0');
@@ -611,9 +612,9 @@ std::string al3d(const std::string& rows = "2", const std::string& offset = "489
     std::string bytes("AliconaImaging\0\r\n", 17);
     bytes += tag("Version", "1") + tag("TagCount", "7") + tag("Rows", rows) + tag("Cols", "3") +
              tag("PixelSizeXMeter", "1e-06") + tag("PixelSizeYMeter", "2e-06") + tag("DepthImageOffset", offset) +
-             tag("InvalidPixelValue", "-1") + tag("Comment", "none");
+             tag("InvalidPixelValue", gap_text) + tag("Comment", "none");
     bytes.resize(489, '\0');
-    return bytes + points_of<float>({1e-6f, -1, 2e-6f, 9, 3e-6f, std::numeric_limits<float>::quiet_NaN(), 5e-6f, 9});
+    return bytes + points_of<float>({1e-6f, gap, 2e-6f, 9, 3e-6f, std::numeric_limits<float>::quiet_NaN(), 5e-6f, 9});
 }
 
 TEST_F(SurfaceFiles, Al3dIsRead) {
@@ -629,6 +630,15 @@ TEST_F(SurfaceFiles, Al3dIsRead) {
     EXPECT_NEAR(map.height(0, 0), 3e-3, 2e-10);
     EXPECT_TRUE(std::isnan(map.height(1, 0)));
     EXPECT_NEAR(map.height(2, 0), 5e-3, 3e-10);
+}
+
+TEST_F(SurfaceFiles, GapsOfAl3dAreFoundThoughTheirValueIsRounded) {
+    constexpr float largest = std::numeric_limits<float>::max();
+    for (const char* text : {"3.402823e+38", "3.4028e+38", "0"}) {
+        const HeightMap map = read_surface(write("a.al3d", al3d("2", "489", text, largest))).map;
+        EXPECT_TRUE(std::isnan(map.height(1, 1))) << text;
+        EXPECT_NEAR(map.height(2, 1), 2e-3, 6e-11);
+    }
 }
 
 TEST_F(SurfaceFiles, HostileAl3dIsRefused) {
