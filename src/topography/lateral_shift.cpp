@@ -1,6 +1,7 @@
 #include "topography/lateral_shift.hpp"
 
 #include "core/fourier.hpp"
+#include "surface/height_parameters.hpp"
 #include "surface/resample.hpp"
 #include "topography/compare.hpp"
 
@@ -9,7 +10,10 @@
 #include <algorithm>
 #include <cmath>
 #include <complex>
+#include <functional>
 #include <limits>
+#include <utility>
+#include <vector>
 
 namespace vkfv::topography {
 namespace {
@@ -21,54 +25,157 @@ using Matrix = Eigen::Matrix<double, 5, 5>;
 
 constexpr double undefined = std::numeric_limits<double>::quiet_NaN();
 
-// To whole pitches, by the highest cross-correlation.
-LateralShift nearest_shift(const LevelledPair& pair) {
-    const int columns = pair.measured.columns(), rows = pair.measured.rows();
-    const int reach_x = columns / 4, reach_y = rows / 4;
-    // Zeros as wide as the reach keep the ends apart.
-    Grid<Complex> grid(convenient_length(columns + reach_x + 1), convenient_length(rows + reach_y + 1));
-    for (int row = 0; row < rows; ++row)
-        for (int column = 0; column < columns; ++column)
-            if (const double z = pair.measured.height(column, row); std::isfinite(z))
-                grid(column, row) = {z, pair.truth.height(column, row)};
-    fourier_transform(grid);
-    // The transform of a + i b, a and b real, is A + i B; at the opposite frequency conj(A) + i conj(B).
-    for (int row = 0; row < grid.rows; ++row)
-        for (int column = 0; column < grid.columns; ++column) {
-            const int opposite_column = column == 0 ? 0 : grid.columns - column;
-            const int opposite_row = row == 0 ? 0 : grid.rows - row;
-            if (grid.index(opposite_column, opposite_row) < grid.index(column, row))
-                continue;
-            const Complex here = grid(column, row), there = std::conj(grid(opposite_column, opposite_row));
-            const Complex measured = (here + there) / 2.0, truth = (here - there) / Complex(0, 2);
-            grid(column, row) = measured * std::conj(truth);
-            grid(opposite_column, opposite_row) = std::conj(grid(column, row));
-        }
-    inverse_fourier_transform(grid);
-    LateralShift best{.x = undefined, .y = undefined};
-    double highest = 0;
-    for (int j = -reach_y; j <= reach_y; ++j)
-        for (int i = -reach_x; i <= reach_x; ++i)
-            if (const double value = grid(i < 0 ? i + grid.columns : i, j < 0 ? j + grid.rows : j).real();
-                value > highest) {
-                highest = value;
-                best = {.x = i * pair.measured.pitch_x, .y = j * pair.measured.pitch_y};
-            }
-    return best;
+// How much better two surfaces that correlate explain so many points than two that do not: the logarithm of
+// the ratio of the likelihoods of normal heights, twice. It weighs a slightly better match of fewer points.
+double evidence(double points, double correlation) {
+    constexpr double least = 1e-3; // of the variance, left unexplained: less is the interpolation's
+    return correlation > 0 ? -points * std::log(std::max(1 - correlation * correlation, least)) : 0;
 }
 
+struct Starts {
+    std::vector<LateralShift> shifts;   // whole pitches, the best first
+    double significant_correlation = 1; // of the best of unrelated surfaces hardly any reaches it
+};
+
+// Pearson's correlation over the points that overlap, at every lag: sums over pairs by Fourier transform,
+// after D. Padfield, "Masked object registration in the Fourier domain", 2012. Without points a lag has none.
+Starts starting_shifts(const LevelledPair& pair) {
+    constexpr std::size_t most = 3;
+    constexpr double worth_a_try = 0.5;    // of the best one's evidence
+    constexpr double least_overlap = 0.25; // of the points at lag zero
+    const int columns = pair.measured.columns(), rows = pair.measured.rows();
+    const int reach_x = columns / 4, reach_y = rows / 4;
+    const double sq_measured = surface::height_parameters(pair.measured).sq;
+    const double sq_true = surface::height_parameters(pair.truth).sq;
+    if (!(sq_measured > 0 && sq_true > 0))
+        return {};
+    // Zeros as wide as the reach keep the ends apart. Two real grids go through one transform: presence and
+    // a; b and a^2; b^2.
+    Grid<Complex> first(convenient_length(columns + reach_x + 1), convenient_length(rows + reach_y + 1));
+    Grid<Complex> second = first, third = first;
+    double points = 0;
+    for (int row = 0; row < rows; ++row)
+        for (int column = 0; column < columns; ++column)
+            if (const double z = pair.measured.height(column, row); std::isfinite(z)) {
+                const double a = z / sq_measured, b = pair.truth.height(column, row) / sq_true;
+                first(column, row) = {1, a};
+                second(column, row) = {b, a * a};
+                third(column, row) = {b * b, 0};
+                points += 1;
+            }
+    fourier_transform(first);
+    fourier_transform(second);
+    fourier_transform(third);
+    // Likewise back: pairs and products; a and b where the other is present; their squares there.
+    double powers_a = 0, powers_b = 0, powers_both = 0;
+    for (int row = 0; row < first.rows; ++row)
+        for (int column = 0; column < first.columns; ++column) {
+            const int opposite_column = column == 0 ? 0 : first.columns - column;
+            const int opposite_row = row == 0 ? 0 : first.rows - row;
+            const std::size_t here = first.index(column, row),
+                              there = first.index(opposite_column, opposite_row);
+            if (there < here)
+                continue;
+            // The transform of a + i b, a and b real, is A + i B; at the opposite frequency conj(A) + i
+            // conj(B).
+            const auto parts = [&](const Grid<Complex>& grid) {
+                const Complex value = grid.values[here], other = std::conj(grid.values[there]);
+                return std::pair((value + other) / 2.0, (value - other) / Complex(0, 2));
+            };
+            const auto join = [&](Grid<Complex>& grid, Complex real, Complex imaginary) {
+                const Complex i(0, 1);
+                grid.values[there] = std::conj(real) + i * std::conj(imaginary);
+                grid.values[here] = real + i * imaginary;
+            };
+            const auto [present, a] = parts(first);
+            const auto [b, a_squared] = parts(second);
+            const Complex b_squared = parts(third).first;
+            join(first, present * std::conj(present), a * std::conj(b));
+            join(second, a * std::conj(present), present * std::conj(b));
+            join(third, a_squared * std::conj(present), present * std::conj(b_squared));
+            const double times = here == there ? 1 : 2;
+            powers_a += times * std::norm(a);
+            powers_b += times * std::norm(b);
+            powers_both += times * std::norm(a) * std::norm(b);
+        }
+    inverse_fourier_transform(first);
+    inverse_fourier_transform(second);
+    inverse_fourier_transform(third);
+
+    Grid<double> evidences(2 * reach_x + 1, 2 * reach_y + 1);
+    for (int j = -reach_y; j <= reach_y; ++j)
+        for (int i = -reach_x; i <= reach_x; ++i) {
+            const std::size_t lag = first.index(i < 0 ? i + first.columns : i, j < 0 ? j + first.rows : j);
+            const double n = std::round(first.values[lag].real());
+            if (!(n >= least_overlap * points))
+                continue;
+            const double mean_a = second.values[lag].real() / n, mean_b = second.values[lag].imag() / n;
+            const double variance_a = third.values[lag].real() / n - mean_a * mean_a;
+            const double variance_b = third.values[lag].imag() / n - mean_b * mean_b;
+            // Of 1 at lag zero: what is left of less is rounding.
+            if (variance_a > 1e-9 && variance_b > 1e-9)
+                evidences(i + reach_x, j + reach_y) = evidence(
+                    n, (first.values[lag].imag() / n - mean_a * mean_b) / std::sqrt(variance_a * variance_b));
+        }
+
+    struct Peak {
+        double evidence;
+        LateralShift shift;
+    };
+    std::vector<Peak> peaks;
+    for (int row = 0; row < evidences.rows; ++row)
+        for (int column = 0; column < evidences.columns; ++column) {
+            const double here = evidences(column, row);
+            bool highest = here > 0;
+            for (int j = std::max(row - 1, 0); j <= std::min(row + 1, evidences.rows - 1); ++j)
+                for (int i = std::max(column - 1, 0); i <= std::min(column + 1, evidences.columns - 1); ++i)
+                    highest = highest && evidences(i, j) <= here;
+            if (highest)
+                peaks.push_back({here,
+                                 {.x = (column - reach_x) * pair.measured.pitch_x,
+                                  .y = (row - reach_y) * pair.measured.pitch_y}});
+        }
+    std::ranges::stable_sort(peaks, std::greater{}, &Peak::evidence);
+    Starts starts;
+    for (const Peak& peak : peaks)
+        if (starts.shifts.size() < most && peak.evidence >= worth_a_try * peaks.front().evidence)
+            starts.shifts.push_back(peak.shift);
+
+    // The correlation of unrelated surfaces has the variance 1 / n, n the number of independent points: all
+    // of them over the summed product of both autocorrelations (M. S. Bartlett 1935), which by Parseval's
+    // theorem is a sum over frequencies. The best of m independent lags exceeds the sqrt(2 ln m)-fold of
+    // Fisher's z by little.
+    const double patch = powers_both / (powers_a * powers_b) * static_cast<double>(first.values.size());
+    const double independent = points / patch;
+    const double lags = std::max(1.0, static_cast<double>(evidences.values.size()) / patch);
+    starts.significant_correlation = std::tanh((3 + std::sqrt(2 * std::log(lags))) / std::sqrt(independent));
+    return starts;
+}
+
+struct Step {
+    Eigen::Vector2d shift;
+    Eigen::Matrix2d known; // the projector on the directions that the slopes tell
+};
+
 // The step of the shift that makes the linearised sum of squares least.
-Eigen::Vector2d gauss_newton_step(const HeightMap& measured, const HeightMap& truth) {
+Step gauss_newton_step(const HeightMap& measured, const HeightMap& truth) {
+    // Variation along a direction, offset and tilt aside, of the mean square slope: interpolation makes up
+    // less.
+    constexpr double telling = 1e-5;
     const double x_middle = measured.x(measured.columns() / 2), y_middle = measured.y(measured.rows() / 2);
+    const int border_x = measured.columns() > 2 ? 1 : 0, border_y = measured.rows() > 2 ? 1 : 0;
     Matrix matrix = Matrix::Zero();
     Vector right = Vector::Zero();
-    for (int row = 1; row + 1 < measured.rows(); ++row)
-        for (int column = 1; column + 1 < measured.columns(); ++column) {
+    for (int row = border_y; row + border_y < measured.rows(); ++row)
+        for (int column = border_x; column + border_x < measured.columns(); ++column) {
             const double residual = measured.height(column, row) - truth.height(column, row);
+            // Zero along an axis of fewer than three points.
             const double slope_x =
-                (truth.height(column + 1, row) - truth.height(column - 1, row)) / (2 * measured.pitch_x);
+                (truth.height(column + border_x, row) - truth.height(column - border_x, row)) /
+                (2 * measured.pitch_x);
             const double slope_y =
-                (truth.height(column, row + 1) - truth.height(column, row - 1)) / (2 * measured.pitch_y);
+                (truth.height(column, row + border_y) - truth.height(column, row - border_y)) /
+                (2 * measured.pitch_y);
             if (!std::isfinite(residual + slope_x + slope_y))
                 continue;
             Vector terms;
@@ -76,16 +183,65 @@ Eigen::Vector2d gauss_newton_step(const HeightMap& measured, const HeightMap& tr
             matrix += terms * terms.transpose();
             right += residual * terms;
         }
-    // Unknowns of unlike magnitude are brought to one; both shifts by the same factor, so that a direction without
-    // slopes is seen as such and left at zero.
-    Vector scale = matrix.diagonal().cwiseSqrt();
-    scale[0] = scale[1] = std::max(scale[0], scale[1]);
-    scale = scale.unaryExpr([](double value) { return value > 0 ? 1 / value : 0; });
-    Eigen::CompleteOrthogonalDecomposition<Matrix> decomposition;
-    decomposition.setThreshold(1e-8);
-    decomposition.compute(scale.asDiagonal() * matrix * scale.asDiagonal());
-    const Vector step = scale.asDiagonal() * decomposition.solve(Vector(scale.asDiagonal() * right));
-    return {step[0], step[1]};
+    // Unknowns of unlike magnitude are brought to one.
+    const Vector scale =
+        matrix.diagonal().unaryExpr([](double value) { return value > 0 ? 1 / std::sqrt(value) : 0; });
+    const Eigen::Vector3d plane_scale = scale.tail<3>();
+    const Eigen::Matrix3d plane =
+        plane_scale.asDiagonal() * matrix.bottomRightCorner<3, 3>() * plane_scale.asDiagonal();
+    // Offset and tilt are eliminated first: a slope that they explain tells no shift.
+    Eigen::CompleteOrthogonalDecomposition<Eigen::Matrix3d> planes;
+    planes.setThreshold(1e-12);
+    planes.compute(plane);
+    const Eigen::Matrix<double, 3, 2> coupling = plane_scale.asDiagonal() * matrix.bottomLeftCorner<3, 2>();
+    const Eigen::Vector3d plane_right = plane_scale.asDiagonal() * right.tail<3>();
+    const Eigen::Matrix2d shifts =
+        matrix.topLeftCorner<2, 2>() - coupling.transpose() * planes.solve(coupling);
+    const Eigen::Vector2d shift_right = right.head<2>() - coupling.transpose() * planes.solve(plane_right);
+    const Eigen::SelfAdjointEigenSolver<Eigen::Matrix2d> directions(shifts);
+    const double least = telling * matrix.topLeftCorner<2, 2>().trace();
+    Step step{.shift = Eigen::Vector2d::Zero(), .known = Eigen::Matrix2d::Zero()};
+    for (int k = 0; k < 2; ++k)
+        if (const double curvature = directions.eigenvalues()[k]; curvature > least) {
+            const Eigen::Vector2d direction = directions.eigenvectors().col(k);
+            step.shift += direction * (direction.dot(shift_right) / curvature);
+            step.known += direction * direction.transpose();
+        }
+    return step;
+}
+
+// NaN where the iteration finds no minimum within the searched range.
+LateralShift refined_shift(const HeightMap& measured, const HeightMap& truth, const LateralShift& start) {
+    constexpr int most_iterations = 50;
+    constexpr double settled = 1e-4; // pitches
+    constexpr double beyond = 2;     // pitches over the reach of the search
+    const LateralShift none{undefined, undefined, undefined};
+    const Eigen::Array2d pitch(measured.pitch_x, measured.pitch_y);
+    const Eigen::Array2d reach = Eigen::Array2d(measured.columns() / 4, measured.rows() / 4) + beyond;
+    Eigen::Array2d place(start.x, start.y), share(1, 1), before(0, 0);
+    for (int iteration = 0; iteration < most_iterations; ++iteration) {
+        const Step step =
+            gauss_newton_step(measured, shifted_onto(truth, measured, {.x = place[0], .y = place[1]}));
+        if (step.known.isZero(0))
+            return none;
+        if (iteration == 0)
+            place = (step.known * place.matrix()).array();
+        // The points present change with the shift, at the border with its very sign: between two steps that
+        // turn back, each for its own points, half the way is taken.
+        const Eigen::Array2d wanted = step.shift.array();
+        share = (wanted * before < 0).select(share / 2, share);
+        const Eigen::Array2d taken = share * wanted * std::min(1.0, 1 / (wanted.abs() / pitch).maxCoeff());
+        before = wanted;
+        place += taken;
+        if (!((place.abs() / pitch) <= reach).all())
+            return none;
+        if (((taken.abs() / pitch) < settled).all()) {
+            LateralShift shift{.x = place[0], .y = place[1]};
+            shift.correlation = compare(measured, shifted_onto(truth, measured, shift)).correlation;
+            return shift;
+        }
+    }
+    return none;
 }
 
 } // namespace
@@ -98,30 +254,22 @@ HeightMap shifted_onto(const HeightMap& truth, const HeightMap& measured, const 
 }
 
 LateralShift lateral_shift(const HeightMap& measured, const HeightMap& truth) {
-    constexpr int most_iterations = 50;
-    constexpr double settled = 1e-4; // pitches
-    constexpr double basin = 2;      // pitches: farther from the start lies another peak
-    const LateralShift none{undefined, undefined, undefined};
-    const LateralShift start = nearest_shift(levelled_pair(measured, surface::resampled(truth, measured)));
-    if (!std::isfinite(start.x))
-        return none;
-    LateralShift shift = start;
-    for (int iteration = 0; iteration < most_iterations; ++iteration) {
-        const HeightMap moved = shifted_onto(truth, measured, shift);
-        const Eigen::Vector2d step = gauss_newton_step(measured, moved);
-        const double pitches = std::max(std::abs(step.x()) / measured.pitch_x, std::abs(step.y()) / measured.pitch_y);
-        const double share = std::min(1.0, 1 / pitches); // a pitch at most
-        shift.x += share * step.x();
-        shift.y += share * step.y();
-        if (!(std::abs(shift.x - start.x) <= basin * measured.pitch_x &&
-              std::abs(shift.y - start.y) <= basin * measured.pitch_y))
-            return none;
-        if (pitches < settled) {
-            shift.correlation = compare(measured, shifted_onto(truth, measured, shift)).correlation;
-            return shift;
+    const LevelledPair pair = levelled_pair(measured, surface::resampled(truth, measured));
+    const Starts starts = starting_shifts(pair);
+    LateralShift best{undefined, undefined, undefined};
+    double most = 0;
+    for (const LateralShift& start : starts.shifts) {
+        const LateralShift shift = refined_shift(measured, truth, start);
+        if (!(shift.correlation >= starts.significant_correlation))
+            continue;
+        const double overlap = (1 - std::abs(shift.x) / (measured.columns() * measured.pitch_x)) *
+                               (1 - std::abs(shift.y) / (measured.rows() * measured.pitch_y));
+        if (const double here = evidence(overlap, shift.correlation); here > most) {
+            most = here;
+            best = shift;
         }
     }
-    return none;
+    return best;
 }
 
 } // namespace vkfv::topography

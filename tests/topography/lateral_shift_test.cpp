@@ -6,6 +6,9 @@
 
 #include <cmath>
 #include <limits>
+#include <random>
+#include <utility>
+#include <vector>
 
 namespace vkfv::topography {
 namespace {
@@ -92,6 +95,134 @@ TEST(LateralShift, IsUndefinedWhereNothingVaries) {
     HeightMap elsewhere = rough(0, 0, 2);
     elsewhere.x0 += 1;
     EXPECT_TRUE(std::isnan(lateral_shift(rough(0, 0, 2), elsewhere).x));
+}
+
+// White noise through a Gaussian of standard deviation `sigma`, points apart, to Sq 1; larger than the maps
+// cut from it.
+Grid<double> smooth_noise(int columns, int rows, double sigma, unsigned seed) {
+    std::mt19937_64 random(seed);
+    std::normal_distribution<double> normal;
+    const int radius = static_cast<int>(3.5 * sigma);
+    Grid<double> noise(columns + 2 * radius, rows + 2 * radius);
+    for (double& value : noise.values)
+        value = normal(random);
+    std::vector<double> weights;
+    for (int k = -radius; k <= radius; ++k)
+        weights.push_back(std::exp(-k * k / (2 * sigma * sigma)) / std::sqrt(sigma * std::sqrt(pi)));
+    Grid<double> along_x(columns, noise.rows), both(columns, rows);
+    for (int row = 0; row < noise.rows; ++row)
+        for (int column = 0; column < columns; ++column)
+            for (int k = 0; k <= 2 * radius; ++k)
+                along_x(column, row) += weights[static_cast<std::size_t>(k)] * noise(column + k, row);
+    for (int row = 0; row < rows; ++row)
+        for (int column = 0; column < columns; ++column)
+            for (int k = 0; k <= 2 * radius; ++k)
+                both(column, row) += weights[static_cast<std::size_t>(k)] * along_x(column, row + k);
+    return both;
+}
+
+struct Pair {
+    HeightMap measured, truth;
+};
+
+// Two maps of one surface, `shift_x` and `shift_y` points apart, 20 at most; the measured one with noise of
+// `noise`, and of either the share `gaps` of the points left out.
+Pair moved_pair(int points, double sigma, int shift_x, int shift_y, double noise, double gaps,
+                unsigned seed) {
+    const Grid<double> surface = smooth_noise(points + 40, points + 40, sigma, seed);
+    std::mt19937_64 random(seed + 1000);
+    std::normal_distribution<double> normal(0, noise);
+    std::uniform_real_distribution<double> share;
+    const HeightMap empty{
+        .height = Grid<double>(points, points), .x0 = 0, .y0 = 0, .pitch_x = pitch, .pitch_y = 1.7 * pitch};
+    Pair pair{.measured = empty, .truth = empty};
+    for (int row = 0; row < points; ++row)
+        for (int column = 0; column < points; ++column) {
+            pair.truth.height(column, row) = 1e-3 * surface(column + 20, row + 20);
+            pair.measured.height(column, row) =
+                1e-3 * (surface(column + 20 - shift_x, row + 20 - shift_y) + normal(random));
+        }
+    for (HeightMap* map : {&pair.measured, &pair.truth})
+        for (double& z : map->height.values)
+            if (share(random) < gaps)
+                z = std::numeric_limits<double>::quiet_NaN();
+    return pair;
+}
+
+TEST(LateralShift, OfNothingIsFound) {
+    // The border is of the overlap or not with the sign of the shift.
+    for (unsigned seed = 0; seed < 12; ++seed) {
+        const Pair pair = moved_pair(100, 6, 0, 0, 0.02, 0, seed);
+        const LateralShift shift = lateral_shift(pair.measured, pair.truth);
+        // Noise of 0.02 over a slope of 1 / (6 sqrt(2)) a point and 10^4 points: 0.002 of a pitch; five of
+        // these.
+        EXPECT_NEAR(shift.x / pitch, 0, 0.01) << seed;
+        EXPECT_NEAR(shift.y / pitch / 1.7, 0, 0.01) << seed;
+        EXPECT_GT(shift.correlation, 0.999) << seed;
+    }
+}
+
+TEST(LateralShift, OfSmoothSurfacesIsFound) {
+    // Hardly more than one hill in sight: the overlap's mean and its variance change with the lag.
+    struct Case {
+        int points;
+        double sigma;
+        int x, y;
+        double gaps;
+    };
+    for (const Case& c : {Case{100, 15, -4, 4, 0}, Case{100, 10, 4, 3, 0}, Case{200, 15, 4, -4, 0},
+                          Case{100, 5, -17, 12, 0}, Case{100, 10, 5, 2, 0.02}, Case{100, 15, 0, 0, 0.02}})
+        for (unsigned seed = 0; seed < 6; ++seed) {
+            const Pair pair = moved_pair(c.points, c.sigma, c.x, c.y, 0.02, c.gaps, seed);
+            const LateralShift shift = lateral_shift(pair.measured, pair.truth);
+            // Noise of 0.02 over a slope of 1 / (15 sqrt(2)) a point and 6000 points: 0.006 of a pitch;
+            // offset and tilt take some of it.
+            EXPECT_NEAR(shift.x / pitch, c.x, 0.05) << c.points << ' ' << c.sigma << ' ' << seed;
+            EXPECT_NEAR(shift.y / pitch / 1.7, c.y, 0.05) << c.points << ' ' << c.sigma << ' ' << seed;
+        }
+}
+
+TEST(LateralShift, OfUnrelatedSurfacesIsNotFound) {
+    int found = 0;
+    for (const double sigma : {0.8, 3.0, 8.0})
+        for (unsigned seed = 0; seed < 8; ++seed) {
+            const Pair one = moved_pair(60, sigma, 0, 0, 0.02, 0, seed),
+                       other = moved_pair(60, sigma, 0, 0, 0.02, 0, seed + 100);
+            found += !std::isnan(lateral_shift(one.measured, other.truth).x);
+        }
+    EXPECT_EQ(found, 0);
+    // Of planes rounding alone is left.
+    Pair planes = moved_pair(60, 3, 0, 0, 0.02, 0, 1);
+    for (int row = 0; row < 60; ++row)
+        for (int column = 0; column < 60; ++column) {
+            planes.measured.height(column, row) = 0.3 + 0.5 * planes.measured.x(column);
+            planes.truth.height(column, row) = 0.1 - 0.2 * planes.truth.y(row);
+        }
+    EXPECT_TRUE(std::isnan(lateral_shift(planes.measured, planes.truth).x));
+}
+
+TEST(LateralShift, OfATiltedObliqueGrooveIsAcrossIt) {
+    const auto groove = [](double shift_x, double shift_y) {
+        HeightMap map = map_of({{1e-3, 0.08 / pitch, 0.03 / pitch, 0.4}}, 130, 70, pitch, shift_x * pitch,
+                               shift_y * pitch, all);
+        std::mt19937_64 random(5);
+        std::normal_distribution<double> normal(0, 1e-5);
+        for (int row = 0; row < map.rows(); ++row)
+            for (int column = 0; column < map.columns(); ++column)
+                map.height(column, row) += 0.1 * map.y(row) + (shift_x != 0 ? normal(random) : 0.0);
+        return map;
+    };
+    const LateralShift shift = lateral_shift(groove(1.6, 0.6), groove(0, 0));
+    EXPECT_NEAR(shift.x / pitch, 1.6, 0.02);
+    EXPECT_NEAR(shift.y / pitch, 0.6, 0.02);
+}
+
+TEST(LateralShift, OfAProfileIsAlongIt) {
+    const std::vector<Wave> waves = {{1e-3, 0.05 / pitch, 0, 0.4}, {1e-3, 0.013 / pitch, 0, 1}};
+    const LateralShift shift = lateral_shift(map_of(waves, 200, 1, pitch, 3.3 * pitch, 0, all),
+                                             map_of(waves, 200, 1, pitch, 0, 0, all));
+    EXPECT_NEAR(shift.x / pitch, 3.3, 0.02);
+    EXPECT_EQ(shift.y, 0);
 }
 
 } // namespace
