@@ -55,7 +55,7 @@ Grid<double> convolve_rows(const Grid<double>& grid, const std::vector<double>& 
 } // namespace
 
 Plane least_squares_plane(const HeightMap& map) {
-    // Two passes: centred sums do not cancel.
+    // Pass by pass: centred sums do not cancel.
     double count = 0, sum_x = 0, sum_y = 0, sum_z = 0;
     const auto over_measured = [&map](auto&& visit) {
         for (int row = 0; row < map.rows(); ++row)
@@ -76,22 +76,36 @@ Plane least_squares_plane(const HeightMap& map) {
     plane.y_centre = sum_y / count;
     plane.offset = sum_z / count;
 
-    double xx = 0, xy = 0, yy = 0, xz = 0, yz = 0;
-    over_measured([&](double x, double y, double z) {
-        const double dx = x - plane.x_centre, dy = y - plane.y_centre, dz = z - plane.offset;
+    double xx = 0, xy = 0, yy = 0;
+    over_measured([&](double x, double y, double) {
+        const double dx = x - plane.x_centre, dy = y - plane.y_centre;
         xx += dx * dx;
         xy += dx * dy;
         yy += dy * dy;
-        xz += dx * dz;
-        yz += dy * dz;
     });
-    // On one line the determinant is zero but for the rounding of sums as large as the trace.
-    const double determinant = xx * yy - xy * xy;
-    const double rounding = count * std::numeric_limits<double>::epsilon() * (xx + yy) * (xx + yy);
-    if (determinant > rounding) {
-        plane.slope_x = (yy * xz - xy * yz) / determinant;
-        plane.slope_y = (xx * yz - xy * xz) / determinant;
+    // Along the points' longest extent and across: what is across points on a line shows as such, however long it is.
+    constexpr double line = 1e-10; // extent across over that along: less is rounding
+    const double angle = std::atan2(2 * xy, xx - yy) / 2, cosine = std::cos(angle), sine = std::sin(angle);
+    double uu = 0, uv = 0, vv = 0, uz = 0, vz = 0;
+    over_measured([&](double x, double y, double z) {
+        const double dx = x - plane.x_centre, dy = y - plane.y_centre, dz = z - plane.offset;
+        const double u = cosine * dx + sine * dy, v = cosine * dy - sine * dx;
+        uu += u * u;
+        uv += u * v;
+        vv += v * v;
+        uz += u * dz;
+        vz += v * dz;
+    });
+    double along = 0, across = 0;
+    if (vv > line * line * uu) {
+        const double determinant = uu * vv - uv * uv;
+        along = (vv * uz - uv * vz) / determinant;
+        across = (uu * vz - uv * uz) / determinant;
+    } else if (uu > 0) {
+        along = uz / uu;
     }
+    plane.slope_x = cosine * along - sine * across;
+    plane.slope_y = sine * along + cosine * across;
     return plane;
 }
 

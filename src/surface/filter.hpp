@@ -19,7 +19,7 @@ struct Plane {
     }
 };
 
-// Least squares along z over the measured points. Points on one line leave the tilt open: it is then zero.
+// Least squares along z over the measured points. Points on one line leave the tilt across it open: it is then zero.
 // Without measured points the offset is NaN.
 Plane least_squares_plane(const HeightMap& map);
 

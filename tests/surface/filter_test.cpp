@@ -62,11 +62,30 @@ TEST(Plane, LeavesATiltOpenThatThePointsLeaveOpen) {
             if (row != column)
                 map.height(column, row) = not_measured;
     const Plane line = least_squares_plane(map);
-    EXPECT_EQ(line.slope_x, 0);
-    EXPECT_EQ(line.slope_y, 0);
+    // Along the diagonal the heights rise by 1 / sqrt(2).
+    EXPECT_NEAR(line.slope_x, 0.5, 1e-12);
+    EXPECT_NEAR(line.slope_y, 0.5, 1e-12);
     for (double& height : map.height.values)
         height = not_measured;
     EXPECT_TRUE(std::isnan(least_squares_plane(map).offset));
+}
+
+TEST(Plane, LevelsProfilesAlongThem) {
+    const auto tilted = [](int columns, int rows) {
+        return sampled(columns, rows, 0.002, [](double x, double y) { return 0.1 + 0.2 * x - 0.05 * y; });
+    };
+    const Plane along_x = least_squares_plane(tilted(300, 1)), along_y = least_squares_plane(tilted(1, 300));
+    EXPECT_NEAR(along_x.slope_x, 0.2, 1e-13);
+    EXPECT_NEAR(along_x.slope_y, 0, 1e-13);
+    EXPECT_NEAR(along_y.slope_x, 0, 1e-13);
+    EXPECT_NEAR(along_y.slope_y, -0.05, 1e-13);
+    const Plane point = least_squares_plane(tilted(1, 1));
+    EXPECT_EQ(point.slope_x, 0);
+    EXPECT_EQ(point.slope_y, 0);
+    // Two profiles side by side, however long, do settle the tilt across.
+    const Plane strip = least_squares_plane(tilted(1000000, 2));
+    EXPECT_NEAR(strip.slope_x, 0.2, 1e-13);
+    EXPECT_NEAR(strip.slope_y, -0.05, 1e-7); // heights of 400 mm, rounded to 6e-14 mm, 0.002 mm apart
 }
 
 // Amplitude of a cosine of wavelength `wavelength` at the middle of the map, after the low-pass of index L.
