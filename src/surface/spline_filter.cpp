@@ -44,10 +44,18 @@ HeightMap spline_low_pass(const HeightMap& map, double nesting_index) {
     // filter of a whole map, (1 + mu B)^-1, as preconditioner. Without gaps its first step is the solution.
     const std::size_t points = map.height.values.size();
     std::vector<double> weight(points), residual(points), spline(points);
+    // The filter passes the mean as it is; the goal is one of the heights about it.
+    double sum = 0, count = 0;
+    for (const double z : map.height.values)
+        if (std::isfinite(z)) {
+            sum += z;
+            count += 1;
+        }
+    const double mean = sum / count;
     for (std::size_t k = 0; k < points; ++k)
         if (const double z = map.height.values[k]; std::isfinite(z)) {
             weight[k] = 1;
-            residual[k] = z;
+            residual[k] = z - mean;
         }
     const double goal = 1e-10 * dot(residual, residual); // squared: a relative 1e-5
     std::vector<double> direction(points), stretched(points); // stretched = (1 + mu B) direction
@@ -72,7 +80,7 @@ HeightMap spline_low_pass(const HeightMap& map, double nesting_index) {
     }
     HeightMap result = map;
     for (std::size_t k = 0; k < points; ++k)
-        result.height.values[k] = weight[k] > 0 ? spline[k] : std::numeric_limits<double>::quiet_NaN();
+        result.height.values[k] = weight[k] > 0 ? mean + spline[k] : std::numeric_limits<double>::quiet_NaN();
     return result;
 }
 
