@@ -70,6 +70,7 @@ Falls falls_of_autocorrelation(const HeightMap& map, const HeightParameters& par
         return sum_and_pairs.imag() > 0.5 ? sum_and_pairs.real() / sum_and_pairs.imag() / mean_square : 1;
     };
     const int columns = map.columns() / 2, rows = map.rows() / 2;
+    constexpr double rounding = 1e-9; // of a lag along an axis, whose other part is hardly ever zero
     // A point apart at the greatest lag; opposite lags are alike.
     const int directions = 4 * std::max({columns, rows, 1});
     Falls falls;
@@ -78,7 +79,8 @@ Falls falls_of_autocorrelation(const HeightMap& map, const HeightParameters& par
         const double angle = pi * direction / directions;
         const double step_x = 0.5 * std::cos(angle), step_y = 0.5 * std::sin(angle);
         double fall = undefined, before = 1;
-        for (int k = 1; std::abs(k * step_x) <= columns && std::abs(k * step_y) <= rows; ++k) {
+        for (int k = 1; std::abs(k * step_x) <= columns + rounding && std::abs(k * step_y) <= rows + rounding;
+             ++k) {
             const double here = bilinear(sums, k * step_x, k * step_y, normalised);
             if (here < s) {
                 const double steps = k - 1 + (before - s) / (before - here);

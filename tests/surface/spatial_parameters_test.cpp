@@ -112,6 +112,13 @@ TEST(SpatialParameters, OfSmoothedNoiseFallAtTheKernelsLength) {
     EXPECT_GT(std::abs(p.std_angle), pi / 4);
 }
 
+TEST(SpatialParameters, OfAProfileAreThoseAlongIt) {
+    const double period = 0.025;
+    const auto wave = [=](double x, double y) { return std::cos(2 * pi * (x + y) / period); };
+    for (const auto& map : {sampled(300, 1, 0.002, wave), sampled(1, 300, 0.002, wave)})
+        EXPECT_NEAR(spatial_parameters(map).sal, std::acos(0.2) / (2 * pi) * period, 0.01 * period);
+}
+
 TEST(SpatialParameters, AreUndefinedForAConstantHeight) {
     auto map = sampled(20, 20, 1, [](double, double) { return 0.1; });
     EXPECT_TRUE(std::isnan(spatial_parameters(map).sal));
