@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 #include <numeric>
+#include <utility>
 #include <vector>
 
 namespace vkfv::surface {
@@ -46,12 +47,29 @@ Taps cubic(int point, double u, int points) {
     return {first, weights};
 }
 
-// Shares of the target's cell, of the width `width` in source pitches, that the source's cells cover.
+// Shares of the target's cell, of the width `width` in source pitches, that the source's cells cover. Where these are
+// cut by the target's ends, the mean of their points stands beside the target: the slope between the ends, of the
+// linear interpolant, brings it back.
 Taps mean(double place, double width, int points) {
+    constexpr double rounding = 1e-12; // pitches: cells are cut alike at both ends or not at all
     const double low = place - width / 2, high = place + width / 2;
-    Taps taps{.first = std::clamp(static_cast<int>(std::ceil(low - 0.5)), 0, points - 1), .weights = {}};
-    for (int k = taps.first; k < points && k - 0.5 < high; ++k)
+    const auto point_before = [points](double at) {
+        return static_cast<int>(std::clamp(std::floor(at), 0.0, std::max(points - 2.0, 0.0)));
+    };
+    Taps taps{.first = point_before(low), .weights = {}};
+    double moment = 0;
+    for (int k = taps.first; k <= std::min(point_before(high) + 1, points - 1); ++k) {
         taps.weights.push_back(std::max(0.0, std::min(high, k + 0.5) - std::max(low, k - 0.5)) / width);
+        moment += k * taps.weights.back();
+    }
+    const double off = place * taps.total() - moment;
+    if (points > 1 && std::abs(off) > rounding * points)
+        for (const auto& [end, factor] : {std::pair(high, off / width), std::pair(low, -off / width)}) {
+            const int before = point_before(end);
+            const auto tap = static_cast<std::size_t>(before - taps.first);
+            taps.weights[tap] += factor * (before + 1 - end);
+            taps.weights[tap + 1] += factor * (end - before);
+        }
     return taps;
 }
 

@@ -60,6 +60,42 @@ TEST(Resample, AveragesAFinerMapOverTheCell) {
         EXPECT_NEAR(z, 0, 1e-12);
 }
 
+TEST(Resample, KeepsPlanesWhereTheMapIsFiner) {
+    const auto plane = [](double x, double y) { return 3 * x - 2 * y + 1; };
+    const HeightMap map = sampled(60, 50, 0.01, plane);
+    for (const double ratio : {1.02, 1.25, 1.5, 1.9, 2.0, 2.3, 3.0, 3.7, 4.0}) {
+        // From border to border.
+        const HeightMap coarse = resampled(map, grid(static_cast<int>(59 / ratio) + 1, static_cast<int>(49 / ratio) + 1,
+                                                     -0.3, 0.2, 0.01 * ratio));
+        int measured = 0;
+        for (int row = 0; row < coarse.rows(); ++row)
+            for (int column = 0; column < coarse.columns(); ++column)
+                if (const double z = coarse.height(column, row); !std::isnan(z)) {
+                    EXPECT_NEAR(z, plane(coarse.x(column), coarse.y(row)), 1e-13) << ratio;
+                    ++measured;
+                }
+        EXPECT_GE(measured, (coarse.columns() - 2) * (coarse.rows() - 2)) << ratio;
+    }
+}
+
+TEST(Resample, IsThePlainMeanAtWholeRatios) {
+    const HeightMap map = sampled(60, 50, 0.01, [](double x, double y) { return std::sin(90 * x) * std::cos(70 * y); });
+    // Cells of three points about a point, and of two between points.
+    const HeightMap three = resampled(map, grid(10, 8, -0.2, 0.3, 0.03)), two = resampled(map, grid(10, 8, -0.195, 0.305, 0.02));
+    for (int row = 0; row < 8; ++row)
+        for (int column = 0; column < 10; ++column) {
+            double of_three = 0, of_two = 0;
+            for (int j = 0; j < 3; ++j)
+                for (int i = 0; i < 3; ++i)
+                    of_three += map.height(9 + 3 * column + i, 9 + 3 * row + j) / 9;
+            for (int j = 0; j < 2; ++j)
+                for (int i = 0; i < 2; ++i)
+                    of_two += map.height(10 + 2 * column + i, 10 + 2 * row + j) / 4;
+            EXPECT_NEAR(three.height(column, row), of_three, 1e-13);
+            EXPECT_NEAR(two.height(column, row), of_two, 1e-13);
+        }
+}
+
 TEST(Resample, IsNotMeasuredBeyondTheMapAndAtGaps) {
     auto map = sampled(60, 50, 0.01, [](double, double) { return 0.5; });
     for (int row = 0; row < map.rows(); ++row)
