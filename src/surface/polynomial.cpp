@@ -48,6 +48,51 @@ Eigen::MatrixXd along_columns(const HeightMap& map, const Polynomial& polynomial
     return values;
 }
 
+// The least-squares problem, rows by rows: an orthogonal transformation brings them to a triangle, which stays as well
+// conditioned as they are, where their products would square what gaps make of it.
+class Triangle {
+  public:
+    explicit Triangle(int terms)
+        : terms_(terms), used_(0), equations_(Eigen::MatrixXd::Zero(4 * (terms + 1), terms + 1)) {}
+
+    // The coefficients of the terms, and as last one the right side; at most three times as many rows as terms at once.
+    void add(const Eigen::MatrixXd& rows) {
+        if (used_ + rows.rows() > equations_.rows())
+            reduce();
+        equations_.middleRows(used_, rows.rows()) = rows;
+        used_ += rows.rows();
+    }
+
+    Eigen::VectorXd solution() {
+        reduce();
+        return equations_.topLeftCorner(terms_, terms_)
+            .completeOrthogonalDecomposition()
+            .solve(equations_.col(terms_).head(terms_));
+    }
+
+  private:
+    void reduce() {
+        const Eigen::HouseholderQR<Eigen::Ref<Eigen::MatrixXd>> in_place(equations_);
+        used_ = terms_ + 1;
+        equations_.topRows(used_).triangularView<Eigen::StrictlyLower>().setZero();
+        equations_.bottomRows(equations_.rows() - used_).setZero();
+    }
+
+    Eigen::Index terms_;
+    Eigen::Index used_;
+    Eigen::MatrixXd equations_;
+};
+
+struct Range {
+    int first = std::numeric_limits<int>::max();
+    int last = -1;
+
+    void include(int k) {
+        first = std::min(first, k);
+        last = std::max(last, k);
+    }
+};
+
 } // namespace
 
 double Polynomial::height(double x, double y) const {
@@ -57,40 +102,48 @@ double Polynomial::height(double x, double y) const {
 Polynomial least_squares_polynomial(const HeightMap& map, int degree) {
     if (degree < 0 || degree > 20)
         throw std::invalid_argument("least_squares_polynomial: the degree must be from 0 to 20");
-    Polynomial polynomial{.degree = degree,
-                          .x_centre = (map.x(0) + map.x(map.columns() - 1)) / 2,
-                          .y_centre = (map.y(0) + map.y(map.rows() - 1)) / 2,
-                          .half_x = map.pitch_x * std::max(map.columns() - 1, 1) / 2,
-                          .half_y = map.pitch_y * std::max(map.rows() - 1, 1) / 2,
-                          .coefficients = {}};
-    const Eigen::MatrixXd p = along_columns(map, polynomial);
-    const int terms = (degree + 1) * (degree + 2) / 2;
-    // Normal equations, the sums over a row first: a row shares its powers of y.
-    Eigen::MatrixXd matrix = Eigen::MatrixXd::Zero(terms, terms);
-    Eigen::VectorXd right = Eigen::VectorXd::Zero(terms);
-    double count = 0;
-    Eigen::MatrixXd measured(degree + 1, map.columns());
-    Eigen::VectorXd heights(map.columns());
-    for (int row = 0; row < map.rows(); ++row) {
-        int points = 0;
+    Range columns, rows; // with measured points
+    for (int row = 0; row < map.rows(); ++row)
         for (int column = 0; column < map.columns(); ++column)
-            if (const double z = map.height(column, row); std::isfinite(z)) {
-                measured.col(points) = p.col(column);
-                heights[points++] = z;
+            if (std::isfinite(map.height(column, row))) {
+                columns.include(column);
+                rows.include(row);
             }
-        count += points;
-        const auto present = measured.leftCols(points);
-        const Eigen::MatrixXd squares = present * present.transpose();
-        const Eigen::VectorXd products = present * heights.head(points);
-        const Eigen::VectorXd q = legendre(degree, (map.y(row) - polynomial.y_centre) / polynomial.half_y);
-        for_terms(degree, [&](int term, int i, int j) {
-            right[term] += products[i] * q[j];
-            for_terms(degree, [&](int other, int k, int l) { matrix(term, other) += squares(i, k) * q[j] * q[l]; });
-        });
+    const int terms = (degree + 1) * (degree + 2) / 2;
+    Polynomial polynomial{.degree = degree, .coefficients = {}};
+    if (rows.last < 0) {
+        polynomial.coefficients.assign(static_cast<std::size_t>(terms), std::numeric_limits<double>::quiet_NaN());
+        return polynomial;
     }
-    Eigen::VectorXd solution = matrix.completeOrthogonalDecomposition().solve(right);
-    if (count == 0)
-        solution.setConstant(std::numeric_limits<double>::quiet_NaN());
+    polynomial.x_centre = (map.x(columns.first) + map.x(columns.last)) / 2;
+    polynomial.y_centre = (map.y(rows.first) + map.y(rows.last)) / 2;
+    polynomial.half_x = map.pitch_x * std::max(columns.last - columns.first, 1) / 2;
+    polynomial.half_y = map.pitch_y * std::max(rows.last - rows.first, 1) / 2;
+
+    const Eigen::MatrixXd p = along_columns(map, polynomial);
+    Triangle triangle(terms);
+    Eigen::MatrixXd measured(map.columns(), degree + 2); // the polynomials in x at a row's points; their heights
+    for (int row = rows.first; row <= rows.last; ++row) {
+        Eigen::Index points = 0;
+        for (int column = columns.first; column <= columns.last; ++column)
+            if (const double z = map.height(column, row); std::isfinite(z)) {
+                measured.row(points).head(degree + 1) = p.col(column).transpose();
+                measured(points++, degree + 1) = z;
+            }
+        // A row shares its polynomials in y: what it says in full fits into so many equations as it has in x.
+        if (points > degree + 2) {
+            Eigen::Ref<Eigen::MatrixXd> present = measured.topRows(points);
+            const Eigen::HouseholderQR<Eigen::Ref<Eigen::MatrixXd>> in_place(present);
+            points = degree + 1;
+            measured.topRows(points).triangularView<Eigen::StrictlyLower>().setZero();
+        }
+        const Eigen::VectorXd q = legendre(degree, (map.y(row) - polynomial.y_centre) / polynomial.half_y);
+        Eigen::MatrixXd equations(points, terms + 1);
+        for_terms(degree, [&](int term, int i, int j) { equations.col(term) = q[j] * measured.col(i).head(points); });
+        equations.col(terms) = measured.col(degree + 1).head(points);
+        triangle.add(equations);
+    }
+    const Eigen::VectorXd solution = triangle.solution();
     polynomial.coefficients.assign(solution.begin(), solution.end());
     return polynomial;
 }

@@ -6,7 +6,9 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
+#include <random>
 #include <stdexcept>
 
 namespace vkfv::surface {
@@ -63,6 +65,64 @@ TEST(Polynomial, TakesWhatThePointsLeaveOpenAsSmall) {
     for (double& z : map.height.values)
         z = not_measured;
     EXPECT_TRUE(std::isnan(least_squares_polynomial(map, 2).height(0, 0)));
+}
+
+// The greatest cosine of the angle between the residual and a product of powers over the measured points' extent.
+double worst_projection(const HeightMap& level, int degree) {
+    double x_low = 1e9, x_high = -1e9, y_low = 1e9, y_high = -1e9;
+    const auto over_measured = [&](auto&& visit) {
+        for (int row = 0; row < level.rows(); ++row)
+            for (int column = 0; column < level.columns(); ++column)
+                if (const double z = level.height(column, row); !std::isnan(z))
+                    visit(level.x(column), level.y(row), z);
+    };
+    over_measured([&](double x, double y, double) {
+        x_low = std::min(x_low, x);
+        x_high = std::max(x_high, x);
+        y_low = std::min(y_low, y);
+        y_high = std::max(y_high, y);
+    });
+    double worst = 0;
+    for (int i = 0; i <= degree; ++i)
+        for (int j = 0; i + j <= degree; ++j) {
+            double product = 0, squares = 0, powers = 0;
+            over_measured([&](double x, double y, double z) {
+                const double u = (2 * x - x_low - x_high) / (x_high - x_low), v = (2 * y - y_low - y_high) / (y_high - y_low);
+                const double power = std::pow(u, i) * std::pow(v, j);
+                product += z * power;
+                squares += z * z;
+                powers += power * power;
+            });
+            worst = std::max(worst, std::abs(product) / std::sqrt(squares * powers));
+        }
+    return worst;
+}
+
+TEST(Polynomial, OfAHighDegreeIsTheLeastSquaresOneWhateverIsMeasured) {
+    std::mt19937 random(1);
+    std::normal_distribution<double> normal;
+    const auto noise = sampled(80, 80, 0.01, [&](double, double) { return 0.5 + 1e-3 * normal(random); });
+    const auto measured_where = [&](const auto& measured) {
+        HeightMap map = noise;
+        for (int row = 0; row < map.rows(); ++row)
+            for (int column = 0; column < map.columns(); ++column)
+                if (!measured(column, row))
+                    map.height(column, row) = not_measured;
+        return map;
+    };
+    const HeightMap half = measured_where([](int column, int) { return column < 40; });
+    const HeightMap corner = measured_where([](int column, int row) { return column < 25 || row < 20; });
+    const HeightMap ring = measured_where([](int column, int row) {
+        const double r = std::hypot(column - 39.5, row - 39.5);
+        return r > 28 && r < 39;
+    });
+    for (const HeightMap& map : {half, corner, ring})
+        for (const int degree : {9, 15}) {
+            const HeightMap level = remove_polynomial(map, least_squares_polynomial(map, degree));
+            // Heights of 500 times the residual, and coefficients far greater along what the gaps all but leave open,
+            // round to 1e-16 of either.
+            EXPECT_LT(worst_projection(level, degree), 1e-8) << degree;
+        }
 }
 
 TEST(Polynomial, NeedsADegreeFromZeroToTwenty) {
