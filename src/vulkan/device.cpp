@@ -301,6 +301,22 @@ std::string explain(std::span<const DeviceReport> reports, std::size_t chosen, c
     return fmt::format("{} ({}): {}", report.name, report.driver, reason);
 }
 
+// The loader and its drivers, opened once and kept to the end of the process: a driver that is opened and closed for each of
+// a sweep's stacks is refused by the loader at about the hundredth time (NVIDIA 580.159). Nothing is destroyed, since drivers
+// may have ended before static objects do.
+struct Loader {
+    vk::raii::Context context = make_context();
+    vk::raii::Instance instance = make_instance(context);
+#ifdef VKFV_VALIDATION
+    vk::raii::DebugUtilsMessengerEXT messenger{instance, messenger_info()};
+#endif
+};
+
+const Loader& loader() {
+    static const Loader& kept = *new Loader;
+    return kept;
+}
+
 } // namespace
 
 #if defined(VKFV_VALIDATION) && defined(__SANITIZE_ADDRESS__)
@@ -328,9 +344,6 @@ struct Device::State {
         }
     }
 
-    vk::raii::Context context = make_context();
-    vk::raii::Instance instance = make_instance(context);
-    vk::raii::DebugUtilsMessengerEXT messenger{nullptr};
     vk::raii::PhysicalDevice physical{nullptr};
     vk::raii::Device device{nullptr};
     vk::raii::Queue queue{nullptr};
@@ -382,10 +395,7 @@ std::size_t choose_device(std::span<const DeviceReport> reports, const DeviceOpt
 
 Device::Device(const DeviceOptions& options) : state_(std::make_unique<State>()) {
     State& state = *state_;
-#ifdef VKFV_VALIDATION
-    state.messenger = vk::raii::DebugUtilsMessengerEXT(state.instance, messenger_info());
-#endif
-    std::vector<vk::raii::PhysicalDevice> devices = physical_devices(state.instance);
+    std::vector<vk::raii::PhysicalDevice> devices = physical_devices(loader().instance);
     std::vector<DeviceReport> reports = examine(devices);
     const std::size_t chosen = choose_device(reports, options);
     state.choice = explain(reports, chosen, options);
@@ -477,9 +487,7 @@ std::uint32_t Device::memory_type(std::uint32_t type_bits, vk::MemoryPropertyFla
 }
 
 std::vector<DeviceReport> list_devices() {
-    const vk::raii::Context context = make_context();
-    const vk::raii::Instance instance = make_instance(context);
-    const std::vector<vk::raii::PhysicalDevice> devices = physical_devices(instance);
+    const std::vector<vk::raii::PhysicalDevice> devices = physical_devices(loader().instance);
     std::vector<DeviceReport> reports = examine(devices);
     if (std::ranges::any_of(reports, [](const DeviceReport& report) { return report.lacking.empty(); })) {
         reports[choose_device(reports, {})].preferred = true;

@@ -35,7 +35,7 @@ struct DeviceOptions {
 // lacks.
 std::size_t choose_device(std::span<const DeviceReport> reports, const DeviceOptions& options);
 
-// The instance and one logical device with one compute queue. Move-only; construct valid, then const.
+// One logical device with one compute queue; all share one instance. Move-only; construct valid, then const.
 // Buffers, kernels and commands point to it: it must outlive them, unmoved. With VKFV_VALIDATION the Khronos
 // layer checks every call, and a message of it aborts the program.
 class Device {
