@@ -14,9 +14,11 @@ HeightMap filtered(HeightMap map, const Band& band) {
     if (band.s_filter > 0)
         map = low_pass(band.s_filter);
     if (band.l_filter > 0) {
+        const double greatest = greatest_height(map);
         const HeightMap long_waves = low_pass(band.l_filter);
         for (std::size_t k = 0; k < map.height.values.size(); ++k)
             map.height.values[k] -= long_waves.height.values[k];
+        map = without_rounding(std::move(map), greatest);
     }
     return map;
 }

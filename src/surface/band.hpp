@@ -16,7 +16,7 @@ struct Band {
     bool operator==(const Band&) const = default;
 };
 
-// The filters alone: S, then L.
+// The filters alone: S, then L, of which no rounding is left (form.hpp).
 HeightMap filtered(HeightMap map, const Band& band);
 
 // Form and filters.

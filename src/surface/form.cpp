@@ -1,9 +1,12 @@
 #include "surface/form.hpp"
 
 #include "surface/filter.hpp"
+#include "surface/height_parameters.hpp"
 #include "surface/polynomial.hpp"
 #include "surface/sphere.hpp"
 
+#include <algorithm>
+#include <cmath>
 #include <utility>
 
 namespace vkfv::surface {
@@ -32,8 +35,29 @@ std::string form_name(const Form& form) {
                                  : "polynomial-" + std::to_string(form.degree);
 }
 
+double greatest_height(const HeightMap& map) {
+    double greatest = 0;
+    for (const double z : map.height.values)
+        if (std::isfinite(z))
+            greatest = std::max(greatest, std::abs(z));
+    return greatest;
+}
+
+HeightMap without_rounding(HeightMap rest, double greatest) {
+    // Fits of some million points leave a tenth of it of what is of their form.
+    constexpr double rounding = 1e-13;
+    if (height_parameters(rest).sq <= rounding * greatest)
+        for (double& z : rest.height.values)
+            if (std::isfinite(z))
+                z = 0;
+    return rest;
+}
+
 HeightMap remove_form(HeightMap map, const Form& form) {
     using enum Form::Kind;
+    if (form.kind == none)
+        return map;
+    const double greatest = greatest_height(map);
     if (form.kind == plane) {
         const Plane fitted = least_squares_plane(map);
         map = remove_plane(std::move(map), fitted);
@@ -44,7 +68,7 @@ HeightMap remove_form(HeightMap map, const Form& form) {
         const Sphere fitted = least_squares_sphere(map);
         map = remove_sphere(std::move(map), fitted);
     }
-    return map;
+    return without_rounding(std::move(map), greatest);
 }
 
 } // namespace vkfv::surface

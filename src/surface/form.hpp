@@ -23,8 +23,15 @@ std::optional<Form> parse_form(std::string_view text);
 // The text that parse_form() reads.
 std::string form_name(const Form& form);
 
-// By filter.hpp, polynomial.hpp and sphere.hpp. Where the points settle no sphere none is left measured, and none beyond
-// the sphere's radius.
+// The greatest magnitude of a measured height; 0 without any.
+double greatest_height(const HeightMap& map);
+
+// What a form or a filter left of heights of up to `greatest`. Where it varies by no more than the rounding of these (Sq
+// below 1e-13 of them) it is level, 0: shape and direction of rounding are no surface's.
+HeightMap without_rounding(HeightMap rest, double greatest);
+
+// By filter.hpp, polynomial.hpp and sphere.hpp, and without_rounding(). Where the points settle no sphere none is left
+// measured, and none beyond the sphere's radius.
 HeightMap remove_form(HeightMap map, const Form& form);
 
 } // namespace vkfv::surface

@@ -21,6 +21,12 @@ HeightParameters height_parameters(const HeightMap& map) {
         return result;
     }
     result.mean = sum / count;
+    // The sum's rounding goes with the heights about it: the mean of a constant is that constant.
+    double off = 0;
+    for (const double z : map.height.values)
+        if (std::isfinite(z))
+            off += z - result.mean;
+    result.mean += off / count;
     result.measured_share = count / static_cast<double>(map.height.values.size());
 
     double absolute = 0, second = 0, third = 0, fourth = 0;

@@ -51,6 +51,17 @@ TEST(Band, TakesTheSplineIfAsked) {
     EXPECT_NE(spline.height(30, 20), gaussian_low_pass(level, 0.005).height(30, 20));
 }
 
+TEST(Band, LeavesNoRoundingOfAConstant) {
+    auto map = sampled(60, 50, 0.001, [](double, double) { return 0.1; });
+    forget_a_third(map);
+    for (const bool spline : {false, true}) {
+        const HeightMap rest =
+            scale_limited(map, {.l_filter = 0.03, .spline = spline, .form = {.kind = Form::Kind::none}});
+        EXPECT_EQ(height_parameters(rest).sz, 0);
+        EXPECT_TRUE(std::isnan(height_parameters(rest).sku));
+    }
+}
+
 TEST(Band, IsLimitedByFiltersAlone) {
     EXPECT_FALSE(Band{}.limited());
     EXPECT_FALSE(Band{.form = {.kind = Form::Kind::sphere}}.limited());

@@ -4,6 +4,7 @@
 #include "surface/filter.hpp"
 #include "surface/height_parameters.hpp"
 #include "surface/maps.hpp"
+#include "surface/spatial_parameters.hpp"
 
 #include <gtest/gtest.h>
 
@@ -70,6 +71,29 @@ TEST(Form, OfAPlaneIsTheLeastSquaresPlaneAndNoneIsNone) {
         if (std::isfinite(map.height.values[k])) {
             EXPECT_EQ(plane.height.values[k], level.height.values[k]);
             EXPECT_EQ(none.height.values[k], map.height.values[k]);
+        }
+}
+
+TEST(Form, LeavesNoRounding) {
+    for (const bool gaps : {false, true})
+        for (const double slope : {0.0, 0.5}) {
+            auto map = sampled(300, 200, 0.002, [=](double x, double y) { return 0.1 + slope * x - 0.4 * slope * y; });
+            if (gaps)
+                forget_a_third(map);
+            for (const char* form : {"plane", "polynomial-1", "polynomial-3"}) {
+                const HeightMap rest = remove_form(map, named(form));
+                const HeightParameters p = height_parameters(rest);
+                EXPECT_EQ(p.sz, 0) << form;
+                EXPECT_TRUE(std::isnan(p.ssk) && std::isnan(p.sku)) << form;
+                EXPECT_TRUE(std::isnan(spatial_parameters(rest).sal)) << form;
+                EXPECT_TRUE(std::isnan(spatial_parameters(rest).std_angle)) << form;
+                EXPECT_EQ(p.measured_share, height_parameters(map).measured_share);
+                // A nanometre's thousandth is no rounding.
+                HeightMap marked = map;
+                for (std::size_t k = 0; k < marked.height.values.size(); k += 2)
+                    marked.height.values[k] += 1e-9;
+                EXPECT_NEAR(height_parameters(remove_form(marked, named(form))).sq, 5e-10, 1e-11) << form;
+            }
         }
 }
 

@@ -54,6 +54,17 @@ TEST(HeightParameters, AreUndefinedWithoutMeasuredPoints) {
     EXPECT_EQ(p.measured_share, 0);
 }
 
+TEST(HeightParameters, OfAConstantHeightAreZeroOrUndefined) {
+    for (const double height : {0.1, 0.3, 1 / 3.0, 25000.7}) {
+        const HeightParameters p = height_parameters(sampled(61, 47, 0.002, [=](double, double) { return height; }));
+        EXPECT_EQ(p.mean, height);
+        EXPECT_EQ(p.sq, 0);
+        EXPECT_EQ(p.sz, 0);
+        EXPECT_TRUE(std::isnan(p.ssk));
+        EXPECT_TRUE(std::isnan(p.sku));
+    }
+}
+
 TEST(HeightParameters, OfASampledSinusoidAreTheSumsOverItsPoints) {
     // |sin(2 pi k / n)| sums to 2 cot(pi / n) over the n points of a period: Sa at 16 points is 1.3 % less than the
     // 2 A / pi of the continuous line, and half a point further, where the sum is 2 / sin(pi / n), 0.6 % more.

@@ -67,6 +67,29 @@ TEST(Comparison, WithoutFormKeepsTheOffset) {
     EXPECT_NEAR(deviation_map(measured, truth, {.form = {.kind = Form::Kind::none}}).height(30, 30), 3 * um, um);
 }
 
+TEST(Comparison, OfFlatMapsHasNeitherCorrelationNorShift) {
+    HeightMap tilted = truth_map(), other = truth_map(), constant = truth_map(), high = truth_map();
+    for (int row = 0; row < tilted.rows(); ++row)
+        for (int column = 0; column < tilted.columns(); ++column) {
+            tilted.height(column, row) = 0.1 + 0.5 * tilted.x(column) - 0.2 * tilted.y(row);
+            other.height(column, row) = 0.3 - 0.1 * tilted.x(column);
+            constant.height(column, row) = 0.1;
+            high.height(column, row) = 0.3;
+        }
+    const Band untreated{.form = {.kind = Form::Kind::none}};
+    EXPECT_EQ(compare(constant, high, untreated).correlation, 0);
+    EXPECT_NEAR(compare(constant, high, untreated).rms, 0.2, 1e-15);
+    EXPECT_EQ(compare(constant, truth_map(), untreated).correlation, 0);
+    for (const HeightMap& flat : {tilted, constant}) {
+        EXPECT_EQ(compare(flat, other).correlation, 0);
+        EXPECT_EQ(compare(flat, other).rms, 0);
+        EXPECT_EQ(compare(flat, flat).correlation, 0);
+        EXPECT_EQ(compare(flat, truth_map()).correlation, 0);
+        EXPECT_TRUE(std::isnan(lateral_shift(flat, other).x));
+        EXPECT_TRUE(std::isnan(lateral_shift(flat, flat).x));
+    }
+}
+
 TEST(Comparison, TakesThePointsThatAreOnBothSpheres) {
     // Caps of the radii 0.1 and 0.05 mm; what lies beyond the smaller one is flat and belongs to neither parameter.
     const auto cap = [](double radius) {
