@@ -122,7 +122,7 @@ HeightMap resampled(const HeightMap& map, const HeightMap& onto) {
                 missing += std::abs(taps.weights[k]) * gaps(column, source);
             }
             const double present = x.taps[static_cast<std::size_t>(column)].total() * taps.total() - missing;
-            const bool enough = present >= (x.averages && y.averages ? 0.9 : 0.99);
+            const bool enough = present >= (x.averages && y.averages ? 0.9 : 0.99) - 1e-9; // but for rounding
             result.height(column, row) = enough ? height / present : std::numeric_limits<double>::quiet_NaN();
         }
     }
