@@ -19,7 +19,7 @@ struct LateralShift {
 // overlap; where several may be meant, the best of their minima counts. The truth may stand on any grid. A direction
 // along which the truth does not vary but for a tilt has no shift: 0. NaN where nothing varies, maps do not overlap, no
 // minimum is found in that range, or the correlation there is one that unrelated surfaces of the same waves may show.
-// Works in 75 bytes a point and more.
+// Works in 75 bytes a point besides the maps.
 LateralShift lateral_shift(const surface::HeightMap& measured, const surface::HeightMap& truth);
 
 // The truth as it would lie under the measurement: on its grid, moved by the shift.
