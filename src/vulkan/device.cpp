@@ -302,8 +302,7 @@ std::string explain(std::span<const DeviceReport> reports, std::size_t chosen, c
 }
 
 // The loader and its drivers, opened once and kept to the end of the process: a driver that is opened and closed for each of
-// a sweep's stacks is refused by the loader at about the hundredth time (NVIDIA 580.159). Nothing is destroyed, since drivers
-// may have ended before static objects do.
+// a sweep's stacks is refused by the loader at about the hundredth time (NVIDIA 580.159).
 struct Loader {
     vk::raii::Context context = make_context();
     vk::raii::Instance instance = make_instance(context);
@@ -313,7 +312,7 @@ struct Loader {
 };
 
 const Loader& loader() {
-    static const Loader& kept = *new Loader;
+    static const Loader kept; // younger than the static objects of the drivers that it opens, so it ends before them
     return kept;
 }
 
