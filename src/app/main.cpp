@@ -3,6 +3,7 @@
 #include "app/commands.hpp"
 
 #include "core/units.hpp"
+#include "vulkan/device.hpp"
 
 #include <CLI/CLI.hpp>
 #include <fmt/format.h>
@@ -442,6 +443,7 @@ int report(const char* message, ExitCode code) {
 } // namespace
 
 int main(int argument_count, char** argument_values) {
+    const vkfv::vulkan::DriverScope drivers;
     Arguments given;
     CLI::App app(
         "vkfv: a virtual focus-variation microscope. It traces light through real lens prescriptions to a "

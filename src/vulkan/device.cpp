@@ -13,6 +13,7 @@
 #include <cstdio>
 #include <cstdlib>
 #include <cstring>
+#include <mutex>
 #include <string_view>
 
 #ifdef VKFV_VALIDATION
@@ -301,8 +302,6 @@ std::string explain(std::span<const DeviceReport> reports, std::size_t chosen, c
     return fmt::format("{} ({}): {}", report.name, report.driver, reason);
 }
 
-// The loader and its drivers, opened once and kept to the end of the process: a driver that is opened and closed for each of
-// a sweep's stacks is refused by the loader at about the hundredth time (NVIDIA 580.159).
 struct Loader {
     vk::raii::Context context = make_context();
     vk::raii::Instance instance = make_instance(context);
@@ -311,9 +310,23 @@ struct Loader {
 #endif
 };
 
-const Loader& loader() {
-    static const Loader kept; // younger than the static objects of the drivers that it opens, so it ends before them
-    return kept;
+std::mutex loader_mutex;
+std::weak_ptr<const Loader> open_loader;
+std::shared_ptr<const Loader> kept_loader; // from the first device of a DriverScope to its end
+bool loader_is_kept = false;
+
+// That of the other devices, as long as there are any.
+std::shared_ptr<const Loader> loader() {
+    const std::lock_guard lock(loader_mutex);
+    auto loader = open_loader.lock();
+    if (!loader) {
+        loader = std::make_shared<const Loader>();
+        open_loader = loader;
+    }
+    if (loader_is_kept) {
+        kept_loader = loader;
+    }
+    return loader;
 }
 
 } // namespace
@@ -327,6 +340,17 @@ extern "C" const char* __lsan_default_options() {
     return "print_suppressions=0";
 }
 #endif
+
+DriverScope::DriverScope() {
+    const std::lock_guard lock(loader_mutex);
+    loader_is_kept = true;
+}
+
+DriverScope::~DriverScope() {
+    const std::lock_guard lock(loader_mutex);
+    loader_is_kept = false;
+    kept_loader.reset();
+}
 
 struct Device::State {
     State() = default;
@@ -343,6 +367,7 @@ struct Device::State {
         }
     }
 
+    std::shared_ptr<const Loader> drivers = loader();
     vk::raii::PhysicalDevice physical{nullptr};
     vk::raii::Device device{nullptr};
     vk::raii::Queue queue{nullptr};
@@ -394,7 +419,7 @@ std::size_t choose_device(std::span<const DeviceReport> reports, const DeviceOpt
 
 Device::Device(const DeviceOptions& options) : state_(std::make_unique<State>()) {
     State& state = *state_;
-    std::vector<vk::raii::PhysicalDevice> devices = physical_devices(loader().instance);
+    std::vector<vk::raii::PhysicalDevice> devices = physical_devices(state.drivers->instance);
     std::vector<DeviceReport> reports = examine(devices);
     const std::size_t chosen = choose_device(reports, options);
     state.choice = explain(reports, chosen, options);
@@ -486,7 +511,8 @@ std::uint32_t Device::memory_type(std::uint32_t type_bits, vk::MemoryPropertyFla
 }
 
 std::vector<DeviceReport> list_devices() {
-    const std::vector<vk::raii::PhysicalDevice> devices = physical_devices(loader().instance);
+    const auto drivers = loader();
+    const std::vector<vk::raii::PhysicalDevice> devices = physical_devices(drivers->instance);
     std::vector<DeviceReport> reports = examine(devices);
     if (std::ranges::any_of(reports, [](const DeviceReport& report) { return report.lacking.empty(); })) {
         reports[choose_device(reports, {})].preferred = true;

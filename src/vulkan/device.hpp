@@ -35,7 +35,7 @@ struct DeviceOptions {
 // lacks.
 std::size_t choose_device(std::span<const DeviceReport> reports, const DeviceOptions& options);
 
-// One logical device with one compute queue; all share one instance. Move-only; construct valid, then const.
+// One logical device with one compute queue; those that live at a time share one instance. Move-only; construct valid, then const.
 // Buffers, kernels and commands point to it: it must outlive them, unmoved. With VKFV_VALIDATION the Khronos
 // layer checks every call, and a message of it aborts the program.
 class Device {
@@ -63,6 +63,17 @@ class Device {
   private:
     struct State;
     std::unique_ptr<State> state_;
+};
+
+// While it lives, the drivers that a first device has opened stay open, for the many devices that a sweep of stacks makes
+// one after the other: a driver that is opened and closed each time is refused at about the hundredth (NVIDIA 580.159). One
+// in a process, in main(): the drivers are closed before their static objects end.
+class DriverScope {
+  public:
+    DriverScope();
+    ~DriverScope();
+    DriverScope(const DriverScope&) = delete;
+    DriverScope& operator=(const DriverScope&) = delete;
 };
 
 // Every device the loader finds; throws DeviceError if there is no Vulkan at all.
