@@ -55,15 +55,16 @@ struct Evaluated {
     TopographyFiles files;
 };
 
-// The first line of the identity that an override changes: "key = value"; empty: none.
-std::string changed_line(const Configuration& configuration, const Configuration& overridden) {
-    std::istringstream before(configuration.identity), after(overridden.identity);
-    for (std::string line, other; std::getline(after, other);) {
-        if (!std::getline(before, line) || line != other) {
-            return other;
-        }
+// The first line of what the images depend on that overrides change: "key = value", as it is then.
+std::optional<std::string> changed_line(const Configuration& configuration, const Configuration& overridden) {
+    if (configuration.identity == overridden.identity) {
+        return std::nullopt;
     }
-    return {};
+    std::istringstream before(configuration.identity), after(overridden.identity);
+    std::string line, other;
+    while (std::getline(after, other) && std::getline(before, line) && line == other) {
+    }
+    return other;
 }
 
 // A stack with its stack.toml; --set topography.window_px=9 and its like evaluate otherwise.
@@ -73,11 +74,9 @@ Evaluated evaluate_own(const CommandOptions& options) {
                "Leave them out: they stand in stack.toml.");
     }
     const auto& folder = options.file;
-    std::error_code none;
     const auto configuration = load_configuration(folder / "stack.toml", options.overrides, Needs::stack);
-    if (const auto line = changed_line(load_configuration(folder / "stack.toml", {}, Needs::stack), configuration);
-        !line.empty()) {
-        refuse(line, "the value that the images were traced with, in " + (folder / "stack.toml").string(),
+    if (const auto line = changed_line(load_configuration(folder / "stack.toml", {}, Needs::stack), configuration)) {
+        refuse(*line, "the value that the images were traced with, in " + (folder / "stack.toml").string(),
                "Set keys of [topography], [diffraction] and [output] alone; --stack traces other images.");
     }
     const auto positions = configuration.scan->positions();
@@ -94,6 +93,7 @@ Evaluated evaluate_own(const CommandOptions& options) {
                        positions[place]);
     }
     auto more = run_of(folder);
+    std::error_code none; // a folder to be made is another
     if (options.out && !std::filesystem::equivalent(*options.out, folder, none)) {
         more = {{"stack", folder.string()},
                 {"images", positions.size()},

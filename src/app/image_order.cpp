@@ -128,7 +128,7 @@ bool naturally_before(std::string_view a, std::string_view b) {
     return a.empty() && b.empty() ? whole_a < whole_b : a.empty();
 }
 
-ImageOrder order_of_images(const std::vector<std::string>& names) {
+ImageOrder order_of_names(const std::vector<std::string>& names) {
     ImageOrder result;
     auto& order = result.order;
     order.resize(names.size());
@@ -139,7 +139,8 @@ ImageOrder order_of_images(const std::vector<std::string>& names) {
     }
     const auto values = values_of(names);
     if (!values) {
-        result.doubt = fmt::format("their names do not differ in one number alone; they are taken in natural order, from {} to {}",
+        result.doubt = fmt::format("their names do not differ in one number alone; they are taken in natural order, from {} "
+                                   "to {}",
                                    names[order.front()], names[order.back()]);
         return result;
     }

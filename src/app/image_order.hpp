@@ -20,6 +20,6 @@ struct ImageOrder {
 // Names (without their endings) that differ in one number alone are in the order of that number, which may have decimals
 // (z_0.5) and signs (z-5, z+5; a '-' before all of them only separates); a number that is missing is a doubt. Others are in
 // natural order, which is a doubt.
-ImageOrder order_of_images(const std::vector<std::string>& names);
+ImageOrder order_of_names(const std::vector<std::string>& names);
 
 } // namespace vkfv::app

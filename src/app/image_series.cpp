@@ -47,7 +47,7 @@ ImageSeries::ImageSeries(const std::filesystem::path& path) {
         std::ranges::sort(files); // the folder has no order of its own
         std::vector<std::string> names;
         std::ranges::transform(files, std::back_inserter(names), [](const auto& file) { return file.stem().string(); });
-        const auto [order, doubt] = order_of_images(names);
+        const auto [order, doubt] = order_of_names(names);
         for (const std::size_t place : order) {
             images_.push_back({files[place], 0});
         }

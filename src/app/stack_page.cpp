@@ -120,8 +120,8 @@ std::string stack_page(const StackPage& content) {
     }
     page.heading("Images");
     add_members(page, content.results,
-                {"stack", "first_image", "last_image", "z_start_um", "z_step_um", "pitch_um", "shuffle_seed", "images", "rays_per_image", "seed", "device",
-                 "stack_digest", "evaluated_by"});
+                {"stack", "first_image", "last_image", "z_start_um", "z_step_um", "pitch_um", "shuffle_seed", "images",
+                 "rays_per_image", "seed", "device", "stack_digest", "evaluated_by"});
     if (!content.layout.empty()) {
         page.heading("Instrument");
         page.picture(content.layout, "The instrument to scale, with rays");

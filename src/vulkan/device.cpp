@@ -302,6 +302,7 @@ std::string explain(std::span<const DeviceReport> reports, std::size_t chosen, c
     return fmt::format("{} ({}): {}", report.name, report.driver, reason);
 }
 
+// The loader with the drivers that it has opened.
 struct Loader {
     vk::raii::Context context = make_context();
     vk::raii::Instance instance = make_instance(context);

@@ -35,7 +35,8 @@ struct DeviceOptions {
 // lacks.
 std::size_t choose_device(std::span<const DeviceReport> reports, const DeviceOptions& options);
 
-// One logical device with one compute queue; those that live at a time share one instance. Move-only; construct valid, then const.
+// One logical device with one compute queue; those that live at a time share one instance. Move-only; construct valid,
+// then const.
 // Buffers, kernels and commands point to it: it must outlive them, unmoved. With VKFV_VALIDATION the Khronos
 // layer checks every call, and a message of it aborts the program.
 class Device {

@@ -330,7 +330,7 @@ TEST(ImageOrder, IsThatOfTheNumberInWhichNamesDiffer) {
     std::mt19937 random(1);
     const auto ordered = [&](std::vector<std::string> names) {
         std::ranges::shuffle(names, random);
-        const auto found = app::order_of_images(names);
+        const auto found = app::order_of_names(names);
         std::vector<std::string> result;
         for (const std::size_t place : found.order)
             result.push_back(names[place]);
