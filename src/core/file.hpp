@@ -1,0 +1,64 @@
+// Files: opened only where they are files, read whole, written whole.
+#pragma once
+
+#include <cstdint>
+#include <cstdio>
+#include <filesystem>
+#include <memory>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace vkfv {
+
+// How a message tells of a file that cannot be had.
+struct FileRequest {
+    std::string key{};                      // what named the file: "specimen.file", "--trace-rays"
+    std::string expected = "a readable file";
+    std::string remedy = "Check the path and its permissions; it is relative to the file that names it.";
+};
+
+// A regular file, open for reading. Pipes, sockets, devices and folders are refused by what the open descriptor is, so that
+// no reader waits for another program or reads without end, whatever the name means a moment later.
+class InputFile {
+  public:
+    // Throws InputError, with the folder that was searched where there is no such file.
+    explicit InputFile(const std::filesystem::path& path, const FileRequest& request = {});
+
+    std::uint64_t bytes() const { return bytes_; } // when it was opened
+    // For libraries that read by themselves; at the file's beginning, valid as long as this object.
+    std::FILE* stream() const { return stream_.get(); }
+    // From the beginning, at most `most` bytes. Throws InputError where the disk fails or the file has become shorter.
+    std::string read(std::uint64_t most = UINT64_MAX) const;
+
+  private:
+    struct Close {
+        void operator()(std::FILE* stream) const { std::fclose(stream); }
+    };
+    std::filesystem::path path_;
+    FileRequest request_;
+    std::unique_ptr<std::FILE, Close> stream_;
+    std::uint64_t bytes_ = 0;
+};
+
+// All bytes of a regular file. Throws InputError.
+std::string read_file(const std::filesystem::path& path, const FileRequest& request = {});
+
+// Under its name there is, at any moment and after any fault, the file of before or this one, whole: written beside it, synced,
+// read back and compared, renamed; then the folder is synced. Makes the folder. Programs that write the same file take turns.
+// A link is followed; what is no regular file is not replaced. Throws RunError, with the reason and the remedy.
+void write_file(const std::filesystem::path& path, std::string_view bytes);
+
+// A line at the end of a text file that others watch; not synced. Throws RunError.
+void append_line(const std::filesystem::path& path, std::string_view line);
+
+// With the folders above it, each entered durably in its parent. Throws RunError.
+void make_folder(const std::filesystem::path& folder);
+
+// Removes what programs that are no more had begun to write into this folder (not below it). Throws RunError.
+void remove_unfinished_files(const std::filesystem::path& folder);
+
+// Of a file that write_file() has begun: hidden, beside the final one.
+bool is_unfinished_file(const std::filesystem::path& path);
+
+} // namespace vkfv
