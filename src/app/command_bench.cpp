@@ -1,9 +1,10 @@
 #include "app/bench.hpp"
+#include "core/result_folder.hpp"
 
 #include <fmt/format.h>
 
 #include <cstdio>
-#include <fstream>
+#include <optional>
 
 namespace vkfv::app {
 
@@ -128,24 +129,18 @@ void print_report(const Json& report) {
     }
 }
 
-void write(const std::filesystem::path& path, const std::string& content) {
-    std::ofstream file(path, std::ios::binary);
-    file << content;
-    file.close();
-    if (!file) {
-        throw RunError(fmt::format("{} cannot be written. Check the folder, its permissions and the free space.",
-                                   path.string()));
-    }
-}
-
 } // namespace
 
 void run_bench(const CommandOptions& options) {
+    std::optional<ResultFolder> results;
+    if (options.out) {
+        results.emplace(*options.out);
+    }
     const auto write_files = [&](const Json& so_far) {
-        if (options.out) {
-            std::filesystem::create_directories(*options.out);
-            write(*options.out / "bench.json", so_far.dump(2) + "\n");
-            write(*options.out / "bench.svg", bench_picture(so_far));
+        if (results) {
+            results->write("bench.json", so_far.dump(2) + "\n");
+            results->write("bench.svg", bench_picture(so_far));
+            results->write_checksums();
         }
     };
     const Json report = measure_bench(options, write_files);

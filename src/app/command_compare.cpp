@@ -1,7 +1,7 @@
 #include "app/commands.hpp"
 #include "app/parameter_table.hpp"
-#include "app/text_file.hpp"
 
+#include "core/result_folder.hpp"
 #include "core/units.hpp"
 #include "report/topography_picture.hpp"
 #include "surface/image_file.hpp"
@@ -341,18 +341,18 @@ void run_compare(const CommandOptions& options) {
     figures["profile"] = profile_json(profile);
     const auto report = figures.dump(2) + "\n";
     if (options.out) {
-        fs::create_directories(*options.out);
-        write_text_aside(*options.out / "compare.json", report);
-        write_text_aside(*options.out / "transfer.csv", transfer_csv(comparison));
-        write_text_aside(*options.out / "slope.csv", slope_csv(comparison));
-        write_text_aside(*options.out / "profile.csv", profile_csv(profile, measurements.front()));
-        surface::write_height_map(*options.out / "deviation.tif", comparison.deviation);
-        write_text_aside(*options.out / "compare.svg",
-                         picture_of(comparison, std::move(pair),
-                                    fmt::format("{} against {}", files.front().string(), files.back().string())));
+        ResultFolder results(*options.out);
+        results.write("compare.json", report);
+        results.write("transfer.csv", transfer_csv(comparison));
+        results.write("slope.csv", slope_csv(comparison));
+        results.write("profile.csv", profile_csv(profile, measurements.front()));
+        results.write("deviation.tif", surface::height_map_bytes(comparison.deviation));
+        results.write("compare.svg", picture_of(comparison, std::move(pair),
+                                                fmt::format("{} against {}", files.front().string(), files.back().string())));
         if (comparison.parts) {
-            surface::write_height_map(*options.out / "random.tif", comparison.parts->standard_deviation);
+            results.write("random.tif", surface::height_map_bytes(comparison.parts->standard_deviation));
         }
+        results.write_checksums();
     }
     fmt::print("{}", options.json ? report : text_of(comparison, options) + profile_text(profile));
 }

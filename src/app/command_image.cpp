@@ -1,6 +1,6 @@
 #include "app/commands.hpp"
 
-#include "app/text_file.hpp"
+#include "core/file.hpp"
 #include "core/units.hpp"
 #include "report/topography_picture.hpp"
 #include "surface/image_file.hpp"
@@ -65,49 +65,58 @@ void print_ledger(const trace::Image& image) {
 
 } // namespace
 
-Exposure expose(const Configuration& configuration, const specimen::Specimen& specimen, double focal_height) {
-    // The scan's positions too, so that the instrument is the stack's.
+optics::Instrument instrument_for(const Configuration& configuration, const specimen::Specimen& specimen,
+                                  double focal_height) {
     auto heights = configuration.scan ? configuration.scan->positions() : std::vector<double>();
     heights.push_back(focal_height);
-    const auto instrument = assemble_instrument(configuration, specimen, heights);
+    return assemble_instrument(configuration, specimen, heights);
+}
+
+Exposure expose(const Configuration& configuration, const optics::Instrument& instrument,
+                const specimen::Specimen& specimen, double focal_height) {
     const auto tracer = make_tracer(instrument, specimen, configuration.trace);
     const double pitch = instrument.first_order.pixel_pitch;
     Exposure exposure{tracer->expose(focal_height, image_index(configuration, focal_height)),
-                      -0.5 * (configuration.instrument.detector_pixels - 1) * pitch, pitch, tracer->description(), {}};
+                      -0.5 * (configuration.instrument.detector_pixels - 1) * pitch, pitch, tracer->identity(), {}};
     if (const auto diffraction = make_diffraction(configuration, instrument)) {
         exposure.diffracted = diffraction->apply(in_float(exposure.image.flux));
     }
     return exposure;
 }
 
-void write_image(const std::filesystem::path& path, const Exposure& exposure, double focal_height) {
-    if (path.has_parent_path()) {
-        std::filesystem::create_directories(path.parent_path());
-    }
+std::vector<std::pair<std::filesystem::path, std::string>> image_files(const std::filesystem::path& name,
+                                                                       const Exposure& exposure, double focal_height) {
     const surface::ImageTags tags{.pitch_x = exposure.pitch,
                                   .pitch_y = exposure.pitch,
                                   .description =
                                       fmt::format("radiant flux in W at z = {} um", focal_height * um_per_mm)};
-    surface::write_tiff(path, in_float(exposure.image.flux), tags);
+    std::vector<std::pair<std::filesystem::path, std::string>> files;
+    files.emplace_back(name, surface::tiff_bytes(in_float(exposure.image.flux), tags));
     if (exposure.diffracted) {
-        auto beside = path;
-        beside.replace_filename(path.stem().string() + "_diffracted" + path.extension().string());
-        surface::write_tiff(beside, *exposure.diffracted, tags);
+        auto beside = name;
+        beside.replace_filename(name.stem().string() + "_diffracted" + name.extension().string());
+        files.emplace_back(beside, surface::tiff_bytes(*exposure.diffracted, tags));
     }
+    return files;
 }
 
 void run_image(const CommandOptions& options) {
     const auto configuration = load_configuration(options.file, options.overrides, Needs::exposure);
-    const auto exposure = expose(configuration, specimen::make(*configuration.specimen), options.focal_height);
+    const auto specimen = specimen::make(*configuration.specimen);
+    const auto exposure = expose(configuration, instrument_for(configuration, specimen, options.focal_height), specimen,
+                                 options.focal_height);
     const auto& image = exposure.image;
     const auto path = image_path(options, configuration);
-    write_image(path, exposure, options.focal_height);
     auto picture = path;
     picture.replace_extension(".svg");
-    write_text_aside(picture,
-                     report::image_picture(fmt::format("{}, z = {:g} um", options.file.stem().string(),
-                                                       options.focal_height * um_per_mm),
-                                           image.flux, exposure.first, exposure.first, exposure.pitch));
+    auto files = image_files(path, exposure, options.focal_height);
+    files.emplace_back(picture, report::image_picture(fmt::format("{}, z = {:g} um", options.file.stem().string(),
+                                                                  options.focal_height * um_per_mm),
+                                                      image.flux, exposure.first, exposure.first, exposure.pitch));
+    make_folder(path.parent_path());
+    for (const auto& [file, bytes] : files) {
+        write_file(file, bytes);
+    }
     if (const double ratio = signal_to_noise(image); ratio < least_signal_to_noise) {
         spdlog::warn("noise is {:.0f} % of a pixel's mean light. Launch more rays with --rays, close the field stop to the "
                      "field of view, or take --estimator backward",

@@ -1,6 +1,6 @@
 #include "app/commands.hpp"
 
-#include "core/error.hpp"
+#include "core/file.hpp"
 #include "optics/first_order.hpp"
 #include "optics/prescription_writer.hpp"
 #include "optics/zmx.hpp"
@@ -12,7 +12,6 @@
 
 #include <cmath>
 #include <cstdio>
-#include <fstream>
 
 namespace vkfv::app {
 
@@ -44,18 +43,6 @@ FocalLengths focal_lengths(const optics::Prescription& lens, double wavelength_u
             .back = index * optics::back_focal_distance(transfer)};
 }
 
-void write_text(const std::filesystem::path& file, const std::string& text) {
-    std::ofstream stream(file, std::ios::binary);
-    stream << text;
-    stream.close();
-    if (!stream) {
-        throw RunError(
-            fmt::format("{} cannot be written. Check the path, its permissions and the free space, and run "
-                        "the same command again.",
-                        file.string()));
-    }
-}
-
 } // namespace
 
 void run_import(const CommandOptions& options) {
@@ -78,7 +65,7 @@ void run_import(const CommandOptions& options) {
 
     const std::string text = optics::prescription_text(prescription);
     if (options.out) {
-        write_text(*options.out, text);
+        write_file(*options.out, text);
     }
     if (options.json) {
         nlohmann::ordered_json report;

@@ -62,8 +62,10 @@ std::unique_ptr<trace::Tracer> make_tracer(const optics::Instrument& instrument,
     return tracer;
 }
 
-std::string identity_of_tracer(const trace::Tracer& tracer, const trace::TraceOptions& options) {
-    return options.device == "host" ? "host" : tracer.description();
+std::string image_identity(const Configuration& configuration, const std::string& surface_digest,
+                           const trace::TracerIdentity& tracer) {
+    return configuration.identity +
+           fmt::format("\n[made]\nspecimen_digest = \"{}\"\n{}", surface_digest, tracer.toml());
 }
 
 std::optional<trace::Diffraction> make_diffraction(const Configuration& configuration,

@@ -1,5 +1,5 @@
 #include "app/commands.hpp"
-#include "app/digest.hpp"
+#include "core/digest.hpp"
 #include "app/evaluation.hpp"
 
 #include "core/progress.hpp"
@@ -13,17 +13,6 @@
 
 namespace vkfv::app {
 
-namespace {
-
-// The configuration's part, the surface as made, and the device: another rounds otherwise.
-std::string stack_identity(const Configuration& configuration, const specimen::Specimen& specimen,
-                           const std::string& tracer) {
-    return configuration.identity + fmt::format("\n[made]\nspecimen_digest = \"{}\"\ntracer = {}\n",
-                                                geometry_digest(specimen), toml_quoted(tracer));
-}
-
-} // namespace
-
 void run_stack(const CommandOptions& options) {
     const auto configuration = load_configuration(options.file, options.overrides, Needs::stack);
     const auto positions = configuration.scan->positions();
@@ -32,8 +21,7 @@ void run_stack(const CommandOptions& options) {
     const int pixels = configuration.instrument.detector_pixels;
     const auto flat = read_flat(configuration, pixels, pixels, instrument.first_order.pixel_pitch);
     const auto tracer = make_tracer(instrument, specimen, configuration.trace);
-    const std::string identity =
-        stack_identity(configuration, specimen, identity_of_tracer(*tracer, configuration.trace));
+    const std::string identity = image_identity(configuration, geometry_digest(specimen), tracer->identity());
 
     scan::ImageStore store(configuration.output_directory,
                            {.configuration = configuration.canonical,
@@ -56,19 +44,12 @@ void run_stack(const CommandOptions& options) {
     const auto& folder = store.folder();
     const auto evaluation =
         stack_evaluation.finish(truth_on_pixels(instrument, configuration, specimen), configuration.band, flat);
-    auto run = run_of(folder); // a run that traces nothing leaves the times of the one that did
-    run.update({{"device", tracer->description()},
-                {"stack_digest", store.description().digest},
-                {"seed", configuration.trace.seed},
-                {"images", positions.size()},
-                {"rays_per_image", configuration.trace.rays}});
-    if (traced.traced > 0) {
-        // Of this run: an interrupted stack has the others in timings.csv.
-        run["images_traced"] = traced.traced;
-        run["trace_seconds"] = traced.trace_seconds;
-        run["rays_per_second"] = static_cast<double>(traced.rays) / traced.trace_seconds;
-    }
-    write_evaluation(folder, evaluation, run, stack_source(configuration, instrument), topography_files(configuration));
+    const nlohmann::ordered_json run = {{"device", tracer->identity().text()},
+                                        {"stack_digest", store.description().digest},
+                                        {"seed", configuration.trace.seed},
+                                        {"images", positions.size()},
+                                        {"rays_per_image", trace::launched_rays(configuration.trace, pixels)}};
+    write_evaluation(store.results(), evaluation, run, stack_source(configuration, instrument), topography_files(configuration));
 
     fmt::print("{}", summary(evaluation));
     if (traced.traced > 0) {

@@ -1,6 +1,7 @@
 #include "app/commands.hpp"
 #include "app/parameter_table.hpp"
 
+#include "core/file.hpp"
 #include "core/units.hpp"
 #include "surface/surface_file.hpp"
 
@@ -164,7 +165,7 @@ void run_surface(const CommandOptions& options) {
         }
         provenance.comment += fmt::format("\nvkfv {}: {}, {}", VKFV_VERSION, options.file.filename().string(),
                                           treatment_text(options.band));
-        surface::write_surface(*options.out, map, provenance);
+        write_file(*options.out, surface::surface_bytes(*options.out, map, provenance));
     }
     const Figures figures = figures_of(map, line);
     fmt::print("{}", options.json ? json_text(options, map, figures) : text_of(options, map, figures));

@@ -1,9 +1,11 @@
 #include "app/commands.hpp"
-#include "app/digest.hpp"
+#include "core/digest.hpp"
 #include "app/sweep_report.hpp"
-#include "app/text_file.hpp"
 
+#include "core/file.hpp"
+#include "core/result_folder.hpp"
 #include "core/units.hpp"
+#include "scan/store.hpp"
 #include "surface/image_file.hpp"
 #include "surface/surface_file.hpp"
 
@@ -14,9 +16,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
-#include <fstream>
 #include <optional>
-#include <sstream>
 
 namespace vkfv::app {
 
@@ -45,8 +45,7 @@ std::vector<std::vector<std::string>> combinations(const Sweep& sweep) {
 }
 
 Json read_json(const fs::path& path) {
-    std::ifstream stream(path);
-    auto parsed = stream ? Json::parse(stream, nullptr, false) : Json();
+    auto parsed = Json::parse(read_file(path), nullptr, false);
     return parsed.is_object() ? parsed : Json();
 }
 
@@ -84,7 +83,6 @@ Json figures_of(const trace::Image& image, bool ledger_tells) {
     figures["detected rays a pixel"] = static_cast<double>(image.detected) / pixels;
     figures[fmt::format("rays for a ratio of {:g}", wanted_ratio)] =
         static_cast<double>(image.rays) * std::pow(wanted_ratio / ratio, 2);
-    figures["seconds"] = image.seconds;
     return figures;
 }
 
@@ -114,41 +112,44 @@ class Surfaces {
 };
 
 // What an image of the sweep is known again by: all that decides its bits, and what is written beside it.
-std::string image_digest(const Configuration& configuration, double focal_height, const std::string& surface_digest) {
+std::string image_digest(const Configuration& configuration, const std::string& identity, double focal_height) {
     const auto& blur = configuration.diffraction;
-    std::ostringstream point_spread;
-    if (!blur.file.empty()) {
-        point_spread << std::ifstream(blur.file, std::ios::binary).rdbuf();
-    }
     return Digest()
-        .add(configuration.identity + fmt::format("z = {}\n", focal_height))
-        .add(surface_digest)
-        .add(fmt::format("{} {}", configuration.trace.device, static_cast<int>(configuration.trace.traversal)))
-        .add(fmt::format("{} {}", blur.airy, blur.pitch))
-        .add(point_spread.str())
+        .add(fmt::format("{}z = {}\nblur = {} {}\n", identity, focal_height, blur.airy, blur.pitch))
+        .add(blur.file.empty() ? std::string() : read_file(blur.file, {.key = "diffraction.file"}))
         .text();
 }
 
-// The image and its figures, from an earlier run if they are there.
-SweepRow image_row(const Configuration& configuration, const fs::path& folder, Surfaces& surfaces) {
+// The image and its figures, from an earlier run if they are there and whole.
+SweepRow image_row(const Configuration& configuration, ResultFolder& results, const fs::path& name, Surfaces& surfaces) {
     const double focal_height = configuration.sweep->focal_height;
-    const fs::path image_file = folder / "image.tif", figures_file = folder / "image.json";
+    const fs::path image_name = name / "image.tif", figures_name = name / "image.json";
     const auto& surface = surfaces.of(*configuration.specimen);
-    const std::string digest = image_digest(configuration, focal_height, surface.digest);
+    const auto instrument = instrument_for(configuration, surface.specimen, focal_height);
+    const auto tracer = trace::expected_identity(instrument, surface.specimen, configuration.trace);
+    const std::string digest =
+        image_digest(configuration, image_identity(configuration, surface.digest, tracer), focal_height);
     SweepRow row;
-    const Json earlier = read_json(figures_file);
-    if (earlier.is_object() && earlier.value("digest", "") == digest && fs::exists(image_file) &&
-        (fs::exists(folder / "image_diffracted.tif") || !configuration.diffraction.any())) {
+    const bool whole = results.holds(image_name) && results.holds(figures_name) &&
+                       (!configuration.diffraction.any() || results.holds(name / "image_diffracted.tif"));
+    const Json earlier = whole ? read_json(results.path() / figures_name) : Json::object();
+    if (earlier.value("digest", "") == digest) {
         row.figures = earlier.at("figures");
     } else {
-        const Exposure exposure = expose(configuration, surface.specimen, focal_height);
-        write_image(image_file, exposure, focal_height);
+        const Exposure exposure = expose(configuration, instrument, surface.specimen, focal_height);
         const bool tells = configuration.trace.estimator == trace::Estimator::forward && !configuration.trace.directed_scatter;
         row.figures = figures_of(exposure.image, tells);
-        write_text_aside(figures_file,
-                         Json{{"digest", digest}, {"device", exposure.device}, {"figures", row.figures}}.dump(2) + "\n");
+        for (const auto& [file, bytes] : image_files(image_name, exposure, focal_height)) {
+            results.write(file, bytes);
+        }
+        results.write(figures_name,
+                      Json{{"digest", digest}, {"device", exposure.tracer.text()}, {"figures", row.figures}}.dump(2) + "\n");
+        results.write_checksums();
+        scan::append_timing(results.path(), fmt::format("\"{}\"", name.string()), exposure.image.seconds,
+                            static_cast<double>(exposure.image.rays));
+        spdlog::info("traced in {:.3g} s", exposure.image.seconds);
     }
-    row.picture = surface::read_image(image_file);
+    row.picture = surface::read_image(results.path() / image_name);
     return row;
 }
 
@@ -249,6 +250,7 @@ void run_sweep(const CommandOptions& options) {
     for (const auto& values : list) {
         (void)load_configuration(options.file, overrides_of(values), sweep.stacks ? Needs::stack : Needs::exposure);
     }
+    ResultFolder results(folder);
     Surfaces surfaces;
     std::vector<SweepRow> rows;
     for (const auto& values : list) {
@@ -256,15 +258,16 @@ void run_sweep(const CommandOptions& options) {
         spdlog::info("{} of {}: {}", rows.size() + 1, list.size(), name);
         const auto overrides = overrides_of(values);
         rows.push_back(sweep.stacks ? stack_row(options, overrides, sweep.repeats, folder / name)
-                                    : image_row(load_configuration(options.file, overrides, Needs::exposure),
-                                                folder / name, surfaces));
+                                    : image_row(load_configuration(options.file, overrides, Needs::exposure), results,
+                                                name, surfaces));
         rows.back().values = values;
     }
     const std::string title = options.file.stem().string();
-    write_text_aside(folder / "sweep.csv", sweep_csv(sweep, rows));
-    write_text_aside(folder / "sweep.md", sweep_markdown(sweep, rows));
-    write_text_aside(folder / "sweep.svg", sweep_contact_sheet(sweep, rows, title));
-    write_text_aside(folder / "charts.svg", sweep_charts(sweep, rows, title));
+    results.write("sweep.csv", sweep_csv(sweep, rows));
+    results.write("sweep.md", sweep_markdown(sweep, rows));
+    results.write("sweep.svg", sweep_contact_sheet(sweep, rows, title));
+    results.write("charts.svg", sweep_charts(sweep, rows, title));
+    results.write_checksums();
     fmt::print("{}results in {}\n", sweep_markdown(sweep, rows), folder.string());
 }
 

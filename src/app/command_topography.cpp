@@ -97,7 +97,7 @@ Evaluated evaluate_own(const CommandOptions& options) {
     if (options.out && !std::filesystem::equivalent(*options.out, folder, none)) {
         more = {{"stack", folder.string()},
                 {"images", positions.size()},
-                {"rays_per_image", configuration.trace.rays},
+                {"rays_per_image", trace::launched_rays(configuration.trace, pixels)},
                 {"seed", configuration.trace.seed}};
     }
     return {.evaluation =
@@ -180,11 +180,11 @@ void run_topography(const CommandOptions& options) {
         return;
     }
     const auto destination = options.out.value_or(options.file);
-    std::filesystem::create_directories(destination);
     if (options.shuffle) {
         more["shuffle_seed"] = *options.shuffle;
     }
-    write_evaluation(destination, evaluation, more, source, files);
+    ResultFolder results(destination);
+    write_evaluation(results, evaluation, more, source, files);
     fmt::print("{}results in {}\n", summary(evaluation), destination.string());
 }
 

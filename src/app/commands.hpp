@@ -81,6 +81,9 @@ void run_surface(const CommandOptions& options);
 // `out`, also deviation by spatial frequency (transfer.csv) and by slope (slope.csv), maps and compare.json there.
 void run_compare(const CommandOptions& options);
 
+// Whether the files of a stack, a sweep or other results are still those that were written; RunError names those that are not.
+void run_verify(const CommandOptions& options);
+
 // A Zemax lens as a prescription: in the file `out`, else on standard output.
 void run_import(const CommandOptions& options);
 
@@ -97,8 +100,10 @@ std::unique_ptr<trace::Tracer> make_tracer(const optics::Instrument& instrument,
                                            const specimen::Specimen& specimen,
                                            const trace::TraceOptions& options);
 
-// What of the tracer decides the bits of an image: device and traversal, but not how many threads a host has.
-std::string identity_of_tracer(const trace::Tracer& tracer, const trace::TraceOptions& options);
+// All that decides the bits of an image but its height: the configuration's part, the surface as made, instrument, program
+// and device, for another device rounds otherwise. TOML lines.
+std::string image_identity(const Configuration& configuration, const std::string& surface_digest,
+                           const trace::TracerIdentity& tracer);
 
 // One exposure at a height of the focal plane (mm), as an image of the configuration's stack if its scan has that
 // height.
@@ -106,14 +111,20 @@ struct Exposure {
     trace::Image image;
     double first = 0; // of the pixels in the object plane, mm: x and y of pixel (0, 0)
     double pitch = 0;
-    std::string device;
+    trace::TracerIdentity tracer;
     std::optional<Grid<float>> diffracted; // its light after diffraction, if the configuration has one
 };
-Exposure expose(const Configuration& configuration, const specimen::Specimen& specimen, double focal_height);
+// The instrument of the configuration's stack, also where the focal height is none of its scan's.
+optics::Instrument instrument_for(const Configuration& configuration, const specimen::Specimen& specimen,
+                                  double focal_height);
+Exposure expose(const Configuration& configuration, const optics::Instrument& instrument,
+                const specimen::Specimen& specimen, double focal_height);
 // The pixels' mean over the root mean square of their standard errors.
 double signal_to_noise(const trace::Image& image);
-// float32 W per pixel; the diffracted image beside it as NAME_diffracted.
-void write_image(const std::filesystem::path& path, const Exposure& exposure, double focal_height);
+// The files of an exposure by their names, beside each other: NAME, float32 W per pixel, and the diffracted image as
+// NAME_diffracted.
+std::vector<std::pair<std::filesystem::path, std::string>> image_files(const std::filesystem::path& name,
+                                                                       const Exposure& exposure, double focal_height);
 
 // The blur that the configuration asks for, on its detector; none if it asks for none. InputError where the file of a
 // point spread function is at fault.

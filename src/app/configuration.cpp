@@ -2,7 +2,7 @@
 
 #include "app/configuration_instrument.hpp"
 #include "app/configuration_section.hpp"
-#include "app/digest.hpp"
+#include "core/digest.hpp"
 #include "core/units.hpp"
 #include "physics/scatter_registry.hpp"
 

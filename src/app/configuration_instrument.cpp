@@ -1,7 +1,7 @@
 #include "app/configuration_instrument.hpp"
 
 #include "app/configuration_section.hpp"
-#include "app/digest.hpp"
+#include "core/digest.hpp"
 #include "app/number_table.hpp"
 #include "core/units.hpp"
 #include "optics/ideal_lens.hpp"

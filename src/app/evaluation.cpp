@@ -2,13 +2,14 @@
 
 #include "app/commands.hpp"
 #include "app/device_focus_planes.hpp"
-#include "app/digest.hpp"
+#include "core/digest.hpp"
 #include "app/evaluation_figures.hpp"
 #include "app/stack_page.hpp"
-#include "app/text_file.hpp"
+#include "core/file.hpp"
 #include "core/units.hpp"
 #include "report/layout.hpp"
 #include "report/topography_picture.hpp"
+#include "scan/store.hpp"
 #include "surface/filter.hpp"
 #include "surface/height_parameters.hpp"
 #include "surface/image_file.hpp"
@@ -22,7 +23,6 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
-#include <fstream>
 
 namespace vkfv::app {
 
@@ -108,26 +108,30 @@ std::string picture_of(const std::filesystem::path& folder, const Evaluation& ev
     return report::topography_picture(picture);
 }
 
-// Returns the picture.
-std::string write_maps(const std::filesystem::path& folder, const Evaluation& evaluation, const TopographyFiles& files) {
+// Into this folder in the results' own. Returns the picture.
+std::string write_maps(ResultFolder& results, const std::filesystem::path& folder, const Evaluation& evaluation,
+                       const TopographyFiles& files) {
     const auto& topography = evaluation.topography;
     for (const std::string& file : files.names) {
-        surface::write_surface(folder / file, topography.height, files.provenance);
+        results.write(folder / file, surface::surface_bytes(file, topography.height, files.provenance));
     }
     const surface::ImageTags pitch{
         .pitch_x = topography.height.pitch_x, .pitch_y = topography.height.pitch_y, .description = {}};
-    surface::write_tiff(folder / "quality.tif", converted<float>(topography.contrast), pitch);
-    surface::write_tiff(folder / "fit_residual.tif", converted<float>(topography.fit_residual), pitch);
-    surface::write_tiff(folder / "mask.tif", converted<std::uint16_t>(topography.state), pitch);
-    surface::write_tiff(folder / "all_in_focus.tif", topography.all_in_focus, pitch);
+    const auto write = [&](const char* name, const auto& map) {
+        results.write(folder / name, surface::tiff_bytes(map, pitch));
+    };
+    write("quality.tif", converted<float>(topography.contrast));
+    write("fit_residual.tif", converted<float>(topography.fit_residual));
+    write("mask.tif", converted<std::uint16_t>(topography.state));
+    write("all_in_focus.tif", topography.all_in_focus);
     if (evaluation.truth) {
-        surface::write_height_map(folder / "truth.tif", *evaluation.truth);
-        surface::write_height_map(
-            folder / "deviation.tif",
-            topography::deviation_map(topography.height, *evaluation.truth, evaluation.band));
+        results.write(folder / "truth.tif", surface::height_map_bytes(*evaluation.truth));
+        results.write(folder / "deviation.tif",
+                      surface::height_map_bytes(
+                          topography::deviation_map(topography.height, *evaluation.truth, evaluation.band)));
     }
-    const std::string picture = picture_of(folder, evaluation);
-    write_text_aside(folder / "topography.svg", picture);
+    const std::string picture = picture_of(results.path() / folder, evaluation);
+    results.write(folder / "topography.svg", picture);
     return picture;
 }
 
@@ -250,19 +254,18 @@ StackSource stack_source(const Configuration& configuration, const optics::Instr
             .configuration = configuration.canonical};
 }
 
-void write_evaluation(const std::filesystem::path& folder, const Evaluation& evaluation,
-                      const nlohmann::ordered_json& more, const StackSource& source, const TopographyFiles& files) {
-    StackPage page{.title = name_of(folder),
-                   .plain = {.figures = figures_of(evaluation), .svg = write_maps(folder, evaluation, files)},
+void write_evaluation(ResultFolder& folder, const Evaluation& evaluation, const nlohmann::ordered_json& more,
+                      const StackSource& source, const TopographyFiles& files) {
+    StackPage page{.title = name_of(folder.path()),
+                   .plain = {.figures = figures_of(evaluation), .svg = write_maps(folder, "", evaluation, files)},
                    .diffracted = {},
                    .results = {},
                    .layout = source.layout,
                    .configuration = source.configuration};
     auto results = json_of(page.plain.figures);
     if (evaluation.diffracted) {
-        std::filesystem::create_directories(folder / "diffracted");
         page.diffracted = {.figures = figures_of(*evaluation.diffracted),
-                           .svg = write_maps(folder / "diffracted", *evaluation.diffracted, files)};
+                           .svg = write_maps(folder, "diffracted", *evaluation.diffracted, files)};
         results["diffracted"] = json_of(page.diffracted->figures);
     }
     const auto& options = evaluation.options;
@@ -282,20 +285,23 @@ void write_evaluation(const std::filesystem::path& folder, const Evaluation& eva
                                {"deviation_um", evaluation.flatness->deviation * um_per_mm}};
     }
     results["points"] = point_counts(evaluation.topography.state);
-    results["evaluation_seconds"] = evaluation.seconds;
     results["evaluated_by"] = fmt::format("vkfv {}", VKFV_VERSION);
     results.update(more);
-    write_text_aside(folder / "results.json", results.dump(2) + "\n");
+    folder.write("results.json", results.dump(2) + "\n");
     page.results = std::move(results);
-    write_text_aside(folder / "report.html", stack_page(page));
+    folder.write("report.html", stack_page(page));
+    scan::append_timing(folder.path(), "evaluation", evaluation.seconds);
+    folder.write_checksums();
 }
 
 nlohmann::ordered_json run_of(const std::filesystem::path& folder) {
     auto run = nlohmann::ordered_json::object();
-    std::ifstream stream(folder / "results.json");
-    const auto results = nlohmann::ordered_json::parse(stream, nullptr, false);
-    for (const char* key : {"device", "stack_digest", "seed", "images", "rays_per_image", "images_traced",
-                            "trace_seconds", "rays_per_second"}) {
+    std::error_code none;
+    if (!std::filesystem::exists(folder / "results.json", none)) {
+        return run;
+    }
+    const auto results = nlohmann::ordered_json::parse(read_file(folder / "results.json"), nullptr, false);
+    for (const char* key : {"device", "stack_digest", "seed", "images", "rays_per_image"}) {
         if (results.is_object() && results.contains(key)) {
             run[key] = results.at(key);
         }

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "app/configuration.hpp"
+#include "core/result_folder.hpp"
 #include "surface/provenance.hpp"
 #include "topography/compare.hpp"
 #include "topography/topography.hpp"
@@ -96,16 +97,15 @@ struct StackSource {
 // Of a stack of vkfv's own.
 StackSource stack_source(const Configuration& configuration, const optics::Instrument& instrument);
 
-// Writes into the folder, the first row of each with the highest y: the topography's files, quality.tif (contrast),
+// Writes into the folder, checksums last, the first row of each with the highest y: the topography's files, quality.tif (contrast),
 // fit_residual.tif, mask.tif (uint16: topography::PointState), all_in_focus.tif; with a truth also truth.tif and
 // deviation.tif (float32 um); topography.svg, a picture of them, levelled; results.json, which `more` joins;
 // and report.html, all of it on a page. What diffraction changes stands in a folder
 // `diffracted` in it.
-void write_evaluation(const std::filesystem::path& folder, const Evaluation& evaluation,
-                      const nlohmann::ordered_json& more, const StackSource& source = {}, const TopographyFiles& files = {});
+void write_evaluation(ResultFolder& folder, const Evaluation& evaluation, const nlohmann::ordered_json& more,
+                      const StackSource& source = {}, const TopographyFiles& files = {});
 
-// What the results in a stack's folder say of the run that traced it, or the last part of it: device, digest, seed, counts
-// and times; none if there are no results.
+// What the results in a stack's folder say of the trace: device, digest, seed and counts; none if there are no results.
 nlohmann::ordered_json run_of(const std::filesystem::path& folder);
 
 // The figures as a text of a few lines.

@@ -2,8 +2,11 @@
 // code.
 #include "app/commands.hpp"
 
+#include "core/interruption.hpp"
+#include "core/result_folder.hpp"
 #include "core/units.hpp"
 #include "vulkan/device.hpp"
+#include "vulkan/failure.hpp"
 
 #include <CLI/CLI.hpp>
 #include <fmt/format.h>
@@ -23,10 +26,10 @@ namespace {
 
 using vkfv::InputError;
 
-enum ExitCode { done = 0, wrong_input = 2, no_device = 3, run_failed = 4 };
+enum ExitCode { done = 0, wrong_input = 2, no_device = 3, run_failed = 4, in_use = 5 };
 
 struct Arguments {
-    std::string stack, image, sweep, check, bench, topography, surface, import_lens;
+    std::string stack, image, sweep, check, bench, topography, surface, verify, import_lens;
     std::vector<std::string> trace_rays, layout, compare;
     bool align = false;
     bool devices = false;
@@ -86,6 +89,10 @@ void declare(CLI::App& app, Arguments& given) {
                    "A surface file (X3P, SUR, SDF, AL3D, TIFF, EXR): form removed and filtered, its ISO 25178-2 parameters; with "
                    "--out also written, in another format if so named")
         ->type_name("FILE")
+        ->group(commands);
+    app.add_option("--verify", given.verify,
+                   "Check that the files of a stack, a sweep or other results are whole and those that were written")
+        ->type_name("FOLDER")
         ->group(commands);
     app.add_option("--check", given.check, "Validate and print first-order data; needs no device")
         ->type_name("C.toml")
@@ -225,7 +232,7 @@ void declare(CLI::App& app, Arguments& given) {
                "  vkfv --topography images.tif --z_step_um 0.5 --pitch_um 0.9 --out measured\n"
                "  vkfv --surface measured.x3p --form polynomial-2 --s_filter_um 5 --out treated.sur\n"
                "\nExit codes: 0 done, 2 the input is wrong, 3 no usable device, 4 the run failed and can be "
-               "resumed.");
+               "resumed, 5 another run is writing there; 130, 143, 129 ended by SIGINT, SIGTERM, SIGHUP.");
 }
 
 // What CLI11 left over: an unknown option most likely meant the nearest known one.
@@ -403,6 +410,7 @@ void run(const CLI::App& app, const Arguments& given) {
         {"--topography", given.topography, vkfv::app::run_topography},
         {"--compare", "", vkfv::app::run_compare},
         {"--surface", given.surface, vkfv::app::run_surface},
+        {"--verify", given.verify, vkfv::app::run_verify},
         {"--check", given.check, vkfv::app::run_check},
         {"--trace-rays", given.trace_rays.empty() ? "" : given.trace_rays.front(), vkfv::app::run_trace_rays},
         {"--layout", given.layout.empty() ? "" : given.layout.front(), vkfv::app::run_layout},
@@ -423,7 +431,7 @@ void run(const CLI::App& app, const Arguments& given) {
     }
     if (!chosen) {
         refuse("no command",
-               "one of --stack, --image, --sweep, --topography, --compare, --surface, --check, --trace-rays, --layout, --devices, --bench, --import",
+               "one of --stack, --image, --sweep, --topography, --compare, --surface, --verify, --check, --trace-rays, --layout, --devices, --bench, --import",
                "vkfv --help tells what they do.");
     }
     if ((app.count("--z") > 0) != (chosen->run == vkfv::app::run_image)) {
@@ -440,9 +448,17 @@ int report(const char* message, ExitCode code) {
     return code;
 }
 
+// What a command has said is part of what it was asked for.
+void finish_standard_output() {
+    if (std::fflush(stdout) != 0 || std::ferror(stdout) != 0) {
+        throw vkfv::RunError("standard output cannot be written to. Free space where it leads, and run the same command again");
+    }
+}
+
 } // namespace
 
 int main(int argument_count, char** argument_values) {
+    vkfv::explain_interruptions();
     const vkfv::vulkan::DriverScope drivers;
     Arguments given;
     CLI::App app(
@@ -456,6 +472,7 @@ int main(int argument_count, char** argument_values) {
         spdlog::set_pattern("%^%l%$: %v");
         spdlog::set_level(given.quiet ? spdlog::level::warn : spdlog::level::info);
         run(app, given);
+        finish_standard_output();
         return done;
     } catch (const CLI::Success& request) { // --help, --version
         return app.exit(request);
@@ -466,8 +483,12 @@ int main(int argument_count, char** argument_values) {
         return report(error.what(), wrong_input);
     } catch (const vkfv::DeviceError& error) {
         return report(error.what(), no_device);
+    } catch (const vkfv::FolderInUse& error) {
+        return report(error.what(), in_use);
     } catch (const vkfv::RunError& error) {
         return report(error.what(), run_failed);
+    } catch (const vk::SystemError& failure) {
+        return report(vkfv::vulkan::run_error_of(failure).what(), run_failed);
     } catch (const std::filesystem::filesystem_error& error) {
         return report(
             fmt::format("{}. Check the path, its permissions and the free space, and run the same command "
@@ -480,6 +501,10 @@ int main(int argument_count, char** argument_values) {
             "the host has not enough memory. Choose fewer pixels, fewer positions or a coarser specimen.",
             run_failed);
     } catch (const std::exception& error) {
+        if (std::ferror(stdout) != 0) { // fmt says so by an exception of its own
+            return report("standard output cannot be written to. Free space where it leads, and run the same command again",
+                          run_failed);
+        }
         return report(fmt::format("unexpected failure: {}. Please report it with the command line and the "
                                   "configuration.",
                                   error.what())

@@ -1,6 +1,7 @@
 #include "app/number_table.hpp"
 
 #include "core/error.hpp"
+#include "core/file.hpp"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -8,7 +9,7 @@
 #include <algorithm>
 #include <charconv>
 #include <cmath>
-#include <fstream>
+#include <sstream>
 #include <iterator>
 
 namespace vkfv::app {
@@ -72,14 +73,7 @@ std::vector<NumberRow> read_number_table(const std::filesystem::path& file,
                                          const std::vector<std::string_view>& columns, const std::string& key,
                                          const std::string& row_name) {
     const std::string header = fmt::format("{}", fmt::join(columns, ","));
-    std::ifstream stream(file);
-    if (!stream || std::filesystem::is_directory(file)) {
-        throw InputError({.where = {.file = file},
-                          .key = key,
-                          .found = "no readable file",
-                          .expected = "a CSV file with the columns " + header,
-                          .remedy = "Check the path and its permissions."});
-    }
+    std::istringstream stream(read_file(file, {.key = key, .expected = "a CSV file with the columns " + header}));
     std::vector<NumberRow> rows;
     std::string text;
     for (int line = 1; std::getline(stream, text); ++line) {

@@ -225,7 +225,6 @@ std::string read_file(const fs::path& path, const FileRequest& request) {
 
 void write_file(const fs::path& path, std::string_view bytes) {
     const fs::path target = target_of(path);
-    make_folder(target.parent_path());
     const fs::path beside = unfinished_path(target);
     Descriptor file(open_unfinished(beside, path));
     std::string reason;

@@ -45,8 +45,8 @@ class InputFile {
 std::string read_file(const std::filesystem::path& path, const FileRequest& request = {});
 
 // Under its name there is, at any moment and after any fault, the file of before or this one, whole: written beside it, synced,
-// read back and compared, renamed; then the folder is synced. Makes the folder. Programs that write the same file take turns.
-// A link is followed; what is no regular file is not replaced. Throws RunError, with the reason and the remedy.
+// read back and compared, renamed; then the folder is synced. Programs that write the same file take turns. A link is
+// followed; what is no regular file is not replaced. Throws RunError, with the reason and the remedy.
 void write_file(const std::filesystem::path& path, std::string_view bytes);
 
 // A line at the end of a text file that others watch; not synced. Throws RunError.

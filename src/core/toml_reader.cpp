@@ -1,12 +1,13 @@
 #include "core/toml_reader.hpp"
 
+#include "core/file.hpp"
+
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 #include <toml++/toml.h>
 
 #include <algorithm>
 #include <cmath>
-#include <fstream>
 #include <map>
 #include <set>
 #include <sstream>
@@ -79,31 +80,6 @@ toml::table parse_text(std::string_view text, const std::filesystem::path& name)
              .expected = "valid TOML 1.0",
              .remedy = "Correct the text at this place (strings need quotes, tables [brackets])."});
     }
-}
-
-std::string read_text(const std::filesystem::path& file) {
-    const auto refuse = [&](std::string found) {
-        throw InputError({.where = {.file = file},
-                          .key = "",
-                          .found = std::move(found),
-                          .expected = "a readable TOML file",
-                          .remedy = "Check the path and its permissions; relative paths start at the working "
-                                    "directory, or at the file that names them."});
-    };
-    std::error_code code;
-    const auto status = std::filesystem::status(file, code);
-    if (!std::filesystem::exists(status)) {
-        refuse("no such file");
-    }
-    if (std::filesystem::is_directory(status)) {
-        refuse("a directory");
-    }
-    std::ifstream stream(file, std::ios::binary);
-    std::string text{std::istreambuf_iterator<char>(stream), {}};
-    if (!stream.is_open() || stream.bad()) {
-        refuse("unreadable");
-    }
-    return text;
 }
 
 // Moves `from` into `into`, table by table; what is no table on both sides is replaced.
@@ -332,7 +308,10 @@ TomlTable TomlTable::parse(std::string_view text, const std::filesystem::path& n
 }
 
 TomlTable TomlTable::open(const std::filesystem::path& file, const std::vector<TomlOverride>& overrides) {
-    return parse(read_text(file), file, overrides);
+    return parse(read_file(file, {.expected = "a readable TOML file",
+                                  .remedy = "Check the path and its permissions; relative paths start at the working "
+                                            "directory, or at the file that names them."}),
+                 file, overrides);
 }
 
 const std::string& TomlTable::path() const {

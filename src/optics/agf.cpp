@@ -1,6 +1,7 @@
 #include "optics/agf.hpp"
 
 #include "core/error.hpp"
+#include "core/file.hpp"
 
 #include <fmt/format.h>
 
@@ -9,7 +10,6 @@
 #include <charconv>
 #include <cmath>
 #include <cstdint>
-#include <fstream>
 #include <iterator>
 #include <optional>
 #include <set>
@@ -315,24 +315,7 @@ std::vector<Medium> parse_agf(std::string_view bytes, const std::filesystem::pat
 }
 
 std::vector<Medium> read_agf(const std::filesystem::path& file) {
-    std::error_code code;
-    std::ifstream stream(file, std::ios::binary);
-    std::string bytes;
-    const bool is_file = std::filesystem::is_regular_file(file, code);
-    if (is_file && stream) {
-        bytes.resize(static_cast<std::size_t>(std::filesystem::file_size(file, code)));
-        stream.read(bytes.data(), static_cast<std::streamsize>(bytes.size()));
-    }
-    if (!is_file || !stream) {
-        throw InputError({.where = {.file = file},
-                          .key = "",
-                          .found = !std::filesystem::exists(file, code) ? "no such file"
-                                   : !is_file                           ? "not a file"
-                                                                        : "unreadable",
-                          .expected = "a glass catalogue (.agf)",
-                          .remedy = "Check the path and its permissions."});
-    }
-    return parse_agf(bytes, file);
+    return parse_agf(read_file(file, {.expected = "a glass catalogue (.agf)"}), file);
 }
 
 } // namespace vkfv::optics

@@ -1,6 +1,7 @@
 #include "optics/zmx.hpp"
 
 #include "core/error.hpp"
+#include "core/file.hpp"
 #include "core/toml_reader.hpp"
 #include "core/units.hpp"
 
@@ -10,7 +11,6 @@
 #include <algorithm>
 #include <charconv>
 #include <cmath>
-#include <fstream>
 #include <iterator>
 #include <map>
 #include <optional>
@@ -685,20 +685,7 @@ ZmxLens parse_zmx(std::string_view bytes, const std::filesystem::path& file, con
 }
 
 ZmxLens read_zmx(const std::filesystem::path& file, const GlassCatalog& glasses) {
-    std::error_code code;
-    std::ifstream stream;
-    if (!std::filesystem::is_directory(file, code)) { // reading one throws
-        stream.open(file, std::ios::binary);
-    }
-    const std::string bytes{std::istreambuf_iterator<char>(stream), {}};
-    if (!stream.is_open() || stream.bad()) {
-        throw InputError({.where = {.file = file},
-                          .key = "",
-                          .found = "no readable file",
-                          .expected = "a Zemax lens file (.zmx)",
-                          .remedy = "Check the path and its permissions."});
-    }
-    return parse_zmx(bytes, file, glasses);
+    return parse_zmx(read_file(file, {.expected = "a Zemax lens file (.zmx)"}), file, glasses);
 }
 
 } // namespace vkfv::optics

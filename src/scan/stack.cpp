@@ -1,6 +1,7 @@
 #include "scan/stack.hpp"
 
 #include "core/error.hpp"
+#include "core/interruption.hpp"
 
 #include <fmt/format.h>
 #include <spdlog/spdlog.h>
@@ -29,6 +30,12 @@ StackSummary run_stack(const trace::Tracer& tracer, ImageStore& store, Progress&
     const int images = static_cast<int>(of_shard.size());
     progress.begin(images, summary.kept);
 
+    const auto tell_what_is_stored = [&] {
+        say_when_interrupted(fmt::format("{} of {} images are stored in {}: give the same command again to continue.",
+                                         summary.kept + summary.traced, images, store.folder().string()));
+    };
+    tell_what_is_stored();
+
     // At most one image waits to be written: a second would only hold memory while the disk is the slower
     // part.
     std::future<void> writing;
@@ -46,6 +53,7 @@ StackSummary run_stack(const trace::Tracer& tracer, ImageStore& store, Progress&
                             error.what(), summary.kept + summary.traced, images, store.folder().string()));
         }
         ++summary.traced;
+        tell_what_is_stored();
         summary.rays += rays_in_writing;
         progress.advance(rays_in_writing);
     };

@@ -1,29 +1,21 @@
 #include "scan/store.hpp"
 
+#include "core/digest.hpp"
 #include "core/error.hpp"
+#include "core/file.hpp"
 #include "core/units.hpp"
+#include "scan/plan.hpp"
 #include "surface/image_file.hpp"
 
-#include <OpenImageIO/imageio.h>
-
-#include <fcntl.h>
 #include <fmt/format.h>
-#include <spdlog/spdlog.h>
-#include <sys/file.h>
-#include <unistd.h>
 
 #include <algorithm>
-#include <cerrno>
 #include <cmath>
-#include <cstddef>
-#include <cstdint>
-#include <fstream>
 #include <map>
-#include <span>
+#include <optional>
 #include <sstream>
 #include <stdexcept>
 #include <string_view>
-#include <system_error>
 
 namespace vkfv::scan {
 
@@ -31,13 +23,13 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr std::string_view configuration_name = "stack.toml";
 constexpr std::string_view ledger_name = "ledger.csv";
 constexpr std::string_view timings_name = "timings.csv";
 constexpr std::string_view images_name = "images";
-constexpr std::string_view lock_name = ".lock";
-constexpr std::string_view aside_suffix = ".part"; // as surface/image_file.hpp names files put aside
+constexpr std::string_view lock_name = ".lock"; // of core/result_folder.hpp
 constexpr std::string_view identity_prefix = "#: ";
+constexpr std::string_view digest_label = " (digest ";
+constexpr std::size_t digest_digits = 16;
 constexpr double cm_per_um = 1e-4;
 
 [[noreturn]] void refuse(const fs::path& where, std::string found, std::string expected, std::string remedy) {
@@ -46,46 +38,6 @@ constexpr double cm_per_um = 1e-4;
                       .found = std::move(found),
                       .expected = std::move(expected),
                       .remedy = std::move(remedy)});
-}
-
-std::string reason() {
-    return std::generic_category().message(errno);
-}
-
-// Whole and on the disk under its final name, or not there at all.
-void write_durably(const fs::path& path, std::string_view text) {
-    fs::path aside = path;
-    aside.replace_filename(fmt::format(".{}{}", path.filename().string(), aside_suffix));
-    const int file = ::open(aside.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0666);
-    bool good = file >= 0;
-    while (good && !text.empty()) {
-        const ssize_t written = ::write(file, text.data(), text.size());
-        good = written >= 0 || errno == EINTR;
-        text.remove_prefix(static_cast<std::size_t>(std::max<ssize_t>(written, 0)));
-    }
-    good = good && ::fsync(file) == 0;
-    const std::string error = good ? "" : reason();
-    if (file >= 0) {
-        ::close(file);
-    }
-    if (!good) {
-        throw RunError(fmt::format("{}: cannot be written: {}", path.string(), error));
-    }
-    if (::rename(aside.c_str(), path.c_str()) != 0) {
-        throw RunError(
-            fmt::format("{}: cannot be renamed to {}: {}", aside.string(), path.string(), reason()));
-    }
-}
-
-std::string read_text(const fs::path& path) {
-    std::ifstream stream(path, std::ios::binary);
-    std::ostringstream text;
-    text << stream.rdbuf();
-    if (!stream) {
-        refuse(path, "a file that cannot be read", "the configuration of a stack",
-               "Check the permissions, or give another --out.");
-    }
-    return text.str();
 }
 
 std::vector<std::string> lines_of(std::string_view text) {
@@ -100,8 +52,8 @@ std::vector<std::string> lines_of(std::string_view text) {
 std::string stack_text(const StackDescription& description) {
     std::string text = fmt::format(
         "# A stack of vkfv: its configuration, every default spelled out. `vkfv --stack` takes this file.\n"
-        "# What its images depend on (digest {}); a run that differs in any of it is refused here:\n",
-        description.digest);
+        "# What its images depend on{}{}); a run that differs in any of it is refused here:\n",
+        digest_label, description.digest);
     for (const std::string& line : lines_of(description.identity)) {
         if (!line.empty()) {
             text += fmt::format("{}{}\n", identity_prefix, line);
@@ -204,63 +156,71 @@ std::string described(const std::string& description, std::string_view key) {
     return description.substr(begin, description.find('\n', begin) - begin);
 }
 
-std::string image_description(const fs::path& path) {
-    const auto input = OIIO::ImageInput::open(path.string());
-    if (!input) {
-        refuse(path, OIIO::geterror(), "a readable TIFF image",
-               "Trace the stack again with the same command.");
-    }
-    return input->spec().get_string_attribute("ImageDescription");
+// In an image's description: the checksum of the whole file, taken with zeros in its place, so that pixels, directory and text
+// all stand under it and become durable with it.
+constexpr std::string_view seal_label = "\nsha256_with_zeros_here=";
+const std::string unsealed(64, '0');
+
+// Where the seal's digits are; none: the file has no seal.
+std::optional<std::size_t> seal_place(std::string_view bytes) {
+    const auto label = bytes.find(seal_label);
+    const auto place = label + seal_label.size();
+    return label != std::string_view::npos && bytes.size() - place > unsealed.size() ? std::optional(place) : std::nullopt;
 }
 
-// FNV-1a, 64 bits (Fowler, Noll, Vo), over the pixels as they are in memory. A reader of TIFF may fill up a
-// truncated file with zeros, and no reader finds a bit that fell over.
-std::string pixel_digest(const Grid<float>& image) {
-    std::uint64_t digest = 0xcbf29ce484222325u;
-    for (const std::byte byte : std::as_bytes(std::span(image.values))) {
-        digest = (digest ^ std::to_integer<std::uint64_t>(byte)) * 0x100000001b3u;
+std::string sealed(std::string bytes) {
+    const auto place = seal_place(bytes);
+    if (!place) {
+        throw std::logic_error("an image without a place for its checksum");
     }
-    return fmt::format("{:016x}", digest);
+    const std::string sum = Digest().add(bytes).sha256();
+    return bytes.replace(*place, sum.size(), sum);
+}
+
+bool seal_is_whole(const std::string& bytes) {
+    const auto place = seal_place(bytes);
+    if (!place) {
+        return false;
+    }
+    const std::string_view all = bytes;
+    const auto behind = *place + unsealed.size();
+    const std::string sum =
+        Digest().add(all.substr(0, *place)).add(unsealed).add(all.substr(behind)).sha256();
+    return sum == all.substr(*place, unsealed.size());
+}
+
+struct Frame {
+    std::string bytes; // of the file
+    surface::StoredImage image;
+};
+
+Frame read_whole_frame(const fs::path& folder, int image, double z) {
+    const fs::path path = folder / image_path(image);
+    Frame frame{.bytes = read_file(path, {.expected = "an image of the stack",
+                                          .remedy = "Trace the stack again with the same command: it keeps the other images."}),
+                .image = {}};
+    if (!seal_is_whole(frame.bytes)) {
+        refuse(path, "bytes that are not those stored", "a whole image of a stack",
+               "Trace the stack again with the same command: it keeps the other images.");
+    }
+    frame.image = surface::parse_tiff(frame.bytes, path);
+    const std::string found = described(frame.image.description, "z_um");
+    if (found != micrometres_text(z)) {
+        refuse(path, fmt::format("z_um = {}", found.empty() ? "none" : found),
+               fmt::format("the focal height {} um", micrometres_text(z)),
+               "Keep the images of different stacks apart, or trace the stack again.");
+    }
+    return frame;
 }
 
 bool holds_nothing_but_a_beginning(const fs::path& folder) {
-    return std::all_of(
-        fs::directory_iterator(folder), fs::directory_iterator(), [](const fs::directory_entry& entry) {
-            const std::string name = entry.path().filename().string();
-            return name == lock_name || name == fmt::format(".{}{}", configuration_name, aside_suffix);
-        });
-}
-
-void remove_files_put_aside(const fs::path& folder) {
-    std::vector<fs::path> leftovers;
-    for (const auto& entry : fs::directory_iterator(folder)) {
-        if (entry.is_regular_file() && entry.path().extension() == aside_suffix) {
-            leftovers.push_back(entry.path());
+    std::error_code error;
+    for (fs::directory_iterator entry(folder, error), end; !error && entry != end; entry.increment(error)) {
+        if (entry->path().filename() != lock_name && !is_unfinished_file(entry->path())) {
+            return false;
         }
     }
-    for (const fs::path& leftover : leftovers) {
-        fs::remove(leftover);
-    }
-}
-
-// The kernel drops the lock with the process, so that a kill leaves none behind.
-int lock_folder(const fs::path& folder) {
-    const fs::path path = folder / lock_name;
-    const int file = ::open(path.c_str(), O_RDWR | O_CREAT | O_CLOEXEC, 0666);
-    if (file < 0) {
-        refuse(folder, reason(), "a folder that can be written to",
-               "Check its permissions, or give another --out.");
-    }
-    if (::flock(file, LOCK_EX | LOCK_NB) != 0) {
-        if (errno == EWOULDBLOCK) {
-            ::close(file);
-            refuse(folder, "a folder that another vkfv is writing to", "a stack that nobody else writes",
-                   "Wait for the other run to end, or give another --out.");
-        }
-        spdlog::warn("{}: this file system offers no locks ({}): see to it that no second run writes here",
-                     folder.string(), reason());
-    }
-    return file;
+    return !error;
 }
 
 } // namespace
@@ -277,68 +237,68 @@ Grid<float> as_stored(const Grid<double>& flux) {
 }
 
 Grid<float> read_frame(const fs::path& folder, int image, double z) {
-    const fs::path path = folder / image_path(image);
-    Grid<float> frame = surface::read_image(path);
-    const std::string text = image_description(path);
-    if (described(text, "pixels") != pixel_digest(frame)) {
-        refuse(path, "pixels that are not those stored", "a whole image of a stack",
-               "Trace the stack again with the same command: it keeps the other images.");
-    }
-    const std::string found = described(text, "z_um");
-    if (found != micrometres_text(z)) {
-        refuse(path, fmt::format("z_um = {}", found.empty() ? "none" : found),
-               fmt::format("the focal height {} um", micrometres_text(z)),
-               "Keep the images of different stacks apart, or trace the stack again.");
-    }
-    return frame;
+    return std::move(read_whole_frame(folder, image, z).image.values);
 }
 
-ImageStore::ImageStore(fs::path folder, StackDescription description)
-    : folder_(std::move(folder)), description_(std::move(description)),
-      ledger_rows_(description_.positions.size()) {
+Check check_images(const fs::path& folder) {
+    Check check;
+    std::string digest;
     try {
-        if (fs::exists(folder_) && !fs::is_directory(folder_)) {
-            refuse(folder_, "a file", "a folder", "Give another --out.");
-        }
-        if (fs::exists(folder_) && !fs::exists(folder_ / configuration_name) &&
-            !holds_nothing_but_a_beginning(folder_)) {
-            refuse(folder_, fmt::format("a folder with other files and without {}", configuration_name),
-                   "a new folder, an empty one, or that of the same stack", "Give another --out.");
-        }
-        fs::create_directories(folder_);
-        lock_ = lock_folder(folder_);
-        create_or_compare();
-        fs::create_directories(folder_ / images_name);
-        remove_files_put_aside(folder_);
-        remove_files_put_aside(folder_ / images_name);
-        keep_whole_images();
-        write_ledger();
-    } catch (const fs::filesystem_error& error) {
-        if (lock_ >= 0) {
-            ::close(lock_);
-        }
-        refuse(folder_, error.code().message(), "a folder that can be written to",
-               "Check the path and its permissions, or give another --out.");
-    } catch (...) {
-        if (lock_ >= 0) {
-            ::close(lock_);
-        }
-        throw;
+        const std::string text = read_file(folder / configuration_name);
+        const auto place = text.find(digest_label);
+        digest = text.substr(place == std::string::npos ? text.size() : place + digest_label.size(), digest_digits);
+    } catch (const InputError& error) {
+        check.damages.push_back({fs::path(configuration_name), error.problem().found});
     }
+    for (int image = 0; image < most_positions; ++image) {
+        const fs::path name = image_path(image);
+        std::error_code none;
+        if (!fs::exists(folder / name, none)) {
+            continue;
+        }
+        check.files.push_back(name.generic_string());
+        try {
+            const std::string bytes = read_file(folder / name);
+            if (!seal_is_whole(bytes)) {
+                check.damages.push_back({name, "is not the file that was written"});
+            } else if (described(surface::parse_tiff(bytes, name).description, "stack") != digest) {
+                check.damages.push_back({name, "is an image of another stack"});
+            }
+        } catch (const InputError& error) {
+            check.damages.push_back({name, error.problem().found});
+        }
+    }
+    return check;
 }
 
-ImageStore::~ImageStore() {
-    ::close(lock_);
+ImageStore::ImageStore(const fs::path& folder, StackDescription description)
+    : description_(std::move(description)), ledger_rows_(description_.positions.size()) {
+    std::error_code none;
+    if (fs::exists(folder, none) && !fs::is_directory(folder, none)) {
+        refuse(folder, "a file", "a folder", "Give another --out.");
+    }
+    if (fs::exists(folder, none) && !fs::exists(folder / configuration_name, none) &&
+        !holds_nothing_but_a_beginning(folder)) {
+        refuse(folder, fmt::format("a folder with other files and without {}", configuration_name),
+               "a new folder, an empty one, or that of the same stack", "Give another --out.");
+    }
+    results_ = std::make_unique<ResultFolder>(folder);
+    create_or_compare();
+    make_folder(folder / images_name);
+    remove_unfinished_files(folder / images_name);
+    keep_whole_images();
+    write_ledger();
 }
 
-void ImageStore::create_or_compare() const {
-    const fs::path path = folder_ / configuration_name;
+void ImageStore::create_or_compare() {
+    const fs::path path = folder() / configuration_name;
     const std::string text = stack_text(description_);
-    if (!fs::exists(path)) {
-        write_durably(path, text);
+    std::error_code none;
+    if (!fs::exists(path, none)) {
+        results_->write(configuration_name, text);
         return;
     }
-    const std::string text_there = read_text(path);
+    const std::string text_there = read_file(path, {.expected = "the configuration of a stack"});
     const std::string identity_there = identity_of(text_there);
     if (identity_there.empty()) {
         refuse(path, "a file without the identity of a stack", "the stack.toml of a stack that vkfv traced",
@@ -351,26 +311,29 @@ void ImageStore::create_or_compare() const {
     }
     // What does not touch the images, such as the evaluation, may differ.
     if (text_there != text) {
-        write_durably(path, text);
+        results_->write(configuration_name, text);
+    } else {
+        results_->note(configuration_name, text);
     }
 }
 
 void ImageStore::keep_whole_images() {
     for (std::size_t i = 0; i < ledger_rows_.size(); ++i) {
         const int image = static_cast<int>(i);
-        const fs::path path = folder_ / image_path(image);
-        if (!fs::exists(path)) {
+        const fs::path path = folder() / image_path(image);
+        std::error_code none;
+        if (!fs::exists(path, none)) {
             continue;
         }
         try {
-            const Grid<float> frame = read_frame(folder_, image, description_.positions[i]);
-            const std::string text = image_description(path);
+            const Frame frame = read_whole_frame(folder(), image, description_.positions[i]);
+            const std::string& text = frame.image.description;
             const std::string header = described(text, "ledger_columns");
             const std::string row = described(text, "ledger_row");
-            if (frame.columns != description_.columns || frame.rows != description_.rows) {
-                damaged_.push_back(fmt::format("{}: {} x {} pixels where {} x {} belong", path.string(),
-                                               frame.columns, frame.rows, description_.columns,
-                                               description_.rows));
+            const Grid<float>& values = frame.image.values;
+            if (values.columns != description_.columns || values.rows != description_.rows) {
+                damaged_.push_back(fmt::format("{}: {} x {} pixels where {} x {} belong", path.string(), values.columns,
+                                               values.rows, description_.columns, description_.rows));
             } else if (described(text, "stack") != description_.digest) {
                 damaged_.push_back(fmt::format("{}: an image of another stack", path.string()));
             } else if (row.empty() || (!ledger_header_.empty() && header != ledger_header_)) {
@@ -378,6 +341,7 @@ void ImageStore::keep_whole_images() {
             } else {
                 ledger_header_ = header;
                 ledger_rows_[i] = row;
+                results_->note(image_path(image), frame.bytes);
             }
         } catch (const InputError& error) {
             damaged_.push_back(fmt::format("{}: {}", path.string(), error.problem().found));
@@ -407,34 +371,37 @@ void ImageStore::store(int image, const trace::Image& exposure) {
         text += fmt::format("spacing={:.12g}\n",
                             (description_.positions[1] - description_.positions[0]) * um_per_mm * cm_per_um);
     }
-    text += fmt::format(
-        "image={}\nz_um={}\nvalues=radiant flux per pixel in W\nfirst_row=highest y\npixels={}\nstack={}\n"
-        "ledger_columns={}\nledger_row={}\n",
-        image, micrometres_text(z), pixel_digest(flux), description_.digest, header, row);
-    surface::write_tiff(folder_ / image_path(image), flux,
-                        {.pitch_x = description_.pitch, .pitch_y = description_.pitch, .description = text});
+    text += fmt::format("image={}\nz_um={}\nvalues=radiant flux per pixel in W\nfirst_row=highest y\nstack={}\n"
+                        "ledger_columns={}\nledger_row={}{}{}\n",
+                        image, micrometres_text(z), description_.digest, header, row, seal_label, unsealed);
+    results_->write(image_path(image),
+                    sealed(surface::tiff_bytes(
+                        flux, {.pitch_x = description_.pitch, .pitch_y = description_.pitch, .description = text})));
 
     const bool first = ledger_header_.empty();
     ledger_header_ = header;
     ledger_rows_[index] = row;
     // For those who watch; a row lost here is in its image, and the next opening writes the file anew.
-    std::ofstream ledger(folder_ / ledger_name, std::ios::app);
-    ledger << (first ? header + "\n" : "") << row << "\n";
-
-    const fs::path timings_path = folder_ / timings_name;
-    const bool new_timings = !fs::exists(timings_path);
-    std::ofstream timings(timings_path, std::ios::app);
-    timings << (new_timings ? "image,trace_s,rays_per_s\n" : "")
-            << fmt::format("{},{:.6g},{:.6g}\n", image, exposure.seconds,
-                           exposure.seconds > 0 ? static_cast<double>(exposure.rays) / exposure.seconds : 0);
+    append_line(folder() / ledger_name, (first ? header + "\n" : "") + row);
+    append_timing(folder(), fmt::format("image {}", image), exposure.seconds, static_cast<double>(exposure.rays));
 }
 
-void ImageStore::write_ledger() const {
+void ImageStore::write_ledger() {
     std::string text = ledger_header_.empty() ? "" : ledger_header_ + "\n";
     for (const std::string& row : ledger_rows_) {
         text += row.empty() ? "" : row + "\n";
     }
-    write_durably(folder_ / ledger_name, text);
+    results_->write(ledger_name, text);
+}
+
+void append_timing(const fs::path& folder, const std::string& what, double seconds, double rays) {
+    const fs::path path = folder / timings_name;
+    std::error_code none;
+    if (!fs::exists(path, none)) {
+        append_line(path, "what,seconds,rays_per_s");
+    }
+    append_line(path, fmt::format("{},{:.6g},{}", what, seconds,
+                                  rays > 0 && seconds > 0 ? fmt::format("{:.6g}", rays / seconds) : ""));
 }
 
 } // namespace vkfv::scan

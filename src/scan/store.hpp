@@ -3,20 +3,22 @@
 //   stack.toml              the configuration, and in comments the identity: what the images depend on
 //   images/z_0000.tif ...   one exposure each, float32 W per pixel; the file's first row has the highest y
 //   ledger.csv              a row an image: where its light went
-//   timings.csv             a row an exposure, in the order of their making; no part of the result, since a
-//                           clock is in it: all others hold the same bytes however often a run was
-//                           interrupted
-//   .lock                   held while a program writes here
+//   timings.csv             a row an exposure and an evaluation, in the order of their making; no part of the
+//                           result, since a clock is in it: all others hold the same bytes however often a
+//                           run was interrupted
+//   checksums.sha256, .lock core/result_folder.hpp
 //
-// Every image carries its row of the ledger in its ImageDescription, so that pixels and row become durable in
-// one rename: there is no moment at which a kill leaves one without the other. ledger.csv only repeats those
-// rows.
+// Every image carries its row of the ledger and the checksum of its whole file in its ImageDescription, so that
+// all become durable in one rename: there is no moment at which a kill leaves one without the other. ledger.csv
+// only repeats those rows.
 #pragma once
 
 #include "core/grid.hpp"
+#include "core/result_folder.hpp"
 #include "trace/tracer.hpp"
 
 #include <filesystem>
+#include <memory>
 #include <string>
 #include <vector>
 
@@ -42,14 +44,13 @@ class ImageStore {
   public:
     // Creates the folder, or continues the stack in it: keeps its whole images of this identity, counts
     // others (damaged, of the wrong size, without their row) as not stored, and removes what a killed run
-    // left half written. Throws InputError if the folder holds something else, a stack of another identity
-    // (naming each key that differs), or is being written to by another program; RunError if the disk fails.
-    ImageStore(std::filesystem::path folder, StackDescription description);
-    ~ImageStore();
-    ImageStore(const ImageStore&) = delete;
-    ImageStore& operator=(const ImageStore&) = delete;
+    // left half written. Throws InputError if the folder holds something else or a stack of another identity
+    // (naming each key that differs); FolderInUse if another program is writing to it, RunError if the disk fails.
+    ImageStore(const std::filesystem::path& folder, StackDescription description);
 
-    const std::filesystem::path& folder() const { return folder_; }
+    const std::filesystem::path& folder() const { return results_->path(); }
+    // For what is made of the images.
+    ResultFolder& results() { return *results_; }
     const StackDescription& description() const { return description_; }
     bool stored(int image) const { return !ledger_rows_[static_cast<std::size_t>(image)].empty(); }
     bool complete() const;
@@ -62,25 +63,32 @@ class ImageStore {
     void store(int image, const trace::Image& exposure);
 
     // Rewrites ledger.csv in the order of the images. Throws RunError.
-    void write_ledger() const;
+    void write_ledger();
 
   private:
-    void create_or_compare() const;
+    void create_or_compare();
     void keep_whole_images();
 
-    std::filesystem::path folder_;
+    std::unique_ptr<ResultFolder> results_;
     StackDescription description_;
-    int lock_ = -1;                        // file descriptor that holds the lock
     std::string ledger_header_;            // empty until the first image
     std::vector<std::string> ledger_rows_; // of each image, without line end; empty: not stored
     std::vector<std::string> damaged_;
 };
+
+inline constexpr std::string_view configuration_name = "stack.toml";
+
+// The images of a stack, finished or not: whether each is whole, and one of this stack.
+Check check_images(const std::filesystem::path& folder);
 
 // The file of an image, relative to the stack's folder: "images/z_0007.tif".
 std::filesystem::path image_path(int image);
 
 // Flux as it is stored, in float32.
 Grid<float> as_stored(const Grid<double>& flux);
+
+// A line of timings.csv: how long it took, and of what traced rays, how many. Throws RunError.
+void append_timing(const std::filesystem::path& folder, const std::string& what, double seconds, double rays = 0);
 
 // Radiant flux per pixel in W of a stored image; row 0 at the lowest y. `z` is its focal height (mm) as
 // planned. Throws InputError, with the remedy, if the image is missing, not whole or of another height:

@@ -14,7 +14,7 @@
 namespace vkfv::surface {
 namespace {
 
-// Of the text that write_height_map() begins an image's description with.
+// Of the text that height_map_bytes() begins an image's description with.
 constexpr std::string_view own_title = "vkfv height map", last_grid_key = "pitch_y_mm=";
 
 std::optional<ImageFormat> format_of(std::string_view bytes) {

@@ -1,10 +1,9 @@
 #include "surface/image_file.hpp"
 
 #include "core/error.hpp"
+#include "core/file.hpp"
 #include "core/units.hpp"
-#include "surface/aside_file.hpp"
 #include "surface/exr_header.hpp"
-#include "surface/whole_file.hpp"
 
 #include <OpenImageIO/filesystem.h>
 #include <OpenImageIO/imageio.h>
@@ -15,7 +14,6 @@
 #include <array>
 #include <charconv>
 #include <cmath>
-#include <fstream>
 #include <limits>
 #include <memory>
 #include <span>
@@ -74,16 +72,9 @@ std::vector<Value> flipped_rows(const Grid<Value>& grid) {
 }
 
 template <class Value>
-void write_single_page(const std::filesystem::path& path, std::span<const Grid<Value>> channels,
-                       const ImageTags& tags) {
+std::string single_page(std::span<const Grid<Value>> channels, const ImageTags& tags) {
     const Grid<Value>& image = channels.front();
     const std::size_t count = channels.size();
-    AsideFile aside(path);
-    // By format name, not by extension: the name aside has none of its own.
-    const std::unique_ptr<OIIO::ImageOutput> output = OIIO::ImageOutput::create("tiff");
-    if (!output)
-        throw RunError(fmt::format("OpenImageIO offers no TIFF writer: {}", OIIO::geterror()));
-
     OIIO::ImageSpec spec(image.columns, image.rows, static_cast<int>(count), type_of<Value>());
     spec.attribute("compression", "none");
     // One strip: Gwyddion 2.62 crashes on float images of several.
@@ -106,10 +97,14 @@ void write_single_page(const std::filesystem::path& path, std::span<const Grid<V
         for (std::size_t k = 0; k < rows.size(); ++k)
             values[k * count + channel] = rows[k];
     }
-    if (!output->open(aside.path().string(), spec) || !output->write_image(type_of<Value>(), values.data()) ||
-        !output->close())
-        throw RunError(fmt::format("{}: cannot be written: {}", path.string(), output->geterror()));
-    aside.publish();
+    std::vector<unsigned char> bytes;
+    OIIO::Filesystem::IOVecOutput memory(bytes);
+    const std::unique_ptr<OIIO::ImageOutput> output = OIIO::ImageOutput::create("tiff");
+    if (!output || !output->set_ioproxy(&memory) || !output->open("image.tif", spec) ||
+        !output->write_image(type_of<Value>(), values.data()) || !output->close())
+        throw RunError(
+            fmt::format("OpenImageIO cannot encode a TIFF image: {}", output ? output->geterror() : OIIO::geterror()));
+    return {bytes.begin(), bytes.end()};
 }
 
 [[noreturn]] void reject(const std::filesystem::path& path, std::string key, std::string found,
@@ -122,8 +117,10 @@ void write_single_page(const std::filesystem::path& path, std::span<const Grid<V
 }
 
 struct OpenImage {
-    std::unique_ptr<std::string> owned; // what `memory` reads, unless a caller keeps it
-    std::unique_ptr<OIIO::Filesystem::IOMemReader> memory; // outlives the input that reads it
+    // What the input reads, which must outlive it: an open file or its bytes.
+    std::unique_ptr<InputFile> file;
+    std::unique_ptr<std::string> owned;
+    std::unique_ptr<OIIO::Filesystem::IOProxy> source;
     std::unique_ptr<OIIO::ImageInput> input;
     double bytes; // of the whole file
 };
@@ -132,58 +129,60 @@ OpenImage open_image(std::string_view bytes, ImageFormat format, const std::file
     if (format == ImageFormat::openexr)
         check_exr_attributes(bytes, path);
     // By format name: tried one after the other, every reader that OpenImageIO has would be offered the bytes.
-    OpenImage image{.owned = nullptr,
-                    .memory = std::make_unique<OIIO::Filesystem::IOMemReader>(bytes.data(), bytes.size()),
+    OpenImage image{.file = nullptr,
+                    .owned = nullptr,
+                    .source = std::make_unique<OIIO::Filesystem::IOMemReader>(bytes.data(), bytes.size()),
                     .input = OIIO::ImageInput::create(format == ImageFormat::tiff ? "tiff" : "openexr"),
                     .bytes = static_cast<double>(bytes.size())};
     if (!image.input)
         throw RunError(fmt::format("OpenImageIO cannot read the kind of {}: {}", path.string(), OIIO::geterror()));
     OIIO::ImageSpec spec;
-    if (!image.input->set_ioproxy(image.memory.get()) || !image.input->open(path.string(), spec))
+    if (!image.input->set_ioproxy(image.source.get()) || !image.input->open(path.string(), spec))
         reject(path, "", image.input->geterror(), "a readable image", "Write the file anew, as single-channel TIFF.");
     return image;
 }
 
-bool is_exr(const std::filesystem::path& path) {
-    std::array<char, 4> begin{};
-    std::ifstream(path, std::ios::binary).read(begin.data(), begin.size());
-    return looks_like_exr({begin.data(), begin.size()});
-}
-
 OpenImage open_image(const std::filesystem::path& path) {
-    if (!std::filesystem::is_regular_file(path))
-        reject(path, "", "no such file", "an image file",
-               "Check the path; it is relative to the file that names it.");
-    if (is_exr(path)) {
-        auto owned = std::make_unique<std::string>(whole_file(path));
+    auto file = std::make_unique<InputFile>(path, FileRequest{.expected = "an image file"});
+    constexpr std::uint64_t magic_bytes = 4;
+    if (looks_like_exr(file->read(magic_bytes))) {
+        auto owned = std::make_unique<std::string>(file->read());
         OpenImage image = open_image(*owned, ImageFormat::openexr, path);
         image.owned = std::move(owned);
         return image;
     }
     OIIO::ImageSpec as_stored;
     as_stored.attribute("oiio:UnassociatedAlpha", 1); // colours are not multiplied by their opacity
-    OpenImage image{.owned = nullptr,
-                    .memory = nullptr,
-                    .input = OIIO::ImageInput::open(path.string(), &as_stored),
-                    .bytes = static_cast<double>(std::filesystem::file_size(path))};
-    if (!image.input)
-        reject(path, "", OIIO::geterror(), "a readable image",
-               "Write the file anew, as single-channel TIFF.");
-    return image;
+    auto source = std::make_unique<OIIO::Filesystem::IOFile>(file->stream(), OIIO::Filesystem::IOProxy::Read);
+    // The ending hints at the format; of the rest of a name OpenImageIO takes what follows a '?' for options.
+    auto input = OIIO::ImageInput::open("image" + path.extension().string(), &as_stored, source.get());
+    if (!input)
+        reject(path, "", OIIO::geterror(), "a readable image", "Write the file anew, as single-channel TIFF.");
+    const auto bytes = static_cast<double>(file->bytes());
+    return {.file = std::move(file),
+            .owned = nullptr,
+            .source = std::move(source),
+            .input = std::move(input),
+            .bytes = bytes};
 }
 
-// No packing in use makes images smaller than by this factor: a header that names more pixels is a wrong one.
-constexpr double largest_packing = 1e4;
+// What a header may ask for before a pixel is read: small images as they come, larger ones as far as the file's own size
+// speaks for them.
 constexpr double largest_pixel_count = 1 << 28;
+constexpr double freely_given_bytes = 1 << 28;
+constexpr double largest_packing = 64;
 
 void check_size(const OpenImage& image, const OIIO::ImageSpec& spec, const std::filesystem::path& path) {
     const double pixels = static_cast<double>(spec.width) * spec.height;
-    const double bytes = pixels * static_cast<double>(spec.format.size());
+    const double bytes = pixels * spec.nchannels * static_cast<double>(spec.format.size());
     if (!(spec.width > 0 && spec.height > 0 && pixels <= largest_pixel_count &&
-          bytes <= largest_packing * image.bytes))
-        reject(path, "size", fmt::format("{} x {} pixels", spec.width, spec.height),
-               fmt::format("at most {} pixels, and no more than the file has room for", largest_pixel_count),
-               "The file is truncated or damaged: write or copy it anew.");
+          bytes <= std::max(freely_given_bytes, largest_packing * image.bytes)))
+        reject(path, "size",
+               fmt::format("{} x {} pixels, {:.0f} bytes, in a file of {:.0f} bytes", spec.width, spec.height, bytes,
+                           image.bytes),
+               fmt::format("at most {:.0f} pixels, and no more bytes than {:.0f} or {:.0f} times those of the file",
+                           largest_pixel_count, freely_given_bytes, largest_packing),
+               "The file is truncated or damaged: write or copy it anew; write a large image with less packing.");
 }
 
 template <class Value, class Stored>
@@ -268,16 +267,16 @@ double described_number(const std::filesystem::path& path, std::string_view desc
 
 } // namespace
 
-void write_tiff(const std::filesystem::path& path, const Grid<float>& image, const ImageTags& tags) {
-    write_single_page(path, std::span(&image, 1), tags);
+std::string tiff_bytes(const Grid<float>& image, const ImageTags& tags) {
+    return single_page(std::span(&image, 1), tags);
 }
 
-void write_tiff(const std::filesystem::path& path, const std::vector<Grid<float>>& channels, const ImageTags& tags) {
-    write_single_page(path, std::span(channels), tags);
+std::string tiff_bytes(const std::vector<Grid<float>>& channels, const ImageTags& tags) {
+    return single_page(std::span(channels), tags);
 }
 
-void write_tiff(const std::filesystem::path& path, const Grid<std::uint16_t>& image, const ImageTags& tags) {
-    write_single_page(path, std::span(&image, 1), tags);
+std::string tiff_bytes(const Grid<std::uint16_t>& image, const ImageTags& tags) {
+    return single_page(std::span(&image, 1), tags);
 }
 
 int page_count(const std::filesystem::path& path) {
@@ -310,21 +309,27 @@ std::string image_description(const std::filesystem::path& path) {
     return description_of(open_image(path));
 }
 
-void write_height_map(const std::filesystem::path& path, const HeightMap& map, const Provenance& provenance) {
+std::string height_map_bytes(const HeightMap& map, const Provenance& provenance) {
     Grid<float> heights(map.columns(), map.rows());
     std::transform(map.height.values.begin(), map.height.values.end(), heights.values.begin(),
                    [](double height) {
                        return std::isfinite(height) ? static_cast<float>(height * um_per_mm)
                                                     : std::numeric_limits<float>::quiet_NaN();
                    });
-    write_tiff(
-        path, heights,
+    return tiff_bytes(
+        heights,
         {.pitch_x = map.pitch_x,
          .pitch_y = map.pitch_y,
          .description = fmt::format("vkfv height map: heights in um, NaN is not measured, the first row has "
                                     "the highest y; x0 and y0 are of the last row's first pixel\n"
                                     "x0_mm={}\ny0_mm={}\npitch_x_mm={}\npitch_y_mm={}\n{}",
                                     map.x0, map.y0, map.pitch_x, map.pitch_y, provenance_text(provenance))});
+}
+
+StoredImage parse_tiff(std::string_view bytes, const std::filesystem::path& path) {
+    const OpenImage image = open_image(bytes, ImageFormat::tiff, path);
+    std::string description = description_of(image);
+    return {.values = read_page<float>(image, path, 0), .description = std::move(description)};
 }
 
 DescribedImage parse_image(std::string_view bytes, ImageFormat format, const std::filesystem::path& path) {

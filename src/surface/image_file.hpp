@@ -4,9 +4,8 @@
 // viewer shows the specimen as seen from +z, x to the right and y up. Writers flip the rows, readers flip
 // them back.
 //
-// Writers put the file aside under a hidden name in the same folder, sync it to disk and rename it: a file
-// under its final name is whole. The bytes depend on the arguments alone: no compression, no clock, no
-// version. They throw RunError where the disk fails. Readers throw InputError where the file is at fault.
+// Images are encoded in memory, for core/file.hpp to write; the bytes depend on the arguments alone: no compression, no
+// clock, no version. Readers throw InputError where the file is at fault, also where it could not be read whole.
 #pragma once
 
 #include "core/grid.hpp"
@@ -28,14 +27,12 @@ struct ImageTags {
     std::string description; // ImageDescription: ASCII
 };
 
-// float32, one page.
-void write_tiff(const std::filesystem::path& path, const Grid<float>& image, const ImageTags& tags = {});
+// A TIFF file: float32, one page.
+std::string tiff_bytes(const Grid<float>& image, const ImageTags& tags = {});
 // The same with several channels a pixel, as many as there are images; all of one size.
-void write_tiff(const std::filesystem::path& path, const std::vector<Grid<float>>& channels,
-                const ImageTags& tags = {});
+std::string tiff_bytes(const std::vector<Grid<float>>& channels, const ImageTags& tags = {});
 // uint16, one page.
-void write_tiff(const std::filesystem::path& path, const Grid<std::uint16_t>& image,
-                const ImageTags& tags = {});
+std::string tiff_bytes(const Grid<std::uint16_t>& image, const ImageTags& tags = {});
 
 // Number of pages (TIFF directories) of an image file.
 int page_count(const std::filesystem::path& path);
@@ -50,6 +47,14 @@ std::vector<Grid<float>> read_channels(const std::filesystem::path& path, int pa
 // The first page's ImageDescription; empty without one.
 std::string image_description(const std::filesystem::path& path);
 
+struct StoredImage {
+    Grid<float> values;      // as stored
+    std::string description; // ImageDescription; empty without one
+};
+
+// The first page of a whole single-channel TIFF file in memory; `path` names it in messages.
+StoredImage parse_tiff(std::string_view bytes, const std::filesystem::path& path);
+
 enum class ImageFormat { tiff, openexr };
 
 struct DescribedImage {
@@ -60,12 +65,12 @@ struct DescribedImage {
 // The first page of a whole single-channel file in memory; `path` names it in messages.
 DescribedImage parse_image(std::string_view bytes, ImageFormat format, const std::filesystem::path& path);
 
-// float32 heights in micrometres; NaN means "not measured". The grid's origin and pitch stand in the
+// A TIFF file: float32 heights in micrometres; NaN means "not measured". The grid's origin and pitch stand in the
 // description as text that reads back exactly, since resolution tags are rounded.
-void write_height_map(const std::filesystem::path& path, const HeightMap& map, const Provenance& provenance = {});
-// Reads what write_height_map wrote; heights come back rounded to float32 micrometres.
+std::string height_map_bytes(const HeightMap& map, const Provenance& provenance = {});
+// Reads what height_map_bytes made; heights come back rounded to float32 micrometres.
 HeightMap read_height_map(const std::filesystem::path& path);
-// The same of an image whose description is the one that write_height_map wrote.
+// The same of an image whose description is the one that height_map_bytes wrote.
 HeightMap height_map_of(const DescribedImage& image, const std::filesystem::path& path);
 
 } // namespace vkfv::surface

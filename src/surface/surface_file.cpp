@@ -1,14 +1,13 @@
 #include "surface/surface_file.hpp"
 
 #include "core/error.hpp"
+#include "core/file.hpp"
 #include "surface/al3d.hpp"
-#include "surface/aside_file.hpp"
 #include "surface/height_image.hpp"
 #include "surface/image_file.hpp"
 #include "surface/ply.hpp"
 #include "surface/sdf.hpp"
 #include "surface/sur.hpp"
-#include "surface/whole_file.hpp"
 #include "surface/x3p.hpp"
 
 #include <algorithm>
@@ -36,7 +35,7 @@ std::string name_of(const std::filesystem::path& path) {
 } // namespace
 
 SurfaceFile read_surface(const std::filesystem::path& path, const ImageScale& scale) {
-    const std::string bytes = whole_file(path);
+    const std::string bytes = read_file(path, {.expected = "a surface or image file"});
     if (looks_like_height_image(bytes))
         return parse_height_image(bytes, path, scale);
     if (scale.pitch || scale.unit)
@@ -54,23 +53,22 @@ SurfaceFile read_surface(const std::filesystem::path& path, const ImageScale& sc
            "Export the surface in one of these formats.");
 }
 
-void write_surface(const std::filesystem::path& path, const HeightMap& map, const Provenance& provenance) {
+std::string surface_bytes(const std::filesystem::path& path, const HeightMap& map, const Provenance& provenance) {
     const std::string name = name_of(path);
     if (name.ends_with(".x3p"))
-        write_file_aside(path, x3p_bytes(map, provenance));
-    else if (name.ends_with(".sur"))
-        write_file_aside(path, sur_bytes(map, provenance));
-    else if (name.ends_with(".asc.sdf"))
-        write_file_aside(path, sdf_text(map, provenance));
-    else if (name.ends_with(".sdf"))
-        write_file_aside(path, sdf_bytes(map, provenance));
-    else if (name.ends_with(".tif") || name.ends_with(".tiff"))
-        write_height_map(path, map, provenance);
-    else if (name.ends_with(".ply"))
-        write_file_aside(path, ply_bytes(map, provenance));
-    else
-        reject(path, "", "a name that ends otherwise", "one that ends in .x3p, .sur, .sdf, .tif or .ply",
-               "Choose one of these formats by the name's ending.");
+        return x3p_bytes(map, provenance);
+    if (name.ends_with(".sur"))
+        return sur_bytes(map, provenance);
+    if (name.ends_with(".asc.sdf"))
+        return sdf_text(map, provenance);
+    if (name.ends_with(".sdf"))
+        return sdf_bytes(map, provenance);
+    if (name.ends_with(".tif") || name.ends_with(".tiff"))
+        return height_map_bytes(map, provenance);
+    if (name.ends_with(".ply"))
+        return ply_bytes(map, provenance);
+    reject(path, "", "a name that ends otherwise", "one that ends in .x3p, .sur, .sdf, .tif or .ply",
+           "Choose one of these formats by the name's ending.");
 }
 
 } // namespace vkfv::surface

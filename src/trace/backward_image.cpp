@@ -21,6 +21,12 @@ BackwardPlan backward_plan(std::uint64_t rays, int detector_pixels) {
     return plan;
 }
 
+std::uint64_t launched_rays(const TraceOptions& options, int detector_pixels) {
+    const auto side = static_cast<std::uint64_t>(detector_pixels);
+    return options.estimator == Estimator::backward ? backward_plan(options.rays, detector_pixels).rays_per_pixel() * side * side
+                                                    : options.rays;
+}
+
 physics::f64::Lattice BackwardPlan::lattice() const {
     const auto bits = static_cast<std::uint32_t>(std::bit_width(points) - 1);
     const auto& z = lattice_generators[bits];

@@ -157,6 +157,8 @@ class BackwardTracer final : public Tracer {
         return fmt::format("{}; traversal {}; backward", scene_.device.choice(), scene_.reason);
     }
 
+    TracerIdentity identity() const override { return scene_.identity(); }
+
   private:
     optics::Instrument instrument_;
     optics::Instrument turned_;

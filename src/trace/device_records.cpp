@@ -40,6 +40,8 @@ physics::f32::RingLight to_float(const physics::f64::RingLight& ring) {
     return result;
 }
 
+} // namespace
+
 physics::f32::Surface to_float(const physics::f64::Surface& surface) {
     physics::f32::Surface result{};
     result.curvature = static_cast<float>(surface.curvature);
@@ -81,8 +83,6 @@ physics::f32::Surface to_float(const physics::f64::Surface& surface) {
     result.flags = surface.flags;
     return result;
 }
-
-} // namespace
 
 std::vector<physics::f32::Surface> surface_block(const optics::Instrument& instrument) {
     constexpr std::size_t capacity = physics::f32::SURFACE_CAPACITY;

@@ -21,6 +21,7 @@ std::vector<physics::f32::Surface> surface_block(const optics::Instrument& instr
 // The spectrum's, padded likewise.
 std::vector<physics::f32::SpectralBin> spectrum_block(const optics::Instrument& instrument);
 
+physics::f32::Surface to_float(const physics::f64::Surface& surface);
 physics::f32::Element to_float(const physics::f64::Element& element);
 physics::f32::SourceFrame to_float(const physics::f64::SourceFrame& frame);
 physics::f32::Instrument to_float(const physics::f64::Instrument& instrument);

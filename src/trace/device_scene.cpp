@@ -22,6 +22,10 @@ std::vector<vulkan::Box> boxes_of(const optics::Room& room) {
     return boxes;
 }
 
+TracerIdentity DeviceScene::identity() const {
+    return device_identity(device.report(), traversal_name(traversal), instrument);
+}
+
 bool DeviceScene::is_specialised() const {
     // A processor compiles such kernels in 2 to 3 s at every start and then saves about 0.4 us a ray; a GPU compiles them
     // in 1.4 s once, as they are kept (vulkan/pipeline_cache.hpp), and saves 25 ps a ray.

@@ -114,6 +114,8 @@ class DeviceScene {
                : traversal == Traversal::bvh     ? by_bvh
                                                  : by_quadtree;
     }
+    // Of an instrument that paths run through in this scene's direction.
+    TracerIdentity identity() const;
     bool software() const { return device.report().type == "CPU"; }
 
     const optics::Instrument& instrument;

@@ -252,11 +252,11 @@ std::uint32_t append_tree(std::vector<HierarchyNode>& nodes, const std::vector<H
     return root;
 }
 
-const char* name_of(Traversal traversal) {
+} // namespace
+
+const char* traversal_name(Traversal traversal) {
     return traversal == Traversal::ray_query ? "ray-query" : traversal == Traversal::bvh ? "bvh" : "quadtree";
 }
-
-} // namespace
 
 Traversal choose_traversal(const vulkan::DeviceReport& device, const specimen::Specimen& specimen,
                            Traversal asked, std::string& reason, bool nonsequential) {
@@ -278,16 +278,16 @@ Traversal choose_traversal(const vulkan::DeviceReport& device, const specimen::S
                                       device.name, mesh || nonsequential ? "bvh" : "quadtree"));
     }
     if (asked != Traversal::automatic) {
-        reason = fmt::format("{} (as asked)", name_of(asked));
+        reason = fmt::format("{} (as asked)", traversal_name(asked));
         return asked;
     }
     const Traversal own = mesh || nonsequential ? Traversal::bvh : Traversal::quadtree;
     if (!device.ray_query) {
-        reason = fmt::format("{} (the device has no ray query)", name_of(own));
+        reason = fmt::format("{} (the device has no ray query)", traversal_name(own));
         return own;
     }
     if (device.type == "CPU") {
-        reason = fmt::format("{} (faster than ray query on a CPU)", name_of(own));
+        reason = fmt::format("{} (faster than ray query on a CPU)", traversal_name(own));
         return own;
     }
     reason = "ray-query (the device has it)";

@@ -17,6 +17,7 @@ namespace vkfv::trace {
 // The traversal for a specimen on a device: the one asked for, or the faster one if automatic. reason: a
 // sentence's part that names it and says why. Throws InputError (the quadtree needs a height field) or
 // DeviceError (ray query asked for or needed where the device has none).
+const char* traversal_name(Traversal traversal);
 Traversal choose_traversal(const vulkan::DeviceReport& device, const specimen::Specimen& specimen,
                            Traversal asked, std::string& reason, bool nonsequential = false);
 

@@ -71,6 +71,8 @@ class DeviceTracer final : public Tracer {
         return fmt::format("{}; traversal {}", scene_.device.choice(), scene_.reason);
     }
 
+    TracerIdentity identity() const override { return scene_.identity(); }
+
   private:
     static std::unique_ptr<PathTrace> make_trace(const DeviceScene& scene, const TraceOptions& options) {
         const std::uint32_t batch = suitable_batch(scene, options.batch, options.rays);
@@ -95,6 +97,20 @@ std::unique_ptr<Tracer> make_device_tracer(const optics::Instrument& instrument,
         return make_backward_tracer(instrument, specimen, options);
     }
     return std::make_unique<DeviceTracer>(instrument, specimen, options);
+}
+
+TracerIdentity expected_identity(const optics::Instrument& instrument, const specimen::Specimen& specimen,
+                                 const TraceOptions& options) {
+    const optics::Instrument traced =
+        options.estimator == Estimator::backward ? optics::turned_round(instrument) : instrument;
+    if (options.device == "host") {
+        return host_identity(traced);
+    }
+    const auto reports = vulkan::list_devices();
+    const auto& report = reports[vulkan::choose_device(reports, {options.device})];
+    std::string reason;
+    return device_identity(
+        report, traversal_name(choose_traversal(report, specimen, options.traversal, reason, options.nonsequential)), traced);
 }
 
 std::vector<PathEnd> device_paths(const optics::Instrument& instrument, const specimen::Specimen& specimen,

@@ -56,6 +56,8 @@ class HostBackwardTracer final : public Tracer {
         return fmt::format("host reference in double on {} threads; backward", std::thread::hardware_concurrency());
     }
 
+    TracerIdentity identity() const override { return host_identity(turned_); }
+
   private:
     std::uint64_t sum_of_pixel(const HostScene& scene, const Exposure& exposure, std::uint32_t pixel,
                                std::uint32_t randomisation) const {

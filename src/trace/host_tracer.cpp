@@ -99,6 +99,8 @@ class HostTracer final : public Tracer {
         return fmt::format("host reference in double on {} threads", std::thread::hardware_concurrency());
     }
 
+    TracerIdentity identity() const override { return host_identity(instrument_); }
+
   private:
     void trace_path(const HostScene& scene, const Exposure& exposure, std::uint64_t index,
                     std::vector<std::uint64_t>& pixels, std::vector<std::uint64_t>& fates) const {

@@ -4,6 +4,7 @@
 #include "core/grid.hpp"
 #include "optics/instrument.hpp"
 #include "specimen/specimen.hpp"
+#include "trace/tracer_identity.hpp"
 
 #include <cstdint>
 #include <functional>
@@ -30,6 +31,9 @@ struct TraceOptions {
     bool directed_scatter = false; // forward, sequential: every bounce also aims at the pupil, and light has weights
     std::optional<bool> instrument_in_constants; // of the forward kernels; none: where it pays
 };
+
+// How many rays an exposure launches: those asked for, or what each pixel's share is rounded up to backward.
+std::uint64_t launched_rays(const TraceOptions& options, int detector_pixels);
 
 // Where the emitted power of one image went; W. emitted = the sum of all others.
 struct Ledger {
@@ -64,6 +68,11 @@ class Tracer {
     // the random numbers. The same arguments give the same bits whatever the batch size.
     virtual Image expose(double focal_height, std::uint32_t image) const = 0;
     virtual std::string description() const = 0; // device, traversal and the reason for both
+    virtual TracerIdentity identity() const = 0;
 };
+
+// The identity that a tracer would have, without opening the device. Throws DeviceError, InputError.
+TracerIdentity expected_identity(const optics::Instrument& instrument, const specimen::Specimen& specimen,
+                                 const TraceOptions& options);
 
 } // namespace vkfv::trace

@@ -1,6 +1,7 @@
 #include "vulkan/buffer.hpp"
 
 #include "core/error.hpp"
+#include "vulkan/failure.hpp"
 #include "vulkan/kernel.hpp"
 
 #include <fmt/format.h>
@@ -28,9 +29,9 @@ vk::BufferUsageFlags usage_on(const Device& device) {
 
 [[noreturn]] void throw_too_large(const Device& device, std::size_t bytes, std::string_view limit,
                                   std::uint64_t allowed) {
-    throw DeviceError(
-        fmt::format("A buffer of {} bytes does not fit on {}: its {} is {} bytes. Use smaller batches, a "
-                    "smaller specimen or another device",
+    throw RunError(
+        fmt::format("A buffer of {} bytes does not fit on {}: its {} is {} bytes. Set a smaller trace.batch, take fewer "
+                    "pixels, a smaller specimen or another device",
                     bytes, device.report().name, limit, allowed));
 }
 
@@ -78,10 +79,8 @@ Buffer::Buffer(const Device& device, std::size_t bytes, Memory memory)
             mapped_ = static_cast<std::byte*>(allocation_.mapMemory(0, VK_WHOLE_SIZE, {}));
         }
     } catch (const vk::SystemError& error) {
-        throw DeviceError(
-            fmt::format("A buffer of {} bytes cannot be had on {} with memory of {} bytes: {}. Use smaller "
-                        "batches, a smaller specimen or another device, or end other programs on it",
-                        bytes, device.report().name, device.report().memory_bytes, error.what()));
+        throw run_error_of(error, fmt::format("{}, asked for {} of its {} bytes,", device.report().name, bytes,
+                                                device.report().memory_bytes));
     }
 }
 

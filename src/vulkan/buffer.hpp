@@ -16,7 +16,7 @@ class Buffer {
         device, // fast; written and read through a staging copy
         host,   // mapped and coherent; for read-back and for what the host writes often
     };
-    // Contents are undefined. Throws DeviceError with sizes when the device cannot give `bytes`. The
+    // Contents are undefined. Throws RunError with sizes when the device cannot give `bytes`. The
     // allocation is at least 64 bytes larger and a multiple of 64: GPU-assisted validation misreads the last
     // scalar-packed record.
     Buffer(const Device& device, std::size_t bytes, Memory memory = Memory::device);

@@ -180,6 +180,8 @@ DeviceReport examine(const vk::raii::PhysicalDevice& device, int index) {
     DeviceReport report;
     report.index = index;
     report.name = basic.deviceName.data();
+    report.vendor_id = basic.vendorID;
+    report.device_id = basic.deviceID;
     report.type = name_of(basic.deviceType);
     report.api_version =
         fmt::format("{}.{}.{}", VK_API_VERSION_MAJOR(basic.apiVersion),

@@ -16,6 +16,8 @@ struct DeviceReport {
     int index = 0; // in the order of vkEnumeratePhysicalDevices
     std::string name;
     std::string driver; // driver name and version
+    std::uint32_t vendor_id = 0; // PCI's
+    std::uint32_t device_id = 0;
     std::string type;   // "discrete GPU", "integrated GPU", "CPU", ...
     std::string api_version;
     bool ray_query = false; // not needed: the trace has other traversals

@@ -1,6 +1,7 @@
 #include "vulkan/kernel.hpp"
 
 #include "core/error.hpp"
+#include "vulkan/failure.hpp"
 
 #include <fmt/format.h>
 
@@ -100,6 +101,12 @@ Kernel::Kernel(const Device& device, std::string name, std::span<const std::uint
                                                       &specialization);
         pipeline_ = vk::raii::Pipeline(device.handle(), device.pipelines(),
                                        vk::ComputePipelineCreateInfo({}, stage, *layout_));
+    } catch (const vk::DeviceLostError& error) {
+        throw run_error_of(error, device.report().name);
+    } catch (const vk::OutOfDeviceMemoryError& error) {
+        throw run_error_of(error, device.report().name);
+    } catch (const vk::OutOfHostMemoryError& error) {
+        throw run_error_of(error, device.report().name);
     } catch (const vk::SystemError& error) {
         throw DeviceError(
             fmt::format("{} ({}) does not compile the kernel {}: {}. Update its driver, or choose another "
@@ -241,14 +248,8 @@ void Commands::submit_and_wait() {
         // Without a limit the wait ends in success or throws.
         static_cast<void>(
             device_->handle().waitForFences(fence, VK_TRUE, std::numeric_limits<std::uint64_t>::max()));
-    } catch (const vk::DeviceLostError&) {
-        throw RunError(fmt::format(
-            "The device {} was lost: its driver gave up, often because one batch took too long. Run "
-            "the same command again to continue, with smaller batches",
-            device_->report().name));
     } catch (const vk::SystemError& error) {
-        throw RunError(fmt::format("The device {} failed: {}. Run the same command again to continue",
-                                   device_->report().name, error.what()));
+        throw run_error_of(error, device_->report().name);
     }
 }
 

@@ -1,36 +1,25 @@
 #include "vulkan/pipeline_cache.hpp"
 
-#include <fmt/format.h>
+#include "core/digest.hpp"
+#include "core/error.hpp"
+#include "core/file.hpp"
 
-#include <array>
-#include <cstdint>
+#include <cstddef>
 #include <cstdlib>
-#include <cstring>
-#include <fstream>
 #include <system_error>
-#include <unistd.h>
 
 namespace vkfv::vulkan {
 
 namespace {
 
-constexpr std::array<char, 16> file_mark = {'v', 'k', 'f', 'v', ' ', 'p', 'i', 'p', 'e', 'l', 'i', 'n', 'e', 's', ' ', '1'};
+constexpr std::string_view file_mark = "vkfv pipelines 2\n";
+constexpr std::size_t sum_digits = 64;
 // A file of many instruments' kernels is begun anew rather than read beyond this.
-constexpr std::uintmax_t most_bytes = std::uintmax_t{64} << 20;
+constexpr std::size_t most_bytes = std::size_t{64} << 20;
 
-struct Header {
-    std::array<char, file_mark.size()> mark;
-    std::uint64_t bytes;
-    std::uint64_t checksum;
-};
-
-// FNV-1a (RFC 9923): a driver need not survive data that it did not write.
-std::uint64_t checksum(std::span<const std::byte> data) {
-    std::uint64_t hash = 0xCBF29CE484222325U;
-    for (const std::byte byte : data) {
-        hash = (hash ^ std::to_integer<std::uint64_t>(byte)) * 0x100000001B3U;
-    }
-    return hash;
+// A driver need not survive data that it did not write.
+std::string checksum(std::span<const std::byte> data) {
+    return Digest().add(data).sha256();
 }
 
 } // namespace
@@ -55,47 +44,38 @@ std::optional<std::filesystem::path> cache_folder() {
 
 std::vector<std::byte> read_cached(std::string_view name) {
     const auto folder = cache_folder();
-    std::error_code failed;
-    if (!folder) {
+    std::error_code none;
+    if (!folder || !std::filesystem::exists(*folder / name, none)) {
         return {};
     }
-    const auto path = *folder / name;
-    const std::uintmax_t bytes = std::filesystem::file_size(path, failed);
-    if (failed || bytes < sizeof(Header) || bytes > most_bytes) {
+    std::string bytes;
+    try {
+        bytes = InputFile(*folder / name).read(most_bytes);
+    } catch (const InputError&) {
         return {};
     }
-    std::ifstream file(path, std::ios::binary);
-    Header header{};
-    std::vector<std::byte> data(bytes - sizeof(Header));
-    file.read(reinterpret_cast<char*>(&header), sizeof header);
-    file.read(reinterpret_cast<char*>(data.data()), static_cast<std::streamsize>(data.size()));
-    if (!file || header.mark != file_mark || header.bytes != data.size() || header.checksum != checksum(data)) {
+    const std::size_t head = file_mark.size() + sum_digits;
+    if (bytes.size() < head || !bytes.starts_with(file_mark)) {
         return {};
     }
-    return data;
+    const auto data = std::as_bytes(std::span(bytes).subspan(head));
+    if (checksum(data) != bytes.substr(file_mark.size(), sum_digits)) {
+        return {};
+    }
+    return {data.begin(), data.end()};
 }
 
 void write_cached(std::string_view name, std::span<const std::byte> data) {
     const auto folder = cache_folder();
-    std::error_code failed;
-    if (!folder || (std::filesystem::create_directories(*folder, failed), failed)) {
+    if (!folder) {
         return;
     }
-    const auto aside = *folder / fmt::format("{}.{}", name, getpid());
-    const Header header{file_mark, data.size(), checksum(data)};
-    bool written = false;
-    {
-        std::ofstream file(aside, std::ios::binary);
-        file.write(reinterpret_cast<const char*>(&header), sizeof header);
-        file.write(reinterpret_cast<const char*>(data.data()), static_cast<std::streamsize>(data.size()));
-        file.close();
-        written = !file.fail();
-    }
-    if (written) {
-        std::filesystem::rename(aside, *folder / name, failed);
-    }
-    if (!written || failed) {
-        std::filesystem::remove(aside, failed);
+    std::string bytes = std::string(file_mark) + checksum(data);
+    bytes.append(reinterpret_cast<const char*>(data.data()), data.size());
+    try {
+        make_folder(*folder);
+        write_file(*folder / name, bytes);
+    } catch (const RunError&) { // compiling again is all it costs
     }
 }
 

@@ -1,4 +1,5 @@
 // vkfv --compare through the real program.
+#include "support/surface_files.hpp"
 #include "app/program.hpp"
 #include "surface/filter.hpp"
 #include "surface/height_parameters.hpp"

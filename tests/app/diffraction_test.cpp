@@ -1,4 +1,5 @@
 // [diffraction] blurs images after the trace and leaves the traced ones as they are.
+#include "support/surface_files.hpp"
 #include "app/program.hpp"
 #include "surface/image_file.hpp"
 

@@ -1,4 +1,5 @@
 // vkfv --surface through the real program.
+#include "support/surface_files.hpp"
 #include "app/program.hpp"
 #include "core/units.hpp"
 #include "surface/image_file.hpp"

@@ -1,4 +1,5 @@
 // --topography of stacks that vkfv did not make.
+#include "support/surface_files.hpp"
 #include "app/image_order.hpp"
 #include "app/program.hpp"
 #include "surface/image_file.hpp"

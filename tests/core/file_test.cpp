@@ -75,6 +75,8 @@ TEST_F(File, IsReadAsItWasWritten) {
 }
 
 TEST_F(File, FoldersAreMade) {
+    EXPECT_THAT(failure(folder / "b" / "d.txt"), HasSubstr("No such file or directory"));
+    vkfv::make_folder(folder / "b" / "c" / "");
     vkfv::write_file(folder / "b" / "c" / "d.txt", "x");
     EXPECT_EQ(vkfv::read_file(folder / "b" / "c" / "d.txt"), "x");
 }

@@ -1,5 +1,6 @@
 // Writes the corpus of the surface readers' fuzzers into a folder: small whole files of every format, and the same
 // truncated and with headers that lie.
+#include "support/surface_files.hpp"
 #include "surface/exr_bytes.hpp"
 #include "surface/surface_file.hpp"
 

@@ -1,4 +1,5 @@
 // Every file that vkfv writes, as Gwyddion's own import modules see it.
+#include "support/surface_files.hpp"
 #include "gwyddion/gwyddion.hpp"
 #include "surface/surface_file.hpp"
 

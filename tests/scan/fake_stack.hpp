@@ -52,6 +52,7 @@ class FakeTracer : public trace::Tracer {
         return exposure;
     }
     std::string description() const override { return "a formula"; }
+    trace::TracerIdentity identity() const override { return {.device = "a formula"}; }
 
     mutable std::vector<int> exposed; // images, in the order they were asked for
 

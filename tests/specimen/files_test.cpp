@@ -2,6 +2,7 @@
 #include "specimen/description.hpp"
 #include "specimen/files.hpp"
 
+#include "support/surface_files.hpp"
 #include "surface/image_file.hpp"
 
 #include <gmock/gmock.h>

@@ -1,5 +1,6 @@
 #include "specimen/standards.hpp"
 
+#include "support/surface_files.hpp"
 #include "core/fourier.hpp"
 #include "core/units.hpp"
 #include "surface/surface_file.hpp"

@@ -1,6 +1,7 @@
 // A surface file as specimen: where its points come to stand, levelled, cropped and filled.
 #include "specimen/analytic.hpp"
 #include "specimen/description.hpp"
+#include "support/surface_files.hpp"
 #include "surface/image_file.hpp"
 #include "surface/surface_file.hpp"
 

@@ -1,3 +1,4 @@
+#include "support/surface_files.hpp"
 #include "surface/image_file.hpp"
 
 #include "core/error.hpp"

@@ -1,5 +1,6 @@
 // Surface files: what is written reads back and is written the same again, their bytes are what the formats say,
 // foreign files of every variant are read, and hostile ones are refused before they cost anything.
+#include "support/surface_files.hpp"
 #include "surface/surface_file.hpp"
 
 #include "core/error.hpp"

@@ -1,5 +1,6 @@
 // main.xml against the 2008 schema of X3P (ISO 5436-2): which elements, in which order, how often, with what text. The
 // grammar is a statement of its own of what the schema asks for, sharing nothing with the writer.
+#include "support/surface_files.hpp"
 #include "surface/surface_file.hpp"
 
 #include <gtest/gtest.h>

@@ -1,0 +1,181 @@
+#include "core/result_folder.hpp"
+
+#include "core/digest.hpp"
+#include "core/file.hpp"
+
+#include <fcntl.h>
+#include <fmt/format.h>
+#include <spdlog/spdlog.h>
+#include <sys/file.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cerrno>
+#include <cstddef>
+#include <optional>
+#include <sstream>
+#include <system_error>
+
+namespace vkfv {
+
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr std::string_view lock_name = ".lock";
+constexpr std::size_t sum_digits = 64;
+constexpr std::string_view between = "  "; // as sha256sum writes it
+
+std::string sum_of(std::string_view bytes) {
+    return Digest().add(bytes).sha256();
+}
+
+std::string reason() {
+    return std::generic_category().message(errno);
+}
+
+struct Entry {
+    std::string sum;
+    std::string name;
+};
+
+// A line of the list; none if it is no such line, or leads out of the folder.
+std::optional<Entry> entry_of(const std::string& line) {
+    if (line.size() <= sum_digits + between.size() || line.substr(sum_digits, between.size()) != between) {
+        return std::nullopt;
+    }
+    Entry entry{.sum = line.substr(0, sum_digits), .name = line.substr(sum_digits + between.size())};
+    const fs::path name(entry.name);
+    const bool inside = name.is_relative() && name.lexically_normal() == name && *name.begin() != "..";
+    const bool hexadecimal = entry.sum.find_first_not_of("0123456789abcdef") == std::string::npos;
+    return inside && hexadecimal ? std::optional(entry) : std::nullopt;
+}
+
+// Lines that are none of the list's come back as they are in `strange`.
+std::vector<Entry> entries_of(const fs::path& folder, std::vector<std::string>& strange) {
+    std::vector<Entry> entries;
+    std::istringstream lines(read_file(folder / checksums_name));
+    for (std::string line; std::getline(lines, line);) {
+        if (const auto entry = entry_of(line)) {
+            entries.push_back(*entry);
+        } else {
+            strange.push_back(line);
+        }
+    }
+    return entries;
+}
+
+int lock_folder(const fs::path& folder) {
+    const fs::path path = folder / lock_name;
+    const int file = ::open(path.c_str(), O_RDWR | O_CREAT | O_CLOEXEC | O_NONBLOCK, 0666);
+    if (file < 0) {
+        throw RunError(fmt::format("{}: cannot be written to: {}. Check its permissions, or give another --out",
+                                   folder.string(), reason()));
+    }
+    if (::flock(file, LOCK_EX | LOCK_NB) != 0) {
+        if (errno == EWOULDBLOCK) {
+            ::close(file);
+            throw FolderInUse(fmt::format("{}: another vkfv is writing to this folder. Wait for it to end, or give another "
+                                          "--out",
+                                          folder.string()));
+        }
+        spdlog::warn("{}: this file system offers no locks ({}): see to it that no second run writes here",
+                     folder.string(), reason());
+    }
+    return file;
+}
+
+} // namespace
+
+ResultFolder::ResultFolder(fs::path folder) : folder_(std::move(folder)) {
+    make_folder(folder_);
+    lock_ = lock_folder(folder_);
+    try {
+        remove_unfinished_files(folder_);
+        std::error_code none;
+        if (fs::exists(folder_ / checksums_name, none)) {
+            std::vector<std::string> strange; // --verify tells of them
+            for (const auto& [sum, name] : entries_of(folder_, strange)) {
+                earlier_[name] = sum;
+            }
+        }
+    } catch (...) {
+        ::close(lock_);
+        throw;
+    }
+}
+
+ResultFolder::~ResultFolder() {
+    ::close(lock_);
+}
+
+void ResultFolder::write(const fs::path& name, std::string_view bytes) {
+    const fs::path path = folder_ / name;
+    make_folder(path.parent_path());
+    write_file(path, bytes);
+    note(name, bytes);
+}
+
+void ResultFolder::note(const fs::path& name, std::string_view bytes) {
+    sums_[name.generic_string()] = sum_of(bytes);
+}
+
+bool ResultFolder::holds(const fs::path& name) const {
+    const auto listed = earlier_.find(name.generic_string());
+    std::error_code none;
+    return listed != earlier_.end() && fs::exists(folder_ / name, none) &&
+           sum_of(read_file(folder_ / name)) == listed->second;
+}
+
+void ResultFolder::write_checksums() const {
+    auto sums = sums_;
+    std::error_code none;
+    for (const auto& [name, sum] : earlier_) {
+        if (fs::exists(folder_ / name, none)) {
+            sums.try_emplace(name, sum);
+        }
+    }
+    std::string text;
+    for (const auto& [name, sum] : sums) {
+        text += fmt::format("{}{}{}\n", sum, between, name);
+    }
+    write_file(folder_ / checksums_name, text);
+}
+
+void Check::add(const Check& other) {
+    for (const std::string& file : other.files) {
+        if (std::ranges::find(files, file) == files.end()) {
+            files.push_back(file);
+        }
+    }
+    for (const Damage& damage : other.damages) {
+        if (std::ranges::find(damages, damage.file, &Damage::file) == damages.end()) {
+            damages.push_back(damage);
+        }
+    }
+}
+
+Check check_by_checksums(const fs::path& folder) {
+    Check check;
+    std::error_code none;
+    if (!fs::exists(folder / checksums_name, none)) {
+        return check;
+    }
+    std::vector<std::string> strange;
+    for (const auto& [sum, name] : entries_of(folder, strange)) {
+        check.files.push_back(name);
+        try {
+            if (sum_of(read_file(folder / name)) != sum) {
+                check.damages.push_back({name, "is not the file that was written"});
+            }
+        } catch (const InputError& error) {
+            check.damages.push_back({name, error.problem().found});
+        }
+    }
+    for (const std::string& line : strange) {
+        check.damages.push_back({fs::path(checksums_name), fmt::format("has a line that is none of a list: {:.40}", line)});
+    }
+    return check;
+}
+
+} // namespace vkfv

@@ -1,0 +1,70 @@
+// A folder of results: one program writes it at a time, and whoever has it can tell whether its files are those written.
+#pragma once
+
+#include "core/error.hpp"
+
+#include <filesystem>
+#include <map>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace vkfv {
+
+// Exit code 5: another program is writing there.
+class FolderInUse : public RunError {
+  public:
+    using RunError::RunError;
+};
+
+// Its list of checksums, which sha256sum(1) checks too.
+inline constexpr std::string_view checksums_name = "checksums.sha256";
+
+class ResultFolder {
+  public:
+    // Makes the folder, keeps it for this program as long as the object lives, also against a kill of others (the kernel ends
+    // the lock), and removes what killed programs left unfinished. Throws FolderInUse, RunError.
+    explicit ResultFolder(std::filesystem::path folder);
+    ~ResultFolder();
+    ResultFolder(const ResultFolder&) = delete;
+    ResultFolder& operator=(const ResultFolder&) = delete;
+
+    const std::filesystem::path& path() const { return folder_; }
+
+    // Files by names relative to the folder, with sub-folders where they have some. write_file() of core/file.hpp, and a line
+    // of the list to be.
+    void write(const std::filesystem::path& name, std::string_view bytes);
+    // A line of the list for a file that is known to be whole.
+    void note(const std::filesystem::path& name, std::string_view bytes);
+
+    // Whether an earlier run wrote this file and it is still the same.
+    bool holds(const std::filesystem::path& name) const;
+
+    // Last: the list of what was written and noted, and of what an earlier list has besides that is still there.
+    void write_checksums() const;
+
+  private:
+    std::filesystem::path folder_;
+    int lock_ = -1;                           // file descriptor
+    std::map<std::string, std::string> earlier_; // sums by name, of the list that was there
+    std::map<std::string, std::string> sums_;    // of this run
+};
+
+// A file that is not the one that was written.
+struct Damage {
+    std::filesystem::path file; // relative to the folder
+    std::string what;           // "is missing", "is not the file that was written"
+};
+
+struct Check {
+    std::vector<std::string> files; // that were looked at, by name
+    std::vector<Damage> damages;
+
+    // Of the same folder; a file that both found damaged counts once.
+    void add(const Check& other);
+};
+
+// Of the files that the folder's list names, and of the list.
+Check check_by_checksums(const std::filesystem::path& folder);
+
+} // namespace vkfv

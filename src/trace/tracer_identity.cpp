@@ -1,0 +1,73 @@
+#include "trace/tracer_identity.hpp"
+
+#include "core/digest.hpp"
+#include "core/toml_reader.hpp"
+#include "trace/device_records.hpp"
+#include "vulkan/device.hpp"
+
+#include "spirv/digest.h"
+
+#include <fmt/format.h>
+
+#include <span>
+#include <vector>
+
+namespace vkfv::trace {
+
+std::string TracerIdentity::toml() const {
+    std::string text = fmt::format("device = {}\n", toml_quoted(device));
+    if (vendor_id != 0) {
+        text += fmt::format("vendor_id = 0x{:04x}\ndevice_id = 0x{:04x}\n", vendor_id, device_id);
+    }
+    if (!driver.empty()) {
+        text += fmt::format("driver = {}\n", toml_quoted(driver));
+    }
+    if (!traversal.empty()) {
+        text += fmt::format("traversal = {}\n", toml_quoted(traversal));
+    }
+    return text + fmt::format("kernels_digest = {}\ninstrument_digest = {}\n", toml_quoted(kernels), toml_quoted(instrument));
+}
+
+std::string TracerIdentity::text() const {
+    return fmt::format("{}{}{}", device, driver.empty() ? "" : fmt::format(" ({})", driver),
+                       traversal.empty() ? "" : fmt::format(", traversal {}", traversal));
+}
+
+std::string instrument_digest(const optics::Instrument& instrument) {
+    const auto constants = to_float(instrument.constants);
+    std::vector<physics::f32::Surface> surfaces;
+    for (const auto& surface : instrument.surfaces) {
+        surfaces.push_back(to_float(surface));
+    }
+    const auto spectrum = spectrum_block(instrument);
+    return Digest()
+        .add_values(std::span<const physics::f32::Instrument>(&constants, 1))
+        .add_values(std::span<const physics::f32::Surface>(surfaces))
+        .add_values(std::span<const physics::f32::SpectralBin>(spectrum))
+        .text();
+}
+
+std::string kernels_digest() {
+    return spirv_digest;
+}
+
+TracerIdentity host_identity(const optics::Instrument& instrument) {
+    TracerIdentity identity;
+    identity.device = "host";
+    identity.kernels = kernels_digest();
+    identity.instrument = instrument_digest(instrument);
+    return identity;
+}
+
+TracerIdentity device_identity(const vulkan::DeviceReport& device, const std::string& traversal,
+                               const optics::Instrument& instrument) {
+    return {.device = device.name,
+            .vendor_id = device.vendor_id,
+            .device_id = device.device_id,
+            .driver = device.driver,
+            .traversal = traversal,
+            .kernels = kernels_digest(),
+            .instrument = instrument_digest(instrument)};
+}
+
+} // namespace vkfv::trace

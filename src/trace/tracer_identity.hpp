@@ -1,0 +1,41 @@
+// What the bits of an image depend on beside the configuration: the device as it is, and the program as it was built.
+#pragma once
+
+#include "optics/instrument.hpp"
+
+#include <cstdint>
+#include <string>
+
+namespace vkfv::vulkan {
+struct DeviceReport;
+}
+
+namespace vkfv::trace {
+
+// Facts alone: nothing of why a device was chosen or what else stands beside it.
+struct TracerIdentity {
+    std::string device;          // name; "host": the reference in double
+    std::uint32_t vendor_id = 0; // PCI's; 0: the host
+    std::uint32_t device_id = 0;
+    std::string driver;    // with its version
+    std::string traversal; // "quadtree", "bvh", "ray-query"; empty: the host
+    std::string kernels;   // digest of the SPIR-V, whose source is that of the host's physics too
+    std::string instrument; // digest of the records that the instrument became
+
+    std::string toml() const; // lines `key = value`
+    std::string text() const; // "NVIDIA H100 (NVIDIA 580.159), traversal quadtree"
+};
+
+// Of the instrument as rays meet it, surface by surface, rounded to float.
+std::string instrument_digest(const optics::Instrument& instrument);
+
+// Of the program's kernels of the trace.
+std::string kernels_digest();
+
+// Of the reference in double.
+TracerIdentity host_identity(const optics::Instrument& instrument);
+// Of a device by its report. `instrument`: as the paths run through it.
+TracerIdentity device_identity(const vulkan::DeviceReport& device, const std::string& traversal,
+                               const optics::Instrument& instrument);
+
+} // namespace vkfv::trace

@@ -1,0 +1,15 @@
+// What a failed Vulkan call means for the run, in the same words wherever it fails.
+#pragma once
+
+#include "core/error.hpp"
+
+#include <vulkan/vulkan_raii.hpp>
+
+#include <string>
+
+namespace vkfv::vulkan {
+
+// A lost device, exhausted memory or another failure, each with its remedy. device: its name; empty: not known.
+RunError run_error_of(const vk::SystemError& failure, const std::string& device = {});
+
+} // namespace vkfv::vulkan
