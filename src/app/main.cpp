@@ -19,6 +19,7 @@
 #include <charconv>
 #include <cmath>
 #include <cstdio>
+#include <iostream>
 #include <map>
 #include <new>
 
@@ -448,11 +449,14 @@ int report(const char* message, ExitCode code) {
     return code;
 }
 
-// What a command has said is part of what it was asked for.
-void finish_standard_output() {
-    if (std::fflush(stdout) != 0 || std::ferror(stdout) != 0) {
-        throw vkfv::RunError("standard output cannot be written to. Free space where it leads, and run the same command again");
-    }
+int report_lost_output() {
+    return report("standard output cannot be written to. Free space where it leads, and run the same command again", run_failed);
+}
+
+// What a command says is part of what it was asked for.
+bool standard_output_is_whole() {
+    std::cout.flush();
+    return std::cout.good() && std::fflush(stdout) == 0 && std::ferror(stdout) == 0;
 }
 
 } // namespace
@@ -472,10 +476,10 @@ int main(int argument_count, char** argument_values) {
         spdlog::set_pattern("%^%l%$: %v");
         spdlog::set_level(given.quiet ? spdlog::level::warn : spdlog::level::info);
         run(app, given);
-        finish_standard_output();
-        return done;
+        return standard_output_is_whole() ? done : report_lost_output();
     } catch (const CLI::Success& request) { // --help, --version
-        return app.exit(request);
+        const int code = app.exit(request);
+        return standard_output_is_whole() ? code : report_lost_output();
     } catch (const CLI::ParseError& error) {
         return report(fmt::format("command line: {}. vkfv --help lists all options.", error.what()).c_str(),
                       wrong_input);
@@ -502,8 +506,7 @@ int main(int argument_count, char** argument_values) {
             run_failed);
     } catch (const std::exception& error) {
         if (std::ferror(stdout) != 0) { // fmt says so by an exception of its own
-            return report("standard output cannot be written to. Free space where it leads, and run the same command again",
-                          run_failed);
+            return report_lost_output();
         }
         return report(fmt::format("unexpected failure: {}. Please report it with the command line and the "
                                   "configuration.",

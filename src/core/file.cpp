@@ -33,7 +33,7 @@ std::string kind_of(const struct stat& status) {
     case S_IFREG:
         return "";
     case S_IFDIR:
-        return "a folder";
+        return "a directory";
     case S_IFIFO:
         return "a named pipe";
     case S_IFSOCK:

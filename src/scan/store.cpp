@@ -4,7 +4,6 @@
 #include "core/error.hpp"
 #include "core/file.hpp"
 #include "core/units.hpp"
-#include "scan/plan.hpp"
 #include "surface/image_file.hpp"
 
 #include <fmt/format.h>
@@ -250,12 +249,15 @@ Check check_images(const fs::path& folder) {
     } catch (const InputError& error) {
         check.damages.push_back({fs::path(configuration_name), error.problem().found});
     }
-    for (int image = 0; image < most_positions; ++image) {
-        const fs::path name = image_path(image);
-        std::error_code none;
-        if (!fs::exists(folder / name, none)) {
-            continue;
+    std::vector<fs::path> names;
+    std::error_code error;
+    for (fs::directory_iterator entry(folder / images_name, error), end; !error && entry != end; entry.increment(error)) {
+        if (!is_unfinished_file(entry->path())) {
+            names.push_back(fs::path(images_name) / entry->path().filename());
         }
+    }
+    std::ranges::sort(names);
+    for (const fs::path& name : names) {
         check.files.push_back(name.generic_string());
         try {
             const std::string bytes = read_file(folder / name);

@@ -173,7 +173,7 @@ TEST(Program, TopographyEvaluatesAStackAnew) {
     ASSERT_EQ(stack.exit_code, 0) << stack.standard_error;
     const auto results = nlohmann::json::parse(read_file(folder / "out/results.json"));
     for (const char* name : {"sq_measured_um", "sq_true_um", "rms_deviation_um", "correlation",
-                             "measured_share", "trace_seconds", "device", "seed"}) {
+                             "measured_share", "rays_per_image", "device", "seed"}) {
         EXPECT_TRUE(results.contains(name)) << name;
     }
     EXPECT_GT(results["measured_share"].get<double>(), 0);

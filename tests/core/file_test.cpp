@@ -92,7 +92,7 @@ TEST_F(File, WhatIsNoFileIsRefused) {
     ASSERT_EQ(bind(socket_number, reinterpret_cast<sockaddr*>(&address), sizeof address), 0);
     EXPECT_EQ(refusal(folder / "pipe"), "a named pipe");
     EXPECT_EQ(refusal(folder / "s"), "a socket");
-    EXPECT_EQ(refusal(folder), "a folder");
+    EXPECT_EQ(refusal(folder), "a directory");
     EXPECT_EQ(refusal("/dev/zero"), "a device");
     EXPECT_EQ(refusal(folder / "none"), "no such file");
     EXPECT_THAT(refusal(folder / "x" / "none"), HasSubstr("nor a folder"));
@@ -102,7 +102,7 @@ TEST_F(File, WhatIsNoFileIsRefused) {
 TEST_F(File, NothingButAFileIsReplaced) {
     ASSERT_EQ(mkfifo((folder / "pipe").c_str(), 0600), 0);
     EXPECT_THAT(failure(folder / "pipe"), HasSubstr("it is a named pipe"));
-    EXPECT_THAT(failure(folder), HasSubstr("it is a folder"));
+    EXPECT_THAT(failure(folder), HasSubstr("it is a directory"));
     EXPECT_THAT(failure("/dev/full"), HasSubstr("it is a device"));
     vkfv::write_file(file, "old");
     fs::create_symlink("a.txt", folder / "link");

@@ -52,7 +52,11 @@ class FakeTracer : public trace::Tracer {
         return exposure;
     }
     std::string description() const override { return "a formula"; }
-    trace::TracerIdentity identity() const override { return {.device = "a formula"}; }
+    trace::TracerIdentity identity() const override {
+        trace::TracerIdentity identity;
+        identity.device = "a formula";
+        return identity;
+    }
 
     mutable std::vector<int> exposed; // images, in the order they were asked for
 

@@ -212,6 +212,25 @@ TEST(Stack, ShowsEveryImageOnceInOrderAsItIsStored) {
     EXPECT_THAT(again.exposed, ElementsAre(2));
 }
 
+// Pixels, directory and text all stand under the image's checksum.
+TEST(ImageStore, NoFlippedBitOfAnImagePasses) {
+    const FreshFolder folder("flipped");
+    run(folder.path(), FakeTracer(), describe());
+    EXPECT_THAT(check_images(folder.path()).damages, IsEmpty());
+    const fs::path file = folder.path() / "images/z_0001.tif";
+    const std::string whole = bytes_of(file);
+    for (std::size_t place = 0; place < whole.size(); ++place) {
+        std::string flipped = whole;
+        flipped[place] ^= static_cast<char>(1 << place % 8);
+        write_bytes(file, flipped);
+        EXPECT_THROW(read_frame(folder.path(), 1, describe().positions[1]), InputError) << place;
+        EXPECT_EQ(check_images(folder.path()).damages.size(), 1u) << place;
+    }
+    write_bytes(file, whole);
+    EXPECT_THAT(check_images(folder.path()).damages, IsEmpty());
+    EXPECT_EQ(check_images(folder.path()).files.size(), 4u);
+}
+
 // Every state that a kill or a disk may leave behind heals to the bytes of an undisturbed run.
 TEST(ImageStore, HealsWhatIsDamaged) {
     const FreshFolder whole("undisturbed");
@@ -306,7 +325,7 @@ TEST(ImageStore, RefusesWhatIsNoStack) {
     write_bytes(folder.path() / "thesis.tex", "years of work");
     EXPECT_THAT(opening_message(folder.path()), HasSubstr("without stack.toml"));
     EXPECT_THAT(opening_message(folder.path() / "thesis.tex"), HasSubstr("expected a folder"));
-    EXPECT_THAT(opening_message(folder.path() / "thesis.tex" / "out"), Not(IsEmpty()));
+    EXPECT_THROW(ImageStore(folder.path() / "thesis.tex" / "out", describe()), RunError);
     write_bytes(folder.path() / "stack.toml", "[trace]\nseed = 1\n"); // a user's own file, not an output's
     EXPECT_THAT(opening_message(folder.path()), HasSubstr("without the identity of a stack"));
     EXPECT_EQ(result_of(folder.path()).at("thesis.tex"), "years of work");
@@ -316,7 +335,7 @@ TEST(ImageStore, OneProgramAtATime) {
     const FreshFolder folder("locked");
     {
         const ImageStore holder(folder.path(), describe());
-        EXPECT_THAT(opening_message(folder.path()), HasSubstr("another vkfv is writing"));
+        EXPECT_THROW(ImageStore(folder.path(), describe()), FolderInUse);
     }
     EXPECT_EQ(opening_message(folder.path()), "");
 }
