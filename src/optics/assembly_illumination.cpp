@@ -1,6 +1,7 @@
 #include "optics/assembly.hpp"
 
 #include "core/units.hpp"
+#include "optics/emission_cone.hpp"
 #include "optics/first_order.hpp"
 
 #include <fmt/format.h>
@@ -210,9 +211,13 @@ void Assembly::assemble_illuminator() {
                                                [](const Surface& surface) { return is_displaced(surface); });
     const auto stop_transfer =
         transfer_to_surface(illumination_surfaces, field_stop.value_or(illuminator.size() - 1));
-    aimed_sine = emission_sine(
-        illumination_surfaces, straight, description.source_radius, *source_distance,
-        free_space(*source_distance + illumination_surfaces.front().distance).then(stop_transfer));
+    const DiscSource source = {.radius = description.source_radius,
+                               .distance = *source_distance,
+                               .monochromatic = spectrum.monochromatic()};
+    const RayTransfer towards_stop =
+        free_space(*source_distance + illumination_surfaces.front().distance).then(stop_transfer);
+    aimed_sine = emission_sine(illumination_surfaces, straight, source,
+                               largest_sampled_sine(illumination_surfaces, straight, source, towards_stop));
     if (!(aimed_sine > 0)) {
         refuse("illumination.prescription", prescribed.name,
                "an illuminator whose light passes the objective", "Check distances and semi-diameters.",
