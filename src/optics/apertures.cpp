@@ -19,27 +19,6 @@ using physics::f64::real3;
 // of pupils are smooth but for the corners where two edges meet.
 constexpr double search_margin = 1.02;
 
-// The largest t of [0, limit] at which the predicate holds, to rounding: looked for inward in steps of limit / 32, then
-// by bisection. Where it holds only between two steps, and not at 0, it is not found. None: it holds at no step.
-template <class Predicate>
-std::optional<double> farthest(double limit, Predicate holds) {
-    constexpr int steps = 32;
-    constexpr int bisections = 45; // 2^-45 of a step
-    for (int step = steps; step >= 0; --step) {
-        double inside = limit * step / steps;
-        if (!holds(inside)) {
-            continue;
-        }
-        double outside = limit * std::min(step + 1, steps) / steps;
-        for (int i = 0; i < bisections; ++i) {
-            const double middle = 0.5 * (inside + outside);
-            (holds(middle) ? inside : outside) = middle;
-        }
-        return inside;
-    }
-    return std::nullopt;
-}
-
 } // namespace
 
 std::vector<glm::dvec2> search_directions(bool symmetric) {
@@ -203,62 +182,6 @@ double gate_radius(const Imaging& imaging, double field_radius, double lowest, d
         }
     }
     return search_margin * largest;
-}
-
-// From each point of the source the rim is looked for about the direction that aims at the centre of the field stop.
-double emission_sine(std::span<const physics::f64::Surface> train, bool symmetric, double source_radius,
-                     double source_distance, const RayTransfer& towards_stop) {
-    const auto largest_from = [&](glm::dvec2 position) {
-        constexpr int azimuths = 26;
-        const double slope = -towards_stop.a / towards_stop.b;
-        const glm::dvec2 centre =
-            slope * position / std::sqrt(1 + slope * slope * glm::dot(position, position));
-        double largest = 0;
-        // Mirrored azimuths are the same for a symmetric train and a point of the x axis.
-        for (int i = 0; i < (symmetric ? azimuths / 2 : azimuths); ++i) {
-            const double angle = symmetric ? pi * i / (azimuths / 2 - 1) : 2 * pi * i / azimuths;
-            const auto cosines = [&](double radius) {
-                return centre + radius * glm::dvec2(std::cos(angle), std::sin(angle));
-            };
-            const auto radius = farthest(1 + glm::length(centre), [&](double candidate) {
-                const glm::dvec2 direction = cosines(candidate);
-                const double axial_squared = 1 - glm::dot(direction, direction);
-                if (axial_squared <= 0) {
-                    return false;
-                }
-                Ray ray{};
-                ray.position = real3(position, -source_distance);
-                ray.direction = real3(direction, std::sqrt(axial_squared));
-                return trace_through(train, ray, 1).status == PATH_ALIVE;
-            });
-            largest = radius ? std::max(largest, glm::length(cosines(*radius))) : largest;
-        }
-        return largest;
-    };
-    double largest = 0;
-    for (const glm::dvec2& direction : search_directions(symmetric)) {
-        // The angle grows towards the rim of what the pupil sees of the source, then light stops: two finer rounds about
-        // the best point so far close in on it to 1/50 of the source.
-        constexpr int points = 6;
-        double low = 0;
-        double high = source_radius;
-        double best = 0;
-        for (int round = 0; round < 3; ++round) {
-            const double step = (high - low) / points;
-            double largest_here = 0;
-            for (int i = 0; i <= points; ++i) {
-                const double distance = low + i * step;
-                if (const double sine = largest_from(direction * distance); sine > largest_here) {
-                    largest_here = sine;
-                    best = distance;
-                }
-            }
-            largest = std::max(largest, largest_here);
-            low = std::max(0.0, best - step);
-            high = std::min(source_radius, best + step);
-        }
-    }
-    return std::min(1.0, search_margin * largest);
 }
 
 } // namespace vkfv::optics

@@ -1,5 +1,5 @@
 // What the real apertures let through, found by tracing: the cone from a point of the field, its best focus, the gate that
-// no useful light lies outside of, the cone to aim a source into. Lengths in mm.
+// no useful light lies outside of. Lengths in mm.
 #pragma once
 
 #include "optics/first_order.hpp"
@@ -7,6 +7,7 @@
 
 #include <glm/glm.hpp>
 
+#include <algorithm>
 #include <optional>
 #include <vector>
 
@@ -32,6 +33,27 @@ struct Imaging {
                                  std::uint32_t apertures = 1, double spectral = 0) const;
     glm::dvec2 chief_cosines(glm::dvec2 position) const;
 };
+
+// The largest t of [0, limit] at which the predicate holds, to rounding: looked for inward in steps of limit / 32, then
+// by bisection. Where it holds only between two steps, and not at 0, it is not found. None: it holds at no step.
+template <class Predicate>
+std::optional<double> farthest(double limit, Predicate holds) {
+    constexpr int steps = 32;
+    constexpr int bisections = 45; // 2^-45 of a step
+    for (int step = steps; step >= 0; --step) {
+        double inside = limit * step / steps;
+        if (!holds(inside)) {
+            continue;
+        }
+        double outside = limit * std::min(step + 1, steps) / steps;
+        for (int i = 0; i < bisections; ++i) {
+            const double middle = 0.5 * (inside + outside);
+            (holds(middle) ? inside : outside) = middle;
+        }
+        return inside;
+    }
+    return std::nullopt;
+}
 
 // Directions of the field or of the source that a search looks in; without symmetry all round.
 std::vector<glm::dvec2> search_directions(bool symmetric);
@@ -63,10 +85,5 @@ double best_focus(const Imaging& imaging, const Outline& outline);
 
 // Of physics::Instrument, for light from within field_radius and from heights between lowest and highest.
 double gate_radius(const Imaging& imaging, double field_radius, double lowest, double highest);
-
-// Sine of the largest angle at which light leaves a disc source and passes the train, whose entry frame is source_distance
-// behind it. `towards_stop` leads, paraxially, from the source to the field stop.
-double emission_sine(std::span<const physics::f64::Surface> train, bool symmetric, double source_radius,
-                     double source_distance, const RayTransfer& towards_stop);
 
 } // namespace vkfv::optics

@@ -1,0 +1,367 @@
+// The cones that sources are aimed into hold all light that passes: of a few hundred illuminators that nobody would build.
+#include "optics/emission_cone.hpp"
+
+#include "core/units.hpp"
+#include "optics/bundle.hpp"
+#include "optics/ideal_lens.hpp"
+#include "optics/train.hpp"
+#include "parts.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <random>
+
+namespace vkfv::optics {
+namespace {
+
+using physics::f64::PATH_ALIVE;
+using physics::f64::Surface;
+
+// A disc source and what its light must pass.
+struct Illuminator {
+    DiscSource source;
+    std::vector<Surface> train;
+    bool symmetric = true;
+};
+
+class Random {
+  public:
+    explicit Random(unsigned seed) : generator_(seed) {}
+    double between(double low, double high) { return std::uniform_real_distribution<double>(low, high)(generator_); }
+    double of_any_size(double low, double high) { return std::exp(between(std::log(low), std::log(high))); }
+    bool chance(double share) { return between(0, 1) < share; }
+
+  private:
+    std::mt19937_64 generator_;
+};
+
+void clip(Surface& surface, double radius) {
+    surface.flags |= physics::f64::SURFACE_CLIPPED;
+    surface.semi_diameter_squared = radius * radius;
+}
+
+void displace(Surface& surface, Random& random) {
+    Pose pose = Pose{}.along_z(surface.distance).turned({.decentre_x = random.between(-0.5, 0.5),
+                                                         .decentre_y = random.between(-0.5, 0.5),
+                                                         .tilt_x = random.between(-0.15, 0.15),
+                                                         .tilt_y = random.between(-0.15, 0.15)});
+    PlacedSurface placed;
+    placed.surface = surface;
+    placed.pose = pose;
+    std::vector<PlacedSurface> part = {placed};
+    link(part, Pose{});
+    surface = part.front().surface;
+}
+
+// Of glass, with a conic and an aspheric term now and then.
+void add_singlet(std::vector<Surface>& train, double distance, bool dispersive, Random& random) {
+    const double glass = random.between(1.45, 1.9);
+    const double radius = random.of_any_size(1, 12);
+    for (const bool leaving : {false, true}) {
+        const double curvature = random.chance(0.2) ? 0 : random.between(-0.8, 0.8) / radius;
+        Surface surface = test::surface(curvature, leaving ? random.between(0.2, 0.6) * radius : distance,
+                                        leaving ? glass : 1.0, leaving ? 1.0 : glass,
+                                        random.chance(0.3) ? random.between(-2, 1) : 0);
+        if (dispersive) {
+            (leaving ? surface.dispersion_before : surface.dispersion_after).c1 = 0.01;
+        }
+        if (random.chance(0.7)) {
+            clip(surface, radius);
+            if (random.chance(0.3)) {
+                surface.flags |= physics::f64::SURFACE_ASPHERIC;
+                surface.a4 = random.between(-0.02, 0.02) / std::pow(radius, 3);
+            }
+        }
+        train.push_back(surface);
+    }
+}
+
+Illuminator random_illuminator(Random& random, bool symmetric) {
+    Illuminator result;
+    result.symmetric = symmetric;
+    result.source = {.radius = random.of_any_size(0.01, 10),
+                     .distance = random.of_any_size(0.1, 30),
+                     .monochromatic = random.chance(0.7)};
+    const int elements = static_cast<int>(random.between(1, 5));
+    for (int element = 0; element < elements; ++element) {
+        const double distance = element == 0 ? 0 : random.of_any_size(0.5, 150);
+        if (random.chance(0.4)) {
+            add_singlet(result.train, distance, !result.source.monochromatic, random);
+            continue;
+        }
+        Surface surface = test::surface(0, distance, 1, 1);
+        const bool is_lens = random.chance(0.5);
+        if (is_lens) {
+            surface.flags |= physics::f64::SURFACE_IDEAL_LENS;
+            surface.power = (random.chance(0.8) ? 1 : -1) / random.of_any_size(5, 200);
+        }
+        if (!is_lens || random.chance(0.5)) {
+            clip(surface, random.of_any_size(0.02, 10));
+        }
+        result.train.push_back(surface);
+    }
+    if (!symmetric) {
+        displace(result.train[static_cast<std::size_t>(random.between(0, static_cast<double>(result.train.size())))],
+                 random);
+    }
+    return result;
+}
+
+EmissionBox whole_of(const DiscSource& source) {
+    EmissionBox whole;
+    whole[from_axis] = {0, source.radius};
+    whole[polar_angle] = {0, 0.5 * pi};
+    whole[azimuth] = {-pi, pi};
+    whole[turn] = {-pi, pi};
+    whole[spectral] = source.monochromatic ? Range{} : Range{-1, 1};
+    return whole;
+}
+
+using Place = std::array<double, Affine::coordinates>;
+
+Place random_place(Random& random) {
+    Place place;
+    for (double& coordinate : place) {
+        coordinate = random.between(-1, 1);
+    }
+    return place;
+}
+
+bool passes(const Illuminator& illuminator, const EmissionBox& box, const Place& place) {
+    auto [ray, x] = ray_in(box, place);
+    ray.position.z -= illuminator.source.distance;
+    return trace_through(illuminator.train, ray, 1, x).status == PATH_ALIVE;
+}
+
+// Analog light of the hemisphere, and what of it an adversary makes of it: from each ray that passes, steps of ever smaller size
+// towards larger angles. The largest sine that passes; 0: none does.
+double largest_passing_sine(const Illuminator& illuminator, Random& random) {
+    const EmissionBox whole = whole_of(illuminator.source);
+    Place best{};
+    double largest = 0;
+    const auto offer = [&](const Place& place) {
+        const double sine = std::sin(0.25 * pi * (1 + place[polar_angle]));
+        if (sine > largest && passes(illuminator, whole, place)) {
+            largest = sine;
+            best = place;
+            return true;
+        }
+        return false;
+    };
+    constexpr int rays = 2000;
+    for (int i = 0; i < rays; ++i) {
+        Place place = random_place(random);
+        if (i % 2 == 0) { // thin cones: about the axis, from all sizes of angle
+            place[polar_angle] = 2 * random.of_any_size(1e-3, 1) - 1;
+        }
+        offer(place);
+    }
+    constexpr int steps = 1000;
+    double size = 0.3;
+    for (int i = 0; i < steps && largest > 0; ++i) {
+        Place place = best;
+        for (double& coordinate : place) {
+            coordinate = std::clamp(coordinate + size * random.between(-1, 1), -1.0, 1.0);
+        }
+        size = offer(place) ? std::min(0.5, 1.5 * size) : std::max(1e-7, 0.97 * size);
+    }
+    return largest;
+}
+
+// Sampling alone, as a wrong twin: it must be seen to lose light.
+TEST(EmissionCone, HoldsAllThatPassesRandomIlluminators) {
+    Random random(31);
+    constexpr int illuminators = 200;
+    int lit = 0;
+    int narrow = 0;
+    int close = 0;
+    int lost_by_samples = 0;
+    for (int i = 0; i < illuminators; ++i) {
+        const bool symmetric = i % 3 != 0;
+        const Illuminator illuminator = random_illuminator(random, symmetric);
+        const double aim = emission_sine(illuminator.train, symmetric, illuminator.source, 0);
+        const double passing = largest_passing_sine(illuminator, random);
+        EXPECT_LE(passing, aim) << i;
+        lit += passing > 0;
+        narrow += passing > 0 && aim < 0.9;
+        close += passing > 0 && aim < 1.1 * passing;
+        if (symmetric && i % 5 == 0) {
+            const RayTransfer towards_stop = free_space(illuminator.source.distance);
+            lost_by_samples += passing > 1.02 * largest_sampled_sine(illuminator.train, true, illuminator.source,
+                                                                     towards_stop);
+        }
+    }
+    EXPECT_GT(lit, illuminators / 2);
+    EXPECT_GT(narrow, lit / 4);
+    EXPECT_GT(close, lit / 3);
+    EXPECT_GT(lost_by_samples, 0);
+}
+
+// Share of the source's light that passes, and its standard error, of rays emitted into a cone.
+struct Passing {
+    double share = 0;
+    double error = 0;
+};
+Passing passing_share(const Illuminator& illuminator, double emission_sine, int rays, Random& random) {
+    const auto uniform = [&] { return random.between(0, 1); };
+    int passed = 0;
+    for (int i = 0; i < rays; ++i) {
+        const double x = illuminator.source.monochromatic ? 0 : random.between(-1, 1);
+        const std::array draws = {uniform(), uniform(), uniform(), uniform()};
+        auto ray = physics::f64::emit_from_disc(illuminator.source.radius, emission_sine, draws[0], draws[1], draws[2],
+                                                draws[3]);
+        ray.position.z -= illuminator.source.distance;
+        passed += trace_through(illuminator.train, ray, 1, x).status == PATH_ALIVE;
+    }
+    const double aimed = emission_sine * emission_sine;
+    return {.share = aimed * passed / rays, .error = aimed * std::sqrt(passed) / rays};
+}
+
+TEST(EmissionCone, KeepsThePowerOfAnalogEmission) {
+    Random random(33);
+    int compared = 0;
+    int rejected_twins = 0;
+    for (int i = 0; i < 200 && compared < 30; ++i) {
+        const Illuminator illuminator = random_illuminator(random, i % 3 != 0);
+        constexpr int rays = 10000;
+        const Passing analog = passing_share(illuminator, 1, rays, random);
+        if (!(analog.error < 0.1 * analog.share)) {
+            continue; // nothing could be seen
+        }
+        const double aim = emission_sine(illuminator.train, illuminator.symmetric, illuminator.source, 0);
+        const auto deviation = [&](double sine) {
+            const Passing directed = passing_share(illuminator, sine, rays, random);
+            return std::abs(directed.share - analog.share) / std::hypot(directed.error, analog.error);
+        };
+        EXPECT_LT(deviation(aim), 4.5) << i; // 3e-4 for all of them
+        rejected_twins += deviation(0.5 * aim) > 4.5;
+        ++compared;
+    }
+    EXPECT_EQ(compared, 30);
+    EXPECT_GT(rejected_twins, 15);
+}
+
+// Boxes of every size: where the bounds exclude one, no ray of it passes; where all of a small one is stopped, they mostly do.
+TEST(BundleTracer, ExcludesOnlyWhatIsStopped) {
+    Random random(32);
+    int excluded = 0;
+    int dark = 0;
+    int dark_and_excluded = 0;
+    for (int i = 0; i < 3000; ++i) {
+        const Illuminator illuminator = random_illuminator(random, i % 3 != 0);
+        const BundleTracer tracer(illuminator.train, illuminator.source.distance);
+        EmissionBox box = whole_of(illuminator.source);
+        const double share = random.of_any_size(1e-3, 1);
+        for (Range& side : box) {
+            const double middle = side.middle() + (1 - share) * side.radius() * random.between(-1, 1);
+            const double radius = share * side.radius();
+            side = {middle - radius, middle + radius};
+        }
+        const bool is_excluded = !tracer.may_pass(box);
+        int passing = 0;
+        for (int ray = 0; ray < 100; ++ray) {
+            passing += passes(illuminator, box, random_place(random));
+        }
+        const bool is_dark = passing == 0;
+        EXPECT_TRUE(is_dark || !is_excluded) << i;
+        excluded += is_excluded;
+        dark += is_dark && share < 0.02;
+        dark_and_excluded += is_dark && is_excluded && share < 0.02;
+    }
+    EXPECT_GT(excluded, 500);
+    EXPECT_GT(dark_and_excluded, 0.9 * dark);
+}
+
+// A source of 1 mm, a field stop as large 1 mm behind it and a field lens without edge: what passes from one rim of the source to
+// the other of the stop is a thin cone far off the axis.
+TEST(EmissionCone, HoldsThinConesOfAnAssembledIlluminator) {
+    PrescribedSurface stop;
+    stop.medium_after = Medium::air();
+    stop.semi_diameter = 1;
+    stop.thickness = 150;
+    stop.role = PrescribedSurface::Role::field_stop;
+    auto description = test::microscope();
+    description.source_radius = 1;
+    description.source_distance = 1;
+    description.field_stop_radius.reset();
+    description.illumination = ideal_lens(150);
+    description.illumination.surfaces.insert(description.illumination.surfaces.begin(), stop);
+    description.objective = ideal_objective(20, 0.28);
+    description.tube_lens = ideal_lens(200);
+    const Instrument directed = assemble(description);
+    description.directed_emission = false;
+    const Instrument analog = assemble(description);
+
+    constexpr std::uint32_t rays = 400000;
+    physics::f64::SpecimenRecord specimen{};
+    const physics::f64::Exposure exposure{
+        .top_distance = analog.front_vertex_height, .seed = 43, .image = 0, .focal_height = 0, .top_distance_residual = 0};
+    const auto arrived = [&](const Instrument& instrument, auto&& each) {
+        int count = 0;
+        for (std::uint32_t k = 0; k < rays; ++k) {
+            const auto arrival =
+                physics::f64::illuminate(instrument.scene(), instrument.constants, specimen, exposure, {k, 0});
+            if (arrival.fate.status == PATH_ALIVE) {
+                const auto draws = physics::f64::draw(exposure.seed, exposure.image, {k, 0}, 0u);
+                const auto ray = physics::f64::emit(instrument.scene(), instrument.constants, draws).ray;
+                each(std::hypot(ray.direction.x, ray.direction.y));
+                ++count;
+            }
+        }
+        return count;
+    };
+    const double aim = directed.constants.emission_sine;
+    constexpr double aim_by_samples = 0.7882; // wrong twin: what a search in steps of 1/32 finds
+    int lost = 0;
+    const int whole = arrived(analog, [&](double sine) {
+        EXPECT_LE(sine, aim);
+        lost += sine > aim_by_samples;
+    });
+    const double aimed = aim * aim * arrived(directed, [](double) {});
+    EXPECT_LT(std::abs(aimed - whole) / std::sqrt(aim * aim * aimed + whole), 4);
+    EXPECT_GT(lost, 0.1 * whole);
+    EXPECT_LT(aim, 0.91); // the light ends at 2 / hypot(1, 2), 0.894
+}
+
+TEST(RingLight, IsAimedAtAllThatItMustLight) {
+    for (const double cover : {0.0, 0.17, 2.0}) {
+        auto description = test::microscope();
+        description.objective = ideal_objective(20, 0.28);
+        description.ring = RingLightDescription{
+            .distance = 12, .elevation = 0.5, .width = 2, .segments = 1, .fill = 1, .on = {true}, .lit_radius = 0.3};
+        description.greatest_defocus = 1.5;
+        if (cover > 0) {
+            description.cover_glass = CoverGlass{.thickness = cover, .glass = Medium::constant("glass", 1.5), .distance = 1.0};
+        }
+        const Instrument instrument = assemble(description);
+        physics::f64::Instrument constants = instrument.constants;
+        constants.emission_sine = 1;
+        Random random(34);
+        double largest = 0;
+        for (int i = 0; i < 200000; ++i) {
+            const auto uniform = [&] { return random.between(0, 1); };
+            const std::array u = {uniform(), uniform(), uniform(), uniform()};
+            auto ray = physics::f64::emit_from_ring(constants.ring, 1, u[0], u[1], u[2], u[3]);
+            ray.position.z += constants.ring.aim_distance;
+            const double sine = std::sqrt(u[2]);
+            auto end = trace_through(std::span(instrument.surfaces).first(std::size_t(constants.illumination_count)), ray, 1);
+            if (end.status != PATH_ALIVE) {
+                continue;
+            }
+            for (const double height : {-1.5, 0.0, 1.5}) {
+                const auto landed = physics::f64::fly_to_plane(
+                    end.ray, instrument.front_vertex_height - height, end.index);
+                if (std::hypot(landed.position.x, landed.position.y) < 0.3) {
+                    largest = std::max(largest, sine);
+                }
+            }
+        }
+        EXPECT_LE(largest, instrument.constants.emission_sine) << cover;
+        EXPECT_GT(largest, 0.5 * instrument.constants.emission_sine) << cover;
+    }
+}
+
+} // namespace
+} // namespace vkfv::optics
