@@ -100,8 +100,10 @@ class Scanner {
             check();
             return;
         }
-        deepen();
         const bool braces = character == '{';
+        if (!braces) { // of a table its keys are the level
+            deepen();
+        }
         if (!too_deep_) { // so there are never more than deepest_toml_nesting
             open_.push_back({.braces = braces, .depth = depth_});
         }

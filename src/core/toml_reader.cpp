@@ -60,14 +60,10 @@ double stand_in(const NumberRange& range) {
     return range.contains(1) ? 1 : range.contains(any) ? any : 0;
 }
 
-// What number of a key in um is too large by a factor of about a thousand was most likely given in nm.
 std::string remedy_for_number(const std::string& path, std::string_view key, double value, const NumberRange& range) {
-    constexpr double um_per_nm = 1e-3;
     const bool in_um = key.substr(0, key.find('[')).ends_with("_um");
-    if (in_um && value > range.maximum && range.contains(value * um_per_nm)) {
-        return fmt::format("{:.12g} looks like nanometres: write {:.12g}.", value, value * um_per_nm);
-    }
-    return fmt::format("Correct {}.", path);
+    const auto remedy = in_um ? remedy_for_length_um(value, range) : std::nullopt;
+    return remedy.value_or(fmt::format("Correct {}.", path));
 }
 
 } // namespace

@@ -38,6 +38,9 @@ struct NumberRange {
     std::string to_string() const;
 };
 
+// What to do about a length in um beyond its range that most likely was given in nm; none if it was not.
+std::optional<std::string> remedy_for_length_um(double value, const NumberRange& range);
+
 // A value given on the command line in place of the file's.
 struct TomlOverride {
     std::string key;    // dotted, from the root: "trace.rays"

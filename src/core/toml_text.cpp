@@ -25,6 +25,14 @@ std::string NumberRange::to_string() const {
     return below ? fmt::format("{} {}", maximum_included ? "<=" : "<", maximum) : "";
 }
 
+std::optional<std::string> remedy_for_length_um(double value, const NumberRange& range) {
+    constexpr double um_per_nm = 1e-3;
+    if (!(value > range.maximum && range.contains(value * um_per_nm))) {
+        return std::nullopt;
+    }
+    return fmt::format("{:.12g} looks like nanometres: write {:.12g}.", value, value * um_per_nm);
+}
+
 std::string toml_quoted(std::string_view text) {
     std::string quoted = "\"";
     for (const char character : text) {

@@ -68,7 +68,7 @@ TEST(TomlProblems, AllAreToldInTheOrderOfPlaces) {
                          "[[line]]\nwavelength_um = 1\n[[line]]\nwavelength_um = 0\n"),
               "c.toml:1:1: colour = 1: expected a known key (one of line, scan, tube_lens). Remove it.\n"
               "c.toml:5:1: tube_lens.focus = 2: expected a known key (one of focal_length_mm, kind). Remove it.\n"
-              "c.toml:7:14: scan.z_start_um = low: expected a finite number. Correct scan.z_start_um.\n"
+              "c.toml:7:14: scan.z_start_um = 'low': expected a finite number. Correct scan.z_start_um.\n"
               "c.toml:9:13: scan.z_step_um = -1: expected a finite number > 0. Correct scan.z_step_um.\n"
               "c.toml:13:17: line[1].wavelength_um = 0: expected a finite number in [0.1, 100]. Correct "
               "line[1].wavelength_um.");
