@@ -40,12 +40,11 @@ surface::SurfaceFile read_file(const CommandOptions& options) {
     try {
         return surface::read_surface(options.file, {.pitch = options.pitch, .unit = options.unit});
     } catch (const InputError& error) {
-        auto problem = error.problem();
-        if (problem.key == "pitch" || problem.key == "unit") { // the reader does not know the command line
-            problem.key = "--" + problem.key + "_um";
-            throw InputError(problem);
-        }
-        throw;
+        throw error.with_each([](InputProblem& problem) {
+            if (problem.key == "pitch" || problem.key == "unit") { // the reader does not know the command line
+                problem.key = "--" + problem.key + "_um";
+            }
+        });
     }
 }
 

@@ -117,7 +117,7 @@ specimen::Lobe read_lobe(const Section& section, const std::optional<std::string
         }
     }
     specimen::Lobe lobe;
-    lobe.model = section.choice("scatter", names, fallback);
+    lobe.model = section.kind("scatter", names, fallback);
     lobe.parameters.clear();
     for (const auto& parameter :
          std::ranges::find(physics::scatter_registry, lobe.model, &physics::ScatterModel::name)->parameters) {
@@ -128,7 +128,7 @@ specimen::Lobe read_lobe(const Section& section, const std::optional<std::string
     }
     for (const auto& [key, models] : models_with) {
         if (section.table().has(key)) {
-            section.table().fail(key, fmt::format("no such key for scatter = \"{}\"", lobe.model),
+            section.table().note(key, fmt::format("no such key for scatter = \"{}\"", lobe.model),
                                  fmt::format("Remove it; it belongs to scatter = \"{}\".",
                                              fmt::join(models, "\" or \"")));
         }
@@ -152,7 +152,7 @@ specimen::Material read_material(const TomlTable& table, Configuration& configur
     }
     for (const auto& key : table.keys()) {
         if (key != "lobe") {
-            table.fail(key, "no other key beside [[specimen.material.lobe]]",
+            table.note(key, "no other key beside [[specimen.material.lobe]]",
                        "Move it into a lobe; the reflectance is the sum of the lobes' weights.");
         }
     }
@@ -183,7 +183,7 @@ void read_specimen(const TomlTable& root, Configuration& configuration) {
         names.emplace_back(rule.name);
         keys_of_kinds[rule.name] = rule.keys;
     }
-    const std::string name = section.choice("kind", names);
+    const std::string name = section.kind("kind", names);
     const KindRule& rule = *std::find_if(kind_rules().begin(), kind_rules().end(),
                                          [&](const KindRule& candidate) { return candidate.name == name; });
     reject_keys_of_other_kinds(table, keys_of_kinds, name, "a specimen");
@@ -268,7 +268,7 @@ void read_specimen(const TomlTable& root, Configuration& configuration) {
     if (measured_air) {
         for (const char* key : {"sq_um", "seed", "roll_off_wavelength_um", "shortest_wavelength_um", "hurst_exponent"}) {
             if (table.has(key)) {
-                table.fail(key, "no such key with a file of a measured surface",
+                table.note(key, "no such key with a file of a measured surface",
                            "Remove it, or remove file for sub-surfaces from a power spectrum.");
             }
         }
@@ -294,7 +294,7 @@ void read_specimen(const TomlTable& root, Configuration& configuration) {
     }
     const bool file_optional = rule.kind == specimen::Kind::plateaus || rule.kind == specimen::Kind::air;
     if (has("file") && (!file_optional || table.has("file"))) {
-        description.file = table.file_path("file");
+        description.file = looked_for(table.file_path("file"));
         description.where = table.where("file");
         section.record_reference("file", absolute_path(description.file).string());
     }
@@ -401,7 +401,8 @@ void read_topography(const TomlTable& root, Configuration& configuration, Needs 
         table.fail("window_px", "an odd integer, so that the window has a central pixel",
                    fmt::format("Choose {} or {}.", options.window_px - 1, options.window_px + 1));
     }
-    if (needs == Needs::stack && options.window_px > configuration.instrument.detector_pixels) {
+    if (needs == Needs::stack && table.sound("detector") &&
+        options.window_px > configuration.instrument.detector_pixels) {
         table.fail(
             "window_px",
             fmt::format("an integer <= detector.pixels = {}", configuration.instrument.detector_pixels),
@@ -428,7 +429,7 @@ void read_topography(const TomlTable& root, Configuration& configuration, Needs 
                                                Influence::nothing);
     // "none", so that --set can take it back.
     if (const auto name = table.optional_string("flatness_file"); name && *name != "none") {
-        configuration.flatness_file = table.file_path("flatness_file");
+        configuration.flatness_file = looked_for(table.file_path("flatness_file"));
         section.record_reference("flatness_file", absolute_path(configuration.flatness_file).string());
     }
     configuration.band.spline =
@@ -443,18 +444,18 @@ void read_diffraction(const TomlTable& root, Configuration& configuration) {
     const TomlTable table = root.table_or_empty("diffraction");
     const Section section(table, configuration);
     const std::string kind =
-        section.choice("point_spread", {"none", "airy", "file"}, "none", Influence::nothing);
+        section.kind("point_spread", {"none", "airy", "file"}, "none", Influence::nothing);
     if (kind != "file") {
         for (const char* key : {"file", "pitch_um"}) {
             if (table.has(key)) {
-                table.fail(key, fmt::format("no such key with point_spread = \"{}\"", kind),
+                table.note(key, fmt::format("no such key with point_spread = \"{}\"", kind),
                            "Remove it; it belongs to point_spread = \"file\".");
             }
         }
     }
     configuration.diffraction.airy = kind == "airy";
     if (kind == "file") {
-        configuration.diffraction.file = table.file_path("file");
+        configuration.diffraction.file = looked_for(table.file_path("file"));
         section.record_reference("file", absolute_path(configuration.diffraction.file).string());
         configuration.diffraction.pitch =
             from_um(section.number("pitch_um", NumberRange::positive(), {}, Influence::nothing));
@@ -478,14 +479,15 @@ void read_output(const TomlTable& root, Configuration& configuration) {
         const auto* file =
             std::ranges::find_if(files, [&](const auto& candidate) { return toml_quoted(candidate.first) == format; });
         if (file == files.end()) {
-            table.fail("surfaces", "\"tiff\", \"x3p\", \"sur\", \"sdf\" or \"ply\"",
+            table.note("surfaces", "\"tiff\", \"x3p\", \"sur\", \"sdf\" or \"ply\"",
                        fmt::format("Remove {}.", format));
+            break;
         }
         configuration.topography_files.emplace_back(file->second);
     }
     section.record("surfaces", fmt::format("[{}]", fmt::join(formats, ", ")), Influence::nothing);
     if (section.choice("images", {"float32", "uint16"}, "float32") != "float32") {
-        table.fail("images", "\"float32\"; 16-bit counts are not available yet",
+        table.note("images", "\"float32\"; 16-bit counts are not available yet",
                    "Choose images = \"float32\".");
     }
 }
@@ -539,19 +541,20 @@ Configuration read_configuration(const TomlTable& root, Needs needs) {
     Configuration configuration;
     configuration.file = root.where().file;
     configuration.identity = fmt::format("program = \"vkfv {}\"\n", VKFV_VERSION);
+    root.collect_problems(); // to tell of all at once
     read_glass_catalogs(root, configuration);
     read_instrument(root, configuration);
-    if (needs != Needs::instrument || root.optional_table("specimen")) {
-        read_specimen(root, configuration);
+    if (needs != Needs::instrument || root.has("specimen")) {
+        root.attempt("specimen", [&] { read_specimen(root, configuration); });
     }
-    if (needs == Needs::stack || root.optional_table("scan")) {
-        read_scan(root, configuration);
+    if (needs == Needs::stack || root.has("scan")) {
+        root.attempt("scan", [&] { read_scan(root, configuration); });
     }
-    read_trace(root, configuration);
-    read_diffraction(root, configuration);
-    read_topography(root, configuration, needs);
-    read_output(root, configuration);
-    read_sweep(root, configuration);
+    root.attempt("trace", [&] { read_trace(root, configuration); });
+    root.attempt("diffraction", [&] { read_diffraction(root, configuration); });
+    root.attempt("topography", [&] { read_topography(root, configuration, needs); });
+    root.attempt("output", [&] { read_output(root, configuration); });
+    root.attempt("sweep", [&] { read_sweep(root, configuration); });
     root.reject_unknown_keys();
     return configuration;
 }
@@ -559,7 +562,8 @@ Configuration read_configuration(const TomlTable& root, Needs needs) {
 Configuration topography_configuration(const std::vector<TomlOverride>& overrides) {
     const TomlTable root = TomlTable::parse("", "command line", overrides);
     Configuration configuration;
-    read_topography(root, configuration, Needs::exposure);
+    root.collect_problems();
+    root.attempt("topography", [&] { read_topography(root, configuration, Needs::exposure); });
     root.reject_unknown_keys();
     return configuration;
 }

@@ -24,6 +24,8 @@ constexpr NumberRange wavelength_range_um = {.minimum = 0.1, .maximum = 100}; //
 constexpr NumberRange offset_range = {.minimum = -1e6, .maximum = 1e6};       // mm
 constexpr NumberRange tilt_range_deg = {.minimum = -360, .maximum = 360};
 
+constexpr const char* glass_catalogs_key = "glass_catalogs";
+
 std::string digest_of(const optics::Medium& medium) {
     return Digest().add(medium.dispersion_text()).text();
 }
@@ -49,6 +51,12 @@ std::string content_digest(const optics::Prescription& prescription) {
     return digest.text();
 }
 
+std::string remedy_for_prescription(const std::string& name, const std::string& folder, const std::filesystem::path& base) {
+    const auto meant = nearest_word(name, optics::prescription_names(folder, base));
+    return fmt::format("{}Correct the name, or give the path of a prescription (.toml).",
+                       meant ? fmt::format("Did you mean \"{}\"? ", *meant) : "");
+}
+
 optics::Prescription read_prescription(const Section& section, const Configuration& configuration,
                                        const std::string& folder,
                                        const std::optional<std::string>& fallback = {}) {
@@ -58,15 +66,24 @@ optics::Prescription read_prescription(const Section& section, const Configurati
     if (name.ends_with(".toml")) {
         name = absolute_path(table.file_path(key)).string();
     }
-    const auto base = configuration.file.parent_path();
+    const auto base = absolute_path(configuration.file).parent_path(); // also of a file in the working directory
     if (!optics::find_prescription(name, folder, base)) {
-        table.fail(key,
-                   name.ends_with(".toml")
-                       ? "an existing file"
-                       : fmt::format("the name of a file in assets/{}, without .toml", folder),
-                   "Correct the name, or give the path of a prescription (.toml).");
+        table.note(key,
+                   fmt::format("{}; {}",
+                               name.ends_with(".toml")
+                                   ? "an existing file"
+                                   : fmt::format("the name of a file in assets/{}, without .toml", folder),
+                               optics::searched_for_prescription(name, folder, base)),
+                   remedy_for_prescription(name, folder, base));
+        return optics::Prescription();
     }
-    auto prescription = optics::load_prescription(name, folder, base, configuration.glasses);
+    optics::Prescription prescription;
+    if (table.sound(glass_catalogs_key)) { // else its glasses may be in the one that could not be read
+        table.attempt(key, [&] { prescription = optics::load_prescription(name, folder, base, configuration.glasses); });
+    }
+    if (prescription.surfaces.empty()) { // noted
+        return prescription;
+    }
     // A name that means the installed file means it from anywhere; another's path is kept.
     if (optics::find_prescription(name, folder, {}) != prescription.file) {
         name = absolute_path(prescription.file).string();
@@ -82,9 +99,12 @@ optics::Medium read_glass(const Section& section, const Configuration& configura
     const auto glass = name == optics::Medium::air().name ? optics::Medium::air() : configuration.glasses.find(name);
     if (!glass) {
         const auto meant = optics::nearest_glass(configuration.glasses, name);
-        table.fail(key, "the name of a glass, built in or of a catalogue",
-                   fmt::format("{}Correct the name, or add its catalogue to glass_catalogs.",
-                               meant ? fmt::format("Did you mean \"{}\"? ", *meant) : ""));
+        if (table.sound(glass_catalogs_key)) { // else it may be in the one that could not be read
+            table.note(key, "the name of a glass, built in or of a catalogue",
+                       fmt::format("{}Correct the name, or add its catalogue to glass_catalogs.",
+                                   meant ? fmt::format("Did you mean \"{}\"? ", *meant) : ""));
+        }
+        return optics::Medium::air();
     }
     section.record_reference(key, name, digest_of(*glass));
     return *glass;
@@ -104,10 +124,11 @@ optics::Placement read_placement(const Section& section) {
     if (section.table().has(global)) {
         const auto point = section.numbers(global, offset_range);
         if (point.size() != 3) {
-            section.table().fail(global, "three numbers: x, y and z in mm, from the object's plane on",
+            section.table().note(global, "three numbers: x, y and z in mm, from the object's plane on",
                                  "Give the place of the first vertex.");
+        } else {
+            placement.global = glm::dvec3(point[0], point[1], point[2]);
         }
-        placement.global = glm::dvec3(point[0], point[1], point[2]);
     }
     return placement;
 }
@@ -125,9 +146,35 @@ std::vector<std::string> kinds_of(const KeysOfKinds& keys_of_kinds) {
     return kinds;
 }
 
+optics::Spectrum read_spectrum_file(const Section& section) {
+    const TomlTable& table = section.table();
+    const auto file = looked_for(table.file_path("file"));
+    Digest digest;
+    std::vector<double> wavelengths;
+    std::vector<double> densities;
+    as_named(table, "file", file, [&] {
+        for (const auto& point :
+             read_number_table(file, {"wavelength_um", "density"}, table.path() + ".file", "point")) {
+            digest.add_values(std::span<const double>(point.values));
+            wavelengths.push_back(point.values[0]);
+            densities.push_back(point.values[1]);
+            if (!wavelength_range_um.contains(point.values[0])) {
+                throw InputError({.where = {.file = file, .line = point.line, .column = 1},
+                                  .key = "wavelength_um",
+                                  .found = fmt::format("{}", point.values[0]),
+                                  .expected = "a wavelength " + wavelength_range_um.to_string() + " um",
+                                  .remedy = remedy_for_length_um(point.values[0], wavelength_range_um)
+                                                .value_or("Correct this field.")});
+            }
+        }
+    });
+    section.record_reference("file", absolute_path(file).string(), digest.text());
+    return optics::Spectrum::table(wavelengths, densities);
+}
+
 optics::Spectrum read_spectrum_table(const Section& section) {
     const TomlTable& table = section.table();
-    const std::string kind = section.choice("kind", kinds_of(spectrum_keys));
+    const std::string kind = section.kind("kind", kinds_of(spectrum_keys));
     reject_keys_of_other_kinds(table, spectrum_keys, kind, "a spectrum");
     if (kind == "monochromatic") {
         return optics::Spectrum::line(section.number("wavelength_um", wavelength_range_um));
@@ -138,25 +185,18 @@ optics::Spectrum read_spectrum_table(const Section& section) {
     }
     if (kind == "gaussian") {
         const double centre = section.number("centre_um", wavelength_range_um);
-        return optics::Spectrum::gaussian(centre, section.number("full_width_um", NumberRange::positive()));
+        // A wider one is no spectrum about the centre, and tells nanometres from micrometres.
+        const NumberRange widths = {.minimum = 0, .maximum = centre, .minimum_included = false};
+        return optics::Spectrum::gaussian(
+            centre, section.number("full_width_um", table.sound(table.path() + ".centre_um") ? widths : NumberRange::positive()));
     }
     if (table.has("file")) {
         for (const char* key : {"wavelengths_um", "densities"}) {
             if (table.has(key)) {
-                table.fail(key, "the spectrum in a file or in the configuration, not both", "Remove one of the two.");
+                table.note(key, "the spectrum in a file or in the configuration, not both", "Remove one of the two.");
             }
         }
-        const auto file = table.file_path("file");
-        Digest digest;
-        std::vector<double> wavelengths;
-        std::vector<double> densities;
-        for (const auto& point : read_number_table(file, {"wavelength_um", "density"}, table.path() + ".file", "point")) {
-            digest.add_values(std::span<const double>(point.values));
-            wavelengths.push_back(point.values[0]);
-            densities.push_back(point.values[1]);
-        }
-        section.record_reference("file", absolute_path(file).string(), digest.text());
-        return optics::Spectrum::table(wavelengths, densities);
+        return read_spectrum_file(section);
     }
     const auto wavelengths = section.numbers("wavelengths_um", wavelength_range_um);
     return optics::Spectrum::table(wavelengths, section.numbers("densities", NumberRange::at_least(0)));
@@ -172,10 +212,12 @@ std::string read_spectrum(const Section& source, Configuration& configuration) {
         return "source." + wavelength;
     }
     if (source.table().has(wavelength)) {
-        source.table().fail(wavelength, "a wavelength or [source.spectrum], not both", "Remove one of the two.");
+        source.table().note(wavelength, "a wavelength or [source.spectrum], not both", "Remove one of the two.");
     }
     const Section section(*table, configuration);
-    at_its_place(configuration, table->where(), [&] { spectrum = read_spectrum_table(section); });
+    source.table().attempt("spectrum", [&] {
+        at_its_place(configuration, table->where(), [&] { spectrum = read_spectrum_table(section); });
+    });
     return table->path();
 }
 
@@ -201,7 +243,7 @@ std::string read_source(const TomlTable& root, Configuration& configuration) {
                                      {"ring", {"elevation_deg", "width_mm", "segments", "fill", "on"}}};
     auto& instrument = configuration.instrument;
     const Section source(root.table("source"), configuration);
-    const std::string kind = source.choice("kind", kinds_of(keys), "disc");
+    const std::string kind = source.kind("kind", kinds_of(keys), "disc");
     reject_keys_of_other_kinds(source.table(), keys, kind, "a source");
     instrument.flux = source.number("flux_W", NumberRange::positive(), 1.0);
     if (kind == "ring") {
@@ -238,11 +280,11 @@ void read_beam_splitter(const TomlTable& root, Configuration& configuration) {
                                      {"cube", {"glass", "edge_mm", "semi_diameter_mm"}}};
     auto& splitter = configuration.instrument.splitter;
     const Section section(root.table_or_empty("beam_splitter"), configuration);
-    const std::string kind = section.choice("kind", kinds_of(keys), "ideal");
+    const std::string kind = section.kind("kind", kinds_of(keys), "ideal");
     reject_keys_of_other_kinds(section.table(), keys, kind, "a beam splitter");
     splitter.kind = kind == "plate" ? Kind::plate : kind == "cube" ? Kind::cube : Kind::ideal;
     // A ring light does without its reflection.
-    const bool reflects = !configuration.instrument.ring;
+    const bool reflects = !configuration.instrument.ring && root.sound("source");
     splitter.reflectance = section.number(
         "reflectance", {.minimum = 0, .maximum = 1, .minimum_included = !reflects, .maximum_included = false},
         default_splitter_reflectance);
@@ -286,7 +328,7 @@ void read_interfaces(const TomlTable& root, Configuration& configuration) {
         {"ideal", {}}, {"fresnel", {}}, {"quarter-wave", {"layer", "design_wavelength_um"}}};
     auto& interfaces = configuration.instrument.interfaces;
     const Section section(root.table_or_empty("interfaces"), configuration);
-    const std::string model = section.choice("model", kinds_of(keys), "ideal");
+    const std::string model = section.kind("model", kinds_of(keys), "ideal");
     reject_keys_of_other_kinds(section.table(), keys, model, "interfaces");
     interfaces.model = model == "fresnel"        ? Model::fresnel
                        : model == "quarter-wave" ? Model::quarter_wave
@@ -303,7 +345,7 @@ void read_objective(const TomlTable& root, Configuration& configuration) {
                                      {"ideal", {"focal_length_mm", "numerical_aperture"}}};
     auto& instrument = configuration.instrument;
     const Section section(root.table("objective"), configuration);
-    const std::string kind = section.choice("kind", kinds_of(keys), "prescription");
+    const std::string kind = section.kind("kind", kinds_of(keys), "prescription");
     reject_keys_of_other_kinds(section.table(), keys, kind, "an objective");
     if (section.table().has("immersion")) {
         instrument.immersion = read_glass(section, configuration, "immersion", "");
@@ -324,7 +366,7 @@ void read_tube_lens(const TomlTable& root, Configuration& configuration) {
     static const KeysOfKinds keys = {{"prescription", {"prescription"}}, {"ideal", {"focal_length_mm"}}};
     auto& instrument = configuration.instrument;
     const Section section(root.table("tube_lens"), configuration);
-    const std::string kind = section.choice("kind", kinds_of(keys), "prescription");
+    const std::string kind = section.kind("kind", kinds_of(keys), "prescription");
     reject_keys_of_other_kinds(section.table(), keys, kind, "a tube lens");
     instrument.tube_lens = kind == "ideal"
                                ? optics::ideal_lens(section.number("focal_length_mm", NumberRange::positive()))
@@ -364,11 +406,11 @@ void require_indices(const Configuration& configuration, const std::string& wave
             try {
                 (void)medium.index(wavelength_um);
             } catch (const InputError& error) {
-                auto problem = error.problem();
-                problem.where = configuration.places.at(key);
-                problem.key = key;
-                problem.expected += fmt::format(": {} in {}", error.problem().key, part);
-                throw InputError(std::move(problem));
+                throw error.with_each([&](InputProblem& problem) {
+                    problem.where = configuration.places.at(key);
+                    problem.expected += fmt::format(": {} in {}", problem.key, part);
+                    problem.key = key;
+                });
             }
         }
     };
@@ -416,10 +458,12 @@ void require_possible_aperture(const TomlTable& root, const Configuration& confi
 } // namespace
 
 void read_glass_catalogs(const TomlTable& root, Configuration& configuration) {
-    const std::string key = "glass_catalogs";
+    const std::string key = glass_catalogs_key;
     std::vector<std::string> paths;
     for (const auto& path : root.optional_file_paths(key)) {
-        configuration.glasses.add(path);
+        const auto file = looked_for(path);
+        root.attempt(fmt::format("{}[{}]", key, paths.size()),
+                     [&] { as_named(root, key, file, [&] { configuration.glasses.add(file); }); });
         paths.push_back(toml_quoted(absolute_path(path).string()));
     }
     // Glasses count by the digests of what uses them, so the identity does without the catalogues.
@@ -430,17 +474,19 @@ void read_glass_catalogs(const TomlTable& root, Configuration& configuration) {
 }
 
 void read_instrument(const TomlTable& root, Configuration& configuration) {
-    const std::string wavelength_key = read_source(root, configuration);
-    read_illumination(root, configuration);
-    read_beam_splitter(root, configuration);
-    read_fold_mirrors(root, configuration);
-    read_interfaces(root, configuration);
-    read_objective(root, configuration);
-    read_cover_glass(root, configuration);
-    read_tube_lens(root, configuration);
-    read_detector(root, configuration);
-    require_indices(configuration, wavelength_key);
-    require_possible_aperture(root, configuration);
+    std::string wavelength_key;
+    root.attempt("source", [&] { wavelength_key = read_source(root, configuration); });
+    const std::pair<const char*, void (*)(const TomlTable&, Configuration&)> parts[] = {
+        {"illumination", read_illumination}, {"beam_splitter", read_beam_splitter}, {"fold_mirror", read_fold_mirrors},
+        {"interfaces", read_interfaces},     {"objective", read_objective},         {"cover_glass", read_cover_glass},
+        {"tube_lens", read_tube_lens},       {"detector", read_detector}};
+    for (const auto& [key, read] : parts) {
+        root.attempt(key, [&] { read(root, configuration); });
+    }
+    if (root.sound("")) { // what takes all of them together
+        root.attempt("source", [&] { require_indices(configuration, wavelength_key); });
+        root.attempt("objective", [&] { require_possible_aperture(root, configuration); });
+    }
 }
 
 } // namespace vkfv::app

@@ -16,20 +16,40 @@ std::filesystem::path absolute_path(const std::filesystem::path& path) {
     return std::filesystem::absolute(path).lexically_normal();
 }
 
+std::filesystem::path looked_for(const std::filesystem::path& path) {
+    std::error_code code;
+    return std::filesystem::exists(path, code) ? path : absolute_path(path);
+}
+
+void as_named(const TomlTable& table, const std::string& key, const std::filesystem::path& file,
+              const std::function<void()>& work) {
+    try {
+        work();
+    } catch (const InputError& error) {
+        std::error_code code;
+        if (std::filesystem::exists(file, code)) {
+            throw;
+        }
+        throw error.with_each([&](InputProblem& problem) {
+            problem.remedy += fmt::format(" It is named at {}.", table.where(key).to_string());
+        });
+    }
+}
+
 void at_its_place(const Configuration& configuration, const SourceLocation& otherwise,
                   const std::function<void()>& work) {
     try {
         work();
     } catch (const InputError& error) {
-        auto problem = error.problem();
-        const auto& places = configuration.places;
-        if (const auto place = places.find(problem.key); place != places.end()) {
-            problem.where = place->second;
-        } else if (problem.where.file.empty()) {
-            const auto table = places.find(problem.key.substr(0, problem.key.rfind('.')));
-            problem.where = table != places.end() ? table->second : otherwise;
-        }
-        throw InputError(std::move(problem));
+        throw error.with_each([&](InputProblem& problem) {
+            const auto& places = configuration.places;
+            if (const auto place = places.find(problem.key); place != places.end()) {
+                problem.where = place->second;
+            } else if (problem.where.file.empty()) {
+                const auto table = places.find(problem.key.substr(0, problem.key.rfind('.')));
+                problem.where = table != places.end() ? table->second : otherwise;
+            }
+        });
     }
 }
 
@@ -43,7 +63,7 @@ void reject_keys_of_other_kinds(const TomlTable& table, const KeysOfKinds& keys_
     }
     for (const auto& [key, kinds] : kinds_with) {
         if (std::ranges::find(kinds, kind) == kinds.end() && table.has(key)) {
-            table.fail(key, fmt::format("no such key for {} of kind \"{}\"", subject, kind),
+            table.note(key, fmt::format("no such key for {} of kind \"{}\"", subject, kind),
                        fmt::format("Remove it; it belongs to kind \"{}\".", fmt::join(kinds, "\" or \"")));
         }
     }
@@ -114,6 +134,13 @@ std::string Section::choice(const std::string& key, const std::vector<std::strin
     const std::string value =
         fallback ? table_.optional_choice(key, choices).value_or(*fallback) : table_.choice(key, choices);
     return record(key, toml_quoted(value), influence), value;
+}
+
+std::string Section::kind(const std::string& key, const std::vector<std::string>& kinds,
+                          std::optional<std::string> fallback, Influence influence) const {
+    const std::string value = choice(key, kinds, std::move(fallback), influence);
+    table_.require(key);
+    return value;
 }
 
 void Section::record(const std::string& key, const std::string& value, Influence influence) const {

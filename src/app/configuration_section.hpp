@@ -16,8 +16,15 @@ std::string shortest_text(double value);
 
 std::filesystem::path absolute_path(const std::filesystem::path& path);
 
-// Runs `work`, and gives its InputError the place of the problem's key; without one, if it has none, that of the key's
-// table, else `otherwise`.
+// The path; of a file that does not exist the absolute one, so that messages tell where it was looked for.
+std::filesystem::path looked_for(const std::filesystem::path& path);
+
+// Runs `work`, which reads a file that the key names, and says where that was named if there is no such file.
+void as_named(const TomlTable& table, const std::string& key, const std::filesystem::path& file,
+              const std::function<void()>& work);
+
+// Runs `work`, and gives each problem of its InputError the place of the problem's key; without one, if it has none, that
+// of the key's table, else `otherwise`.
 void at_its_place(const Configuration& configuration, const SourceLocation& otherwise,
                   const std::function<void()>& work);
 
@@ -50,6 +57,9 @@ class Section {
     std::string string(const std::string& key, std::optional<std::string> fallback = {}) const;
     std::string choice(const std::string& key, const std::vector<std::string>& choices,
                        std::optional<std::string> fallback = {}, Influence influence = Influence::images) const;
+    // A choice that decides what other keys there are: a wrong one ends the reading of this table.
+    std::string kind(const std::string& key, const std::vector<std::string>& kinds,
+                     std::optional<std::string> fallback = {}, Influence influence = Influence::images) const;
     void record(const std::string& key, const std::string& value, Influence influence) const;
     // A path or a name in the canonical text; in the identity nothing, or a digest of what it stands for.
     void record_reference(const std::string& key, const std::string& value, const std::string& digest = "") const;

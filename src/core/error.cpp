@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+
 namespace vkfv {
 
 std::string SourceLocation::to_string() const {
@@ -19,6 +21,8 @@ std::string SourceLocation::to_string() const {
 }
 
 namespace {
+
+constexpr std::size_t most_told = 10; // problems; more than a screen are not read
 
 std::string describe(const InputProblem& problem) {
     std::string text = problem.where.to_string();
@@ -38,9 +42,22 @@ std::string describe(const InputProblem& problem) {
     return text;
 }
 
+std::string describe(const std::vector<InputProblem>& problems) {
+    std::string text;
+    for (std::size_t i = 0; i < std::min(problems.size(), most_told); ++i) {
+        text += (i > 0 ? "\n" : "") + describe(problems[i]);
+    }
+    if (problems.size() > most_told) {
+        text += fmt::format("\nand {} more", problems.size() - most_told);
+    }
+    return text;
+}
+
 } // namespace
 
-InputError::InputError(InputProblem problem)
-    : std::runtime_error(describe(problem)), problem_(std::move(problem)) {}
+InputError::InputError(InputProblem problem) : InputError(std::vector{std::move(problem)}) {}
+
+InputError::InputError(std::vector<InputProblem> problems)
+    : std::runtime_error(describe(problems)), problems_(std::move(problems)) {}
 
 } // namespace vkfv

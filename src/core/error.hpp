@@ -6,6 +6,8 @@
 #include <optional>
 #include <stdexcept>
 #include <string>
+#include <utility>
+#include <vector>
 
 namespace vkfv {
 
@@ -33,14 +35,27 @@ struct InputProblem {
     std::string remedy;   // one imperative sentence
 };
 
-// Exit code 2: the user's input is wrong.
+// Exit code 2: the user's input is wrong. The message has a line for each of the first ten problems, and tells how many
+// more there are.
 class InputError : public std::runtime_error {
   public:
     explicit InputError(InputProblem problem);
-    const InputProblem& problem() const { return problem_; }
+    explicit InputError(std::vector<InputProblem> problems); // at least one, in the order in which they are told
+    const InputProblem& problem() const { return problems_.front(); }
+    const std::vector<InputProblem>& problems() const { return problems_; }
+
+    // The same error with every problem changed by `change(InputProblem&)`: for whoever knows more of them.
+    template <class Change>
+    InputError with_each(Change change) const {
+        auto problems = problems_;
+        for (InputProblem& problem : problems) {
+            change(problem);
+        }
+        return InputError(std::move(problems));
+    }
 
   private:
-    InputProblem problem_;
+    std::vector<InputProblem> problems_;
 };
 
 // Exit code 3: no usable device. The message names what is missing and the remedy.

@@ -6,6 +6,7 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <functional>
 #include <limits>
 #include <memory>
 #include <optional>
@@ -37,6 +38,9 @@ struct NumberRange {
     std::string to_string() const;
 };
 
+// What to do about a length in um beyond its range that most likely was given in nm; none if it was not.
+std::optional<std::string> remedy_for_length_um(double value, const NumberRange& range);
+
 // A value given on the command line in place of the file's.
 struct TomlOverride {
     std::string key;    // dotted, from the root: "trace.rays"
@@ -45,8 +49,8 @@ struct TomlOverride {
 };
 
 // A table of a TOML document. Copies share one document and one memory of the keys asked for; not for use by
-// several threads. Every getter throws InputError; those that begin with `optional_` give nothing for a
-// missing key.
+// several threads. Every getter throws InputError, unless problems are collected; those that begin with `optional_` give
+// nothing for a missing key.
 class TomlTable {
   public:
     // The root table of a file, with the overrides put in their places. Throws InputError for a file that
@@ -99,15 +103,32 @@ class TomlTable {
     std::vector<TomlTable> tables(std::string_view key) const;
     std::vector<TomlTable> optional_tables(std::string_view key) const;
 
-    // Throws for the first key, here or in any table got from here, that nobody has asked for, and names the
-    // nearest of those that were. Call it on the root, last.
+    // Throws for the keys, here and in the tables got from here, that nobody has asked for, and names the
+    // nearest of those that were; with them for all that was noted. Call it on the root, last.
     void reject_unknown_keys() const;
 
-    // Throws InputError for this key's value as found.
+    // From here on all getters of this document note what is wrong and go on with a value that does no harm (nothing, the
+    // default, a number in the range, the first choice), so that reject_unknown_keys() can tell of all at once. A missing
+    // table still throws, to the attempt() around it.
+    void collect_problems() const;
+    // Reads this key or table, and what belongs to it. While problems are collected an InputError is noted, unless
+    // something there was noted before: then it may be a consequence. Keys there that were not asked for by then are not
+    // taken as unknown.
+    void attempt(std::string_view key, const std::function<void()>& read) const;
+    // Throws if something was noted at this key: for those that decide how all else is read.
+    void require(std::string_view key) const;
+    // Whether nothing was noted at this path, dotted from the root, or below it.
+    bool sound(std::string_view path) const;
+
+    // Throws InputError for this key's value as found; for what several values are needed to tell.
     [[noreturn]] void fail(std::string_view key, std::string expected, std::string remedy) const;
+    // The same, but noted while problems are collected, once a key.
+    void note(std::string_view key, std::string expected, std::string remedy) const;
 
   private:
     struct State;
+    template <class Convert>
+    auto get(std::string_view key, const std::string& expected, Convert convert) const;
     explicit TomlTable(std::shared_ptr<State> state);
     std::shared_ptr<State> state_;
 };
@@ -116,7 +137,8 @@ class TomlTable {
 std::string toml_quoted(std::string_view text);
 
 // That of `candidates` that a misspelt `word` most likely meant (edit distance, swapped neighbours counting
-// one); none if all are too far off.
-std::optional<std::string> nearest_word(std::string_view word, const std::vector<std::string>& candidates);
+// one); none if all are too far off, or more than `most_steps`.
+std::optional<std::string> nearest_word(std::string_view word, const std::vector<std::string>& candidates,
+                                        std::size_t most_steps = std::string::npos);
 
 } // namespace vkfv

@@ -4,6 +4,8 @@
 #include "core/file.hpp"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
+#include <spdlog/spdlog.h>
 
 #include <algorithm>
 #include <array>
@@ -11,8 +13,8 @@
 #include <cmath>
 #include <cstdint>
 #include <iterator>
+#include <map>
 #include <optional>
-#include <set>
 #include <string>
 #include <utility>
 
@@ -135,6 +137,20 @@ std::string quotation(std::string_view text) {
     return fmt::format("\"{}{}\"", text.substr(0, length), length < text.size() ? "..." : "");
 }
 
+// A line, or several where its numbers go on in the next ones.
+struct Word {
+    std::string_view text;
+    int line = 0;
+};
+
+bool is_number(std::string_view word) {
+    double value = 0;
+    if (word.starts_with('+')) { // from_chars takes none
+        word.remove_prefix(1);
+    }
+    return std::from_chars(word.data(), word.data() + word.size(), value).ptr == word.data() + word.size() && !word.empty();
+}
+
 class Reader {
   public:
     explicit Reader(const std::filesystem::path& file) : file_(file) {}
@@ -145,32 +161,17 @@ class Reader {
         if (words.empty() || words[0][0] == '!' || words[0][0] == '#') {
             return;
         }
-        const std::string_view keyword = words[0];
-        if (keyword == "NM") {
-            finish_glass();
-            begin_glass(words);
-        } else if (keyword == "CD") {
-            require_glass(keyword);
-            if (glass_->has_coefficients) {
-                fail(keyword, line, "one such line a glass", "Remove one of the two.");
-            }
-            glass_->has_coefficients = true;
-            read_coefficients(words);
-        } else if (keyword == "LD") {
-            require_glass(keyword);
-            if (glass_->maximum_um > 0) {
-                fail(keyword, line, "one such line a glass", "Remove one of the two.");
-            }
-            read_range(words);
-        } else if (std::find(skipped_keywords.begin(), skipped_keywords.end(), keyword) ==
-                       skipped_keywords.end() &&
-                   glass_) {
-            fail(keyword, keyword, "NM, CD, LD, or CC, GC, ED, TD, OD, IT, MD, BD, which are skipped",
-                 "Correct the line, or begin it with '!' if it is a remark.");
+        // Some vendors' lines are wrapped: every line begins with letters, so one of numbers goes on with the last.
+        if (pending_.empty() || !is_number(words[0])) {
+            take_pending();
+        }
+        for (const auto word : words) {
+            pending_.push_back({word, line_});
         }
     }
 
     std::vector<Medium> finish() {
+        take_pending();
         finish_glass();
         if (media_.empty()) {
             throw InputError({.where = {.file = file_},
@@ -179,6 +180,7 @@ class Reader {
                               .expected = "a glass catalogue in the AGF format",
                               .remedy = "Check that the file is a glass catalogue and complete."});
         }
+        warn_of_twins();
         return std::move(media_);
     }
 
@@ -193,18 +195,57 @@ class Reader {
         double maximum_um = 0; // 0: no LD yet
     };
 
-    [[noreturn]] void fail(std::string_view key, std::string_view found, std::string expected,
+    void take_pending() {
+        if (pending_.empty()) {
+            return;
+        }
+        const auto words = std::exchange(pending_, {});
+        const std::string_view keyword = words[0].text;
+        if (keyword == "NM") {
+            finish_glass();
+            begin_glass(words);
+        } else if (keyword == "CD") {
+            require_glass(words[0]);
+            if (glass_->has_coefficients) {
+                fail(words[0], keyword, joined(words), "one such line a glass", "Remove one of the two.");
+            }
+            glass_->has_coefficients = true;
+            read_coefficients(words);
+        } else if (keyword == "LD") {
+            require_glass(words[0]);
+            if (glass_->maximum_um > 0) {
+                fail(words[0], keyword, joined(words), "one such line a glass", "Remove one of the two.");
+            }
+            read_range(words);
+        } else if (std::find(skipped_keywords.begin(), skipped_keywords.end(), keyword) ==
+                       skipped_keywords.end() &&
+                   glass_) {
+            fail(words[0], keyword, keyword,
+                 "NM, CD, LD, or CC, GC, ED, TD, OD, IT, MD, BD, which are skipped, or numbers that continue a line",
+                 "Correct the line, or begin it with '!' if it is a remark.");
+        }
+    }
+
+    static std::string joined(const std::vector<Word>& words) {
+        std::string text;
+        for (const Word& word : words) {
+            text += (text.empty() ? "" : " ") + std::string(word.text);
+        }
+        return text;
+    }
+
+    [[noreturn]] void fail(const Word& at, std::string_view key, std::string_view found, std::string expected,
                            std::string remedy) const {
         throw InputError(
-            {.where = {.file = file_, .line = line_},
+            {.where = {.file = file_, .line = at.line},
              .key = glass_ ? fmt::format("{} of {}", key, quotation(glass_->name)) : std::string(key),
              .found = quotation(found),
              .expected = std::move(expected),
              .remedy = std::move(remedy)});
     }
 
-    double number(std::string_view keyword, std::string_view word) const {
-        std::string_view digits = word;
+    double number(std::string_view keyword, const Word& word) const {
+        std::string_view digits = word.text;
         if (digits.starts_with('+')) { // from_chars takes none
             digits.remove_prefix(1);
         }
@@ -212,41 +253,38 @@ class Reader {
         const auto [end, code] = std::from_chars(digits.data(), digits.data() + digits.size(), value);
         // Out of range: from_chars leaves the value, whether it is too large or too small.
         if (code != std::errc() || end != digits.data() + digits.size() || !std::isfinite(value)) {
-            fail(keyword, word, "a finite number", "Correct this number.");
+            fail(word, keyword, word.text, "a finite number", "Correct this number.");
         }
         return value;
     }
 
-    void require_glass(std::string_view keyword) const {
+    void require_glass(const Word& keyword) const {
         if (!glass_) {
-            fail(keyword, keyword, "a line NM before it", "Name the glass that this line belongs to.");
+            fail(keyword, keyword.text, keyword.text, "a line NM before it", "Name the glass that this line belongs to.");
         }
     }
 
-    void begin_glass(const std::vector<std::string_view>& words) {
+    void begin_glass(const std::vector<Word>& words) {
         if (words.size() < 3) {
-            fail("NM", words.back(), "a name and the number of a formula", "Complete the line.");
+            fail(words.back(), "NM", words.back().text, "a name and the number of a formula", "Complete the line.");
         }
         const double formula = number("NM", words[2]);
         if (!(formula >= 1 && formula <= static_cast<double>(dispersion_formula_names.size()) &&
               formula == std::trunc(formula))) {
-            fail("NM", words[2], "the number of a dispersion formula, 1 to 13", "Correct the number.");
+            fail(words[2], "NM", words[2].text, "the number of a dispersion formula, 1 to 13", "Correct the number.");
         }
-        if (!names_.emplace(words[1]).second) {
-            fail("NM", words[1], "a name that no glass before it has", "Rename or remove one of the two.");
-        }
-        glass_ = Glass{.name = std::string(words[1]),
-                       .line = line_,
+        glass_ = Glass{.name = std::string(words[1].text),
+                       .line = words[0].line,
                        .formula = static_cast<DispersionFormula>(static_cast<int>(formula)),
                        .coefficients = {}};
     }
 
-    void read_coefficients(const std::vector<std::string_view>& words) {
+    void read_coefficients(const std::vector<Word>& words) {
         const std::size_t count = coefficient_count(glass_->formula);
         for (std::size_t i = 1; i < words.size(); ++i) {
             const double value = number("CD", words[i]);
             if (i > count && value != 0) {
-                fail("CD", words[i],
+                fail(words[i], "CD", words[i].text,
                      fmt::format("{} coefficients of formula {}, and zeros after them", count,
                                  static_cast<int>(glass_->formula)),
                      "Check the formula's number and the coefficients.");
@@ -256,18 +294,18 @@ class Reader {
             }
         }
         if (glass_->coefficients.empty()) {
-            fail("CD", "CD", "coefficients", "Complete the line.");
+            fail(words[0], "CD", "CD", "coefficients", "Complete the line.");
         }
     }
 
-    void read_range(const std::vector<std::string_view>& words) {
+    void read_range(const std::vector<Word>& words) {
         if (words.size() < 3) {
-            fail("LD", words.back(), "the least and the greatest wavelength in um", "Complete the line.");
+            fail(words.back(), "LD", words.back().text, "the least and the greatest wavelength in um", "Complete the line.");
         }
         glass_->minimum_um = number("LD", words[1]);
         glass_->maximum_um = number("LD", words[2]);
         if (!(glass_->minimum_um > 0 && glass_->maximum_um > glass_->minimum_um)) {
-            fail("LD", fmt::format("{} {}", words[1], words[2]),
+            fail(words[0], "LD", fmt::format("{} {}", words[1].text, words[2].text),
                  "two wavelengths in um, positive and ascending", "Correct the range.");
         }
     }
@@ -284,16 +322,42 @@ class Reader {
                               .expected = fmt::format("a line {} after this NM", missing),
                               .remedy = "Complete the glass, or remove it."});
         }
-        media_.push_back(Medium::formula(std::move(glass_->name), glass_->formula,
-                                         std::move(glass_->coefficients), glass_->minimum_um,
-                                         glass_->maximum_um, file_.filename().string()));
+        add(Medium::formula(std::move(glass_->name), glass_->formula, std::move(glass_->coefficients),
+                            glass_->minimum_um, glass_->maximum_um, file_.filename().string()),
+            glass_->line);
         glass_.reset();
+    }
+
+    // Vendors' catalogues have names twice. The first stays: a search from the front finds it.
+    void add(Medium medium, int line) {
+        const auto [known, is_new] = index_of_.try_emplace(medium.name, media_.size());
+        if (is_new) {
+            lines_.push_back(line);
+            media_.push_back(std::move(medium));
+        } else if (media_[known->second].dispersion != medium.dispersion) {
+            twins_.push_back(fmt::format("{} (lines {} and {})", medium.name, lines_[known->second], line));
+        }
+    }
+
+    void warn_of_twins() const {
+        constexpr std::size_t most_named = 10;
+        if (twins_.empty()) {
+            return;
+        }
+        const std::size_t named = std::min(twins_.size(), most_named);
+        spdlog::warn("{}: the same name stands for different glasses; the first of each is taken: {}{}. Rename the others "
+                     "to use them.",
+                     file_.string(), fmt::join(twins_.begin(), twins_.begin() + static_cast<std::ptrdiff_t>(named), ", "),
+                     twins_.size() > named ? fmt::format(" and {} more", twins_.size() - named) : "");
     }
 
     const std::filesystem::path& file_;
     int line_ = 0;
+    std::vector<Word> pending_; // the last line, which may go on
     std::optional<Glass> glass_;
-    std::set<std::string, std::less<>> names_;
+    std::map<std::string, std::size_t, std::less<>> index_of_; // of each name in media_
+    std::vector<int> lines_;                                   // of each medium's NM
+    std::vector<std::string> twins_;
     std::vector<Medium> media_;
 };
 

@@ -7,6 +7,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <set>
 #include <utility>
 
 namespace vkfv::optics {
@@ -249,8 +250,11 @@ void GlassCatalog::add(const std::filesystem::path& agf) {
 }
 
 void GlassCatalog::add(const std::vector<Medium>& media) {
+    std::set<std::string> added; // the first of a catalogue's names that are the same in one case
     for (const auto& medium : media) {
-        media_.insert_or_assign(in_one_case(medium.name), medium);
+        if (auto name = in_one_case(medium.name); added.insert(name).second) {
+            media_.insert_or_assign(std::move(name), medium);
+        }
     }
 }
 

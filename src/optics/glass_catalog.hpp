@@ -14,7 +14,7 @@ namespace vkfv::optics {
 
 // A value. Names are the same whatever their case, and with '_' or a space for '-': "n-bk7", "Fused Silica".
 // A glass of a catalogue added later goes before one of an earlier catalogue, and that before the built-in
-// one.
+// one; within a catalogue the first of a name is taken.
 class GlassCatalog {
   public:
     // The common glasses, crystals and liquids, each with its source; see glass_catalog.cpp.

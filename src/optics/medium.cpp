@@ -174,11 +174,14 @@ double Medium::index(double wavelength_um) const {
     };
     const auto range = valid_range();
     if (range && !(wavelength_um >= range->minimum_um && wavelength_um <= range->maximum_um)) {
+        constexpr double longest_likely_um = 100;
+        const bool in_nm = range->minimum_um > longest_likely_um;
         refuse(fmt::format("{} um", wavelength_um),
                fmt::format("a wavelength in [{:.9g}, {:.9g}] um, where the numbers hold ({})",
                            range->minimum_um, range->maximum_um, source.empty() ? "no source given" : source),
-               "Choose such a wavelength, or describe the medium over a wider range in [media] of the "
-               "prescription.");
+               in_nm ? "The medium's own wavelengths look like nanometres: divide them by 1000."
+                     : "Choose such a wavelength, or describe the medium over a wider range in [media] of the "
+                       "prescription.");
     }
     const double index =
         std::visit(Overloaded{[](const ConstantIndex& constant) { return constant.index; },

@@ -28,6 +28,20 @@ std::filesystem::path asset_in(const std::filesystem::path& assets, const std::f
     return assets / folder / (name + ".toml");
 }
 
+// Those beside the folder `base` and beside the folders above it, then the installed ones.
+std::vector<std::filesystem::path> asset_folders(const std::filesystem::path& base) {
+    std::vector<std::filesystem::path> folders;
+    std::error_code code;
+    for (auto beside = std::filesystem::absolute(base, code).lexically_normal(); !beside.empty(); beside = beside.parent_path()) {
+        folders.push_back(beside / "assets");
+        if (beside == beside.parent_path()) {
+            break;
+        }
+    }
+    folders.emplace_back(VKFV_ASSETS_DIR);
+    return folders;
+}
+
 bool names_a_path(const std::string& name) {
     return name.ends_with(".toml");
 }
@@ -111,6 +125,7 @@ Medium medium_named(const Media& media, const TomlTable& table, std::string_view
     }
     table.fail(key, fmt::format("a medium (one of {}, or a glass of a catalogue)", fmt::join(names, ", ")),
                remedy_for_unknown_glass(media.glasses, *name, names));
+    return Medium::air();
 }
 
 CoordinateBreak read_coordinate_break(const TomlTable& table) {
@@ -135,7 +150,7 @@ PrescribedSurface read_surface(const TomlTable& table, const Media& media) {
     if (table.has("radius_mm")) {
         const double radius = table.number("radius_mm");
         if (table.has("curvature_per_mm")) {
-            table.fail("curvature_per_mm", "a radius or a curvature, not both", "Remove one of the two.");
+            table.note("curvature_per_mm", "a radius or a curvature, not both", "Remove one of the two.");
         }
         surface.curvature = radius == 0 ? 0 : 1 / radius;
         if (!std::isfinite(surface.curvature)) {
@@ -155,7 +170,7 @@ PrescribedSurface read_surface(const TomlTable& table, const Media& media) {
     if (const auto focal_length = table.optional_number(ideal, offset_range)) {
         for (const char* key : {"radius_mm", "curvature_per_mm", "conic", "aspheric"}) {
             if (table.has(key)) {
-                table.fail(key, "no shape of an ideal lens, which is thin and plane", "Remove one of the two.");
+                table.note(key, "no shape of an ideal lens, which is thin and plane", "Remove one of the two.");
             }
         }
         surface.ideal_power = 1 / *focal_length;
@@ -172,24 +187,7 @@ PrescribedSurface read_surface(const TomlTable& table, const Media& media) {
     return surface;
 }
 
-Prescription read_prescription(const TomlTable& root, const std::filesystem::path& file,
-                               const GlassCatalog& glasses) {
-    Prescription prescription;
-    prescription.file = file;
-    prescription.name = file.stem().string();
-    prescription.title = root.optional_string("title").value_or(prescription.name);
-    prescription.source = root.string("source");
-    prescription.licence = root.string("licence");
-    prescription.source_distance = root.optional_number("source_distance_mm", length_range);
-
-    Media media{.own = {}, .glasses = glasses};
-    if (const auto tables = root.optional_table("media")) {
-        for (const auto& key : tables->keys()) {
-            media.own[key] = read_medium(tables->table(key), key, prescription.source);
-        }
-    }
-    prescription.medium_before = medium_named(media, root, "medium_before");
-    const auto tables = root.tables("surface");
+void read_surfaces(const std::vector<TomlTable>& tables, const Media& media, Prescription& prescription) {
     bool has_aperture_stop = false;
     bool has_field_stop = false;
     for (std::size_t i = 0; i < tables.size(); ++i) {
@@ -201,16 +199,49 @@ Prescription read_prescription(const TomlTable& root, const std::filesystem::pat
              {std::pair{PrescribedSurface::Role::aperture_stop, &has_aperture_stop},
               std::pair{PrescribedSurface::Role::field_stop, &has_field_stop}}) {
             if (surface.role == role && std::exchange(*seen, true)) {
-                tables[i].fail("role", "one surface of this role", "Mark the one that limits the light.");
+                tables[i].note("role", "one surface of this role", "Mark the one that limits the light.");
             }
         }
         prescription.surfaces.push_back(std::move(surface));
     }
+}
+
+Prescription read_prescription(const TomlTable& root, const std::filesystem::path& file,
+                               const GlassCatalog& glasses) {
+    Prescription prescription;
+    prescription.file = file;
+    prescription.name = file.stem().string();
+    root.collect_problems(); // to tell of all at once
+    prescription.title = root.optional_string("title").value_or(prescription.name);
+    prescription.source = root.string("source");
+    prescription.licence = root.string("licence");
+    prescription.source_distance = root.optional_number("source_distance_mm", length_range);
+
+    Media media{.own = {}, .glasses = glasses};
+    if (const auto tables = root.optional_table("media")) {
+        for (const auto& key : tables->keys()) {
+            media.own[key] = Medium::air(); // of that name, whatever comes of it
+            tables->attempt(key, [&] { media.own[key] = read_medium(tables->table(key), key, prescription.source); });
+        }
+    }
+    prescription.medium_before = medium_named(media, root, "medium_before");
+    root.attempt("surface", [&] { read_surfaces(root.tables("surface"), media, prescription); });
     root.reject_unknown_keys();
     return prescription;
 }
 
 } // namespace
+
+std::string searched_for_prescription(const std::string& name, const std::filesystem::path& folder,
+                                      const std::filesystem::path& base) {
+    std::error_code code;
+    const auto beside = std::filesystem::absolute(base, code).lexically_normal();
+    if (names_a_path(name)) {
+        return fmt::format("looked for {}", (beside / name).string());
+    }
+    return fmt::format("looked for assets/{}/{}.toml beside {}, beside every folder above it, and in {}",
+                       folder.generic_string(), name, beside.string(), VKFV_ASSETS_DIR);
+}
 
 std::optional<std::filesystem::path> find_prescription(const std::string& name,
                                                        const std::filesystem::path& folder,
@@ -223,19 +254,26 @@ std::optional<std::filesystem::path> find_prescription(const std::string& name,
         const auto path = base / name;
         return is_file(path) ? std::optional(path) : std::nullopt;
     }
-    auto beside = std::filesystem::absolute(base, code).lexically_normal();
-    while (!beside.empty()) {
-        const auto path = asset_in(beside / "assets", folder, name);
-        if (is_file(path)) {
+    for (const auto& assets : asset_folders(base)) {
+        if (const auto path = asset_in(assets, folder, name); is_file(path)) {
             return path;
         }
-        if (beside == beside.parent_path()) {
-            break;
-        }
-        beside = beside.parent_path();
     }
-    const auto installed = asset_in(VKFV_ASSETS_DIR, folder, name);
-    return is_file(installed) ? std::optional(installed) : std::nullopt;
+    return std::nullopt;
+}
+
+std::vector<std::string> prescription_names(const std::filesystem::path& folder, const std::filesystem::path& base) {
+    std::vector<std::string> names;
+    std::error_code code;
+    for (const auto& assets : asset_folders(base)) {
+        for (std::filesystem::directory_iterator entry(assets / folder, code), end; !code && entry != end;
+             entry.increment(code)) {
+            if (entry->path().extension() == ".toml") {
+                names.push_back(entry->path().stem().string());
+            }
+        }
+    }
+    return names;
 }
 
 Prescription load_prescription(const std::string& name, const std::filesystem::path& folder,
@@ -245,9 +283,7 @@ Prescription load_prescription(const std::string& name, const std::filesystem::p
         throw InputError({.where = {.file = base},
                           .key = "prescription",
                           .found = "\"" + name + "\"",
-                          .expected = names_a_path(name) ? "an existing file"
-                                                         : fmt::format("a file assets/{}/{}.toml",
-                                                                       folder.generic_string(), name),
+                          .expected = "an existing file; " + searched_for_prescription(name, folder, base),
                           .remedy = "Correct the name, or give the path of a prescription (.toml)."});
     }
     return read_prescription(TomlTable::open(*file), *file, glasses);

@@ -58,6 +58,13 @@ std::optional<std::filesystem::path> find_prescription(const std::string& name,
                                                        const std::filesystem::path& folder,
                                                        const std::filesystem::path& base);
 
+// Where find_prescription looks, for messages: "looked for ...".
+std::string searched_for_prescription(const std::string& name, const std::filesystem::path& folder,
+                                      const std::filesystem::path& base);
+
+// The names that find_prescription finds in such a folder.
+std::vector<std::string> prescription_names(const std::filesystem::path& folder, const std::filesystem::path& base);
+
 // Reads the prescription that find_prescription finds. A medium is looked for in the file's own [media], then in
 // `glasses`. Throws InputError.
 Prescription load_prescription(const std::string& name, const std::filesystem::path& folder,

@@ -7,6 +7,7 @@
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
+#include <spdlog/spdlog.h>
 
 #include <algorithm>
 #include <charconv>
@@ -209,6 +210,7 @@ struct Surface {
     std::map<int, Parameter> parameters;
     std::optional<Medium> medium; // none: air
     Line medium_line;
+    std::vector<InputProblem> medium_problems; // what is wrong with it, if light goes there
     double diameter = 0; // half of it; 0: none
     double aperture = 0; // the same, and rays are clipped there
     bool stop = false;
@@ -413,8 +415,14 @@ class Reader {
             surface.thickness = infinite ? INFINITY : number_at(line, 0);
             surface.thickness_line = line;
         } else if (line.keyword == "GLAS") {
-            surface.medium = glass_of(line);
             surface.medium_line = line;
+            surface.medium_problems.clear();
+            try {
+                surface.medium = glass_of(line);
+            } catch (const InputError& error) { // none if this turns out to be the image
+                surface.medium = Medium::air();
+                surface.medium_problems = error.problems();
+            }
         } else if (line.keyword == "CONI") {
             surface.conic = number_at(line, 0);
         } else if (line.keyword == "PARM") {
@@ -452,7 +460,12 @@ class Reader {
         }
         if (name == "___BLANK") {
             const double nd = number_at(line, 3, index_range);
-            const double vd = number_at(line, 4, abbe_range);
+            const double vd = number_at(line, 4);
+            if (vd != 0 && !abbe_range.contains(vd)) {
+                refuse(line, line.rest,
+                       fmt::format("as value 5 an Abbe number {}, or 0 for no dispersion", abbe_range.to_string()),
+                       "Correct the number; decimals take a point.");
+            }
             if (line.words.size() > 5 && number_at(line, 5) != 0) {
                 refuse(line, line.rest, "a model glass without a deviation of its partial dispersion",
                        "Set the deviation to 0, or name a glass of a catalogue.");
@@ -468,14 +481,14 @@ class Reader {
                            meant ? fmt::format("Did you mean \"{}\"? ", *meant) : ""));
     }
 
-    // Named by its six-digit code, and a count where several share that.
+    // Named by its six-digit code, and a count where several share that. Zemax's Abbe number 0 is no dispersion at all.
     Medium model_glass(double nd, double vd) {
         const std::string code = fmt::format("{:03.0f}{:03.0f}", 1000 * (nd - 1), 10 * vd);
         for (int count = 1;; ++count) {
             const std::string name = count == 1 ? code : fmt::format("{}-{}", code, count);
             const auto [place, added] = model_glasses_.try_emplace(name, nd, vd);
             if (added || place->second == std::pair(nd, vd)) {
-                return Medium::model(name, nd, vd, source());
+                return vd == 0 ? Medium::constant(name, nd, source()) : Medium::model(name, nd, vd, source());
             }
         }
     }
@@ -500,15 +513,11 @@ class Reader {
         prescription.title = title_.empty() ? prescription.name : title_;
         prescription.source = source();
         prescription.licence = "not known to the import: see the source";
+        require_glasses();
         for (const auto& surface : surfaces_) {
             check(surface);
         }
-        const Surface& image = surfaces_.back();
-        if (image.medium || *image.thickness != 0 || image.kind() == "COORDBRK") {
-            refuse(image, image.medium ? image.medium_line : image.thickness_line,
-                   "a lens surface at the end", "an image surface, in air and of thickness 0",
-                   "The file looks cut off: copy it again; or add an image surface.");
-        }
+        check_image();
         prescription.medium_before = surfaces_.front().medium.value_or(Medium::air());
         std::vector<CoordinateBreak> breaks;
         bool has_stop = false;
@@ -533,6 +542,30 @@ class Reader {
         prescription.surfaces.back().thickness = 0;
         take_over_wavelengths(result);
         return result;
+    }
+
+    // All that are missing at once. The image's glass would be behind it, where no light goes.
+    void require_glasses() const {
+        std::vector<InputProblem> problems;
+        for (std::size_t i = 0; i + 1 < surfaces_.size(); ++i) {
+            const auto& of_surface = surfaces_[i].medium_problems;
+            problems.insert(problems.end(), of_surface.begin(), of_surface.end());
+        }
+        if (!problems.empty()) {
+            throw InputError(std::move(problems));
+        }
+    }
+
+    void check_image() const {
+        const Surface& image = surfaces_.back();
+        if (*image.thickness != 0 || image.kind() == "COORDBRK") {
+            refuse(image, image.thickness_line, "a lens surface at the end", "an image surface, of thickness 0",
+                   "The file looks cut off: copy it again; or add an image surface.");
+        }
+        if (image.medium) {
+            spdlog::info("{}:{}: {} behind the image is left out: no light goes there", file_.string(),
+                         image.medium_line.number, image.medium_line.words.empty() ? "the glass" : image.medium_line.words.front());
+        }
     }
 
     void check(const Surface& surface) const {

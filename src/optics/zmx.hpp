@@ -17,7 +17,8 @@ struct ZmxLens {
 };
 
 // Reads UTF-16 with a byte-order mark or UTF-8, lines ending in LF or CRLF. Understood are refracting
-// surfaces of the types STANDARD and EVENASPH, coordinate breaks, glasses of the catalogue and model glasses.
+// surfaces of the types STANDARD and EVENASPH, coordinate breaks, glasses of the catalogue and model glasses (of the
+// Abbe number 0: without dispersion). The image's own glass, behind which nothing is traced, is left out.
 // Zemax turns frames as CoordinateBreak does. What may change the lens and is not understood is an InputError
 // that names line, surface and keyword; nothing is left out in silence but what Zemax computes with or
 // displays.

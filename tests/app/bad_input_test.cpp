@@ -8,7 +8,10 @@
 
 #include <bit>
 #include <cstdint>
+#include <cstdlib>
 #include <limits>
+
+#include <sys/wait.h>
 
 namespace vkfv::test {
 namespace {
@@ -54,6 +57,14 @@ const std::pair<std::string, std::string> mesh_specimen = {
 
 std::pair<std::string, std::string> file_specimen(const std::string& lines) {
     return {mesh_specimen.first, lines};
+}
+
+std::string repeated(const std::string& piece, int times) {
+    std::string text;
+    for (int i = 0; i < times; ++i) {
+        text += piece;
+    }
+    return text;
 }
 
 // A plate, with one more line in its first surface.
@@ -117,6 +128,75 @@ std::vector<Case> cases() {
          {{"# a small step", std::string("\xff\xfe\0\1", 4)}},
          2,
          {"c.toml:1:", "valid TOML"}},
+        {"NameOfTooManyParts",
+         {{"# a small step", "[" + repeated("a.", 50'000) + "a]"}},
+         2,
+         {"c.toml:1:129: ", "nested at most 64 deep", "Shorten the dotted name"}},
+        {"KeyOfTooManyParts",
+         {{"pixels = 8", repeated("a.", 50'000) + "a = 8"}},
+         2,
+         {"c.toml:22:126: ", "nested at most 64 deep"}},
+        {"TooManyBrackets",
+         {{"pixels = 8", "pixels = " + repeated("[", 50'000)}},
+         2,
+         {"c.toml:22:72: ", "nested at most 64 deep", "take brackets out"}},
+        {"SettingOfTooManyParts",
+         {},
+         2,
+         {"--set: ", "nested at most 64 deep"},
+         {"--check", "c.toml", "--set", repeated("a.", 50'000) + "a=1"}},
+        // Several problems, each told once.
+        {"MisspeltTable",
+         {{"[tube_lens]", "[tubelens]"}},
+         2,
+         {"c.toml:17:", "tubelens", "expected tube_lens as a table", "Did you mean \"tube_lens\"? Rename it."}},
+        {"KeyInAnotherUnit",
+         {{"z_step_um = 1.0", "z_step_nm = 1000"}},
+         2,
+         {"c.toml:39:1: scan.z_step_nm = 1000", "expected scan.z_step_um as a finite number > 0",
+          "Did you mean \"z_step_um\"? Rename it, and give its value in um."},
+         stack},
+        {"SeveralProblems",
+         {{"radius_mm = 0.96", "radius_mm = -1"},
+          {"\"10x_0.28\"", "\"11x_0.28\""},
+          {"[tube_lens]", "[tubelens]"},
+          {"pixels = 8", "pixels = 0\npixle = 3"},
+          {"\"step\"", "\"stp\""},
+          {"window_px = 3", "window_px = 4"}},
+         2,
+         {"vkfv: c.toml:3:13: source.radius_mm = -1: expected a finite number > 0. Correct source.radius_mm.\n"
+          "c.toml:15:16: objective.prescription = '11x_0.28': ",
+          "Did you mean \"10x_0.28\"?", "\nc.toml:17:2: tubelens = ", "\nc.toml:22:10: detector.pixels = 0: ",
+          "\nc.toml:23:1: detector.pixle = 3: ", "\nc.toml:26:8: specimen.kind = 'stp': ",
+          "\nc.toml:47:13: topography.window_px = 4: "}},
+        {"WavelengthInNanometres",
+         {{"wavelength_um = 0.5876", "wavelength_um = 587.562"}},
+         2,
+         {"c.toml:5:17: source.wavelength_um = 587.562", "587.562 looks like nanometres: write 0.587562."}},
+        {"LinesInNanometres",
+         {{"wavelength_um = 0.5876", "[source.spectrum]\nkind = \"lines\"\nwavelengths_um = [486.1, 656.3]\nweights = [1, 1]"}},
+         2,
+         {"source.spectrum.wavelengths_um[0] = 486.1", "486.1 looks like nanometres: write 0.4861."}},
+        {"LedInNanometres",
+         {{"wavelength_um = 0.5876", "[source.spectrum]\nkind = \"gaussian\"\ncentre_um = 550\nfull_width_um = 20"}},
+         2,
+         {"source.spectrum.centre_um = 550", "550 looks like nanometres: write 0.55."}},
+        {"WidthInNanometres",
+         {{"wavelength_um = 0.5876", "[source.spectrum]\nkind = \"gaussian\"\ncentre_um = 0.55\nfull_width_um = 20"}},
+         2,
+         {"source.spectrum.full_width_um = 20", "20 looks like nanometres: write 0.02."}},
+        {"LayerInNanometres",
+         {{"[objective]", "[interfaces]\nmodel = \"quarter-wave\"\ndesign_wavelength_um = 550\n[objective]"}},
+         2,
+         {"interfaces.design_wavelength_um = 550", "550 looks like nanometres: write 0.55."}},
+        {"SpectrumFileInNanometres",
+         {{"wavelength_um = 0.5876", "[source.spectrum]\nkind = \"table\"\nfile = \"led.csv\""}},
+         2,
+         {"led.csv:2:1: wavelength_um = 500", "500 looks like nanometres: write 0.5."},
+         {"--check", "c.toml"},
+         {{"led.csv", "wavelength_um,density\n500,1\n600,1\n"}}},
+        glass_fault("GlassInNanometres", "[media.glass]\nwavelengths_um = [486.1, 587.6, 656.3]\nindices = [1.52, 1.51, 1.5]\n",
+                    {"index of glass", "look like nanometres: divide them by 1000"}),
         // Keys.
         {"UnknownKey",
          {{"pixels = 8", "pixles = 8\npixels = 8"}},
@@ -190,7 +270,8 @@ std::vector<Case> cases() {
                          {"c.toml:5:1", "source.spectrum", "a full width > 0 and below"}),
         instrument_fault("SpectrumFileMissing", "wavelength_um = 0.5876",
                          "[source.spectrum]\nkind = \"table\"\nfile = \"led.csv\"",
-                         {"led.csv", "source.spectrum.file", "wavelength_um,density", "Check the path"}),
+                         {"bad_input_SpectrumFileMissing/led.csv", "source.spectrum.file", "wavelength_um,density",
+                          "Check the path", "It is named at c.toml:7:8"}),
         {"SpectrumFileWrong",
          {{"wavelength_um = 0.5876", "[source.spectrum]\nkind = \"table\"\nfile = \"led.csv\""}},
          2,
@@ -399,11 +480,14 @@ std::vector<Case> cases() {
         {"UnknownObjective",
          {{"\"10x_0.28\"", "\"11x_0.28\""}},
          2,
-         {"c.toml:15:16", "objective.prescription", "11x_0.28", "assets/objectives"}},
+         {"c.toml:15:16", "objective.prescription", "11x_0.28", "assets/objectives",
+          "looked for assets/objectives/11x_0.28.toml beside /", "bad_input_UnknownObjective, beside every folder above it",
+          "Did you mean \"10x_0.28\"?"}},
         {"MissingPrescriptionFile",
          {{"\"10x_0.28\"", "\"mine.toml\""}},
          2,
-         {"c.toml:15:16", "objective.prescription", "an existing file"}},
+         {"c.toml:15:16", "objective.prescription", "an existing file; looked for /",
+          "bad_input_MissingPrescriptionFile/mine.toml"}},
         {"DamagedPrescription",
          {{"\"10x_0.28\"", "\"mine.toml\""}},
          2,
@@ -421,7 +505,7 @@ std::vector<Case> cases() {
         {"MissingGlassCatalogue",
          {{"# a small step", "glass_catalogs = [\"absent.agf\"]"}},
          2,
-         {"absent.agf", "no such file", "Check the path"}},
+         {"bad_input_MissingGlassCatalogue/absent.agf", "no such file", "Check the path", "It is named at c.toml:1:18"}},
         {"GlassCataloguesNoArray",
          {{"# a small step", "glass_catalogs = \"g.agf\""}},
          2,
@@ -434,8 +518,8 @@ std::vector<Case> cases() {
         catalogue_fault("GlassWithoutFormula", "NM G\n",
                         {"g.agf:1", "NM", "the number of a formula", "Complete"}),
         catalogue_fault("UnknownGlassFormula", "NM G 14\n", {"g.agf:1", "NM", "\"14\"", "1 to 13"}),
-        catalogue_fault("GlassTwice", "NM G 5\nCD 1.5\nLD 1 2\nNM G 5\n",
-                        {"g.agf:4", "NM", "\"G\"", "Rename"}),
+        catalogue_fault("CoefficientsTooManyInTwoLines", "NM G 5\nCD 1 2\n3 4\nLD 1 2\n",
+                        {"g.agf:3", "CD of \"G\"", "3 coefficients"}),
         catalogue_fault("CoefficientNoNumber", "NM G 5\nCD 1,5\n",
                         {"g.agf:2", "CD of \"G\"", "1,5", "a finite number"}),
         catalogue_fault("CoefficientInfinite", "NM G 5\nCD 1e999\n", {"g.agf:2", "CD of \"G\"", "1e999"}),
@@ -470,7 +554,7 @@ std::vector<Case> cases() {
                     "[media.glass]\nformula = \"schott\"\ncoefficients = [-1]\nrange_um = [0.4, 0.7]\n",
                     {"index of glass", "0.5876 um", "finite and positive", "Correct the numbers"}),
         // Files of specimens.
-        {"MissingMesh", {mesh_specimen}, 2, {"c.toml:26:8", "specimen.file", "part.stl"}},
+        {"MissingMesh", {mesh_specimen}, 2, {"c.toml:26:8", "specimen.file", "bad_input_MissingMesh/part.stl"}},
         {"TruncatedStl",
          {mesh_specimen},
          2,
@@ -654,6 +738,12 @@ std::vector<Case> cases() {
          {"lens.zmx:8: surface 1: GLAS = N-BK99", "a glass of the catalogues", "--glass-catalog"},
          import,
          {{"lens.zmx", zemax_lens("GLAS N-BK99 0 0 1.5 40")}}},
+        {"ImportOfAModelGlassOfTinyAbbeNumber",
+         {},
+         2,
+         {"lens.zmx:8: surface 1: GLAS", "in [5, 150], or 0 for no dispersion"},
+         import,
+         {{"lens.zmx", zemax_lens("GLAS ___BLANK 1 0 1.5 0.5")}}},
         {"ImportOfWrongNumber",
          {},
          2,
@@ -727,6 +817,20 @@ TEST_P(BadInput, IsRefusedWithPlaceKeyExpectationAndRemedy) {
 
 INSTANTIATE_TEST_SUITE_P(Table, BadInput, testing::ValuesIn(cases()),
                          [](const testing::TestParamInfo<Case>& info) { return info.param.name; });
+
+// Little stack changes nothing about names of many parts.
+TEST(BadInputTable, DeepNamesNeedNoStack) {
+    const auto folder = fresh_folder("deep");
+    for (const auto& line : {"[" + repeated("a.", 50'000) + "a]", "x = " + repeated("[", 50'000), repeated("a.", 50'000) + "a = 1"}) {
+        write_file(folder / "c.toml", line + "\n" + small_configuration);
+        const std::string command = "cd '" + folder.string() + "' && ulimit -s 256 && '" + VKFV_BINARY_DIR +
+                                    "/vkfv' --check c.toml 2>message";
+        const int status = std::system(command.c_str());
+        ASSERT_TRUE(WIFEXITED(status));
+        EXPECT_EQ(WEXITSTATUS(status), 2);
+        EXPECT_THAT(read_file(folder / "message"), HasSubstr("nested at most 64 deep"));
+    }
+}
 
 TEST(BadInputTable, IsAsLongAsPromised) {
     EXPECT_GE(cases().size(), 30u);

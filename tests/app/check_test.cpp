@@ -147,5 +147,16 @@ TEST(Check, TheDemoHasNoOtherWarning) {
                 ::testing::ElementsAre(HasSubstr("larger than the field of view")));
 }
 
+// Beside the configuration, though it is named without its folder.
+TEST(Check, FindsPrescriptionsBesideTheWorkingDirectory) {
+    const auto folder = fresh_folder("beside");
+    std::filesystem::create_directories(folder / "assets" / "objectives");
+    write_file(folder / "assets" / "objectives" / "mine.toml",
+               read_file(std::filesystem::path(VKFV_SOURCE_DIR) / "assets" / "objectives" / "10x_0.28.toml"));
+    write_file(folder / "c.toml", replaced(small_configuration, "\"10x_0.28\"", "\"mine\""));
+    const auto result = run_program({"--check", "c.toml"}, folder);
+    EXPECT_EQ(result.exit_code, 0) << result.standard_error;
+}
+
 } // namespace
 } // namespace vkfv::test

@@ -1,12 +1,16 @@
 #include "optics/agf.hpp"
 
 #include "core/error.hpp"
+#include "optics/glass_catalog.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <spdlog/sinks/ostream_sink.h>
+#include <spdlog/spdlog.h>
 
 #include <cmath>
 #include <fstream>
+#include <sstream>
 
 namespace vkfv::optics {
 namespace {
@@ -92,6 +96,45 @@ TEST(Agf, TakesAllThirteenFormulas) {
     }
 }
 
+TEST(Agf, LinesOfNumbersContinueTheOneBefore) {
+    const std::string whole = "NM G 13 1 1.5 70 0 0 1\nCD 2.25 0.001 -2E-4 9E-3 7E-5 4E-6 -1E-7 0 0 0\n"
+                              "TD 1 2 3 4 5 6 7\nLD 0.4 2.1\nIT 0.4 0.9 10\nNM H 5\nCD 1.5\nLD 0.4 0.7\n";
+    const std::string wrapped = "NM G 13 1 1.5\n70 0 0 1\nCD 2.25 0.001 -2E-4 9E-3 \r\n7E-5 4E-6 -1E-7 0\n"
+                                "! a remark between\n+0 0\nTD 1 2 3\n4 5 6 7\nLD 0.4\n 2.1\nIT 0.4\n.9 10\n"
+                                "NM H 5\nCD 1.5\nLD 0.4 0.7\n";
+    const auto expected = parse_agf(whole, "x.agf");
+    const auto media = parse_agf(wrapped, "x.agf");
+    ASSERT_EQ(media.size(), 2u);
+    EXPECT_EQ(media[0].dispersion, expected[0].dispersion);
+    EXPECT_EQ(media[1].dispersion, expected[1].dispersion);
+    const auto& coefficients = std::get<GlassFormula>(media[0].dispersion).coefficients;
+    EXPECT_EQ(coefficients.at(4), 7E-5); // the first of the second line
+    // The wrong twin: without the continued lines the index is another.
+    const auto cut = parse_agf("NM G 13\nCD 2.25 0.001 -2E-4 9E-3\nLD 0.4 2.1\n", "x.agf");
+    EXPECT_NE(cut[0].index(0.5), media[0].index(0.5));
+}
+
+TEST(Agf, TheFirstGlassOfANameIsTakenAndTheLogTellsOfOthers) {
+    std::ostringstream log;
+    const auto before = spdlog::default_logger();
+    spdlog::set_default_logger(std::make_shared<spdlog::logger>("test", std::make_shared<spdlog::sinks::ostream_sink_st>(log)));
+    const std::string first = "NM G 5\nCD 1.5\nLD 1 2\n";
+    const auto same = parse_agf(first + first, "x.agf");
+    const std::string without_twins = log.str();
+    const auto media = parse_agf(first + "NM F 5\nCD 1.7\nLD 1 2\nNM G 5\nCD 1.6\nLD 1 2\n", "x.agf");
+    spdlog::set_default_logger(before);
+    EXPECT_EQ(same.size(), 1u);
+    EXPECT_EQ(without_twins, ""); // the same glass twice
+    ASSERT_EQ(media.size(), 2u);
+    EXPECT_DOUBLE_EQ(media[0].index(1.5), 1.5);
+    EXPECT_THAT(log.str(), HasSubstr("x.agf"));
+    EXPECT_THAT(log.str(), HasSubstr("G (lines 1 and 7)"));
+    // Names that a catalogue does not tell apart.
+    GlassCatalog glasses;
+    glasses.add(parse_agf("NM A-B 5\nCD 1.5\nLD 1 2\nNM a_b 5\nCD 1.6\nLD 1 2\n", "x.agf"));
+    EXPECT_DOUBLE_EQ(glasses.get("A-B").index(1.5), 1.5);
+}
+
 TEST(Agf, FaultsNameFileLineAndKeyword) {
     const std::string good = "NM G 5\nCD 1.5\nLD 1 2\n";
     const struct {
@@ -110,7 +153,6 @@ TEST(Agf, FaultsNameFileLineAndKeyword) {
         {"NM G 14\n", 1, "NM", "14"},
         {"NM G 2.5\n", 1, "NM", "2.5"},
         {"NM G nan\n", 1, "NM", "nan"},
-        {good + good, 4, "NM", "G"},
         {"CD 1.5\n", 1, "CD", "CD"},
         {"\nLD 1 2\n", 2, "LD", "LD"},
         {"NM G 5\nCD\nLD 1 2\n", 2, "CD of \"G\"", "CD"},
@@ -127,6 +169,9 @@ TEST(Agf, FaultsNameFileLineAndKeyword) {
         {good + "LD 1 2\n", 4, "LD of \"G\"", "LD 1 2"},
         {good + "XY 1\n", 4, "XY of \"G\"", "XY"},
         {good + "\xff\xfe\x01\n", 4, "of \"G\"", "\xc3\xbf"},
+        {"NM G 5\nCD 1.5\n0 0\n0.1\nLD 1 2\n", 4, "CD of \"G\"", "0.1"}, // wrapped
+        {"NM G 5\nCD 1.5\n0 1,2\nLD 1 2\n", 3, "CD of \"G\"", "1,2"},
+        {"NM G 5\nCD 1.5\n0,1 2\nLD 1 2\n", 3, "0,1 of \"G\"", "0,1"},
         {"NM G 5\nLD 1 2\n", 1, "CD of \"G\"", "nothing"},
         {"NM F 5\nCD 1.5\nNM G 5\nCD 1.5\nLD 1 2\n", 1, "LD of \"F\"", "nothing"},
     };

@@ -174,6 +174,56 @@ TEST(Zmx, AnImmersedObjectIsTheMediumBefore) {
     EXPECT_EQ(lens.prescription.medium_before.name, "N-BK7");
 }
 
+// A glass at the image is behind it; whether the catalogue knows it does not matter, nor what it is.
+TEST(Zmx, TheMediumBehindTheImageIsLeftOut) {
+    const auto text = file_text("singlet.zmx");
+    const auto whole = digest(parsed(text));
+    for (const char* glass : {"N-BK7 0 0 1.5 60", "SEAWATER 0 0 1.5 40", "MIRROR 0 0 1.5 40", "___BLANK 1 0 9"}) {
+        const auto other = replaced(text, "  DISZ 0\n", std::string("  DISZ 0\n  GLAS ") + glass + "\n");
+        EXPECT_EQ(digest(parsed(other)), whole) << glass;
+    }
+    // Before the image it matters.
+    const auto last = "CURV -2.5E-2 0 0 0 0 \"\"";
+    const auto immersed = parsed(replaced(text, last, std::string(last) + "\n  GLAS F2 0 0 1.6 36"));
+    EXPECT_EQ(immersed.prescription.surfaces.back().medium_after.name, "F2");
+    const auto problem = problem_of(replaced(text, last, std::string(last) + "\n  GLAS SEAWATER 0 0 1.5 40"));
+    EXPECT_EQ(problem.key, "surface 2: GLAS");
+    EXPECT_EQ(problem.found, "SEAWATER");
+}
+
+TEST(Zmx, AModelGlassOfAbbeNumberZeroHasNoDispersion) {
+    const auto text = replaced(file_text("doublet.zmx"), "1.672 3.22E+1", "1.672 0.0");
+    const auto lens = parsed(text).prescription;
+    const auto& glass = lens.surfaces[1].medium_after;
+    EXPECT_EQ(glass.name, "672000");
+    EXPECT_EQ(std::get<ConstantIndex>(glass.dispersion), ConstantIndex{1.672});
+    EXPECT_EQ(glass.index(0.2), 1.672);
+    EXPECT_EQ(glass.index(12), 1.672);
+    // Written out and read back.
+    const auto written = prescription_text(lens);
+    const auto again = parse_prescription(written, "written.toml", GlassCatalog::builtin());
+    EXPECT_EQ(again.surfaces[1].medium_after.dispersion, glass.dispersion);
+    EXPECT_EQ(prescription_text(again), written);
+    // Another of the same code keeps its own name.
+    const auto alike = parsed(replaced(replaced(file_text("doublet.zmx"), "1.672 3.22E+1", "1.672 0"), "1.5168 6.417E+1", "1.6721 0"));
+    EXPECT_EQ(alike.prescription.surfaces[0].medium_after.name, "672000");
+    EXPECT_EQ(alike.prescription.surfaces[1].medium_after.name, "672000-2");
+}
+
+TEST(Zmx, TellsOfAllGlassesThatAreMissing) {
+    auto text = replaced(file_text("doublet.zmx"), "___BLANK 1 0 1.5168", "N-BK77 1 0 1.5168");
+    text = replaced(text, "___BLANK 1 0 1.672", "F22 1 0 1.672");
+    try {
+        parsed(text);
+        FAIL() << "accepted";
+    } catch (const InputError& error) {
+        ASSERT_EQ(error.problems().size(), 2u);
+        EXPECT_EQ(error.problems()[0].found, "N-BK77");
+        EXPECT_EQ(error.problems()[1].found, "F22");
+        EXPECT_EQ(error.problems()[1].key, "surface 2: GLAS");
+    }
+}
+
 struct Fault {
     const char* name;
     std::string from;
@@ -216,6 +266,8 @@ INSTANTIATE_TEST_SUITE_P(
               "surface 1: GLAS", 30, "value 5"},
         Fault{"ModelIndexBelowOne", "GLAS N-BK7 0 0 1.5168", "GLAS ___BLANK 1 0 0.5", "surface 1: GLAS", 30,
               "value 4"},
+        Fault{"ModelWithTinyAbbeNumber", "GLAS N-BK7 0 0 1.5168 6.417E+1", "GLAS ___BLANK 1 0 1.5168 1", "surface 1: GLAS",
+              30, "in [5, 150], or 0 for no dispersion"},
         Fault{"ModelWithDeviation", "GLAS N-BK7 0 0 1.5168 6.417E+1 0",
               "GLAS ___BLANK 1 0 1.5168 6.417E+1 0.01", "surface 1: GLAS", 30, "partial dispersion"},
         Fault{"Biconic", "  TYPE STANDARD\n  FIMP", "  TYPE BICONICX\n  FIMP", "surface 1: TYPE", 23,
