@@ -40,6 +40,7 @@ struct Assembly {
     void measure_imaging();      //    and what it does, by tracing
     void assemble_ring();        // 3: the train from the ring light to the specimen
     void assemble_illuminator(); //   or from the disc
+    double ring_emission_sine() const; //  and into what cone the ring shines
     void reduce();               // 4: the constants of the trace
     void turn_round();           //    and the same for light the other way
     void furnish();              // 5: the elements as they stand in the room, folded

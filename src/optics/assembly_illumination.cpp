@@ -27,6 +27,31 @@ void move(Part& part, const Pose& from, const Pose& to) {
 
 } // namespace
 
+// From any point of the band the ball about what is lit lies within this cone about the band's normal: its middle is off the
+// normal by at most the half width, and no point of the ball is nearer than this. A cover glass moves light sideways, by less
+// than its thickness if it is the denser medium; else near total reflection by any length, and then all light is kept.
+double Assembly::ring_emission_sine() const {
+    const RingLightDescription& ring = *description.ring;
+    constexpr double margin = 1.5; // around the detector's field
+    const double lit_radius =
+        std::hypot(ring.lit_radius.value_or(margin * field_half_diagonal), description.greatest_defocus);
+    const double nearest = ring.distance - lit_radius;
+    const double aside = lit_radius + 0.5 * ring.width;
+    const double shift = cover.empty() ? 0 : description.cover_glass->thickness;
+    const auto is_rarer_at = [&](double wavelength_um) {
+        return description.cover_glass->glass.index(wavelength_um) < objective_lens.medium_before.index(wavelength_um);
+    };
+    const bool may_reflect_totally =
+        !cover.empty() && (is_rarer_at(spectrum.shortest_um) || is_rarer_at(spectrum.longest_um));
+    const double distance = std::hypot(nearest, aside);
+    if (may_reflect_totally || !(nearest > 0 && shift < distance)) {
+        return 1;
+    }
+    // The line of the light passes what it lights at the distance `shift`.
+    const double angle = std::atan2(aside, nearest) + std::asin(shift / distance);
+    return angle < 0.5 * pi ? std::sin(angle) : 1;
+}
+
 void Assembly::assemble_ring() {
     const RingLightDescription& ring = *description.ring;
     illumination_train = reversed(cover);
@@ -61,14 +86,7 @@ void Assembly::assemble_ring() {
                            constants.ring.aim_distance),
                "Move the ring farther away, or the cover glass nearer to the specimen.");
     }
-    // From any point of the band the lit circle lies within this cone about the band's normal: its middle is
-    // off the normal by the half width, and no point of the circle is nearer than this.
-    constexpr double margin = 1.5; // around the detector's field
-    const double lit_radius = ring.lit_radius.value_or(margin * field_half_diagonal);
-    const double reach =
-        lit_radius + 0.5 * ring.width + (cover.empty() ? 0 : description.cover_glass->thickness);
-    aimed_sine =
-        ring.distance > lit_radius ? std::min(1.0, reach / std::hypot(reach, ring.distance - lit_radius)) : 1;
+    aimed_sine = ring_emission_sine();
     instrument.source_pose = downward(0);
     instrument.features |= physics::f64::FEATURE_RING;
 }

@@ -325,5 +325,43 @@ TEST(EmissionCone, HoldsThinConesOfAnAssembledIlluminator) {
     EXPECT_LT(aim, 0.91); // the light ends at 2 / hypot(1, 2), 0.894
 }
 
+TEST(RingLight, IsAimedAtAllThatItMustLight) {
+    for (const double cover : {0.0, 0.17, 2.0}) {
+        auto description = test::microscope();
+        description.objective = ideal_objective(20, 0.28);
+        description.ring = RingLightDescription{
+            .distance = 12, .elevation = 0.5, .width = 2, .segments = 1, .fill = 1, .on = {true}, .lit_radius = 0.3};
+        description.greatest_defocus = 1.5;
+        if (cover > 0) {
+            description.cover_glass = CoverGlass{.thickness = cover, .glass = Medium::constant("glass", 1.5), .distance = 1.0};
+        }
+        const Instrument instrument = assemble(description);
+        physics::f64::Instrument constants = instrument.constants;
+        constants.emission_sine = 1;
+        Random random(34);
+        double largest = 0;
+        for (int i = 0; i < 200000; ++i) {
+            const auto uniform = [&] { return random.between(0, 1); };
+            const std::array u = {uniform(), uniform(), uniform(), uniform()};
+            auto ray = physics::f64::emit_from_ring(constants.ring, 1, u[0], u[1], u[2], u[3]);
+            ray.position.z += constants.ring.aim_distance;
+            const double sine = std::sqrt(u[2]);
+            auto end = trace_through(std::span(instrument.surfaces).first(std::size_t(constants.illumination_count)), ray, 1);
+            if (end.status != PATH_ALIVE) {
+                continue;
+            }
+            for (const double height : {-1.5, 0.0, 1.5}) {
+                const auto landed = physics::f64::fly_to_plane(
+                    end.ray, instrument.front_vertex_height - height, end.index);
+                if (std::hypot(landed.position.x, landed.position.y) < 0.3) {
+                    largest = std::max(largest, sine);
+                }
+            }
+        }
+        EXPECT_LE(largest, instrument.constants.emission_sine) << cover;
+        EXPECT_GT(largest, 0.5 * instrument.constants.emission_sine) << cover;
+    }
+}
+
 } // namespace
 } // namespace vkfv::optics
