@@ -228,8 +228,13 @@ TEST(Configuration, RingLightsAimAtTheWholeSpecimen) {
     const std::vector<double> heights = {0};
     const double lit = std::hypot(2.0, 4.0);
     const double reach = lit + 1; // and half the band
+    // Of heights there is the rounding alone that the specimen's top is raised by.
     EXPECT_NEAR(assemble_instrument(configuration, specimen, heights).constants.emission_sine,
-                reach / std::hypot(reach, 12 - lit), 1e-15);
+                reach / std::hypot(reach, 12 - lit), 1e-9);
+    // A focal height of 1 mm widens it.
+    const std::vector<double> raised = {1.0};
+    EXPECT_GT(assemble_instrument(configuration, specimen, raised).constants.emission_sine,
+              reach / std::hypot(reach, 12 - lit) + 1e-3);
     // Without a specimen the detector's field, with half of it more around, and 0.2 mm above and below the focus.
     const auto alone = assemble_instrument(configuration);
     const double field = std::hypot(1.5 * std::sqrt(0.5) * 0.16 / std::abs(alone.first_order.magnification), 0.2);
