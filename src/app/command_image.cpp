@@ -1,5 +1,6 @@
 #include "app/commands.hpp"
 
+#include "app/specimen_view.hpp"
 #include "app/text_file.hpp"
 #include "core/units.hpp"
 #include "report/topography_picture.hpp"
@@ -98,7 +99,7 @@ void write_image(const std::filesystem::path& path, const Exposure& exposure, do
 
 void run_image(const CommandOptions& options) {
     const auto configuration = load_configuration(options.file, options.overrides, Needs::exposure);
-    const auto exposure = expose(configuration, specimen::make(*configuration.specimen), options.focal_height);
+    const auto exposure = expose(configuration, make_specimen(configuration), options.focal_height);
     const auto& image = exposure.image;
     const auto path = image_path(options, configuration);
     write_image(path, exposure, options.focal_height);
@@ -108,6 +109,9 @@ void run_image(const CommandOptions& options) {
                      report::image_picture(fmt::format("{}, z = {:g} um", options.file.stem().string(),
                                                        options.focal_height * um_per_mm),
                                            image.flux, exposure.first, exposure.first, exposure.pitch));
+    for (const auto& warning : warning_of_lost_light(image)) {
+        spdlog::warn(warning);
+    }
     if (const double ratio = signal_to_noise(image); ratio < least_signal_to_noise) {
         spdlog::warn("noise is {:.0f} % of a pixel's mean light. Launch more rays with --rays, close the field stop to the "
                      "field of view, or take --estimator backward",

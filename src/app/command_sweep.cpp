@@ -95,16 +95,16 @@ class Surfaces {
         specimen::Specimen specimen; // with the material asked for
         std::string digest;          // of the geometry
     };
-    const Surface& of(const specimen::Description& description) {
-        specimen::Description geometry = description;
+    const Surface& of(const Configuration& configuration) {
+        specimen::Description geometry = configuration.specimen.value();
         geometry.material = {};
         geometry.where = {};
         if (!made_of_ || *made_of_ != geometry) {
-            surface_.specimen = specimen::make(description);
+            surface_.specimen = make_specimen(configuration);
             surface_.digest = geometry_digest(surface_.specimen);
             made_of_ = std::move(geometry);
         }
-        surface_.specimen.material = description.material;
+        surface_.specimen.material = configuration.specimen->material;
         return surface_;
     }
 
@@ -133,7 +133,7 @@ std::string image_digest(const Configuration& configuration, double focal_height
 SweepRow image_row(const Configuration& configuration, const fs::path& folder, Surfaces& surfaces) {
     const double focal_height = configuration.sweep->focal_height;
     const fs::path image_file = folder / "image.tif", figures_file = folder / "image.json";
-    const auto& surface = surfaces.of(*configuration.specimen);
+    const auto& surface = surfaces.of(configuration);
     const std::string digest = image_digest(configuration, focal_height, surface.digest);
     SweepRow row;
     const Json earlier = read_json(figures_file);

@@ -1,6 +1,8 @@
 #include "specimen/files.hpp"
 #include "specimen/standards.hpp"
 
+#include "core/file.hpp"
+
 #include <OpenImageIO/imagebuf.h>
 #include <OpenImageIO/imagebufalgo.h>
 #include <fmt/format.h>
@@ -62,14 +64,14 @@ void set_text(HeightField& field, const Description& d) {
     if (count == 0)
         fail(d, "text", '"' + d.text + '"', "at least one letter", "Write what the plateaus are to read.");
     if (d.heights.size() != 1 && d.heights.size() != count)
-        fail(d, "heights", fmt::format("{} heights", d.heights.size()),
+        fail(d, "heights_um", fmt::format("{} heights", d.heights.size()),
              fmt::format("one, or one for each of the {} letters", count), "Give each letter its height.");
     // Widths follow the font's size; it is found from those at a large one.
     constexpr int trial = 1000;
     const double wanted = d.text_width / field.pitch_x;
     const int font_size = static_cast<int>(std::floor(trial * wanted / width_of(letters_of(d, trial), trial)));
     if (font_size < 8)
-        fail(d, "text_width", fmt::format("{} mm", d.text_width), "letters of at least 8 points of the grid",
+        fail(d, "text_width_mm", fmt::format("{}", d.text_width), "letters of at least 8 points of the grid",
              "Choose wider text, less of it, or a finer pitch.");
     const std::vector<Letter> letters = letters_of(d, font_size);
     // The text's bounding box has its middle on the axis.
@@ -110,7 +112,7 @@ void set_mask(HeightField& field, const Description& d) {
     std::set<float> levels(mask.values.begin(), mask.values.end());
     levels.erase(0.0f);
     if (levels.empty() || (d.heights.size() != 1 && d.heights.size() != levels.size()))
-        fail(d, "heights", fmt::format("{} heights", d.heights.size()),
+        fail(d, "heights_um", fmt::format("{} heights", d.heights.size()),
              fmt::format("one, or one for each of the {} grey values other than black in {}", levels.size(),
                          d.file.string()),
              "Give each plateau its height; smoothed edges are grey values too, so save the mask without them.");
@@ -132,8 +134,13 @@ void set_mask(HeightField& field, const Description& d) {
 
 HeightField plateaus(const Description& d, double pitch) {
     HeightField field = level_field(d, pitch);
-    if (d.file.empty())
+    if (d.file.empty()) {
+        // A font's file is opened by a library that would wait for a pipe.
+        std::error_code none;
+        if (std::filesystem::exists(d.font, none))
+            (void)InputFile(d.font, {.key = "specimen.font", .expected = "the file of a font"});
         set_text(field, d);
+    }
     else
         set_mask(field, d);
     return field;
