@@ -48,7 +48,7 @@ std::string pitch_key(const Description& d, double pitch) {
 void require_work(int columns, int rows, double pitch, double deviation, const SourceLocation& where,
                   const std::string& key) {
     constexpr double most_steps = 0x1p34; // half a minute of one processor core
-    constexpr double steps_of_drawing = 20;
+    constexpr double steps_of_drawing = 256; // and of the memory, 1.6 GB for the 2^26 points that this leaves at most
     const double points = static_cast<double>(columns) * rows, taps = 12 * deviation / pitch;
     if (points * (steps_of_drawing + taps) <= most_steps) {
         return;

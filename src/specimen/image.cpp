@@ -26,11 +26,11 @@ std::string format_of(std::string_view bytes, const std::filesystem::path& file)
         std::string_view bytes;
         const char* format;
     };
-    constexpr Mark marks[] = {{"II*\0"sv, "tiff"},   {"MM\0*"sv, "tiff"},    {"II+\0"sv, "tiff"},    {"MM\0+"sv, "tiff"},
-                              {"\x89PNG"sv, "png"},  {"\xff\xd8\xff"sv, "jpeg"}, {"BM"sv, "bmp"},    {"\x76\x2f\x31\x01"sv, "openexr"},
-                              {"#?RADIANCE"sv, "hdr"}, {"#?RGBE"sv, "hdr"},  {"P1"sv, "pnm"},        {"P2"sv, "pnm"},
-                              {"P3"sv, "pnm"},       {"P4"sv, "pnm"},        {"P5"sv, "pnm"},        {"P6"sv, "pnm"},
-                              {"Pf"sv, "pnm"},       {"PF"sv, "pnm"}};
+    constexpr Mark marks[] = {{"II*\0"sv, "tiff"}, {"MM\0*"sv, "tiff"},      {"II+\0"sv, "tiff"}, {"MM\0+"sv, "tiff"},
+                              {"\x89PNG"sv, "png"}, {"\xff\xd8\xff"sv, "jpeg"}, {"BM"sv, "bmp"},     {"#?RADIANCE"sv, "hdr"},
+                              {"#?RGBE"sv, "hdr"},  {"P1"sv, "pnm"},          {"P2"sv, "pnm"},     {"P3"sv, "pnm"},
+                              {"P4"sv, "pnm"},      {"P5"sv, "pnm"},          {"P6"sv, "pnm"},     {"Pf"sv, "pnm"},
+                              {"PF"sv, "pnm"},      {"\x76\x2f\x31\x01"sv, "openexr"}};
     for (const Mark& mark : marks) {
         if (bytes.starts_with(mark.bytes)) {
             return mark.format;
@@ -97,7 +97,8 @@ std::vector<float> read_heights(OIIO::ImageInput& input, const OIIO::ImageSpec& 
         band.resize(width * static_cast<std::size_t>(end - row) * static_cast<std::size_t>(channels.count));
         if (!read_rows(input, spec, channels.count, row, end, band.data())) {
             fail(file, fmt::format("rows {} to {} from the top: {}", row, end - 1, input.geterror()),
-                 fmt::format("{} x {} pixels", spec.width, spec.height), "Save or copy the image anew; it is damaged or truncated.");
+                 fmt::format("{} x {} pixels", spec.width, spec.height),
+                 "Save or copy the image anew; it is damaged or truncated.");
         }
         for (std::size_t pixel = 0; pixel < band.size(); pixel += static_cast<std::size_t>(channels.count)) {
             const float* values = band.data() + pixel + channels.grey;

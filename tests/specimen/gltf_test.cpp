@@ -185,7 +185,8 @@ TEST_F(Gltf, WhatIsAskedForAndNotGivenIsRefused) {
         {"spaced indices", indices({0, 1, 2, 0, 0, 0}, R"(, "byteStride": 4)"), {"byteStride = 4", "without gaps"}},
         {"mode 7", primitive(R"({"attributes": {"POSITION": 0}, "mode": 7})"), {".mode = 7", "0 to 6"}},
         {"mode 4.5", primitive(R"({"attributes": {"POSITION": 0}, "mode": 4.5})"), {".mode = 4.5", "an integer"}},
-        {"indices as text", primitive(R"({"attributes": {"POSITION": 0}, "indices": "0"})"), {".indices = \"0\"", "an integer"}},
+        {"indices as text", primitive(R"({"attributes": {"POSITION": 0}, "indices": "0"})"),
+         {".indices = \"0\"", "an integer"}},
         {"floats as indices", primitive(R"({"attributes": {"POSITION": 0}, "indices": 0})"), {"accessor 0", "scalar indices"}},
         {"two points of a strip",
          with([](Text& t) {
@@ -209,7 +210,8 @@ TEST_F(Gltf, WhatIsAskedForAndNotGivenIsRefused) {
         {"no uri", buffers(R"([{"byteLength": 36}])"), {"buffer 0.uri = nothing", "within a .glb"}},
         {"host", buffers(R"([{"byteLength": 36, "uri": "https://a.example/b.bin"}])"), {"buffer 0.uri", "a relative path"}},
         {"absolute", buffers(R"([{"byteLength": 36, "uri": "/dev/zero"}])"), {"buffer 0.uri", "a relative path"}},
-        {"base64", buffers(R"([{"byteLength": 36, "uri": "data:application/octet-stream;base64,AA*A"}])"), {"whole base64 digits"}},
+        {"base64", buffers(R"([{"byteLength": 36, "uri": "data:application/octet-stream;base64,AA*A"}])"),
+         {"whole base64 digits"}},
         {"short buffer", buffers(R"([{"byteLength": 36, "uri": "data:application/octet-stream;base64,AAAA"}])"),
          {"buffer 0.byteLength = 36 bytes, of which 3 are there"}},
         {"no JSON", "{\n  \"asset\": nix}", {"part.gltf:2:13", "no valid JSON"}},
@@ -312,7 +314,8 @@ TEST_F(Gltf, SparseValuesReplaceThoseOfTheBuffer) {
     Text text;
     text.add(raw(std::uint8_t{1}), R"("componentType": 5121, "type": "SCALAR", "count": 1)");
     text.add(floats({{7, 8, 9}}), R"("componentType": 5126, "type": "VEC3", "count": 1)");
-    const std::string sparse = R"("sparse": {"count": 1, "indices": {"bufferView": 1, "componentType": 5121}, "values": {"bufferView": 2}})";
+    const std::string sparse = R"("sparse": {"count": 1, "indices": {"bufferView": 1, "componentType": 5121}, )"
+                               R"("values": {"bufferView": 2}})";
     text.accessors = R"([{"bufferView": 0, "componentType": 5126, "type": "VEC3", "count": 3, )" + sparse + "}]";
     expect_points(parse_gltf(text.text(), "part.gltf"), {{0, 0, 0}, {7, 8, 9}, {0, 2, 0.5}});
     text.accessors = R"([{"componentType": 5126, "type": "VEC3", "count": 3, )" + sparse + "}]";
@@ -429,7 +432,8 @@ TEST_F(Gltf, BuffersAreRegularFiles) {
     // What no triangle needs is not opened.
     const auto file = write("unused.gltf", with([](Text& t) {
                                                t.head = R"(, "images": [{"uri": "pipe"}])";
-                                               t.buffers = R"([{"byteLength": 36, "uri": "a.bin"}, {"byteLength": 1, "uri": "pipe"}])";
+                                               t.buffers = R"([{"byteLength": 36, "uri": "a.bin"}, )"
+                                                           R"({"byteLength": 1, "uri": "pipe"}])";
                                            }).text());
     write("a.bin", floats(triangle));
     expect_points(read_gltf(file, {}), plain);

@@ -172,7 +172,8 @@ class HostileImages : public Hostile, public testing::WithParamInterface<const c
         std::vector<unsigned char> pixels;
         for (unsigned int k = 0; k < 300 * 200; ++k) {
             // Hard to pack, so that the data fill the file.
-            pixels.insert(pixels.end(), static_cast<std::size_t>(spec.nchannels), static_cast<unsigned char>(k * k / 7 + k % 300));
+            const auto grey = static_cast<unsigned char>(k * k / 7 + k % 300);
+            pixels.insert(pixels.end(), static_cast<std::size_t>(spec.nchannels), grey);
         }
         EXPECT_TRUE(output->open(file.string(), spec) && output->write_image(OIIO::TypeDesc::UINT8, pixels.data()) &&
                     output->close())
