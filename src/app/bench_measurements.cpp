@@ -105,7 +105,7 @@ class Bench {
                               .expected = "the sequential trace, which has stages to be timed",
                               .remedy = "Use --set trace.mode=sequential, or time --image."});
         }
-        specimen_ = specimen::make(*configuration_.specimen);
+        specimen_ = make_specimen(configuration_);
         instrument_ = instrument_of(configuration_, specimen_);
     }
 

@@ -1,5 +1,6 @@
 #include "app/commands.hpp"
 
+#include "app/specimen_view.hpp"
 #include "core/units.hpp"
 #include "optics/image_quality.hpp"
 
@@ -113,33 +114,6 @@ std::string value_text(double value) {
     return std::isfinite(value) ? fmt::format("{:.6g}", value) : "-";
 }
 
-constexpr int most_relief_points = 128; // a side; a look at the specimen, in a moment for any detector
-
-// Lowest and highest point of the specimen in the field of view, and the share of the field that it fills.
-struct Relief {
-    double lowest = INFINITY;
-    double highest = -INFINITY;
-    double seen_share = 0;
-};
-
-Relief relief_of(const specimen::Specimen& specimen, double field, int pixels) {
-    const int points = std::min(pixels, most_relief_points);
-    const double pitch = field / points;
-    const double first = -0.5 * (points - 1) * pitch;
-    const auto truth = specimen::truth(specimen, points, points, first, first, pitch, pitch);
-    Relief relief;
-    std::size_t seen = 0;
-    for (const double height : truth.height.values) {
-        if (std::isfinite(height)) {
-            relief.lowest = std::min(relief.lowest, height);
-            relief.highest = std::max(relief.highest, height);
-            ++seen;
-        }
-    }
-    relief.seen_share = static_cast<double>(seen) / static_cast<double>(truth.height.values.size());
-    return relief;
-}
-
 } // namespace
 
 void run_check(const CommandOptions& options) {
@@ -183,9 +157,11 @@ void run_check(const CommandOptions& options) {
         }
     }
     if (configuration.specimen) {
-        const auto specimen = specimen::make(*configuration.specimen);
+        const auto specimen = make_specimen(configuration);
         const int pixels = configuration.instrument.detector_pixels;
         const auto relief = relief_of(specimen, instrument.first_order.pixel_pitch * pixels, pixels);
+        const auto sparse = warning_of_sparse_field(configuration, specimen, relief);
+        warnings.insert(warnings.end(), sparse.begin(), sparse.end());
         report["specimen_seen_share"] = relief.seen_share;
         const auto record = specimen::record(specimen, configuration.trace.max_bounces);
         const double specimen_side = std::max<double>(record.x_max - record.x_min, record.y_max - record.y_min);
@@ -203,8 +179,6 @@ void run_check(const CommandOptions& options) {
             text += line_of("specimen_lowest_um", value_text(relief.lowest * um_per_mm),
                             fmt::format("highest {:.6g} um, on {:.1f} % of the field", relief.highest * um_per_mm,
                                         100 * relief.seen_share));
-        } else {
-            warnings.push_back("the detector does not see the specimen");
         }
         const auto beyond_scan = [&](double lowest, double highest) {
             return !positions.empty() && relief.seen_share > 0 &&

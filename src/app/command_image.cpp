@@ -1,5 +1,6 @@
 #include "app/commands.hpp"
 
+#include "app/specimen_view.hpp"
 #include "core/file.hpp"
 #include "core/units.hpp"
 #include "report/topography_picture.hpp"
@@ -102,7 +103,7 @@ std::vector<std::pair<std::filesystem::path, std::string>> image_files(const std
 
 void run_image(const CommandOptions& options) {
     const auto configuration = load_configuration(options.file, options.overrides, Needs::exposure);
-    const auto specimen = specimen::make(*configuration.specimen);
+    const auto specimen = make_specimen(configuration);
     const auto exposure = expose(configuration, instrument_for(configuration, specimen, options.focal_height), specimen,
                                  options.focal_height);
     const auto& image = exposure.image;
@@ -116,6 +117,9 @@ void run_image(const CommandOptions& options) {
     make_folder(path.parent_path());
     for (const auto& [file, bytes] : files) {
         write_file(file, bytes);
+    }
+    for (const auto& warning : warning_of_lost_light(image)) {
+        spdlog::warn(warning);
     }
     if (const double ratio = signal_to_noise(image); ratio < least_signal_to_noise) {
         spdlog::warn("noise is {:.0f} % of a pixel's mean light. Launch more rays with --rays, close the field stop to the "

@@ -1,6 +1,7 @@
 #include "app/commands.hpp"
 
 #include "app/configuration_section.hpp"
+#include "app/specimen_view.hpp"
 #include "core/units.hpp"
 #include "surface/image_file.hpp"
 #include "trace/device_tracer.hpp"
@@ -50,7 +51,19 @@ optics::Instrument assemble_instrument(const Configuration& configuration, const
     for (const auto& warning : instrument.warnings) {
         spdlog::warn(warning);
     }
+    const int pixels = configuration.instrument.detector_pixels;
+    const auto relief = relief_of(specimen, instrument.first_order.pixel_pitch * pixels, pixels);
+    for (const auto& warning : warning_of_sparse_field(configuration, specimen, relief)) {
+        spdlog::warn(warning);
+    }
     return instrument;
+}
+
+specimen::Specimen make_specimen(const Configuration& configuration) {
+    const auto& description = configuration.specimen.value();
+    specimen::Specimen specimen;
+    at_its_place(configuration, description.where, [&] { specimen = specimen::make(description); });
+    return specimen;
 }
 
 std::unique_ptr<trace::Tracer> make_tracer(const optics::Instrument& instrument,

@@ -9,6 +9,7 @@
 #include <nlohmann/json.hpp>
 #include <spdlog/spdlog.h>
 
+#include <algorithm>
 #include <cstdio>
 
 namespace vkfv::app {
@@ -16,7 +17,7 @@ namespace vkfv::app {
 void run_stack(const CommandOptions& options) {
     const auto configuration = load_configuration(options.file, options.overrides, Needs::stack);
     const auto positions = configuration.scan->positions();
-    const auto specimen = specimen::make(*configuration.specimen);
+    const auto specimen = make_specimen(configuration);
     const auto instrument = assemble_instrument(configuration, specimen, positions);
     const int pixels = configuration.instrument.detector_pixels;
     const auto flat = read_flat(configuration, pixels, pixels, instrument.first_order.pixel_pitch);
@@ -36,10 +37,15 @@ void run_stack(const CommandOptions& options) {
     StackEvaluation stack_evaluation(configuration.topography,
                                      focus_planes_for(configuration.evaluate_on, configuration.trace.device),
                                      make_diffraction(configuration, instrument));
+    bool any_light = false;
     const auto traced = scan::run_stack(*tracer, store, progress, {}, [&](int image, Grid<float> flux) {
+        any_light = any_light || std::ranges::any_of(flux.values, [](float value) { return value > 0; });
         stack_evaluation.add({std::move(flux)}, positions[static_cast<std::size_t>(image)]);
     });
     spdlog::info("{} images traced, {} kept from before", traced.traced, traced.kept);
+    if (!any_light) {
+        spdlog::warn("No light reaches the detector in any image. vkfv --image of one position tells where it goes");
+    }
 
     const auto& folder = store.folder();
     const auto evaluation =

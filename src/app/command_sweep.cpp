@@ -93,16 +93,16 @@ class Surfaces {
         specimen::Specimen specimen; // with the material asked for
         std::string digest;          // of the geometry
     };
-    const Surface& of(const specimen::Description& description) {
-        specimen::Description geometry = description;
+    const Surface& of(const Configuration& configuration) {
+        specimen::Description geometry = configuration.specimen.value();
         geometry.material = {};
         geometry.where = {};
         if (!made_of_ || *made_of_ != geometry) {
-            surface_.specimen = specimen::make(description);
+            surface_.specimen = make_specimen(configuration);
             surface_.digest = geometry_digest(surface_.specimen);
             made_of_ = std::move(geometry);
         }
-        surface_.specimen.material = description.material;
+        surface_.specimen.material = configuration.specimen->material;
         return surface_;
     }
 
@@ -124,7 +124,7 @@ std::string image_digest(const Configuration& configuration, const std::string& 
 SweepRow image_row(const Configuration& configuration, ResultFolder& results, const fs::path& name, Surfaces& surfaces) {
     const double focal_height = configuration.sweep->focal_height;
     const fs::path image_name = name / "image.tif", figures_name = name / "image.json";
-    const auto& surface = surfaces.of(*configuration.specimen);
+    const auto& surface = surfaces.of(configuration);
     const auto instrument = instrument_for(configuration, surface.specimen, focal_height);
     const auto tracer = trace::expected_identity(instrument, surface.specimen, configuration.trace);
     const std::string digest =

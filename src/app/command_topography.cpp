@@ -80,7 +80,7 @@ Evaluated evaluate_own(const CommandOptions& options) {
                "Set keys of [topography], [diffraction] and [output] alone; --stack traces other images.");
     }
     const auto positions = configuration.scan->positions();
-    const auto specimen = specimen::make(*configuration.specimen);
+    const auto specimen = make_specimen(configuration);
     const auto instrument = assemble_instrument(configuration, specimen, positions);
     const int pixels = configuration.instrument.detector_pixels;
     const auto flat = read_flat(configuration, pixels, pixels, instrument.first_order.pixel_pitch);

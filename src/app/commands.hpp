@@ -94,6 +94,9 @@ optics::Instrument assemble_instrument(const Configuration& configuration);
 optics::Instrument assemble_instrument(const Configuration& configuration, const specimen::Specimen& specimen,
                                        std::span<const double> focal_heights);
 
+// The configured specimen. Throws InputError at the place of the key that does not fit.
+specimen::Specimen make_specimen(const Configuration& configuration);
+
 // On the device that the options ask for; the selector "host" means the reference in double on the host's
 // cores.
 std::unique_ptr<trace::Tracer> make_tracer(const optics::Instrument& instrument,

@@ -20,7 +20,6 @@ namespace {
 
 constexpr std::int64_t most_rays = 1'000'000'000'000; // 1e12: an hour a picture on the fastest device
 constexpr std::int64_t most_bounces = 64;           // a Lambertian pit loses all but 1e-3 of its light in ten
-constexpr double most_facets = 16384;               // a side: the largest image of a common device
 constexpr std::int64_t fewest_positions = 3;        // the peak is a fit through three points
 constexpr double most_smoothing_steps = 100;        // 1202 images in memory
 constexpr std::int64_t most_peak_range_steps = 100;
@@ -232,10 +231,6 @@ void read_specimen(const TomlTable& root, Configuration& configuration) {
                     : 0.5;
         }
         read_um("pitch_um", description.pitch, NumberRange::positive(), fallback);
-        if (rule.generated && description.size / description.pitch > most_facets) {
-            table.fail("pitch_um", fmt::format("at most {} facets along size_mm", most_facets),
-                       fmt::format("Choose pitch_um >= {:.3g}.", description.size * um_per_mm / most_facets));
-        }
     }
     if (rule.kind == specimen::Kind::plane) {
         const auto slope =

@@ -16,6 +16,7 @@ namespace vkfv::app {
 namespace {
 
 constexpr std::int64_t most_pixels = 16384;        // a side; the accumulator stays within 2 GiB
+constexpr double least_flux = 1e-15, largest_flux = 1e15; // W; what falls on a pixel stays a float32
 constexpr double default_tube_lens_distance = 100; // mm, in the infinity space
 constexpr double default_splitter_reflectance = 0.5;
 constexpr double share_rounding = 1e-12; // of 0.7 + 0.3
@@ -245,7 +246,7 @@ std::string read_source(const TomlTable& root, Configuration& configuration) {
     const Section source(root.table("source"), configuration);
     const std::string kind = source.kind("kind", kinds_of(keys), "disc");
     reject_keys_of_other_kinds(source.table(), keys, kind, "a source");
-    instrument.flux = source.number("flux_W", NumberRange::positive(), 1.0);
+    instrument.flux = source.number("flux_W", NumberRange::within(least_flux, largest_flux), 1.0);
     if (kind == "ring") {
         instrument.ring = read_ring(source);
     } else {

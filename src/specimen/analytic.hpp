@@ -30,8 +30,9 @@ void add_roughness(HeightField& field, const Roughness& roughness, const SourceL
 // one of the field is.
 HeightField on_grid(const HeightField& field, double x0, double y0, int columns, int rows, double pitch);
 
-// The same on a grid of a finer pitch around the same centre.
-HeightField refined(const HeightField& field, double pitch);
+// The same on a grid of a finer pitch, that of [specimen.roughness], around the same centre. Throws InputError for more
+// points than fit into memory.
+HeightField refined(const HeightField& field, double pitch, const SourceLocation& where);
 
 // White Gaussian noise of unit standard deviation, filtered by a Gaussian of standard deviation `kernel` (in
 // points; 0: not at all) whose weights have the sum 1; periodic. Bits depend on std::mt19937_64 and the C

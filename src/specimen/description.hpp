@@ -16,6 +16,13 @@ namespace vkfv::specimen {
 enum class Kind { plane, step, sphere, sinusoid, chirp, rough, plateaus, air, star, groove, image, surface, stl, gltf };
 enum class Representation { facets, analytic }; // of generated surfaces; files are always facets
 
+// What is shorter or longer, mm, is no specimen of a microscope, and its squares leave the numbers of a device: a picometre,
+// a kilometre.
+inline constexpr double smallest_length = 1e-9, largest_length = 1e6;
+
+// Along a side of a generated surface: with one point more they fill the largest image of a common device.
+inline constexpr int most_facets = 16383;
+
 // Gaussian white noise of standard deviation `noise` on a grid of `pitch`, filtered by a Gaussian of standard
 // deviation `kernel`. What remains is about noise * pitch / (2 sqrt(pi) kernel); the log prints what it is.
 struct Roughness {
@@ -65,8 +72,9 @@ struct Description {
     bool operator==(const Description&) const = default;
 };
 
-// Throws InputError: missing or damaged files (with the byte offset), empty meshes, non-finite numbers, a
-// footprint of no extent.
+// Throws InputError: missing or damaged files (with the byte offset), empty meshes, non-finite numbers, a footprint of no
+// extent, lengths that no device can hold apart, and more points than fit into memory, told before any is made. Keys are
+// those of the configuration ("specimen.pitch_um").
 Specimen make(const Description& description);
 
 // Truth on the detector's pixels: the mean of the surface's height over each pixel's area (5 x 5 points), seen from

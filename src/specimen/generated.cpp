@@ -25,49 +25,83 @@ void require(bool condition, const Description& description, const std::string& 
     }
 }
 
-bool positive(double value) {
-    return std::isfinite(value) && value > 0;
+// Of a length in mm under a key in um.
+void require_um(bool condition, const Description& description, const std::string& key, double mm,
+                const std::string& expected) {
+    require(condition, description, key, mm * um_per_mm, expected);
+}
+
+bool positive(double mm) {
+    return mm >= smallest_length && mm <= largest_length;
+}
+
+const std::string positive_um = fmt::format("a length from {} to {} um", smallest_length* um_per_mm,
+                                            largest_length* um_per_mm);
+
+// Of the pitch that the grid of a generated specimen has.
+std::string pitch_key(const Description& d, double pitch) {
+    return d.roughness && pitch == d.roughness->pitch ? "roughness.pitch_um" : "pitch_um";
+}
+
+// A grid whose points a filter of this standard deviation goes over. The filter takes 12 standard deviations of points for
+// every point, in both directions, beside the drawing of its random numbers.
+void require_work(int columns, int rows, double pitch, double deviation, const SourceLocation& where,
+                  const std::string& key) {
+    constexpr double most_steps = 0x1p34; // half a minute of one processor core
+    constexpr double steps_of_drawing = 256; // and of the memory, 1.6 GB for the 2^26 points that this leaves at most
+    const double points = static_cast<double>(columns) * rows, taps = 12 * deviation / pitch;
+    if (points * (steps_of_drawing + taps) <= most_steps) {
+        return;
+    }
+    // Coarse enough for either part to take half of them.
+    const double area = points * pitch * pitch;
+    const double least = std::max(std::cbrt(2 * 12 * deviation * area / most_steps),
+                                  std::sqrt(2 * steps_of_drawing * area / most_steps));
+    throw InputError({where, "specimen." + key, fmt::format("{:.6g}", pitch * um_per_mm),
+                      fmt::format("a pitch that makes fewer points than {} x {}, each a mean over {:.0f} others", columns, rows,
+                                  2 * taps),
+                      fmt::format("Choose {} >= {:.3g}, or a smaller specimen.", key, least * um_per_mm)});
 }
 
 // The continuous shape without any lattice.
 Analytic shape_of(const Description& d, double pitch) {
-    require(positive(d.size), d, "size", d.size, "a positive length");
+    require(positive(d.size), d, "size_mm", d.size, fmt::format("a length from {} to {} mm", smallest_length, largest_length));
     Analytic shape;
     shape.x_min = shape.y_min = -0.5 * d.size;
     shape.x_max = shape.y_max = 0.5 * d.size;
     double* p = shape.parameters;
     switch (d.kind) {
     case Kind::step:
-        require(std::isfinite(d.height), d, "height", d.height, "a finite length");
+        require_um(std::isfinite(d.height), d, "height_um", d.height, "a finite length");
         shape.shape = physics::f64::SHAPE_STEP;
         p[0] = d.height;
         p[1] = d.wall == 0 ? pitch : d.wall;
-        require(positive(p[1]), d, "wall", p[1], "a positive length, or a pitch that takes its place");
+        require_um(positive(p[1]), d, "wall_um", p[1], positive_um + ", or a pitch that takes its place");
         break;
     case Kind::sphere:
-        require(positive(d.radius), d, "radius", d.radius, "a positive length");
-        require(std::abs(d.height) < d.radius, d, "height", d.height, "less than the radius in size");
+        require_um(positive(d.radius), d, "radius_um", d.radius, positive_um);
+        require_um(std::abs(d.height) < d.radius, d, "height_um", d.height, "less than the radius in size");
         shape.shape = physics::f64::SHAPE_SPHERE;
         p[0] = d.radius;
         p[1] = d.height;
         break;
     case Kind::sinusoid:
     case Kind::chirp:
-        require(std::isfinite(d.amplitude), d, "amplitude", d.amplitude, "a finite length");
-        require(positive(d.period), d, "period", d.period, "a positive length");
+        require_um(std::isfinite(d.amplitude), d, "amplitude_um", d.amplitude, "a finite length");
+        require_um(positive(d.period), d, "period_um", d.period, positive_um);
         shape.shape = physics::f64::SHAPE_SINUSOID;
         p[0] = d.amplitude;
         p[1] = d.period;
         if (d.kind == Kind::chirp) {
-            require(positive(d.period_stop), d, "period_stop", d.period_stop, "a positive length");
+            require_um(positive(d.period_stop), d, "period_stop_um", d.period_stop, positive_um);
             shape.shape = physics::f64::SHAPE_CHIRP;
             p[2] = d.period_stop;
         }
         break;
     default: // plane, and rough over a level plane
         if (d.kind == Kind::plane) {
-            for (const double tilt : {d.tilt_x, d.tilt_y}) {
-                require(std::abs(tilt) < 0.5 * pi, d, "tilt", tilt, "an angle below 90 degrees");
+            for (const auto& [key, tilt] : {std::pair{"tilt_x_deg", d.tilt_x}, std::pair{"tilt_y_deg", d.tilt_y}}) {
+                require(std::abs(tilt) < 0.5 * pi, d, key, tilt / radians_per_degree, "an angle below 90 degrees");
             }
             p[0] = std::tan(d.tilt_x);
             p[1] = std::tan(d.tilt_y);
@@ -91,9 +125,11 @@ void subtract_mean(Grid<double>& grid) {
 }
 
 void add_rough(HeightField& field, const Description& d) {
-    require(std::isfinite(d.sq) && d.sq >= 0, d, "sq", d.sq, "a length, 0 or more");
-    require(positive(d.correlation_length) && d.correlation_length <= d.size, d, "correlation_length",
-            d.correlation_length, "a positive length, at most the size");
+    require_um(std::isfinite(d.sq) && d.sq >= 0, d, "sq_um", d.sq, "a length, 0 or more");
+    require_um(positive(d.correlation_length) && d.correlation_length <= d.size, d, "correlation_length_um",
+               d.correlation_length, "a positive length, at most the size");
+    require_work(field.heights.columns, field.heights.rows, field.pitch_x, 0.5 * d.correlation_length, d.where,
+                 pitch_key(d, field.pitch_x));
     Grid<double> noise = filtered_noise(field.heights.columns, field.heights.rows,
                                         0.5 * d.correlation_length / field.pitch_x, d.seed);
     subtract_mean(noise);
@@ -137,11 +173,19 @@ Grid<double> transposed(const Grid<double>& grid) {
 } // namespace
 
 HeightField level_field(const Description& d, double pitch) {
-    require(positive(pitch) && pitch <= d.size, d, "pitch", pitch, "a positive length, at most the size");
+    const std::string key = pitch_key(d, pitch);
+    require(positive(d.size), d, "size_mm", d.size, "a positive length");
+    require_um(positive(pitch) && pitch <= d.size, d, key, pitch,
+               fmt::format("a positive length, at most the specimen's {} um", d.size * um_per_mm));
     const double cells = std::ceil(d.size / pitch * (1 - 1e-9));
-    if ((cells + 1) * (cells + 1) > static_cast<double>(largest_point_count)) {
-        throw InputError({d.where, "specimen.pitch", fmt::format("{} over a size of {}", pitch, d.size),
-                          fmt::format("at most {} points", largest_point_count), "Choose a coarser pitch."});
+    if (cells > most_facets) {
+        const bool smooth = d.kind == Kind::plane || d.kind == Kind::step || d.kind == Kind::sphere ||
+                            d.kind == Kind::sinusoid || d.kind == Kind::chirp;
+        throw InputError({d.where, "specimen." + key, fmt::format("{:.6g}", pitch * um_per_mm),
+                          fmt::format("at most {} facets along the specimen's {:.6g} mm", most_facets, d.size),
+                          fmt::format("Choose {} >= {:.3g}{}, or a smaller specimen{}.", key,
+                                      d.size * um_per_mm / most_facets, key == "pitch_um" ? " (0.5 if not given)" : "",
+                                      smooth && !d.roughness ? ", or representation = \"analytic\"" : "")});
     }
     HeightField field;
     field.heights = Grid<float>(static_cast<int>(cells) + 1, static_cast<int>(cells) + 1);
@@ -188,21 +232,21 @@ Grid<double> filtered_noise(int columns, int rows, double kernel, std::uint32_t 
 void add_roughness(HeightField& field, const Roughness& roughness, const SourceLocation& where) {
     const auto fail = [&](const std::string& key, double found, const std::string& expected,
                           const std::string& remedy) {
-        throw InputError({where, "specimen.roughness." + key, fmt::format("{}", found), expected, remedy});
+        throw InputError({where, "specimen.roughness." + key, fmt::format("{:.6g}", found * um_per_mm), expected, remedy});
     };
     if (!(std::isfinite(roughness.noise) && roughness.noise >= 0)) {
-        fail("noise", roughness.noise, "a length, 0 or more", "Correct the value in the configuration.");
+        fail("noise_um", roughness.noise, "a length, 0 or more", "Correct the value in the configuration.");
     }
     const double extent = std::max(field.x_max() - field.x_min, field.y_max() - field.y_min);
     if (!(roughness.kernel >= 0 && roughness.kernel <= extent)) {
-        fail("kernel", roughness.kernel, fmt::format("a length from 0 to the specimen's {} mm", extent),
+        fail("kernel_um", roughness.kernel, fmt::format("a length from 0 to the specimen's {} um", extent * um_per_mm),
              "Correct the value in the configuration.");
     }
     // Rounding of a quotient of lengths: pitches that agree to 1e-9 are the same.
     const double coarsest = std::max(field.pitch_x, field.pitch_y);
     if (!positive(roughness.pitch) || roughness.pitch < coarsest * (1 - 1e-9)) {
-        fail("pitch", roughness.pitch,
-             fmt::format("a length no less than the specimen's pitch, {} mm", coarsest),
+        fail("pitch_um", roughness.pitch,
+             fmt::format("a length no less than the specimen's pitch, {} um", coarsest * um_per_mm),
              "Give the roughness a coarser pitch or the specimen a finer one.");
     }
     HeightField own;
@@ -212,8 +256,9 @@ void add_roughness(HeightField& field, const Roughness& roughness, const SourceL
     const auto points = [&](int count, double pitch) {
         return static_cast<int>(std::ceil((count - 1) * pitch / roughness.pitch * (1 - 1e-9))) + 1;
     };
-    own.heights =
-        Grid<float>(points(field.heights.columns, field.pitch_x), points(field.heights.rows, field.pitch_y));
+    const int columns = points(field.heights.columns, field.pitch_x), rows = points(field.heights.rows, field.pitch_y);
+    require_work(columns, rows, roughness.pitch, roughness.kernel, where, "roughness.pitch_um");
+    own.heights = Grid<float>(columns, rows);
     const Grid<double> noise = filtered_noise(own.heights.columns, own.heights.rows,
                                               roughness.kernel / roughness.pitch, roughness.seed);
     std::transform(noise.values.begin(), noise.values.end(), own.heights.values.begin(),

@@ -1,288 +1,438 @@
 #include "specimen/files.hpp"
+#include "specimen/gltf_accessor.hpp"
+#include "specimen/gltf_document.hpp"
+
+#include "core/file.hpp"
 
 #include <fmt/format.h>
 #include <spdlog/spdlog.h>
-#include <tiny_gltf.h>
 
 #include <glm/gtc/quaternion.hpp>
 #include <glm/gtc/type_ptr.hpp>
 
 #include <algorithm>
 #include <cmath>
-#include <cstring>
-#include <limits>
+#include <cstdint>
+#include <map>
+#include <set>
+#include <string>
+#include <vector>
 
 namespace vkfv::specimen {
 namespace {
 
-// Elements of an accessor, checked against the buffer they lie in before the first is read.
-struct Elements {
-    const unsigned char* first = nullptr;
-    std::size_t count = 0;
-    std::size_t stride = 0;
-    int component_type = 0;
-    std::size_t buffer_offset = 0; // of the first, for messages
+using gltf::Component;
+using gltf::Document;
+using gltf::Elements;
+using gltf::Object;
 
-    template <class Component>
-    Component read(std::size_t element, std::size_t component) const {
-        Component value;
-        std::memcpy(&value, first + element * stride + component * sizeof(Component), sizeof value);
-        return value;
+// Of the standard's modes of primitives.
+constexpr std::uint64_t mode_triangles = 4, mode_strip = 5, mode_fan = 6;
+
+// A few kilobytes may place one mesh a million times: more than this is a mistake (some gigabytes of memory).
+constexpr std::uint64_t most_triangles = std::uint64_t{1} << 26, most_vertices = std::uint64_t{1} << 26;
+
+constexpr const char* instancing = "EXT_mesh_gpu_instancing";
+
+const gltf::Wanted wanted_indices{.purpose = "unsigned scalar indices",
+                                  .type = "SCALAR",
+                                  .components = {Component::unsigned_byte, Component::unsigned_short,
+                                                 Component::unsigned_int},
+                                  .interleaved = false};
+
+// Floats or normalised integers.
+gltf::Wanted wanted_of_instances(std::string purpose, std::string type) {
+    return {.purpose = std::move(purpose),
+            .type = std::move(type),
+            .components = {Component::real, Component::signed_byte, Component::signed_short, Component::unsigned_byte,
+                           Component::unsigned_short},
+            .normalised_only = true};
+}
+
+glm::dmat4 placed(const glm::dvec3& translation, const glm::dquat& rotation, const glm::dvec3& scale) {
+    glm::dmat4 matrix(1);
+    matrix[3] = glm::dvec4(translation, 1);
+    matrix = matrix * glm::mat4_cast(rotation);
+    for (int axis = 0; axis < 3; ++axis) {
+        matrix[axis] *= scale[axis];
     }
-};
+    return matrix;
+}
+
+// Rotations are unit quaternions but for rounding; of any other length they may mean anything.
+std::optional<glm::dquat> rotation_of(double x, double y, double z, double w) {
+    constexpr double rounding = 0.02; // of normalised bytes
+    const glm::dquat rotation(w, x, y, z);
+    const double length = glm::length(rotation);
+    return std::abs(length - 1) <= rounding ? std::optional(rotation / length) : std::nullopt;
+}
 
 class Reader {
   public:
-    Reader(const tinygltf::Model& model, const std::filesystem::path& file) : model_(model), file_(file) {}
+    explicit Reader(const Document& document) : document_(document) {}
 
     FileMesh read() {
-        visited_.assign(model_.nodes.size(), false);
-        if (!model_.scenes.empty()) {
-            const int scene = model_.defaultScene >= 0 ? model_.defaultScene : 0;
-            for (const int node : item(model_.scenes, scene, "scene").nodes) {
-                add_node(node, glm::dmat4(1));
-            }
-        } else {
-            // Without a scene every node that is nobody's child is a root.
-            std::vector<bool> is_child(model_.nodes.size(), false);
-            for (const tinygltf::Node& node : model_.nodes) {
-                for (const int child : node.children) {
-                    item(model_.nodes, child, "node");
-                    is_child[static_cast<std::size_t>(child)] = true;
-                }
-            }
-            for (std::size_t node = 0; node < model_.nodes.size(); ++node) {
-                if (!is_child[node]) {
-                    add_node(static_cast<int>(node), glm::dmat4(1));
-                }
-            }
+        visited_.assign(document_.count("nodes"), false);
+        for (const std::uint64_t root : roots()) {
+            walk_tree(root);
+        }
+        mesh_.vertices.reserve(size_.vertices);
+        mesh_.triangles.reserve(size_.triangles);
+        for (const Placement& placement : placements_) {
+            add_mesh(placement);
+        }
+        if (!lines_.empty()) {
+            spdlog::warn("{}: {} primitives of points and lines are left out", document_.file().string(),
+                         lines_.size());
+        }
+        if (!without_positions_.empty()) {
+            spdlog::warn("{}: {} primitives without positions are left out", document_.file().string(),
+                         without_positions_.size());
+        }
+        if (document_.count("animations") > 0) {
+            spdlog::warn("{}: its animations are left out; everything stands where its nodes place it",
+                         document_.file().string());
         }
         if (mesh_.triangles.empty()) {
-            fail("glTF", "0 triangles", "at least one triangle in the default scene", std::nullopt);
+            document_.root().fail("glTF", "0 triangles", "at least one triangle in the default scene",
+                                  "Export the mesh anew, or name another file.");
         }
         return std::move(mesh_);
     }
 
   private:
-    [[noreturn]] void fail(const std::string& key, const std::string& found, const std::string& expected,
-                           std::optional<std::uint64_t> offset) const {
-        throw InputError(
-            {{file_, 0, 0, offset}, key, found, expected, "Export the file anew; it is damaged or unusual."});
-    }
+    struct Size {
+        std::uint64_t triangles = 0, vertices = 0;
+    };
+    // A mesh and where a node places it.
+    struct Placement {
+        std::uint64_t mesh;
+        std::uint64_t node;
+        glm::dmat4 to_scene;
+    };
 
-    template <class Item>
-    const Item& item(const std::vector<Item>& items, int index, const std::string& name) const {
-        if (index < 0 || static_cast<std::size_t>(index) >= items.size()) {
-            fail(name, fmt::format("{}", index), fmt::format("an index below {}", items.size()),
-                 std::nullopt);
-        }
-        return items[static_cast<std::size_t>(index)];
-    }
+    Object node_at(std::uint64_t index) const { return document_.item("nodes", "node", index); }
 
-    void add_node(int index, const glm::dmat4& parent) {
-        const tinygltf::Node& node = item(model_.nodes, index, "node");
-        if (visited_[static_cast<std::size_t>(index)]) {
-            fail(fmt::format("node {}", index), "more than one parent", "a tree of nodes", std::nullopt);
+    // Of the default scene, else of the first one; without scenes every node that is nobody's child.
+    std::vector<std::uint64_t> roots() const {
+        const auto scene = document_.root().integer("scene");
+        if (const std::size_t scenes = document_.count("scenes"); scenes > 0 || scene) {
+            if (scenes > 1 && !scene) {
+                spdlog::warn("{}: of {} scenes, none of them the default, the first is taken", document_.file().string(),
+                             scenes);
+            }
+            return document_.item("scenes", "scene", scene.value_or(0)).integers("nodes");
         }
-        visited_[static_cast<std::size_t>(index)] = true;
-        glm::dmat4 local(1);
-        if (node.matrix.size() == 16) {
-            local = glm::make_mat4(node.matrix.data());
-        } else {
-            if (node.translation.size() == 3) {
-                local[3] = glm::dvec4(glm::make_vec3(node.translation.data()), 1);
-            }
-            if (node.rotation.size() == 4) { // x, y, z, w
-                const std::vector<double>& r = node.rotation;
-                local = local * glm::mat4_cast(glm::normalize(glm::dquat(r[3], r[0], r[1], r[2])));
-            }
-            if (node.scale.size() == 3) {
-                for (int axis = 0; axis < 3; ++axis) {
-                    local[axis] *= node.scale[static_cast<std::size_t>(axis)];
-                }
+        std::vector<bool> is_child(document_.count("nodes"), false);
+        for (std::uint64_t node = 0; node < is_child.size(); ++node) {
+            for (const std::uint64_t child : node_at(node).integers("children")) {
+                (void)node_at(child);
+                is_child[child] = true;
             }
         }
-        const glm::dmat4 to_scene = parent * local;
-        if (node.mesh >= 0) {
-            const tinygltf::Mesh& mesh = item(model_.meshes, node.mesh, "mesh");
-            for (std::size_t i = 0; i < mesh.primitives.size(); ++i) {
-                add_primitive(mesh.primitives[i], to_scene,
-                              fmt::format("mesh {} primitive {}", node.mesh, i));
+        std::vector<std::uint64_t> result;
+        for (std::uint64_t node = 0; node < is_child.size(); ++node) {
+            if (!is_child[node]) {
+                result.push_back(node);
             }
         }
-        for (const int child : node.children) {
-            add_node(child, to_scene);
-        }
-    }
-
-    Elements elements(int index, int type, std::initializer_list<int> component_types) const {
-        const std::string key = fmt::format("accessor {}", index);
-        const tinygltf::Accessor& accessor = item(model_.accessors, index, "accessor");
-        if (accessor.sparse.isSparse || accessor.bufferView < 0) {
-            fail(key, "a sparse or compressed accessor", "plain data in a buffer", std::nullopt);
-        }
-        if (accessor.type != type || std::find(component_types.begin(), component_types.end(),
-                                               accessor.componentType) == component_types.end()) {
-            fail(key, fmt::format("type {} of components {}", accessor.type, accessor.componentType),
-                 type == TINYGLTF_TYPE_VEC3 ? "positions of three floats" : "unsigned scalar indices",
-                 std::nullopt);
-        }
-        const tinygltf::BufferView& view = item(model_.bufferViews, accessor.bufferView, "buffer view");
-        const tinygltf::Buffer& buffer = item(model_.buffers, view.buffer, "buffer");
-        const std::size_t size =
-            static_cast<std::size_t>(
-                tinygltf::GetComponentSizeInBytes(static_cast<std::uint32_t>(accessor.componentType))) *
-            static_cast<std::size_t>(
-                tinygltf::GetNumComponentsInType(static_cast<std::uint32_t>(accessor.type)));
-        Elements result;
-        result.stride = view.byteStride > 0 ? view.byteStride : size;
-        result.count = accessor.count;
-        result.component_type = accessor.componentType;
-        // Every sum and product below is bounded by the one before, so none can wrap round.
-        const std::size_t length = buffer.data.size();
-        const bool view_fits = view.byteOffset <= length && view.byteLength <= length - view.byteOffset;
-        const bool fits =
-            view_fits && result.stride >= size && accessor.byteOffset <= view.byteLength &&
-            size <= view.byteLength - accessor.byteOffset && accessor.count > 0 &&
-            accessor.count - 1 <= (view.byteLength - accessor.byteOffset - size) / result.stride;
-        if (!fits) {
-            fail(key,
-                 fmt::format("{} elements of {} bytes at {} of a view of {} bytes at {}", accessor.count,
-                             size, accessor.byteOffset, view.byteLength, view.byteOffset),
-                 fmt::format("elements inside the {} bytes of buffer {}", length, view.buffer),
-                 static_cast<std::uint64_t>(view.byteOffset));
-        }
-        result.buffer_offset = view.byteOffset + accessor.byteOffset;
-        result.first = buffer.data.data() + result.buffer_offset;
         return result;
     }
 
-    void add_primitive(const tinygltf::Primitive& primitive, const glm::dmat4& to_scene,
-                       const std::string& key) {
-        if (primitive.mode != TINYGLTF_MODE_TRIANGLES && primitive.mode != TINYGLTF_MODE_TRIANGLE_STRIP &&
-            primitive.mode != TINYGLTF_MODE_TRIANGLE_FAN) {
-            spdlog::warn("{}: {}: points and lines are left out", file_.string(), key);
-            return;
-        }
-        const auto position = primitive.attributes.find("POSITION");
-        if (position == primitive.attributes.end()) {
-            fail(key, "no attribute POSITION", "positions", std::nullopt);
-        }
-        const Elements points =
-            elements(position->second, TINYGLTF_TYPE_VEC3, {TINYGLTF_COMPONENT_TYPE_FLOAT});
-        const std::size_t base = mesh_.vertices.size();
-        if (points.count > std::numeric_limits<std::uint32_t>::max() - base) {
-            fail(key, fmt::format("{} vertices", points.count), "fewer than 2^32 vertices", std::nullopt);
-        }
-        for (std::size_t i = 0; i < points.count; ++i) {
-            const glm::dvec4 point(points.read<float>(i, 0), points.read<float>(i, 1),
-                                   points.read<float>(i, 2), 1);
-            const glm::dvec3 placed(to_scene * point);
-            if (!std::isfinite(placed.x) || !std::isfinite(placed.y) || !std::isfinite(placed.z)) {
-                fail(fmt::format("{} vertex {}", key, i),
-                     fmt::format("({}, {}, {})", point.x, point.y, point.z), "finite coordinates",
-                     static_cast<std::uint64_t>(points.buffer_offset + i * points.stride));
+    // With a stack of its own: a chain of nodes may be as long as the file.
+    void walk_tree(std::uint64_t root) {
+        struct Task {
+            std::uint64_t node;
+            glm::dmat4 parent;
+        };
+        std::vector<Task> tasks = {{root, glm::dmat4(1)}};
+        while (!tasks.empty()) {
+            const Task task = tasks.back();
+            tasks.pop_back();
+            const Object node = node_at(task.node);
+            if (visited_[task.node]) {
+                node.fail("", "more than one parent", "a tree of nodes");
             }
-            mesh_.vertices.push_back(placed);
+            visited_[task.node] = true;
+            const glm::dmat4 to_scene = task.parent * transform_of(node);
+            if (const auto mesh = node.integer("mesh")) {
+                count(*mesh, node);
+                placements_.push_back({*mesh, task.node, to_scene});
+            }
+            const auto children = node.integers("children");
+            for (auto child = children.rbegin(); child != children.rend(); ++child) {
+                tasks.push_back({*child, to_scene});
+            }
         }
+    }
 
-        Elements indices;
-        indices.count = points.count;
-        if (primitive.indices >= 0) {
-            indices = elements(primitive.indices, TINYGLTF_TYPE_SCALAR,
-                               {TINYGLTF_COMPONENT_TYPE_UNSIGNED_BYTE, TINYGLTF_COMPONENT_TYPE_UNSIGNED_SHORT,
-                                TINYGLTF_COMPONENT_TYPE_UNSIGNED_INT});
-        }
-        const auto vertex = [&](std::size_t i) {
-            std::size_t index = i;
-            switch (indices.component_type) {
-            case TINYGLTF_COMPONENT_TYPE_UNSIGNED_BYTE:
-                index = indices.read<std::uint8_t>(i, 0);
-                break;
-            case TINYGLTF_COMPONENT_TYPE_UNSIGNED_SHORT:
-                index = indices.read<std::uint16_t>(i, 0);
-                break;
-            case TINYGLTF_COMPONENT_TYPE_UNSIGNED_INT:
-                index = indices.read<std::uint32_t>(i, 0);
-                break;
-            default: // no indices: the vertices in their order
-                break;
+    static glm::dmat4 transform_of(const Object& node) {
+        const auto matrix = node.numbers("matrix", 16);
+        const auto translation = node.numbers("translation", 3);
+        const auto rotation = node.numbers("rotation", 4); // x, y, z, w
+        const auto scale = node.numbers("scale", 3);
+        if (!matrix.empty()) {
+            if (!translation.empty() || !rotation.empty() || !scale.empty()) {
+                node.fail("matrix", "a matrix beside translation, rotation or scale", "either of them");
             }
-            if (index >= points.count) {
-                fail(fmt::format("{} index {}", key, i), fmt::format("{}", index),
-                     fmt::format("an index below {}", points.count),
-                     static_cast<std::uint64_t>(indices.buffer_offset + i * indices.stride));
+            if (matrix[3] != 0 || matrix[7] != 0 || matrix[11] != 0 || matrix[15] != 1) {
+                node.fail("matrix", fmt::format("a last row {}, {}, {}, {}", matrix[3], matrix[7], matrix[11], matrix[15]),
+                          "0, 0, 0, 1, column after column");
+            }
+            return glm::make_mat4(matrix.data());
+        }
+        std::optional<glm::dquat> turn = glm::dquat(1, 0, 0, 0);
+        if (!rotation.empty()) {
+            turn = rotation_of(rotation[0], rotation[1], rotation[2], rotation[3]);
+            if (!turn) {
+                node.fail("rotation", fmt::format("({}, {}, {}, {})", rotation[0], rotation[1], rotation[2], rotation[3]),
+                          "a quaternion of length 1");
+            }
+        }
+        return placed(translation.empty() ? glm::dvec3(0) : glm::make_vec3(translation.data()), *turn,
+                      scale.empty() ? glm::dvec3(1) : glm::make_vec3(scale.data()));
+    }
+
+    // Before anything is made of it: all that is to come has to fit into memory.
+    void count(std::uint64_t mesh, const Object& node) {
+        if (node.has("skin")) {
+            node.fail("skin", fmt::format("{}", node.integer("skin").value_or(0)), "a mesh that no skeleton bends",
+                      "Apply the skeleton's pose to the mesh before the export.");
+        }
+        const Size size = size_of(mesh);
+        const std::uint64_t copies = instances_of(node).size();
+        if (size.triangles > (most_triangles - size_.triangles) / copies ||
+            size.vertices > (most_vertices - size_.vertices) / copies) {
+            node.fail("mesh", fmt::format("{} triangles and {} vertices, {} times", size.triangles, size.vertices, copies),
+                      fmt::format("at most {} of each in all", most_triangles),
+                      "Export a coarser mesh, or fewer copies of it.");
+        }
+        size_.triangles += size.triangles * copies;
+        size_.vertices += size.vertices * copies;
+    }
+
+    Size size_of(std::uint64_t index) {
+        const auto known = sizes_.find(index);
+        if (known != sizes_.end()) {
+            return known->second;
+        }
+        const Object mesh = document_.item("meshes", "mesh", index);
+        const auto primitives = mesh.objects("primitives");
+        if (primitives.empty()) {
+            mesh.fail("primitives", "nothing", "at least one primitive");
+        }
+        Size size;
+        for (const Object& primitive : primitives) {
+            if (const auto shape = shape_of(primitive)) {
+                size.triangles += shape->mode == mode_triangles ? shape->count() / 3 : shape->count() - 2;
+                size.vertices += shape->points.count();
+            }
+        }
+        return sizes_[index] = size;
+    }
+
+    void add_mesh(const Placement& placement) {
+        const Object mesh = document_.item("meshes", "mesh", placement.mesh);
+        const Object node = node_at(placement.node);
+        const auto weights = node.has("weights") ? node.numbers("weights") : mesh.numbers("weights");
+        const auto primitives = mesh.objects("primitives");
+        for (const glm::dmat4& instance : instances_of(node)) {
+            for (const Object& primitive : primitives) {
+                if (const auto shape = shape_of(primitive)) {
+                    add_primitive(primitive, *shape, weights, placement.to_scene * instance);
+                }
+            }
+        }
+    }
+
+    // Transforms of a node's mesh before the node's own: a single one that does nothing without the extension.
+    std::vector<glm::dmat4> instances_of(const Object& node) const {
+        const auto extensions = node.object("extensions");
+        const auto extension = extensions ? extensions->object(instancing) : std::nullopt;
+        if (!extension) {
+            return {glm::dmat4(1)};
+        }
+        const Object attributes = extension->needed_object("attributes");
+        std::optional<std::uint64_t> count;
+        const auto read = [&](const char* key, const gltf::Wanted& wanted) -> std::optional<Elements> {
+            const auto accessor = attributes.integer(key);
+            if (!accessor) {
+                return std::nullopt;
+            }
+            Elements elements(document_, *accessor, wanted);
+            if (count && *count != elements.count()) {
+                attributes.fail(key, fmt::format("{} elements", elements.count()),
+                                fmt::format("{}, as the other attributes have", *count));
+            }
+            count = elements.count();
+            return elements;
+        };
+        const auto translations = read("TRANSLATION", wanted_of_instances("translations as VEC3", "VEC3"));
+        const auto rotations = read("ROTATION", wanted_of_instances("rotations as VEC4", "VEC4"));
+        const auto scales = read("SCALE", wanted_of_instances("scales as VEC3", "VEC3"));
+        if (!count) {
+            attributes.fail("", "no TRANSLATION, ROTATION or SCALE", "at least one of them");
+        }
+        if (*count > most_triangles) {
+            attributes.fail("", fmt::format("{} instances", *count), fmt::format("at most {}", most_triangles));
+        }
+        const auto vector = [](const std::optional<Elements>& elements, std::uint64_t k, double otherwise) {
+            return elements ? glm::dvec3(elements->at(k, 0), elements->at(k, 1), elements->at(k, 2)) : glm::dvec3(otherwise);
+        };
+        std::vector<glm::dmat4> result;
+        result.reserve(*count);
+        for (std::uint64_t k = 0; k < *count; ++k) {
+            std::optional<glm::dquat> rotation = glm::dquat(1, 0, 0, 0);
+            if (rotations) {
+                rotation = rotation_of(rotations->at(k, 0), rotations->at(k, 1), rotations->at(k, 2), rotations->at(k, 3));
+                if (!rotation) {
+                    attributes.fail(fmt::format("ROTATION of instance {}", k), "another length",
+                                    "a quaternion of length 1", "Export the file anew; it is damaged.", rotations->where(k));
+                }
+            }
+            result.push_back(placed(vector(translations, k, 0), *rotation, vector(scales, k, 1)));
+        }
+        return result;
+    }
+
+    // Positions are floats, but for an extension that packs them.
+    gltf::Wanted wanted_positions() const {
+        gltf::Wanted wanted{.purpose = "positions of three floats", .type = "VEC3", .components = {Component::real}};
+        if (document_.uses("KHR_mesh_quantization")) {
+            wanted.purpose = "positions of three floats, bytes or shorts";
+            wanted.components = {Component::real, Component::signed_byte, Component::unsigned_byte,
+                                 Component::signed_short, Component::unsigned_short};
+        }
+        return wanted;
+    }
+
+    struct Morph {
+        double weight;
+        Elements displacements;
+    };
+
+    // The targets that displace positions, with their weights.
+    std::vector<Morph> morphs_of(const Object& primitive, const std::vector<double>& weights, std::uint64_t points) const {
+        std::vector<Morph> result;
+        const auto targets = primitive.objects("targets");
+        if (!weights.empty() && weights.size() != targets.size()) {
+            primitive.fail("targets", fmt::format("{} of them, with {} weights", targets.size(), weights.size()),
+                           "a weight for each");
+        }
+        for (std::size_t k = 0; k < weights.size(); ++k) {
+            const auto accessor = targets[k].integer("POSITION");
+            if (weights[k] == 0 || !accessor) {
+                continue;
+            }
+            result.push_back({weights[k], Elements(document_, *accessor, wanted_positions())});
+            if (result.back().displacements.count() != points) {
+                targets[k].fail("POSITION", fmt::format("{} elements", result.back().displacements.count()),
+                                fmt::format("as many as there are vertices, {}", points));
+            }
+        }
+        return result;
+    }
+
+    void add_vertices(const Object& primitive, const Elements& points, const std::vector<Morph>& morphs,
+                      const glm::dmat4& to_scene) {
+        for (std::uint64_t i = 0; i < points.count(); ++i) {
+            glm::dvec3 point(points.at(i, 0), points.at(i, 1), points.at(i, 2));
+            for (const Morph& morph : morphs) {
+                const Elements& by = morph.displacements;
+                point += morph.weight * glm::dvec3(by.at(i, 0), by.at(i, 1), by.at(i, 2));
+            }
+            const glm::dvec3 vertex(to_scene * glm::dvec4(point, 1));
+            if (!std::isfinite(vertex.x) || !std::isfinite(vertex.y) || !std::isfinite(vertex.z)) {
+                primitive.fail(fmt::format("vertex {}", i), fmt::format("({}, {}, {})", point.x, point.y, point.z),
+                               "finite coordinates", "Export the file anew; it is damaged.", points.where(i));
+            }
+            mesh_.vertices.push_back(vertex);
+        }
+    }
+
+    // A primitive of triangles.
+    struct Shape {
+        std::uint64_t mode;
+        Elements points;
+        std::optional<Elements> indices;
+
+        std::uint64_t count() const { return indices ? indices->count() : points.count(); }
+    };
+
+    // Nothing for points and lines, and for what has no positions.
+    std::optional<Shape> shape_of(const Object& primitive) {
+        const std::uint64_t mode = primitive.integer("mode").value_or(mode_triangles);
+        if (mode > mode_fan) {
+            primitive.fail("mode", fmt::format("{}", mode), "a number from 0 to 6");
+        }
+        const auto position = primitive.needed_object("attributes").integer("POSITION");
+        if (mode < mode_triangles || !position) {
+            (mode < mode_triangles ? lines_ : without_positions_).insert(primitive.name());
+            return std::nullopt;
+        }
+        Shape shape{mode, Elements(document_, *position, wanted_positions()), {}};
+        if (const auto accessor = primitive.integer("indices")) {
+            shape.indices.emplace(document_, *accessor, wanted_indices);
+        }
+        if (mode == mode_triangles ? shape.count() % 3 != 0 : shape.count() < 3) {
+            primitive.fail(shape.indices ? "indices" : "attributes", fmt::format("{} vertices", shape.count()),
+                           mode == mode_triangles ? "three for every triangle" : "at least three for a strip or a fan");
+        }
+        return shape;
+    }
+
+    void add_primitive(const Object& primitive, const Shape& shape, const std::vector<double>& weights,
+                       const glm::dmat4& to_scene) {
+        const auto& [mode, points, indices] = shape;
+        const std::uint64_t count = shape.count();
+        const std::uint64_t base = mesh_.vertices.size();
+        add_vertices(primitive, points, morphs_of(primitive, weights, points.count()), to_scene);
+
+        const auto vertex = [&](std::uint64_t i) {
+            const std::uint64_t index = indices ? static_cast<std::uint64_t>(indices->at(i, 0)) : i;
+            if (index >= points.count()) {
+                primitive.fail(fmt::format("index {}", i), fmt::format("{}", index),
+                               fmt::format("an index below {}", points.count()), "Export the file anew; it is damaged.",
+                               indices->where(i));
             }
             return static_cast<std::uint32_t>(base + index);
         };
         // A mirroring transform turns the sense of the triangles round; a strip's every second one is turned
         // already.
         const bool mirrored = glm::determinant(glm::dmat3(to_scene)) < 0;
-        const auto add = [&](std::size_t a, std::size_t b, std::size_t c, bool turned) {
-            mesh_.triangles.emplace_back(vertex(a), vertex(turned != mirrored ? c : b),
-                                         vertex(turned != mirrored ? b : c));
+        const auto add = [&](std::uint64_t a, std::uint64_t b, std::uint64_t c, bool turned) {
+            mesh_.triangles.emplace_back(vertex(a), vertex(turned != mirrored ? c : b), vertex(turned != mirrored ? b : c));
         };
-        if (primitive.mode == TINYGLTF_MODE_TRIANGLES) {
-            for (std::size_t i = 0; i + 2 < indices.count; i += 3) {
+        if (mode == mode_triangles) {
+            for (std::uint64_t i = 0; i < count; i += 3) {
                 add(i, i + 1, i + 2, false);
             }
         } else {
-            const bool fan = primitive.mode == TINYGLTF_MODE_TRIANGLE_FAN;
-            for (std::size_t i = 0; i + 2 < indices.count; ++i) {
+            const bool fan = mode == mode_fan;
+            for (std::uint64_t i = 0; i + 2 < count; ++i) {
                 add(fan ? 0 : i, i + 1, i + 2, !fan && i % 2 == 1);
             }
         }
     }
 
-    const tinygltf::Model& model_;
-    const std::filesystem::path& file_;
+    const Document& document_;
     FileMesh mesh_;
-    std::vector<bool> visited_;
+    std::vector<bool> visited_; // nodes
+    std::vector<Placement> placements_;
+    std::map<std::uint64_t, Size> sizes_; // of meshes
+    Size size_;                           // of all placements
+    std::set<std::string> lines_, without_positions_; // primitives that are left out
 };
 
 } // namespace
 
+FileMesh parse_gltf(std::string bytes, const std::filesystem::path& file) {
+    const Document document(std::move(bytes), file);
+    return Reader(document).read();
+}
+
 FileMesh read_gltf(const std::filesystem::path& file, const SourceLocation& mention) {
-    const std::string bytes = read_file(file, mention);
-    tinygltf::TinyGLTF loader;
-    // Textures do not matter to the shape, and need not even exist.
-    loader.SetImageLoader([](tinygltf::Image*, const int, std::string*, std::string*, int, int,
-                             const unsigned char*, int, void*) { return true; },
-                          nullptr);
-    tinygltf::Model model;
-    std::string errors;
-    std::string warnings;
-    bool loaded = false;
-    if (bytes.size() > std::numeric_limits<unsigned int>::max()) {
-        errors = "more than 4 GiB";
-    } else {
-        const unsigned int size = static_cast<unsigned int>(bytes.size());
-        try {
-            loaded = bytes.starts_with("glTF")
-                         ? loader.LoadBinaryFromMemory(&model, &errors, &warnings,
-                                                       reinterpret_cast<const unsigned char*>(bytes.data()),
-                                                       size, file.parent_path().string())
-                         : loader.LoadASCIIFromString(&model, &errors, &warnings, bytes.data(), size,
-                                                      file.parent_path().string());
-        } catch (const std::exception& exception) { // of the JSON parser, on input that it does not foresee
-            errors = exception.what();
-        }
-    }
-    if (!warnings.empty()) {
-        spdlog::warn("{}: {}", file.string(), warnings);
-    }
-    if (!loaded) {
-        while (!errors.empty() && std::isspace(static_cast<unsigned char>(errors.back()))) {
-            errors.pop_back();
-        }
-        // The parser's own message names the byte where it knows it.
-        throw InputError({{file, 0, 0, {}},
-                          "glTF",
-                          errors.empty() ? "no valid glTF" : errors,
-                          "a valid glTF 2.0 file",
-                          "Export the file anew; it is damaged or truncated."});
-    }
-    return Reader(model, file).read();
+    return parse_gltf(specimen_bytes(file, mention), file);
 }
 
 } // namespace vkfv::specimen

@@ -1,3 +1,4 @@
+#include "core/units.hpp"
 #include "specimen/standards.hpp"
 
 #include <fmt/format.h>
@@ -11,9 +12,9 @@ HeightField groove(const Description& d, double pitch) {
     HeightField field = level_field(d, pitch);
     const double wall = d.wall == 0 ? field.pitch_x : d.wall;
     if (!(d.width > wall && d.width + wall < d.size))
-        throw InputError({d.where, "specimen.width", fmt::format("{} mm", d.width),
-                          fmt::format("more than the flank's {} mm, and less than the specimen without one, {} mm", wall,
-                                      d.size - wall),
+        throw InputError({d.where, "specimen.width_um", fmt::format("{} um", d.width * um_per_mm),
+                          fmt::format("more than the flank's {} um, and less than the specimen without one, {} um",
+                                      wall * um_per_mm, (d.size - wall) * um_per_mm),
                           "Correct the value in the configuration."});
     for (int column = 0; column < field.heights.columns; ++column) {
         const double x = std::abs(field.x_min + column * field.pitch_x);

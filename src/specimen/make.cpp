@@ -25,110 +25,16 @@ struct Bounds {
     }
 };
 
-std::array<Bounds, 3> bounds_of(const std::vector<glm::dvec3>& points) {
-    std::array<Bounds, 3> bounds;
-    for (const glm::dvec3& point : points) {
-        for (int axis = 0; axis < 3; ++axis) {
-            bounds[static_cast<std::size_t>(axis)].include(point[axis]);
-        }
-    }
-    return bounds;
-}
-
-// Mean of the uppermost surface over the points of the bounding rectangle where there is one.
-double mean_height(const Mesh& mesh, const std::array<Bounds, 3>& bounds) {
-    constexpr int pixels = 256;
-    const double pitch_x = (bounds[0].upper - bounds[0].lower) / pixels;
-    const double pitch_y = (bounds[1].upper - bounds[1].lower) / pixels;
-    const surface::HeightMap map = truth({mesh, {}}, pixels, pixels, bounds[0].lower + 0.5 * pitch_x,
-                                         bounds[1].lower + 0.5 * pitch_y, pitch_x, pitch_y);
-    double sum = 0;
-    int count = 0;
-    for (const double height : map.height.values) {
-        if (!std::isnan(height)) {
-            sum += height;
-            ++count;
-        }
-    }
-    return count > 0 ? sum / count : 0;
-}
-
-Mesh place(FileMesh source, const Description& d) {
-    const auto fail = [&](const std::string& key, const std::string& found, const std::string& expected,
-                          const std::string& remedy) {
-        throw InputError({d.where, "specimen." + key, found, expected, remedy});
-    };
-    if (!(std::isfinite(d.unit) && d.unit > 0)) {
-        fail("unit", fmt::format("{}", d.unit), "a positive number of mm per unit of the file",
-             "Correct the value in the configuration.");
-    }
-    for (glm::dvec3& vertex : source.vertices) {
-        vertex *= d.unit;
-    }
-    std::array<Bounds, 3> bounds = bounds_of(source.vertices);
-    glm::dvec3 extent;
-    for (int axis = 0; axis < 3; ++axis) {
-        const Bounds& b = bounds[static_cast<std::size_t>(axis)];
-        extent[axis] = b.upper - b.lower;
-        if (std::max(std::abs(b.lower), std::abs(b.upper)) > std::numeric_limits<float>::max()) {
-            fail("file", fmt::format("coordinates from {} to {} mm", b.lower, b.upper),
-                 "what a float can hold", "Correct the unit or the file.");
-        }
-    }
-    if (!(extent.x > 0 && extent.y > 0)) {
-        fail("file", fmt::format("a mesh of {} x {} mm", extent.x, extent.y), "a footprint in x and y",
-             "Turn the mesh so that its face looks towards +z.");
-    }
-    Mesh mesh;
-    const auto to_float = [&](const glm::dvec3& origin) {
-        mesh.vertices.clear();
-        for (const glm::dvec3& vertex : source.vertices) {
-            mesh.vertices.emplace_back(vertex - origin);
-        }
-    };
-    glm::dvec3 centre(0);
-    if (d.centre) {
-        for (int axis = 0; axis < 3; ++axis) {
-            const Bounds& b = bounds[static_cast<std::size_t>(axis)];
-            centre[axis] = 0.5 * (b.lower + b.upper);
-        }
-    }
-    to_float(centre);
-    std::size_t degenerate = 0;
-    for (const glm::uvec3& triangle : source.triangles) {
-        const glm::dvec3 a(mesh.vertices[triangle.x]);
-        const glm::dvec3 b(mesh.vertices[triangle.y]);
-        const glm::dvec3 c(mesh.vertices[triangle.z]);
-        if (glm::cross(b - a, c - a) == glm::dvec3(0)) {
-            ++degenerate;
-        } else {
-            mesh.triangles.push_back(triangle);
-        }
-    }
-    if (mesh.triangles.empty()) {
-        fail("file", fmt::format("{} triangles, all without area", degenerate),
-             "at least one triangle with an area", "Correct the unit or export the mesh anew.");
-    }
-    if (d.centre) {
-        const std::vector<glm::dvec3> centred(mesh.vertices.begin(), mesh.vertices.end());
-        centre.z += mean_height(mesh, bounds_of(centred));
-        to_float(centre);
-    }
-    spdlog::info("{}: {} triangles, {:.6g} x {:.6g} x {:.6g} mm; {} without area dropped", d.file.string(),
-                 mesh.triangles.size(), extent.x, extent.y, extent.z, degenerate);
-    return mesh;
-}
-
 HeightField field_from_image(const Description& d) {
-    const auto require = [&](bool condition, const std::string& key, double found,
-                             const std::string& expected) {
+    const auto require = [&](bool condition, const std::string& key, double mm, const std::string& expected) {
         if (!condition) {
-            throw InputError({d.where, "specimen." + key, fmt::format("{}", found), expected,
+            throw InputError({d.where, "specimen." + key, fmt::format("{}", mm * um_per_mm), expected,
                               "Correct the value in the configuration."});
         }
     };
-    require(std::isfinite(d.pitch) && d.pitch > 0, "pitch", d.pitch, "a positive length");
-    require(std::isfinite(d.height), "height", d.height, "a finite length");
+    require(d.pitch >= smallest_length && d.pitch <= largest_length, "pitch_um", d.pitch,
+            fmt::format("a length from {} to {} um", smallest_length * um_per_mm, largest_length * um_per_mm));
+    require(std::isfinite(d.height), "height_um", d.height, "a finite length");
     HeightField field;
     field.heights = read_image(d.file, d.where);
     for (float& height : field.heights.values) {
@@ -264,7 +170,12 @@ struct Recorder {
     }
     void operator()(const Mesh& mesh) const {
         record.kind = physics::f64::SPECIMEN_MESH;
-        const auto [x, y, z] = bounds_of(std::vector<glm::dvec3>(mesh.vertices.begin(), mesh.vertices.end()));
+        Bounds x, y, z;
+        for (const glm::vec3& vertex : mesh.vertices) {
+            x.include(static_cast<double>(vertex.x));
+            y.include(static_cast<double>(vertex.y));
+            z.include(static_cast<double>(vertex.z));
+        }
         record.x_min = x.lower;
         record.x_max = x.upper;
         record.y_min = y.lower;
@@ -298,6 +209,22 @@ struct Recorder {
     }
 };
 
+// A surface that floats can hold, on the device too.
+void check_extent(const Specimen& specimen, const SourceLocation& where) {
+    const SpecimenRecord r = record(specimen, 1);
+    const double farthest = std::max({std::abs(r.x_min), std::abs(r.x_max), std::abs(r.y_min), std::abs(r.y_max),
+                                      std::abs(r.bottom), std::abs(r.top)});
+    const double narrowest = std::min(r.x_max - r.x_min, r.y_max - r.y_min);
+    // Not finite: neither.
+    if (!(farthest <= largest_length && narrowest >= smallest_length)) {
+        throw InputError({where, "specimen",
+                          fmt::format("a surface of {:.6g} x {:.6g} mm, from {:.6g} to {:.6g} mm high", r.x_max - r.x_min,
+                                      r.y_max - r.y_min, r.bottom, r.top),
+                          fmt::format("lengths from {} to {} mm", smallest_length, largest_length),
+                          "Correct the lengths in [specimen], or the unit of its file."});
+    }
+}
+
 } // namespace
 
 Specimen make(const Description& d) {
@@ -311,10 +238,10 @@ Specimen make(const Description& d) {
     specimen.material = d.material;
     switch (d.kind) {
     case Kind::stl:
-        specimen.geometry = place(read_stl(d.file, d.where), d);
+        specimen.geometry = placed_mesh(read_stl(d.file, d.where), d);
         break;
     case Kind::gltf:
-        specimen.geometry = place(read_gltf(d.file, d.where), d);
+        specimen.geometry = placed_mesh(read_gltf(d.file, d.where), d);
         break;
     case Kind::image:
     case Kind::surface: {
@@ -322,7 +249,7 @@ Specimen make(const Description& d) {
         if (d.roughness) {
             // Roughness finer than the points of the file needs points in between.
             if (d.roughness->pitch > 0 && d.roughness->pitch < std::max(field.pitch_x, field.pitch_y) * (1 - 1e-9)) {
-                field = refined(field, d.roughness->pitch);
+                field = refined(field, d.roughness->pitch, d.where);
             }
             add_roughness(field, *d.roughness, d.where);
         }
@@ -333,6 +260,7 @@ Specimen make(const Description& d) {
         specimen.geometry = generate(d);
         break;
     }
+    check_extent(specimen, d.where);
     return specimen;
 }
 

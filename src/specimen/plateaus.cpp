@@ -1,12 +1,15 @@
 #include "specimen/files.hpp"
 #include "specimen/standards.hpp"
 
+#include "core/file.hpp"
+
 #include <OpenImageIO/imagebuf.h>
 #include <OpenImageIO/imagebufalgo.h>
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
 #include <set>
 
 namespace vkfv::specimen {
@@ -62,15 +65,30 @@ void set_text(HeightField& field, const Description& d) {
     if (count == 0)
         fail(d, "text", '"' + d.text + '"', "at least one letter", "Write what the plateaus are to read.");
     if (d.heights.size() != 1 && d.heights.size() != count)
-        fail(d, "heights", fmt::format("{} heights", d.heights.size()),
+        fail(d, "heights_um", fmt::format("{} heights", d.heights.size()),
              fmt::format("one, or one for each of the {} letters", count), "Give each letter its height.");
+    if (!(d.text_width > 0 && d.text_width <= d.size))
+        fail(d, "text_width_mm", fmt::format("{}", d.text_width),
+             fmt::format("a positive length, at most the specimen's {}", d.size), "Choose narrower text or a larger specimen.");
+    // Each letter is drawn over the whole grid.
+    constexpr double most_drawn_points = 0x1p31; // some tens of seconds
+    const double points = static_cast<double>(field.heights.values.size());
+    if (static_cast<double>(count) * points > most_drawn_points)
+        fail(d, "text", fmt::format("{} letters on a grid of {} x {} points", count, field.heights.columns, field.heights.rows),
+             fmt::format("at most {:.0f} letters on so fine a grid", most_drawn_points / points),
+             "Choose a coarser pitch_um or less text, or draw the letters as an image and name it in specimen.file.");
     // Widths follow the font's size; it is found from those at a large one.
     constexpr int trial = 1000;
     const double wanted = d.text_width / field.pitch_x;
     const int font_size = static_cast<int>(std::floor(trial * wanted / width_of(letters_of(d, trial), trial)));
     if (font_size < 8)
-        fail(d, "text_width", fmt::format("{} mm", d.text_width), "letters of at least 8 points of the grid",
+        fail(d, "text_width_mm", fmt::format("{}", d.text_width), "letters of at least 8 points of the grid",
              "Choose wider text, less of it, or a finer pitch.");
+    // A thin letter as wide as the specimen would be far higher.
+    constexpr int highest = 8;
+    if (font_size > highest * field.heights.rows)
+        fail(d, "text_width_mm", fmt::format("{}", d.text_width),
+             fmt::format("letters at most {} times as high as the specimen", highest), "Choose narrower text, or more of it.");
     const std::vector<Letter> letters = letters_of(d, font_size);
     // The text's bounding box has its middle on the axis.
     int top = 0, bottom = 0;
@@ -110,7 +128,7 @@ void set_mask(HeightField& field, const Description& d) {
     std::set<float> levels(mask.values.begin(), mask.values.end());
     levels.erase(0.0f);
     if (levels.empty() || (d.heights.size() != 1 && d.heights.size() != levels.size()))
-        fail(d, "heights", fmt::format("{} heights", d.heights.size()),
+        fail(d, "heights_um", fmt::format("{} heights", d.heights.size()),
              fmt::format("one, or one for each of the {} grey values other than black in {}", levels.size(),
                          d.file.string()),
              "Give each plateau its height; smoothed edges are grey values too, so save the mask without them.");
@@ -118,7 +136,7 @@ void set_mask(HeightField& field, const Description& d) {
         for (int column = 0; column < field.heights.columns; ++column) {
             // The pixel that the point lies in.
             const auto pixel = [](int at, int points, int pixels) {
-                return std::min(pixels - 1, at * pixels / points);
+                return std::min(pixels - 1, static_cast<int>(std::int64_t{at} * pixels / points));
             };
             const float value = mask(pixel(column, field.heights.columns, mask.columns),
                                      pixel(row, field.heights.rows, mask.rows));
@@ -132,8 +150,13 @@ void set_mask(HeightField& field, const Description& d) {
 
 HeightField plateaus(const Description& d, double pitch) {
     HeightField field = level_field(d, pitch);
-    if (d.file.empty())
+    if (d.file.empty()) {
+        // A font's file is opened by a library that would wait for a pipe.
+        std::error_code none;
+        if (std::filesystem::exists(d.font, none))
+            (void)InputFile(d.font, {.key = "specimen.font", .expected = "the file of a font"});
         set_text(field, d);
+    }
     else
         set_mask(field, d);
     return field;

@@ -1,6 +1,10 @@
 #include "specimen/analytic.hpp"
+#include "specimen/files.hpp"
 
+#include "core/units.hpp"
 #include "surface/resample.hpp"
+
+#include <fmt/format.h>
 
 #include <algorithm>
 #include <cmath>
@@ -32,9 +36,16 @@ HeightField on_grid(const HeightField& field, double x0, double y0, int columns,
     return result;
 }
 
-HeightField refined(const HeightField& field, double pitch) {
-    const auto points = [pitch](double extent) { return static_cast<int>(std::floor(extent / pitch * (1 + 1e-9))) + 1; };
-    const int columns = points(field.x_max() - field.x_min), rows = points(field.y_max() - field.y_min);
+HeightField refined(const HeightField& field, double pitch, const SourceLocation& where) {
+    const double width = field.x_max() - field.x_min, height = field.y_max() - field.y_min;
+    const auto points = [pitch](double extent) { return std::floor(extent / pitch * (1 + 1e-9)) + 1; };
+    if (!(points(width) * points(height) <= static_cast<double>(largest_point_count))) {
+        const double least = std::sqrt(width * height / static_cast<double>(largest_point_count));
+        throw InputError({where, "specimen.roughness.pitch_um", fmt::format("{:.6g}", pitch * um_per_mm),
+                          fmt::format("at most {} points on the file's {:.6g} x {:.6g} mm", largest_point_count, width, height),
+                          fmt::format("Choose roughness.pitch_um >= {:.3g}.", 1.01 * least * um_per_mm)});
+    }
+    const int columns = static_cast<int>(points(width)), rows = static_cast<int>(points(height));
     // Around the same centre.
     return on_grid(field, 0.5 * (field.x_min + field.x_max() - (columns - 1) * pitch),
                    0.5 * (field.y_min + field.y_max() - (rows - 1) * pitch), columns, rows, pitch);

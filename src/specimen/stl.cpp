@@ -8,26 +8,10 @@
 #include <charconv>
 #include <cmath>
 #include <cstring>
-#include <fstream>
-#include <iterator>
 #include <string_view>
-#include <system_error>
 #include <unordered_map>
 
 namespace vkfv::specimen {
-
-std::string read_file(const std::filesystem::path& file, const SourceLocation& mention) {
-    std::error_code error;
-    std::ifstream stream;
-    if (std::filesystem::is_regular_file(file, error)) {
-        stream.open(file, std::ios::binary);
-    }
-    if (!stream.is_open()) {
-        throw InputError({mention, "specimen.file", file.string(), "a file that can be read",
-                          "Correct the path; it is relative to the configuration file."});
-    }
-    return {std::istreambuf_iterator<char>(stream), {}};
-}
 
 namespace {
 
@@ -73,7 +57,7 @@ constexpr std::size_t binary_triangle = 50; // normal, three vertices (float32),
 
 static_assert(std::endian::native == std::endian::little, "STL is read in place");
 
-FileMesh read_binary(const std::string& bytes, std::uint32_t count, const std::filesystem::path& file) {
+FileMesh read_binary(std::string_view bytes, std::uint32_t count, const std::filesystem::path& file) {
     Welder welder;
     for (std::uint32_t triangle = 0; triangle < count; ++triangle) {
         for (std::size_t corner = 0; corner < 3; ++corner) {
@@ -115,7 +99,7 @@ class Words {
         return word;
     }
     void skip_line() {
-        while (at_ < text_.size() && text_[at_] != '\n') {
+        while (at_ < text_.size() && text_[at_] != '\n' && text_[at_] != '\r') {
             step();
         }
     }
@@ -145,8 +129,10 @@ class Words {
     }
 
   private:
+    // Lines end with LF, CR LF or, of old, CR alone.
     void step() {
-        if (text_[at_++] == '\n') {
+        const char character = text_[at_++];
+        if (character == '\n' || (character == '\r' && (at_ == text_.size() || text_[at_] != '\n'))) {
             ++line_;
             line_start_ = at_;
         }
@@ -160,7 +146,7 @@ class Words {
     int word_column_ = 1;
 };
 
-FileMesh read_ascii(const std::string& text, const std::filesystem::path& file) {
+FileMesh read_ascii(std::string_view text, const std::filesystem::path& file) {
     Words words(text, file);
     Welder welder;
     words.expect("solid");
@@ -198,41 +184,67 @@ FileMesh read_ascii(const std::string& text, const std::filesystem::path& file) 
     }
 }
 
-bool looks_like_text(const std::string& bytes) {
-    const std::string_view head = std::string_view(bytes).substr(0, 512);
+constexpr std::string_view byte_order_mark = "\xef\xbb\xbf";
+constexpr std::string_view wide_marks[] = {"\xff\xfe", "\xfe\xff"}; // of UTF-16
+
+std::string lower_case(std::string_view text) {
+    std::string result(text);
+    std::transform(result.begin(), result.end(), result.begin(), [](unsigned char c) { return std::tolower(c); });
+    return result;
+}
+
+// It begins with "solid", as headers of binary files do too, and goes on as text does.
+bool looks_like_text(std::string_view text) {
+    constexpr std::size_t head_bytes = 4096; // more than any name of a solid
+    const std::string head = lower_case(text.substr(0, head_bytes));
     const std::size_t start = std::min(head.find_first_not_of(" \t\r\n"), head.size());
-    const bool printable = std::all_of(head.begin(), head.end(), [](unsigned char c) {
-        return c >= 0x20 || c == '\t' || c == '\r' || c == '\n';
-    });
-    std::string word(head.substr(start, 5));
-    std::transform(word.begin(), word.end(), word.begin(), [](unsigned char c) { return std::tolower(c); });
-    return printable && word == "solid";
+    const std::size_t first_control = static_cast<std::size_t>(
+        std::find_if(head.begin(), head.end(),
+                     [](unsigned char c) { return c < 0x20 && c != '\t' && c != '\r' && c != '\n'; }) -
+        head.begin());
+    return head.compare(start, 5, "solid") == 0 &&
+           (first_control == head.size() || head.find("facet") != std::string::npos);
+}
+
+[[noreturn]] void fail(const std::filesystem::path& file, std::uint64_t offset, const std::string& found,
+                       const std::string& expected, const std::string& remedy = "Export the file anew; it is damaged.") {
+    throw InputError({{file, 0, 0, offset}, "STL", found, expected, remedy});
+}
+
+FileMesh read_text(std::string_view text, std::uint64_t first_byte, const std::filesystem::path& file) {
+    if (const auto zero = text.find('\0'); zero != std::string_view::npos) {
+        fail(file, first_byte + zero, "a byte of 0 within an ASCII STL", "text");
+    }
+    return read_ascii(text, file);
 }
 
 } // namespace
 
-FileMesh read_stl(const std::filesystem::path& file, const SourceLocation& mention) {
-    const std::string bytes = read_file(file, mention);
-    const auto damaged = [&](std::uint64_t offset, const std::string& found, const std::string& expected) {
-        throw InputError(
-            {{file, 0, 0, offset}, "STL", found, expected, "Export the file anew; it is damaged."});
-    };
+FileMesh parse_stl(std::string_view bytes, const std::filesystem::path& file) {
     std::uint32_t count = 0;
     if (bytes.size() >= binary_start) {
         std::memcpy(&count, bytes.data() + binary_header, sizeof count);
     }
+    const std::uint64_t binary_bytes = binary_start + binary_triangle * std::uint64_t{count};
+    const std::size_t mark = bytes.starts_with(byte_order_mark) ? byte_order_mark.size() : 0;
     FileMesh mesh;
-    if (bytes.size() >= binary_start &&
-        bytes.size() == binary_start + binary_triangle * std::uint64_t{count}) {
+    if (bytes.size() >= binary_start && bytes.size() == binary_bytes) {
         mesh = read_binary(bytes, count, file);
-    } else if (looks_like_text(bytes)) {
-        mesh = read_ascii(bytes, file);
+    } else if (looks_like_text(bytes.substr(mark))) {
+        mesh = read_text(bytes.substr(mark), mark, file);
+    } else if (bytes.starts_with(wide_marks[0]) || bytes.starts_with(wide_marks[1])) {
+        fail(file, 0, "text in UTF-16", "a binary STL, or an ASCII one in UTF-8", "Save the text as UTF-8.");
+    } else if (mark > 0) {
+        fail(file, mark, "text that does not begin with \"solid\"", "an STL file", "Name an STL file, or export one.");
     } else if (bytes.size() < binary_start) {
-        damaged(bytes.size(), fmt::format("{} bytes", bytes.size()),
-                fmt::format("at least the {} bytes of a binary STL's header", binary_start));
+        fail(file, bytes.size(), fmt::format("{} bytes", bytes.size()),
+             fmt::format("at least the {} bytes of a binary STL's header", binary_start));
     } else {
-        damaged(binary_header, fmt::format("{} triangles in {} bytes", count, bytes.size()),
-                fmt::format("{} bytes for them", binary_start + binary_triangle * std::uint64_t{count}));
+        fail(file, binary_header,
+             fmt::format("neither ASCII (which begins with \"solid\"), nor binary: {} triangles in {} bytes", count,
+                         bytes.size()),
+             fmt::format("{} bytes for as many triangles", binary_bytes),
+             "Export the file anew; it is damaged, truncated or no STL.");
     }
     if (mesh.triangles.empty()) {
         throw InputError({{file, 0, 0, {}},
@@ -242,6 +254,10 @@ FileMesh read_stl(const std::filesystem::path& file, const SourceLocation& menti
                           "Export the mesh anew, or name another file."});
     }
     return mesh;
+}
+
+FileMesh read_stl(const std::filesystem::path& file, const SourceLocation& mention) {
+    return parse_stl(specimen_bytes(file, mention), file);
 }
 
 } // namespace vkfv::specimen

@@ -1,4 +1,5 @@
 #include "core/fourier.hpp"
+#include "core/units.hpp"
 #include "specimen/analytic.hpp"
 #include "specimen/files.hpp"
 #include "specimen/standards.hpp"
@@ -12,6 +13,8 @@
 
 namespace vkfv::specimen {
 namespace {
+
+constexpr int most_points_of_spectrum = 8192; // a side: 1 GiB of complex numbers
 
 // Share of the power at a frequency over that at the frequency 0.
 double relative_power(const Description& d, double frequency) {
@@ -68,20 +71,25 @@ HeightField measured(const Description& d, int points, double pitch) {
 HeightField sub_surfaces(const Description& d, double pitch) {
     const auto require = [&](bool condition, const char* key, double found, const std::string& expected) {
         if (!condition)
-            throw InputError({d.where, fmt::format("specimen.{}", key), fmt::format("{}", found), expected,
+            throw InputError({d.where, fmt::format("specimen.{}", key), fmt::format("{:.6g}", found * um_per_mm), expected,
                               "Correct the value in the configuration."});
     };
     HeightField field = level_field(d, pitch);
     const int points = (field.heights.columns - 1) / d.tiles;
-    require(points * d.tiles == field.heights.columns - 1, "pitch", pitch,
-            fmt::format("a length that divides the sub-surface's {} mm", d.size / d.tiles));
+    require(points * d.tiles == field.heights.columns - 1, "pitch_um", pitch,
+            fmt::format("a length that divides the sub-surface's {} um", d.size / d.tiles * um_per_mm));
     if (d.file.empty()) {
-        require(d.shortest >= 2 * field.pitch_x * (1 - 1e-9), "shortest_wavelength", d.shortest,
-                fmt::format("at least two pitches, {} mm", 2 * field.pitch_x));
-        require(d.shortest <= d.roll_off, "shortest_wavelength", d.shortest,
-                fmt::format("at most the roll-off wavelength, {} mm", d.roll_off));
-        require(d.roll_off <= d.size / d.tiles * (1 + 1e-9), "roll_off_wavelength", d.roll_off,
-                fmt::format("at most the sub-surface's {} mm", d.size / d.tiles));
+        require(d.shortest >= 2 * field.pitch_x * (1 - 1e-9), "shortest_wavelength_um", d.shortest,
+                fmt::format("at least two pitches, {} um", 2 * field.pitch_x * um_per_mm));
+        require(d.shortest <= d.roll_off, "shortest_wavelength_um", d.shortest,
+                fmt::format("at most the roll-off wavelength, {} um", d.roll_off * um_per_mm));
+        require(d.roll_off <= d.size / d.tiles * (1 + 1e-9), "roll_off_wavelength_um", d.roll_off,
+                fmt::format("at most the sub-surface's {} um", d.size / d.tiles * um_per_mm));
+        require(points <= most_points_of_spectrum, "pitch_um", pitch,
+                fmt::format("at most {} points along a sub-surface, so that its spectrum fits into memory; for its {} um a "
+                            "pitch of {:.3g}",
+                            most_points_of_spectrum, d.size / d.tiles * um_per_mm,
+                            d.size / d.tiles / most_points_of_spectrum * um_per_mm));
     }
     std::optional<HeightField> repeated;
     if (!d.file.empty())

@@ -24,6 +24,11 @@ static_assert(std::endian::native == std::endian::little, "the formats are littl
 // More points than this are a damaged header (2 GiB of heights).
 inline constexpr std::uint64_t largest_point_count = std::uint64_t{1} << 28;
 
+// Packed points may be a thousand times smaller than they become; those of a measurement are not. Beyond this many bytes a
+// file holds at least a 64th of them, or somebody made it to fill the memory.
+inline constexpr std::uint64_t freely_packed_bytes = std::uint64_t{1} << 28; // 256 MiB
+inline constexpr std::uint64_t largest_packing = 64;
+
 // A finite number that takes up the whole of `text` but for blanks and a plus sign.
 template <class Value>
 std::optional<Value> number_in(std::string_view text) {
@@ -75,6 +80,13 @@ class ByteReader {
         if (columns < 1 || rows < 1 || columns > largest_point_count || rows > largest_point_count / columns)
             fail(offset, "size", fmt::format("{} x {} points", columns, rows),
                  fmt::format("at least one point and at most {}", largest_point_count));
+    }
+    // The same of points that are packed in the file: bytes of memory that they become.
+    void check_packing(std::uint64_t unpacked, const std::string& what) const {
+        if (unpacked > freely_packed_bytes && unpacked / largest_packing > size())
+            fail({}, what, fmt::format("{} bytes of heights in a file of {}", unpacked, size()),
+                 fmt::format("beyond {} bytes at most {} times as many as the file has", freely_packed_bytes, largest_packing),
+                 "Export a part of the surface, or the whole without packing if it is really so large.");
     }
     // In any unit.
     void check_spacing(double spacing, const char* key, std::optional<std::uint64_t> offset = {}) const {

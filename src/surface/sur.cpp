@@ -130,6 +130,7 @@ SurfaceFile parse_sur(std::string_view bytes, const std::filesystem::path& path)
     std::string unpacked_points;
     std::string_view points;
     if (bytes.starts_with(packed_magic)) {
+        file.check_packing(size / static_cast<std::uint64_t>(bits / 8) * sizeof(double), "packed points");
         unpacked_points = unpacked(file, data, size);
         points = unpacked_points;
     } else

@@ -58,7 +58,8 @@ class Archive {
         }
     }
 
-    // Nothing without such an entry. Memory grows as the data come, up to the limit.
+    // Nothing without such an entry. Memory grows as the data come, up to the limit, which an entry that states to be longer
+    // does not come near.
     std::optional<std::string> read(std::string name, std::uint64_t largest) const {
         if (name.starts_with("./"))
             name.erase(0, 2);
@@ -70,17 +71,24 @@ class Archive {
         if (zip_stat_index(archive_.get(), entry, 0, &stat) != 0 || !(stat.valid & ZIP_STAT_COMP_METHOD) ||
             (stat.comp_method != ZIP_CM_STORE && stat.comp_method != ZIP_CM_DEFLATE))
             file_.fail({}, name, "packed by another method", "an entry stored or deflated");
+        const auto too_long = [&](std::uint64_t bytes) {
+            if (bytes > largest)
+                file_.fail({}, name, fmt::format("more than {} bytes", largest), "an entry no longer than that");
+        };
+        std::string bytes;
+        if (stat.valid & ZIP_STAT_SIZE) {
+            too_long(stat.size);
+            bytes.reserve(stat.size);
+        }
         const std::unique_ptr<zip_file_t, Discard> stream(zip_fopen_index(archive_.get(), entry, 0));
         if (!stream)
             file_.fail({}, name, zip_strerror(archive_.get()), "an entry that can be read");
-        std::string bytes;
         std::array<char, 1 << 16> part;
         for (zip_int64_t count; (count = zip_fread(stream.get(), part.data(), part.size())) != 0;) {
             if (count < 0)
                 file_.fail({}, name, zip_file_strerror(stream.get()), "an entry without damage");
             bytes.append(part.data(), static_cast<std::size_t>(count));
-            if (bytes.size() > largest)
-                file_.fail({}, name, fmt::format("more than {} bytes", largest), "an entry no longer than that");
+            too_long(bytes.size());
         }
         return bytes;
     }
@@ -339,6 +347,7 @@ SurfaceFile parse_x3p(std::string_view bytes, const std::filesystem::path& path)
     check_md5(file, xml_name, *xml, checksum ? checksum->substr(0, md5_digits) : "");
     const std::uint64_t count = columns * rows;
     const std::uint64_t point_bytes = type == "I" ? 2 : type == "D" ? 8 : 4;
+    file.check_packing(count * sizeof(double), link_name);
     const auto points = archive.read(link_name, count * point_bytes);
     if (!points || points->size() != count * point_bytes)
         file.fail({}, link_name, points ? fmt::format("{} bytes", points->size()) : "no such entry",

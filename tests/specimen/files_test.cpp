@@ -4,15 +4,13 @@
 
 #include "support/surface_files.hpp"
 #include "surface/image_file.hpp"
+#include "temporary_files.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include <unistd.h>
-
 #include <cmath>
 #include <cstring>
-#include <fstream>
 #include <functional>
 #include <limits>
 
@@ -20,28 +18,9 @@ namespace vkfv::specimen {
 namespace {
 
 using testing::HasSubstr;
-
-class Files : public testing::Test {
-  protected:
-    void SetUp() override {
-        const auto* test = testing::UnitTest::GetInstance()->current_test_info();
-        folder_ = std::filesystem::temp_directory_path() /
-                  ("vkfv-" + std::string(test->name()) + "-" + std::to_string(getpid()));
-        std::filesystem::create_directories(folder_);
-    }
-    void TearDown() override { std::filesystem::remove_all(folder_); }
-
-    std::filesystem::path write(const std::string& name, const std::string& bytes) const {
-        std::ofstream(folder_ / name, std::ios::binary) << bytes;
-        return folder_ / name;
-    }
-    std::filesystem::path folder_;
-};
-
-template <class Value>
-std::string raw(const Value& value) {
-    return {reinterpret_cast<const char*>(&value), sizeof value};
-}
+using test::base64;
+using test::raw;
+using Files = test::TemporaryFiles;
 
 // A tetrahedron with corners that floats hold exactly.
 const std::vector<glm::vec3> corners = {{0, 0, 0}, {1, 0, 0.25f}, {0, 2, -0.5f}, {0.5f, 0.5f, 4}};
@@ -97,21 +76,6 @@ TEST_F(Files, StlBinaryAndAsciiAreTheMeshThatWasWritten) {
     }
     expect_tetrahedron(read_stl(write("upper.stl", upper), {}), same);
     EXPECT_EQ(read_stl(write("two.stl", ascii_stl() + ascii_stl()), {}).triangles.size(), 8u);
-}
-
-std::string base64(const std::string& bytes) {
-    const char* digits = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
-    std::string text;
-    for (std::size_t i = 0; i < bytes.size(); i += 3) {
-        std::uint32_t group = 0;
-        for (std::size_t k = 0; k < 3; ++k) {
-            group = group << 8 | (i + k < bytes.size() ? static_cast<unsigned char>(bytes[i + k]) : 0u);
-        }
-        for (std::size_t k = 0; k < 4; ++k) {
-            text += i + k > bytes.size() ? '=' : digits[group >> (18 - 6 * k) & 63];
-        }
-    }
-    return text;
 }
 
 struct Gltf {
@@ -306,13 +270,14 @@ TEST_F(Files, DamageIsNamedWithItsPlace) {
         {"index.gltf", gltf([](Gltf& g) { g.first_index = 4; }), {"index 0", "below 4"}},
         {"position.gltf", gltf([](Gltf& g) { g.position = 7; }), {"accessor = 7"}},
         {"type.gltf", gltf([](Gltf& g) { g.position = 1; }), {"accessor 1", "positions"}},
-        {"nan.gltf", gltf([&](Gltf& g) { g.first_coordinate = nan; }), {"nan.gltf@0", "vertex 0", "nan"}},
+        {"nan.gltf", gltf([&](Gltf& g) { g.first_coordinate = nan; }), {"nan.gltf", "vertex 0", "nan"}},
         {"lines.gltf", gltf([](Gltf& g) { g.mode = 1; }), {"0 triangles"}},
         {"cycle.gltf", gltf([](Gltf& g) { g.nodes = R"([{"children": [0]}])"; }), {"node 0", "tree"}},
         {"child.gltf", gltf([](Gltf& g) { g.nodes = R"([{"children": [9]}])"; }), {"node = 9"}},
         {"text.png", "no image", {"text.png"}},
         {"cut.pgm", "P5 4 200 255\n" + std::string(400, 'x'), {"cut.pgm", "rows 64 to 127"}},
-        {"huge.pgm", "P5 16000 16000 255\nonly this", {"huge.pgm", "rows 0 to"}},
+        {"large.pgm", "P5 8000 8000 255\nonly this", {"large.pgm", "rows 0 to"}},
+        {"huge.pgm", "P5 16000 16000 255\nonly this", {"huge.pgm", "16000 x 16000 pixels in 28 bytes", "Crop"}},
         {"vast.pgm", "P5 1000000 1000000 255\nonly this", {"vast.pgm", "1000000 x 1000000"}},
         {"zero.pgm", "P5 0 0 255\n", {"zero.pgm"}},
         {"one.pgm", "P5 1 1 255\nx", {"one.pgm", "2 x 2"}},

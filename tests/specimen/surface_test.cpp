@@ -156,7 +156,7 @@ TEST(RefinedField, KeepsTheSurfaceAndItsGaps) {
             coarse.heights(column, row) = static_cast<float>(0.002 * std::sin(2 * M_PI * (column - 20) / 16.0));
     coarse.interpolated.assign(41 * 41, false);
     coarse.interpolated[coarse.heights.index(20, 20)] = true;
-    const HeightField fine = refined(coarse, 0.0003);
+    const HeightField fine = refined(coarse, 0.0003, {});
     EXPECT_EQ(fine.heights.columns, 134); // 0.04 / 0.0003 = 133.3 cells
     EXPECT_NEAR(fine.x_min + fine.x_max(), 0, 1e-15);
     double worst = 0;

@@ -16,6 +16,7 @@
 #include <zip.h>
 #include <zlib.h>
 
+#include <pthread.h>
 #include <unistd.h>
 
 #include <array>
@@ -433,7 +434,7 @@ TEST_F(SurfaceFiles, HostileX3pIsRefused) {
     refused([](ForeignX3p& x) { x.size_x = "2147483648"; }, "2147483648 x 2 points");
     refused([](ForeignX3p& x) { x.size_x = x.size_y = "4294967296"; }, "points");
     refused([](ForeignX3p& x) { x.size_x = "0"; }, "0 x 2 points");
-    refused([](ForeignX3p& x) { x.size_x = "16384", x.size_y = "16384"; }, "24 bytes");
+    refused([](ForeignX3p& x) { x.size_x = "16384", x.size_y = "16384"; }, "2147483648 bytes of heights in a file of");
     refused([](ForeignX3p& x) { x.increment = "NaN"; }, "Increment = NaN");
     refused([](ForeignX3p& x) { x.increment = "0"; }, "positive spacing");
     refused([](ForeignX3p& x) { x.increment = "-1e-6"; }, "positive spacing");
@@ -450,6 +451,31 @@ TEST_F(SurfaceFiles, HostileX3pIsRefused) {
     expect_refused(folder_ / "bad.x3p", "main.xml");
     write_zip(folder_ / "bad.x3p", {{"main.xml", "<a>"}});
     expect_refused(folder_ / "bad.x3p", "XML");
+}
+
+// Elements in one another, half a million deep: neither reading nor forgetting them takes more of a stack.
+TEST_F(SurfaceFiles, DeepXmlOfX3pIsReadOnASmallStack) {
+    constexpr int depth = 500000;
+    ForeignX3p deep;
+    deep.points = points_of<float>(std::vector<float>(6, 1e-6f));
+    deep.revision.clear();
+    for (int k = 0; k < depth; ++k)
+        deep.revision += "<a>";
+    for (int k = 0; k < depth; ++k)
+        deep.revision += "</a>";
+    const auto path = folder_ / "deep.x3p";
+    write_zip(path, deep.entries());
+    int columns = 0;
+    const std::function<void()> read = [&] { columns = read_surface(path).map.columns(); };
+    pthread_attr_t small;
+    pthread_attr_init(&small);
+    pthread_attr_setstacksize(&small, 256 << 10);
+    pthread_t thread;
+    const auto run = [](void* work) -> void* { return (*static_cast<const std::function<void()>*>(work))(), nullptr; };
+    ASSERT_EQ(pthread_create(&thread, &small, run, const_cast<std::function<void()>*>(&read)), 0);
+    pthread_join(thread, nullptr);
+    pthread_attr_destroy(&small);
+    EXPECT_EQ(columns, 3);
 }
 
 // --- SUR ---
@@ -527,6 +553,8 @@ TEST_F(SurfaceFiles, HostileSurIsRefused) {
     refused(with(good, 108, std::int32_t{-6}), "0 x 6 points");
     refused(with(with(good, 108, std::int32_t{65536}), 112, std::int32_t{32768}), "65536 x 32768 points");
     refused(with(good, 112, std::int32_t{1 << 20}), "bytes from here on");
+    const std::string packed = "DSCOMPRESSED" + good.substr(12);
+    refused(with(with(packed, 108, std::int32_t{16384}), 112, std::int32_t{16384}), "2147483648 bytes of heights in a file of");
     refused(with(good, 120, std::numeric_limits<float>::quiet_NaN()), "spacing along x");
     refused(with(good, 124, 0.0f), "spacing along y");
     refused(with(good, 128, 0.0f), "step of z");

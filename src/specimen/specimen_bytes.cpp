@@ -1,0 +1,23 @@
+#include "specimen/files.hpp"
+
+#include "core/file.hpp"
+
+#include <fmt/format.h>
+
+namespace vkfv::specimen {
+
+std::string specimen_bytes(const std::filesystem::path& file, const SourceLocation& mention) {
+    try {
+        return read_file(file, {.key = "specimen.file", .expected = "a file that can be read"});
+    } catch (const InputError& error) {
+        InputProblem problem = error.problem();
+        // A file that became shorter while it was read keeps its place.
+        if (!problem.where.byte_offset && !mention.file.empty()) {
+            problem.where = mention;
+            problem.found = fmt::format("{} ({})", file.string(), problem.found);
+        }
+        throw InputError(problem);
+    }
+}
+
+} // namespace vkfv::specimen

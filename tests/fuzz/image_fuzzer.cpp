@@ -1,0 +1,52 @@
+// Any bytes are an image or an InputError: as a specimen, and as a file of a stack, of which RunError may say that the
+// library cannot read such a kind at all.
+#include "core/error.hpp"
+#include "specimen/files.hpp"
+#include "surface/image_file.hpp"
+
+#include <unistd.h>
+
+#include <cstddef>
+#include <cstdint>
+#include <filesystem>
+#include <fstream>
+#include <string>
+#include <string_view>
+
+namespace {
+
+// With the ending that belongs to the bytes.
+std::filesystem::path file_for(std::string_view bytes) {
+    const char* ending = bytes.starts_with("\x89PNG")           ? ".png"
+                         : bytes.starts_with("\xff\xd8")         ? ".jpg"
+                         : bytes.starts_with("BM")               ? ".bmp"
+                         : bytes.starts_with("P")                ? ".pgm"
+                         : bytes.starts_with("\x76\x2f\x31\x01") ? ".exr"
+                                                                 : ".tif";
+    return std::filesystem::temp_directory_path() / ("vkfv-fuzzed-" + std::to_string(getpid()) + ending);
+}
+
+} // namespace
+
+// The library's reader of PNG jumps over its own destructors at an error, and loses a few bytes.
+extern "C" const char* __asan_default_options() {
+    return "detect_leaks=0";
+}
+
+extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+    using namespace vkfv;
+    const std::string_view bytes(reinterpret_cast<const char*>(data), size);
+    try {
+        (void)specimen::parse_image(bytes, "fuzzed");
+    } catch (const InputError&) {
+    }
+    const auto file = file_for(bytes);
+    std::ofstream(file, std::ios::binary).write(bytes.data(), static_cast<std::streamsize>(bytes.size())).flush();
+    try {
+        (void)surface::read_channels(file);
+    } catch (const InputError&) {
+    } catch (const RunError&) {
+    }
+    std::filesystem::remove(file);
+    return 0;
+}

@@ -1,0 +1,28 @@
+// Any bytes are a mesh, every index of which is one of a vertex, and which can be placed or is refused, or an InputError.
+#include "core/error.hpp"
+#include "specimen/description.hpp"
+#include "specimen/files.hpp"
+
+#include <spdlog/spdlog.h>
+
+#include <cstddef>
+#include <cstdint>
+#include <cstdlib>
+#include <string_view>
+
+extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+    using namespace vkfv;
+    spdlog::set_level(spdlog::level::off);
+    try {
+        auto mesh = specimen::parse_stl({reinterpret_cast<const char*>(data), size}, "fuzzed.stl");
+        for (const auto& triangle : mesh.triangles)
+            for (int corner = 0; corner < 3; ++corner)
+                if (triangle[corner] >= mesh.vertices.size())
+                    std::abort();
+        specimen::Description description;
+        description.kind = specimen::Kind::stl;
+        (void)specimen::placed_mesh(std::move(mesh), description);
+    } catch (const InputError&) {
+    }
+    return 0;
+}
