@@ -9,6 +9,7 @@
 
 #include <cstdlib>
 #include <map>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -51,6 +52,12 @@ bool may_pass(const Fault& fault) {
            || (fault.effect == "lost" && fs::path(fault.subject).filename() == "timings.csv"); // no part of the result
 }
 
+// Whether this call is to fail on a machine with little time: each that writes, and of the others some of every file and kind.
+bool is_taken(const Fault& call, std::size_t place, std::size_t calls) {
+    constexpr std::size_t few = 40, step = 11; // a file takes seven calls
+    return every_fault() || calls < few || call.call == "write" || place % step == 0;
+}
+
 std::vector<std::string> effects_of(const Fault& call) {
     if (call.call == "fsync" || call.call == "close") {
         return {"EIO"};
@@ -66,7 +73,7 @@ class FileFaults : public testing::Test {
   protected:
     FileFaults() : folder_(fresh_folder("work")) {
         write_file(folder_ / "c.toml", replaced(small_configuration, "[trace]\n", "[trace]\ndevice = \"host\"\n") +
-                                           "[sweep]\n[[sweep.parameter]]\nkey = \"specimen.material.g\"\nvalues = [0.3, 1.0]\n");
+                                           "[sweep]\nz_um = 0\n[[sweep.parameter]]\nkey = \"specimen.material.g\"\nvalues = [0.3, 1.0]\n");
     }
 
     // Three small images by the host, so that many runs cost little.
@@ -100,26 +107,34 @@ class FileFaults : public testing::Test {
 
         const auto calls = counted_calls(log);
         std::map<std::string, int> outcomes;
-        for (const Fault& call : calls) {
-            ASSERT_NE(call.call, "fopen") << call.subject << " is written past write_file()";
-            for (const std::string& effect : effects_of(call)) {
-                Fault fault = call;
+        std::set<Files> states_left;
+        for (std::size_t place = 0; place < calls.size(); ++place) {
+            ASSERT_NE(calls[place].call, "fopen") << calls[place].subject << " is written past write_file()";
+            if (!is_taken(calls[place], place, calls.size())) {
+                continue;
+            }
+            for (const std::string& effect : effects_of(calls[place])) {
+                Fault fault = calls[place];
                 fault.effect = effect;
                 SCOPED_TRACE(text_of(fault));
                 fs::remove_all(folder_ / results);
                 fs::copy(folder_ / "kept", folder_ / results, fs::copy_options::recursive);
                 ++outcomes[fail_once(arguments, fault, before, after)];
+                // From the same files the same command goes on in the same way: once is enough.
+                if (states_left.insert(files_below(folder_ / results)).second || every_fault()) {
+                    expect_a_good_end(arguments, after);
+                }
             }
         }
-        fmt::print("{} calls: {}\n", calls.size(), outcomes);
+        fmt::print("{} calls, {} states left: {}\n", calls.size(), states_left.size(), outcomes);
     }
 
   private:
     Environment preload() const {
-        // The sanitizer wants to be the first library, but need not be.
+        // The sanitizer wants to be the first library, but need not be. Leaks are looked for by other tests.
         const char* options = std::getenv("ASAN_OPTIONS");
         return {{"LD_PRELOAD", VKFV_FILE_CALLS},
-                {"ASAN_OPTIONS", fmt::format("{}:verify_asan_link_order=0", options != nullptr ? options : "")},
+                {"ASAN_OPTIONS", fmt::format("{}:verify_asan_link_order=0:detect_leaks=0", options != nullptr ? options : "")},
                 {"VKFV_FAULT_FOLDER", fs::canonical(folder_ / results).string()}};
     }
 
@@ -140,10 +155,13 @@ class FileFaults : public testing::Test {
             const auto is_in = [&](const Files& files) { return files.contains(name) && files.at(name) == bytes; };
             EXPECT_TRUE(is_in(before) || is_in(after) || name.ends_with(".part")) << name;
         }
-        const auto again = run_program(arguments, folder_);
+        return fmt::format("{} {}: exit {}", fault.call, fault.effect, result.exit_code);
+    }
+
+    void expect_a_good_end(const Arguments& arguments, const Files& after) const {
+        const auto again = run_program(arguments, folder_, preload());
         EXPECT_EQ(again.exit_code, 0) << again.standard_error;
         EXPECT_THAT(differing(files_below(folder_ / results), after), IsEmpty());
-        return fmt::format("{} {}: exit {}", fault.call, fault.effect, result.exit_code);
     }
 
     fs::path folder_;
@@ -193,7 +211,8 @@ TEST_F(FileFaults, OfASurface) {
 
 TEST_F(FileFaults, OfAComparison) {
     prepare(traced("--stack", "stack"));
-    const Arguments arguments = {"--compare", "stack/topography.tif", "stack/truth.tif", "--out", "results/out"};
+    prepare({"--surface", "stack/truth.tif", "--out", "levelled.tif"});
+    const Arguments arguments = {"--compare", "levelled.tif", "stack/truth.tif", "--out", "results/out"};
     prepare(joined(arguments, {"--form", "none"}));
     fail_every_call_of(arguments);
 }

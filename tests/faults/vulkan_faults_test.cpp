@@ -8,6 +8,7 @@
 #include <gtest/gtest.h>
 
 #include <map>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -33,10 +34,24 @@ bool is_of_the_loader(const Fault& call) {
            call.call == "vkEnumerateDeviceExtensionProperties";
 }
 
-std::vector<std::string> effects_of(const Fault& call) {
+// All, or the one whose turn it is.
+std::vector<std::string> effects_of(const Fault& call, std::size_t turn) {
     const auto effects = is_of_the_loader(call) ? Arguments{no_host_memory, other}
                                                 : Arguments{lost, no_device_memory, no_host_memory, other};
-    return every_fault() ? effects : Arguments{effects[static_cast<std::size_t>(call.number) % effects.size()]};
+    return every_fault() ? effects : Arguments{effects[turn % effects.size()]};
+}
+
+// For a machine with little time: a call of every name, the first of one, the last of the next.
+std::vector<Fault> one_of_each(const std::vector<Fault>& calls) {
+    std::map<std::string, std::vector<Fault>> by_name;
+    for (const Fault& call : calls) {
+        by_name[call.call].push_back(call);
+    }
+    std::vector<Fault> chosen;
+    for (const auto& [name, of_that_name] : by_name) {
+        chosen.push_back(chosen.size() % 2 == 0 ? of_that_name.front() : of_that_name.back());
+    }
+    return chosen;
 }
 
 class VulkanFaults : public testing::Test {
@@ -70,16 +85,24 @@ class VulkanFaults : public testing::Test {
 
         const auto calls = counted_calls(log);
         std::map<std::string, int> outcomes;
-        for (const Fault& call : calls) {
-            for (const std::string& effect : effects_of(call)) {
+        std::set<Files> states_left;
+        std::size_t turn = calls.size(); // another one in each test
+        for (const Fault& call : every_fault() ? calls : one_of_each(calls)) {
+            for (const std::string& effect : effects_of(call, turn++)) {
                 Fault fault = call;
                 fault.effect = effect;
                 SCOPED_TRACE(text_of(fault));
                 restore();
-                ++outcomes[fail_once(arguments, fault, after)];
+                ++outcomes[fail_once(arguments, fault)];
+                // From the same files the same command goes on in the same way: once is enough.
+                if (states_left.insert(files_below(folder_ / "out")).second || every_fault()) {
+                    const auto again = run_program(arguments, folder_);
+                    EXPECT_EQ(again.exit_code, done) << again.standard_error;
+                    EXPECT_THAT(differing(files_below(folder_ / "out"), after), IsEmpty());
+                }
             }
         }
-        fmt::print("{} calls: {}\n", calls.size(), outcomes);
+        fmt::print("{} calls, {} states left: {}\n", calls.size(), states_left.size(), outcomes);
     }
 
   private:
@@ -96,7 +119,7 @@ class VulkanFaults : public testing::Test {
     }
 
     // Returns what became of it, in words.
-    std::string fail_once(const Arguments& arguments, const Fault& fault, const Files& after) {
+    std::string fail_once(const Arguments& arguments, const Fault& fault) {
         Environment environment = layer();
         add(environment, fault);
         const auto result = run_program(arguments, folder_, environment);
@@ -117,9 +140,6 @@ class VulkanFaults : public testing::Test {
             EXPECT_EQ(result.exit_code, run_failed);
             EXPECT_THAT(said, HasSubstr("trace.batch"));
         }
-        const auto again = run_program(arguments, folder_);
-        EXPECT_EQ(again.exit_code, done) << again.standard_error;
-        EXPECT_THAT(differing(files_below(folder_ / "out"), after), IsEmpty());
         return fmt::format("{} {}: exit {}", fault.call, fault.effect, result.exit_code);
     }
 
