@@ -154,6 +154,9 @@ OpenImage open_image(const std::filesystem::path& path) {
     OIIO::ImageSpec as_stored;
     as_stored.attribute("oiio:UnassociatedAlpha", 1); // colours are not multiplied by their opacity
     auto source = std::make_unique<OIIO::Filesystem::IOFile>(file->stream(), OIIO::Filesystem::IOProxy::Read);
+    // Named in the configuration too: where there is one, OpenImageIO 2.4 looks for it nowhere else.
+    OIIO::Filesystem::IOProxy* proxy = source.get();
+    as_stored.attribute("oiio:ioproxy", OIIO::TypeDesc::PTR, &proxy);
     // The ending hints at the format; of the rest of a name OpenImageIO takes what follows a '?' for options.
     auto input = OIIO::ImageInput::open("image" + path.extension().string(), &as_stored, source.get());
     if (!input)

@@ -1,6 +1,7 @@
 #include "vulkan/acceleration_structure.hpp"
 
 #include "core/error.hpp"
+#include "vulkan/failure.hpp"
 #include "vulkan/kernel.hpp"
 
 #include <fmt/format.h>
@@ -137,6 +138,9 @@ AccelerationStructure::AccelerationStructure(const Device& device,
         constexpr std::array<std::uint8_t, 1> visible_to_all = {0xFF};
         build_top(device, visible_to_all);
     } catch (const vk::SystemError& error) {
+        if (may_pass_next_time(error)) {
+            throw run_error_of(error, device.report().name);
+        }
         throw DeviceError(
             fmt::format("An acceleration structure of {} primitives cannot be built on {}: {}. Use a coarser "
                         "mesh, --traversal quadtree or another device",
@@ -180,8 +184,12 @@ AccelerationStructure AccelerationStructure::join(const Device& device, std::vec
     try {
         joined.build_top(device, masks);
     } catch (const vk::SystemError& error) {
-        throw DeviceError(fmt::format("acceleration structures cannot be joined on {}: {}", device.report().name,
-                                      error.what()));
+        if (may_pass_next_time(error)) {
+            throw run_error_of(error, device.report().name);
+        }
+        throw DeviceError(fmt::format("Acceleration structures cannot be joined on {}: {}. Use --traversal quadtree or another "
+                                      "device",
+                                      device.report().name, error.what()));
     }
     return joined;
 }

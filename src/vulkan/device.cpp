@@ -1,6 +1,7 @@
 #include "vulkan/device.hpp"
 
 #include "core/error.hpp"
+#include "vulkan/failure.hpp"
 #include "vulkan/pipeline_cache.hpp"
 
 #include <fmt/format.h>
@@ -459,6 +460,9 @@ Device::Device(const DeviceOptions& options) : state_(std::make_unique<State>())
     try {
         state.device = vk::raii::Device(state.physical, info);
     } catch (const vk::SystemError& error) {
+        if (may_pass_next_time(error)) {
+            throw run_error_of(error, state.report.name);
+        }
         throw DeviceError(
             fmt::format("The device {} does not open: {}. Another program may hold all of it: end that, "
                         "or choose another device",
@@ -468,9 +472,13 @@ Device::Device(const DeviceOptions& options) : state_(std::make_unique<State>())
     state.pipelines_name = pipelines_name(state.physical);
     const std::vector<std::byte> pipelines = read_cached(state.pipelines_name);
     state.pipelines_read = pipelines.size();
-    // The driver checks that it wrote them itself.
-    state.pipelines = vk::raii::PipelineCache(
-        state.device, vk::PipelineCacheCreateInfo({}, pipelines.size(), pipelines.data()));
+    try {
+        // The driver checks that it wrote them itself.
+        state.pipelines = vk::raii::PipelineCache(
+            state.device, vk::PipelineCacheCreateInfo({}, pipelines.size(), pipelines.data()));
+    } catch (const vk::SystemError& error) {
+        throw run_error_of(error, state.report.name);
+    }
 }
 
 Device::~Device() = default;

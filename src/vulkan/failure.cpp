@@ -6,16 +6,31 @@
 
 namespace vkfv::vulkan {
 
+namespace {
+
+bool is(const vk::SystemError& failure, vk::Result result) {
+    return failure.code() == vk::make_error_code(result);
+}
+
+bool is_lost(const vk::SystemError& failure) {
+    return is(failure, vk::Result::eErrorDeviceLost);
+}
+
+bool lacks_memory(const vk::SystemError& failure) {
+    return is(failure, vk::Result::eErrorOutOfDeviceMemory) || is(failure, vk::Result::eErrorOutOfHostMemory) ||
+           is(failure, vk::Result::eErrorTooManyObjects) || is(failure, vk::Result::eErrorFragmentation);
+}
+
+} // namespace
+
 RunError run_error_of(const vk::SystemError& failure, const std::string& device) {
     const std::string subject = device.empty() ? "The device" : "The device " + device;
-    const auto is = [&](vk::Result result) { return failure.code() == vk::make_error_code(result); };
-    if (is(vk::Result::eErrorDeviceLost)) {
+    if (is_lost(failure)) {
         return RunError(fmt::format("{} was lost: its driver gave up, often because one batch took too long. Run the same "
                                    "command again to continue, with a smaller trace.batch",
                                    subject));
     }
-    if (is(vk::Result::eErrorOutOfDeviceMemory) || is(vk::Result::eErrorOutOfHostMemory) ||
-        is(vk::Result::eErrorTooManyObjects) || is(vk::Result::eErrorFragmentation)) {
+    if (lacks_memory(failure)) {
         return RunError(fmt::format("{} has not enough memory ({}). End other programs on it, set a smaller trace.batch, take "
                                    "fewer pixels or a coarser specimen, and run the same command again",
                                    subject, failure.what()));
@@ -23,6 +38,10 @@ RunError run_error_of(const vk::SystemError& failure, const std::string& device)
     return RunError(fmt::format("{} failed: {}. Run the same command again to continue; if it fails again, update the driver "
                                "or choose another device",
                                subject, failure.what()));
+}
+
+bool may_pass_next_time(const vk::SystemError& failure) {
+    return is_lost(failure) || lacks_memory(failure);
 }
 
 } // namespace vkfv::vulkan

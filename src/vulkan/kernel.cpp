@@ -72,18 +72,6 @@ Kernel::Kernel(const Device& device, std::string name, std::span<const std::uint
         }
         slots.emplace_back(declaration.slot, type_of(declaration.kind), 1, vk::ShaderStageFlagBits::eCompute);
     }
-    set_layout_ = vk::raii::DescriptorSetLayout(
-        device.handle(),
-        vk::DescriptorSetLayoutCreateInfo(vk::DescriptorSetLayoutCreateFlagBits::ePushDescriptorKHR, slots));
-
-    const vk::DescriptorSetLayout set_layout = *set_layout_;
-    const vk::PushConstantRange push_range(vk::ShaderStageFlagBits::eCompute, 0, push_constant_bytes_);
-    vk::PipelineLayoutCreateInfo layout_info({}, set_layout);
-    if (push_constant_bytes_ > 0) {
-        layout_info.setPushConstantRanges(push_range);
-    }
-    layout_ = vk::raii::PipelineLayout(device.handle(), layout_info);
-
     std::vector<vk::SpecializationMapEntry> entries;
     std::vector<std::uint32_t> values;
     for (const SpecializationConstant& constant : constants) {
@@ -96,18 +84,25 @@ Kernel::Kernel(const Device& device, std::string name, std::span<const std::uint
     vk::ShaderModuleCreateInfo module_info;
     module_info.setCodeSize(spirv.size_bytes()).setPCode(spirv.data());
     try {
+        set_layout_ = vk::raii::DescriptorSetLayout(
+            device.handle(),
+            vk::DescriptorSetLayoutCreateInfo(vk::DescriptorSetLayoutCreateFlagBits::ePushDescriptorKHR, slots));
+        const vk::DescriptorSetLayout set_layout = *set_layout_;
+        const vk::PushConstantRange push_range(vk::ShaderStageFlagBits::eCompute, 0, push_constant_bytes_);
+        vk::PipelineLayoutCreateInfo layout_info({}, set_layout);
+        if (push_constant_bytes_ > 0) {
+            layout_info.setPushConstantRanges(push_range);
+        }
+        layout_ = vk::raii::PipelineLayout(device.handle(), layout_info);
         const vk::raii::ShaderModule module(device.handle(), module_info);
         const vk::PipelineShaderStageCreateInfo stage({}, vk::ShaderStageFlagBits::eCompute, *module, "main",
                                                       &specialization);
         pipeline_ = vk::raii::Pipeline(device.handle(), device.pipelines(),
                                        vk::ComputePipelineCreateInfo({}, stage, *layout_));
-    } catch (const vk::DeviceLostError& error) {
-        throw run_error_of(error, device.report().name);
-    } catch (const vk::OutOfDeviceMemoryError& error) {
-        throw run_error_of(error, device.report().name);
-    } catch (const vk::OutOfHostMemoryError& error) {
-        throw run_error_of(error, device.report().name);
     } catch (const vk::SystemError& error) {
+        if (may_pass_next_time(error)) {
+            throw run_error_of(error, device.report().name);
+        }
         throw DeviceError(
             fmt::format("{} ({}) does not compile the kernel {}: {}. Update its driver, or choose another "
                         "device",
@@ -115,7 +110,7 @@ Kernel::Kernel(const Device& device, std::string name, std::span<const std::uint
     }
 }
 
-Commands::Commands(const Device& device, std::uint32_t timestamp_capacity)
+Commands::Commands(const Device& device, std::uint32_t timestamp_capacity) try
     : device_(&device),
       pool_(device.handle(),
             vk::CommandPoolCreateInfo(vk::CommandPoolCreateFlagBits::eTransient, device.queue_family())),
@@ -128,6 +123,8 @@ Commands::Commands(const Device& device, std::uint32_t timestamp_capacity)
         handle().resetQueryPool(*queries_, 0, timestamp_capacity_);
     }
     barrier();
+} catch (const vk::SystemError& error) {
+    throw run_error_of(error, device.report().name);
 }
 
 void Commands::dispatch(const Kernel& kernel, std::span<const Binding> bindings,
@@ -260,9 +257,15 @@ std::vector<double> Commands::seconds() const {
     if (timestamps_ == 0) {
         return {};
     }
-    const auto [result, ticks] = queries_.getResults<std::uint64_t>(
-        0, timestamps_, timestamps_ * sizeof(std::uint64_t), sizeof(std::uint64_t),
-        vk::QueryResultFlagBits::e64 | vk::QueryResultFlagBits::eWait);
+    std::vector<std::uint64_t> ticks;
+    try {
+        ticks = queries_
+                    .getResults<std::uint64_t>(0, timestamps_, timestamps_ * sizeof(std::uint64_t), sizeof(std::uint64_t),
+                                               vk::QueryResultFlagBits::e64 | vk::QueryResultFlagBits::eWait)
+                    .second;
+    } catch (const vk::SystemError& error) {
+        throw run_error_of(error, device_->report().name);
+    }
     const std::uint32_t valid_bits =
         device_->physical().getQueueFamilyProperties()[device_->queue_family()].timestampValidBits;
     const std::uint64_t mask = std::numeric_limits<std::uint64_t>::max() >> (64U - valid_bits);

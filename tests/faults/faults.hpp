@@ -1,0 +1,40 @@
+// The real program with one of its calls failing.
+#pragma once
+
+#include "app/program.hpp"
+
+#include <filesystem>
+#include <map>
+#include <string>
+#include <vector>
+
+namespace vkfv::test {
+
+struct Fault {
+    std::string call;
+    int number = 0; // of the calls of this name, from 1
+    std::string effect;
+    std::string subject{}; // the file that the call concerned, as far as it concerned one
+};
+
+std::string text_of(const Fault& fault);
+
+// What the libraries of tests/faults/injected counted, in its order; their effects are for the caller to choose.
+std::vector<Fault> counted_calls(const std::filesystem::path& log);
+
+// VKFV_EVERY_FAULT in the environment: with every effect that there is, instead of those that take a CI machine's time.
+bool every_fault();
+
+using Environment = std::map<std::string, std::string>;
+using Files = std::map<std::string, std::string>;
+
+// Of a run in which this call fails.
+void add(Environment& environment, const Fault& fault);
+
+// The bytes of all files below a folder by their names, besides those that hold times and locks.
+Files files_below(const std::filesystem::path& folder);
+
+// Names of files that differ, or that only one has.
+std::vector<std::string> differing(const Files& some, const Files& others);
+
+} // namespace vkfv::test

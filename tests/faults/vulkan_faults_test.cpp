@@ -1,0 +1,163 @@
+// Devices that fail: each call of Vulkan that a command makes fails once. The command says so in words of its own, and once
+// more ends in the same bytes.
+#include "faults/faults.hpp"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <map>
+#include <set>
+#include <string>
+#include <vector>
+
+namespace vkfv::test {
+namespace {
+
+namespace fs = std::filesystem;
+using testing::AnyOf;
+using testing::HasSubstr;
+using testing::IsEmpty;
+using testing::Not;
+
+using Arguments = std::vector<std::string>;
+
+constexpr int done = 0, no_device = 3, run_failed = 4;
+
+const std::string lost = "VK_ERROR_DEVICE_LOST", no_device_memory = "VK_ERROR_OUT_OF_DEVICE_MEMORY",
+                  no_host_memory = "VK_ERROR_OUT_OF_HOST_MEMORY", other = "VK_ERROR_INITIALIZATION_FAILED";
+
+// Before there is a device that might be lost or full.
+bool is_of_the_loader(const Fault& call) {
+    return call.call == "vkCreateInstance" || call.call == "vkEnumeratePhysicalDevices" ||
+           call.call == "vkEnumerateDeviceExtensionProperties";
+}
+
+// All, or the one whose turn it is.
+std::vector<std::string> effects_of(const Fault& call, std::size_t turn) {
+    const auto effects = is_of_the_loader(call) ? Arguments{no_host_memory, other}
+                                                : Arguments{lost, no_device_memory, no_host_memory, other};
+    return every_fault() ? effects : Arguments{effects[turn % effects.size()]};
+}
+
+// For a machine with little time: a call of every name, the first of one, the last of the next.
+std::vector<Fault> one_of_each(const std::vector<Fault>& calls) {
+    std::map<std::string, std::vector<Fault>> by_name;
+    for (const Fault& call : calls) {
+        by_name[call.call].push_back(call);
+    }
+    std::vector<Fault> chosen;
+    for (const auto& [name, of_that_name] : by_name) {
+        chosen.push_back(chosen.size() % 2 == 0 ? of_that_name.front() : of_that_name.back());
+    }
+    return chosen;
+}
+
+class VulkanFaults : public testing::Test {
+  protected:
+    VulkanFaults() : folder_(fresh_folder("work")) {
+        write_file(folder_ / "c.toml", small_configuration);
+    }
+
+    // Three small images.
+    static Arguments traced(const std::string& command, const Arguments& further) {
+        Arguments arguments = {command, "c.toml", "--out", "out", "--rays", "500", "--quiet", "--set", "scan.z_start_um=-1",
+                               "--set", "scan.z_stop_um=1"};
+        arguments.insert(arguments.end(), further.begin(), further.end());
+        return arguments;
+    }
+
+    void prepare(const Arguments& arguments) {
+        const auto result = run_program(arguments, folder_);
+        ASSERT_EQ(result.exit_code, done) << result.standard_error;
+        fs::rename(folder_ / "out", folder_ / "kept");
+    }
+
+    void fail_every_call_of(const Arguments& arguments) {
+        restore();
+        Environment counting = layer();
+        const auto log = folder_ / "calls.log";
+        counting["VKFV_FAULT_LOG"] = log.string();
+        const auto undisturbed = run_program(arguments, folder_, counting);
+        ASSERT_EQ(undisturbed.exit_code, done) << undisturbed.standard_error;
+        const Files after = files_below(folder_ / "out");
+
+        const auto calls = counted_calls(log);
+        std::map<std::string, int> outcomes;
+        std::set<Files> states_left;
+        std::size_t turn = calls.size(); // another one in each test
+        for (const Fault& call : every_fault() ? calls : one_of_each(calls)) {
+            for (const std::string& effect : effects_of(call, turn++)) {
+                Fault fault = call;
+                fault.effect = effect;
+                SCOPED_TRACE(text_of(fault));
+                restore();
+                ++outcomes[fail_once(arguments, fault)];
+                // From the same files the same command goes on in the same way: once is enough.
+                if (states_left.insert(files_below(folder_ / "out")).second || every_fault()) {
+                    const auto again = run_program(arguments, folder_);
+                    EXPECT_EQ(again.exit_code, done) << again.standard_error;
+                    EXPECT_THAT(differing(files_below(folder_ / "out"), after), IsEmpty());
+                }
+            }
+        }
+        fmt::print("{} calls, {} states left: {}\n", calls.size(), states_left.size(), outcomes);
+    }
+
+  private:
+    static Environment layer() {
+        return {{"VK_ADD_LAYER_PATH", VKFV_BINARY_DIR "/faults"}, {"VK_INSTANCE_LAYERS", "VK_LAYER_VKFV_faults"}};
+    }
+
+    void restore() const {
+        fs::remove_all(folder_ / "out");
+        fs::create_directories(folder_ / "out");
+        if (fs::exists(folder_ / "kept")) {
+            fs::copy(folder_ / "kept", folder_ / "out", fs::copy_options::recursive);
+        }
+    }
+
+    // Returns what became of it, in words.
+    std::string fail_once(const Arguments& arguments, const Fault& fault) {
+        Environment environment = layer();
+        add(environment, fault);
+        const auto result = run_program(arguments, folder_, environment);
+        const std::string& said = result.standard_error;
+        if (fault.call == "vkGetPipelineCacheData") {
+            EXPECT_EQ(result.exit_code, done) << said; // compiling again is all it costs
+        } else {
+            EXPECT_THAT(result.exit_code, AnyOf(no_device, run_failed)) << said;
+            EXPECT_THAT(said, HasSubstr("vkfv: ")) << said;
+            EXPECT_THAT(said, Not(HasSubstr("unexpected failure")));
+            EXPECT_THAT(said, Not(HasSubstr("Sanitizer")));
+        }
+        if (result.exit_code != done && fault.effect == lost) {
+            EXPECT_EQ(result.exit_code, run_failed);
+            EXPECT_THAT(said, HasSubstr("was lost"));
+        }
+        if (result.exit_code != done && fault.effect == no_device_memory) {
+            EXPECT_EQ(result.exit_code, run_failed);
+            EXPECT_THAT(said, HasSubstr("trace.batch"));
+        }
+        return fmt::format("{} {}: exit {}", fault.call, fault.effect, result.exit_code);
+    }
+
+    fs::path folder_;
+};
+
+TEST_F(VulkanFaults, OfAStack) {
+    fail_every_call_of(traced("--stack", {"--set", "topography.evaluate_on=device"}));
+}
+
+TEST_F(VulkanFaults, OfAnImageTracedBackward) {
+    fail_every_call_of(traced("--image", {"--z", "0", "--estimator", "backward"}));
+}
+
+TEST_F(VulkanFaults, OfATopographyOnTheDevice) {
+    prepare(traced("--stack", {"--device", "host"}));
+    fail_every_call_of({"--topography", "out", "--set", "topography.evaluate_on=device"});
+}
+
+} // namespace
+} // namespace vkfv::test
