@@ -2,15 +2,17 @@
 
 #include "core/file.hpp"
 #include "core/json_depth.hpp"
-#include "specimen/gltf_uri.hpp"
 
 #include <fmt/format.h>
+#include <tiny_gltf.h>
 
 #include <algorithm>
 #include <array>
+#include <cctype>
 #include <charconv>
 #include <cmath>
 #include <cstring>
+#include <limits>
 
 namespace vkfv::specimen::gltf {
 namespace {
@@ -40,6 +42,16 @@ std::uint32_t word_at(std::string_view bytes, std::uint64_t offset) {
     return word;
 }
 
+bool is_data_uri(std::string_view uri) {
+    return uri.starts_with("data:");
+}
+
+bool is_relative_path(std::string_view uri) {
+    const auto colon = uri.find(':');
+    return !uri.empty() && !uri.starts_with('/') && !uri.starts_with('\\') &&
+           (colon == std::string_view::npos || colon > uri.find('/'));
+}
+
 struct Version {
     int major = 0, minor = 0;
 };
@@ -62,7 +74,11 @@ Document::Document(std::string bytes, std::filesystem::path file) : bytes_(std::
     parse(json_of_container());
     check_version();
     check_extensions();
+    check_uris();
+    load_buffers();
 }
+
+Document::~Document() = default;
 
 std::string_view Document::json_of_container() {
     const std::string_view all = bytes_;
@@ -201,56 +217,125 @@ Object Document::item(const char* list, const std::string& name, std::uint64_t i
 }
 
 const Buffer& Document::buffer(std::uint64_t index) const {
-    const auto found = buffers_.find(index);
-    return found != buffers_.end() ? found->second : buffers_.emplace(index, load(index)).first->second;
+    (void)item("buffers", "buffer", index);
+    return buffers_[index];
 }
 
-Buffer Document::load(std::uint64_t index) const {
-    const Object description = item("buffers", "buffer", index);
-    const std::uint64_t length = description.needed_integer("byteLength");
-    const std::string* uri = description.string("uri");
-    Buffer buffer{.bytes = binary_chunk_, .file = file_, .offset = {}};
-    if (!uri) {
-        if (index != 0 || binary_chunk_.data() == nullptr) {
+// Files beside the document alone: others mean nothing on another machine, and no network is asked.
+void Document::check_uris() const {
+    for (std::uint64_t index = 0; index < count("buffers"); ++index) {
+        const Object description = item("buffers", "buffer", index);
+        (void)description.needed_integer("byteLength");
+        const std::string* uri = description.string("uri");
+        if (!uri && (index != 0 || binary_chunk_.data() == nullptr)) {
             description.fail("uri", "nothing", "a file, or as the first buffer the bytes within a .glb",
                              "Export the file anew, without compression of its meshes.");
         }
-        buffer.offset = static_cast<std::uint64_t>(binary_chunk_.data() - bytes_.data());
-    } else if (is_data_uri(*uri)) {
-        auto bytes = decoded_data_uri(*uri);
-        if (!bytes) {
-            description.fail("uri", uri->substr(0, 40) + "...", "a data URI in whole base64 digits");
-        }
-        decoded_.push_back(std::make_unique<std::string>(std::move(*bytes)));
-        buffer.bytes = *decoded_.back();
-    } else {
-        const auto path = relative_path_of(*uri);
-        if (!path) {
+        if (uri && !is_data_uri(*uri) && !is_relative_path(*uri)) {
             description.fail("uri", '"' + uri->substr(0, 80) + '"', "a relative path or a data URI",
                              "Put the buffer beside the glTF file, or export as .glb.");
         }
-        buffer.file = file_.parent_path() / *path;
-        buffer.offset = 0;
-        buffer.bytes = external(buffer.file, fmt::format("{}: {}.uri", file_.string(), description.name()));
     }
-    if (buffer.bytes.size() < length) {
-        throw InputError({{.file = buffer.file, .byte_offset = {}}, description.name() + ".byteLength",
-                          fmt::format("{} bytes, of which {} are there", length, buffer.bytes.size()),
-                          "a buffer as long as it says", "Export or copy the files anew; this one is truncated."});
-    }
-    buffer.bytes = buffer.bytes.substr(0, length);
-    return buffer;
 }
 
-std::string_view Document::external(const std::filesystem::path& path, const std::string& key) const {
-    auto found = files_.find(path);
-    if (found == files_.end()) {
-        const FileRequest request{.key = key,
-                                  .expected = "the file of a buffer",
-                                  .remedy = "Put the file beside the glTF file that names it, or export as .glb."};
-        found = files_.emplace(path, read_file(path, request)).first;
+namespace {
+
+// The files of buffers, which tinygltf asks for in their order and before any image. Textures do not matter to the shape, and
+// need not even exist.
+struct BufferFiles {
+    std::string owner;
+    std::size_t expected = 0;
+    std::vector<std::filesystem::path> read;
+    std::optional<InputError> failure;
+
+    bool all_read() const { return read.size() == expected; }
+    bool load(std::vector<unsigned char>& bytes, const std::filesystem::path& path) {
+        try {
+            const std::string content = read_file(
+                path, {.key = fmt::format("{}: file {} of its buffers", owner, read.size()),
+                       .expected = "the file of a buffer",
+                       .remedy = "Put the file beside the glTF file that names it, or export as .glb."});
+            bytes.assign(content.begin(), content.end());
+        } catch (const InputError& error) {
+            failure = error;
+            return false;
+        }
+        read.push_back(path);
+        return true;
     }
-    return found->second;
+};
+
+BufferFiles& files_of(void* user) {
+    return *static_cast<BufferFiles*>(user);
+}
+
+tinygltf::FsCallbacks callbacks_for(BufferFiles& files) {
+    tinygltf::FsCallbacks callbacks{};
+    callbacks.FileExists = [](const std::string&, void* user) { return !files_of(user).all_read(); };
+    callbacks.ExpandFilePath = [](const std::string& path, void*) { return path; };
+    callbacks.ReadWholeFile = [](std::vector<unsigned char>* bytes, std::string*, const std::string& path, void* user) {
+        return !files_of(user).all_read() && files_of(user).load(*bytes, path);
+    };
+    callbacks.WriteWholeFile = [](std::string*, const std::string&, const std::vector<unsigned char>&, void*) {
+        return false;
+    };
+    callbacks.user_data = &files;
+    return callbacks;
+}
+
+} // namespace
+
+void Document::load_buffers() {
+    BufferFiles files{.owner = file_.string(), .expected = 0, .read = {}, .failure = {}};
+    std::vector<const std::string*> uris;
+    for (std::uint64_t index = 0; index < count("buffers"); ++index) {
+        uris.push_back(item("buffers", "buffer", index).string("uri"));
+        files.expected += uris.back() && !is_data_uri(*uris.back()) ? 1 : 0;
+    }
+    tinygltf::TinyGLTF loader;
+    loader.SetFsCallbacks(callbacks_for(files));
+    loader.SetImageLoader([](tinygltf::Image*, const int, std::string*, std::string*, int, int, const unsigned char*, int,
+                             void*) { return true; },
+                          nullptr);
+    model_ = std::make_unique<tinygltf::Model>();
+    std::string errors, warnings;
+    bool loaded = false;
+    if (bytes_.size() > std::numeric_limits<unsigned int>::max()) {
+        errors = "more than 4 GiB";
+    } else {
+        const auto size = static_cast<unsigned int>(bytes_.size());
+        const std::string folder = file_.parent_path().string();
+        try {
+            loaded = json_start_ ? loader.LoadBinaryFromMemory(model_.get(), &errors, &warnings,
+                                                               reinterpret_cast<const unsigned char*>(bytes_.data()), size,
+                                                               folder)
+                                 : loader.LoadASCIIFromString(model_.get(), &errors, &warnings, bytes_.data(), size, folder);
+        } catch (const std::exception& exception) { // of its JSON parser, on input that it does not foresee
+            errors = exception.what();
+        }
+    }
+    if (files.failure) {
+        throw InputError(*files.failure);
+    }
+    if (!loaded || model_->buffers.size() != uris.size()) {
+        while (!errors.empty() && std::isspace(static_cast<unsigned char>(errors.back()))) {
+            errors.pop_back();
+        }
+        throw InputError({{.file = file_}, "glTF", errors.empty() ? "no valid glTF" : errors, "a valid glTF 2.0 file",
+                          "Export the file anew; it is damaged, truncated or no glTF."});
+    }
+    std::size_t external = 0;
+    for (std::size_t index = 0; index < uris.size(); ++index) {
+        const auto& data = model_->buffers[index].data;
+        Buffer buffer{.bytes = {reinterpret_cast<const char*>(data.data()), data.size()}, .file = file_, .offset = {}};
+        if (!uris[index]) {
+            buffer.offset = static_cast<std::uint64_t>(binary_chunk_.data() - bytes_.data());
+        } else if (!is_data_uri(*uris[index])) {
+            buffer.file = files.read[external++];
+            buffer.offset = 0;
+        }
+        buffers_.push_back(std::move(buffer));
+    }
 }
 
 } // namespace vkfv::specimen::gltf

@@ -1,4 +1,5 @@
-// What a glTF 2.0 file says, asked for value by value. Every getter checks type and range, so that nothing of a wrong kind
+// What a glTF 2.0 file says, asked for value by value: tinygltf reads the file and its buffers, but takes what is of a wrong
+// kind for something left out. Every getter checks type and range, so that nothing of a wrong kind
 // passes for something left out: what is wrong becomes an InputError that names the value ("node 3.matrix").
 #pragma once
 
@@ -8,12 +9,15 @@
 
 #include <cstdint>
 #include <filesystem>
-#include <map>
 #include <memory>
 #include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
+
+namespace tinygltf {
+class Model;
+}
 
 namespace vkfv::specimen::gltf {
 
@@ -71,6 +75,7 @@ class Document {
     Document(std::string bytes, std::filesystem::path file);
     Document(const Document&) = delete;
     Document& operator=(const Document&) = delete;
+    ~Document();
 
     const std::filesystem::path& file() const { return file_; }
     Object root() const;
@@ -80,8 +85,7 @@ class Document {
     std::size_t count(const char* list) const;
     Object item(const char* list, const std::string& name, std::uint64_t index) const;
 
-    // Of a regular file beside the document, of a data URI or of the .glb; read when it is first asked for, so that what no
-    // triangle needs need not exist. As long as its byteLength, or InputError.
+    // Of a regular file beside the document, of a data URI or of the .glb, as tinygltf reads them.
     const Buffer& buffer(std::uint64_t index) const;
 
   private:
@@ -89,8 +93,8 @@ class Document {
     void parse(std::string_view text);
     void check_version() const;
     void check_extensions();
-    Buffer load(std::uint64_t index) const;
-    std::string_view external(const std::filesystem::path& path, const std::string& key) const;
+    void check_uris() const;
+    void load_buffers();
 
     std::string bytes_;
     std::filesystem::path file_;
@@ -98,9 +102,8 @@ class Document {
     std::string_view binary_chunk_;
     std::optional<std::uint64_t> json_start_; // in a .glb
     std::vector<std::string> extensions_;
-    mutable std::map<std::uint64_t, Buffer> buffers_;
-    mutable std::vector<std::unique_ptr<std::string>> decoded_;         // data URIs
-    mutable std::map<std::filesystem::path, std::string> files_;        // once, however many buffers name them
+    std::unique_ptr<tinygltf::Model> model_;
+    std::vector<Buffer> buffers_;
 };
 
 } // namespace vkfv::specimen::gltf
