@@ -42,7 +42,8 @@ std::vector<Letter> letters_of(const Description& d, int font_size) {
             if (!letter.ink.defined() || letter.ink.width() < 1) {
                 const std::string reason = OIIO::geterror();
                 fail(d, "font", fmt::format("{}: no letter '{}' ({})", d.font, letter.character, reason),
-                     "a font that has the letters of specimen.text",
+                     "a font that has the letters of specimen.text; looked for in $OPENIMAGEIO_FONTS, and in fonts and "
+                     "share/fonts of the home folder, /usr and /usr/local, with the folders in them",
                      "Install the font (tools/setup brings \"DejaVuSans-Bold\"), give the file of one, or draw the "
                      "letters as an image and name it in specimen.file.");
             }
