@@ -98,6 +98,7 @@ class FileFaults : public testing::Test {
         const Files before = files_below(folder_ / results);
 
         const auto log = folder_ / "calls.log";
+        fs::remove(log);
         Environment counting = preload();
         counting["VKFV_FAULT_LOG"] = log.string();
         const auto undisturbed = run_program(arguments, folder_, counting);
@@ -151,7 +152,9 @@ class FileFaults : public testing::Test {
             EXPECT_THAT(result.standard_error, AnyOf(HasSubstr("same command again"), HasSubstr("give another --out")));
             EXPECT_THAT(result.standard_error, Not(HasSubstr("unexpected failure")));
         }
-        for (const auto& [name, bytes] : files_below(folder_ / results)) {
+        const Files found = files_below(folder_ / results);
+        EXPECT_TRUE(result.exit_code != 0 || found == after);
+        for (const auto& [name, bytes] : found) {
             const auto is_in = [&](const Files& files) { return files.contains(name) && files.at(name) == bytes; };
             EXPECT_TRUE(is_in(before) || is_in(after) || name.ends_with(".part")) << name;
         }
