@@ -248,7 +248,16 @@ void write_file(const fs::path& path, std::string_view bytes) {
 void append_line(const fs::path& path, std::string_view line) {
     (void)target_of(path);
     Descriptor file(::open(path.c_str(), O_WRONLY | O_APPEND | O_CREAT | O_CLOEXEC | O_NONBLOCK, 0666));
-    if (!file.open() || !write_all(file.number(), std::string(line) + "\n") || !file.close()) {
+    struct stat before {};
+    if (!file.open() || ::fstat(file.number(), &before) != 0) {
+        fail_to_write(path, errno);
+    }
+    if (!write_all(file.number(), std::string(line) + "\n")) {
+        const int error = errno;
+        (void)!::ftruncate(file.number(), before.st_size); // no half of a line for others to read
+        fail_to_write(path, error);
+    }
+    if (!file.close()) {
         fail_to_write(path, errno);
     }
 }

@@ -34,6 +34,12 @@ bool is_of_the_loader(const Fault& call) {
            call.call == "vkEnumerateDeviceExtensionProperties";
 }
 
+// Without what such a call gives nothing is lost: compiled kernels are kept for the next run, and layers beside vkfv ask for
+// extensions too.
+bool may_pass(const Fault& call) {
+    return call.call == "vkGetPipelineCacheData" || call.call == "vkEnumerateDeviceExtensionProperties";
+}
+
 // All, or the one whose turn it is.
 std::vector<std::string> effects_of(const Fault& call, std::size_t turn) {
     const auto effects = is_of_the_loader(call) ? Arguments{no_host_memory, other}
@@ -41,15 +47,18 @@ std::vector<std::string> effects_of(const Fault& call, std::size_t turn) {
     return every_fault() ? effects : Arguments{effects[turn % effects.size()]};
 }
 
-// For a machine with little time: a call of every name, the first of one, the last of the next.
-std::vector<Fault> one_of_each(const std::vector<Fault>& calls) {
+// For a machine with little time: a call of every name, or of each so many-th; the first of one name, the last of the next.
+std::vector<Fault> one_of_each(const std::vector<Fault>& calls, std::size_t every) {
     std::map<std::string, std::vector<Fault>> by_name;
     for (const Fault& call : calls) {
         by_name[call.call].push_back(call);
     }
     std::vector<Fault> chosen;
+    std::size_t names = calls.size(); // others in each test
     for (const auto& [name, of_that_name] : by_name) {
-        chosen.push_back(chosen.size() % 2 == 0 ? of_that_name.front() : of_that_name.back());
+        if (names++ % every == 0) {
+            chosen.push_back(chosen.size() % 2 == 0 ? of_that_name.front() : of_that_name.back());
+        }
     }
     return chosen;
 }
@@ -74,7 +83,8 @@ class VulkanFaults : public testing::Test {
         fs::rename(folder_ / "out", folder_ / "kept");
     }
 
-    void fail_every_call_of(const Arguments& arguments) {
+    // every: where not all calls fail, those of each so many-th name.
+    void fail_every_call_of(const Arguments& arguments, std::size_t every = 1) {
         restore();
         Environment counting = layer();
         const auto log = folder_ / "calls.log";
@@ -87,7 +97,7 @@ class VulkanFaults : public testing::Test {
         std::map<std::string, int> outcomes;
         std::set<Files> states_left;
         std::size_t turn = calls.size(); // another one in each test
-        for (const Fault& call : every_fault() ? calls : one_of_each(calls)) {
+        for (const Fault& call : every_fault() ? calls : one_of_each(calls, every)) {
             for (const std::string& effect : effects_of(call, turn++)) {
                 Fault fault = call;
                 fault.effect = effect;
@@ -118,17 +128,15 @@ class VulkanFaults : public testing::Test {
         }
     }
 
-    // Returns what became of it, in words.
+    // Returns what became of it, in words, for a summary.
     std::string fail_once(const Arguments& arguments, const Fault& fault) {
         Environment environment = layer();
         add(environment, fault);
         const auto result = run_program(arguments, folder_, environment);
         const std::string& said = result.standard_error;
-        if (fault.call == "vkGetPipelineCacheData") {
-            EXPECT_EQ(result.exit_code, done) << said; // compiling again is all it costs
-        } else {
+        if (!may_pass(fault) || result.exit_code != done) {
             EXPECT_THAT(result.exit_code, AnyOf(no_device, run_failed)) << said;
-            EXPECT_THAT(said, HasSubstr("vkfv: ")) << said;
+            EXPECT_THAT(said, HasSubstr("vkfv: "));
             EXPECT_THAT(said, Not(HasSubstr("unexpected failure")));
             EXPECT_THAT(said, Not(HasSubstr("Sanitizer")));
         }
@@ -151,12 +159,12 @@ TEST_F(VulkanFaults, OfAStack) {
 }
 
 TEST_F(VulkanFaults, OfAnImageTracedBackward) {
-    fail_every_call_of(traced("--image", {"--z", "0", "--estimator", "backward"}));
+    fail_every_call_of(traced("--image", {"--z", "0", "--estimator", "backward"}), 2);
 }
 
 TEST_F(VulkanFaults, OfATopographyOnTheDevice) {
     prepare(traced("--stack", {"--device", "host"}));
-    fail_every_call_of({"--topography", "out", "--set", "topography.evaluate_on=device"});
+    fail_every_call_of({"--topography", "out", "--set", "topography.evaluate_on=device"}, 2);
 }
 
 } // namespace
