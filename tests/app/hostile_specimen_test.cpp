@@ -39,7 +39,7 @@ TEST(HostileSpecimen, GridsAreBoundedBeforeTheyAreMade) {
         {"kernel_um = 1.0", "kernel_um = 1e300", {"c.toml:32:13", "specimen.roughness.kernel_um"}},
         {"height_um = 2.0", "height_um = 1e300", {"c.toml", "specimen", "Correct the lengths"}},
         {"height_um = 2.0", "height_um = 2.0\nwall_um = 1e-300", {"c.toml:28:11", "specimen.wall_um = 1e-300"}},
-        {"size_mm = 0.2", "size_mm = 1e300", {"c.toml:26:11", "specimen.size_mm", "from 1e-09 to 1e+06 mm"}},
+        {"size_mm = 0.2", "size_mm = 1e300", {"c.toml:26:11", "specimen.size_mm", "from 1e-10 to 1e+06 mm"}},
         {"size_mm = 0.2", "size_mm = 1e-300", {"c.toml:26:11", "specimen.size_mm"}},
         {step, "kind = \"rough\"\nsize_mm = 5\nsq_um = 1\ncorrelation_length_um = 1000\n",
          {"specimen.pitch_um = 0.5", "fewer points than", "Choose pitch_um >="}},
