@@ -23,6 +23,9 @@ struct LatticeScene {
 // The pitch is adjusted to divide the size.
 std::variant<HeightField, Mesh, Analytic> generate(const Description& description);
 
+// Whether roughness on this rectangle (mm) has sensible lengths and can be made in reasonable time; else InputError.
+void check_roughness(double width, double height, const Roughness& roughness, const SourceLocation& where);
+
 // Roughness added to a height field whose pitch is no coarser; else InputError.
 void add_roughness(HeightField& field, const Roughness& roughness, const SourceLocation& where);
 

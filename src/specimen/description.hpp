@@ -16,9 +16,9 @@ namespace vkfv::specimen {
 enum class Kind { plane, step, sphere, sinusoid, chirp, rough, plateaus, air, star, groove, image, surface, stl, gltf };
 enum class Representation { facets, analytic }; // of generated surfaces; files are always facets
 
-// What is shorter or longer, mm, is no specimen of a microscope, and its squares leave the numbers of a device: a picometre,
+// What is shorter or longer, mm, is no specimen of a microscope, and its squares leave the numbers of a device: 0.1 pm,
 // a kilometre.
-inline constexpr double smallest_length = 1e-9, largest_length = 1e6;
+inline constexpr double smallest_length = 1e-10, largest_length = 1e6;
 
 // Along a side of a generated surface: with one point more they fill the largest image of a common device.
 inline constexpr int most_facets = 16383;

@@ -35,37 +35,38 @@ bool positive(double mm) {
     return mm >= smallest_length && mm <= largest_length;
 }
 
-const std::string positive_um = fmt::format("a length from {} to {} um", smallest_length* um_per_mm,
-                                            largest_length* um_per_mm);
+std::string positive_um() {
+    return fmt::format("a length from {:.6g} to {:.6g} um", smallest_length * um_per_mm, largest_length * um_per_mm);
+}
 
 // Of the pitch that the grid of a generated specimen has.
 std::string pitch_key(const Description& d, double pitch) {
     return d.roughness && pitch == d.roughness->pitch ? "roughness.pitch_um" : "pitch_um";
 }
 
-// A grid whose points a filter of this standard deviation goes over. The filter takes 12 standard deviations of points for
+// A grid over a rectangle (mm) whose points a filter of this standard deviation goes over. The filter takes 12 standard deviations of points for
 // every point, in both directions, beside the drawing of its random numbers.
-void require_work(int columns, int rows, double pitch, double deviation, const SourceLocation& where,
+void require_work(double width, double height, double pitch, double deviation, const SourceLocation& where,
                   const std::string& key) {
     constexpr double most_steps = 0x1p34; // half a minute of one processor core
     constexpr double steps_of_drawing = 256; // and of the memory, 1.6 GB for the 2^26 points that this leaves at most
-    const double points = static_cast<double>(columns) * rows, taps = 12 * deviation / pitch;
-    if (points * (steps_of_drawing + taps) <= most_steps) {
+    const double columns = std::ceil(width / pitch) + 1, rows = std::ceil(height / pitch) + 1;
+    const double points = columns * rows, taps = 12 * deviation / pitch;
+    if (!(points * (steps_of_drawing + taps) > most_steps)) {
         return;
     }
     // Coarse enough for either part to take half of them.
-    const double area = points * pitch * pitch;
+    const double area = width * height;
     const double least = std::max(std::cbrt(2 * 12 * deviation * area / most_steps),
                                   std::sqrt(2 * steps_of_drawing * area / most_steps));
     throw InputError({where, "specimen." + key, fmt::format("{:.6g}", pitch * um_per_mm),
-                      fmt::format("a pitch that makes fewer points than {} x {}, each a mean over {:.0f} others", columns, rows,
+                      fmt::format("a pitch that makes fewer points than {:.6g} x {:.6g}, each a mean over {:.3g} others", columns, rows,
                                   2 * taps),
                       fmt::format("Choose {} >= {:.3g}, or a smaller specimen.", key, least * um_per_mm)});
 }
 
 // The continuous shape without any lattice.
 Analytic shape_of(const Description& d, double pitch) {
-    require(positive(d.size), d, "size_mm", d.size, fmt::format("a length from {} to {} mm", smallest_length, largest_length));
     Analytic shape;
     shape.x_min = shape.y_min = -0.5 * d.size;
     shape.x_max = shape.y_max = 0.5 * d.size;
@@ -76,10 +77,10 @@ Analytic shape_of(const Description& d, double pitch) {
         shape.shape = physics::f64::SHAPE_STEP;
         p[0] = d.height;
         p[1] = d.wall == 0 ? pitch : d.wall;
-        require_um(positive(p[1]), d, "wall_um", p[1], positive_um + ", or a pitch that takes its place");
+        require_um(positive(p[1]), d, d.wall == 0 ? "pitch_um" : "wall_um", p[1], positive_um());
         break;
     case Kind::sphere:
-        require_um(positive(d.radius), d, "radius_um", d.radius, positive_um);
+        require_um(positive(d.radius), d, "radius_um", d.radius, positive_um());
         require_um(std::abs(d.height) < d.radius, d, "height_um", d.height, "less than the radius in size");
         shape.shape = physics::f64::SHAPE_SPHERE;
         p[0] = d.radius;
@@ -88,12 +89,12 @@ Analytic shape_of(const Description& d, double pitch) {
     case Kind::sinusoid:
     case Kind::chirp:
         require_um(std::isfinite(d.amplitude), d, "amplitude_um", d.amplitude, "a finite length");
-        require_um(positive(d.period), d, "period_um", d.period, positive_um);
+        require_um(positive(d.period), d, "period_um", d.period, positive_um());
         shape.shape = physics::f64::SHAPE_SINUSOID;
         p[0] = d.amplitude;
         p[1] = d.period;
         if (d.kind == Kind::chirp) {
-            require_um(positive(d.period_stop), d, "period_stop_um", d.period_stop, positive_um);
+            require_um(positive(d.period_stop), d, "period_stop_um", d.period_stop, positive_um());
             shape.shape = physics::f64::SHAPE_CHIRP;
             p[2] = d.period_stop;
         }
@@ -128,8 +129,6 @@ void add_rough(HeightField& field, const Description& d) {
     require_um(std::isfinite(d.sq) && d.sq >= 0, d, "sq_um", d.sq, "a length, 0 or more");
     require_um(positive(d.correlation_length) && d.correlation_length <= d.size, d, "correlation_length_um",
                d.correlation_length, "a positive length, at most the size");
-    require_work(field.heights.columns, field.heights.rows, field.pitch_x, 0.5 * d.correlation_length, d.where,
-                 pitch_key(d, field.pitch_x));
     Grid<double> noise = filtered_noise(field.heights.columns, field.heights.rows,
                                         0.5 * d.correlation_length / field.pitch_x, d.seed);
     subtract_mean(noise);
@@ -170,11 +169,9 @@ Grid<double> transposed(const Grid<double>& grid) {
     return result;
 }
 
-} // namespace
-
-HeightField level_field(const Description& d, double pitch) {
+// Facets along a side.
+int facets_along(const Description& d, double pitch) {
     const std::string key = pitch_key(d, pitch);
-    require(positive(d.size), d, "size_mm", d.size, "a positive length");
     require_um(positive(pitch) && pitch <= d.size, d, key, pitch,
                fmt::format("a positive length, at most the specimen's {} um", d.size * um_per_mm));
     const double cells = std::ceil(d.size / pitch * (1 - 1e-9));
@@ -187,8 +184,15 @@ HeightField level_field(const Description& d, double pitch) {
                                       d.size * um_per_mm / most_facets, key == "pitch_um" ? " (0.5 if not given)" : "",
                                       smooth && !d.roughness ? ", or representation = \"analytic\"" : "")});
     }
+    return static_cast<int>(cells);
+}
+
+} // namespace
+
+HeightField level_field(const Description& d, double pitch) {
+    const int cells = facets_along(d, pitch);
     HeightField field;
-    field.heights = Grid<float>(static_cast<int>(cells) + 1, static_cast<int>(cells) + 1);
+    field.heights = Grid<float>(cells + 1, cells + 1);
     field.x_min = field.y_min = -0.5 * d.size;
     field.pitch_x = field.pitch_y = d.size / cells;
     return field;
@@ -229,25 +233,32 @@ Grid<double> filtered_noise(int columns, int rows, double kernel, std::uint32_t 
     return noise;
 }
 
-void add_roughness(HeightField& field, const Roughness& roughness, const SourceLocation& where) {
-    const auto fail = [&](const std::string& key, double found, const std::string& expected,
-                          const std::string& remedy) {
-        throw InputError({where, "specimen.roughness." + key, fmt::format("{:.6g}", found * um_per_mm), expected, remedy});
+void check_roughness(double width, double height, const Roughness& roughness, const SourceLocation& where) {
+    const auto fail = [&](const std::string& key, double found, const std::string& expected) {
+        throw InputError({where, "specimen.roughness." + key, fmt::format("{:.6g}", found * um_per_mm), expected,
+                          "Correct the value in the configuration."});
     };
     if (!(std::isfinite(roughness.noise) && roughness.noise >= 0)) {
-        fail("noise_um", roughness.noise, "a length, 0 or more", "Correct the value in the configuration.");
+        fail("noise_um", roughness.noise, "a length, 0 or more");
     }
-    const double extent = std::max(field.x_max() - field.x_min, field.y_max() - field.y_min);
+    const double extent = std::max(width, height);
     if (!(roughness.kernel >= 0 && roughness.kernel <= extent)) {
-        fail("kernel_um", roughness.kernel, fmt::format("a length from 0 to the specimen's {} um", extent * um_per_mm),
-             "Correct the value in the configuration.");
+        fail("kernel_um", roughness.kernel, fmt::format("a length from 0 to the specimen's {} um", extent * um_per_mm));
     }
+    if (!positive(roughness.pitch)) {
+        fail("pitch_um", roughness.pitch, positive_um());
+    }
+    require_work(width, height, roughness.pitch, roughness.kernel, where, "roughness.pitch_um");
+}
+
+void add_roughness(HeightField& field, const Roughness& roughness, const SourceLocation& where) {
+    check_roughness(field.x_max() - field.x_min, field.y_max() - field.y_min, roughness, where);
     // Rounding of a quotient of lengths: pitches that agree to 1e-9 are the same.
     const double coarsest = std::max(field.pitch_x, field.pitch_y);
-    if (!positive(roughness.pitch) || roughness.pitch < coarsest * (1 - 1e-9)) {
-        fail("pitch_um", roughness.pitch,
-             fmt::format("a length no less than the specimen's pitch, {} um", coarsest * um_per_mm),
-             "Give the roughness a coarser pitch or the specimen a finer one.");
+    if (roughness.pitch < coarsest * (1 - 1e-9)) {
+        throw InputError({where, "specimen.roughness.pitch_um", fmt::format("{:.6g}", roughness.pitch * um_per_mm),
+                          fmt::format("a length no less than the specimen's pitch, {} um", coarsest * um_per_mm),
+                          "Give the roughness a coarser pitch or the specimen a finer one."});
     }
     HeightField own;
     own.x_min = field.x_min;
@@ -256,9 +267,8 @@ void add_roughness(HeightField& field, const Roughness& roughness, const SourceL
     const auto points = [&](int count, double pitch) {
         return static_cast<int>(std::ceil((count - 1) * pitch / roughness.pitch * (1 - 1e-9))) + 1;
     };
-    const int columns = points(field.heights.columns, field.pitch_x), rows = points(field.heights.rows, field.pitch_y);
-    require_work(columns, rows, roughness.pitch, roughness.kernel, where, "roughness.pitch_um");
-    own.heights = Grid<float>(columns, rows);
+    own.heights =
+        Grid<float>(points(field.heights.columns, field.pitch_x), points(field.heights.rows, field.pitch_y));
     const Grid<double> noise = filtered_noise(own.heights.columns, own.heights.rows,
                                               roughness.kernel / roughness.pitch, roughness.seed);
     std::transform(noise.values.begin(), noise.values.end(), own.heights.values.begin(),
@@ -296,6 +306,14 @@ std::variant<HeightField, Mesh, Analytic> generate(const Description& d) {
         const bool has_own_grid = d.kind == Kind::rough || d.representation == Representation::facets;
         pitch =
             has_own_grid && positive(d.pitch) ? std::min(d.pitch, d.roughness->pitch) : d.roughness->pitch;
+    }
+    require(positive(d.size), d, "size_mm", d.size, fmt::format("a length from {:g} to {:g} mm", smallest_length, largest_length));
+    // Before any point is made.
+    if (d.kind == Kind::rough || (d.kind == Kind::plateaus && d.sq > 0)) {
+        require_work(d.size, d.size, d.size / facets_along(d, pitch), 0.5 * d.correlation_length, d.where, pitch_key(d, pitch));
+    }
+    if (d.roughness) {
+        check_roughness(d.size, d.size, *d.roughness, d.where);
     }
     Analytic analytic = shape_of(d, d.pitch);
     std::optional<HeightField> field;

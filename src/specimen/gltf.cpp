@@ -27,7 +27,7 @@ using gltf::Elements;
 using gltf::Object;
 
 // Of the standard's modes of primitives.
-constexpr std::uint64_t mode_triangles = 4, mode_strip = 5, mode_fan = 6;
+constexpr std::uint64_t mode_triangles = 4, mode_fan = 6; // between them strips, below them points and lines
 
 // A few kilobytes may place one mesh a million times: more than this is a mistake (some gigabytes of memory).
 constexpr std::uint64_t most_triangles = std::uint64_t{1} << 26, most_vertices = std::uint64_t{1} << 26;
@@ -383,7 +383,8 @@ class Reader {
 
     void add_primitive(const Object& primitive, const Shape& shape, const std::vector<double>& weights,
                        const glm::dmat4& to_scene) {
-        const auto& [mode, points, indices] = shape;
+        const Elements& points = shape.points;
+        const std::optional<Elements>& indices = shape.indices;
         const std::uint64_t count = shape.count();
         const std::uint64_t base = mesh_.vertices.size();
         add_vertices(primitive, points, morphs_of(primitive, weights, points.count()), to_scene);
@@ -403,12 +404,12 @@ class Reader {
         const auto add = [&](std::uint64_t a, std::uint64_t b, std::uint64_t c, bool turned) {
             mesh_.triangles.emplace_back(vertex(a), vertex(turned != mirrored ? c : b), vertex(turned != mirrored ? b : c));
         };
-        if (mode == mode_triangles) {
+        if (shape.mode == mode_triangles) {
             for (std::uint64_t i = 0; i < count; i += 3) {
                 add(i, i + 1, i + 2, false);
             }
         } else {
-            const bool fan = mode == mode_fan;
+            const bool fan = shape.mode == mode_fan;
             for (std::uint64_t i = 0; i + 2 < count; ++i) {
                 add(fan ? 0 : i, i + 1, i + 2, !fan && i % 2 == 1);
             }

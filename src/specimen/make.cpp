@@ -247,6 +247,7 @@ Specimen make(const Description& d) {
     case Kind::surface: {
         HeightField field = d.kind == Kind::image ? field_from_image(d) : read_surface_field(d);
         if (d.roughness) {
+            check_roughness(field.x_max() - field.x_min, field.y_max() - field.y_min, *d.roughness, d.where);
             // Roughness finer than the points of the file needs points in between.
             if (d.roughness->pitch > 0 && d.roughness->pitch < std::max(field.pitch_x, field.pitch_y) * (1 - 1e-9)) {
                 field = refined(field, d.roughness->pitch, d.where);

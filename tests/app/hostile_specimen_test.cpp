@@ -31,13 +31,15 @@ struct Refused {
 TEST(HostileSpecimen, GridsAreBoundedBeforeTheyAreMade) {
     const std::vector<Refused> cases = {
         {"pitch_um = 1.0", "pitch_um = 1e-300", {"c.toml:33:12", "specimen.roughness.pitch_um = 1e-300"}},
-        {"pitch_um = 1.0", "pitch_um = 1e-5", {"c.toml:33:12", "at most 16383 facets", "Choose roughness.pitch_um >= 0.0122"}},
+        {"pitch_um = 1.0", "pitch_um = 1e-5", {"c.toml:33:12", "fewer points than", "Choose roughness.pitch_um >= 0.0382"}},
         {"pitch_um = 1.0", "pitch_um = 1.3e-2", {"c.toml:33:12", "specimen.roughness.pitch_um = 0.013", "fewer points than",
-                                                 "Choose roughness.pitch_um >= 0.03"}},
+                                                 "Choose roughness.pitch_um >= 0.0382"}},
+        {"height_um = 2.0", "height_um = 2.0\npitch_um = 1e-3",
+         {"c.toml:28:12", "specimen.pitch_um = 0.001", "at most 16383 facets along the specimen's 0.2 mm"}},
         {"kernel_um = 1.0", "kernel_um = 1e300", {"c.toml:32:13", "specimen.roughness.kernel_um"}},
         {"height_um = 2.0", "height_um = 1e300", {"c.toml", "specimen", "Correct the lengths"}},
         {"height_um = 2.0", "height_um = 2.0\nwall_um = 1e-300", {"c.toml:28:11", "specimen.wall_um = 1e-300"}},
-        {"size_mm = 0.2", "size_mm = 1e300", {"c.toml:26:11", "specimen.size_mm", "from 1e-09 to 1000000 mm"}},
+        {"size_mm = 0.2", "size_mm = 1e300", {"c.toml:26:11", "specimen.size_mm", "from 1e-10 to 1e+06 mm"}},
         {"size_mm = 0.2", "size_mm = 1e-300", {"c.toml:26:11", "specimen.size_mm"}},
         {step, "kind = \"rough\"\nsize_mm = 5\nsq_um = 1\ncorrelation_length_um = 1000\n",
          {"specimen.pitch_um = 0.5", "fewer points than", "Choose pitch_um >="}},
@@ -51,7 +53,9 @@ TEST(HostileSpecimen, GridsAreBoundedBeforeTheyAreMade) {
     };
     for (const Refused& refused : cases) {
         const auto folder = fresh_folder("hostile");
-        write_file(folder / "c.toml", replaced(small_configuration, refused.from, refused.to));
+        const bool bare = refused.from == step; // without the roughness that belongs to it
+        write_file(folder / "c.toml", replaced(bare ? replaced(small_configuration, roughness, "") : small_configuration,
+                                               refused.from, refused.to));
         write_file(folder / "map.pgm", "P5 16384 16384 255\n ");
         const auto begin = std::chrono::steady_clock::now();
         const auto result = run_program({"--check", "c.toml"}, folder);
@@ -77,30 +81,33 @@ TEST(HostileSpecimen, SurfacesWithoutFacetsNeedNoPitch) {
 }
 
 TEST(HostileSpecimen, LightThatGoesAstrayIsToldOf) {
-    const auto run = [&](const std::string& corners, const std::string& keys, const std::vector<std::string>& arguments) {
+    // A square between these, along x and y.
+    const auto run = [&](const std::string& low, const std::string& high, const std::string& keys,
+                         const std::vector<std::string>& arguments) {
         const auto folder = fresh_folder("light");
-        write_file(folder / "part.stl",
-                   "solid s\nfacet normal 0 0 1\nouter loop\n" + corners + "endloop\nendfacet\nendsolid s\n");
+        const auto facet = [&](const std::string& x, const std::string& y) {
+            return "facet normal 0 0 1\nouter loop\nvertex " + low + " " + low + " 0\nvertex " + high + " " + high +
+                   " 0\nvertex " + x + " " + y + " 0\nendloop\nendfacet\n";
+        };
+        write_file(folder / "part.stl", "solid s\n" + facet(low, high) + facet(high, low) + "endsolid s\n");
         write_file(folder / "c.toml",
                    replaced(replaced(small_configuration, roughness, ""), step, "kind = \"stl\"\nfile = \"part.stl\"\n" + keys));
         return run_program(arguments, folder);
     };
-    const std::string far = "vertex 9 9 0\nvertex 10 9 0\nvertex 10 10 0\n";
     const std::vector<std::string> check = {"--check", "c.toml"};
-    const auto unseen = run(far, "centre = false\n", check);
+    const auto unseen = run("9", "10", "centre = false\n", check);
     EXPECT_THAT(unseen.standard_output, HasSubstr("The detector does not see the specimen: it is 1000 x 1000 um across, from x = "
                                                   "9000 and y = 9000 um on. Correct specimen.unit"));
     // Centred it fills the field, but not in another unit.
-    EXPECT_THAT(run(far, "", check).standard_output, Not(HasSubstr("of the field of view: it is")));
-    const std::string half = "vertex 0 0 0\nvertex 0.1 0 0\nvertex 0.1 0.1 0\n";
-    EXPECT_THAT(run(half, "", check).standard_output,
-                AllOf(HasSubstr("The specimen fills "), HasSubstr("of the field of view: it is 100 x 100 um across")));
-    const auto dark = run(far, "centre = false\n", {"--image", "c.toml", "--z", "0", "--device", "host"});
+    EXPECT_THAT(run("9", "10", "", check).standard_output, Not(HasSubstr("of the field of view: it is")));
+    EXPECT_THAT(run("9", "15", "unit = \"um\"\n", check).standard_output,
+                AllOf(HasSubstr("The specimen fills "), HasSubstr("of the field of view: it is 6 x 6 um across")));
+    const auto dark = run("9", "10", "centre = false\n", {"--image", "c.toml", "--z", "0", "--device", "host"});
     EXPECT_EQ(dark.exit_code, 0) << dark.standard_error;
     EXPECT_THAT(dark.standard_error, HasSubstr("The detector does not see the specimen"));
     EXPECT_THAT(dark.standard_error, HasSubstr("No light reaches the detector. Most of it ends as \""));
     EXPECT_THAT(dark.standard_error, HasSubstr("source.radius_mm, specimen.size_mm, specimen.unit"));
-    const auto stack = run(far, "centre = false\n", {"--stack", "c.toml", "--device", "host", "--rays", "200"});
+    const auto stack = run("9", "10", "centre = false\n", {"--stack", "c.toml", "--device", "host", "--rays", "200"});
     EXPECT_THAT(stack.standard_error, HasSubstr("No light reaches the detector in any image"));
 }
 
