@@ -64,6 +64,7 @@ Medium read_table_medium(const TomlTable& table, const std::string& name, const 
 Medium read_formula_medium(const TomlTable& table, const std::string& name, const std::string& source) {
     const std::vector<std::string> names(dispersion_formula_names.begin(), dispersion_formula_names.end());
     const std::string chosen = table.choice("formula", names);
+    table.require("formula"); // it decides on the coefficients
     const auto formula = static_cast<DispersionFormula>(
         1 + std::distance(names.begin(), std::find(names.begin(), names.end(), chosen)));
     auto coefficients = table.numbers("coefficients");
