@@ -8,7 +8,6 @@
 
 #include <algorithm>
 #include <array>
-#include <cctype>
 #include <charconv>
 #include <cmath>
 #include <cstring>
@@ -74,11 +73,7 @@ Document::Document(std::string bytes, std::filesystem::path file) : bytes_(std::
     parse(json_of_container());
     check_version();
     check_extensions();
-    check_uris();
-    load_buffers();
 }
-
-Document::~Document() = default;
 
 std::string_view Document::json_of_container() {
     const std::string_view all = bytes_;
@@ -217,124 +212,122 @@ Object Document::item(const char* list, const std::string& name, std::uint64_t i
 }
 
 const Buffer& Document::buffer(std::uint64_t index) const {
-    (void)item("buffers", "buffer", index);
-    return buffers_[index];
-}
-
-// Files beside the document alone: others mean nothing on another machine, and no network is asked.
-void Document::check_uris() const {
-    for (std::uint64_t index = 0; index < count("buffers"); ++index) {
-        const Object description = item("buffers", "buffer", index);
-        (void)description.needed_integer("byteLength");
-        const std::string* uri = description.string("uri");
-        if (!uri && (index != 0 || binary_chunk_.data() == nullptr)) {
-            description.fail("uri", "nothing", "a file, or as the first buffer the bytes within a .glb",
-                             "Export the file anew, without compression of its meshes.");
-        }
-        if (uri && !is_data_uri(*uri) && !is_relative_path(*uri)) {
-            description.fail("uri", '"' + uri->substr(0, 80) + '"', "a relative path or a data URI",
-                             "Put the buffer beside the glTF file, or export as .glb.");
+    auto found = buffers_.find(index);
+    if (found == buffers_.end()) {
+        Buffer buffer;
+        std::vector<unsigned char> owned;
+        load(index, buffer, owned);
+        found = buffers_.emplace(index, Loaded{buffer, std::move(owned)}).first;
+        if (!found->second.owned.empty()) {
+            found->second.buffer.bytes = {reinterpret_cast<const char*>(found->second.owned.data()),
+                                          found->second.owned.size()};
         }
     }
+    return found->second.buffer;
 }
 
 namespace {
 
-// The files of buffers, which tinygltf asks for in their order and before any image. Textures do not matter to the shape, and
-// need not even exist.
-struct BufferFiles {
-    std::string owner;
-    std::size_t expected = 0;
-    std::vector<std::filesystem::path> read;
-    std::optional<InputError> failure;
+// A few kilobytes may name one file many times.
+constexpr std::uint64_t most_buffer_bytes = std::uint64_t{1} << 32;
 
-    bool all_read() const { return read.size() == expected; }
-    bool load(std::vector<unsigned char>& bytes, const std::filesystem::path& path) {
-        try {
-            const std::string content = read_file(
-                path, {.key = fmt::format("{}: file {} of its buffers", owner, read.size()),
-                       .expected = "the file of a buffer",
-                       .remedy = "Put the file beside the glTF file that names it, or export as .glb."});
-            bytes.assign(content.begin(), content.end());
-        } catch (const InputError& error) {
-            failure = error;
-            return false;
-        }
-        read.push_back(path);
-        return true;
-    }
+// The file of a buffer, as tinygltf asks for it.
+struct BufferFile {
+    FileRequest request;
+    std::uint64_t length;
+    std::filesystem::path path{};
+    std::optional<InputError> failure{};
 };
 
-BufferFiles& files_of(void* user) {
-    return *static_cast<BufferFiles*>(user);
+// `user` is a BufferFile.
+bool read_buffer_file(std::vector<unsigned char>* bytes, std::string*, const std::string& path, void* user) {
+    auto& file = *static_cast<BufferFile*>(user);
+    try {
+        file.path = path;
+        const InputFile input(path, file.request);
+        if (input.bytes() < file.length) {
+            throw InputError({{.file = path},
+                              file.request.key,
+                              fmt::format("{} bytes, of which {} are there", file.length, input.bytes()),
+                              "a buffer as long as it says", "Export or copy the files anew; this one is truncated."});
+        }
+        const std::string content = input.read(file.length);
+        bytes->assign(content.begin(), content.end());
+        return true;
+    } catch (const InputError& error) {
+        file.failure = error;
+        return false;
+    }
 }
 
-tinygltf::FsCallbacks callbacks_for(BufferFiles& files) {
+tinygltf::FsCallbacks callbacks_for(BufferFile& file) {
     tinygltf::FsCallbacks callbacks{};
-    callbacks.FileExists = [](const std::string&, void* user) { return !files_of(user).all_read(); };
+    callbacks.FileExists = [](const std::string&, void*) { return true; }; // reading finds it out, and says why
     callbacks.ExpandFilePath = [](const std::string& path, void*) { return path; };
-    callbacks.ReadWholeFile = [](std::vector<unsigned char>* bytes, std::string*, const std::string& path, void* user) {
-        return !files_of(user).all_read() && files_of(user).load(*bytes, path);
-    };
+    callbacks.ReadWholeFile = read_buffer_file;
     callbacks.WriteWholeFile = [](std::string*, const std::string&, const std::vector<unsigned char>&, void*) {
         return false;
     };
-    callbacks.user_data = &files;
+    callbacks.user_data = &file;
     return callbacks;
 }
 
 } // namespace
 
-void Document::load_buffers() {
-    BufferFiles files{.owner = file_.string(), .expected = 0, .read = {}, .failure = {}};
-    std::vector<const std::string*> uris;
-    for (std::uint64_t index = 0; index < count("buffers"); ++index) {
-        uris.push_back(item("buffers", "buffer", index).string("uri"));
-        files.expected += uris.back() && !is_data_uri(*uris.back()) ? 1 : 0;
+void Document::load(std::uint64_t index, Buffer& buffer, std::vector<unsigned char>& owned) const {
+    const Object description = item("buffers", "buffer", index);
+    const std::uint64_t length = description.needed_integer("byteLength");
+    const std::string* uri = description.string("uri");
+    buffer = {.bytes = {}, .file = file_, .offset = {}};
+    if (!uri) {
+        if (index != 0 || binary_chunk_.data() == nullptr) {
+            description.fail("uri", "nothing", "a file, or as the first buffer the bytes within a .glb",
+                             "Export the file anew, without compression of its meshes.");
+        }
+        if (binary_chunk_.size() < length) {
+            description.fail("byteLength", fmt::format("{} bytes, of which {} are there", length, binary_chunk_.size()),
+                             "a buffer as long as it says", "Export or copy the file anew; this one is truncated.");
+        }
+        buffer.bytes = binary_chunk_.substr(0, length);
+        buffer.offset = static_cast<std::uint64_t>(binary_chunk_.data() - bytes_.data());
+        return;
     }
+    // Files beside the document alone: others mean nothing on another machine, and no network is asked.
+    if (!is_data_uri(*uri) && !is_relative_path(*uri)) {
+        description.fail("uri", '"' + uri->substr(0, 80) + '"', "a relative path or a data URI",
+                         "Put the buffer beside the glTF file, or export as .glb.");
+    }
+    if (loaded_bytes_ += length; length > most_buffer_bytes || loaded_bytes_ > most_buffer_bytes) {
+        description.fail("byteLength", fmt::format("{} bytes", length),
+                         fmt::format("at most {} bytes of buffers in all", most_buffer_bytes));
+    }
+    const std::string key = fmt::format("{}: {}", file_.string(), description.name());
+    BufferFile file{.request = {.key = key + ".uri",
+                                .expected = "the file of a buffer",
+                                .remedy = "Put the file beside the glTF file that names it, or export as .glb."},
+                    .length = length};
+    // By itself, so that nothing else of the document is read or refused.
+    const std::string text =
+        Json{{"asset", {{"version", "2.0"}}}, {"buffers", Json::array({json_["buffers"][index]})}}.dump();
     tinygltf::TinyGLTF loader;
-    loader.SetFsCallbacks(callbacks_for(files));
-    loader.SetImageLoader([](tinygltf::Image*, const int, std::string*, std::string*, int, int, const unsigned char*, int,
-                             void*) { return true; },
-                          nullptr);
-    model_ = std::make_unique<tinygltf::Model>();
+    loader.SetFsCallbacks(callbacks_for(file));
+    tinygltf::Model model;
     std::string errors, warnings;
-    bool loaded = false;
-    if (bytes_.size() > std::numeric_limits<unsigned int>::max()) {
-        errors = "more than 4 GiB";
-    } else {
-        const auto size = static_cast<unsigned int>(bytes_.size());
-        const std::string folder = file_.parent_path().string();
-        try {
-            loaded = json_start_ ? loader.LoadBinaryFromMemory(model_.get(), &errors, &warnings,
-                                                               reinterpret_cast<const unsigned char*>(bytes_.data()), size,
-                                                               folder)
-                                 : loader.LoadASCIIFromString(model_.get(), &errors, &warnings, bytes_.data(), size, folder);
-        } catch (const std::exception& exception) { // of its JSON parser, on input that it does not foresee
-            errors = exception.what();
-        }
+    const bool loaded =
+        text.size() <= std::numeric_limits<unsigned int>::max() &&
+        loader.LoadASCIIFromString(&model, &errors, &warnings, text.data(), static_cast<unsigned int>(text.size()),
+                                   file_.parent_path().string());
+    if (file.failure) {
+        throw InputError(*file.failure);
     }
-    if (files.failure) {
-        throw InputError(*files.failure);
+    if (!loaded || model.buffers.size() != 1 || model.buffers[0].data.size() != length) {
+        description.fail("uri", '"' + uri->substr(0, 40) + "...\"",
+                         fmt::format("a data URI of {} bytes in whole base64 digits", length));
     }
-    if (!loaded || model_->buffers.size() != uris.size()) {
-        while (!errors.empty() && std::isspace(static_cast<unsigned char>(errors.back()))) {
-            errors.pop_back();
-        }
-        throw InputError({{.file = file_}, "glTF", errors.empty() ? "no valid glTF" : errors, "a valid glTF 2.0 file",
-                          "Export the file anew; it is damaged, truncated or no glTF."});
-    }
-    std::size_t external = 0;
-    for (std::size_t index = 0; index < uris.size(); ++index) {
-        const auto& data = model_->buffers[index].data;
-        Buffer buffer{.bytes = {reinterpret_cast<const char*>(data.data()), data.size()}, .file = file_, .offset = {}};
-        if (!uris[index]) {
-            buffer.offset = static_cast<std::uint64_t>(binary_chunk_.data() - bytes_.data());
-        } else if (!is_data_uri(*uris[index])) {
-            buffer.file = files.read[external++];
-            buffer.offset = 0;
-        }
-        buffers_.push_back(std::move(buffer));
+    owned = std::move(model.buffers[0].data);
+    if (!is_data_uri(*uri)) {
+        buffer.file = file.path;
+        buffer.offset = 0;
     }
 }
 

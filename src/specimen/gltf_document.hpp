@@ -1,5 +1,5 @@
-// What a glTF 2.0 file says, asked for value by value: tinygltf reads the file and its buffers, but takes what is of a wrong
-// kind for something left out. Every getter checks type and range, so that nothing of a wrong kind
+// What a glTF 2.0 file says, asked for value by value: tinygltf reads the buffers, but takes what is of a wrong
+// kind elsewhere for something left out. Every getter checks type and range, so that nothing of a wrong kind
 // passes for something left out: what is wrong becomes an InputError that names the value ("node 3.matrix").
 #pragma once
 
@@ -9,15 +9,11 @@
 
 #include <cstdint>
 #include <filesystem>
-#include <memory>
+#include <map>
 #include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
-
-namespace tinygltf {
-class Model;
-}
 
 namespace vkfv::specimen::gltf {
 
@@ -75,7 +71,6 @@ class Document {
     Document(std::string bytes, std::filesystem::path file);
     Document(const Document&) = delete;
     Document& operator=(const Document&) = delete;
-    ~Document();
 
     const std::filesystem::path& file() const { return file_; }
     Object root() const;
@@ -85,7 +80,8 @@ class Document {
     std::size_t count(const char* list) const;
     Object item(const char* list, const std::string& name, std::uint64_t index) const;
 
-    // Of a regular file beside the document, of a data URI or of the .glb, as tinygltf reads them.
+    // Of a regular file beside the document, of a data URI or of the .glb; read when it is first asked for, so that what no
+    // triangle needs need not exist. As long as its byteLength, or InputError.
     const Buffer& buffer(std::uint64_t index) const;
 
   private:
@@ -93,8 +89,7 @@ class Document {
     void parse(std::string_view text);
     void check_version() const;
     void check_extensions();
-    void check_uris() const;
-    void load_buffers();
+    void load(std::uint64_t index, Buffer& buffer, std::vector<unsigned char>& owned) const;
 
     std::string bytes_;
     std::filesystem::path file_;
@@ -102,8 +97,12 @@ class Document {
     std::string_view binary_chunk_;
     std::optional<std::uint64_t> json_start_; // in a .glb
     std::vector<std::string> extensions_;
-    std::unique_ptr<tinygltf::Model> model_;
-    std::vector<Buffer> buffers_;
+    struct Loaded {
+        Buffer buffer;
+        std::vector<unsigned char> owned; // what it views, unless that is in the .glb
+    };
+    mutable std::map<std::uint64_t, Loaded> buffers_;
+    mutable std::uint64_t loaded_bytes_ = 0; // beside the .glb's
 };
 
 } // namespace vkfv::specimen::gltf

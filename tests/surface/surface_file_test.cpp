@@ -700,8 +700,8 @@ TEST_F(SurfaceFiles, ForeignImagesNeedTheirScale) {
 }
 
 TEST_F(SurfaceFiles, NeitherUnknownFilesNorNames) {
-    expect_refused(folder_ / "missing.x3p", "no file");
-    expect_refused(folder_, "no file");
+    expect_refused(folder_ / "missing.x3p", "no such file");
+    expect_refused(folder_, "a directory");
     expect_refused(write("empty.x3p", ""), "unknown kind");
     expect_refused(write("text.x3p", "not a surface"), "unknown kind");
     EXPECT_THROW(write_surface(folder_ / "a.png", letter_map()), InputError);
