@@ -143,11 +143,12 @@ void run_check(const CommandOptions& options) {
     std::vector<double> positions;
     if (configuration.scan) {
         positions = configuration.scan->positions();
+        const auto rays = trace::launched_rays(configuration.trace, configuration.instrument.detector_pixels);
         report["images"] = positions.size();
-        report["rays_per_image"] = configuration.trace.rays;
+        report["rays_per_image"] = rays;
         text += line_of("images", std::to_string(positions.size()),
                         fmt::format("z from {:g} to {:g} um, {:.3g} rays each", positions.front() * um_per_mm,
-                                    positions.back() * um_per_mm, static_cast<double>(configuration.trace.rays)));
+                                    positions.back() * um_per_mm, static_cast<double>(rays)));
         const double coarsest = 0.5 * instrument.first_order.depth_of_field;
         // Its own rounding does not count.
         if (positions.size() > 1 && configuration.scan->z_step > coarsest * (1 + 1e-9)) {

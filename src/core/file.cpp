@@ -65,7 +65,7 @@ class Descriptor {
 };
 
 [[noreturn]] void fail(const fs::path& path, std::string_view what, std::string_view reason) {
-    throw RunError(fmt::format("{}: {}: {}. Free space on the disk, check the permissions, and run the same command again",
+    throw RunError(fmt::format("{}: {}: {}. Check the path, its permissions and the free space, and run the same command again",
                                path.string(), what, reason));
 }
 

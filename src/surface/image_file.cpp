@@ -4,6 +4,7 @@
 #include "core/file.hpp"
 #include "core/units.hpp"
 #include "surface/exr_header.hpp"
+#include "surface/pnm_header.hpp"
 
 #include <OpenImageIO/filesystem.h>
 #include <OpenImageIO/imageio.h>
@@ -145,7 +146,10 @@ OpenImage open_image(std::string_view bytes, ImageFormat format, const std::file
 OpenImage open_image(const std::filesystem::path& path) {
     auto file = std::make_unique<InputFile>(path, FileRequest{.expected = "an image file"});
     constexpr std::uint64_t magic_bytes = 4;
-    if (looks_like_exr(file->read(magic_bytes))) {
+    const std::string magic = file->read(magic_bytes);
+    if (looks_like_pnm(magic))
+        check_pnm(file->read(), path);
+    if (looks_like_exr(magic)) {
         auto owned = std::make_unique<std::string>(file->read());
         OpenImage image = open_image(*owned, ImageFormat::openexr, path);
         image.owned = std::move(owned);

@@ -29,7 +29,7 @@ TEST(ExitCode, OfAFolderInUseIsFive) {
     ASSERT_EQ(run_program({"--stack", "c.toml", "--quiet"}, folder).exit_code, 0);
     const ResultFolder holder(folder / "out");
     for (const auto& command : {std::vector<std::string>{"--stack", "c.toml"}, {"--topography", "out"},
-                                {"--compare", "out/topography.tif", "out/truth.tif", "--form", "none", "--out", "out"}}) {
+                                {"--compare", "out/truth.tif", "out/truth.tif", "--form", "none", "--out", "out"}}) {
         const auto result = run_program(command, folder);
         EXPECT_EQ(result.exit_code, 5) << command.front() << result.standard_error;
         EXPECT_THAT(result.standard_error, AllOf(HasSubstr("another vkfv is writing"), HasSubstr("--out")));

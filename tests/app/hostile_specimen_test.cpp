@@ -47,7 +47,7 @@ TEST(HostileSpecimen, GridsAreBoundedBeforeTheyAreMade) {
                "shortest_wavelength_um = 10\nhurst_exponent = 0.8\n",
          {"specimen.pitch_um = 0.5", "at most 8192 points along a sub-surface"}},
         {step, "kind = \"image\"\nfile = \"map.pgm\"\npitch_um = 1\nheight_um = 1\n",
-         {"map.pgm", "16384 x 16384 pixels in 20 bytes"}},
+         {"map.pgm", "16384 x 16384 pixels in 2 bytes"}},
         {"flux_W = 1.0", "flux_W = 1e45", {"c.toml:4:10", "source.flux_W = 1e+45"}},
         {"flux_W = 1.0", "flux_W = 1e-45", {"c.toml:4:10", "source.flux_W = 1e-45"}},
     };

@@ -26,7 +26,7 @@ TEST(LayoutCommand, SaysWhatCannotBeWritten) {
     const auto folder = fresh_folder("layout_unwritable");
     const auto result = run_program({"--layout", demo, "missing/demo.svg"}, folder);
     EXPECT_EQ(result.exit_code, 4);
-    EXPECT_THAT(result.standard_error, HasSubstr("missing/demo.svg cannot be written"));
+    EXPECT_THAT(result.standard_error, HasSubstr("missing/demo.svg: cannot be written"));
     EXPECT_THAT(result.standard_error, HasSubstr("Check the path"));
 }
 
