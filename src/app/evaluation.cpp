@@ -6,6 +6,7 @@
 #include "app/evaluation_figures.hpp"
 #include "app/stack_page.hpp"
 #include "core/file.hpp"
+#include "core/json_depth.hpp"
 #include "core/units.hpp"
 #include "report/layout.hpp"
 #include "report/topography_picture.hpp"
@@ -300,7 +301,9 @@ nlohmann::ordered_json run_of(const std::filesystem::path& folder) {
     if (!std::filesystem::exists(folder / "results.json", none)) {
         return run;
     }
-    const auto results = nlohmann::ordered_json::parse(read_file(folder / "results.json"), nullptr, false);
+    const std::string text = read_file(folder / "results.json");
+    check_json_depth(text, folder / "results.json");
+    const auto results = nlohmann::ordered_json::parse(text, nullptr, false);
     for (const char* key : {"device", "stack_digest", "seed", "images", "rays_per_image"}) {
         if (results.is_object() && results.contains(key)) {
             run[key] = results.at(key);
