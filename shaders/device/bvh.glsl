@@ -27,15 +27,16 @@ struct BvhWalk {
 
 uvec2 bvh_stack[BVH_STACK];
 
-// root: index of the tree's first node. start: nearest distance of interest, at least 0. margin: mm, by which boxes widen on each side; at least some ten
-// roundings of the largest coordinate of boxes and origin.
+// root: index of the tree's first node. start: nearest distance of interest, at least 0. margin: mm, by which boxes
+// widen on each side; at least some ten roundings of the largest coordinate of boxes and origin.
 BvhWalk bvh_walk(uint root, real3 origin, real3 direction, real start, real margin) {
     BvhWalk walk;
     walk.origin = origin;
     // Slower than this across is less than the margin over any length that is traced.
     bvec3 moves = greaterThan(abs(direction), real3(1e-12, 1e-12, 1e-12));
-    walk.slowness = real3(moves.x ? real(1.0) / direction.x : real(1e12), moves.y ? real(1.0) / direction.y : real(1e12),
-                          moves.z ? real(1.0) / direction.z : real(1e12));
+    walk.slowness =
+        real3(moves.x ? real(1.0) / direction.x : real(1e12), moves.y ? real(1.0) / direction.y : real(1e12),
+              moves.z ? real(1.0) / direction.z : real(1e12));
     walk.margin = margin * abs(walk.slowness);
     walk.start = start;
     walk.forward = (walk.slowness.x > real(0.0) ? 1u : 0u) | (walk.slowness.y > real(0.0) ? 2u : 0u) |
@@ -57,8 +58,9 @@ void bvh_visit(inout BvhWalk walk, uint node, real farthest) {
     uvec4 corners_1 = bvh_nodes[5u * node + 3u]; // lower z, z, upper x, x
     uvec4 corners_2 = bvh_nodes[5u * node + 4u]; // upper y, y, z, z
     // 2^(exponent - 127) has the exponent's bits where a float has its own.
-    real3 pace = walk.slowness * real3(uintBitsToFloat((frame.w & 0xFFu) << 23), uintBitsToFloat((frame.w & 0xFF00u) << 15),
-                                       uintBitsToFloat((frame.w & 0xFF0000u) << 7));
+    real3 pace =
+        walk.slowness * real3(uintBitsToFloat((frame.w & 0xFFu) << 23), uintBitsToFloat((frame.w & 0xFF00u) << 15),
+                              uintBitsToFloat((frame.w & 0xFF0000u) << 7));
     real3 base = (uintBitsToFloat(frame.xyz) - walk.origin) * walk.slowness;
     real3 base_enter = base - walk.margin;
     real3 base_leave = base + walk.margin;
@@ -79,12 +81,12 @@ void bvh_visit(inout BvhWalk walk, uint node, real farthest) {
         for (int k = 0; k < 4; ++k) {
             ivec3 enter = floatBitsToInt(
                 real3(bvh_byte(first.x, k), bvh_byte(first.y, k), bvh_byte(first.z, k)) * pace + base_enter);
-            ivec3 leave = floatBitsToInt(
-                real3(bvh_byte(last.x, k), bvh_byte(last.y, k), bvh_byte(last.z, k)) * pace + base_leave);
-            // Floats' bits order as integers do where one of the two is positive, as the start is; and some devices take
-            // the largest of three integers at once.
-            bool meets = max(max(max(enter.x, enter.y), enter.z), start) <=
-                         min(min(min(leave.x, leave.y), leave.z), stop);
+            ivec3 leave = floatBitsToInt(real3(bvh_byte(last.x, k), bvh_byte(last.y, k), bvh_byte(last.z, k)) * pace +
+                                         base_leave);
+            // Floats' bits order as integers do where one of the two is positive, as the start is; and some devices
+            // take the largest of three integers at once.
+            bool meets =
+                max(max(max(enter.x, enter.y), enter.z), start) <= min(min(min(leave.x, leave.y), leave.z), stop);
             met |= meets ? bitfieldExtract(held, 8 * k, 8) << bitfieldExtract(places, 8 * k, 8) : 0u;
         }
     }

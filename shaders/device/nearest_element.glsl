@@ -1,6 +1,6 @@
 // The instrument's elements as procedural boxes, in the structure that holds the specimen too: nearest_element() of
-// physics/nonsequential.glsl. Elements and specimen stand in frames of their own (they move against each other from image to
-// image), so each is asked for by itself.
+// physics/nonsequential.glsl. Elements and specimen stand in frames of their own (they move against each other from
+// image to image), so each is asked for by itself.
 layout(set = 0, binding = 15, scalar) readonly buffer Elements { Element elements[]; };
 layout(set = 0, binding = 16, scalar) readonly buffer ElementOrder { uint element_order[]; }; // of the boxes
 

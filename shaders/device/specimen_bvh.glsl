@@ -2,7 +2,8 @@
 #include "device/specimen_primitives.glsl"
 #include "device/bvh.glsl"
 
-// TrianglePair of src/trace/triangle_pairs.hpp, in the order of the tree: twelve numbers, so that three loads fetch them.
+// TrianglePair of src/trace/triangle_pairs.hpp, in the order of the tree: twelve numbers, so that three loads fetch
+// them.
 layout(set = 0, binding = 10, scalar) readonly buffer Pairs { vec4 pair_parts[]; };
 
 // The rounding of a box's distance is below this many of specimen_rounding(): some ten steps of the coordinates.
@@ -41,8 +42,8 @@ RayFrame ray_frame(real3 origin, real3 direction) {
 
 real3 in_frame(RayFrame frame, real3 point) {
     precise real3 offset = point - frame.origin;
-    precise real3 result = fma(real3(offset.x), frame.from_x,
-                               fma(real3(offset.y), frame.from_y, offset.z * frame.from_z));
+    precise real3 result =
+        fma(real3(offset.x), frame.from_x, fma(real3(offset.y), frame.from_y, offset.z * frame.from_z));
     return result;
 }
 
@@ -60,8 +61,8 @@ void consider_triangle(inout NearestTriangle nearest, real u, real v, real w, re
     real inverse = inside ? real(1.0) / total : real(0.0);
     real distance = (u * depths.x + v * depths.y + w * depths.z) * inverse;
     // At a tie the first one, in whatever order the tree hands them out.
-    bool nearer = distance < nearest.distance ||
-                  (distance == nearest.distance && (!nearest.found || index < nearest.index));
+    bool nearer =
+        distance < nearest.distance || (distance == nearest.distance && (!nearest.found || index < nearest.index));
     bool taken = inside && nearer && distance > start;
     nearest.found = nearest.found || taken;
     nearest.distance = taken ? distance : nearest.distance;

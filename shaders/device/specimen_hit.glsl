@@ -18,10 +18,10 @@ real lattice_at(int column, int row) { return heights[row * specimen.columns + c
 struct SpecimenRay {
     real3 origin;
     real3 direction;
-    real advance;   // distance along the given ray at the new origin; may be slightly negative
+    real advance;     // distance along the given ray at the new origin; may be slightly negative
     RayInterval over; // from the new origin: over the footprint and between bottom and top; empty: no meeting
-    bool beside;    // it comes in through a side of the footprint
-    bool through;   // it goes down through the bottom: a surface without holes must have met it
+    bool beside;      // it comes in through a side of the footprint
+    bool through;     // it goes down through the bottom: a surface without holes must have met it
 };
 
 // Bounds the rounding of a point on a ray near the specimen: four steps (2^-23) of the largest coordinate.

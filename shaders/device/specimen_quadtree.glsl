@@ -1,10 +1,11 @@
-// Height fields and analytic surfaces, mostly met from above: a ray jumps as far as nothing can be in its way, and where
-// it has come close to the surface it walks from cell to cell. What it may jump over is read off ceilings: of each block
-// of 2^level x 2^level cells the highest point of the block and of its eight neighbours. From anywhere in the block a ray
-// is free down to the ceiling or until it is a block's side further across, whichever comes first (after maximum mipmaps,
-// A. Tevs, I. Ihrke, H.-P. Seidel, "Maximum mipmaps for fast, accurate, and scalable dynamic height field rendering",
-// I3D 2008; with the neighbours, no border of blocks need be met). In a cell the side of the surface that the ray was on
-// is known, and a meeting is a change of side: no rounding at the border of two facets can lose it.
+// Height fields and analytic surfaces, mostly met from above: a ray jumps as far as nothing can be in its way, and
+// where it has come close to the surface it walks from cell to cell. What it may jump over is read off ceilings: of
+// each block of 2^level x 2^level cells the highest point of the block and of its eight neighbours. From anywhere in
+// the block a ray is free down to the ceiling or until it is a block's side further across, whichever comes first
+// (after maximum mipmaps, A. Tevs, I. Ihrke, H.-P. Seidel, "Maximum mipmaps for fast, accurate, and scalable dynamic
+// height field rendering", I3D 2008; with the neighbours, no border of blocks need be met). In a cell the side of the
+// surface that the ray was on is known, and a meeting is a change of side: no rounding at the border of two facets can
+// lose it.
 
 // CeilingsHeader and ceilings of src/trace/pyramid.hpp.
 layout(set = 0, binding = 9, scalar) readonly buffer Ceilings {
@@ -12,7 +13,7 @@ layout(set = 0, binding = 9, scalar) readonly buffer Ceilings {
     int ceilings_cells_y;
     real ceilings_per_x; // cells/mm
     real ceilings_per_y;
-    real ceilings_steepest; // the surface's slope is nowhere larger
+    real ceilings_steepest;  // the surface's slope is nowhere larger
     int ceilings_fine_level; // its blocks come first, row-major
     int ceilings_fine_columns;
     int ceilings_coarse_level;
@@ -86,14 +87,16 @@ Hit specimen_hit(real3 origin, real3 direction) {
     // Re-based, as cut_to_specimen() does.
     bool from_top = down && origin.z >= specimen.top;
     real advance = from_top ? (upper - origin.z) * ray.inverse_rise : real(0.0);
-    real3 start = real3(origin.x + advance * direction.x, origin.y + advance * direction.y, from_top ? upper : origin.z);
+    real3 start =
+        real3(origin.x + advance * direction.x, origin.y + advance * direction.y, from_top ? upper : origin.z);
     real2 per_mm = real2(ceilings_per_x, ceilings_per_y);
     ray.place = real2(start.x - specimen.x_min, start.y - specimen.y_min) * per_mm;
     ray.speed = direction.xy * per_mm;
     ray.height = start.z;
     // Slower than this is less than a cell in 1e9 mm, and its inverse is finite.
     bvec2 moves = greaterThan(abs(ray.speed), real2(1e-9, 1e-9));
-    real2 slowness = real2(moves.x ? real(1.0) / ray.speed.x : real(1e9), moves.y ? real(1.0) / ray.speed.y : real(1e9));
+    real2 slowness =
+        real2(moves.x ? real(1.0) / ray.speed.x : real(1e9), moves.y ? real(1.0) / ray.speed.y : real(1e9));
     // Short of a cell by far more than a place is rounded by.
     ray.to_next_cell = real(0.98) * min(abs(slowness.x), abs(slowness.y));
     ivec2 cells = ivec2(ceilings_cells_x, ceilings_cells_y);
@@ -154,8 +157,10 @@ Hit specimen_hit(real3 origin, real3 direction) {
             real along = clamp(local.x + middle * ray.speed.x, real(0.0), real(1.0));
             real gap_middle = ray.height + middle * ray.rise - (corners.x + along * (corners.w - corners.x));
             // On the border, which the next cell sees alike. A ray that stops short of it does so above or below all.
-            real2 ends = cross_x ? (forward.x == 1 ? corners.yw : corners.xz) : (forward.y == 1 ? corners.zw : corners.xy);
-            along = clamp(cross_x ? local.y + leave * ray.speed.y : local.x + leave * ray.speed.x, real(0.0), real(1.0));
+            real2 ends =
+                cross_x ? (forward.x == 1 ? corners.yw : corners.xz) : (forward.y == 1 ? corners.zw : corners.xy);
+            along =
+                clamp(cross_x ? local.y + leave * ray.speed.y : local.x + leave * ray.speed.x, real(0.0), real(1.0));
             real gap_leave = ray.height + leave * ray.rise - (ends.x + along * (ends.y - ends.x));
             bool in_first = crosses && side * gap_middle <= real(0.0);
             found = in_first || side * gap_leave <= real(0.0);
@@ -174,7 +179,8 @@ Hit specimen_hit(real3 origin, real3 direction) {
         real2 local = ray.place - real2(cell);
         real2 centre = local + real(0.5) * (from + to) * ray.speed;
         bool lower_right = centre.x >= centre.y;
-        real gap_from = side * (ray.height + from * ray.rise - facet_height(corners, local + from * ray.speed, lower_right));
+        real gap_from =
+            side * (ray.height + from * ray.rise - facet_height(corners, local + from * ray.speed, lower_right));
         real gap_to = side * (ray.height + to * ray.rise - facet_height(corners, local + to * ray.speed, lower_right));
         gap_from = max(gap_from, real(0.0));
         real total = gap_from + max(-gap_to, real(0.0));

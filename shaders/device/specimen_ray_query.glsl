@@ -3,7 +3,7 @@
 
 layout(set = 0, binding = 12) uniform accelerationStructureEXT specimen_structure;
 
-layout(set = 0, binding = 10, scalar) readonly buffer Vertices { real vertices[]; };  // three a vertex, mm
+layout(set = 0, binding = 10, scalar) readonly buffer Vertices { real vertices[]; };   // three a vertex, mm
 layout(set = 0, binding = 11, scalar) readonly buffer Triangles { uint triangles[]; }; // three a triangle
 
 real3 triangle_vertex(uint triangle, uint corner) {
@@ -17,16 +17,16 @@ const uint ELEMENT_MASK = 2u; // the instrument's, for non-sequential paths
 
 Hit meet_triangles(real3 origin, real3 direction, RayInterval over) {
     rayQueryEXT query;
-    rayQueryInitializeEXT(query, specimen_structure, gl_RayFlagsOpaqueEXT, SPECIMEN_MASK, origin, max(over.start, real(0.0)), direction,
-                          over.stop);
+    rayQueryInitializeEXT(query, specimen_structure, gl_RayFlagsOpaqueEXT, SPECIMEN_MASK, origin,
+                          max(over.start, real(0.0)), direction, over.stop);
     while (rayQueryProceedEXT(query)) {
     }
     Hit hit = no_hit();
     if (rayQueryGetIntersectionTypeEXT(query, true) == gl_RayQueryCommittedIntersectionTriangleEXT) {
         uint triangle = uint(rayQueryGetIntersectionPrimitiveIndexEXT(query, true));
         hit = triangle_hit(triangle_vertex(triangle, 0u), triangle_vertex(triangle, 1u), triangle_vertex(triangle, 2u),
-                           rayQueryGetIntersectionBarycentricsEXT(query, true), rayQueryGetIntersectionTEXT(query, true),
-                           direction);
+                           rayQueryGetIntersectionBarycentricsEXT(query, true),
+                           rayQueryGetIntersectionTEXT(query, true), direction);
     }
     return hit;
 }

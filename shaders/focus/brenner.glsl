@@ -3,9 +3,9 @@
 // cytologic research: a preliminary evaluation", 1976.
 
 VKFV_SCENE_FUNCTION real brenner_energy(VKFV_SCENE_PARAMETER FocusPlan plan, int channel, int column, int row) {
-    real along_x = neighbour(VKFV_SCENE plan, channel, column + 1, row) -
-                   neighbour(VKFV_SCENE plan, channel, column - 1, row);
-    real along_y = neighbour(VKFV_SCENE plan, channel, column, row + 1) -
-                   neighbour(VKFV_SCENE plan, channel, column, row - 1);
+    real along_x =
+        neighbour(VKFV_SCENE plan, channel, column + 1, row) - neighbour(VKFV_SCENE plan, channel, column - 1, row);
+    real along_y =
+        neighbour(VKFV_SCENE plan, channel, column, row + 1) - neighbour(VKFV_SCENE plan, channel, column, row - 1);
     return along_x * along_x + along_y * along_y;
 }

@@ -41,9 +41,10 @@ struct CurveStep {
 };
 
 // The curve with the image `at` added. images: how many values are there, at least to at + peak_range, or all.
-// Fits are made only where the curve turns: the largest value of all is one of these, or stands at an end. Near the ends
-// the range is as far as it goes on both sides.
-VKFV_SCENE_FUNCTION CurveStep follow_curve(VKFV_SCENE_PARAMETER FocusPlan plan, CurveRecord before, int at, int images) {
+// Fits are made only where the curve turns: the largest value of all is one of these, or stands at an end. Near the
+// ends the range is as far as it goes on both sides.
+VKFV_SCENE_FUNCTION CurveStep follow_curve(VKFV_SCENE_PARAMETER FocusPlan plan, CurveRecord before, int at,
+                                           int images) {
     CurveStep step;
     step.curve = before;
     step.sharpest = NO_IMAGE;

@@ -17,13 +17,13 @@
 #define VKFV_SCENE_FUNCTION template <class Scene>
 #define VKFV_SCENE_PARAMETER const Scene &scene,
 #define VKFV_SCENE scene,
-#define VKFV_FOCUS_LANGUAGE                                                                                  \
-    using glm::abs;                                                                                          \
-    using glm::exp;                                                                                          \
-    using glm::floor;                                                                                        \
-    using glm::log;                                                                                          \
-    using glm::max;                                                                                          \
-    using glm::min;                                                                                          \
+#define VKFV_FOCUS_LANGUAGE \
+    using glm::abs; \
+    using glm::exp; \
+    using glm::floor; \
+    using glm::log; \
+    using glm::max; \
+    using glm::min; \
     using glm::sqrt;
 
 namespace vkfv::focus::f64 {

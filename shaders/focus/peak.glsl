@@ -19,10 +19,10 @@ real curve_value(int image);
 VKFV_FUNCTION real log_ratio(real a, real b) {
     real t = (a - b) / (a + b);
     real s = t * t;
-    real series = real(1.0) +
-                  s * (real(1.0) / real(3.0) +
-                       s * (real(1.0) / real(5.0) +
-                            s * (real(1.0) / real(7.0) + s * (real(1.0) / real(9.0) + s / real(11.0)))));
+    real series =
+        real(1.0) +
+        s * (real(1.0) / real(3.0) +
+             s * (real(1.0) / real(5.0) + s * (real(1.0) / real(7.0) + s * (real(1.0) / real(9.0) + s / real(11.0)))));
     return abs(t) < real(0.05) ? real(2.0) * t * series : log(a / b);
 }
 
@@ -35,8 +35,8 @@ VKFV_FUNCTION PeakFit no_peak() {
 
 // Where a Gaussian through the points (-1, before), (0, at), (1, after) has its maximum:
 //   (ln before - ln after) / (2 (ln before - 2 ln at + ln after)),
-// exact for a Gaussian. None unless all three are positive and `at` is no smaller than its neighbours and larger than one
-// of them.
+// exact for a Gaussian. None unless all three are positive and `at` is no smaller than its neighbours and larger than
+// one of them.
 VKFV_FUNCTION PeakFit gaussian_peak(real before, real at, real after) {
     PeakFit fit = no_peak();
     if (before > real(0.0) && after > real(0.0) && at >= before && at >= after) {
@@ -62,8 +62,9 @@ VKFV_FUNCTION PeakFit parabola_peak(real before, real at, real after) {
 }
 
 // A least-squares parabola level + slope p1(x) + bend p2(x) over x = -range ... range, in the polynomials
-// p1 = x - middle_1 and p2 = (x - middle_2) p1 - overlap that are orthogonal under its weights (G. E. Forsythe, "Generation
-// and use of orthogonal polynomials for data-fitting with a digital computer", 1957): no normal equations are solved.
+// p1 = x - middle_1 and p2 = (x - middle_2) p1 - overlap that are orthogonal under its weights (G. E. Forsythe,
+// "Generation and use of orthogonal polynomials for data-fitting with a digital computer", 1957): no normal equations
+// are solved.
 struct ParabolaFit {
     real middle_1;
     real middle_2;
@@ -73,9 +74,9 @@ struct ParabolaFit {
     real bend;
 };
 
-// Of the values themselves with equal weights; logarithmic: of their logarithms over the largest's, each weighted by the
-// square of the value (H. Guo, "A simple algorithm for fitting a Gaussian function", 2011), since the logarithm's noise
-// is that of the value over the value.
+// Of the values themselves with equal weights; logarithmic: of their logarithms over the largest's, each weighted by
+// the square of the value (H. Guo, "A simple algorithm for fitting a Gaussian function", 2011), since the logarithm's
+// noise is that of the value over the value.
 VKFV_SCENE_FUNCTION real fit_weight(VKFV_SCENE_PARAMETER int at, int step, int logarithmic) {
     real ratio = curve_value(VKFV_SCENE at + step) / curve_value(VKFV_SCENE at);
     return logarithmic == 0 ? real(1.0) : (ratio > real(0.0) ? ratio * ratio : real(0.0));
@@ -121,8 +122,7 @@ VKFV_SCENE_FUNCTION ParabolaFit fit_parabola(VKFV_SCENE_PARAMETER int at, int ra
         real p2 = (real(x) - fit.middle_2) * p1 - fit.overlap;
         real weight = fit_weight(VKFV_SCENE at, x, logarithmic);
         square_2 = square_2 + weight * p2 * p2;
-        bend = bend +
-               weight * p2 * (fit_value(VKFV_SCENE at, x, logarithmic) - fit.level - fit.slope * p1);
+        bend = bend + weight * p2 * (fit_value(VKFV_SCENE at, x, logarithmic) - fit.level - fit.slope * p1);
     }
     fit.bend = bend / square_2;
     return fit;
@@ -131,8 +131,8 @@ VKFV_SCENE_FUNCTION ParabolaFit fit_parabola(VKFV_SCENE_PARAMETER int at, int ra
 VKFV_FUNCTION PeakFit fitted_peak(ParabolaFit parabola, int range) {
     PeakFit fit = no_peak();
     if (parabola.bend < real(0.0)) {
-        real offset = (parabola.middle_1 + parabola.middle_2) / real(2.0) -
-                      parabola.slope / (real(2.0) * parabola.bend);
+        real offset =
+            (parabola.middle_1 + parabola.middle_2) / real(2.0) - parabola.slope / (real(2.0) * parabola.bend);
         if (abs(offset) <= real(range)) {
             fit.offset = offset;
             fit.found = 1;
@@ -163,7 +163,8 @@ VKFV_SCENE_FUNCTION PeakFit centre_of_gravity(VKFV_SCENE_PARAMETER int at, int r
     return fit;
 }
 
-// The maximum around the image `at`, whose value is the largest, by the plan's method over images at - range ... at + range.
+// The maximum around the image `at`, whose value is the largest, by the plan's method over images at - range ... at +
+// range.
 VKFV_SCENE_FUNCTION PeakFit locate_peak(VKFV_SCENE_PARAMETER FocusPlan plan, int at, int range) {
     PeakFit fit = no_peak();
     real largest = curve_value(VKFV_SCENE at);
@@ -184,8 +185,8 @@ VKFV_SCENE_FUNCTION PeakFit locate_peak(VKFV_SCENE_PARAMETER FocusPlan plan, int
     return fit;
 }
 
-// RMS distance of the values from the least-squares Gaussian over the range, in units of the largest: how unlike a single
-// peak the curve is, the same number whatever the method.
+// RMS distance of the values from the least-squares Gaussian over the range, in units of the largest: how unlike a
+// single peak the curve is, the same number whatever the method.
 VKFV_SCENE_FUNCTION real gaussian_residual(VKFV_SCENE_PARAMETER int at, int range) {
     real largest = curve_value(VKFV_SCENE at);
     if (range < 1 || !(curve_value(VKFV_SCENE at - 1) > real(0.0)) || !(curve_value(VKFV_SCENE at + 1) > real(0.0))) {

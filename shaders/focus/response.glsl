@@ -21,6 +21,4 @@ VKFV_SCENE_FUNCTION real focus_response(VKFV_SCENE_PARAMETER FocusPlan plan, int
 }
 
 // Fields that the window gathers apart: each channel for the standard deviation, else the response of all channels.
-VKFV_FUNCTION int focus_fields(FocusPlan plan) {
-    return plan.measure == FOCUS_STANDARD_DEVIATION ? plan.channels : 1;
-}
+VKFV_FUNCTION int focus_fields(FocusPlan plan) { return plan.measure == FOCUS_STANDARD_DEVIATION ? plan.channels : 1; }

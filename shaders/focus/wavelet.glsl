@@ -1,6 +1,6 @@
-// Wavelets: the energy of the three detail bands of one level. G. Yang and B. J. Nelson, "Wavelet-based autofocusing and
-// unsupervised segmentation of microscopic images", 2003; not decimated, so that a shift of the image only shifts the
-// measure, and by the symmetric filters of five and three taps of D. Le Gall and A. Tabatabai, "Sub-band coding of
+// Wavelets: the energy of the three detail bands of one level. G. Yang and B. J. Nelson, "Wavelet-based autofocusing
+// and unsupervised segmentation of microscopic images", 2003; not decimated, so that a shift of the image only shifts
+// the measure, and by the symmetric filters of five and three taps of D. Le Gall and A. Tabatabai, "Sub-band coding of
 // digital images using symmetric short kernel filters and arithmetic coding techniques", 1988, so that it has no side.
 
 VKFV_FUNCTION real wavelet_low(int tap) { // -2 ... 2

@@ -1,8 +1,8 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
-// Backward paths: an invocation takes some points of one pixel's lattice, so no two share what they sum in registers. The
-// sums are added up as integers, whose order does not matter: the same bits for any batch.
-// Before the includes, which ask for gl_WorkGroupSize: glslang takes it as 1 when it is declared later.
+// Backward paths: an invocation takes some points of one pixel's lattice, so no two share what they sum in registers.
+// The sums are added up as integers, whose order does not matter: the same bits for any batch. Before the includes,
+// which ask for gl_WorkGroupSize: glslang takes it as 1 when it is declared later.
 layout(local_size_x = 128) in;
 
 #include "device/kernel.glsl"
@@ -24,8 +24,8 @@ layout(push_constant, scalar) uniform Batch {
 layout(constant_id = 5) const uint cone_candidates = 1u;
 layout(constant_id = 6) const uint lobe_candidates = 0u;
 
-// What only tracing can tell is kept until a lane has no room for more, or no more to come: few directions lie at the rim
-// of the source's cone, and lanes that wait for each one's neighbour would trace for all.
+// What only tracing can tell is kept until a lane has no room for more, or no more to come: few directions lie at the
+// rim of the source's cone, and lanes that wait for each one's neighbour would trace for all.
 layout(constant_id = 7) const uint query_capacity = 12u; // more than a path asks: once at each bounce, and at its end
 SourceQuery queries[query_capacity];
 uint query_count = 0u;

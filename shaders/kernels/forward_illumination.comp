@@ -1,7 +1,7 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
-// First half of the forward trace: source, illumination, specimen, gate. Light that passes is appended to the survivors.
-// Before the includes, which ask for gl_WorkGroupSize: glslang takes it as 1 when it is declared later.
+// First half of the forward trace: source, illumination, specimen, gate. Light that passes is appended to the
+// survivors. Before the includes, which ask for gl_WorkGroupSize: glslang takes it as 1 when it is declared later.
 layout(local_size_x = 128) in;
 
 #include "device/kernel.glsl"
@@ -65,7 +65,8 @@ void main() {
                 departure.fate = make_fate(PATH_ALIVE, -1);
                 // As below.
                 survives = emission.ray.position.x + emission.ray.position.y + emission.ray.direction.x +
-                           emission.ray.direction.y + emission.ray.direction.z > real(1e30);
+                               emission.ray.direction.y + emission.ray.direction.z >
+                           real(1e30);
             } else if (stop_after == 1u) {
                 Arrival arrival = illuminate(known_instrument(), known_specimen(), exposure, path);
                 departure.fate = arrival.fate;
@@ -77,7 +78,8 @@ void main() {
                 survives = departure.survives == 1u;
                 if (stop_after == 2u) {
                     survives = departure.survivor.position.z + departure.survivor.direction_x +
-                               departure.survivor.direction_y > real(1e30);
+                                   departure.survivor.direction_y >
+                               real(1e30);
                 }
             }
             if (departure.fate.status != PATH_ALIVE) {

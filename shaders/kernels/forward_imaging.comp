@@ -23,8 +23,7 @@ void main() {
         } else {
             detection = image_survivor(known_instrument(), known_specimen(), exposure, survivors[index]);
         }
-        bool counted = detection.fate.status == PATH_DETECTED &&
-                       (stop_after == 0u || detection.x > real(1e30));
+        bool counted = detection.fate.status == PATH_DETECTED && (stop_after == 0u || detection.x > real(1e30));
         int pixel = detection.row * instrument.detector_pixels + detection.column;
         uint weight = survivor_weight(survivors[index]);
         if (counted && weighted) {

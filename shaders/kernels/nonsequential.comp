@@ -15,8 +15,8 @@ void main() {
     for (uint index = gl_GlobalInvocationID.x; index < count; index += stride) {
         uint carry;
         uint low = uaddCarry(first_path.x, index, carry);
-        Detection detection = trace_nonsequential(instrument, specimen, exposure, source_frame,
-                                                  uvec2(low, first_path.y + carry));
+        Detection detection =
+            trace_nonsequential(instrument, specimen, exposure, source_frame, uvec2(low, first_path.y + carry));
         if (detection.fate.status == PATH_DETECTED) {
             atomicAdd(pixels[detection.row * instrument.detector_pixels + detection.column], uint64_t(1));
         }

@@ -11,9 +11,7 @@
 layout(local_size_x = 64) in;
 layout(constant_id = 3) const uint factor = 1u;
 
-layout(buffer_reference, scalar) writeonly buffer Values {
-    uint64_t values[];
-};
+layout(buffer_reference, scalar) writeonly buffer Values { uint64_t values[]; };
 
 layout(push_constant, scalar) uniform Push {
     uint64_t base;
@@ -22,9 +20,7 @@ layout(push_constant, scalar) uniform Push {
 }
 push;
 
-layout(set = 0, binding = 0, scalar) uniform Offset {
-    uint64_t offset;
-};
+layout(set = 0, binding = 0, scalar) uniform Offset { uint64_t offset; };
 
 layout(set = 0, binding = 2, scalar) buffer Sums {
     uint64_t of_values;    // added to by every invocation
@@ -33,9 +29,7 @@ layout(set = 0, binding = 2, scalar) buffer Sums {
     uint length_of_padded; // of the array below, as the device sees it
 };
 
-layout(set = 0, binding = 5, scalar) readonly buffer Padded {
-    vec3 padded[];
-};
+layout(set = 0, binding = 5, scalar) readonly buffer Padded { vec3 padded[]; };
 
 void main() {
     uint i = gl_GlobalInvocationID.x;

@@ -16,7 +16,7 @@ struct Sphere {
     float radius;
 };
 struct Hit {
-    float t;        // negative: none
+    float t; // negative: none
     uint primitive;
     uint candidates; // boxes that the traversal offered
 };
@@ -28,15 +28,9 @@ layout(push_constant, scalar) uniform Push {
 push;
 
 layout(set = 0, binding = 0) uniform accelerationStructureEXT structure;
-layout(set = 0, binding = 1, scalar) readonly buffer Rays {
-    Ray rays[];
-};
-layout(set = 0, binding = 2, scalar) readonly buffer Spheres {
-    Sphere spheres[];
-};
-layout(set = 0, binding = 3, scalar) writeonly buffer Hits {
-    Hit hits[];
-};
+layout(set = 0, binding = 1, scalar) readonly buffer Rays { Ray rays[]; };
+layout(set = 0, binding = 2, scalar) readonly buffer Spheres { Sphere spheres[]; };
+layout(set = 0, binding = 3, scalar) writeonly buffer Hits { Hit hits[]; };
 
 void main() {
     uint i = gl_GlobalInvocationID.x;

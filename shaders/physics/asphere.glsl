@@ -1,8 +1,8 @@
 // The even asphere of ISO 10110-12: a conic and a polynomial in r^2.
 
 struct Sag {
-    uint defined; // 0: r lies outside the conic
-    real sag;     // mm
+    uint defined;      // 0: r lies outside the conic
+    real sag;          // mm
     real slope_over_r; // (1/r) d sag / d r, 1/mm
 };
 
@@ -17,16 +17,14 @@ VKFV_FUNCTION Sag asphere_sag(Surface surface, real r_squared) {
         q * q *
         (surface.a4 +
          q * (surface.a6 +
-              q * (surface.a8 +
-                   q * (surface.a10 + q * (surface.a12 + q * (surface.a14 + q * surface.a16))))));
+              q * (surface.a8 + q * (surface.a10 + q * (surface.a12 + q * (surface.a14 + q * surface.a16))))));
     // (1/r) d/dr of a_2n r^2n is 2n a_2n r^(2n-2).
-    real derivative =
-        q * (real(4.0) * surface.a4 +
-             q * (real(6.0) * surface.a6 +
-                  q * (real(8.0) * surface.a8 +
-                       q * (real(10.0) * surface.a10 +
-                            q * (real(12.0) * surface.a12 +
-                                 q * (real(14.0) * surface.a14 + q * real(16.0) * surface.a16))))));
+    real derivative = q * (real(4.0) * surface.a4 +
+                           q * (real(6.0) * surface.a6 +
+                                q * (real(8.0) * surface.a8 +
+                                     q * (real(10.0) * surface.a10 +
+                                          q * (real(12.0) * surface.a12 +
+                                               q * (real(14.0) * surface.a14 + q * real(16.0) * surface.a16))))));
     result.sag = c * r_squared / (real(1.0) + root) + polynomial;
     result.slope_over_r = c / root + derivative;
     return result;
@@ -41,8 +39,8 @@ const int ASPHERE_NEWTON_STEPS = 8;
 const int ASPHERE_NEWTON_STEPS = 4;
 #endif
 
-// Meeting with the surface, position and direction (of the given length) in its vertex frame. One flow for spheres, conics
-// and aspheres, the loops empty for spheres: software devices run both sides of a branch, but not an empty loop.
+// Meeting with the surface, position and direction (of the given length) in its vertex frame. One flow for spheres,
+// conics and aspheres, the loops empty for spheres: software devices run both sides of a branch, but not an empty loop.
 VKFV_FUNCTION SurfacePoint meet_surface(real3 position, real3 direction, real length_squared, Surface surface) {
     SurfacePoint result = meet_conic(position, direction, length_squared, surface.curvature, surface.conic);
     bool aspheric = (surface.flags & SURFACE_ASPHERIC) != 0u;
@@ -56,8 +54,7 @@ VKFV_FUNCTION SurfacePoint meet_surface(real3 position, real3 direction, real le
         normal_z = real(1.0);
         real approach = direction.z - slope_over_r * (direction.x * result.point.x + direction.y * result.point.y);
         result.found = sag.defined == 1u && approach > real(0.0) ? result.found : 0u;
-        result.parameter =
-            result.parameter - (result.found == 1u ? (result.point.z - sag.sag) / approach : real(0.0));
+        result.parameter = result.parameter - (result.found == 1u ? (result.point.z - sag.sag) / approach : real(0.0));
         result.point = real3(position.x + result.parameter * direction.x, position.y + result.parameter * direction.y,
                              (result.parameter - to_plane) * direction.z);
     }

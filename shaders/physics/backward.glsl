@@ -1,20 +1,22 @@
-// Backward paths: from a point of a pixel through the imaging train to the specimen, and from there to the source, whose
-// radiance they collect. Radiance is constant along a ray (times the transmittances; over the square of the index, which is
-// 1 at both ends), so a pixel's flux is
+// Backward paths: from a point of a pixel through the imaging train to the specimen, and from there to the source,
+// whose radiance they collect. Radiance is constant along a ray (times the transmittances; over the square of the
+// index, which is 1 at both ends), so a pixel's flux is
 //   Phi = L_source * integral over the pixel's area and the directions of  T cos(theta) dA domega,
-// T the share of the source's radiance that the specimen sends on: the integral of bsdf(in -> out) cos(theta_in) over the
-// directions in which the source is seen. A path's value is an unbiased estimate of T cos^4(theta) for directions that are
-// uniform over the exit pupil's disc, so that Phi is the mean value times L_source A_pixel (disc's area in slopes).
+// T the share of the source's radiance that the specimen sends on: the integral of bsdf(in -> out) cos(theta_in) over
+// the directions in which the source is seen. A path's value is an unbiased estimate of T cos^4(theta) for directions
+// that are uniform over the exit pupil's disc, so that Phi is the mean value times L_source A_pixel (disc's area in
+// slopes).
 //
-// The Instrument is turned round: its illumination train leads from the detector to the specimen, its imaging train from the
-// specimen to the source, where the last surface is the source itself as a stop: optics::turned_round().
+// The Instrument is turned round: its illumination train leads from the detector to the specimen, its imaging train
+// from the specimen to the source, where the last surface is the source itself as a stop: optics::turned_round().
 struct BackwardOptics {
     real pupil_position;  // at the detector, in the reversed frame: light from the specimen is within
     real pupil_radius;    //   |pupil_position * (x, y) + (dx/dz, dy/dz)| <= pupil_radius
     real source_position; // likewise on the plane of the paraxial object: light from the source is within
     real source_outer;    //   |source_position * (x, y) + (dx/dz, dy/dz)| <= source_outer
-    real source_inner;    // and what is within source_inner, from points within inner_field, is from it; 0: nothing is sure
-    real inner_field;     // mm
+    real
+        source_inner; // and what is within source_inner, from points within inner_field, is from it; 0: nothing is sure
+    real inner_field; // mm
     real object_distance; // mm, from the objective's front vertex (or cover glass) to the paraxial object plane
     uint cone_candidates; // directions towards the source that are weighed against each other at each scatter event,
     uint lobe_candidates; //   and directions of the lobe, 0 or 1, besides
@@ -47,8 +49,8 @@ VKFV_SCENE_FUNCTION VKFV_FUNCTION BackwardArrival look_from_detector(VKFV_SCENE_
     ray.direction = real3(slope.x * axial, slope.y * axial, axial);
     ray.path_length = real(0.0);
     real specimen_index = specimen_medium_index(instrument, light);
-    TrainResult train = trace_train(VKFV_SCENE instrument.illumination_first, instrument.illumination_count, ray,
-                                    real(1.0), 1u, light);
+    TrainResult train =
+        trace_train(VKFV_SCENE instrument.illumination_first, instrument.illumination_count, ray, real(1.0), 1u, light);
     Ray down = fly_to_top(train.ray, exposure, specimen_index);
     real scale = real(1.0) / specimen_index;
     BackwardArrival arrival;
@@ -67,9 +69,9 @@ VKFV_FUNCTION real object_plane(BackwardOptics backward, SpecimenRecord specimen
 
 // A ray from the specimen that may come from the source, and what it would bring.
 struct SourceQuery {
-    real3 position; // specimen frame
+    real3 position;  // specimen frame
     real3 direction; // unit, towards the source
-    real weight;    // of the source's radiance
+    real weight;     // of the source's radiance
     Light light;
 };
 
@@ -82,8 +84,7 @@ VKFV_FUNCTION uint source_certainty(BackwardOptics backward, real plane, SourceQ
     real2 field = real2(query.position.x, query.position.y) + slope * (plane - query.position.z);
     real2 crossing = field * backward.source_position + slope;
     real crossing_squared = dot(crossing, crossing);
-    bool possible = query.direction.z > real(0.0) &&
-                    crossing_squared <= backward.source_outer * backward.source_outer;
+    bool possible = query.direction.z > real(0.0) && crossing_squared <= backward.source_outer * backward.source_outer;
     bool sure = crossing_squared <= backward.source_inner * backward.source_inner &&
                 dot(field, field) <= backward.inner_field * backward.inner_field;
     return !possible ? SOURCE_HIDDEN : sure ? SOURCE_SEEN : SOURCE_UNKNOWN;
@@ -99,8 +100,8 @@ VKFV_SCENE_FUNCTION VKFV_FUNCTION real trace_to_source(VKFV_SCENE_PARAMETER Inst
                          -exposure.top_distance);
     ray.direction = query.direction * index;
     ray.path_length = real(0.0);
-    TrainResult train = trace_train_by_loop(VKFV_SCENE instrument.imaging_first, instrument.imaging_count, ray, index,
-                                            1u, query.light);
+    TrainResult train =
+        trace_train_by_loop(VKFV_SCENE instrument.imaging_first, instrument.imaging_count, ray, index, 1u, query.light);
     return train.status == PATH_ALIVE ? query.weight * train.transmitted : real(0.0);
 }
 
@@ -126,17 +127,18 @@ VKFV_SCENE_FUNCTION VKFV_FUNCTION real collect(VKFV_SCENE_PARAMETER Instrument i
     return value;
 }
 
-// A direction towards the source, chosen in proportion to the light it would scatter towards the detector, and the estimate of
-// all of that light, per radiance of the source.
+// A direction towards the source, chosen in proportion to the light it would scatter towards the detector, and the
+// estimate of all of that light, per radiance of the source.
 struct Connection {
     real weight;
     real3 direction;
 };
 
-// Resampled importance sampling (J. Talbot, D. Cline, P. Egbert, EGSR 2005) from stratified candidates: uniform over the
-// source's disc, and of the lobe seen backward. Each weighs f / (sum of all candidates' densities): the balance heuristic.
-VKFV_FUNCTION Connection connect(Material material, BackwardOptics backward, real plane, Hit hit, real3 outgoing, real u0,
-                                 real u1, real choice, Scattered of_lobe) {
+// Resampled importance sampling (J. Talbot, D. Cline, P. Egbert, EGSR 2005) from stratified candidates: uniform over
+// the source's disc, and of the lobe seen backward. Each weighs f / (sum of all candidates' densities): the balance
+// heuristic.
+VKFV_FUNCTION Connection connect(Material material, BackwardOptics backward, real plane, Hit hit, real3 outgoing,
+                                 real u0, real u1, real choice, Scattered of_lobe) {
     real factor = real(1.0) / (real(1.0) + backward.source_position * (plane - hit.position.z));
     real2 centre = real2(hit.position.x, hit.position.y) * (-backward.source_position * factor);
     real radius = backward.source_outer * factor;
@@ -159,7 +161,8 @@ VKFV_FUNCTION Connection connect(Material material, BackwardOptics backward, rea
         }
         real cosine = dot(direction, hit.normal);
         real2 from_centre = real2(direction.x, direction.y) / direction.z - centre;
-        usable = usable && cosine > real(0.0) && direction.z > real(0.0) && dot(from_centre, from_centre) <= radius_squared;
+        usable =
+            usable && cosine > real(0.0) && direction.z > real(0.0) && dot(from_centre, from_centre) <= radius_squared;
         if (usable) {
             real flux = scatter_bsdf(material, -direction, hit.normal, outgoing) * cosine;
             // domega = cos^3 of the slopes' area.
@@ -205,9 +208,10 @@ VKFV_FUNCTION bool lobe_is_delta(Lobe lobe) {
 }
 
 // The value of one path (see above): of one point of a pixel's lattice, whose number keys further draws.
-VKFV_SCENE_FUNCTION VKFV_FUNCTION real trace_backward(VKFV_SCENE_PARAMETER Instrument instrument, BackwardOptics backward,
-                                                      SpecimenRecord specimen, Exposure exposure, int column, int row,
-                                                      uint randomisation, Lattice lattice, LatticeShift shift, uint point) {
+VKFV_SCENE_FUNCTION VKFV_FUNCTION real trace_backward(VKFV_SCENE_PARAMETER Instrument instrument,
+                                                      BackwardOptics backward, SpecimenRecord specimen,
+                                                      Exposure exposure, int column, int row, uint randomisation,
+                                                      Lattice lattice, LatticeShift shift, uint point) {
     real turn = instrument.magnification < real(0.0) ? real(-1.0) : real(1.0);
     real pitch = real(2.0) * instrument.detector_half_size / real(instrument.detector_pixels);
     real x = turn * ((real(column) + lattice_coordinate(lattice, point, lattice.z_0, shift.first.x)) * pitch -
@@ -220,9 +224,8 @@ VKFV_SCENE_FUNCTION VKFV_FUNCTION real trace_backward(VKFV_SCENE_PARAMETER Instr
     if ((features(VKFV_SCENE_ALONE) & FEATURE_SPECTRUM) != 0u) {
         light = draw_light(VKFV_SCENE instrument, lattice_coordinate(lattice, point, lattice.z_7, shift.second.w));
     }
-    BackwardArrival arrival =
-        look_from_detector(VKFV_SCENE instrument, backward, specimen, exposure, x, y,
-                           real2(rho * azimuth.cosine, rho * azimuth.sine), light);
+    BackwardArrival arrival = look_from_detector(VKFV_SCENE instrument, backward, specimen, exposure, x, y,
+                                                 real2(rho * azimuth.cosine, rho * azimuth.sine), light);
     real value = real(0.0);
     real throughput = arrival.weight;
     real3 direction = arrival.direction;
@@ -270,8 +273,8 @@ VKFV_SCENE_FUNCTION VKFV_FUNCTION real trace_backward(VKFV_SCENE_PARAMETER Instr
         }
         under_way = under_way && scattered.accepted == 1u;
         scattered.accepted = delta ? 0u : scattered.accepted;
-        Connection connection = connect(specimen.material, backward, plane, hit, outgoing, draws.u0, draws.u1, draws.u2,
-                                        scattered);
+        Connection connection =
+            connect(specimen.material, backward, plane, hit, outgoing, draws.u0, draws.u1, draws.u2, scattered);
         if (connection.weight > real(0.0)) {
             Hit blocker = specimen_hit(VKFV_SCENE origin, connection.direction);
             if (blocker.found == 0u) {
@@ -301,6 +304,6 @@ VKFV_SCENE_FUNCTION VKFV_FUNCTION real trace_backward(VKFV_SCENE_PARAMETER Instr
     return value;
 }
 
-// Sums of values are counted in 2^-36: a path's share of rounding is below 2^-37, and 2^24 paths of value 8 fit into 64 bits
-// with a bit to spare.
+// Sums of values are counted in 2^-36: a path's share of rounding is below 2^-37, and 2^24 paths of value 8 fit into 64
+// bits with a bit to spare.
 const real BACKWARD_UNIT = real(68719476736.0);

@@ -1,7 +1,8 @@
 // Intersection with a conic of revolution in its vertex frame, in the curvature form that stays regular for a plane
 // (curvature 0): W. T. Welford, "Aberrations of Optical Systems" (1986), section 4.3, extended by the conic constant.
 
-// Constants of a kernel fold (device/prescription.glsl); of surfaces from a buffer the general form is as fast as a question.
+// Constants of a kernel fold (device/prescription.glsl); of surfaces from a buffer the general form is as fast as a
+// question.
 #ifdef VKFV_SPECIALISED
 const bool SURFACE_IS_KNOWN = true;
 #else
@@ -10,10 +11,10 @@ const bool SURFACE_IS_KNOWN = false;
 
 // Where a ray meets a surface of revolution, in its vertex frame.
 struct SurfacePoint {
-    uint found;        // 1: the ray meets the surface near its vertex
-    real parameter;    // position + parameter * direction is the point
-    real3 point;       // mm
-    real curvature;    // 1/mm: the unit normal towards +z is (-curvature x, -curvature y, normal_z)
+    uint found;     // 1: the ray meets the surface near its vertex
+    real parameter; // position + parameter * direction is the point
+    real3 point;    // mm
+    real curvature; // 1/mm: the unit normal towards +z is (-curvature x, -curvature y, normal_z)
     real normal_z;
     real cosine;       // direction . normal: n cos I for a direction of length n
     real sine_squared; // |direction x normal|^2: (n sin I)^2
@@ -21,10 +22,12 @@ struct SurfacePoint {
 
 // position and direction in the vertex frame, direction of the given length with direction.z > 0.
 // From the point on the plane z = 0, with d the direction and F = c r^2, G = d_z - c (x d_x + y d_y):
-// further = F / (G + sqrt(G^2 - c (|d|^2 + k d_z^2) F)), the root nearest the vertex, without cancellation. Float keeps the
-// point's height by the way from that plane, its x and y by the way from the start: one rounding each. The normal, cosine and
-// sine are those of a sphere (k = 0): its root is d . N, and |d x N| is the same for all points of the ray's line.
-VKFV_FUNCTION SurfacePoint meet_conic(real3 position, real3 direction, real length_squared, real curvature, real conic) {
+// further = F / (G + sqrt(G^2 - c (|d|^2 + k d_z^2) F)), the root nearest the vertex, without cancellation. Float keeps
+// the point's height by the way from that plane, its x and y by the way from the start: one rounding each. The normal,
+// cosine and sine are those of a sphere (k = 0): its root is d . N, and |d x N| is the same for all points of the ray's
+// line.
+VKFV_FUNCTION SurfacePoint meet_conic(real3 position, real3 direction, real length_squared, real curvature,
+                                      real conic) {
     real to_plane = -position.z / direction.z;
     real x = position.x + to_plane * direction.x;
     real y = position.y + to_plane * direction.y;
@@ -32,7 +35,8 @@ VKFV_FUNCTION SurfacePoint meet_conic(real3 position, real3 direction, real leng
     real cy = curvature * y;
     real f = cx * x + cy * y;
     real g = direction.z - (cx * direction.x + cy * direction.y);
-    real a = curvature * (length_squared + (SURFACE_IS_KNOWN && conic == real(0.0) ? real(0.0) : conic * direction.z * direction.z));
+    real a = curvature * (length_squared +
+                          (SURFACE_IS_KNOWN && conic == real(0.0) ? real(0.0) : conic * direction.z * direction.z));
     real discriminant = g * g - a * f;
     real root = sqrt(max(discriminant, real(0.0)));
     real further = f / (g + root);
@@ -60,8 +64,7 @@ VKFV_FUNCTION SurfacePoint meet_conic(real3 position, real3 direction, real leng
 // Normal of the conic at a point on it, not normalised, towards +z: the gradient of z - sag, times
 // 1 - (1 + k) c z (which keeps it regular at the equator).
 VKFV_FUNCTION real3 conic_normal(real3 point, real curvature, real conic) {
-    return real3(-curvature * point.x, -curvature * point.y,
-                 real(1.0) - curvature * (real(1.0) + conic) * point.z);
+    return real3(-curvature * point.x, -curvature * point.y, real(1.0) - curvature * (real(1.0) + conic) * point.z);
 }
 
 // The same meeting with the surface's normal along (-slope_over_r x, -slope_over_r y, normal_z).

@@ -5,8 +5,10 @@ VKFV_FUNCTION real fresnel_reflectance(real index_before, real index_after, real
     real sine_ratio = index_before / index_after;
     real cosine_after_squared = real(1.0) - sine_ratio * sine_ratio * (real(1.0) - cosine * cosine);
     real cosine_after = sqrt(max(cosine_after_squared, real(0.0)));
-    real s = (index_before * cosine - index_after * cosine_after) / (index_before * cosine + index_after * cosine_after);
-    real p = (index_after * cosine - index_before * cosine_after) / (index_after * cosine + index_before * cosine_after);
+    real s =
+        (index_before * cosine - index_after * cosine_after) / (index_before * cosine + index_after * cosine_after);
+    real p =
+        (index_after * cosine - index_before * cosine_after) / (index_after * cosine + index_before * cosine_after);
     return cosine_after_squared > real(0.0) ? real(0.5) * (s * s + p * p) : real(1.0);
 }
 
@@ -48,8 +50,8 @@ VKFV_FUNCTION real interface_reflectance(Surface surface, real index_before, rea
                                          real wave_number) {
     real reflectance = real(0.0);
     if ((surface.flags & SURFACE_LAYER) != 0u) {
-        reflectance = layer_reflectance(index_before, surface.layer_index, index_after, cosine,
-                                        surface.layer_thickness, wave_number);
+        reflectance = layer_reflectance(index_before, surface.layer_index, index_after, cosine, surface.layer_thickness,
+                                        wave_number);
     } else if ((surface.flags & SURFACE_FRESNEL) != 0u) {
         reflectance = fresnel_reflectance(index_before, index_after, cosine);
     }

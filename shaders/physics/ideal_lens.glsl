@@ -1,11 +1,11 @@
-// The aplanatic lens: it images its front focal plane to infinity without aberration and obeys Abbe's sine condition. In
-// positions x on the focal planes and direction cosines p scaled by the index, it is the Fourier lens x' = p / power,
-// p' = -power x: linear and canonical, so it keeps etendue at any angle (as a thin lens of tangents does not).
+// The aplanatic lens: it images its front focal plane to infinity without aberration and obeys Abbe's sine condition.
+// In positions x on the focal planes and direction cosines p scaled by the index, it is the Fourier lens x' = p /
+// power, p' = -power x: linear and canonical, so it keeps etendue at any angle (as a thin lens of tangents does not).
 
 struct IdealLens {
-    uint passes; // 0: no direction has these cosines
-    real3 position;  // on the back focal plane, in the frame of the lens (principal planes at z = 0)
-    real3 direction; // of length index
+    uint passes;      // 0: no direction has these cosines
+    real3 position;   // on the back focal plane, in the frame of the lens (principal planes at z = 0)
+    real3 direction;  // of length index
     real path_length; // mm: what the way from the given point to the back focal plane adds
 };
 
@@ -25,7 +25,7 @@ VKFV_FUNCTION IdealLens pass_ideal_lens(real3 position, real3 direction, real po
     lens.direction = real3(p, q, sqrt(max(axial, real(1e-30))));
     // The point characteristic between the focal planes is f (n^2 + n'^2) - x x' / f.
     lens.path_length = to_focal_plane * index_before * index_before +
-                       focal_length * (index_before * index_before + index_after * index_after) +
-                       p * lens.position.x + q * lens.position.y;
+                       focal_length * (index_before * index_before + index_after * index_after) + p * lens.position.x +
+                       q * lens.position.y;
     return lens;
 }

@@ -1,5 +1,6 @@
 // Points of a randomly shifted rank-1 lattice (J. Dick, F. Y. Kuo, I. H. Sloan, "High-dimensional integration: the
-// quasi-Monte Carlo way", Acta Numerica 22 (2013), section 5): point i of n stands at the fractions of i z_d / n + shift_d.
+// quasi-Monte Carlo way", Acta Numerica 22 (2013), section 5): point i of n stands at the fractions of i z_d / n +
+// shift_d.
 struct Lattice {
     uint size_bits; // n = 2^size_bits
     uint z_0;

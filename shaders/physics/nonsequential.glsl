@@ -1,6 +1,7 @@
-// Light that finds its own way: at every turn the nearest of all elements and the specimen, and one of the two rays that an
-// interface makes of one, drawn with its share of the power (Russian roulette, so every ray keeps its power). Frame: the
-// elements', that is the specimen's with its origin in the plane of best focus; mm, directions are unit vectors.
+// Light that finds its own way: at every turn the nearest of all elements and the specimen, and one of the two rays
+// that an interface makes of one, drawn with its share of the power (Russian roulette, so every ray keeps its power).
+// Frame: the elements', that is the specimen's with its origin in the plane of best focus; mm, directions are unit
+// vectors.
 
 #ifdef __cplusplus
 template <class Scene>
@@ -27,13 +28,13 @@ VKFV_FUNCTION real3 out_of_element(Element element, real3 v) {
 
 // Where a ray meets one element, in the element's frame turned so that the ray travels towards +z.
 struct ElementMeeting {
-    uint found;     // 1: met
-    uint clear;     // 1: within the free aperture
-    real distance;  // mm
+    uint found;    // 1: met
+    uint clear;    // 1: within the free aperture
+    real distance; // mm
     real3 point;
     real3 direction; // the ray's
-    real3 normal;   // not normalised, towards +z
-    real side;      // 1: the ray travels along the element's own z, -1: against it
+    real3 normal;    // not normalised, towards +z
+    real side;       // 1: the ray travels along the element's own z, -1: against it
 };
 
 VKFV_FUNCTION Surface seen_from(Surface surface, real side) {
@@ -72,9 +73,10 @@ VKFV_FUNCTION ElementMeeting meet_barrel(ElementMeeting meeting, Element element
     return meeting;
 }
 
-// least: mm; nearer meetings are the start itself. comes_from_it: the ray starts on this element, so that of a conic's two
-// meetings the start is one.
-VKFV_FUNCTION ElementMeeting meet_element(Element element, real3 origin, real3 direction, bool comes_from_it, real least) {
+// least: mm; nearer meetings are the start itself. comes_from_it: the ray starts on this element, so that of a conic's
+// two meetings the start is one.
+VKFV_FUNCTION ElementMeeting meet_element(Element element, real3 origin, real3 direction, bool comes_from_it,
+                                          real least) {
     real3 local = into_element(element, origin - element.origin);
     real3 d = into_element(element, direction);
     ElementMeeting meeting;
@@ -135,7 +137,7 @@ VKFV_FUNCTION real least_distance(real3 origin) {
 
 // What becomes of a ray at an element that it has met.
 struct Passage {
-    Fate fate;       // PATH_ALIVE: it goes on
+    Fate fate; // PATH_ALIVE: it goes on
     real3 position;
     real3 direction; // unit
 };
@@ -229,8 +231,8 @@ VKFV_SCENE_FUNCTION VKFV_FUNCTION Detection trace_nonsequential(VKFV_SCENE_PARAM
             if (bounces == specimen.max_bounces) {
                 detection.fate = make_fate(PATH_BOUNCE_LIMIT, -1);
             } else {
-                Scattered scattered = scatter(specimen.material, direction, hit.normal, exposure.seed, exposure.image, path,
-                                              SCATTER_FIRST_BLOCK + uint(bounces) * SCATTER_BLOCKS);
+                Scattered scattered = scatter(specimen.material, direction, hit.normal, exposure.seed, exposure.image,
+                                              path, SCATTER_FIRST_BLOCK + uint(bounces) * SCATTER_BLOCKS);
                 direction = scattered.direction;
                 origin = scatter_origin(hit) - to_specimen;
                 detection.fate = make_fate(scattered.absorbed == 1u   ? PATH_ABSORBED

@@ -18,9 +18,9 @@ VKFV_FUNCTION Fate make_fate(uint status, int surface) {
 
 // Where the ledger counts a fate: the plain statuses first, then those of each surface.
 VKFV_FUNCTION int ledger_slot(Fate fate) {
-    return fate.surface < 0 ? int(fate.status)
-                            : PATH_STATUS_COUNT + SURFACE_STATUS_COUNT * fate.surface +
-                                  int(fate.status - PATH_VIGNETTED);
+    return fate.surface < 0
+               ? int(fate.status)
+               : PATH_STATUS_COUNT + SURFACE_STATUS_COUNT * fate.surface + int(fate.status - PATH_VIGNETTED);
 }
 
 // Start of scattered light: the hit point moved along the normal by eight rounding steps (2^-23) of the largest
@@ -92,8 +92,7 @@ VKFV_SCENE_FUNCTION VKFV_FUNCTION Emission emit(VKFV_SCENE_PARAMETER Instrument 
 }
 
 VKFV_SCENE_FUNCTION VKFV_FUNCTION Arrival illuminate(VKFV_SCENE_PARAMETER Instrument instrument,
-                                                     SpecimenRecord specimen, Exposure exposure,
-                                                     uvec2 path) {
+                                                     SpecimenRecord specimen, Exposure exposure, uvec2 path) {
     Emission emission = emit(VKFV_SCENE instrument, draw(exposure.seed, exposure.image, path, 0u));
     Arrival arrival;
     arrival.light = emission.light;
@@ -104,8 +103,8 @@ VKFV_SCENE_FUNCTION VKFV_FUNCTION Arrival illuminate(VKFV_SCENE_PARAMETER Instru
     real specimen_index = specimen_medium_index(instrument, arrival.light);
     real index = is_ring ? specimen_index : real(1.0);
     ray.direction = ray.direction * index;
-    TrainResult train = trace_train(VKFV_SCENE instrument.illumination_first, instrument.illumination_count, ray,
-                                    index, 1u, arrival.light);
+    TrainResult train = trace_train(VKFV_SCENE instrument.illumination_first, instrument.illumination_count, ray, index,
+                                    1u, arrival.light);
     Ray down = fly_to_top(train.ray, exposure, specimen_index);
     arrival.fate = make_fate(train.status, train.surface);
     // The specimen frame is the illumination's turned half a turn about x.
@@ -123,16 +122,16 @@ struct Departure {
 };
 
 // Directed scatter. Of what a bounce scatters into the pupil's gate there are two samples: the path's own direction, of
-// density p (the chosen lobe's), and one aimed at the gate, uniform in its slopes, of density q. Each weighs p / (p + q),
-// the balance heuristic of E. Veach and L. J. Guibas, SIGGRAPH 95, 419, and since
+// density p (the chosen lobe's), and one aimed at the gate, uniform in its slopes, of density q. Each weighs p / (p +
+// q), the balance heuristic of E. Veach and L. J. Guibas, SIGGRAPH 95, 419, and since
 //   E[sum] = integral over the gate of p p / (p + q) + q p / (p + q) = integral over the gate of p,
 // the expectation is the analog one for whatever is seen through the gate. The own direction decides how the path goes
 // on: if it leaves outside the gate, or meets the specimen again before the last bounce, its light is counted, or
 // scattered on, whole as in the analog form. So an aimed sample that turns out to meet the specimen again counts
 // nowhere, but for the last bounce, whose light is nobody's further. A delta has no density: it is never aimed at, and
 // its own light weighs 1.
-// Of all samples of a path one survives, with a chance proportional to its weight and the sum of all weights as its own,
-// at most max_bounces + 1: the expectation stays.
+// Of all samples of a path one survives, with a chance proportional to its weight and the sum of all weights as its
+// own, at most max_bounces + 1: the expectation stays.
 struct GateDisc {
     real2 centre; // of the slopes x/z and y/z that pass the gate
     real radius;
@@ -192,8 +191,8 @@ VKFV_FUNCTION uint weight_square(uint weight) {
 // Scatter at the specimen until the light leaves it. Before the last permitted bounce every ray is tested against
 // the specimen; on the last one the gate comes first and the test is left to the second half.
 VKFV_SCENE_FUNCTION VKFV_FUNCTION Departure scatter_at_specimen(VKFV_SCENE_PARAMETER Instrument instrument,
-                                                                SpecimenRecord specimen, Exposure exposure,
-                                                                uvec2 path, real3 origin, real3 direction) {
+                                                                SpecimenRecord specimen, Exposure exposure, uvec2 path,
+                                                                real3 origin, real3 direction) {
     bool directed = (features(VKFV_SCENE_ALONE) & FEATURE_DIRECTED_SCATTER) != 0u;
     uint status = PATH_ALIVE;
     uint mark = 0u;
@@ -212,8 +211,8 @@ VKFV_SCENE_FUNCTION VKFV_FUNCTION Departure scatter_at_specimen(VKFV_SCENE_PARAM
         uint first_block = 1u + uint(bounce) * SCATTER_BLOCKS;
         bool last = bounce + 1 == specimen.max_bounces;
         Incidence incidence = make_incidence(direction, hit.normal);
-        Scattered scattered = scatter(specimen.material, direction, hit.normal, exposure.seed, exposure.image, path,
-                                      first_block);
+        Scattered scattered =
+            scatter(specimen.material, direction, hit.normal, exposure.seed, exposure.image, path, first_block);
         direction = scattered.direction;
         origin = scatter_origin(hit);
         under_way = scattered.accepted == 1u;
@@ -254,8 +253,8 @@ VKFV_SCENE_FUNCTION VKFV_FUNCTION Departure scatter_at_specimen(VKFV_SCENE_PARAM
         uint weight = uint(selection.weight * real(WEIGHT_ONE) + real(0.5));
         departure.survives = weight > 0u ? 1u : 0u;
         departure.survivor = selection.survivor;
-        departure.survivor.mark = selection.survivor.mark | (weight << SURVIVOR_WEIGHT_BIT) |
-                                  (status == PATH_ALIVE ? 0u : SURVIVOR_BESIDE);
+        departure.survivor.mark =
+            selection.survivor.mark | (weight << SURVIVOR_WEIGHT_BIT) | (status == PATH_ALIVE ? 0u : SURVIVOR_BESIDE);
     }
     departure.survivor.spectral = real(0.0);
     departure.survivor.survival = real(0.0);
@@ -263,20 +262,18 @@ VKFV_SCENE_FUNCTION VKFV_FUNCTION Departure scatter_at_specimen(VKFV_SCENE_PARAM
 }
 
 VKFV_SCENE_FUNCTION VKFV_FUNCTION Departure trace_to_departure(VKFV_SCENE_PARAMETER Instrument instrument,
-                                                               SpecimenRecord specimen, Exposure exposure,
-                                                               uvec2 path) {
+                                                               SpecimenRecord specimen, Exposure exposure, uvec2 path) {
     Arrival arrival = illuminate(VKFV_SCENE instrument, specimen, exposure, path);
     Departure departure;
     departure.fate = arrival.fate;
     departure.survives = 0u;
     if (arrival.fate.status == PATH_ALIVE) {
-        departure = scatter_at_specimen(VKFV_SCENE instrument, specimen, exposure, path, arrival.position,
-                                        arrival.direction);
+        departure =
+            scatter_at_specimen(VKFV_SCENE instrument, specimen, exposure, path, arrival.position, arrival.direction);
         departure.survivor.spectral = arrival.light.spectral;
         if ((features(VKFV_SCENE_ALONE) & FEATURE_LOSSES) != 0u) {
             // The block after those of the last scatter event.
-            Draws draws = draw(exposure.seed, exposure.image, path,
-                               1u + uint(specimen.max_bounces) * SCATTER_BLOCKS);
+            Draws draws = draw(exposure.seed, exposure.image, path, 1u + uint(specimen.max_bounces) * SCATTER_BLOCKS);
             departure.survivor.survival = draws.u0;
         }
     }
@@ -293,8 +290,7 @@ struct Detection {
 };
 
 VKFV_FUNCTION real3 survivor_direction(Survivor survivor) {
-    real axial = real(1.0) - survivor.direction_x * survivor.direction_x -
-                 survivor.direction_y * survivor.direction_y;
+    real axial = real(1.0) - survivor.direction_x * survivor.direction_x - survivor.direction_y * survivor.direction_y;
     return real3(survivor.direction_x, survivor.direction_y, sqrt(max(axial, real(0.0))));
 }
 
@@ -341,13 +337,13 @@ VKFV_SCENE_FUNCTION VKFV_FUNCTION Detection image_survivor(VKFV_SCENE_PARAMETER 
     real index = specimen_medium_index(instrument, light);
     ray.direction = direction * index;
     ray.path_length = real(0.0);
-    TrainResult train = trace_train(VKFV_SCENE instrument.imaging_first, instrument.imaging_count, ray, index, 1u,
-                                    light);
+    TrainResult train =
+        trace_train(VKFV_SCENE instrument.imaging_first, instrument.imaging_count, ray, index, 1u, light);
     Ray arrived = fly_to_plane(train.ray, instrument.detector_distance, train.index);
     Detection detection = detect(instrument, arrived.position.x, arrived.position.y);
     bool twin = (survivor.mark & SURVIVOR_TWIN) != 0u;
-    detection.fate = occluded                      ? make_fate(twin ? PATH_ALIVE : PATH_BOUNCE_LIMIT, -1)
+    detection.fate = occluded                     ? make_fate(twin ? PATH_ALIVE : PATH_BOUNCE_LIMIT, -1)
                      : train.status != PATH_ALIVE ? make_fate(train.status, train.surface)
-                                                   : detection.fate;
+                                                  : detection.fate;
     return detection;
 }

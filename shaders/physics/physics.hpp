@@ -27,29 +27,27 @@
 #define VKFV_SCENE scene,
 #define VKFV_SCENE_ALONE scene
 
-#define VKFV_PHYSICS_LANGUAGE                                                                                \
-    using glm::abs;                                                                                          \
-    using glm::ceil;                                                                                         \
-    using glm::clamp;                                                                                        \
-    using glm::cos;                                                                                          \
-    using glm::exp;                                                                                          \
-    using glm::floor;                                                                                        \
-    using glm::fract;                                                                                        \
-    using glm::isinf;                                                                                        \
-    using glm::isnan;                                                                                        \
-    using glm::log;                                                                                          \
-    using glm::max;                                                                                          \
-    using glm::min;                                                                                          \
-    using glm::mix;                                                                                          \
-    using glm::pow;                                                                                          \
-    using glm::sin;                                                                                          \
-    using glm::sqrt;                                                                                         \
-    using glm::uvec2;                                                                                         \
-    using glm::uvec4;                                                                                        \
-    using uint = std::uint32_t;                                                                              \
-    inline uint multiply_high(uint a, uint b) {                                                              \
-        return static_cast<uint>((static_cast<std::uint64_t>(a) * b) >> 32);                                 \
-    }
+#define VKFV_PHYSICS_LANGUAGE \
+    using glm::abs; \
+    using glm::ceil; \
+    using glm::clamp; \
+    using glm::cos; \
+    using glm::exp; \
+    using glm::floor; \
+    using glm::fract; \
+    using glm::isinf; \
+    using glm::isnan; \
+    using glm::log; \
+    using glm::max; \
+    using glm::min; \
+    using glm::mix; \
+    using glm::pow; \
+    using glm::sin; \
+    using glm::sqrt; \
+    using glm::uvec2; \
+    using glm::uvec4; \
+    using uint = std::uint32_t; \
+    inline uint multiply_high(uint a, uint b) { return static_cast<uint>((static_cast<std::uint64_t>(a) * b) >> 32); }
 
 namespace vkfv::physics::f64 {
 using real = double;

@@ -1,5 +1,5 @@
-// Stateless random numbers: Philox4x32, J. K. Salmon, M. A. Moraes, R. O. Dror, D. E. Shaw, "Parallel random numbers: as
-// easy as 1, 2, 3", SC11 (2011), doi:10.1145/2063384.2063405. A draw is a function of (seed, image, path, block), so
+// Stateless random numbers: Philox4x32, J. K. Salmon, M. A. Moraes, R. O. Dror, D. E. Shaw, "Parallel random numbers:
+// as easy as 1, 2, 3", SC11 (2011), doi:10.1145/2063384.2063405. A draw is a function of (seed, image, path, block), so
 // host and device trace the same path and any path can be replayed alone.
 
 // Seven rounds pass all of TestU01's BigCrush (the same paper, table 2); the authors' ten are their margin.

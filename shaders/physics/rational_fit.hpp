@@ -66,10 +66,11 @@ inline std::vector<double> least_squares(std::vector<std::vector<double>> column
     return x;
 }
 
-// Through the positive values f at the points x > 0, in the sense of least relative squares: linearised, and weighted anew
-// with the last denominator, C. K. Sanathanan, J. Koerner, IEEE Trans. Autom. Control 8 (1963) 56. The fit of the lowest
-// degree that evaluates in float with no more than the wanted error, or else the best up to the highest: a degree more
-// than is needed brings nearly cancelling roots, which may lie between two points. The denominator's degree is one less.
+// Through the positive values f at the points x > 0, in the sense of least relative squares: linearised, and weighted
+// anew with the last denominator, C. K. Sanathanan, J. Koerner, IEEE Trans. Autom. Control 8 (1963) 56. The fit of the
+// lowest degree that evaluates in float with no more than the wanted error, or else the best up to the highest: a
+// degree more than is needed brings nearly cancelling roots, which may lie between two points. The denominator's degree
+// is one less.
 inline RationalFit fit_rational(const std::vector<double>& x, const std::vector<double>& f, std::size_t highest_degree,
                                 double wanted_error) {
     const auto polynomial = [](const std::vector<double>& coefficients, float at) {

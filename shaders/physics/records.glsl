@@ -3,27 +3,27 @@
 // Units: mm, W; directions are unit vectors scaled by the refractive index of the medium they travel in.
 
 // What became of a path. Every path ends with exactly one of these, and the ledger counts each.
-const uint PATH_ALIVE = 0u;            // still under way: never a final status
-const uint PATH_DETECTED = 1u;         // counted on a pixel
-const uint PATH_OFF_SPECIMEN = 2u;     // the illumination passed beside the specimen's footprint
-const uint PATH_ESCAPED = 3u;          // left the specimen outside the pupil's gate
-const uint PATH_BOUNCE_LIMIT = 4u;     // would have met the specimen more often than permitted
-const uint PATH_OFF_DETECTOR = 5u;     // reached the detector's plane beside the detector
-const uint PATH_NUMERICAL = 6u;        // a non-finite number or an exhausted rejection loop
-const uint PATH_ABSORBED = 7u;         // by the specimen
+const uint PATH_ALIVE = 0u;             // still under way: never a final status
+const uint PATH_DETECTED = 1u;          // counted on a pixel
+const uint PATH_OFF_SPECIMEN = 2u;      // the illumination passed beside the specimen's footprint
+const uint PATH_ESCAPED = 3u;           // left the specimen outside the pupil's gate
+const uint PATH_BOUNCE_LIMIT = 4u;      // would have met the specimen more often than permitted
+const uint PATH_OFF_DETECTOR = 5u;      // reached the detector's plane beside the detector
+const uint PATH_NUMERICAL = 6u;         // a non-finite number or an exhausted rejection loop
+const uint PATH_ABSORBED = 7u;          // by the specimen
 const uint PATH_INTERACTION_LIMIT = 8u; // non-sequential: met more surfaces than permitted
-const uint PATH_VIGNETTED = 9u;        // stopped by the edge of a surface (a surface index belongs to it)
+const uint PATH_VIGNETTED = 9u;         // stopped by the edge of a surface (a surface index belongs to it)
 const uint PATH_MISSED_SURFACE = 10u;   // a surface of a train does not meet the ray (likewise)
 const uint PATH_TOTAL_REFLECTION = 11u; // totally reflected at a surface (likewise)
 const uint PATH_INTERFACE_LOSS = 12u;   // reflected at a refracting surface, or absorbed by a mirror (likewise)
 const int PATH_STATUS_COUNT = 13;
-const int SURFACE_STATUS_COUNT = 4;     // statuses from PATH_VIGNETTED on
+const int SURFACE_STATUS_COUNT = 4; // statuses from PATH_VIGNETTED on
 
-const uint SURFACE_CLIPPED = 1u;    // semi_diameter_squared limits it; without the flag it is unbounded
-const uint SURFACE_ASPHERIC = 2u;   // the even coefficients are not all zero
-const uint SURFACE_FRESNEL = 4u;    // reflects by Fresnel's equations
-const uint SURFACE_LAYER = 8u;      // the same through one thin layer
-const uint SURFACE_MIRROR = 16u;    // plane; a train is unfolded at it
+const uint SURFACE_CLIPPED = 1u;     // semi_diameter_squared limits it; without the flag it is unbounded
+const uint SURFACE_ASPHERIC = 2u;    // the even coefficients are not all zero
+const uint SURFACE_FRESNEL = 4u;     // reflects by Fresnel's equations
+const uint SURFACE_LAYER = 8u;       // the same through one thin layer
+const uint SURFACE_MIRROR = 16u;     // plane; a train is unfolded at it
 const uint SURFACE_IDEAL_LENS = 32u; // of `power`, instead of an interface
 
 // What some instruments have and most have not: kernels are compiled without what is absent.
@@ -31,11 +31,11 @@ const uint FEATURE_PLACEMENT = 1u; // surfaces decentred or tilted against each 
 const uint FEATURE_LOSSES = 2u;    // interfaces that reflect, mirrors that absorb
 const uint FEATURE_SPECTRUM = 4u;  // more than one wavelength
 const uint FEATURE_IDEAL_LENS = 8u;
-const uint FEATURE_RING = 16u;     // a ring light instead of the disc
+const uint FEATURE_RING = 16u;             // a ring light instead of the disc
 const uint FEATURE_DIRECTED_SCATTER = 32u; // of the trace, not of the instrument: survivors have weights
 
-const int SURFACE_CAPACITY = 128; // surfaces of both trains together that the device's uniform block holds
-const int KNOWN_SURFACES = 64;    // of them, that a kernel can have as constants (device/prescription.glsl)
+const int SURFACE_CAPACITY = 128;  // surfaces of both trains together that the device's uniform block holds
+const int KNOWN_SURFACES = 64;     // of them, that a kernel can have as constants (device/prescription.glsl)
 const int SPECTRUM_CAPACITY = 256; // bins of a spectrum, likewise
 const int RING_CAPACITY = 32;      // segments of a ring light: bits of a mask
 
@@ -112,8 +112,8 @@ struct SpectralBin {
 
 // A ring of Lambertian segments that face the axis' meeting with the plane of best focus: a band of a cone.
 struct RingLight {
-    real aim_distance; // mm, from the illumination train's first vertex to that meeting along the axis
-    real distance;     // mm, from there to the middle of the band
+    real aim_distance;   // mm, from the illumination train's first vertex to that meeting along the axis
+    real distance;       // mm, from there to the middle of the band
     real elevation_sine; // of the direction to the middle of the band, over the specimen's plane
     real elevation_cosine;
     real half_width; // mm, of the band, at right angles to that direction
@@ -130,15 +130,15 @@ const uint ELEMENT_IDEAL_LENS = 4u;
 const uint ELEMENT_DETECTOR = 5u;
 const uint ELEMENT_BARREL = 6u; // an absorbing tube about z
 
-// An element as it stands in the room, for non-sequential tracing. Each is absorbing around its free aperture (the surface's
-// semi-diameter): its mount is the same surface out to rim_radius, and from there the plane z = rim_height.
+// An element as it stands in the room, for non-sequential tracing. Each is absorbing around its free aperture (the
+// surface's semi-diameter): its mount is the same surface out to rim_radius, and from there the plane z = rim_height.
 struct Element {
     Surface surface; // in its own frame; its transfer from another is not used
     real3 origin;    // of that frame, mm
     real3 axis_x;    // unit vectors
     real3 axis_y;
     real3 axis_z;
-    real rim_radius;    // mm
+    real rim_radius; // mm
     real rim_height;
     real outer_radius;  // of the mount, or of a barrel
     real barrel_length; // along z
@@ -162,22 +162,22 @@ struct SourceFrame {
 
 // The chain that light goes through, but for the specimen and the scan's position.
 struct Instrument {
-    real source_radius;         // mm, a flat Lambertian disc
-    real source_distance;       // mm, from the source to the first vertex of the illumination train
-    real emission_sine;         // sine of the half-angle of the cone aimed into; 1 is the whole hemisphere
-    real magnification;         // lateral, signed: detector over object
-    real detector_distance;     // mm, from the last vertex of the imaging train to the detector
-    real detector_half_size;    // mm
-    real gate_position;         // gate: |gate_position * (x, y) + gate_slope * (dx/dz, dy/dz)| <= gate_radius,
-    real gate_slope;            //   with x, y in mm on the specimen's top plane: the pupil's outline made
-    real gate_radius;           //   linear and wide enough that no ray outside it reaches the detector
-    real spectrum_centre;       // 1/um^2, of 1/lambda^2: x = 0
-    real spectrum_half_width;   // 1/um^2; x = 1 is this far from it
-    real specimen_index;        // of the medium over the specimen, at x = 0
+    real source_radius;       // mm, a flat Lambertian disc
+    real source_distance;     // mm, from the source to the first vertex of the illumination train
+    real emission_sine;       // sine of the half-angle of the cone aimed into; 1 is the whole hemisphere
+    real magnification;       // lateral, signed: detector over object
+    real detector_distance;   // mm, from the last vertex of the imaging train to the detector
+    real detector_half_size;  // mm
+    real gate_position;       // gate: |gate_position * (x, y) + gate_slope * (dx/dz, dy/dz)| <= gate_radius,
+    real gate_slope;          //   with x, y in mm on the specimen's top plane: the pupil's outline made
+    real gate_radius;         //   linear and wide enough that no ray outside it reaches the detector
+    real spectrum_centre;     // 1/um^2, of 1/lambda^2: x = 0
+    real spectrum_half_width; // 1/um^2; x = 1 is this far from it
+    real specimen_index;      // of the medium over the specimen, at x = 0
     Dispersion specimen_dispersion;
     RingLight ring;
     int spectral_bins;
-    int illumination_first;     // indices into the surfaces
+    int illumination_first; // indices into the surfaces
     int illumination_count;
     int imaging_first;
     int imaging_count;
@@ -221,21 +221,21 @@ struct SpecimenRecord {
     real y_min;
     real x_max;
     real y_max;
-    real bottom; // lowest height
-    real top;    // highest height; rays enter through the plane z = top
+    real bottom;  // lowest height
+    real top;     // highest height; rays enter through the plane z = top
     real pitch_x; // of the height field or lattice; column i stands at x_min + i * pitch_x
     real pitch_y;
     real shape_parameter_0; // of the analytic function: surface_function.glsl says what each shape means
     real shape_parameter_1;
     real shape_parameter_2;
     real shape_parameter_3;
-    real lipschitz;       // bound of the analytic function's slope
+    real lipschitz; // bound of the analytic function's slope
     Material material;
     int columns; // points of the height field or lattice; 0 x 0: none
     int rows;
     int max_bounces; // scatter events permitted
-    uint kind;  // SPECIMEN_*
-    uint shape; // SHAPE_*
+    uint kind;       // SPECIMEN_*
+    uint shape;      // SHAPE_*
 };
 
 // What changes from image to image.
@@ -243,7 +243,7 @@ struct Exposure {
     real top_distance; // mm, along the axis from the objective's front vertex to the specimen's top plane
     uint seed;
     uint image;
-    real focal_height; // mm, of the focal plane in the specimen frame: z of the image
+    real focal_height;          // mm, of the focal plane in the specimen frame: z of the image
     real top_distance_residual; // mm, what rounding took from top_distance; 0 in double
 };
 
@@ -263,10 +263,10 @@ const uint WEIGHT_ONE = 0x400000u; // weights are multiples of 2^-22, so that th
 
 // Light that leaves the specimen towards the objective, between the two passes.
 struct Survivor {
-    real3 position;  // specimen frame, on the specimen
+    real3 position;   // specimen frame, on the specimen
     real direction_x; // unit; z is recomputed, positive
     real direction_y;
-    real spectral;    // its Light in the imaging train
+    real spectral; // its Light in the imaging train
     real survival;
     uint mark; // SURVIVOR_*, and with directed scatter its weight / 2^-22 from SURVIVOR_WEIGHT_BIT on
 };

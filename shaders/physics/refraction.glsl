@@ -6,12 +6,12 @@ struct Refraction {
 };
 
 // direction of length index_before, direction.z > 0, at a meeting with a surface.
-// n's' = n s + gamma N with gamma = n' cos I' - n cos I, and sqrt(n'^2 - n^2 + (n cos I)^2) = n' cos I'. Of gamma = n' - n + h
-// the greater part is a constant of the interface. h is small, and made of the small sine of incidence S = n sin I instead of
-// a difference of cosines, which would lose half its digits: with q = n - n cos I = S^2 / (n + n cos I), primed alike,
-// h = q - q' = S^2 (n' - n + n' cos I' - n cos I) / ((n + n cos I) (n' + n' cos I')).
-// bend_residual: see Surface. The axial part is recomputed from the index: the drift of the direction's length would be
-// the dominant error in float.
+// n's' = n s + gamma N with gamma = n' cos I' - n cos I, and sqrt(n'^2 - n^2 + (n cos I)^2) = n' cos I'. Of gamma = n'
+// - n + h the greater part is a constant of the interface. h is small, and made of the small sine of incidence S = n
+// sin I instead of a difference of cosines, which would lose half its digits: with q = n - n cos I = S^2 / (n + n cos
+// I), primed alike, h = q - q' = S^2 (n' - n + n' cos I' - n cos I) / ((n + n cos I) (n' + n' cos I')). bend_residual:
+// see Surface. The axial part is recomputed from the index: the drift of the direction's length would be the dominant
+// error in float.
 VKFV_FUNCTION Refraction refract_scaled(real3 direction, SurfacePoint meeting, real index_before, real index_after,
                                         real bend_residual) {
     real step = index_after - index_before;

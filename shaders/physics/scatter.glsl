@@ -30,9 +30,9 @@ VKFV_FUNCTION real weighted_bsdf(Lobe lobe, Incidence incidence, real3 outgoing)
     return lobe.weight > real(0.0) ? lobe.weight * lobe_bsdf(lobe, incidence, outgoing) : real(0.0);
 }
 
-// Share of the incident light per sr of the unit direction outgoing, divided by the cosine of its angle with the normal,
-// 1/sr: finite at grazing, 0 unless both directions are above the surface. Deltas, which have no density, count nothing.
-// incoming: unit, towards the surface; normal: unit, on the incoming side.
+// Share of the incident light per sr of the unit direction outgoing, divided by the cosine of its angle with the
+// normal, 1/sr: finite at grazing, 0 unless both directions are above the surface. Deltas, which have no density, count
+// nothing. incoming: unit, towards the surface; normal: unit, on the incoming side.
 VKFV_FUNCTION real scatter_bsdf(Material material, real3 incoming, real3 normal, real3 outgoing) {
     Incidence incidence = make_incidence(incoming, normal);
     real bsdf = weighted_bsdf(material.lobe_0, incidence, outgoing);

@@ -5,14 +5,14 @@
 //   ScatterTry NAME_try(parameters..., Incidence incidence, real u0, real u1, real u2)
 //     one try of a rejection; the accepted directions lie above the surface and have the density
 //   real NAME_bsdf(parameters..., Incidence incidence, real3 outgoing)
-//     asked for above the surface alone, 1/sr: the density per sr of the outgoing direction divided by its cosine, so that
-//     the integral of bsdf * cosine over the hemisphere is 1; a delta has 0
+//     asked for above the surface alone, 1/sr: the density per sr of the outgoing direction divided by its cosine, so
+//     that the integral of bsdf * cosine over the hemisphere is 1; a delta has 0
 // With the line `// table`, NAME_bsdf takes `real table[LOBE_TABLE_SIZE]` after the parameters, and the host fills it:
 //   Lobe NAME_tabulated(Lobe lobe)
 //     the lobe with its table, between #ifdef __cplusplus and #endif
 
-// The models that the specimen's material has, bit k for model k, and SCATTER_CHOICE unless it is one lobe that reflects
-// everything: what it has not is compiled out of a kernel.
+// The models that the specimen's material has, bit k for model k, and SCATTER_CHOICE unless it is one lobe that
+// reflects everything: what it has not is compiled out of a kernel.
 const uint SCATTER_CHOICE = 0x80000000u;
 const uint SCATTER_DELTA = 0x40000000u; // set where a lobe is a delta
 #ifdef __cplusplus
@@ -58,7 +58,8 @@ VKFV_FUNCTION Frame frame_around(real3 w) {
     return frame;
 }
 
-// Unit vector at the angle of the given versine (1 - cos) from the unit vector axis, at the azimuth of a share of a turn.
+// Unit vector at the angle of the given versine (1 - cos) from the unit vector axis, at the azimuth of a share of a
+// turn.
 VKFV_FUNCTION real3 direction_around(real3 axis, real versine, real azimuth) {
     Frame frame = frame_around(axis);
     real sine = sqrt(max(versine * (real(2.0) - versine), real(0.0)));

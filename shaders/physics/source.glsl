@@ -1,11 +1,11 @@
-// Light sources, all Lambertian: uniform radiance, so position is uniform over the area and the direction has the density
-// cos(theta) / (pi sin^2(theta_max)) within the cone sin(theta) <= emission_sine about the normal: the unit disc of
-// (l, m), scaled. With emission_sine = 1 this is the whole hemisphere; less aims at a cone, which holds the share
-// emission_sine^2 of the flux, exactly and from every point. Directions are unit vectors.
+// Light sources, all Lambertian: uniform radiance, so position is uniform over the area and the direction has the
+// density cos(theta) / (pi sin^2(theta_max)) within the cone sin(theta) <= emission_sine about the normal: the unit
+// disc of (l, m), scaled. With emission_sine = 1 this is the whole hemisphere; less aims at a cone, which holds the
+// share emission_sine^2 of the flux, exactly and from every point. Directions are unit vectors.
 
-// cos and sin of 2 pi u, for any u: GLSL's own are bounded to 2^-11 alone, and beyond [-pi, pi] not at all. Polynomials in
-// r^2 for |r| <= 1/8, r the share of a turn from the nearest quarter, through the functions' values at Chebyshev's nodes:
-// off by less than double's rounding.
+// cos and sin of 2 pi u, for any u: GLSL's own are bounded to 2^-11 alone, and beyond [-pi, pi] not at all. Polynomials
+// in r^2 for |r| <= 1/8, r the share of a turn from the nearest quarter, through the functions' values at Chebyshev's
+// nodes: off by less than double's rounding.
 struct Turn {
     real cosine;
     real sine;
@@ -14,20 +14,17 @@ VKFV_FUNCTION Turn turn_of(real u) {
     real quarters = floor(real(4.0) * u + real(0.5));
     real r = u - real(0.25) * quarters;
     real q = r * r;
-    real sine =
-        r * (real(6.2831853071795862) +
-             q * (real(-41.341702240399634) +
-                  q * (real(81.60524927594804) +
-                       q * (real(-76.705859704274545) +
-                            q * (real(42.058685020160894) +
-                                 q * (real(-15.093804209987114) + q * real(3.7808689593022957)))))));
-    real cosine =
-        real(1.0) +
-        q * (real(-19.739208802178421) +
-             q * (real(64.939394022365377) +
-                  q * (real(-85.456817090341147) +
-                       q * (real(60.244620085930293) +
-                            q * (real(-26.42425703488269) + q * real(7.8102909681441908))))));
+    real sine = r * (real(6.2831853071795862) +
+                     q * (real(-41.341702240399634) +
+                          q * (real(81.60524927594804) +
+                               q * (real(-76.705859704274545) +
+                                    q * (real(42.058685020160894) +
+                                         q * (real(-15.093804209987114) + q * real(3.7808689593022957)))))));
+    real cosine = real(1.0) + q * (real(-19.739208802178421) +
+                                   q * (real(64.939394022365377) +
+                                        q * (real(-85.456817090341147) +
+                                             q * (real(60.244620085930293) +
+                                                  q * (real(-26.42425703488269) + q * real(7.8102909681441908))))));
     int quadrant = int(quarters);
     bool odd = (quadrant & 1) != 0;
     Turn turn;
@@ -57,8 +54,8 @@ VKFV_FUNCTION Ray emit_from_disc(real radius, real emission_sine, real u0, real 
     return ray;
 }
 
-// A ring light about the z axis that shines on the origin from z < 0. Its band lies on a cone: at w across the band, from
-// the ring's inside, its radius is r - w sin(elevation), and so is its share of the area.
+// A ring light about the z axis that shines on the origin from z < 0. Its band lies on a cone: at w across the band,
+// from the ring's inside, its radius is r - w sin(elevation), and so is its share of the area.
 VKFV_FUNCTION Ray emit_from_ring(RingLight ring, real emission_sine, real u0, real u1, real u2, real u3) {
     int on = 0;
     for (int segment = 0; segment < ring.segments; ++segment) {
@@ -78,8 +75,8 @@ VKFV_FUNCTION Ray emit_from_ring(RingLight ring, real emission_sine, real u0, re
     Turn azimuth = turn_of((real(chosen) + within) / real(ring.segments));
     real radius = ring.distance * ring.elevation_cosine;
     // The w whose share of the area is u1: r (w + h) - sin (w^2 - h^2) / 2 = 2 r h u1.
-    real constant = ring.half_width * (real(2.0) * radius * u1 - radius -
-                                       real(0.5) * ring.elevation_sine * ring.half_width);
+    real constant =
+        ring.half_width * (real(2.0) * radius * u1 - radius - real(0.5) * ring.elevation_sine * ring.half_width);
     real w = real(2.0) * constant /
              (radius + sqrt(max(radius * radius - real(2.0) * ring.elevation_sine * constant, real(0.0))));
     real rho = radius - w * ring.elevation_sine;

@@ -60,7 +60,7 @@ VKFV_SCENE_FUNCTION VKFV_FUNCTION Light draw_light(VKFV_SCENE_PARAMETER Instrume
 
 // What the index at x differs from that at x = 0.
 VKFV_FUNCTION real disperse(Dispersion dispersion, real x) {
-    return x * (dispersion.c1 +
-                x * (dispersion.c2 +
-                     x * (dispersion.c3 + x * (dispersion.c4 + x * (dispersion.c5 + x * dispersion.c6)))));
+    return x *
+           (dispersion.c1 +
+            x * (dispersion.c2 + x * (dispersion.c3 + x * (dispersion.c4 + x * (dispersion.c5 + x * dispersion.c6)))));
 }

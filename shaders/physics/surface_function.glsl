@@ -95,8 +95,7 @@ VKFV_FUNCTION SurfaceHeight shape_height(SpecimenRecord specimen, real x, real y
         }
         SineCosine wave = sine_cosine_of_turns(phase);
         result.height = specimen.shape_parameter_0 * wave.sine;
-        result.slope_x =
-            specimen.shape_parameter_0 * real(6.283185307179586477) * frequency * wave.cosine;
+        result.slope_x = specimen.shape_parameter_0 * real(6.283185307179586477) * frequency * wave.cosine;
     }
     return result;
 }
@@ -124,8 +123,8 @@ VKFV_FUNCTION CubicWeights cubic_weights(real u) {
 
 // The shape, and the lattice interpolated on it where there is one (columns > 0; at least 2 x 2 points). Beyond the
 // footprint the lattice goes on level.
-VKFV_SCENE_FUNCTION VKFV_FUNCTION SurfaceHeight surface_height(VKFV_SCENE_PARAMETER SpecimenRecord specimen,
-                                                               real x, real y) {
+VKFV_SCENE_FUNCTION VKFV_FUNCTION SurfaceHeight surface_height(VKFV_SCENE_PARAMETER SpecimenRecord specimen, real x,
+                                                               real y) {
     SurfaceHeight result = shape_height(specimen, x, y);
     if (specimen.columns > 0) {
         real across = (x - specimen.x_min) / specimen.pitch_x;
@@ -157,8 +156,7 @@ struct RayInterval {
     real stop;
 };
 
-VKFV_FUNCTION RayInterval clip_interval(RayInterval interval, real origin, real direction, real lower,
-                                        real upper) {
+VKFV_FUNCTION RayInterval clip_interval(RayInterval interval, real origin, real direction, real lower, real upper) {
     RayInterval result = interval;
     if (direction == real(0.0)) {
         result.stop = origin < lower || origin > upper ? result.start - real(1.0) : result.stop;

@@ -28,13 +28,13 @@ VKFV_FUNCTION real surface_transmittance(Surface surface, real cosine, real inde
                                          real wave_number) {
     return (surface.flags & SURFACE_MIRROR) != 0u
                ? surface.reflectance
-               : real(1.0) - interface_reflectance(surface, index_before, index_after, min(cosine, real(1.0)),
-                                                   wave_number);
+               : real(1.0) -
+                     interface_reflectance(surface, index_before, index_after, min(cosine, real(1.0)), wave_number);
 }
 
-// One surface: transfer, intersection, edge, refraction. `before` is in the frame of the previous vertex. A plane mirror
-// leaves the light's way as it was: all that follows it stands in the space that the mirror shows. Light that has ended
-// keeps its status, and its ray goes on without meaning: to hold it would cost every ray.
+// One surface: transfer, intersection, edge, refraction. `before` is in the frame of the previous vertex. A plane
+// mirror leaves the light's way as it was: all that follows it stands in the space that the mirror shows. Light that
+// has ended keeps its status, and its ray goes on without meaning: to hold it would cost every ray.
 VKFV_FUNCTION TrainResult trace_surface(Surface surface, int index, TrainResult before, uint apertures, Light light,
                                         uint present) {
     real3 start = real3(before.ray.position.x, before.ray.position.y, before.ray.position.z - surface.distance);
@@ -52,8 +52,7 @@ VKFV_FUNCTION TrainResult trace_surface(Surface surface, int index, TrainResult 
     }
     SurfacePoint meeting = meet_surface(start, direction, index_before * index_before, surface);
     real3 point = meeting.point;
-    Refraction refraction =
-        refract_scaled(direction, meeting, index_before, index_after, surface.bend_residual);
+    Refraction refraction = refract_scaled(direction, meeting, index_before, index_after, surface.bend_residual);
     bool clipped = apertures != 0u && (surface.flags & SURFACE_CLIPPED) != 0u &&
                    point.x * point.x + point.y * point.y > surface.semi_diameter_squared;
     TrainResult result = before;
@@ -78,8 +77,7 @@ VKFV_FUNCTION TrainResult trace_surface(Surface surface, int index, TrainResult 
     bool lost = false;
     if ((present & FEATURE_LOSSES) != 0u) {
         result.transmitted = before.transmitted * surface_transmittance(surface, meeting.cosine / index_before,
-                                                                        index_before, index_after,
-                                                                        light.wave_number);
+                                                                        index_before, index_after, light.wave_number);
         lost = result.transmitted < light.survival;
     }
     if (before.status == PATH_ALIVE && !(found && !clipped && passes && !lost)) {
@@ -92,9 +90,9 @@ VKFV_FUNCTION TrainResult trace_surface(Surface surface, int index, TrainResult 
     return result;
 }
 
-// ray enters in the frame of the first vertex (its z there, usually negative), its direction scaled by `index`, that of the
-// medium in front of the train. The train is gone through to its end for every ray: neighbouring rays seldom all end,
-// and a loop that all leave together reads each surface once for all of them.
+// ray enters in the frame of the first vertex (its z there, usually negative), its direction scaled by `index`, that of
+// the medium in front of the train. The train is gone through to its end for every ray: neighbouring rays seldom all
+// end, and a loop that all leave together reads each surface once for all of them.
 VKFV_FUNCTION TrainResult enter_train(Ray ray, real index) {
     TrainResult result;
     result.ray = ray;
@@ -119,15 +117,15 @@ VKFV_SCENE_FUNCTION VKFV_FUNCTION TrainResult trace_train(VKFV_SCENE_PARAMETER i
                                                           real index, uint apertures, Light light) {
 #ifdef VKFV_SPECIALISED
     TrainResult result = enter_train(ray, index);
-    // Written out, as constants fold only where each surface has a place of its own (device/prescription.glsl). The outer
-    // question is of constants alone: what fails it costs a driver little time to compile.
-#define VKFV_PASS_SURFACE(k)                                                                        \
-    if (k < known_count) {                                                                          \
-        if (first <= known_first + k && known_first + k < first + count) {                          \
-            Surface surface = surface_at(known_first + k);                                          \
-            VKFV_KNOW_SURFACE(k)                                                                    \
+    // Written out, as constants fold only where each surface has a place of its own (device/prescription.glsl). The
+    // outer question is of constants alone: what fails it costs a driver little time to compile.
+#define VKFV_PASS_SURFACE(k) \
+    if (k < known_count) { \
+        if (first <= known_first + k && known_first + k < first + count) { \
+            Surface surface = surface_at(known_first + k); \
+            VKFV_KNOW_SURFACE(k) \
             result = trace_surface(surface, known_first + k, result, apertures, light, features()); \
-        }                                                                                           \
+        } \
     }
     VKFV_EACH_KNOWN_SURFACE(VKFV_PASS_SURFACE)
     return result;
@@ -140,8 +138,8 @@ VKFV_SCENE_FUNCTION VKFV_FUNCTION TrainResult trace_train(VKFV_SCENE_PARAMETER i
 VKFV_FUNCTION Ray fly_to_plane(Ray ray, real plane, real index) {
     real parameter = (plane - ray.position.z) / ray.direction.z;
     Ray result;
-    result.position = real3(ray.position.x + parameter * ray.direction.x,
-                            ray.position.y + parameter * ray.direction.y, real(0.0));
+    result.position =
+        real3(ray.position.x + parameter * ray.direction.x, ray.position.y + parameter * ray.direction.y, real(0.0));
     result.direction = ray.direction;
     result.path_length = ray.path_length + parameter * index * index;
     return result;

@@ -20,16 +20,16 @@
 
 namespace vkfv::app {
 
-const std::vector<std::string> bench_parts = {"validation", "stages", "whole",    "forms",  "traversals", "hits",
-                                              "estimators", "rays",   "triangles", "surfaces", "pixels",  "peer"};
+const std::vector<std::string> bench_parts = {"validation", "stages", "whole",     "forms",    "traversals", "hits",
+                                              "estimators", "rays",   "triangles", "surfaces", "pixels",     "peer"};
 
 namespace {
 
 constexpr double in_focus = 0;
-constexpr double warm_up_seconds = 0.5;  // an idle GPU's clocks rise as slowly
+constexpr double warm_up_seconds = 0.5;    // an idle GPU's clocks rise as slowly
 constexpr double still_warm_seconds = 0.1; // where the device was busy within the last second
-constexpr double false_alarms = 1e-4;   // of a whole validation
-constexpr int seeds = 8;                // of a variance
+constexpr double false_alarms = 1e-4;      // of a whole validation
+constexpr int seeds = 8;                   // of a variance
 
 double median(std::vector<double> values) {
     std::ranges::sort(values);
@@ -61,10 +61,14 @@ trace::Measured measured(const trace::Image& image) {
 
 std::string name_of(trace::Traversal traversal) {
     switch (traversal) {
-    case trace::Traversal::automatic: return "auto";
-    case trace::Traversal::ray_query: return "ray-query";
-    case trace::Traversal::quadtree: return "quadtree";
-    case trace::Traversal::bvh: return "bvh";
+    case trace::Traversal::automatic:
+        return "auto";
+    case trace::Traversal::ray_query:
+        return "ray-query";
+    case trace::Traversal::quadtree:
+        return "quadtree";
+    case trace::Traversal::bvh:
+        return "bvh";
     }
     return "";
 }
@@ -339,8 +343,7 @@ class Bench {
 
     // Without its gate, so that ours is tested too.
     trace::Measured image_of_peer(std::uint64_t rays) const {
-        const auto file =
-            std::filesystem::temp_directory_path() / fmt::format("vkfv_bench_peer_{}.tif", getpid());
+        const auto file = std::filesystem::temp_directory_path() / fmt::format("vkfv_bench_peer_{}.tif", getpid());
         const auto told = run_peer(options_.peer, options_.file, options_.overrides,
                                    {"--rays", fmt::format("{}", rays), "--gate", "off", "--out", file.string()});
         const auto flux = surface::read_image(file);
@@ -372,8 +375,8 @@ class Bench {
     // Sharp and wide lobe, one and four bounces, and the specimen as it comes from an STL of its triangles.
     Json forms() const {
         Json result = Json::array();
-        const bool one_lobe = specimen_.material.lobes.size() == 1 &&
-                              specimen_.material.lobes[0].model == "henyey-greenstein";
+        const bool one_lobe =
+            specimen_.material.lobes.size() == 1 && specimen_.material.lobes[0].model == "henyey-greenstein";
         if (!one_lobe) {
             return result;
         }
@@ -429,8 +432,7 @@ class Bench {
         for (const auto& way : traversals()) {
             for (const auto& [order, name] : orders) {
                 spdlog::info("hits by {}, {}", way.name, name);
-                const auto times =
-                    trace::time_hits(specimen_, way.options, numerical_aperture, order, options_.runs);
+                const auto times = trace::time_hits(specimen_, way.options, numerical_aperture, order, options_.runs);
                 result.push_back({{"traversal", way.name},
                                   {"order", name},
                                   {"numerical_aperture", numerical_aperture},
@@ -546,11 +548,11 @@ class Bench {
                 const auto instrument = instrument_of(fitted, specimen_);
                 auto options = configuration_.trace;
                 options.rays = rays_;
-                Json entry = {{"objective", objective},
-                              {"splitter", glass ? "glass" : "ideal"},
-                              {"surfaces",
-                               instrument.constants.illumination_count + instrument.constants.imaging_count},
-                              {"numerical_aperture", instrument.first_order.numerical_aperture}};
+                Json entry = {
+                    {"objective", objective},
+                    {"splitter", glass ? "glass" : "ideal"},
+                    {"surfaces", instrument.constants.illumination_count + instrument.constants.imaging_count},
+                    {"numerical_aperture", instrument.first_order.numerical_aperture}};
                 entry.update(timing(*trace::make_device_tracer(instrument, specimen_, options), few_runs()));
                 result.push_back(entry);
             }

@@ -57,9 +57,8 @@ void print_report(const Json& report) {
     const auto commit = text(report, "commit");
     fmt::print("{}{}, {}; {} ({}, {}); {:.4g} of the source's flux is aimed at, medians of {} runs\n",
                text(report, "program"), commit.empty() ? "" : " " + commit, text(report, "date"),
-               text(report, "device"),
-               text(report, "driver"), text(report, "device_type"), number(report, "aimed_share"),
-               report.at("runs").get<int>());
+               text(report, "device"), text(report, "driver"), text(report, "device_type"),
+               number(report, "aimed_share"), report.at("runs").get<int>());
     const auto each = [&](const Json& of, const char* list, auto&& print) {
         if (of.contains(list)) {
             fmt::print("{}\n", list);

@@ -94,7 +94,8 @@ std::vector<Group> groups_of(const Configuration& configuration, const optics::I
           {"strehl_axis", quality.axis.strehl, "Strehl ratio of that wavefront; 1: no aberrations"},
           {"strehl_edge", quality.edge.strehl, "the same at the edge"},
           {"strehl_corner", quality.corner.strehl, "the same in the corner"},
-          {"field_curvature_um", first_order.field_curvature * um_per_mm, "best focus at the edge over that on the axis"},
+          {"field_curvature_um", first_order.field_curvature * um_per_mm,
+           "best focus at the edge over that on the axis"},
           {"field_curvature_corner_um", first_order.field_curvature_corner * um_per_mm, "the same in the corner"},
           {"distortion_edge_percent", quality.edge_distortion * percent, "against the paraxial magnification"},
           {"distortion_corner_percent", quality.corner_distortion * percent, "positive: pincushion"},
@@ -152,9 +153,10 @@ void run_check(const CommandOptions& options) {
         const double coarsest = 0.5 * instrument.first_order.depth_of_field;
         // Its own rounding does not count.
         if (positions.size() > 1 && configuration.scan->z_step > coarsest * (1 + 1e-9)) {
-            warnings.push_back(fmt::format("The scan's step, {:.4g} um, is coarser than half the depth of field, {:.4g} "
-                                           "um: peaks of focus fall between images.",
-                                           configuration.scan->z_step * um_per_mm, coarsest * um_per_mm));
+            warnings.push_back(
+                fmt::format("The scan's step, {:.4g} um, is coarser than half the depth of field, {:.4g} "
+                            "um: peaks of focus fall between images.",
+                            configuration.scan->z_step * um_per_mm, coarsest * um_per_mm));
         }
     }
     if (configuration.specimen) {
@@ -170,9 +172,10 @@ void run_check(const CommandOptions& options) {
         text += line_of("specimen_side_um", value_text(specimen_side * um_per_mm), "the longer side of its footprint");
         // A pixel more is its border, not its form.
         if (specimen_side > quality.field_side + instrument.first_order.pixel_pitch) {
-            warnings.push_back(fmt::format("The specimen, {:.4g} um across, is larger than the field of view, {:.4g} um: "
-                                           "what lies outside is not measured.",
-                                           specimen_side * um_per_mm, quality.field_side * um_per_mm));
+            warnings.push_back(
+                fmt::format("The specimen, {:.4g} um across, is larger than the field of view, {:.4g} um: "
+                            "what lies outside is not measured.",
+                            specimen_side * um_per_mm, quality.field_side * um_per_mm));
         }
         if (relief.seen_share > 0) {
             report["specimen_lowest_um"] = relief.lowest * um_per_mm;
@@ -185,17 +188,17 @@ void run_check(const CommandOptions& options) {
             return !positions.empty() && relief.seen_share > 0 &&
                    (lowest < positions.front() || highest > positions.back());
         };
-        const auto [lower, higher] = std::minmax(
-            {0.0, -instrument.first_order.field_curvature, -instrument.first_order.field_curvature_corner});
+        const auto [lower, higher] =
+            std::minmax({0.0, -instrument.first_order.field_curvature, -instrument.first_order.field_curvature_corner});
         if (beyond_scan(relief.lowest, relief.highest)) {
-            warnings.push_back(
-                fmt::format("the specimen reaches from {:.3g} to {:.3g} um, beyond the scan: what lies "
-                            "outside will not be measured",
-                            relief.lowest * um_per_mm, relief.highest * um_per_mm));
+            warnings.push_back(fmt::format("the specimen reaches from {:.3g} to {:.3g} um, beyond the scan: what lies "
+                                           "outside will not be measured",
+                                           relief.lowest * um_per_mm, relief.highest * um_per_mm));
         } else if (beyond_scan(relief.lowest + lower, relief.highest + higher)) {
-            warnings.push_back(fmt::format("The field is curved: the specimen comes into focus between {:.3g} and {:.3g} um "
-                                           "there, beyond the scan.",
-                                           (relief.lowest + lower) * um_per_mm, (relief.highest + higher) * um_per_mm));
+            warnings.push_back(
+                fmt::format("The field is curved: the specimen comes into focus between {:.3g} and {:.3g} um "
+                            "there, beyond the scan.",
+                            (relief.lowest + lower) * um_per_mm, (relief.highest + higher) * um_per_mm));
         }
     }
     report["warnings"] = warnings;

@@ -46,8 +46,8 @@ bool same_grid(const HeightMap& a, const HeightMap& b) {
     const auto near = [](double first, double pitch, int points, double other_first, double other_pitch) {
         return std::abs(first - other_first) + points * std::abs(pitch - other_pitch) < 0.01 * pitch;
     };
-    return a.columns() == b.columns() && a.rows() == b.rows() &&
-           near(a.x0, a.pitch_x, a.columns(), b.x0, b.pitch_x) && near(a.y0, a.pitch_y, a.rows(), b.y0, b.pitch_y);
+    return a.columns() == b.columns() && a.rows() == b.rows() && near(a.x0, a.pitch_x, a.columns(), b.x0, b.pitch_x) &&
+           near(a.y0, a.pitch_y, a.rows(), b.y0, b.pitch_y);
 }
 
 // A mean over the measurements; its standard error from their scatter, NaN for one alone.
@@ -169,19 +169,20 @@ std::string text_of(const topography::Comparison& comparison, const CommandOptio
     for (std::size_t k = 0; k < measurements.size(); ++k) {
         const auto& shift = measurements[k].shift;
         const auto where = measurements.size() > 1 ? " of " + options.compared_files[k].string() : std::string();
-        text += std::isnan(shift.x) ? fmt::format("{:<22} not found{}\n", "lateral shift", where)
-                                    : fmt::format("{:<22} x {:+.4f} um, y {:+.4f} um (correlation {:.4f}){}\n",
-                                                  "lateral shift", shift.x * um_per_mm, shift.y * um_per_mm,
-                                                  shift.correlation, where);
+        text += std::isnan(shift.x)
+                    ? fmt::format("{:<22} not found{}\n", "lateral shift", where)
+                    : fmt::format("{:<22} x {:+.4f} um, y {:+.4f} um (correlation {:.4f}){}\n", "lateral shift",
+                                  shift.x * um_per_mm, shift.y * um_per_mm, shift.correlation, where);
     }
     text += fmt::format("{:<22} {}\n", "",
-                        options.align ? fmt::format("removed: x {:+.4f} um, y {:+.4f} um",
-                                                    comparison.removed_shift.x * um_per_mm,
-                                                    comparison.removed_shift.y * um_per_mm)
-                                      : "not removed (--align removes it)");
+                        options.align
+                            ? fmt::format("removed: x {:+.4f} um, y {:+.4f} um", comparison.removed_shift.x * um_per_mm,
+                                          comparison.removed_shift.y * um_per_mm)
+                            : "not removed (--align removes it)");
     text += fmt::format("{:<22} {}\n", "treatment", treatment_text(options.band));
-    text += fmt::format("{:<22} {}\n", "RMS deviation",
-                        with_error(over(comparison, [](const auto& one) { return one.deviation.rms; }), um_per_mm, "um"));
+    text +=
+        fmt::format("{:<22} {}\n", "RMS deviation",
+                    with_error(over(comparison, [](const auto& one) { return one.deviation.rms; }), um_per_mm, "um"));
     if (comparison.parts) {
         const auto& parts = *comparison.parts;
         text += fmt::format("{:<22} {}\n", "  systematic",
@@ -190,8 +191,8 @@ std::string text_of(const topography::Comparison& comparison, const CommandOptio
     }
     text += fmt::format("{:<22} {}\n", "correlation",
                         with_error(over(comparison, [](const auto& one) { return one.deviation.correlation; }), 1, ""));
-    text += fmt::format("\n{:<18} {:>12} {:>12} {:>12} {:>8}\n", "ISO 25178-2", "measured", "std. error", "true",
-                        "ratio");
+    text +=
+        fmt::format("\n{:<18} {:>12} {:>12} {:>12} {:>8}\n", "ISO 25178-2", "measured", "std. error", "true", "ratio");
     for (const auto& row : compared_parameters(comparison)) {
         const double ratio = row.measured.mean / row.truth;
         text += fmt::format("{:<5} {:<12} {:>12} {:>12} {:>12} {:>8}\n", row.named.name, row.named.unit,
@@ -243,9 +244,8 @@ Json profile_json(const ComparedProfile& profile) {
 }
 
 std::string profile_text(const ComparedProfile& profile) {
-    std::string text =
-        fmt::format("\nISO 21920-2, profile at y = {:.4g} um, section length {:.4g} um\n",
-                    profile.line.y_start * um_per_mm, profile.measured.section_length * um_per_mm);
+    std::string text = fmt::format("\nISO 21920-2, profile at y = {:.4g} um, section length {:.4g} um\n",
+                                   profile.line.y_start * um_per_mm, profile.measured.section_length * um_per_mm);
     const auto measured = parameter_rows(profile.measured.parameters), truth = parameter_rows(profile.truth.parameters);
     for (std::size_t k = 0; k < measured.size(); ++k) {
         const double ratio = measured[k].value / truth[k].value;
@@ -267,7 +267,8 @@ std::string profile_csv(const ComparedProfile& profile, const HeightMap& measure
 }
 
 // `pair`: the first measurement and the truth under it, treated.
-std::string picture_of(const topography::Comparison& comparison, topography::LevelledPair pair, const std::string& title) {
+std::string picture_of(const topography::Comparison& comparison, topography::LevelledPair pair,
+                       const std::string& title) {
     report::Curve transfer{.name = "transfer", .points = {}, .spreads = {}};
     report::Curve coherence{.name = "coherence", .points = {}, .spreads = {}};
     for (const auto& band : comparison.transfer) {
@@ -323,16 +324,17 @@ void run_compare(const CommandOptions& options) {
     }
     const HeightMap under = surface::resampled(truth, measurements.front());
     if (std::ranges::none_of(under.height.values, [](double z) { return std::isfinite(z); })) {
-        refuse_file(files.back(), grid_text(truth),
-                    fmt::format("heights where {} has them: {}", files.front().string(),
-                                grid_text(measurements.front())),
-                    "Give the truth of the same field, in the same frame.");
+        refuse_file(
+            files.back(), grid_text(truth),
+            fmt::format("heights where {} has them: {}", files.front().string(), grid_text(measurements.front())),
+            "Give the truth of the same field, in the same frame.");
     }
 
     const auto comparison = topography::compare_with_truth(measurements, truth, options.align, options.band);
     auto pair = topography::levelled_pair(measurements.front(), comparison.truth, options.band);
     if (options.band.form.kind == surface::Form::Kind::sphere &&
-        std::ranges::any_of(comparison.measurements, [](const auto& one) { return one.deviation.measured_share == 0; })) {
+        std::ranges::any_of(comparison.measurements,
+                            [](const auto& one) { return one.deviation.measured_share == 0; })) {
         refuse_file(files.front(), "no point on both spheres", "a form that the points of both surfaces settle",
                     "Choose --form plane or --form polynomial-2.");
     }
@@ -347,8 +349,9 @@ void run_compare(const CommandOptions& options) {
         results.write("slope.csv", slope_csv(comparison));
         results.write("profile.csv", profile_csv(profile, measurements.front()));
         results.write("deviation.tif", surface::height_map_bytes(comparison.deviation));
-        results.write("compare.svg", picture_of(comparison, std::move(pair),
-                                                fmt::format("{} against {}", files.front().string(), files.back().string())));
+        results.write("compare.svg",
+                      picture_of(comparison, std::move(pair),
+                                 fmt::format("{} against {}", files.front().string(), files.back().string())));
         if (comparison.parts) {
             results.write("random.tif", surface::height_map_bytes(comparison.parts->standard_deviation));
         }

@@ -34,8 +34,7 @@ std::string text_of(const vulkan::DeviceReport& device) {
     text += fmt::format("     {}, Vulkan {}, {}\n", device.type, device.api_version, device.driver);
     text += fmt::format("     {:.1f} GiB, buffers up to {:.1f} GiB, subgroups of {}\n",
                         static_cast<double>(device.memory_bytes) / bytes_per_gib,
-                        static_cast<double>(device.max_storage_buffer_bytes) / bytes_per_gib,
-                        device.subgroup_size);
+                        static_cast<double>(device.max_storage_buffer_bytes) / bytes_per_gib, device.subgroup_size);
     text += device.lacking.empty()
                 ? fmt::format("     usable; traversals: quadtree, bvh{}\n", device.ray_query ? ", ray-query" : "")
                 : fmt::format("     not usable, lacks: {}\n", fmt::join(device.lacking, ", "));

@@ -38,8 +38,7 @@ std::filesystem::path image_path(const CommandOptions& options, const Configurat
     if (options.out && (options.out->extension() == ".tif" || options.out->extension() == ".tiff")) {
         return *options.out;
     }
-    return configuration.output_directory /
-           fmt::format("image_{:+.3f}um.tif", options.focal_height * um_per_mm);
+    return configuration.output_directory / fmt::format("image_{:+.3f}um.tif", options.focal_height * um_per_mm);
 }
 
 Grid<float> in_float(const Grid<double>& image) {
@@ -54,8 +53,7 @@ void print_ledger(const trace::Image& image) {
         if (entry.rays == 0 && entry.power == 0) {
             continue; // ledger.csv of a stack lists them all
         }
-        fmt::print("{:<52} {:>14.6e} {:>8.4f} %\n", entry.name, entry.power,
-                   100 * entry.power / image.ledger.emitted);
+        fmt::print("{:<52} {:>14.6e} {:>8.4f} %\n", entry.name, entry.power, 100 * entry.power / image.ledger.emitted);
     }
     fmt::print("{:<52} {:>14.6e}\n", "emitted", image.ledger.emitted);
     fmt::print("{:<52} {:>14.6e}\n", "residual", image.ledger.residual());
@@ -78,7 +76,10 @@ Exposure expose(const Configuration& configuration, const optics::Instrument& in
     const auto tracer = make_tracer(instrument, specimen, configuration.trace);
     const double pitch = instrument.first_order.pixel_pitch;
     Exposure exposure{tracer->expose(focal_height, image_index(configuration, focal_height)),
-                      -0.5 * (configuration.instrument.detector_pixels - 1) * pitch, pitch, tracer->identity(), {}};
+                      -0.5 * (configuration.instrument.detector_pixels - 1) * pitch,
+                      pitch,
+                      tracer->identity(),
+                      {}};
     if (const auto diffraction = make_diffraction(configuration, instrument)) {
         exposure.diffracted = diffraction->apply(in_float(exposure.image.flux));
     }
@@ -122,14 +123,14 @@ void run_image(const CommandOptions& options) {
         spdlog::warn(warning);
     }
     if (const double ratio = signal_to_noise(image); ratio < least_signal_to_noise) {
-        spdlog::warn("noise is {:.0f} % of a pixel's mean light. Launch more rays with --rays, close the field stop to the "
-                     "field of view, or take --estimator backward",
-                     100 / ratio);
+        spdlog::warn(
+            "noise is {:.0f} % of a pixel's mean light. Launch more rays with --rays, close the field stop to the "
+            "field of view, or take --estimator backward",
+            100 / ratio);
     }
     print_ledger(image);
     fmt::print("{} rays, {} detected, {:.3g} rays/s, {:.3g} s\n{}\n{}\n", image.rays, image.detected,
-               static_cast<double>(image.rays) / image.seconds, image.seconds, path.string(),
-               picture.string());
+               static_cast<double>(image.rays) / image.seconds, image.seconds, path.string(), picture.string());
 }
 
 } // namespace vkfv::app

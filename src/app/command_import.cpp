@@ -34,13 +34,12 @@ FocalLengths focal_lengths(const optics::Prescription& lens, double wavelength_u
             distance += change.thickness;
         }
         const double index_after = surface.medium_after.index(wavelength_um);
-        transfer = transfer.then(optics::free_space(distance, index))
-                       .then({.c = -(index_after - index) * surface.curvature});
+        transfer =
+            transfer.then(optics::free_space(distance, index)).then({.c = -(index_after - index) * surface.curvature});
         index = index_after;
         distance = surface.thickness;
     }
-    return {.effective = optics::focal_length(transfer),
-            .back = index * optics::back_focal_distance(transfer)};
+    return {.effective = optics::focal_length(transfer), .back = index * optics::back_focal_distance(transfer)};
 }
 
 } // namespace
@@ -54,11 +53,10 @@ void run_import(const CommandOptions& options) {
     const auto& prescription = lens.prescription;
     const auto focal = focal_lengths(prescription, lens.primary_wavelength_um);
     spdlog::info("{}: {} surfaces, wavelengths {} um, of which {} is the primary one", prescription.title,
-                 prescription.surfaces.size(), fmt::join(lens.wavelengths_um, ", "),
-                 lens.primary_wavelength_um);
+                 prescription.surfaces.size(), fmt::join(lens.wavelengths_um, ", "), lens.primary_wavelength_um);
     if (std::isfinite(focal.effective)) {
-        spdlog::info("effective focal length {:.9g} mm, back focal length {:.9g} mm at {} um",
-                     focal.effective, focal.back, lens.primary_wavelength_um);
+        spdlog::info("effective focal length {:.9g} mm, back focal length {:.9g} mm at {} um", focal.effective,
+                     focal.back, lens.primary_wavelength_um);
     } else {
         spdlog::info("afocal at {} um", lens.primary_wavelength_um);
     }

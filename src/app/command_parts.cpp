@@ -39,13 +39,12 @@ optics::Instrument assemble_instrument(const Configuration& configuration, const
     description.greatest_defocus = 0;
     for (const double focal_height : focal_heights) {
         for (const double height : {record.top, record.bottom}) {
-            description.greatest_defocus =
-                std::max(description.greatest_defocus, std::abs(height - focal_height));
+            description.greatest_defocus = std::max(description.greatest_defocus, std::abs(height - focal_height));
         }
     }
     if (description.ring) {
-        description.ring->lit_radius = std::hypot(std::max(-record.x_min, record.x_max),
-                                                  std::max(-record.y_min, record.y_max));
+        description.ring->lit_radius =
+            std::hypot(std::max(-record.x_min, record.x_max), std::max(-record.y_min, record.y_max));
     }
     auto instrument = assemble_at_its_place(configuration, description);
     for (const auto& warning : instrument.warnings) {
@@ -66,8 +65,7 @@ specimen::Specimen make_specimen(const Configuration& configuration) {
     return specimen;
 }
 
-std::unique_ptr<trace::Tracer> make_tracer(const optics::Instrument& instrument,
-                                           const specimen::Specimen& specimen,
+std::unique_ptr<trace::Tracer> make_tracer(const optics::Instrument& instrument, const specimen::Specimen& specimen,
                                            const trace::TraceOptions& options) {
     auto tracer = options.device == "host" ? trace::make_host_tracer(instrument, specimen, options)
                                            : trace::make_device_tracer(instrument, specimen, options);

@@ -1,6 +1,6 @@
 #include "app/commands.hpp"
-#include "core/digest.hpp"
 #include "app/evaluation.hpp"
+#include "core/digest.hpp"
 
 #include "core/progress.hpp"
 #include "scan/stack.hpp"
@@ -24,14 +24,13 @@ void run_stack(const CommandOptions& options) {
     const auto tracer = make_tracer(instrument, specimen, configuration.trace);
     const std::string identity = image_identity(configuration, geometry_digest(specimen), tracer->identity());
 
-    scan::ImageStore store(configuration.output_directory,
-                           {.configuration = configuration.canonical,
-                            .identity = identity,
-                            .digest = Digest().add(identity).text(),
-                            .positions = positions,
-                            .columns = pixels,
-                            .rows = pixels,
-                            .pitch = instrument.first_order.pixel_pitch});
+    scan::ImageStore store(configuration.output_directory, {.configuration = configuration.canonical,
+                                                            .identity = identity,
+                                                            .digest = Digest().add(identity).text(),
+                                                            .positions = positions,
+                                                            .columns = pixels,
+                                                            .rows = pixels,
+                                                            .pitch = instrument.first_order.pixel_pitch});
     auto progress = Progress::on_standard_error(options.quiet);
     // Evaluated as they are traced: no second pass over the disk.
     StackEvaluation stack_evaluation(configuration.topography,
@@ -55,13 +54,13 @@ void run_stack(const CommandOptions& options) {
                                         {"seed", configuration.trace.seed},
                                         {"images", positions.size()},
                                         {"rays_per_image", trace::launched_rays(configuration.trace, pixels)}};
-    write_evaluation(store.results(), evaluation, run, stack_source(configuration, instrument), topography_files(configuration));
+    write_evaluation(store.results(), evaluation, run, stack_source(configuration, instrument),
+                     topography_files(configuration));
 
     fmt::print("{}", summary(evaluation));
     if (traced.traced > 0) {
-        fmt::print(
-            "traced {} images in {:.3g} s ({}), evaluated in {:.2g} s\n", traced.traced, traced.trace_seconds,
-            ray_rate_text(static_cast<double>(traced.rays) / traced.trace_seconds), evaluation.seconds);
+        fmt::print("traced {} images in {:.3g} s ({}), evaluated in {:.2g} s\n", traced.traced, traced.trace_seconds,
+                   ray_rate_text(static_cast<double>(traced.rays) / traced.trace_seconds), evaluation.seconds);
     }
     fmt::print("results in {}\n", folder.string());
 }

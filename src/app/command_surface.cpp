@@ -76,13 +76,14 @@ ProfileLine line_of(const CommandOptions& options, const HeightMap& map) {
     const bool inside =
         within(line.x_start, map.x0, x_last, map.pitch_x) && within(line.x_end, map.x0, x_last, map.pitch_x) &&
         within(line.y_start, map.y0, y_last, map.pitch_y) && within(line.y_end, map.y0, y_last, map.pitch_y);
-    if (!inside || !(std::hypot(line.x_end - line.x_start, line.y_end - line.y_start) >
-                     std::min(map.pitch_x, map.pitch_y))) {
+    if (!inside ||
+        !(std::hypot(line.x_end - line.x_start, line.y_end - line.y_start) > std::min(map.pitch_x, map.pitch_y))) {
         refuse(options, "--profile",
                fmt::format("{:.6g},{:.6g},{:.6g},{:.6g}", line.x_start * um_per_mm, line.y_start * um_per_mm,
                            line.x_end * um_per_mm, line.y_end * um_per_mm),
-               fmt::format("a line longer than a pitch on the surface: x from {:.6g} to {:.6g} um, y from {:.6g} to {:.6g} um",
-                           map.x0 * um_per_mm, x_last * um_per_mm, map.y0 * um_per_mm, y_last * um_per_mm),
+               fmt::format(
+                   "a line longer than a pitch on the surface: x from {:.6g} to {:.6g} um, y from {:.6g} to {:.6g} um",
+                   map.x0 * um_per_mm, x_last * um_per_mm, map.y0 * um_per_mm, y_last * um_per_mm),
                "Choose both ends on the surface, or leave it out for the middle row.");
     }
     return line;
@@ -131,9 +132,9 @@ std::string text_of(const CommandOptions& options, const HeightMap& map, const F
                                    size(map.columns(), map.pitch_x), size(map.rows(), map.pitch_y));
     text += fmt::format("{:<14} {:.6g} x {:.6g} um, from x = {:.6g} um, y = {:.6g} um\n", "pitch",
                         map.pitch_x * um_per_mm, map.pitch_y * um_per_mm, map.x0 * um_per_mm, map.y0 * um_per_mm);
-    text += fmt::format("{:<14} {} points ({:.3g} %)\n", "not measured", figures.not_measured,
-                        100.0 * static_cast<double>(figures.not_measured) /
-                            static_cast<double>(map.height.values.size()));
+    text +=
+        fmt::format("{:<14} {} points ({:.3g} %)\n", "not measured", figures.not_measured,
+                    100.0 * static_cast<double>(figures.not_measured) / static_cast<double>(map.height.values.size()));
     text += fmt::format("{:<14} {}\n", "treatment", treatment_text(options.band));
     const auto table = [&text](const std::vector<ParameterRow>& rows) {
         for (const auto& row : rows) {
@@ -143,9 +144,10 @@ std::string text_of(const CommandOptions& options, const HeightMap& map, const F
     text += "\nISO 25178-2\n";
     table(figures.parameters);
     const auto& line = figures.line;
-    text += fmt::format("\nISO 21920-2, profile from ({:.6g}, {:.6g}) um to ({:.6g}, {:.6g}) um, section length {:.4g} um\n",
-                        line.x_start * um_per_mm, line.y_start * um_per_mm, line.x_end * um_per_mm,
-                        line.y_end * um_per_mm, figures.section_length * um_per_mm);
+    text += fmt::format(
+        "\nISO 21920-2, profile from ({:.6g}, {:.6g}) um to ({:.6g}, {:.6g}) um, section length {:.4g} um\n",
+        line.x_start * um_per_mm, line.y_start * um_per_mm, line.x_end * um_per_mm, line.y_end * um_per_mm,
+        figures.section_length * um_per_mm);
     table(figures.profile);
     return text;
 }

@@ -1,6 +1,6 @@
 #include "app/commands.hpp"
-#include "core/digest.hpp"
 #include "app/sweep_report.hpp"
+#include "core/digest.hpp"
 
 #include "core/file.hpp"
 #include "core/result_folder.hpp"
@@ -121,7 +121,8 @@ std::string image_digest(const Configuration& configuration, const std::string& 
 }
 
 // The image and its figures, from an earlier run if they are there and whole.
-SweepRow image_row(const Configuration& configuration, ResultFolder& results, const fs::path& name, Surfaces& surfaces) {
+SweepRow image_row(const Configuration& configuration, ResultFolder& results, const fs::path& name,
+                   Surfaces& surfaces) {
     const double focal_height = configuration.sweep->focal_height;
     const fs::path image_name = name / "image.tif", figures_name = name / "image.json";
     const auto& surface = surfaces.of(configuration);
@@ -137,13 +138,15 @@ SweepRow image_row(const Configuration& configuration, ResultFolder& results, co
         row.figures = earlier.at("figures");
     } else {
         const Exposure exposure = expose(configuration, instrument, surface.specimen, focal_height);
-        const bool tells = configuration.trace.estimator == trace::Estimator::forward && !configuration.trace.directed_scatter;
+        const bool tells =
+            configuration.trace.estimator == trace::Estimator::forward && !configuration.trace.directed_scatter;
         row.figures = figures_of(exposure.image, tells);
         for (const auto& [file, bytes] : image_files(image_name, exposure, focal_height)) {
             results.write(file, bytes);
         }
         results.write(figures_name,
-                      Json{{"digest", digest}, {"device", exposure.tracer.text()}, {"figures", row.figures}}.dump(2) + "\n");
+                      Json{{"digest", digest}, {"device", exposure.tracer.text()}, {"figures", row.figures}}.dump(2) +
+                          "\n");
         results.write_checksums();
         scan::append_timing(results.path(), fmt::format("\"{}\"", name.string()), exposure.image.seconds,
                             static_cast<double>(exposure.image.rays));
@@ -164,15 +167,16 @@ SweepRow stack_row(const CommandOptions& options, const std::vector<TomlOverride
     const auto readable = std::ranges::find_if(configuration.topography_files,
                                                [](const std::string& name) { return !name.ends_with(".ply"); });
     if (readable == configuration.topography_files.end()) {
-        throw InputError({configuration.places.at("output.surfaces"), "output.surfaces", "no heights that can be read back",
-                          "one of \"tiff\", \"x3p\", \"sur\" and \"sdf\" for a sweep of stacks",
-                          "Add one of them."});
+        throw InputError({configuration.places.at("output.surfaces"), "output.surfaces",
+                          "no heights that can be read back",
+                          "one of \"tiff\", \"x3p\", \"sur\" and \"sdf\" for a sweep of stacks", "Add one of them."});
     }
     for (int repeat = 0; repeat < repeats; ++repeat) {
         CommandOptions one = options;
         one.overrides = overrides;
         const auto seed = configuration.trace.seed;
-        one.overrides.push_back({"trace.seed", fmt::format("{}", seed + static_cast<std::uint32_t>(repeat)), "sweep.repeats"});
+        one.overrides.push_back(
+            {"trace.seed", fmt::format("{}", seed + static_cast<std::uint32_t>(repeat)), "sweep.repeats"});
         one.out = repeats == 1 ? folder : folder / fmt::format("repeat_{:03}", repeat);
         one.overrides.push_back({"output.directory", toml_quoted(one.out->string()), "sweep"});
         run_stack(one);
@@ -210,7 +214,8 @@ SweepRow stack_row(const CommandOptions& options, const std::vector<TomlOverride
         const double noise = std::sqrt(variance / points) * um_per_mm;
         row.figures["height noise / um"] = noise;
         const double rays = results.front().at("rays_per_image").get<double>();
-        row.figures[fmt::format("rays for {:g} um", wanted_height_noise)] = rays * std::pow(noise / wanted_height_noise, 2);
+        row.figures[fmt::format("rays for {:g} um", wanted_height_noise)] =
+            rays * std::pow(noise / wanted_height_noise, 2);
     }
     const auto& heights = maps.front().height;
     // The sheet stretches from 0 to twice the mean: heights from the lowest upwards.

@@ -89,8 +89,7 @@ Evaluated evaluate_own(const CommandOptions& options) {
                                make_diffraction(configuration, instrument));
     for (std::size_t place = 0; place < positions.size(); ++place) {
         const int image = order[place];
-        evaluation.add({scan::read_frame(folder, image, positions[static_cast<std::size_t>(image)])},
-                       positions[place]);
+        evaluation.add({scan::read_frame(folder, image, positions[static_cast<std::size_t>(image)])}, positions[place]);
     }
     auto more = run_of(folder);
     std::error_code none; // a folder to be made is another
@@ -112,15 +111,16 @@ Evaluated evaluate_foreign(const CommandOptions& options) {
     const ImageSeries series(options.file);
     const bool step_good = options.z_step && std::isfinite(*options.z_step) && *options.z_step != 0;
     if (!step_good || !options.pitch || !std::isfinite(*options.pitch) || *options.pitch <= 0) {
-        refuse(!step_good ? "no --z_step_um, or none that steps" : "no --pitch_um, or none above 0",
-               fmt::format("both, for the {} images in {}, which has no stack.toml", series.size(),
-                           options.file.string()),
-               "Give --z_step_um UM, the step from image to image (negative if they descend), and --pitch_um UM > 0, "
-               "the distance of the pixels on the specimen.");
+        refuse(
+            !step_good ? "no --z_step_um, or none that steps" : "no --pitch_um, or none above 0",
+            fmt::format("both, for the {} images in {}, which has no stack.toml", series.size(), options.file.string()),
+            "Give --z_step_um UM, the step from image to image (negative if they descend), and --pitch_um UM > 0, "
+            "the distance of the pixels on the specimen.");
     }
     const double start = options.z_start.value_or(0);
     if (!std::isfinite(start)) {
-        refuse("--z_start_um " + fmt::format("{}", start), "a height", "Give that of the first image, or leave it out.");
+        refuse("--z_start_um " + fmt::format("{}", start), "a height",
+               "Give that of the first image, or leave it out.");
     }
     std::error_code none;
     if (options.out && (std::filesystem::equivalent(*options.out, options.file, none) ||
@@ -148,14 +148,15 @@ Evaluated evaluate_foreign(const CommandOptions& options) {
             flat = read_flat(configuration, channels.front().columns, channels.front().rows, *options.pitch);
         }
         negative = negative || std::ranges::any_of(channels, [](const Grid<float>& channel) {
-            return std::ranges::any_of(channel.values, [](float value) { return value < 0; });
-        });
+                       return std::ranges::any_of(channel.values, [](float value) { return value < 0; });
+                   });
         evaluation.add(std::move(channels), start + image * *options.z_step);
     }
     if (negative) {
-        spdlog::warn("{}: there are pixels below zero. Focus is contrast relative to brightness: give the images without "
-                     "any background subtracted.",
-                     options.file.string());
+        spdlog::warn(
+            "{}: there are pixels below zero. Focus is contrast relative to brightness: give the images without "
+            "any background subtracted.",
+            options.file.string());
     }
     return {.evaluation = evaluation.finish(*options.pitch, flat),
             .more = {{"stack", options.file.string()},

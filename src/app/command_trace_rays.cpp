@@ -11,10 +11,9 @@ void run_trace_rays(const CommandOptions& options) {
     const auto configuration = load_configuration(options.file, options.overrides, Needs::instrument);
     const auto rays = read_ray_table(options.rays_file);
     const auto instrument = assemble_instrument(configuration);
-    const auto traced =
-        options.float_precision
-            ? trace::trace_rays_on_device(instrument, rays, options.apertures, configuration.trace.device)
-            : trace::trace_rays_on_host(instrument, rays, options.apertures);
+    const auto traced = options.float_precision ? trace::trace_rays_on_device(instrument, rays, options.apertures,
+                                                                              configuration.trace.device)
+                                                : trace::trace_rays_on_host(instrument, rays, options.apertures);
     fmt::print("{}", ray_table_text(traced));
 }
 

@@ -42,16 +42,17 @@ std::vector<fs::path> result_folders(const fs::path& folder) {
 void run_verify(const CommandOptions& options) {
     std::error_code none;
     if (!fs::is_directory(options.file, none)) {
-        throw InputError({{.file = options.file}, "", "no such folder", "the output folder of a command", "Check the path."});
+        throw InputError(
+            {{.file = options.file}, "", "no such folder", "the output folder of a command", "Check the path."});
     }
     const auto folders = result_folders(options.file);
     if (folders.empty()) {
-        throw InputError({{.file = options.file},
-                          "",
-                          fmt::format("neither {} nor {}, here or in a folder below", checksums_name,
-                                      scan::configuration_name),
-                          "the output folder of --stack, --sweep, --topography, --compare or --bench",
-                          "Give the folder that holds the results."});
+        throw InputError(
+            {{.file = options.file},
+             "",
+             fmt::format("neither {} nor {}, here or in a folder below", checksums_name, scan::configuration_name),
+             "the output folder of --stack, --sweep, --topography, --compare or --bench",
+             "Give the folder that holds the results."});
     }
     std::size_t files = 0;
     std::vector<std::string> sentences;
@@ -73,9 +74,10 @@ void run_verify(const CommandOptions& options) {
     }
     fmt::print("{} files checked in {}, {} damaged\n", files, options.file.string(), sentences.size());
     if (!sentences.empty()) {
-        throw RunError(fmt::format("{}: {} of its files are not those that were written, the first: {}. Run the command that "
-                                   "made them again: it keeps what is whole",
-                                   options.file.string(), sentences.size(), sentences.front()));
+        throw RunError(
+            fmt::format("{}: {} of its files are not those that were written, the first: {}. Run the command that "
+                        "made them again: it keeps what is whole",
+                        options.file.string(), sentences.size(), sentences.front()));
     }
 }
 

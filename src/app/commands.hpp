@@ -24,26 +24,26 @@ struct CommandOptions {
     std::optional<std::filesystem::path> out;
     bool quiet = false;
     bool json = false;
-    double focal_height = 0;              // --image; mm
-    std::filesystem::path rays_file;      // --trace-rays
-    std::filesystem::path picture_file;   // --layout
+    double focal_height = 0;                           // --image; mm
+    std::filesystem::path rays_file;                   // --trace-rays
+    std::filesystem::path picture_file;                // --layout
     std::vector<std::filesystem::path> compared_files; // --compare: measurements, then the truth
-    bool align = false;                   // --compare: the lateral shift is removed
-    surface::Band band;                   // --compare, --surface: form and filters
-    std::optional<ProfileLine> profile_line; // --surface; none: the middle row
-    bool float_precision = false;         // --trace-rays: on the device
-    bool apertures = true;                // --trace-rays
-    int runs = 5;                         // --bench
-    std::vector<std::string> bench_parts; // --bench: what to measure (bench.hpp)
-    bool quick = false;                   // --bench
-    std::filesystem::path peer;           // --bench: the program vkfv_bench_peer
-    std::string commit;                   // --bench: for the report
+    bool align = false;                                // --compare: the lateral shift is removed
+    surface::Band band;                                // --compare, --surface: form and filters
+    std::optional<ProfileLine> profile_line;           // --surface; none: the middle row
+    bool float_precision = false;                      // --trace-rays: on the device
+    bool apertures = true;                             // --trace-rays
+    int runs = 5;                                      // --bench
+    std::vector<std::string> bench_parts;              // --bench: what to measure (bench.hpp)
+    bool quick = false;                                // --bench
+    std::filesystem::path peer;                        // --bench: the program vkfv_bench_peer
+    std::string commit;                                // --bench: for the report
     std::vector<std::filesystem::path> glass_catalogs; // --import
-    std::optional<std::uint64_t> shuffle; // --topography: seed of the order in which the images are taken
+    std::optional<std::uint64_t> shuffle;              // --topography: seed of the order in which the images are taken
     // --topography of a stack that vkfv did not make: mm
-    std::optional<double> z_step; // negative: the images descend
-    std::optional<double> pitch; // --surface too, of an image
-    std::optional<double> unit;  // --surface: mm per unit of an image's value
+    std::optional<double> z_step;  // negative: the images descend
+    std::optional<double> pitch;   // --surface too, of an image
+    std::optional<double> unit;    // --surface: mm per unit of an image's value
     std::optional<double> z_start; // of the first image; none: 0
 };
 
@@ -68,20 +68,20 @@ void run_devices(const CommandOptions& options);
 // Rays per second of the configuration's chain, by stages and whatever else bench.hpp tells of; with `out`, also as
 // bench.json and bench.svg in that folder.
 void run_bench(const CommandOptions& options);
-// Evaluates an existing stack: one of vkfv anew, by its stack.toml, or the images of another instrument in a folder or a
-// file of several pages. With `shuffle` in a random order of its images, a control that must find
-// nothing.
+// Evaluates an existing stack: one of vkfv anew, by its stack.toml, or the images of another instrument in a folder or
+// a file of several pages. With `shuffle` in a random order of its images, a control that must find nothing.
 void run_topography(const CommandOptions& options);
 
-// A surface file: form removed and filtered, its ISO 25178-2 parameters and a profile's; with `out`, written in the format
-// that the name's ending tells.
+// A surface file: form removed and filtered, its ISO 25178-2 parameters and a profile's; with `out`, written in the
+// format that the name's ending tells.
 void run_surface(const CommandOptions& options);
 
 // Measured against true heights: lateral shift, deviation, its systematic and random part, ISO 25178-2 parameters; with
 // `out`, also deviation by spatial frequency (transfer.csv) and by slope (slope.csv), maps and compare.json there.
 void run_compare(const CommandOptions& options);
 
-// Whether the files of a stack, a sweep or other results are still those that were written; RunError names those that are not.
+// Whether the files of a stack, a sweep or other results are still those that were written; RunError names those that
+// are not.
 void run_verify(const CommandOptions& options);
 
 // A Zemax lens as a prescription: in the file `out`, else on standard output.
@@ -99,12 +99,11 @@ specimen::Specimen make_specimen(const Configuration& configuration);
 
 // On the device that the options ask for; the selector "host" means the reference in double on the host's
 // cores.
-std::unique_ptr<trace::Tracer> make_tracer(const optics::Instrument& instrument,
-                                           const specimen::Specimen& specimen,
+std::unique_ptr<trace::Tracer> make_tracer(const optics::Instrument& instrument, const specimen::Specimen& specimen,
                                            const trace::TraceOptions& options);
 
-// All that decides the bits of an image but its height: the configuration's part, the surface as made, instrument, program
-// and device, for another device rounds otherwise. TOML lines.
+// All that decides the bits of an image but its height: the configuration's part, the surface as made, instrument,
+// program and device, for another device rounds otherwise. TOML lines.
 std::string image_identity(const Configuration& configuration, const std::string& surface_digest,
                            const trace::TracerIdentity& tracer);
 

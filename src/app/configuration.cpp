@@ -19,9 +19,9 @@ namespace vkfv::app {
 namespace {
 
 constexpr std::int64_t most_rays = 1'000'000'000'000; // 1e12: an hour a picture on the fastest device
-constexpr std::int64_t most_bounces = 64;           // a Lambertian pit loses all but 1e-3 of its light in ten
-constexpr std::int64_t fewest_positions = 3;        // the peak is a fit through three points
-constexpr double most_smoothing_steps = 100;        // 1202 images in memory
+constexpr std::int64_t most_bounces = 64;             // a Lambertian pit loses all but 1e-3 of its light in ten
+constexpr std::int64_t fewest_positions = 3;          // the peak is a fit through three points
+constexpr double most_smoothing_steps = 100;          // 1202 images in memory
 constexpr std::int64_t most_peak_range_steps = 100;
 constexpr std::int64_t largest_seed = 0xffffffffll; // seeds are 32-bit words of the counter-based generator
 constexpr std::array length_units = {std::pair{"mm", 1.0}, std::pair{"um", 1e-3}, std::pair{"m", 1e3},
@@ -50,10 +50,7 @@ const std::vector<KindRule>& kind_rules() {
         {"plane", Kind::plane, true, {"size_mm", "pitch_um", "representation", "tilt_x_deg", "tilt_y_deg"}},
         {"step", Kind::step, true, {"size_mm", "pitch_um", "representation", "height_um", "wall_um"}},
         {"sphere", Kind::sphere, true, {"size_mm", "pitch_um", "representation", "radius_um", "height_um"}},
-        {"sinusoid",
-         Kind::sinusoid,
-         true,
-         {"size_mm", "pitch_um", "representation", "amplitude_um", "period_um"}},
+        {"sinusoid", Kind::sinusoid, true, {"size_mm", "pitch_um", "representation", "amplitude_um", "period_um"}},
         {"chirp",
          Kind::chirp,
          true,
@@ -122,14 +119,14 @@ specimen::Lobe read_lobe(const Section& section, const std::optional<std::string
          std::ranges::find(physics::scatter_registry, lobe.model, &physics::ScatterModel::name)->parameters) {
         const std::string key(parameter.name);
         models_with.erase(key);
-        lobe.parameters.push_back(section.number(
-            key, NumberRange::within(parameter.minimum, parameter.maximum), parameter.fallback));
+        lobe.parameters.push_back(
+            section.number(key, NumberRange::within(parameter.minimum, parameter.maximum), parameter.fallback));
     }
     for (const auto& [key, models] : models_with) {
         if (section.table().has(key)) {
-            section.table().note(key, fmt::format("no such key for scatter = \"{}\"", lobe.model),
-                                 fmt::format("Remove it; it belongs to scatter = \"{}\".",
-                                             fmt::join(models, "\" or \"")));
+            section.table().note(
+                key, fmt::format("no such key for scatter = \"{}\"", lobe.model),
+                fmt::format("Remove it; it belongs to scatter = \"{}\".", fmt::join(models, "\" or \"")));
         }
     }
     return lobe;
@@ -202,8 +199,7 @@ void read_specimen(const TomlTable& root, Configuration& configuration) {
     const bool measured_air = rule.kind == specimen::Kind::air && table.has("file");
     if (rule.generated) {
         if (has("representation")) {
-            const bool analytic =
-                section.choice("representation", {"facets", "analytic"}, "facets") == "analytic";
+            const bool analytic = section.choice("representation", {"facets", "analytic"}, "facets") == "analytic";
             description.representation =
                 analytic ? specimen::Representation::analytic : specimen::Representation::facets;
         }
@@ -225,16 +221,14 @@ void read_specimen(const TomlTable& root, Configuration& configuration) {
         // resolves.
         std::optional<double> fallback;
         if (rule.generated) {
-            fallback =
-                roughness_table
-                    ? roughness_table->optional_number("pitch_um", NumberRange::positive()).value_or(0.5)
-                    : 0.5;
+            fallback = roughness_table
+                           ? roughness_table->optional_number("pitch_um", NumberRange::positive()).value_or(0.5)
+                           : 0.5;
         }
         read_um("pitch_um", description.pitch, NumberRange::positive(), fallback);
     }
     if (rule.kind == specimen::Kind::plane) {
-        const auto slope =
-            NumberRange::within(-80, 80); // steeper, the facets no longer resolve the footprint
+        const auto slope = NumberRange::within(-80, 80); // steeper, the facets no longer resolve the footprint
         description.tilt_x = section.number("tilt_x_deg", slope, 0.0) * radians_per_degree;
         description.tilt_y = section.number("tilt_y_deg", slope, 0.0) * radians_per_degree;
     }
@@ -261,7 +255,8 @@ void read_specimen(const TomlTable& root, Configuration& configuration) {
         description.seed = static_cast<std::uint32_t>(section.integer("seed", 0, largest_seed, 1));
     }
     if (measured_air) {
-        for (const char* key : {"sq_um", "seed", "roll_off_wavelength_um", "shortest_wavelength_um", "hurst_exponent"}) {
+        for (const char* key :
+             {"sq_um", "seed", "roll_off_wavelength_um", "shortest_wavelength_um", "hurst_exponent"}) {
             if (table.has(key)) {
                 table.note(key, "no such key with a file of a measured surface",
                            "Remove it, or remove file for sub-surfaces from a power spectrum.");
@@ -283,8 +278,7 @@ void read_specimen(const TomlTable& root, Configuration& configuration) {
         if (table.has("text")) {
             description.text = section.string("text");
             description.font = section.string("font", "DejaVuSans-Bold");
-            description.text_width =
-                section.number("text_width_mm", NumberRange::positive(), 0.8 * description.size);
+            description.text_width = section.number("text_width_mm", NumberRange::positive(), 0.8 * description.size);
         }
     }
     const bool file_optional = rule.kind == specimen::Kind::plateaus || rule.kind == specimen::Kind::air;
@@ -299,8 +293,7 @@ void read_specimen(const TomlTable& root, Configuration& configuration) {
             units.emplace_back(unit);
         }
         // glTF 2.0 lengths are metres; STL has no unit, and millimetres are its custom.
-        const std::string unit =
-            section.choice("unit", units, rule.kind == specimen::Kind::gltf ? "m" : "mm");
+        const std::string unit = section.choice("unit", units, rule.kind == specimen::Kind::gltf ? "m" : "mm");
         for (const auto& [candidate, mm] : length_units) {
             if (unit == candidate) {
                 description.unit = mm;
@@ -333,8 +326,7 @@ void read_scan(const TomlTable& root, Configuration& configuration) {
                    "Choose a smaller z_step_um or a longer scan.");
     }
     if (positions > scan::most_positions) {
-        table.fail("z_step_um",
-                   fmt::format("at most {} focal positions, found {}", scan::most_positions, positions),
+        table.fail("z_step_um", fmt::format("at most {} focal positions, found {}", scan::most_positions, positions),
                    "Choose a larger z_step_um or a shorter scan.");
     }
     configuration.scan = scan::ScanPlan{from_um(start), from_um(stop), from_um(step)};
@@ -388,40 +380,36 @@ void read_topography(const TomlTable& root, Configuration& configuration, Needs 
     const TomlTable table = root.table_or_empty("topography");
     const Section section(table, configuration);
     auto& options = configuration.topography;
-    options.focus_measure = section.choice("focus_measure", topography::focus_measure_names(),
-                                           options.focus_measure, Influence::nothing);
-    options.window_px =
-        static_cast<int>(section.integer("window_px", 3, 255, options.window_px, Influence::nothing));
+    options.focus_measure =
+        section.choice("focus_measure", topography::focus_measure_names(), options.focus_measure, Influence::nothing);
+    options.window_px = static_cast<int>(section.integer("window_px", 3, 255, options.window_px, Influence::nothing));
     if (options.window_px % 2 == 0) {
         table.fail("window_px", "an odd integer, so that the window has a central pixel",
                    fmt::format("Choose {} or {}.", options.window_px - 1, options.window_px + 1));
     }
     if (needs == Needs::stack && table.sound("detector") &&
         options.window_px > configuration.instrument.detector_pixels) {
-        table.fail(
-            "window_px",
-            fmt::format("an integer <= detector.pixels = {}", configuration.instrument.detector_pixels),
-            "Choose a smaller window or more pixels.");
+        table.fail("window_px",
+                   fmt::format("an integer <= detector.pixels = {}", configuration.instrument.detector_pixels),
+                   "Choose a smaller window or more pixels.");
     }
     options.window_shape =
         section.choice("window_shape", {"box", "gaussian"}, options.window_shape, Influence::nothing);
     options.smoothing_steps = section.number("smoothing_steps", NumberRange::within(0, most_smoothing_steps),
                                              options.smoothing_steps, Influence::nothing);
-    options.false_peak_rate = section.number("false_peak_rate", NumberRange::between(0, 1),
-                                             options.false_peak_rate, Influence::nothing);
-    options.peak =
-        section.choice("peak", topography::peak_method_names(), options.peak, Influence::nothing);
+    options.false_peak_rate =
+        section.number("false_peak_rate", NumberRange::between(0, 1), options.false_peak_rate, Influence::nothing);
+    options.peak = section.choice("peak", topography::peak_method_names(), options.peak, Influence::nothing);
     options.peak_range_steps = static_cast<int>(
         section.integer("peak_range_steps", 1, most_peak_range_steps, options.peak_range_steps, Influence::nothing));
-    options.least_contrast = section.number("least_contrast", NumberRange::at_least(0), options.least_contrast,
-                                            Influence::nothing);
-    options.most_fit_residual = section.number("most_fit_residual", NumberRange::positive(),
-                                               options.most_fit_residual, Influence::nothing);
-    options.most_peaks =
-        static_cast<int>(section.integer("most_peaks", 1, 4, options.most_peaks, Influence::nothing));
+    options.least_contrast =
+        section.number("least_contrast", NumberRange::at_least(0), options.least_contrast, Influence::nothing);
+    options.most_fit_residual =
+        section.number("most_fit_residual", NumberRange::positive(), options.most_fit_residual, Influence::nothing);
+    options.most_peaks = static_cast<int>(section.integer("most_peaks", 1, 4, options.most_peaks, Influence::nothing));
     options.repair_outliers = section.boolean("repair_outliers", options.repair_outliers, Influence::nothing);
-    configuration.evaluate_on = section.choice("evaluate_on", {"auto", "host", "device"}, configuration.evaluate_on,
-                                               Influence::nothing);
+    configuration.evaluate_on =
+        section.choice("evaluate_on", {"auto", "host", "device"}, configuration.evaluate_on, Influence::nothing);
     // "none", so that --set can take it back.
     if (const auto name = table.optional_string("flatness_file"); name && *name != "none") {
         configuration.flatness_file = looked_for(table.file_path("flatness_file"));
@@ -438,8 +426,7 @@ void read_topography(const TomlTable& root, Configuration& configuration, Needs 
 void read_diffraction(const TomlTable& root, Configuration& configuration) {
     const TomlTable table = root.table_or_empty("diffraction");
     const Section section(table, configuration);
-    const std::string kind =
-        section.kind("point_spread", {"none", "airy", "file"}, "none", Influence::nothing);
+    const std::string kind = section.kind("point_spread", {"none", "airy", "file"}, "none", Influence::nothing);
     if (kind != "file") {
         for (const char* key : {"file", "pitch_um"}) {
             if (table.has(key)) {
@@ -460,30 +447,27 @@ void read_diffraction(const TomlTable& root, Configuration& configuration) {
 void read_output(const TomlTable& root, Configuration& configuration) {
     const TomlTable table = root.table_or_empty("output");
     const Section section(table, configuration);
-    configuration.output_directory = without_dots(
-        table.optional_file_path("directory").value_or(configuration.file.parent_path() / "vkfv-out"));
+    configuration.output_directory =
+        without_dots(table.optional_file_path("directory").value_or(configuration.file.parent_path() / "vkfv-out"));
     // The canonical text lies in the folder itself, wherever that is moved to.
     section.record_reference("directory", ".");
     constexpr std::array files = {std::pair{"tiff", "topography.tif"}, std::pair{"x3p", "topography.x3p"},
                                   std::pair{"sur", "topography.sur"}, std::pair{"sdf", "topography.sdf"},
                                   std::pair{"ply", "topography.ply"}};
-    const std::vector<std::string> formats = table.has("surfaces")
-                                                 ? table.value_texts("surfaces")
-                                                 : std::vector{toml_quoted("tiff"), toml_quoted("x3p")};
+    const std::vector<std::string> formats =
+        table.has("surfaces") ? table.value_texts("surfaces") : std::vector{toml_quoted("tiff"), toml_quoted("x3p")};
     for (const std::string& format : formats) {
         const auto* file =
             std::ranges::find_if(files, [&](const auto& candidate) { return toml_quoted(candidate.first) == format; });
         if (file == files.end()) {
-            table.note("surfaces", "\"tiff\", \"x3p\", \"sur\", \"sdf\" or \"ply\"",
-                       fmt::format("Remove {}.", format));
+            table.note("surfaces", "\"tiff\", \"x3p\", \"sur\", \"sdf\" or \"ply\"", fmt::format("Remove {}.", format));
             break;
         }
         configuration.topography_files.emplace_back(file->second);
     }
     section.record("surfaces", fmt::format("[{}]", fmt::join(formats, ", ")), Influence::nothing);
     if (section.choice("images", {"float32", "uint16"}, "float32") != "float32") {
-        table.note("images", "\"float32\"; 16-bit counts are not available yet",
-                   "Choose images = \"float32\".");
+        table.note("images", "\"float32\"; 16-bit counts are not available yet", "Choose images = \"float32\".");
     }
 }
 
@@ -507,7 +491,8 @@ void read_sweep(const TomlTable& root, Configuration& configuration) {
     for (const TomlTable& parameter_table : table->tables("parameter")) {
         Sweep::Parameter parameter;
         parameter.key = parameter_table.string("key");
-        if ((parameter.key.starts_with("sweep.") && parameter.key != "sweep.z_um") || parameter.key.starts_with("output.")) {
+        if ((parameter.key.starts_with("sweep.") && parameter.key != "sweep.z_um") ||
+            parameter.key.starts_with("output.")) {
             parameter_table.fail("key", "a key that decides what is traced or evaluated", "Choose another.");
         }
         if (std::ranges::find(sweep.parameters, parameter.key, &Sweep::Parameter::key) != sweep.parameters.end()) {
@@ -527,8 +512,8 @@ void read_sweep(const TomlTable& root, Configuration& configuration) {
 
 } // namespace
 
-Configuration load_configuration(const std::filesystem::path& file,
-                                 const std::vector<TomlOverride>& overrides, Needs needs) {
+Configuration load_configuration(const std::filesystem::path& file, const std::vector<TomlOverride>& overrides,
+                                 Needs needs) {
     return read_configuration(TomlTable::open(file, overrides), needs);
 }
 

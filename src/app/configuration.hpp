@@ -52,12 +52,12 @@ struct Configuration {
     trace::TraceOptions trace;
     DiffractionOptions diffraction;
     topography::TopographyOptions topography;
-    std::string evaluate_on = "auto"; // or "host", "device"
+    std::string evaluate_on = "auto";    // or "host", "device"
     std::filesystem::path flatness_file; // a flat measured by the same instrument; empty: no correction
-    topography::Band band; // of the second comparison with the truth; unlimited: there is none
+    topography::Band band;               // of the second comparison with the truth; unlimited: there is none
     std::filesystem::path output_directory;
     std::vector<std::string> topography_files; // names under which the topography is written
-    std::optional<Sweep> sweep; // belongs to no image: neither in `canonical` nor in `identity`
+    std::optional<Sweep> sweep;                // belongs to no image: neither in `canonical` nor in `identity`
 
     // Where each key and table stands that was read, by dotted key; defaults have the place of their table.
     std::map<std::string, SourceLocation> places;
@@ -77,8 +77,8 @@ struct Configuration {
 };
 
 // Throws InputError.
-Configuration load_configuration(const std::filesystem::path& file,
-                                 const std::vector<TomlOverride>& overrides = {}, Needs needs = Needs::stack);
+Configuration load_configuration(const std::filesystem::path& file, const std::vector<TomlOverride>& overrides = {},
+                                 Needs needs = Needs::stack);
 
 // The same of a document; relative paths start at its file.
 Configuration read_configuration(const TomlTable& root, Needs needs = Needs::stack);

@@ -1,8 +1,8 @@
 #include "app/configuration_instrument.hpp"
 
 #include "app/configuration_section.hpp"
-#include "core/digest.hpp"
 #include "app/number_table.hpp"
+#include "core/digest.hpp"
 #include "core/units.hpp"
 #include "optics/ideal_lens.hpp"
 
@@ -15,9 +15,9 @@ namespace vkfv::app {
 
 namespace {
 
-constexpr std::int64_t most_pixels = 16384;        // a side; the accumulator stays within 2 GiB
+constexpr std::int64_t most_pixels = 16384;               // a side; the accumulator stays within 2 GiB
 constexpr double least_flux = 1e-15, largest_flux = 1e15; // W; what falls on a pixel stays a float32
-constexpr double default_tube_lens_distance = 100; // mm, in the infinity space
+constexpr double default_tube_lens_distance = 100;        // mm, in the infinity space
 constexpr double default_splitter_reflectance = 0.5;
 constexpr double share_rounding = 1e-12; // of 0.7 + 0.3
 constexpr NumberRange share_range = {.minimum = 0, .maximum = 1, .minimum_included = false};
@@ -33,9 +33,7 @@ std::string digest_of(const optics::Medium& medium) {
 
 std::string content_digest(const optics::Prescription& prescription) {
     Digest digest;
-    const auto add_medium = [&](const optics::Medium& medium) {
-        digest.add(medium.dispersion_text() + ";");
-    };
+    const auto add_medium = [&](const optics::Medium& medium) { digest.add(medium.dispersion_text() + ";"); };
     add_medium(prescription.medium_before);
     for (const auto& surface : prescription.surfaces) {
         for (const auto& change : surface.breaks) {
@@ -43,24 +41,23 @@ std::string content_digest(const optics::Prescription& prescription) {
                                    change.tilt_y, change.tilt_z, change.tilt_first, change.thickness));
         }
         digest.add(fmt::format("{} {} {} {} {} {} {};", surface.curvature, surface.conic,
-                               fmt::join(surface.aspheric, " "), surface.thickness,
-                               surface.semi_diameter.value_or(0), surface.ideal_power.value_or(0),
-                               static_cast<int>(surface.role)));
+                               fmt::join(surface.aspheric, " "), surface.thickness, surface.semi_diameter.value_or(0),
+                               surface.ideal_power.value_or(0), static_cast<int>(surface.role)));
         add_medium(surface.medium_after);
     }
     digest.add(fmt::format("{}", prescription.source_distance.value_or(0)));
     return digest.text();
 }
 
-std::string remedy_for_prescription(const std::string& name, const std::string& folder, const std::filesystem::path& base) {
+std::string remedy_for_prescription(const std::string& name, const std::string& folder,
+                                    const std::filesystem::path& base) {
     const auto meant = nearest_word(name, optics::prescription_names(folder, base));
     return fmt::format("{}Correct the name, or give the path of a prescription (.toml).",
                        meant ? fmt::format("Did you mean \"{}\"? ", *meant) : "");
 }
 
 optics::Prescription read_prescription(const Section& section, const Configuration& configuration,
-                                       const std::string& folder,
-                                       const std::optional<std::string>& fallback = {}) {
+                                       const std::string& folder, const std::optional<std::string>& fallback = {}) {
     const std::string key = "prescription";
     const TomlTable& table = section.table();
     std::string name = fallback ? table.optional_string(key).value_or(*fallback) : table.string(key);
@@ -80,7 +77,8 @@ optics::Prescription read_prescription(const Section& section, const Configurati
     }
     optics::Prescription prescription;
     if (table.sound(glass_catalogs_key)) { // else its glasses may be in the one that could not be read
-        table.attempt(key, [&] { prescription = optics::load_prescription(name, folder, base, configuration.glasses); });
+        table.attempt(key,
+                      [&] { prescription = optics::load_prescription(name, folder, base, configuration.glasses); });
     }
     if (prescription.surfaces.empty()) { // noted
         return prescription;
@@ -160,12 +158,13 @@ optics::Spectrum read_spectrum_file(const Section& section) {
             wavelengths.push_back(point.values[0]);
             densities.push_back(point.values[1]);
             if (!wavelength_range_um.contains(point.values[0])) {
-                throw InputError({.where = {.file = file, .line = point.line, .column = 1},
-                                  .key = "wavelength_um",
-                                  .found = fmt::format("{}", point.values[0]),
-                                  .expected = "a wavelength " + wavelength_range_um.to_string() + " um",
-                                  .remedy = remedy_for_length_um(point.values[0], wavelength_range_um)
-                                                .value_or("Correct this field.")});
+                throw InputError(
+                    {.where = {.file = file, .line = point.line, .column = 1},
+                     .key = "wavelength_um",
+                     .found = fmt::format("{}", point.values[0]),
+                     .expected = "a wavelength " + wavelength_range_um.to_string() + " um",
+                     .remedy =
+                         remedy_for_length_um(point.values[0], wavelength_range_um).value_or("Correct this field.")});
             }
         }
     });
@@ -189,7 +188,8 @@ optics::Spectrum read_spectrum_table(const Section& section) {
         // A wider one is no spectrum about the centre, and tells nanometres from micrometres.
         const NumberRange widths = {.minimum = 0, .maximum = centre, .minimum_included = false};
         return optics::Spectrum::gaussian(
-            centre, section.number("full_width_um", table.sound(table.path() + ".centre_um") ? widths : NumberRange::positive()));
+            centre, section.number("full_width_um",
+                                   table.sound(table.path() + ".centre_um") ? widths : NumberRange::positive()));
     }
     if (table.has("file")) {
         for (const char* key : {"wavelengths_um", "densities"}) {
@@ -230,11 +230,12 @@ optics::RingLightDescription read_ring(const Section& source) {
     ring.segments = static_cast<int>(source.integer("segments", 1, physics::f64::RING_CAPACITY, 1));
     ring.fill = source.number("fill", share_range, 1.0);
     ring.on = source.booleans("on", std::vector<bool>(static_cast<std::size_t>(ring.segments), true));
-    if (ring.on.size() != static_cast<std::size_t>(ring.segments) || std::ranges::find(ring.on, true) == ring.on.end()) {
-        source.table().fail("on",
-                            fmt::format("{} of true and false, one a segment from +x towards +y, at least one true",
-                                        ring.segments),
-                            "Give each segment its state, and switch one on.");
+    if (ring.on.size() != static_cast<std::size_t>(ring.segments) ||
+        std::ranges::find(ring.on, true) == ring.on.end()) {
+        source.table().fail(
+            "on",
+            fmt::format("{} of true and false, one a segment from +x towards +y, at least one true", ring.segments),
+            "Give each segment its state, and switch one on.");
     }
     return ring;
 }
@@ -260,7 +261,8 @@ void read_illumination(const TomlTable& root, Configuration& configuration) {
     auto& instrument = configuration.instrument;
     if (instrument.ring) {
         if (root.has("illumination")) {
-            root.fail("illumination", "no [illumination] with a source of kind \"ring\", which shines past the objective",
+            root.fail("illumination",
+                      "no [illumination] with a source of kind \"ring\", which shines past the objective",
                       "Remove it, or choose a source of kind \"disc\".");
         }
         return;
@@ -291,14 +293,13 @@ void read_beam_splitter(const TomlTable& root, Configuration& configuration) {
         default_splitter_reflectance);
     splitter.transmittance = section.number("transmittance", share_range, 1 - splitter.reflectance);
     if (splitter.reflectance + splitter.transmittance > 1 + share_rounding) {
-        section.table().fail("transmittance",
-                             fmt::format("at most 1 - reflectance = {:.6g}", 1 - splitter.reflectance),
+        section.table().fail("transmittance", fmt::format("at most 1 - reflectance = {:.6g}", 1 - splitter.reflectance),
                              "Choose a smaller one; what both leave of 1 is absorbed.");
     }
     if (splitter.kind != Kind::ideal) {
         splitter.glass = read_glass(section, configuration, "glass", "N-BK7");
-        splitter.size = section.number(splitter.kind == Kind::plate ? "thickness_mm" : "edge_mm",
-                                       NumberRange::positive());
+        splitter.size =
+            section.number(splitter.kind == Kind::plate ? "thickness_mm" : "edge_mm", NumberRange::positive());
         splitter.semi_diameter = section.number_if_given("semi_diameter_mm", NumberRange::positive());
     }
     splitter.distance = section.number_if_given("distance_mm", NumberRange::at_least(0));
@@ -309,8 +310,8 @@ void read_fold_mirrors(const TomlTable& root, Configuration& configuration) {
     for (const auto& table : root.optional_tables("fold_mirror")) {
         const Section section(table, configuration);
         optics::FoldMirror mirror;
-        mirror.path = section.choice("path", {"imaging", "illumination"}) == "imaging" ? Path::imaging
-                                                                                       : Path::illumination;
+        mirror.path =
+            section.choice("path", {"imaging", "illumination"}) == "imaging" ? Path::imaging : Path::illumination;
         if (mirror.path == Path::illumination && configuration.instrument.ring) {
             table.fail("path", "\"imaging\", as a ring light has no illumination path", "Remove the mirror.");
         }
@@ -357,8 +358,7 @@ void read_objective(const TomlTable& root, Configuration& configuration) {
             optics::ideal_objective(focal_length, section.number("numerical_aperture", NumberRange::positive()));
     } else {
         instrument.objective = read_prescription(section, configuration, "objectives");
-        instrument.aperture_stop_radius =
-            section.number_if_given("aperture_stop_radius_mm", NumberRange::positive());
+        instrument.aperture_stop_radius = section.number_if_given("aperture_stop_radius_mm", NumberRange::positive());
     }
     instrument.objective_placement = read_placement(section);
 }
@@ -450,7 +450,8 @@ void require_possible_aperture(const TomlTable& root, const Configuration& confi
         const auto& medium = instrument.immersion.value_or(optics::Medium::air());
         const double index = medium.index(instrument.spectrum.reference_um);
         if (!(*aperture < index)) {
-            objective.fail("numerical_aperture", fmt::format("a number below {:.6g}, the index of {}", index, medium.name),
+            objective.fail("numerical_aperture",
+                           fmt::format("a number below {:.6g}, the index of {}", index, medium.name),
                            "Choose a smaller one, or an immersion.");
         }
     }
@@ -478,8 +479,9 @@ void read_instrument(const TomlTable& root, Configuration& configuration) {
     std::string wavelength_key;
     root.attempt("source", [&] { wavelength_key = read_source(root, configuration); });
     const std::pair<const char*, void (*)(const TomlTable&, Configuration&)> parts[] = {
-        {"illumination", read_illumination}, {"beam_splitter", read_beam_splitter}, {"fold_mirror", read_fold_mirrors},
-        {"interfaces", read_interfaces},     {"objective", read_objective},         {"cover_glass", read_cover_glass},
+        {"illumination", read_illumination}, {"beam_splitter", read_beam_splitter},
+        {"fold_mirror", read_fold_mirrors},  {"interfaces", read_interfaces},
+        {"objective", read_objective},       {"cover_glass", read_cover_glass},
         {"tube_lens", read_tube_lens},       {"detector", read_detector}};
     for (const auto& [key, read] : parts) {
         root.attempt(key, [&] { read(root, configuration); });

@@ -69,13 +69,11 @@ void reject_keys_of_other_kinds(const TomlTable& table, const KeysOfKinds& keys_
     }
 }
 
-Section::Section(const TomlTable& table, Configuration& configuration)
-    : table_(table), configuration_(configuration) {
+Section::Section(const TomlTable& table, Configuration& configuration) : table_(table), configuration_(configuration) {
     const auto& path = table.path();
     // "a.b[2]" is a table of the array a.b.
-    const std::string header = path.ends_with(']')
-                                   ? fmt::format("\n[[{}]]\n", path.substr(0, path.rfind('[')))
-                                   : fmt::format("\n[{}]\n", path);
+    const std::string header = path.ends_with(']') ? fmt::format("\n[[{}]]\n", path.substr(0, path.rfind('[')))
+                                                   : fmt::format("\n[{}]\n", path);
     configuration_.canonical += header;
     configuration_.identity += header;
     configuration_.places[path] = table.where();
@@ -83,8 +81,7 @@ Section::Section(const TomlTable& table, Configuration& configuration)
 
 double Section::number(const std::string& key, const NumberRange& range, std::optional<double> fallback,
                        Influence influence) const {
-    const double value =
-        fallback ? table_.optional_number(key, range).value_or(*fallback) : table_.number(key, range);
+    const double value = fallback ? table_.optional_number(key, range).value_or(*fallback) : table_.number(key, range);
     return record(key, shortest_text(value), influence), value;
 }
 

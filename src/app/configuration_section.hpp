@@ -23,8 +23,8 @@ std::filesystem::path looked_for(const std::filesystem::path& path);
 void as_named(const TomlTable& table, const std::string& key, const std::filesystem::path& file,
               const std::function<void()>& work);
 
-// Runs `work`, and gives each problem of its InputError the place of the problem's key; without one, if it has none, that
-// of the key's table, else `otherwise`.
+// Runs `work`, and gives each problem of its InputError the place of the problem's key; without one, if it has none,
+// that of the key's table, else `otherwise`.
 void at_its_place(const Configuration& configuration, const SourceLocation& otherwise,
                   const std::function<void()>& work);
 
@@ -50,8 +50,7 @@ class Section {
     std::optional<double> number_if_given(const std::string& key, const NumberRange& range) const;
     std::vector<double> numbers(const std::string& key, const NumberRange& range) const;
     std::int64_t integer(const std::string& key, std::int64_t minimum, std::int64_t maximum,
-                         std::optional<std::int64_t> fallback = {},
-                         Influence influence = Influence::images) const;
+                         std::optional<std::int64_t> fallback = {}, Influence influence = Influence::images) const;
     bool boolean(const std::string& key, bool fallback, Influence influence = Influence::images) const;
     std::vector<bool> booleans(const std::string& key, const std::vector<bool>& fallback) const;
     std::string string(const std::string& key, std::optional<std::string> fallback = {}) const;

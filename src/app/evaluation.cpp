@@ -2,9 +2,9 @@
 
 #include "app/commands.hpp"
 #include "app/device_focus_planes.hpp"
-#include "core/digest.hpp"
 #include "app/evaluation_figures.hpp"
 #include "app/stack_page.hpp"
+#include "core/digest.hpp"
 #include "core/file.hpp"
 #include "core/json_depth.hpp"
 #include "core/units.hpp"
@@ -51,9 +51,7 @@ class Stopwatch {
     explicit Stopwatch(double& seconds) : seconds_(seconds) {}
     Stopwatch(const Stopwatch&) = delete;
     Stopwatch& operator=(const Stopwatch&) = delete;
-    ~Stopwatch() {
-        seconds_ += std::chrono::duration<double>(std::chrono::steady_clock::now() - started_).count();
-    }
+    ~Stopwatch() { seconds_ += std::chrono::duration<double>(std::chrono::steady_clock::now() - started_).count(); }
 
   private:
     double& seconds_;
@@ -61,11 +59,10 @@ class Stopwatch {
 };
 
 std::string text_of(const char* treatment, const topography::Deviation& deviation) {
-    return fmt::format(
-        "{:<30} Sq measured {:.4f} um, true {:.4f} um (ratio {:.3f}), RMS deviation {:.4f} um, "
-        "correlation {:.4f}\n",
-        treatment, deviation.sq_measured * um_per_mm, deviation.sq_true * um_per_mm,
-        deviation.sq_measured / deviation.sq_true, deviation.rms * um_per_mm, deviation.correlation);
+    return fmt::format("{:<30} Sq measured {:.4f} um, true {:.4f} um (ratio {:.3f}), RMS deviation {:.4f} um, "
+                       "correlation {:.4f}\n",
+                       treatment, deviation.sq_measured * um_per_mm, deviation.sq_true * um_per_mm,
+                       deviation.sq_measured / deviation.sq_true, deviation.rms * um_per_mm, deviation.correlation);
 }
 
 // Levelled, with the filtered ones within.
@@ -127,9 +124,8 @@ std::string write_maps(ResultFolder& results, const std::filesystem::path& folde
     write("all_in_focus.tif", topography.all_in_focus);
     if (evaluation.truth) {
         results.write(folder / "truth.tif", surface::height_map_bytes(*evaluation.truth));
-        results.write(folder / "deviation.tif",
-                      surface::height_map_bytes(
-                          topography::deviation_map(topography.height, *evaluation.truth, evaluation.band)));
+        results.write(folder / "deviation.tif", surface::height_map_bytes(topography::deviation_map(
+                                                    topography.height, *evaluation.truth, evaluation.band)));
     }
     const std::string picture = picture_of(results.path() / folder, evaluation);
     results.write(folder / "topography.svg", picture);
@@ -166,27 +162,27 @@ std::optional<Flat> read_flat(const Configuration& configuration, int columns, i
     auto flat = surface::read_surface(file).map;
     if (flat.columns() != columns || flat.rows() != rows || std::abs(flat.pitch_x - pitch) > tolerance * pitch ||
         std::abs(flat.pitch_y - pitch) > tolerance * pitch) {
-        throw InputError({configuration.places.at("topography.flatness_file"), "topography.flatness_file",
-                          fmt::format("{}: {} x {} points, {:.6g} x {:.6g} um apart", file.string(), flat.columns(),
-                                      flat.rows(), flat.pitch_x * um_per_mm, flat.pitch_y * um_per_mm),
-                          fmt::format("the stack's grid, {} x {} points, {:.6g} um apart", columns, rows,
-                                      pitch * um_per_mm),
-                          "Measure the flat with the same instrument."});
+        throw InputError(
+            {configuration.places.at("topography.flatness_file"), "topography.flatness_file",
+             fmt::format("{}: {} x {} points, {:.6g} x {:.6g} um apart", file.string(), flat.columns(), flat.rows(),
+                         flat.pitch_x * um_per_mm, flat.pitch_y * um_per_mm),
+             fmt::format("the stack's grid, {} x {} points, {:.6g} um apart", columns, rows, pitch * um_per_mm),
+             "Measure the flat with the same instrument."});
     }
     // A polynomial knows nothing of places where nothing was measured.
     constexpr double least_share = 0.9;
     const double measured = surface::height_parameters(flat).measured_share;
     if (!(measured >= least_share)) {
-        throw InputError({configuration.places.at("topography.flatness_file"), "topography.flatness_file",
-                          fmt::format("{}: {:.0f} % of the points measured", file.string(), 100 * measured),
-                          fmt::format("at least {:.0f} %", 100 * least_share),
-                          "Give the flat texture and light enough to be measured, and scan as far as the field curves."});
+        throw InputError(
+            {configuration.places.at("topography.flatness_file"), "topography.flatness_file",
+             fmt::format("{}: {:.0f} % of the points measured", file.string(), 100 * measured),
+             fmt::format("at least {:.0f} %", 100 * least_share),
+             "Give the flat texture and light enough to be measured, and scan as far as the field curves."});
     }
     return Flat{.file = file, .heights = std::move(flat)};
 }
 
-StackEvaluation::StackEvaluation(const topography::TopographyOptions& options,
-                                 topography::FocusPlanesMaker make_planes,
+StackEvaluation::StackEvaluation(const topography::TopographyOptions& options, topography::FocusPlanesMaker make_planes,
                                  std::optional<trace::Diffraction> diffraction)
     : evaluator_(options, make_planes), diffraction_(std::move(diffraction)) {
     evaluation_.options = options;
@@ -245,8 +241,7 @@ Evaluation StackEvaluation::finish(double pitch, const std::optional<Flat>& flat
 
 TopographyFiles topography_files(const Configuration& configuration) {
     TopographyFiles files{.names = configuration.topography_files};
-    files.provenance.comment =
-        fmt::format("configuration digest {}", Digest().add(configuration.identity).text());
+    files.provenance.comment = fmt::format("configuration digest {}", Digest().add(configuration.identity).text());
     return files;
 }
 

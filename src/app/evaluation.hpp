@@ -22,8 +22,8 @@ struct Flat {
     surface::HeightMap heights;
 };
 
-// That the configuration names, for stacks of this grid (pitch in mm); none if it names none. Throws InputError where its
-// grid is another, since it must have been measured by the same instrument, or where too little of it was measured.
+// That the configuration names, for stacks of this grid (pitch in mm); none if it names none. Throws InputError where
+// its grid is another, since it must have been measured by the same instrument, or where too little of it was measured.
 std::optional<Flat> read_flat(const Configuration& configuration, int columns, int rows, double pitch);
 
 // What it took off.
@@ -35,18 +35,18 @@ struct Flatness {
 struct Evaluation {
     topography::TopographyOptions options; // that the heights were found by
     topography::Topography topography;
-    std::optional<Flatness> flatness; // of `diffracted` too, by the same flat; none: no correction
-    std::optional<surface::HeightMap> truth; // none of a stack that another instrument took; nor deviations
-    std::optional<topography::Deviation> deviation;          // levelled
+    std::optional<Flatness> flatness;               // of `diffracted` too, by the same flat; none: no correction
+    std::optional<surface::HeightMap> truth;        // none of a stack that another instrument took; nor deviations
+    std::optional<topography::Deviation> deviation; // levelled
     std::optional<topography::Deviation> filtered_deviation; // and filtered; none if the band has no limit
     topography::Band band;
     double seconds = 0;                     // wall clock
     std::shared_ptr<Evaluation> diffracted; // the same of the images after diffraction; none without [diffraction]
 };
 
-// Where a stack is evaluated by this choice of [topography] evaluate_on while a device traces it (selector: of the device,
-// or "host"): "auto" means the device if it has cores of its own; on the host's own cores the host's code takes a third of
-// lavapipe's time at 1000 x 1000 pixels. Throws DeviceError.
+// Where a stack is evaluated by this choice of [topography] evaluate_on while a device traces it (selector: of the
+// device, or "host"): "auto" means the device if it has cores of its own; on the host's own cores the host's code takes
+// a third of lavapipe's time at 1000 x 1000 pixels. Throws DeviceError.
 topography::FocusPlanesMaker focus_planes_for(const std::string& evaluate_on, const std::string& device_selector);
 
 // Takes a stack's images in their order, as they come, and keeps the time that this takes.
@@ -60,8 +60,7 @@ class StackEvaluation {
     // z: mm.
     void add(topography::Channels image, double z);
     // On the truth's grid, with the deviation from it. Flat: topography/flatness.hpp; none: no correction.
-    Evaluation finish(surface::HeightMap truth, const topography::Band& band,
-                      const std::optional<Flat>& flat = {});
+    Evaluation finish(surface::HeightMap truth, const topography::Band& band, const std::optional<Flat>& flat = {});
     // Without a truth; the grid's middle is the origin, pitch in mm.
     Evaluation finish(double pitch, const std::optional<Flat>& flat = {});
 
@@ -97,11 +96,10 @@ struct StackSource {
 // Of a stack of vkfv's own.
 StackSource stack_source(const Configuration& configuration, const optics::Instrument& instrument);
 
-// Writes into the folder, checksums last, the first row of each with the highest y: the topography's files, quality.tif (contrast),
-// fit_residual.tif, mask.tif (uint16: topography::PointState), all_in_focus.tif; with a truth also truth.tif and
-// deviation.tif (float32 um); topography.svg, a picture of them, levelled; results.json, which `more` joins;
-// and report.html, all of it on a page. What diffraction changes stands in a folder
-// `diffracted` in it.
+// Writes into the folder, checksums last, the first row of each with the highest y: the topography's files, quality.tif
+// (contrast), fit_residual.tif, mask.tif (uint16: topography::PointState), all_in_focus.tif; with a truth also
+// truth.tif and deviation.tif (float32 um); topography.svg, a picture of them, levelled; results.json, which `more`
+// joins; and report.html, all of it on a page. What diffraction changes stands in a folder `diffracted` in it.
 void write_evaluation(ResultFolder& folder, const Evaluation& evaluation, const nlohmann::ordered_json& more,
                       const StackSource& source = {}, const TopographyFiles& files = {});
 

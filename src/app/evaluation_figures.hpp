@@ -12,7 +12,7 @@
 namespace vkfv::app {
 
 struct Figures {
-    topography::Band band;                          // what was done to the measured heights and to the truth
+    topography::Band band; // what was done to the measured heights and to the truth
     double measured_share = 0;
     std::optional<topography::Deviation> deviation; // none without a truth
     std::vector<ParameterRow> measured;             // ISO 25178-2; empty if nothing was measured

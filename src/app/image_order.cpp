@@ -86,9 +86,8 @@ std::optional<std::vector<double>> values_of(const std::vector<std::string>& nam
     }
     const auto text = [&](const Parts& parts) -> const std::string& { return parts.numbers[*differs]; };
     // 1.9, 1.10 count, as versions do; decimals have no zero at their end unless all have as many.
-    const bool even = std::ranges::all_of(all, [&](const Parts& parts) {
-        return decimals(text(parts)).size() == decimals(text(all.front())).size();
-    });
+    const bool even = std::ranges::all_of(
+        all, [&](const Parts& parts) { return decimals(text(parts)).size() == decimals(text(all.front())).size(); });
     const bool counts =
         !even && std::ranges::any_of(all, [&](const Parts& parts) { return decimals(text(parts)).ends_with('0'); });
     constexpr std::size_t exact_digits = 15; // of a double
@@ -139,9 +138,10 @@ ImageOrder order_of_names(const std::vector<std::string>& names) {
     }
     const auto values = values_of(names);
     if (!values) {
-        result.doubt = fmt::format("their names do not differ in one number alone; they are taken in natural order, from {} "
-                                   "to {}",
-                                   names[order.front()], names[order.back()]);
+        result.doubt =
+            fmt::format("their names do not differ in one number alone; they are taken in natural order, from {} "
+                        "to {}",
+                        names[order.front()], names[order.back()]);
         return result;
     }
     std::ranges::stable_sort(order, {}, [&](std::size_t k) { return (*values)[k]; });

@@ -55,8 +55,9 @@ ImageSeries::ImageSeries(const std::filesystem::path& path) {
             spdlog::warn("{}: the heights of the images are in doubt: {}", path.string(), doubt);
         }
         if (images_.empty()) {
-            refuse(path, "no stack.toml and no image", fmt::format("stack.toml or files {}", fmt::join(extensions, ", ")),
-                   "Give the folder of a stack of vkfv, one with the images of another, or a TIFF file of several pages.");
+            refuse(
+                path, "no stack.toml and no image", fmt::format("stack.toml or files {}", fmt::join(extensions, ", ")),
+                "Give the folder of a stack of vkfv, one with the images of another, or a TIFF file of several pages.");
         }
         return;
     }

@@ -11,9 +11,9 @@ namespace vkfv::app {
 
 class ImageSeries {
   public:
-    // A multi-page image file; or a folder, whose image files (by their extension, hidden ones left out) are taken in the
-    // order of image_order.hpp, with a warning where that is in doubt, one page each. Throws InputError for a path without
-    // images.
+    // A multi-page image file; or a folder, whose image files (by their extension, hidden ones left out) are taken in
+    // the order of image_order.hpp, with a warning where that is in doubt, one page each. Throws InputError for a path
+    // without images.
     explicit ImageSeries(const std::filesystem::path& path);
 
     int size() const { return static_cast<int>(images_.size()); }

@@ -70,24 +70,25 @@ void declare(CLI::App& app, Arguments& given) {
                    "continues an interrupted one")
         ->type_name("C.toml")
         ->group(commands);
-    app.add_option("--image", given.image, "Trace one exposure, at --z")
-        ->type_name("C.toml")
-        ->group(commands);
+    app.add_option("--image", given.image, "Trace one exposure, at --z")->type_name("C.toml")->group(commands);
     app.add_option("--sweep", given.sweep,
                    "Images or stacks for every combination of the parameters in [sweep]; continues an interrupted one")
         ->type_name("C.toml")
         ->group(commands);
-    app.add_option("--topography", given.topography, "Evaluate an existing stack: of vkfv, or images in a folder or a TIFF file")
+    app.add_option("--topography", given.topography,
+                   "Evaluate an existing stack: of vkfv, or images in a folder or a TIFF file")
         ->type_name("STACK")
         ->group(commands);
     app.add_option("--compare", given.compare,
-                   "Height maps (any format that vkfv reads) against the truth: shift, deviation, transfer, ISO 25178-2 parameters; several "
+                   "Height maps (any format that vkfv reads) against the truth: shift, deviation, transfer, ISO "
+                   "25178-2 parameters; several "
                    "measurements of one field also give systematic and random part")
         ->expected(2, CLI::detail::expected_max_vector_size)
         ->option_text("MEASURED... TRUTH")
         ->group(commands);
     app.add_option("--surface", given.surface,
-                   "A surface file (X3P, SUR, SDF, AL3D, TIFF, EXR): form removed and filtered, its ISO 25178-2 parameters; with "
+                   "A surface file (X3P, SUR, SDF, AL3D, TIFF, EXR): form removed and filtered, its ISO 25178-2 "
+                   "parameters; with "
                    "--out also written, in another format if so named")
         ->type_name("FILE")
         ->group(commands);
@@ -109,8 +110,7 @@ void declare(CLI::App& app, Arguments& given) {
         ->expected(2)
         ->option_text("C.toml OUT.svg")
         ->group(commands);
-    app.add_flag("--devices", given.devices, "List devices, what each lacks and which would be used")
-        ->group(commands);
+    app.add_flag("--devices", given.devices, "List devices, what each lacks and which would be used")->group(commands);
     app.add_option("--bench", given.bench, "Measure rays/s of a configuration's chain")
         ->type_name("C.toml")
         ->group(commands);
@@ -134,12 +134,9 @@ void declare(CLI::App& app, Arguments& given) {
         ->type_name("NAME")
         ->group(common);
     app.add_option("--estimator", given.estimator, "forward or backward")->type_name("NAME")->group(common);
-    app.add_option("--rays", given.rays, "Rays launched per image, 1e7 or 10000000")
-        ->type_name("N")
-        ->group(common);
+    app.add_option("--rays", given.rays, "Rays launched per image, 1e7 or 10000000")->type_name("N")->group(common);
     app.add_option("--seed", given.seed, "Seed of the trace")->type_name("N")->group(common);
-    app.add_option("--set", given.settings,
-                   "Any key of the configuration, e.g. --set specimen.material.g=0.65")
+    app.add_option("--set", given.settings, "Any key of the configuration, e.g. --set specimen.material.g=0.65")
         ->type_name("KEY=VALUE")
         ->expected(1)
         ->take_all()
@@ -158,14 +155,16 @@ void declare(CLI::App& app, Arguments& given) {
                    "Distance of its pixels on the specimen (--topography; --surface of an image)")
         ->type_name("UM")
         ->group(specific);
-    app.add_option("--z_start_um,--z-start-um", given.z_start_um, "Height of its first image, 0 unless given (--topography)")
+    app.add_option("--z_start_um,--z-start-um", given.z_start_um,
+                   "Height of its first image, 0 unless given (--topography)")
         ->type_name("UM")
         ->group(specific);
     app.add_option("--unit_um,--unit-um", given.unit_um, "Height of a pixel's value of one (--surface of an image)")
         ->type_name("UM")
         ->group(specific);
-    app.add_option("--form", given.form,
-                   "Removed first: none, plane (unless given), polynomial-1 to polynomial-20, sphere (--surface, --compare)")
+    app.add_option(
+           "--form", given.form,
+           "Removed first: none, plane (unless given), polynomial-1 to polynomial-20, sphere (--surface, --compare)")
         ->type_name("NAME")
         ->group(specific);
     app.add_option("--s_filter_um,--s-filter-um", given.s_filter_um,
@@ -180,8 +179,7 @@ void declare(CLI::App& app, Arguments& given) {
         ->check(CLI::IsMember({"gaussian", "spline"}))
         ->option_text("gaussian|spline")
         ->group(specific);
-    app.add_option("--profile", given.profile,
-                   "Ends of the profile in um, the middle row unless given (--surface)")
+    app.add_option("--profile", given.profile, "Ends of the profile in um, the middle row unless given (--surface)")
         ->type_name("X0,Y0,X1,Y1")
         ->group(specific);
     app.add_option("--precision", given.precision, "double: on the host; float: on the device (--trace-rays)")
@@ -222,7 +220,8 @@ void declare(CLI::App& app, Arguments& given) {
         ->expected(1)
         ->take_all()
         ->group(specific);
-    app.add_flag("--json", given.json, "Machine-readable output (--check, --compare, --surface, --devices, --bench, --import)")
+    app.add_flag("--json", given.json,
+                 "Machine-readable output (--check, --compare, --surface, --devices, --bench, --import)")
         ->group(specific);
     app.add_flag("--quiet", given.quiet, "Only warnings and errors, no progress");
 
@@ -319,8 +318,7 @@ vkfv::app::CommandOptions options_from(const Arguments& given) {
     options.band = band_from(given);
     options.profile_line = profile_line_from(given.profile);
     options.glass_catalogs.assign(given.glass_catalogs.begin(), given.glass_catalogs.end());
-    const auto override_with = [&](const std::string& option, const std::string& key,
-                                   const std::string& value) {
+    const auto override_with = [&](const std::string& option, const std::string& key, const std::string& value) {
         if (!value.empty()) {
             options.overrides.push_back({key, value, option});
         }
@@ -425,14 +423,14 @@ void run(const CLI::App& app, const Arguments& given) {
             continue;
         }
         if (chosen) {
-            refuse(fmt::format("{} and {}", chosen->option, command.option), "one command",
-                   "Run one after the other.");
+            refuse(fmt::format("{} and {}", chosen->option, command.option), "one command", "Run one after the other.");
         }
         chosen = &command;
     }
     if (!chosen) {
         refuse("no command",
-               "one of --stack, --image, --sweep, --topography, --compare, --surface, --verify, --check, --trace-rays, --layout, --devices, --bench, --import",
+               "one of --stack, --image, --sweep, --topography, --compare, --surface, --verify, --check, --trace-rays, "
+               "--layout, --devices, --bench, --import",
                "vkfv --help tells what they do.");
     }
     if ((app.count("--z") > 0) != (chosen->run == vkfv::app::run_image)) {
@@ -450,7 +448,8 @@ int report(const char* message, ExitCode code) {
 }
 
 int report_lost_output() {
-    return report("standard output cannot be written to. Free space where it leads, and run the same command again", run_failed);
+    return report("standard output cannot be written to. Free space where it leads, and run the same command again",
+                  run_failed);
 }
 
 // What a command says is part of what it was asked for.
@@ -465,10 +464,9 @@ int main(int argument_count, char** argument_values) {
     vkfv::explain_interruptions();
     const vkfv::vulkan::DriverScope drivers;
     Arguments given;
-    CLI::App app(
-        "vkfv: a virtual focus-variation microscope. It traces light through real lens prescriptions to a "
-        "specimen and back to a detector, position by position, and measures the topography from the images.",
-        "vkfv");
+    CLI::App app("vkfv: a virtual focus-variation microscope. It traces light through real lens prescriptions to a "
+                 "specimen and back to a detector, position by position, and measures the topography from the images.",
+                 "vkfv");
     try {
         declare(app, given);
         app.parse(argument_count, argument_values);
@@ -494,16 +492,14 @@ int main(int argument_count, char** argument_values) {
     } catch (const vk::SystemError& failure) {
         return report(vkfv::vulkan::run_error_of(failure).what(), run_failed);
     } catch (const std::filesystem::filesystem_error& error) {
-        return report(
-            fmt::format("{}. Check the path, its permissions and the free space, and run the same command "
-                        "again.",
-                        error.what())
-                .c_str(),
-            run_failed);
+        return report(fmt::format("{}. Check the path, its permissions and the free space, and run the same command "
+                                  "again.",
+                                  error.what())
+                          .c_str(),
+                      run_failed);
     } catch (const std::bad_alloc&) {
-        return report(
-            "the host has not enough memory. Choose fewer pixels, fewer positions or a coarser specimen.",
-            run_failed);
+        return report("the host has not enough memory. Choose fewer pixels, fewer positions or a coarser specimen.",
+                      run_failed);
     } catch (const std::exception& error) {
         if (std::ferror(stdout) != 0) { // fmt says so by an exception of its own
             return report_lost_output();

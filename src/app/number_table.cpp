@@ -9,8 +9,8 @@
 #include <algorithm>
 #include <charconv>
 #include <cmath>
-#include <sstream>
 #include <iterator>
+#include <sstream>
 
 namespace vkfv::app {
 
@@ -24,11 +24,10 @@ std::string_view trimmed(std::string_view text) {
 
 class Row {
   public:
-    Row(const std::filesystem::path& file, int line, std::string_view text)
-        : file_(file), line_(line), text_(text) {}
+    Row(const std::filesystem::path& file, int line, std::string_view text) : file_(file), line_(line), text_(text) {}
 
-    [[noreturn]] void fail(std::size_t column, std::string_view key, std::string_view found,
-                           std::string expected, std::string remedy) const {
+    [[noreturn]] void fail(std::size_t column, std::string_view key, std::string_view found, std::string expected,
+                           std::string remedy) const {
         throw InputError({.where = {.file = file_, .line = line_, .column = static_cast<int>(column) + 1},
                           .key = std::string(key),
                           .found = fmt::format("\"{:.60}\"", found),
@@ -96,8 +95,9 @@ std::vector<NumberRow> read_number_table(const std::filesystem::path& file,
         }
     }
     if (rows.empty()) {
-        Row(file, 1, "").fail(0, row_name + "s", "", fmt::format("at least one {} below the header", row_name),
-                              fmt::format("Add a line with {} numbers.", columns.size()));
+        Row(file, 1, "")
+            .fail(0, row_name + "s", "", fmt::format("at least one {} below the header", row_name),
+                  fmt::format("Add a line with {} numbers.", columns.size()));
     }
     return rows;
 }

@@ -21,8 +21,8 @@ struct RoughnessProfile {
     surface::ProfileParameters parameters; // NaN for a profile of six points or fewer
 };
 
-// Points one pitch apart, the shorter pitch unless the line lies along an axis; roughness after the Gaussian filter whose
-// nesting index is the section length, a fifth of the profile (ISO 21920-2).
+// Points one pitch apart, the shorter pitch unless the line lies along an axis; roughness after the Gaussian filter
+// whose nesting index is the section length, a fifth of the profile (ISO 21920-2).
 RoughnessProfile roughness_profile(const surface::HeightMap& map, const ProfileLine& line);
 
 } // namespace vkfv::app

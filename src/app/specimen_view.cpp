@@ -19,7 +19,8 @@ constexpr double most_light_beside = 0.98;
 
 constexpr const char* beside_the_specimen = "beside the specimen"; // of the ledger
 constexpr const char* likely_causes =
-    "A length may be in another unit than its key says (source.radius_mm, specimen.size_mm, specimen.unit), or the specimen "
+    "A length may be in another unit than its key says (source.radius_mm, specimen.size_mm, specimen.unit), or the "
+    "specimen "
     "off the axis; --layout draws the instrument, --check tells what the detector sees";
 
 std::string percent(double share) {
@@ -86,8 +87,8 @@ std::vector<std::string> warning_of_lost_light(const trace::Image& image) {
                    : 0;
     }
     if (beside > most_light_beside * (beside + met)) {
-        return {fmt::format("{} of the light that comes as far falls beside the specimen. {}.", percent(beside / (beside + met)),
-                            likely_causes)};
+        return {fmt::format("{} of the light that comes as far falls beside the specimen. {}.",
+                            percent(beside / (beside + met)), likely_causes)};
     }
     return {};
 }

@@ -25,8 +25,8 @@ Relief relief_of(const specimen::Specimen& specimen, double field, int pixels);
 std::vector<std::string> warning_of_sparse_field(const Configuration& configuration, const specimen::Specimen& specimen,
                                                  const Relief& relief);
 
-// A sentence where no light was detected, or nearly all that came as far fell beside the specimen: where it went, and what
-// that may come from.
+// A sentence where no light was detected, or nearly all that came as far fell beside the specimen: where it went, and
+// what that may come from.
 std::vector<std::string> warning_of_lost_light(const trace::Image& image);
 
 } // namespace vkfv::app

@@ -27,7 +27,8 @@ void add_deviations(Rows& rows, const std::string& prefix, const std::vector<Fig
     for (const auto& figures : all) {
         if (const auto& deviation = figures.deviation) {
             rows.push_back({prefix + treatment_text(figures.band), number_text(100 * deviation->measured_share),
-                            number_text(deviation->sq_measured * um_per_mm), number_text(deviation->sq_true * um_per_mm),
+                            number_text(deviation->sq_measured * um_per_mm),
+                            number_text(deviation->sq_true * um_per_mm),
                             number_text(deviation->sq_measured / deviation->sq_true),
                             number_text(deviation->rms * um_per_mm), number_text(deviation->correlation)});
         }

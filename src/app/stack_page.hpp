@@ -20,9 +20,10 @@ struct StackPage {
     std::string title;
     EvaluationPicture plain;
     std::optional<EvaluationPicture> diffracted;
-    nlohmann::ordered_json results; // of results.json: the evaluation's settings, points by state, what is said of the run
-    std::string layout;             // the instrument as SVG; empty: not known
-    std::string configuration;      // TOML; empty: none
+    nlohmann::ordered_json
+        results;               // of results.json: the evaluation's settings, points by state, what is said of the run
+    std::string layout;        // the instrument as SVG; empty: not known
+    std::string configuration; // TOML; empty: none
 };
 
 // HTML; without times, so that it is the same bytes whenever the stack is traced.

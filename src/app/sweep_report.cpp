@@ -33,10 +33,11 @@ struct Extent {
 };
 
 std::string cell_text(const nlohmann::ordered_json& value) {
-    return value.is_number_float() ? (std::isfinite(value.get<double>()) ? fmt::format("{:.5g}", value.get<double>()) : "")
-           : value.is_string()     ? value.get<std::string>()
-           : value.is_null()       ? ""
-                                   : value.dump();
+    return value.is_number_float()
+               ? (std::isfinite(value.get<double>()) ? fmt::format("{:.5g}", value.get<double>()) : "")
+           : value.is_string() ? value.get<std::string>()
+           : value.is_null()   ? ""
+                               : value.dump();
 }
 
 // A cell of a CSV file (RFC 4180) or of a Markdown table.
@@ -100,7 +101,7 @@ std::string plain_text(const std::string& toml_text) {
     if (const auto value = number_of(toml_text)) {
         const double decade = *value > 0 ? std::log10(*value) : 0;
         return decade >= 4 && decade == std::floor(decade) ? fmt::format("1e{:.0f}", decade)
-                                                            : fmt::format("{}", *value);
+                                                           : fmt::format("{}", *value);
     }
     return toml_text.size() > 1 && toml_text.front() == '"' ? toml_text.substr(1, toml_text.size() - 2) : toml_text;
 }
@@ -166,8 +167,8 @@ std::string sweep_charts(const Sweep& sweep, const std::vector<SweepRow>& rows, 
             }
             std::string curve_name;
             for (std::size_t k = 0; k + 1 < row.values.size(); ++k) {
-                curve_name += fmt::format("{}{} = {}", k == 0 ? "" : ", ", sweep.parameters[k].label,
-                                          plain_text(row.values[k]));
+                curve_name +=
+                    fmt::format("{}{} = {}", k == 0 ? "" : ", ", sweep.parameters[k].label, plain_text(row.values[k]));
             }
             auto found = std::ranges::find(curves, curve_name, &report::Curve::name);
             if (found == curves.end()) {
@@ -182,14 +183,15 @@ std::string sweep_charts(const Sweep& sweep, const std::vector<SweepRow>& rows, 
         if (curves.empty()) {
             continue;
         }
-        const glm::dvec2 corner = glm::dvec2(margin, head) + (panel + glm::dvec2(margin)) * glm::dvec2(place % 3, place / 3);
+        const glm::dvec2 corner =
+            glm::dvec2(margin, head) + (panel + glm::dvec2(margin)) * glm::dvec2(place % 3, place / 3);
         ++place;
         report::draw_chart(svg, corner, panel, name,
                            report::axis_over(curves, 0, sweep.parameters.back().label, x_extent.spans_decades()),
                            report::axis_over(curves, 1, "", y_extent.spans_decades()), curves);
     }
-    return svg.document(glm::dvec2(margin, head) + (panel + glm::dvec2(margin)) *
-                                                       glm::dvec2(std::min(std::max(place, 1), 3), (place + 2) / 3),
+    return svg.document(glm::dvec2(margin, head) +
+                            (panel + glm::dvec2(margin)) * glm::dvec2(std::min(std::max(place, 1), 3), (place + 2) / 3),
                         title);
 }
 

@@ -65,8 +65,9 @@ class Descriptor {
 };
 
 [[noreturn]] void fail(const fs::path& path, std::string_view what, std::string_view reason) {
-    throw RunError(fmt::format("{}: {}: {}. Check the path, its permissions and the free space, and run the same command again",
-                               path.string(), what, reason));
+    throw RunError(
+        fmt::format("{}: {}: {}. Check the path, its permissions and the free space, and run the same command again",
+                    path.string(), what, reason));
 }
 
 [[noreturn]] void fail_to_write(const fs::path& path, int error) {
@@ -122,13 +123,14 @@ fs::path unfinished_path(const fs::path& path) {
 }
 
 bool same_file(int file, const fs::path& path) {
-    struct stat open_one {}, named_one {};
+    struct stat open_one {
+    }, named_one{};
     return ::fstat(file, &open_one) == 0 && ::lstat(path.c_str(), &named_one) == 0 &&
            open_one.st_dev == named_one.st_dev && open_one.st_ino == named_one.st_ino;
 }
 
-// The unfinished file, empty and ours alone: programs that write the same file wait here for each other. The kernel ends the
-// lock with the process.
+// The unfinished file, empty and ours alone: programs that write the same file wait here for each other. The kernel
+// ends the lock with the process.
 int open_unfinished(const fs::path& beside, const fs::path& path) {
     for (;;) {
         Descriptor file(::open(beside.c_str(), O_RDWR | O_CREAT | O_CLOEXEC | O_NOFOLLOW | O_NONBLOCK, 0666));
@@ -203,7 +205,8 @@ InputFile::InputFile(const fs::path& path, const FileRequest& request) : path_(p
 std::string InputFile::read(std::uint64_t most) const {
     std::string bytes(std::min(most, bytes_), '\0');
     for (std::size_t done = 0; done < bytes.size();) {
-        const ssize_t got = ::pread(::fileno(stream()), bytes.data() + done, bytes.size() - done, static_cast<off_t>(done));
+        const ssize_t got =
+            ::pread(::fileno(stream()), bytes.data() + done, bytes.size() - done, static_cast<off_t>(done));
         if (got < 0 && errno == EINTR) {
             continue;
         }
@@ -296,7 +299,8 @@ void remove_unfinished_files(const fs::path& folder) {
     }
     for (const fs::path& path : unfinished) {
         const Descriptor file(::open(path.c_str(), O_RDWR | O_CLOEXEC | O_NOFOLLOW | O_NONBLOCK));
-        if (file.open() && ::flock(file.number(), LOCK_EX | LOCK_NB) == 0 && ::unlink(path.c_str()) != 0 && errno != ENOENT) {
+        if (file.open() && ::flock(file.number(), LOCK_EX | LOCK_NB) == 0 && ::unlink(path.c_str()) != 0 &&
+            errno != ENOENT) {
             fail(path, "cannot be removed", reason_of(errno));
         }
     }

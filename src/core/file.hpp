@@ -13,13 +13,13 @@ namespace vkfv {
 
 // How a message tells of a file that cannot be had.
 struct FileRequest {
-    std::string key{};                      // what named the file: "specimen.file", "--trace-rays"
+    std::string key{}; // what named the file: "specimen.file", "--trace-rays"
     std::string expected = "a readable file";
     std::string remedy = "Check the path and its permissions; it is relative to the file that names it.";
 };
 
-// A regular file, open for reading. Pipes, sockets, devices and folders are refused by what the open descriptor is, so that
-// no reader waits for another program or reads without end, whatever the name means a moment later.
+// A regular file, open for reading. Pipes, sockets, devices and folders are refused by what the open descriptor is, so
+// that no reader waits for another program or reads without end, whatever the name means a moment later.
 class InputFile {
   public:
     // Throws InputError, with the folder that was searched where there is no such file.
@@ -44,9 +44,9 @@ class InputFile {
 // All bytes of a regular file. Throws InputError.
 std::string read_file(const std::filesystem::path& path, const FileRequest& request = {});
 
-// Under its name there is, at any moment and after any fault, the file of before or this one, whole: written beside it, synced,
-// read back and compared, renamed; then the folder is synced. Programs that write the same file take turns. A link is
-// followed; what is no regular file is not replaced. Throws RunError, with the reason and the remedy.
+// Under its name there is, at any moment and after any fault, the file of before or this one, whole: written beside it,
+// synced, read back and compared, renamed; then the folder is synced. Programs that write the same file take turns. A
+// link is followed; what is no regular file is not replaced. Throws RunError, with the reason and the remedy.
 void write_file(const std::filesystem::path& path, std::string_view bytes);
 
 // A line at the end of a text file that others watch; not synced. Throws RunError.

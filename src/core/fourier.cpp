@@ -90,8 +90,7 @@ void cosine_lines(std::vector<double>& values, int count, std::size_t line_step,
                 // V[k] = exp(i pi k / 2n) (X[k] - i X[n - k]), X[n] = 0, of a and i times that of b.
                 for (std::size_t k = 0; k < n; ++k) {
                     const auto value = [&](const double* x) {
-                        return std::conj(turns[k]) *
-                               Complex(x[k * value_step], k == 0 ? 0 : -x[(n - k) * value_step]);
+                        return std::conj(turns[k]) * Complex(x[k * value_step], k == 0 ? 0 : -x[(n - k) * value_step]);
                     };
                     line[k] = value(a) + (b ? Complex(0, 1) * value(b) : 0);
                 }

@@ -15,9 +15,9 @@ void fourier_transform(Grid<std::complex<double>>& grid);
 void inverse_fourier_transform(Grid<std::complex<double>>& grid);
 
 // The type II cosine transform, the Fourier transform of the grid continued by mirroring it about its edges: in place,
-// C[l, m] = sum over i, k of f[i, k] cos(pi l (2 i + 1) / (2 columns)) cos(pi m (2 k + 1) / (2 rows)); value l belongs to
-// l / (2 columns) cycles per point. By one Fourier transform of the same length (J. Makhoul, "A fast cosine transform in
-// one and two dimensions", 1980).
+// C[l, m] = sum over i, k of f[i, k] cos(pi l (2 i + 1) / (2 columns)) cos(pi m (2 k + 1) / (2 rows)); value l belongs
+// to l / (2 columns) cycles per point. By one Fourier transform of the same length (J. Makhoul, "A fast cosine
+// transform in one and two dimensions", 1980).
 void cosine_transform(Grid<double>& grid);
 
 // Its inverse.

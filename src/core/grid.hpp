@@ -20,8 +20,7 @@ struct Grid {
           values(static_cast<std::size_t>(columns_) * static_cast<std::size_t>(rows_), fill) {}
 
     std::size_t index(int column, int row) const {
-        return static_cast<std::size_t>(row) * static_cast<std::size_t>(columns) +
-               static_cast<std::size_t>(column);
+        return static_cast<std::size_t>(row) * static_cast<std::size_t>(columns) + static_cast<std::size_t>(column);
     }
     Value& operator()(int column, int row) { return values[index(column, row)]; }
     const Value& operator()(int column, int row) const { return values[index(column, row)]; }

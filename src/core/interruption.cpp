@@ -18,7 +18,8 @@ struct Sentence {
     std::size_t bytes;
 };
 
-// A handler may read one while the other is written; a third change during its few microseconds would only garble the text.
+// A handler may read one while the other is written; a third change during its few microseconds would only garble the
+// text.
 std::array<Sentence, 2> sentences{};
 std::atomic<std::size_t> at_hand{0};
 static_assert(std::atomic<std::size_t>::is_always_lock_free, "a signal handler may not wait");

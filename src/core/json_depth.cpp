@@ -15,7 +15,8 @@ TextPlace place_in(std::string_view text, std::size_t byte) {
     return {static_cast<int>(std::ranges::count(before, '\n')) + 1, static_cast<int>(before.size() - line_start) + 1};
 }
 
-void check_json_depth(std::string_view text, const std::filesystem::path& file, std::optional<std::uint64_t> first_byte) {
+void check_json_depth(std::string_view text, const std::filesystem::path& file,
+                      std::optional<std::uint64_t> first_byte) {
     int depth = 0;
     bool in_string = false;
     for (std::size_t at = 0; at < text.size(); ++at) {
@@ -33,9 +34,10 @@ void check_json_depth(std::string_view text, const std::filesystem::path& file, 
             if (first_byte) {
                 where = {.file = file, .byte_offset = *first_byte + at};
             }
-            throw InputError({where, "JSON", fmt::format("brackets nested {} deep", depth),
-                              fmt::format("at most {} levels of brackets", most_json_depth),
-                              "Remove what is nested so deep (in glTF mostly \"extras\"), or export the file without it."});
+            throw InputError(
+                {where, "JSON", fmt::format("brackets nested {} deep", depth),
+                 fmt::format("at most {} levels of brackets", most_json_depth),
+                 "Remove what is nested so deep (in glTF mostly \"extras\"), or export the file without it."});
         }
     }
 }

@@ -12,9 +12,9 @@ namespace vkfv {
 // smallest stacks, and no format in use comes near.
 inline constexpr int most_json_depth = 100;
 
-// To be called before any JSON reader. Brackets inside strings do not count; whether the text is JSON at all, the reader
-// finds out. Throws InputError at the first bracket that is too deep: by line and column, or by its byte in the file where
-// `first_byte` says at which byte of the file the text begins.
+// To be called before any JSON reader. Brackets inside strings do not count; whether the text is JSON at all, the
+// reader finds out. Throws InputError at the first bracket that is too deep: by line and column, or by its byte in the
+// file where `first_byte` says at which byte of the file the text begins.
 void check_json_depth(std::string_view text, const std::filesystem::path& file,
                       std::optional<std::uint64_t> first_byte = {});
 

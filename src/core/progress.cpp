@@ -99,8 +99,7 @@ void Progress::end() {
         return;
     }
     const double elapsed = seconds_between(started_, clock_());
-    show(fmt::format("{}  {} in all", ray_rate_text(static_cast<double>(rays_) / elapsed),
-                     duration_text(elapsed)),
+    show(fmt::format("{}  {} in all", ray_rate_text(static_cast<double>(rays_) / elapsed), duration_text(elapsed)),
          true);
     window_.clear();
     rays_ = 0;

@@ -75,9 +75,10 @@ int lock_folder(const fs::path& folder) {
     if (::flock(file, LOCK_EX | LOCK_NB) != 0) {
         if (errno == EWOULDBLOCK) {
             ::close(file);
-            throw FolderInUse(fmt::format("{}: another vkfv is writing to this folder. Wait for it to end, or give another "
-                                          "--out",
-                                          folder.string()));
+            throw FolderInUse(
+                fmt::format("{}: another vkfv is writing to this folder. Wait for it to end, or give another "
+                            "--out",
+                            folder.string()));
         }
         spdlog::warn("{}: this file system offers no locks ({}): see to it that no second run writes here",
                      folder.string(), reason());
@@ -173,7 +174,8 @@ Check check_by_checksums(const fs::path& folder) {
         }
     }
     for (const std::string& line : strange) {
-        check.damages.push_back({fs::path(checksums_name), fmt::format("has a line that is none of a list: {:.40}", line)});
+        check.damages.push_back(
+            {fs::path(checksums_name), fmt::format("has a line that is none of a list: {:.40}", line)});
     }
     return check;
 }

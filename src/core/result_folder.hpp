@@ -1,4 +1,5 @@
-// A folder of results: one program writes it at a time, and whoever has it can tell whether its files are those written.
+// A folder of results: one program writes it at a time, and whoever has it can tell whether its files are those
+// written.
 #pragma once
 
 #include "core/error.hpp"
@@ -22,8 +23,8 @@ inline constexpr std::string_view checksums_name = "checksums.sha256";
 
 class ResultFolder {
   public:
-    // Makes the folder, keeps it for this program as long as the object lives, also against a kill of others (the kernel ends
-    // the lock), and removes what killed programs left unfinished. Throws FolderInUse, RunError.
+    // Makes the folder, keeps it for this program as long as the object lives, also against a kill of others (the
+    // kernel ends the lock), and removes what killed programs left unfinished. Throws FolderInUse, RunError.
     explicit ResultFolder(std::filesystem::path folder);
     ~ResultFolder();
     ResultFolder(const ResultFolder&) = delete;
@@ -31,8 +32,8 @@ class ResultFolder {
 
     const std::filesystem::path& path() const { return folder_; }
 
-    // Files by names relative to the folder, with sub-folders where they have some. write_file() of core/file.hpp, and a line
-    // of the list to be.
+    // Files by names relative to the folder, with sub-folders where they have some. write_file() of core/file.hpp, and
+    // a line of the list to be.
     void write(const std::filesystem::path& name, std::string_view bytes);
     // A line of the list for a file that is known to be whole.
     void note(const std::filesystem::path& name, std::string_view bytes);
@@ -45,7 +46,7 @@ class ResultFolder {
 
   private:
     std::filesystem::path folder_;
-    int lock_ = -1;                           // file descriptor
+    int lock_ = -1;                              // file descriptor
     std::map<std::string, std::string> earlier_; // sums by name, of the list that was there
     std::map<std::string, std::string> sums_;    // of this run
 };

@@ -45,14 +45,13 @@ toml::table parse_text(std::string_view text, const std::filesystem::path& name)
     try {
         return toml::parse(text, name.string());
     } catch (const toml::parse_error& error) {
-        throw InputError(
-            {.where = {.file = name,
-                       .line = static_cast<int>(error.source().begin.line),
-                       .column = static_cast<int>(error.source().begin.column)},
-             .key = "",
-             .found = abbreviated(std::string(error.description())),
-             .expected = "valid TOML 1.0",
-             .remedy = "Correct the text at this place (strings need quotes, tables [brackets])."});
+        throw InputError({.where = {.file = name,
+                                    .line = static_cast<int>(error.source().begin.line),
+                                    .column = static_cast<int>(error.source().begin.column)},
+                          .key = "",
+                          .found = abbreviated(std::string(error.description())),
+                          .expected = "valid TOML 1.0",
+                          .remedy = "Correct the text at this place (strings need quotes, tables [brackets])."});
     }
 }
 
@@ -74,9 +73,9 @@ toml::table parse_override(const TomlOverride& given) {
         require_shallow(text, {.file = given.origin}, false);
         return toml::parse(text, given.origin);
     };
-    const bool key_is_plain = !given.key.empty() && given.key.find_first_not_of(
-                                                        "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ"
-                                                        "0123456789_-.") == std::string::npos;
+    const bool key_is_plain =
+        !given.key.empty() && given.key.find_first_not_of("abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ"
+                                                          "0123456789_-.") == std::string::npos;
     if (key_is_plain) {
         try {
             // A value may not smuggle further lines in.
@@ -99,8 +98,9 @@ toml::table parse_override(const TomlOverride& given) {
 
 // Whether `path` is `ancestor`, or a key or element in it.
 bool is_within(std::string_view path, std::string_view ancestor) {
-    return ancestor.empty() || (path.starts_with(ancestor) && (path.size() == ancestor.size() || path[ancestor.size()] == '.' ||
-                                                               path[ancestor.size()] == '['));
+    return ancestor.empty() ||
+           (path.starts_with(ancestor) &&
+            (path.size() == ancestor.size() || path[ancestor.size()] == '.' || path[ancestor.size()] == '['));
 }
 
 } // namespace
@@ -129,7 +129,8 @@ std::string text_of(const toml::node& node) {
     return abbreviated(stream.str());
 }
 
-TomlDocument::TomlDocument(std::string_view text, std::filesystem::path name, const std::vector<TomlOverride>& overrides)
+TomlDocument::TomlDocument(std::string_view text, std::filesystem::path name,
+                           const std::vector<TomlOverride>& overrides)
     : root(parse_text(text, name)), file(std::move(name)) {
     std::vector<InputProblem> wrong;
     for (const auto& given : overrides) {

@@ -66,7 +66,8 @@ struct TomlTable::State {
 
     InputProblem problem(std::string_view key, const toml::node* node, std::string expected, std::string remedy) const;
     // Throws the problem; while problems are collected, the next three note it and return.
-    [[noreturn]] void refuse(std::string_view key, const toml::node* node, std::string expected, std::string remedy) const;
+    [[noreturn]] void refuse(std::string_view key, const toml::node* node, std::string expected,
+                             std::string remedy) const;
     void note(std::string_view key, const toml::node* node, std::string expected, std::string remedy) const;
     // Nothing for a key that is there: what is wrong with it was noted already.
     void note_missing(std::string_view key, const std::string& expected) const;

@@ -16,8 +16,8 @@ struct TomlPlace {
 };
 
 // Where the text first nests deeper than deepest_toml_nesting; none if it does not. Every part of a dotted name, every
-// bracket and every brace is a level, except in strings and remarks. Of a text that is no TOML only what stands before the
-// first fault is looked at, as a parser does.
+// bracket and every brace is a level, except in strings and remarks. Of a text that is no TOML only what stands before
+// the first fault is looked at, as a parser does.
 std::optional<TomlPlace> too_deep_toml(std::string_view text);
 
 } // namespace vkfv

@@ -76,7 +76,8 @@ void TomlTable::State::add(TomlDocument::Noted one) const {
     }
 }
 
-void TomlTable::State::note(std::string_view key, const toml::node* node, std::string expected, std::string remedy) const {
+void TomlTable::State::note(std::string_view key, const toml::node* node, std::string expected,
+                            std::string remedy) const {
     add({.path = dotted(path, key),
          .problem = problem(key, node, std::move(expected), std::move(remedy)),
          .missing = "",
@@ -88,9 +89,9 @@ void TomlTable::State::note_missing(std::string_view key, const std::string& exp
         return;
     }
     add({.path = dotted(path, key),
-         .problem = problem(key, nullptr, expected + ", found nothing",
-                            path.empty() ? fmt::format("Add the key {}.", key)
-                                         : fmt::format("Add {} to [{}].", key, path)),
+         .problem =
+             problem(key, nullptr, expected + ", found nothing",
+                     path.empty() ? fmt::format("Add the key {}.", key) : fmt::format("Add {} to [{}].", key, path)),
          .missing = std::string(key),
          .expected = expected});
 }
@@ -98,14 +99,15 @@ void TomlTable::State::note_missing(std::string_view key, const std::string& exp
 void TomlTable::State::note_missing_tables(std::string_view key, const std::string& expected,
                                            const std::string& header) const {
     add({.path = dotted(path, key),
-         .problem = problem(key, table->get(key), expected + ", found nothing", fmt::format("Add {} with its keys.", header)),
+         .problem =
+             problem(key, table->get(key), expected + ", found nothing", fmt::format("Add {} with its keys.", header)),
          .missing = table->get(key) ? "" : std::string(key),
          .expected = expected});
 }
 
 // A missing key beside one that nobody knows: most likely the one is the other, misspelt. So they are one problem, at
-// the misspelt key's place. Near must they be both ways, and nearer where reading ended early, as keys that it would have
-// asked for stand there too.
+// the misspelt key's place. Near must they be both ways, and nearer where reading ended early, as keys that it would
+// have asked for stand there too.
 void TomlTable::State::pair_missing_with_unknown(std::set<std::string>& paired) {
     const std::size_t furthest = document->abandoned(path) ? 2 : std::string::npos;
     std::vector<std::string> unknown;
@@ -146,15 +148,15 @@ void TomlTable::State::note_unknown() {
             continue;
         }
         const auto meant = nearest_word(name, known);
-        auto unknown = problem(name, &node,
-                               known.empty() ? "no key here"
-                                             : fmt::format("a known key (one of {})", fmt::join(known, ", ")),
-                               meant ? fmt::format("Did you mean \"{}\"? Correct or remove it.", *meant) : "Remove it.");
+        auto unknown = problem(
+            name, &node, known.empty() ? "no key here" : fmt::format("a known key (one of {})", fmt::join(known, ", ")),
+            meant ? fmt::format("Did you mean \"{}\"? Correct or remove it.", *meant) : "Remove it.");
         // An inserted override has its own origin; only the key's place is more exact than the value's.
         if (key.source().begin) {
             unknown.where = document->place(key.source());
         }
-        document->noted.push_back({.path = dotted(path, name), .problem = std::move(unknown), .missing = "", .expected = ""});
+        document->noted.push_back(
+            {.path = dotted(path, name), .problem = std::move(unknown), .missing = "", .expected = ""});
     }
     for (const auto& [name, state] : children) {
         state->note_unknown();

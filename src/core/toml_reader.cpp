@@ -31,7 +31,9 @@ std::string described(const char* what, const NumberRange& range) {
 // In place of one that could not be read.
 double stand_in(const NumberRange& range) {
     const double middle = 0.5 * (range.minimum + range.maximum);
-    const double any = std::isfinite(middle) ? middle : std::isfinite(range.minimum) ? range.minimum + 1 : range.maximum - 1;
+    const double any = std::isfinite(middle)          ? middle
+                       : std::isfinite(range.minimum) ? range.minimum + 1
+                                                      : range.maximum - 1;
     return range.contains(1) ? 1 : range.contains(any) ? any : 0;
 }
 
@@ -73,7 +75,8 @@ TomlTable TomlTable::parse(std::string_view text, const std::filesystem::path& n
 TomlTable TomlTable::open(const std::filesystem::path& file, const std::vector<TomlOverride>& overrides) {
     return parse(read_file(file, {.expected = "a readable TOML file",
                                   .remedy = "Check the path and its permissions; relative paths start at the working "
-                                            "directory, or at the file that names them."}), file, overrides);
+                                            "directory, or at the file that names them."}),
+                 file, overrides);
 }
 
 const std::string& TomlTable::path() const {
@@ -135,20 +138,19 @@ std::string integer_expected(std::int64_t minimum, std::int64_t maximum) {
 
 std::optional<std::int64_t> TomlTable::optional_integer(std::string_view key, std::int64_t minimum,
                                                         std::int64_t maximum) const {
-    return get(
-        key, integer_expected(minimum, maximum), [&](const toml::node& node) -> std::optional<std::int64_t> {
-            std::optional<std::int64_t> value;
-            if (const auto* integer = node.as_integer()) {
-                value = integer->get();
-            } else if (const auto* real = node.as_floating_point()) {
-                constexpr double exact = 9007199254740992.0; // 2^53: beyond, doubles skip integers
-                const double number = real->get();
-                if (std::abs(number) <= exact && number == std::trunc(number)) {
-                    value = static_cast<std::int64_t>(number);
-                }
+    return get(key, integer_expected(minimum, maximum), [&](const toml::node& node) -> std::optional<std::int64_t> {
+        std::optional<std::int64_t> value;
+        if (const auto* integer = node.as_integer()) {
+            value = integer->get();
+        } else if (const auto* real = node.as_floating_point()) {
+            constexpr double exact = 9007199254740992.0; // 2^53: beyond, doubles skip integers
+            const double number = real->get();
+            if (std::abs(number) <= exact && number == std::trunc(number)) {
+                value = static_cast<std::int64_t>(number);
             }
-            return value && *value >= minimum && *value <= maximum ? value : std::nullopt;
-        });
+        }
+        return value && *value >= minimum && *value <= maximum ? value : std::nullopt;
+    });
 }
 
 std::int64_t TomlTable::integer(std::string_view key, std::int64_t minimum, std::int64_t maximum) const {
@@ -262,8 +264,7 @@ std::vector<std::filesystem::path> TomlTable::optional_file_paths(std::string_vi
                          "Correct this element.");
             break;
         }
-        paths.push_back(overridden ? std::filesystem::path(*value)
-                                   : state_->document->file.parent_path() / *value);
+        paths.push_back(overridden ? std::filesystem::path(*value) : state_->document->file.parent_path() / *value);
     }
     return paths;
 }
@@ -276,8 +277,7 @@ std::filesystem::path TomlTable::file_path(std::string_view key) const {
     return value.value_or("?");
 }
 
-std::optional<std::vector<double>> TomlTable::optional_numbers(std::string_view key,
-                                                               const NumberRange& range) const {
+std::optional<std::vector<double>> TomlTable::optional_numbers(std::string_view key, const NumberRange& range) const {
     const std::string expected = described("an array of finite numbers", range);
     const toml::node* node = state_->find(key);
     if (!node) {

@@ -49,8 +49,8 @@ struct TomlOverride {
 };
 
 // A table of a TOML document. Copies share one document and one memory of the keys asked for; not for use by
-// several threads. Every getter throws InputError, unless problems are collected; those that begin with `optional_` give
-// nothing for a missing key.
+// several threads. Every getter throws InputError, unless problems are collected; those that begin with `optional_`
+// give nothing for a missing key.
 class TomlTable {
   public:
     // The root table of a file, with the overrides put in their places. Throws InputError for a file that
@@ -71,8 +71,7 @@ class TomlTable {
 
     // Integers and floats alike.
     double number(std::string_view key, const NumberRange& range = NumberRange::finite()) const;
-    std::optional<double> optional_number(std::string_view key,
-                                          const NumberRange& range = NumberRange::finite()) const;
+    std::optional<double> optional_number(std::string_view key, const NumberRange& range = NumberRange::finite()) const;
     // Also a float of integral value up to 2^53: 1e9 is an integer.
     std::int64_t integer(std::string_view key, std::int64_t minimum, std::int64_t maximum) const;
     std::optional<std::int64_t> optional_integer(std::string_view key, std::int64_t minimum,
@@ -85,15 +84,14 @@ class TomlTable {
     std::optional<std::string> optional_string(std::string_view key) const;
     // One of the choices.
     std::string choice(std::string_view key, const std::vector<std::string>& choices) const;
-    std::optional<std::string> optional_choice(std::string_view key,
-                                               const std::vector<std::string>& choices) const;
+    std::optional<std::string> optional_choice(std::string_view key, const std::vector<std::string>& choices) const;
     // A path, relative to where it was written: the file's folder, or the working directory for an override.
     std::filesystem::path file_path(std::string_view key) const;
     std::optional<std::filesystem::path> optional_file_path(std::string_view key) const;
     std::vector<std::filesystem::path> optional_file_paths(std::string_view key) const; // none: empty
     std::vector<double> numbers(std::string_view key, const NumberRange& range = NumberRange::finite()) const;
-    std::optional<std::vector<double>>
-    optional_numbers(std::string_view key, const NumberRange& range = NumberRange::finite()) const;
+    std::optional<std::vector<double>> optional_numbers(std::string_view key,
+                                                        const NumberRange& range = NumberRange::finite()) const;
     // The elements of an array of numbers, strings and booleans, at least one, as TOML text: what TomlOverride takes.
     std::vector<std::string> value_texts(std::string_view key) const;
     TomlTable table(std::string_view key) const;
@@ -107,13 +105,13 @@ class TomlTable {
     // nearest of those that were; with them for all that was noted. Call it on the root, last.
     void reject_unknown_keys() const;
 
-    // From here on all getters of this document note what is wrong and go on with a value that does no harm (nothing, the
-    // default, a number in the range, the first choice), so that reject_unknown_keys() can tell of all at once. A missing
-    // table still throws, to the attempt() around it.
+    // From here on all getters of this document note what is wrong and go on with a value that does no harm (nothing,
+    // the default, a number in the range, the first choice), so that reject_unknown_keys() can tell of all at once. A
+    // missing table still throws, to the attempt() around it.
     void collect_problems() const;
     // Reads this key or table, and what belongs to it. While problems are collected an InputError is noted, unless
-    // something there was noted before: then it may be a consequence. Keys there that were not asked for by then are not
-    // taken as unknown.
+    // something there was noted before: then it may be a consequence. Keys there that were not asked for by then are
+    // not taken as unknown.
     void attempt(std::string_view key, const std::function<void()>& read) const;
     // Throws if something was noted at this key: for those that decide how all else is read.
     void require(std::string_view key) const;

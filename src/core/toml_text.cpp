@@ -59,8 +59,8 @@ std::optional<std::string> nearest_word(std::string_view word, const std::vector
         for (std::size_t i = 1; i <= word.size(); ++i) {
             row[0] = i;
             for (std::size_t j = 1; j <= other.size(); ++j) {
-                row[j] = std::min(
-                    {above[j] + 1, row[j - 1] + 1, above[j - 1] + (word[i - 1] == other[j - 1] ? 0u : 1u)});
+                row[j] =
+                    std::min({above[j] + 1, row[j - 1] + 1, above[j - 1] + (word[i - 1] == other[j - 1] ? 0u : 1u)});
                 if (i > 1 && j > 1 && word[i - 1] == other[j - 2] && word[i - 2] == other[j - 1]) {
                     row[j] = std::min(row[j], before[j - 2] + 1);
                 }

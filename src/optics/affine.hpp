@@ -1,7 +1,7 @@
 // Numbers with bounds: affine arithmetic (J. Stolfi and L. H. de Figueiredo, "Self-validated numerical methods and
-// applications", 1997). A form stands for a function of a few coordinates that is known to a linear part and a remainder, so
-// that what two numbers have in common cancels where plain intervals would add: bounds of a whole train stay narrow, and
-// the remainders fall with the square of the box. Rounding is not directed outward: see bundle.cpp.
+// applications", 1997). A form stands for a function of a few coordinates that is known to a linear part and a
+// remainder, so that what two numbers have in common cancels where plain intervals would add: bounds of a whole train
+// stay narrow, and the remainders fall with the square of the box. Rounding is not directed outward: see bundle.cpp.
 #pragma once
 
 #include <algorithm>
@@ -113,8 +113,8 @@ inline Affine line(const Affine& a, double slope, double offset, double error) {
     return result;
 }
 
-// Of those values of a that are >= 0; a.high() > 0. The line between the ends is below the root, and farthest from it where
-// the slopes are equal.
+// Of those values of a that are >= 0; a.high() > 0. The line between the ends is below the root, and farthest from it
+// where the slopes are equal.
 inline Affine square_root(const Affine& a) {
     const double low = std::sqrt(std::max(a.low(), 0.0));
     const double slope = 1 / (low + std::sqrt(a.high()));
@@ -132,7 +132,8 @@ inline Affine reciprocal(const Affine& a) {
     return line(a, -1 / (low * high), 0.5 * (least + most), 0.5 * (most - least));
 }
 
-// By the tangent in the middle, as no second derivative exceeds 1; from where that says little, by what all cosines are.
+// By the tangent in the middle, as no second derivative exceeds 1; from where that says little, by what all cosines
+// are.
 inline Affine by_tangent(const Affine& a, double value, double slope) {
     const double radius = a.radius();
     return radius < 1 ? line(a, slope, value - slope * a.centre, 0.5 * radius * radius) : anything_in({-1, 1});

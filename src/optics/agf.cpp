@@ -72,11 +72,7 @@ std::string utf8_of_utf16(std::string_view bytes, bool big_endian) {
 bool is_utf8(std::string_view text) {
     for (std::size_t i = 0; i < text.size();) {
         const auto lead = static_cast<unsigned char>(text[i++]);
-        const int following = lead < 0x80       ? 0
-                              : lead >> 5 == 6  ? 1
-                              : lead >> 4 == 14 ? 2
-                              : lead >> 3 == 30 ? 3
-                                                : -1;
+        const int following = lead < 0x80 ? 0 : lead >> 5 == 6 ? 1 : lead >> 4 == 14 ? 2 : lead >> 3 == 30 ? 3 : -1;
         if (following < 0) {
             return false;
         }
@@ -148,7 +144,8 @@ bool is_number(std::string_view word) {
     if (word.starts_with('+')) { // from_chars takes none
         word.remove_prefix(1);
     }
-    return std::from_chars(word.data(), word.data() + word.size(), value).ptr == word.data() + word.size() && !word.empty();
+    return std::from_chars(word.data(), word.data() + word.size(), value).ptr == word.data() + word.size() &&
+           !word.empty();
 }
 
 class Reader {
@@ -217,8 +214,7 @@ class Reader {
                 fail(words[0], keyword, joined(words), "one such line a glass", "Remove one of the two.");
             }
             read_range(words);
-        } else if (std::find(skipped_keywords.begin(), skipped_keywords.end(), keyword) ==
-                       skipped_keywords.end() &&
+        } else if (std::find(skipped_keywords.begin(), skipped_keywords.end(), keyword) == skipped_keywords.end() &&
                    glass_) {
             fail(words[0], keyword, keyword,
                  "NM, CD, LD, or CC, GC, ED, TD, OD, IT, MD, BD, which are skipped, or numbers that continue a line",
@@ -236,12 +232,11 @@ class Reader {
 
     [[noreturn]] void fail(const Word& at, std::string_view key, std::string_view found, std::string expected,
                            std::string remedy) const {
-        throw InputError(
-            {.where = {.file = file_, .line = at.line},
-             .key = glass_ ? fmt::format("{} of {}", key, quotation(glass_->name)) : std::string(key),
-             .found = quotation(found),
-             .expected = std::move(expected),
-             .remedy = std::move(remedy)});
+        throw InputError({.where = {.file = file_, .line = at.line},
+                          .key = glass_ ? fmt::format("{} of {}", key, quotation(glass_->name)) : std::string(key),
+                          .found = quotation(found),
+                          .expected = std::move(expected),
+                          .remedy = std::move(remedy)});
     }
 
     double number(std::string_view keyword, const Word& word) const {
@@ -260,7 +255,8 @@ class Reader {
 
     void require_glass(const Word& keyword) const {
         if (!glass_) {
-            fail(keyword, keyword.text, keyword.text, "a line NM before it", "Name the glass that this line belongs to.");
+            fail(keyword, keyword.text, keyword.text, "a line NM before it",
+                 "Name the glass that this line belongs to.");
         }
     }
 
@@ -300,7 +296,8 @@ class Reader {
 
     void read_range(const std::vector<Word>& words) {
         if (words.size() < 3) {
-            fail(words.back(), "LD", words.back().text, "the least and the greatest wavelength in um", "Complete the line.");
+            fail(words.back(), "LD", words.back().text, "the least and the greatest wavelength in um",
+                 "Complete the line.");
         }
         glass_->minimum_um = number("LD", words[1]);
         glass_->maximum_um = number("LD", words[2]);
@@ -345,10 +342,11 @@ class Reader {
             return;
         }
         const std::size_t named = std::min(twins_.size(), most_named);
-        spdlog::warn("{}: the same name stands for different glasses; the first of each is taken: {}{}. Rename the others "
-                     "to use them.",
-                     file_.string(), fmt::join(twins_.begin(), twins_.begin() + static_cast<std::ptrdiff_t>(named), ", "),
-                     twins_.size() > named ? fmt::format(" and {} more", twins_.size() - named) : "");
+        spdlog::warn(
+            "{}: the same name stands for different glasses; the first of each is taken: {}{}. Rename the others "
+            "to use them.",
+            file_.string(), fmt::join(twins_.begin(), twins_.begin() + static_cast<std::ptrdiff_t>(named), ", "),
+            twins_.size() > named ? fmt::format(" and {} more", twins_.size() - named) : "");
     }
 
     const std::filesystem::path& file_;

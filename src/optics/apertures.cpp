@@ -15,8 +15,8 @@ using physics::f64::PATH_ALIVE;
 using physics::f64::Ray;
 using physics::f64::real3;
 
-// What is found in the finite places that are searched may be exceeded between them: by less than this share, as outlines
-// of pupils are smooth but for the corners where two edges meet.
+// What is found in the finite places that are searched may be exceeded between them: by less than this share, as
+// outlines of pupils are smooth but for the corners where two edges meet.
 constexpr double search_margin = 1.02;
 
 } // namespace
@@ -114,8 +114,8 @@ std::vector<ConeRay> fill_cone(const Outline& outline, int panels) {
     return rays;
 }
 
-// The landing points are all but linear in the height, so Gauss and Newton's method on their deviations from the centroid
-// converges in two steps; three leave rounding.
+// The landing points are all but linear in the height, so Gauss and Newton's method on their deviations from the
+// centroid converges in two steps; three leave rounding.
 double best_focus(const Imaging& imaging, const Outline& outline) {
     // mm, for the central difference: landing points curve far less than rounding over a micrometre.
     constexpr double difference = 1e-3;
@@ -160,8 +160,9 @@ double best_focus(const Imaging& imaging, const Outline& outline) {
 
 // A ray of position x and slope s on a plane at height t above the object plane crosses the paraxial entrance pupil at
 // p x + (1 + p t) s, up to a factor, where x now stands on the object plane and p is the pupil's curvature. Light that
-// reaches the detector comes from within the field; of all of it, over field, azimuth and t, the largest such crossing is
-// the gate's radius. The crossing is convex in s and t, so the rim of each cone and the two ends of t hold the largest.
+// reaches the detector comes from within the field; of all of it, over field, azimuth and t, the largest such crossing
+// is the gate's radius. The crossing is convex in s and t, so the rim of each cone and the two ends of t hold the
+// largest.
 double gate_radius(const Imaging& imaging, double field_radius, double lowest, double highest) {
     constexpr int field_points = 12;
     double largest = 0;

@@ -1,5 +1,5 @@
-// What the real apertures let through, found by tracing: the cone from a point of the field, its best focus, the gate that
-// no useful light lies outside of. Lengths in mm.
+// What the real apertures let through, found by tracing: the cone from a point of the field, its best focus, the gate
+// that no useful light lies outside of. Lengths in mm.
 #pragma once
 
 #include "optics/first_order.hpp"
@@ -13,8 +13,8 @@
 
 namespace vkfv::optics {
 
-// The imaging train as the search needs it. Positions are on the paraxial object plane, heights above it (+z, towards the
-// objective), directions unit vectors in the medium over the specimen.
+// The imaging train as the search needs it. Positions are on the paraxial object plane, heights above it (+z, towards
+// the objective), directions unit vectors in the medium over the specimen.
 struct Imaging {
     std::vector<physics::f64::Surface> train;
     double working_distance = 0;  // object plane to the frame that the train is entered in
@@ -23,14 +23,14 @@ struct Imaging {
     double pupil_curvature = 0;   // the paraxial chief ray from x has the slope -pupil_curvature x
     bool symmetric = true;        // about the axis
 
-    // Light that leaves (position, height) with the direction cosines (l, m), at the detector; none: it does not come so far.
-    // The landing point is in the detector's frame, and path_length the optical path to it.
+    // Light that leaves (position, height) with the direction cosines (l, m), at the detector; none: it does not come
+    // so far. The landing point is in the detector's frame, and path_length the optical path to it.
     struct Landing {
         glm::dvec2 position;
         double path_length = 0;
     };
-    std::optional<Landing> trace(glm::dvec2 position, double height, glm::dvec2 cosines,
-                                 std::uint32_t apertures = 1, double spectral = 0) const;
+    std::optional<Landing> trace(glm::dvec2 position, double height, glm::dvec2 cosines, std::uint32_t apertures = 1,
+                                 double spectral = 0) const;
     glm::dvec2 chief_cosines(glm::dvec2 position) const;
 };
 
@@ -58,8 +58,8 @@ std::optional<double> farthest(double limit, Predicate holds) {
 // Directions of the field or of the source that a search looks in; without symmetry all round.
 std::vector<glm::dvec2> search_directions(bool symmetric);
 
-// The rim of the cone of light that passes all apertures from a point of the object plane, as radii in direction cosines
-// about the paraxial chief ray.
+// The rim of the cone of light that passes all apertures from a point of the object plane, as radii in direction
+// cosines about the paraxial chief ray.
 struct Outline {
     glm::dvec2 position;
     glm::dvec2 centre;         // direction cosines

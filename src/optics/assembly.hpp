@@ -35,15 +35,15 @@ Pose placed_at(const Placement& placement, const Pose& nominal);
 struct Assembly {
     explicit Assembly(const InstrumentDescription& description);
 
-    void lay_out();              // 1: focal lengths, and where the parts stand along the axis
-    void assemble_imaging();     // 2: the train from specimen to detector
-    void measure_imaging();      //    and what it does, by tracing
-    void assemble_ring();        // 3: the train from the ring light to the specimen
-    void assemble_illuminator(); //   or from the disc
+    void lay_out();                    // 1: focal lengths, and where the parts stand along the axis
+    void assemble_imaging();           // 2: the train from specimen to detector
+    void measure_imaging();            //    and what it does, by tracing
+    void assemble_ring();              // 3: the train from the ring light to the specimen
+    void assemble_illuminator();       //   or from the disc
     double ring_emission_sine() const; //  and into what cone the ring shines
-    void reduce();               // 4: the constants of the trace
-    void turn_round();           //    and the same for light the other way
-    void furnish();              // 5: the elements as they stand in the room, folded
+    void reduce();                     // 4: the constants of the trace
+    void turn_round();                 //    and the same for light the other way
+    void furnish();                    // 5: the elements as they stand in the room, folded
 
     // A plate of glass between two planes; `medium` on both sides.
     Part plate(const Pose& first, double thickness, const Medium& glass, const Medium& medium,

@@ -17,7 +17,8 @@ namespace {
 
 constexpr double outside_margin = 1.02; // outlines are searched in finite places: see apertures.cpp
 constexpr double inside_margin = 0.99;
-constexpr double inside_share = 0.97; // of the gate on the axis, that the sure gate may shrink to towards the field's edge
+constexpr double inside_share =
+    0.97; // of the gate on the axis, that the sure gate may shrink to towards the field's edge
 
 // Where the light of an outline's rim lands on the detector, and its slope there.
 struct Rim {
@@ -38,13 +39,13 @@ std::vector<Rim> rims_at_detector(const Imaging& imaging, const Outline& outline
         ray.direction = glm::dvec3(cosines, std::sqrt(1 - glm::dot(cosines, cosines)));
         const auto traced = trace_through(imaging.train, ray, 1);
         const auto landed = physics::f64::fly_to_plane(traced.ray, imaging.detector_distance, traced.index);
-        rims.push_back({glm::dvec2(landed.position),
-                        glm::dvec2(landed.direction) / landed.direction.z});
+        rims.push_back({glm::dvec2(landed.position), glm::dvec2(landed.direction) / landed.direction.z});
     }
     return rims;
 }
 
-// The smallest and the largest |curvature * position + slope| on a cone's rim; the smallest is 0 where some of it is dark.
+// The smallest and the largest |curvature * position + slope| on a cone's rim; the smallest is 0 where some of it is
+// dark.
 std::pair<double, double> crossings(const Outline& outline, double curvature) {
     double least = std::numeric_limits<double>::infinity();
     double most = 0;
@@ -102,10 +103,10 @@ void Assembly::turn_round() {
     constexpr int field_points = 12;
     for (const glm::dvec2& direction : search_directions(imaging.symmetric)) {
         for (int i = 0; i <= field_points; ++i) {
-            for (const Rim& rim : rims_at_detector(
-                     imaging, outline_at(imaging, direction * (field_radius * i / field_points)))) {
-                optics.pupil_radius =
-                    std::max(optics.pupil_radius, outside_margin * glm::length(rim.slope - per_position * rim.position));
+            for (const Rim& rim :
+                 rims_at_detector(imaging, outline_at(imaging, direction * (field_radius * i / field_points)))) {
+                optics.pupil_radius = std::max(optics.pupil_radius,
+                                               outside_margin * glm::length(rim.slope - per_position * rim.position));
             }
         }
     }
@@ -133,8 +134,8 @@ void Assembly::turn_round() {
     int sure_points = fine_field_points;
     for (const glm::dvec2& direction : search_directions(straight)) {
         for (int i = 0; i <= fine_field_points; ++i) {
-            const auto [least, most] = crossings(
-                outline_at(seen, direction * (seen_radius * i / fine_field_points)), optics.source_position);
+            const auto [least, most] =
+                crossings(outline_at(seen, direction * (seen_radius * i / fine_field_points)), optics.source_position);
             optics.source_outer = std::max(optics.source_outer, outside_margin * most);
             if (least < inside_share * on_axis) {
                 sure_points = std::min(sure_points, i - 1);

@@ -27,9 +27,10 @@ void move(Part& part, const Pose& from, const Pose& to) {
 
 } // namespace
 
-// From any point of the band the ball about what is lit lies within this cone about the band's normal: its middle is off the
-// normal by at most the half width, and no point of the ball is nearer than this. A cover glass moves light sideways, by less
-// than its thickness if it is the denser medium; else near total reflection by any length, and then all light is kept.
+// From any point of the band the ball about what is lit lies within this cone about the band's normal: its middle is
+// off the normal by at most the half width, and no point of the ball is nearer than this. A cover glass moves light
+// sideways, by less than its thickness if it is the denser medium; else near total reflection by any length, and then
+// all light is kept.
 double Assembly::ring_emission_sine() const {
     const RingLightDescription& ring = *description.ring;
     constexpr double margin = 1.5; // around the detector's field
@@ -78,9 +79,9 @@ void Assembly::assemble_ring() {
         refuse("source.width_mm", fmt::format("{} mm wide, {} mm away", ring.width, ring.distance),
                "a band that does not reach the axis", "Choose a smaller width or elevation.");
     }
-    if (!cover.empty() && !(ring.distance * constants.ring.elevation_sine -
-                                constants.ring.half_width * constants.ring.elevation_cosine >
-                            constants.ring.aim_distance)) {
+    if (!cover.empty() &&
+        !(ring.distance * constants.ring.elevation_sine - constants.ring.half_width * constants.ring.elevation_cosine >
+          constants.ring.aim_distance)) {
         refuse("source.distance_mm", fmt::format("{} mm", ring.distance),
                fmt::format("a ring above the cover glass, whose upper face is {:.6g} mm over the focus",
                            constants.ring.aim_distance),
@@ -93,9 +94,8 @@ void Assembly::assemble_ring() {
 
 void Assembly::assemble_illuminator() {
     require_surfaces(description.illumination, "illumination.prescription");
-    const Prescription prescribed =
-        with_stop(description.illumination, Role::field_stop, description.field_stop_radius,
-                  "illumination.field_stop_radius_mm");
+    const Prescription prescribed = with_stop(description.illumination, Role::field_stop, description.field_stop_radius,
+                                              "illumination.field_stop_radius_mm");
     Pose end;
     illuminator = place_prescription(prescribed, spectrum, description.interfaces, Pose{}, end);
     require_air(illuminator.front().surface.index_before, prescribed, "illumination.prescription");
@@ -126,55 +126,49 @@ void Assembly::assemble_illuminator() {
     const double glass_shift = splitter.kind == BeamSplitter::Kind::cube
                                    ? splitter.size * (1 - 1 / splitter.glass.index(spectrum.reference_um))
                                    : 0;
-    first_order.illumination_to_objective = description.illumination_to_objective.value_or(
-        source_image.distance - back_pupil_distance + glass_shift);
+    first_order.illumination_to_objective =
+        description.illumination_to_objective.value_or(source_image.distance - back_pupil_distance + glass_shift);
     const double distance = first_order.illumination_to_objective;
     if (!(distance >= 0 && std::isfinite(distance))) {
         refuse("illumination.objective_distance_mm", fmt::format("{:.6g}", distance),
-               fmt::format("room between {} and {} so that the source is imaged into the pupil",
-                           prescribed.name, description.objective.name),
-               "Give a distance >= 0, or move the source nearer to the illuminator's focal plane.",
-               prescribed.file);
+               fmt::format("room between {} and {} so that the source is imaged into the pupil", prescribed.name,
+                           description.objective.name),
+               "Give a distance >= 0, or move the source nearer to the illuminator's focal plane.", prescribed.file);
     }
     first_order.source_magnification = source_image.magnification;
     first_order.pupil_radius_in_source = back_pupil_radius / std::abs(source_image.magnification);
-    const double filling_radius =
-        std::min(description.source_radius,
-                 description.illumination_aperture_radius.value_or(description.source_radius));
+    const double filling_radius = std::min(
+        description.source_radius, description.illumination_aperture_radius.value_or(description.source_radius));
     if (filling_radius < 0.98 * first_order.pupil_radius_in_source) {
-        instrument.warnings.push_back(fmt::format(
-            "The source does not fill the objective's pupil: its radius is {:.4g} mm, filling takes "
-            "{:.4g} mm.",
-            filling_radius, first_order.pupil_radius_in_source));
+        instrument.warnings.push_back(
+            fmt::format("The source does not fill the objective's pupil: its radius is {:.4g} mm, filling takes "
+                        "{:.4g} mm.",
+                        filling_radius, first_order.pupil_radius_in_source));
     }
     const double image_to_pupil = distance + back_pupil_distance - glass_shift - source_image.distance;
     if (!(std::abs(image_to_pupil) < 0.05 * first_order.efl_objective)) {
         instrument.warnings.push_back(fmt::format(
-            "The source is imaged {:.3g} mm in front of the objective's pupil instead of into it.",
-            image_to_pupil));
+            "The source is imaged {:.3g} mm in front of the objective's pupil instead of into it.", image_to_pupil));
     }
 
     const Pose illuminator_last = downward(back + distance);
     move(illuminator, end, illuminator_last);
-    const Pose entry = {illuminator_last.origin -
-                            illuminator_last.axes * (glm::transpose(end.axes) * end.origin),
+    const Pose entry = {illuminator_last.origin - illuminator_last.axes * (glm::transpose(end.axes) * end.origin),
                         illuminator_last.axes * glm::transpose(end.axes)};
     std::vector<Inserted> between;
     if (splitter.kind == BeamSplitter::Kind::cube) {
-        between.push_back(
-            {distance - splitter_distance,
-             plate(downward(splitter_height + half_size), splitter.size, splitter.glass, Medium::air(),
-                   splitter.semi_diameter.value_or(half_size), "beam splitter")});
+        between.push_back({distance - splitter_distance,
+                           plate(downward(splitter_height + half_size), splitter.size, splitter.glass, Medium::air(),
+                                 splitter.semi_diameter.value_or(half_size), "beam splitter")});
     }
     const double splitter_from_illuminator = distance - splitter_distance;
     for (const FoldMirror& fold : description.fold_mirrors) {
         if (fold.path == FoldMirror::Path::illumination) {
             if (!(fold.distance >= 0 && fold.distance < splitter_from_illuminator)) {
-                refuse(
-                    key_of(fold), fmt::format("{}", fold.distance),
-                    fmt::format("a place between the illuminator and the beam splitter {:.6g} mm behind it",
-                                splitter_from_illuminator),
-                    "Move the fold mirror.");
+                refuse(key_of(fold), fmt::format("{}", fold.distance),
+                       fmt::format("a place between the illuminator and the beam splitter {:.6g} mm behind it",
+                                   splitter_from_illuminator),
+                       "Move the fold mirror.");
             }
             add_fold(fold, illuminator_last.along_z(fold.distance), between);
         }
@@ -192,10 +186,10 @@ void Assembly::assemble_illuminator() {
     instrument.illumination_surfaces_before_splitter = static_cast<int>(illumination_train.size());
     for (const Inserted& part : between) {
         append(illumination_train, part.surfaces);
-        instrument.illumination_surfaces_before_splitter +=
-            part.distance < splitter_from_illuminator ? static_cast<int>(part.surfaces.size())
-            : part.surfaces.size() == 2               ? 1 // the cube's first face
-                                                      : 0;
+        instrument.illumination_surfaces_before_splitter += part.distance < splitter_from_illuminator
+                                                                ? static_cast<int>(part.surfaces.size())
+                                                            : part.surfaces.size() == 2 ? 1 // the cube's first face
+                                                                                        : 0;
     }
     append(illumination_train, reversed(objective));
     append(illumination_train, reversed(cover));
@@ -225,21 +219,18 @@ void Assembly::assemble_illuminator() {
         }
     }
     // Without a field stop the last surface limits the field as well as any.
-    const bool straight = std::ranges::none_of(illumination_surfaces,
-                                               [](const Surface& surface) { return is_displaced(surface); });
-    const auto stop_transfer =
-        transfer_to_surface(illumination_surfaces, field_stop.value_or(illuminator.size() - 1));
-    const DiscSource source = {.radius = description.source_radius,
-                               .distance = *source_distance,
-                               .monochromatic = spectrum.monochromatic()};
+    const bool straight =
+        std::ranges::none_of(illumination_surfaces, [](const Surface& surface) { return is_displaced(surface); });
+    const auto stop_transfer = transfer_to_surface(illumination_surfaces, field_stop.value_or(illuminator.size() - 1));
+    const DiscSource source = {
+        .radius = description.source_radius, .distance = *source_distance, .monochromatic = spectrum.monochromatic()};
     const RayTransfer towards_stop =
         free_space(*source_distance + illumination_surfaces.front().distance).then(stop_transfer);
     aimed_sine = emission_sine(illumination_surfaces, straight, source,
                                largest_sampled_sine(illumination_surfaces, straight, source, towards_stop));
     if (!(aimed_sine > 0)) {
-        refuse("illumination.prescription", prescribed.name,
-               "an illuminator whose light passes the objective", "Check distances and semi-diameters.",
-               prescribed.file);
+        refuse("illumination.prescription", prescribed.name, "an illuminator whose light passes the objective",
+               "Check distances and semi-diameters.", prescribed.file);
     }
     instrument.source_pose = entry.along_z(-*source_distance);
 }

@@ -28,15 +28,11 @@ void Assembly::lay_out() {
     Pose end;
     straight_objective = place_prescription(objective_lens, spectrum, description.interfaces, Pose{}, end);
     const double objective_length = end.origin.z;
-    require_air(straight_objective.back().surface.index_after, description.objective,
-                "objective.prescription");
+    require_air(straight_objective.back().surface.index_after, description.objective, "objective.prescription");
     const RayTransfer objective_transfer = transfer_of(straight_objective);
-    straight_tube_lens =
-        place_prescription(description.tube_lens, spectrum, description.interfaces, Pose{}, end);
-    require_air(straight_tube_lens.front().surface.index_before, description.tube_lens,
-                "tube_lens.prescription");
-    require_air(straight_tube_lens.back().surface.index_after, description.tube_lens,
-                "tube_lens.prescription");
+    straight_tube_lens = place_prescription(description.tube_lens, spectrum, description.interfaces, Pose{}, end);
+    require_air(straight_tube_lens.front().surface.index_before, description.tube_lens, "tube_lens.prescription");
+    require_air(straight_tube_lens.back().surface.index_after, description.tube_lens, "tube_lens.prescription");
     const RayTransfer tube_lens_transfer = transfer_of(straight_tube_lens);
     first_order.efl_objective = focal_length(objective_transfer);
     first_order.efl_tube_lens = focal_length(tube_lens_transfer);
@@ -54,15 +50,14 @@ void Assembly::lay_out() {
                "List it from the objective to the detector.", description.tube_lens.file);
     }
     if (!(description.objective_to_tube_lens >= 0)) {
-        refuse("tube_lens.distance_mm", fmt::format("{}", description.objective_to_tube_lens),
-               "a number >= 0", "Correct it.");
+        refuse("tube_lens.distance_mm", fmt::format("{}", description.objective_to_tube_lens), "a number >= 0",
+               "Correct it.");
     }
     first_order.magnification = -first_order.efl_tube_lens / first_order.efl_objective;
     const double absolute_magnification = std::abs(first_order.magnification);
     field_half_side = 0.5 * description.detector_size / absolute_magnification;
     field_half_diagonal = std::sqrt(2.0) * field_half_side;
-    first_order.pixel_pitch =
-        description.detector_size / description.detector_pixels / absolute_magnification;
+    first_order.pixel_pitch = description.detector_size / description.detector_pixels / absolute_magnification;
     first_order.field_edge = field_half_side;
 
     // Heights over the paraxial object plane. A plate of thickness t shortens the way by t (1 - n0 / n).
@@ -75,15 +70,12 @@ void Assembly::lay_out() {
         const double free_way = free_distance - glass.thickness * object_index.centre / index;
         const double height = glass.distance.value_or(0.5 * free_way);
         if (!(height > 0 && height < free_way)) {
-            refuse(
-                "cover_glass.thickness_mm",
-                fmt::format("{} mm, {:.6g} mm over the focus", glass.thickness, height),
-                fmt::format("a plate between the focus and the objective, which is {:.6g} mm away without it",
-                            free_distance),
-                "Choose a thinner plate, or another distance_mm.");
+            refuse("cover_glass.thickness_mm", fmt::format("{} mm, {:.6g} mm over the focus", glass.thickness, height),
+                   fmt::format("a plate between the focus and the objective, which is {:.6g} mm away without it",
+                               free_distance),
+                   "Choose a thinner plate, or another distance_mm.");
         }
-        cover = plate(Pose{}.along_z(height), glass.thickness, glass.glass, object_medium, std::nullopt,
-                      "cover glass");
+        cover = plate(Pose{}.along_z(height), glass.thickness, glass.glass, object_medium, std::nullopt, "cover glass");
         objective_front = free_way + glass.thickness;
         first_order.working_distance = height;
     }
@@ -94,9 +86,8 @@ void Assembly::lay_out() {
 void Assembly::assemble_imaging() {
     // Imaging, from the specimen to the detector.
     Pose end;
-    objective =
-        place_prescription(objective_lens, spectrum, description.interfaces,
-                           placed_at(description.objective_placement, Pose{}.along_z(objective_front)), end);
+    objective = place_prescription(objective_lens, spectrum, description.interfaces,
+                                   placed_at(description.objective_placement, Pose{}.along_z(objective_front)), end);
     splitter_distance = splitter.distance.value_or(0.5 * description.objective_to_tube_lens);
     splitter_height = back + splitter_distance;
     // The coated side faces the specimen and the illuminator, which stands at +y.
@@ -105,11 +96,10 @@ void Assembly::assemble_imaging() {
     half_size = 0.5 * splitter.size;
     int splitter_surfaces_before = 0;
     if (splitter.kind == BeamSplitter::Kind::plate) {
-        splitter_imaging = plate(splitter_pose, splitter.size, splitter.glass, Medium::air(),
-                                 splitter.semi_diameter, "beam splitter");
+        splitter_imaging =
+            plate(splitter_pose, splitter.size, splitter.glass, Medium::air(), splitter.semi_diameter, "beam splitter");
         // What its coating reflects is the splitter's reflectance.
-        splitter_imaging.front().surface.flags &=
-            ~(physics::f64::SURFACE_FRESNEL | physics::f64::SURFACE_LAYER);
+        splitter_imaging.front().surface.flags &= ~(physics::f64::SURFACE_FRESNEL | physics::f64::SURFACE_LAYER);
         splitter_surfaces_before = 1;
     } else if (splitter.kind == BeamSplitter::Kind::cube) {
         splitter_imaging = plate(Pose{}.along_z(splitter_height - half_size), splitter.size, splitter.glass,
@@ -120,11 +110,10 @@ void Assembly::assemble_imaging() {
     for (const FoldMirror& fold : description.fold_mirrors) {
         if (fold.path == FoldMirror::Path::imaging) {
             if (!(fold.distance > splitter_distance)) {
-                refuse(
-                    key_of(fold), fmt::format("{}", fold.distance),
-                    fmt::format("a place behind the beam splitter, which is {:.6g} mm behind the objective",
-                                splitter_distance),
-                    "Move the fold mirror or the beam splitter.");
+                refuse(key_of(fold), fmt::format("{}", fold.distance),
+                       fmt::format("a place behind the beam splitter, which is {:.6g} mm behind the objective",
+                                   splitter_distance),
+                       "Move the fold mirror or the beam splitter.");
             }
             add_fold(fold, Pose{}.along_z(back + fold.distance), inserted);
         }
@@ -132,8 +121,7 @@ void Assembly::assemble_imaging() {
     std::ranges::stable_sort(inserted, {}, &Inserted::distance);
     imaging_train = cover;
     append(imaging_train, objective);
-    instrument.imaging_surfaces_before_splitter =
-        static_cast<int>(imaging_train.size()) + splitter_surfaces_before;
+    instrument.imaging_surfaces_before_splitter = static_cast<int>(imaging_train.size()) + splitter_surfaces_before;
     for (const Inserted& part : inserted) {
         if (!(part.distance >= 0 && part.distance <= description.objective_to_tube_lens)) {
             refuse("tube_lens.distance_mm", fmt::format("{}", description.objective_to_tube_lens),
@@ -147,8 +135,8 @@ void Assembly::assemble_imaging() {
                                    placed_at(description.tube_lens_placement, tube_lens_nominal), end);
     append(imaging_train, tube_lens);
     const double tube_lens_length = straight_tube_lens.back().pose.origin.z;
-    detector_pose = placed_at(description.detector_placement,
-                              tube_lens_nominal.along_z(tube_lens_length + detector_distance));
+    detector_pose =
+        placed_at(description.detector_placement, tube_lens_nominal.along_z(tube_lens_length + detector_distance));
     const PlacedSurface detector_plane = dummy_plane(air, detector_pose, "detector's plane");
     if (is_displaced(transfer_between(imaging_train.back().pose, detector_plane))) {
         imaging_train.push_back(detector_plane);
@@ -161,8 +149,7 @@ void Assembly::assemble_imaging() {
     if (!aperture_stop || (objective[*aperture_stop].surface.flags & physics::f64::SURFACE_CLIPPED) == 0) {
         refuse("objective.prescription", description.objective.name,
                "one surface that is the aperture stop and has a semi-diameter",
-               "Mark the surface that limits the cone with role = \"aperture stop\".",
-               description.objective.file);
+               "Mark the surface that limits the cone with role = \"aperture stop\".", description.objective.file);
     }
     imaging_surfaces = surfaces_of(imaging_train);
     const EntrancePupil pupil =
@@ -196,10 +183,10 @@ void Assembly::measure_imaging() {
     first_order.field_curvature_corner = best_focus(imaging, at_corner) - first_order.best_focus_offset;
     const double relative_light = at_corner.area() / on_axis.area();
     if (relative_light < 0.9) {
-        instrument.warnings.push_back(fmt::format(
-            "The corners of the detector's field receive {:.0f} % of the axial light: lens edges clip "
-            "their cones.",
-            100 * relative_light));
+        instrument.warnings.push_back(
+            fmt::format("The corners of the detector's field receive {:.0f} % of the axial light: lens edges clip "
+                        "their cones.",
+                        100 * relative_light));
     }
 }
 

@@ -15,11 +15,10 @@ namespace {
 
 Element make_element(Element::Kind kind, const PlacedSurface& placed, const char* part) {
     Element result;
-    result.kind =
-        (placed.surface.flags & physics::f64::SURFACE_IDEAL_LENS) != 0 ? Element::Kind::ideal_lens
-        : kind == Element::Kind::surface && placed.surface.index_before == placed.surface.index_after
-            ? Element::Kind::stop
-            : kind;
+    result.kind = (placed.surface.flags & physics::f64::SURFACE_IDEAL_LENS) != 0 ? Element::Kind::ideal_lens
+                  : kind == Element::Kind::surface && placed.surface.index_before == placed.surface.index_after
+                      ? Element::Kind::stop
+                      : kind;
     result.surface = placed.surface;
     result.pose = placed.pose;
     result.name = placed.name;

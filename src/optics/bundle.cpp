@@ -14,8 +14,9 @@ namespace {
 using physics::f64::Dispersion;
 using physics::f64::Surface;
 
-// Apertures count as wider by this share and this length (mm). The device traces in float, whose rounding at the lengths of an
-// illuminator (100 mm) is 1e-5 mm; what double's rounding does to the bounds themselves, 1e-13 mm, is far less.
+// Apertures count as wider by this share and this length (mm). The device traces in float, whose rounding at the
+// lengths of an illuminator (100 mm) is 1e-5 mm; what double's rounding does to the bounds themselves, 1e-13 mm, is far
+// less.
 constexpr double aperture_share = 1e-5;
 constexpr double aperture_rounding = 1e-5;
 // Of products of directions, likewise.
@@ -71,8 +72,8 @@ class Conditions {
             spread_[i] = std::abs(x.slopes[i]) + std::abs(y.slopes[i]);
         }
     }
-    // What the undecided depends on: the bundle's place if it could not be bounded, else the nearest condition, whose rest goes
-    // with the squares of what the place depends on.
+    // What the undecided depends on: the bundle's place if it could not be bounded, else the nearest condition, whose
+    // rest goes with the squares of what the place depends on.
     std::array<double, Affine::coordinates> influences(bool bounded) const {
         const auto& spread = bounded ? spread_at_nearest_ : spread_;
         double squares = 0;
@@ -205,8 +206,9 @@ ApertureBounds bounds_of(const Surface& surface, double radius) {
     return bounds;
 }
 
-// From the conic's point, where the asphere is off by its polynomial alone: by the mean value theorem the way from there is that
-// height over the rate of approach at some point between. Where Newton's method (physics/asphere.glsl) has arrived.
+// From the conic's point, where the asphere is off by its polynomial alone: by the mean value theorem the way from
+// there is that height over the rate of approach at some point between. Where Newton's method (physics/asphere.glsl)
+// has arrived.
 Met meet_asphere(const Surface& surface, const Vector& direction, Vector point, const ApertureBounds& aperture) {
     const auto& [radius, heights, far_heights] = aperture;
     const double most_q = std::max(square(point.x).high() + square(point.y).high(), radius * radius);
@@ -221,8 +223,8 @@ Met meet_asphere(const Surface& surface, const Vector& direction, Vector point, 
         // |r'^2 - r^2| between the two points.
         const double spread = way * (2 * outward.range().magnitude() + way * across_squared);
         const Affine q = square(point.x) + square(point.y);
-        const auto slope = slope_over_r(
-            surface, anything_in({std::max(0.0, q.low() - spread), std::min(most_q, q.high() + spread)}));
+        const auto slope =
+            slope_over_r(surface, anything_in({std::max(0.0, q.low() - spread), std::min(most_q, q.high() + spread)}));
         if (!slope) {
             return {.passage = Passage::unbounded};
         }
@@ -343,7 +345,8 @@ Passage pass_lens(Bundle& bundle, double power, const Affine& index_after, Condi
     return set_axial(bundle, conditions);
 }
 
-// Whether the lines come within a radius of the axis between two heights; all is times the direction's z, which may be 0.
+// Whether the lines come within a radius of the axis between two heights; all is times the direction's z, which may be
+// 0.
 bool may_meet_within(const Bundle& bundle, double radius, const Range& heights, Conditions& conditions) {
     const Vector& direction = bundle.direction;
     const Affine way = anything_in(heights) - bundle.position.z;
@@ -401,8 +404,7 @@ BundleTracer::BundleTracer(std::span<const Surface> train, double source_distanc
     for (const Surface& surface : train) {
         apertures_.emplace_back();
         if ((surface.flags & physics::f64::SURFACE_CLIPPED) != 0) {
-            const double radius =
-                (1 + aperture_share) * std::sqrt(surface.semi_diameter_squared) + aperture_rounding;
+            const double radius = (1 + aperture_share) * std::sqrt(surface.semi_diameter_squared) + aperture_rounding;
             apertures_.back() = bounds_of(surface, radius);
         }
     }

@@ -1,5 +1,5 @@
-// Bundles: all rays that a box of a disc source's positions, directions and wavelengths holds, led through a train at once,
-// to prove that none of them passes. Lengths in mm, angles in rad.
+// Bundles: all rays that a box of a disc source's positions, directions and wavelengths holds, led through a train at
+// once, to prove that none of them passes. Lengths in mm, angles in rad.
 #pragma once
 
 #include "optics/affine.hpp"
@@ -30,8 +30,8 @@ struct EmittedRay {
 };
 EmittedRay ray_in(const EmissionBox& box, const std::array<double, Affine::coordinates>& at);
 
-// An aperture (mm), and the heights in the surface's frame at which light can meet the surface within it: about its vertex,
-// and on a conic's other side, beyond the equator or on the other sheet. Aspheres have none.
+// An aperture (mm), and the heights in the surface's frame at which light can meet the surface within it: about its
+// vertex, and on a conic's other side, beyond the equator or on the other sheet. Aspheres have none.
 struct ApertureBounds {
     double radius = 0;
     Range heights;
@@ -43,16 +43,16 @@ class BundleTracer {
     // `train` as in trace_through, entered source_distance behind the source; it must outlive this.
     BundleTracer(std::span<const physics::f64::Surface> train, double source_distance);
 
-    // None: no ray of the box passes all of the train, by the rays' own equations (physics/train.glsl) with apertures, total
-    // reflection and surfaces that are missed; losses at interfaces are not looked at. Else some may, and the coordinate
-    // that the box is best halved in to know more.
+    // None: no ray of the box passes all of the train, by the rays' own equations (physics/train.glsl) with apertures,
+    // total reflection and surfaces that are missed; losses at interfaces are not looked at. Else some may, and the
+    // coordinate that the box is best halved in to know more.
     std::optional<EmissionCoordinate> may_pass(const EmissionBox& box) const;
 
   private:
     std::span<const physics::f64::Surface> train_;
     double source_distance_;
     std::vector<std::optional<ApertureBounds>> apertures_; // none: unbounded
-    std::size_t first_displaced_;            // up to there the turn about the normal does not matter
+    std::size_t first_displaced_;                          // up to there the turn about the normal does not matter
 };
 
 } // namespace vkfv::optics

@@ -19,8 +19,8 @@ using physics::f64::PATH_ALIVE;
 using physics::f64::Ray;
 using physics::f64::Surface;
 
-// The cone may be this much wider than the largest angle that is found to pass: bounding it more closely takes longer, and spares
-// 4 % of the rays at most.
+// The cone may be this much wider than the largest angle that is found to pass: bounding it more closely takes longer,
+// and spares 4 % of the rays at most.
 constexpr double margin = 1.02;
 
 EmissionBox all_rays(bool symmetric, const DiscSource& source) {
@@ -34,8 +34,8 @@ EmissionBox all_rays(bool symmetric, const DiscSource& source) {
     return whole;
 }
 
-// Sine of the largest angle among a few samples of a box that pass, 0: none does. Light of the largest angle often starts from
-// the source's rim, in or against its direction.
+// Sine of the largest angle among a few samples of a box that pass, 0: none does. Light of the largest angle often
+// starts from the source's rim, in or against its direction.
 double sampled_sine(std::span<const Surface> train, double source_distance, const EmissionBox& box) {
     std::array<double, Affine::coordinates> at{};
     for (const double polar_place : {1.0, 0.0, -1.0}) {
@@ -62,8 +62,7 @@ double largest_sampled_sine(std::span<const Surface> train, bool symmetric, cons
     const auto largest_from = [&](glm::dvec2 position) {
         constexpr int azimuths = 26;
         const double slope = -towards_stop.a / towards_stop.b;
-        const glm::dvec2 centre =
-            slope * position / std::sqrt(1 + slope * slope * glm::dot(position, position));
+        const glm::dvec2 centre = slope * position / std::sqrt(1 + slope * slope * glm::dot(position, position));
         double largest = 0;
         // Mirrored azimuths are the same for a symmetric train and a point of the x axis.
         for (int i = 0; i < (symmetric ? azimuths / 2 : azimuths); ++i) {
@@ -88,8 +87,8 @@ double largest_sampled_sine(std::span<const Surface> train, bool symmetric, cons
     };
     double largest = 0;
     for (const glm::dvec2& direction : search_directions(symmetric)) {
-        // The angle grows towards the rim of what the pupil sees of the source, then light stops: two finer rounds about
-        // the best point so far close in on it to 1/50 of the source.
+        // The angle grows towards the rim of what the pupil sees of the source, then light stops: two finer rounds
+        // about the best point so far close in on it to 1/50 of the source.
         constexpr int points = 6;
         double low = 0;
         double high = source.radius;
@@ -112,9 +111,9 @@ double largest_sampled_sine(std::span<const Surface> train, bool symmetric, cons
     return largest;
 }
 
-// Branch and bound: the box with the largest angle is halved until either no ray of it passes, by bounds over all of it, or its
-// largest angle is hardly larger than that of a ray known to pass. Whatever ends the search leaves no box aside: the
-// largest angle of all that are left bounds the light.
+// Branch and bound: the box with the largest angle is halved until either no ray of it passes, by bounds over all of
+// it, or its largest angle is hardly larger than that of a ray known to pass. Whatever ends the search leaves no box
+// aside: the largest angle of all that are left bounds the light.
 double emission_sine(std::span<const Surface> train, bool symmetric, const DiscSource& source, double known_sine) {
     constexpr int most_boxes = 10000; // 0.1 s; a microscope's illuminator takes 2000
     constexpr double thin = 1e-3;     // of the angle: no use in halving what is still left then

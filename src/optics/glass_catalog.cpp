@@ -27,8 +27,7 @@ constexpr const char* schott_2018 = "SCHOTT catalogue, status of 1 June 2018";
 constexpr const char* ohara_2019 = "OHARA catalogue, updated 18 October 2019";
 constexpr const char* cdgm = "CDGM catalogue, as in the AGF file of zemaxglass";
 // Glasses no longer made, and B270, for which only three indices are at hand: Conrady's formula through them.
-constexpr const char* zemax_lines =
-    "F, d and C indices of Zemax's old catalogues, as printed in LensLibrary's reports";
+constexpr const char* zemax_lines = "F, d and C indices of Zemax's old catalogues, as printed in LensLibrary's reports";
 constexpr const char* b270_lines = "F, d and C indices of the Thorlabs catalogue's aspheric condensers";
 
 const std::vector<BuiltinGlass>& builtin_glasses() {
@@ -219,8 +218,7 @@ std::string in_one_case(std::string_view name) {
 }
 
 bool is_glass_code(std::string_view name) {
-    return name.size() == 6 &&
-           std::all_of(name.begin(), name.end(), [](char c) { return c >= '0' && c <= '9'; });
+    return name.size() == 6 && std::all_of(name.begin(), name.end(), [](char c) { return c >= '0' && c <= '9'; });
 }
 
 } // namespace
@@ -305,9 +303,8 @@ std::optional<std::string> nearest_glass(const GlassCatalog& glasses, std::strin
 std::string remedy_for_unknown_glass(const GlassCatalog& glasses, std::string_view name,
                                      const std::vector<std::string>& others) {
     if (is_glass_code(name)) {
-        return fmt::format(
-            "If a model glass is meant, describe it in [media.{}] by nd = 1.{} and vd = {}.{}.", name,
-            name.substr(0, 3), name.substr(3, 2), name.substr(5));
+        return fmt::format("If a model glass is meant, describe it in [media.{}] by nd = 1.{} and vd = {}.{}.", name,
+                           name.substr(0, 3), name.substr(3, 2), name.substr(5));
     }
     const auto meant = nearest_glass(glasses, name, others);
     return fmt::format("{}Correct the name, describe the medium in [media.{}], or add its catalogue to "

@@ -168,7 +168,8 @@ PointImage point_image(const Imaging& imaging, const Outline& outline, double he
         }
     }
 
-    // The angle characteristic about the centroid, without its mean; a shift of the centre by d adds direction . d to it.
+    // The angle characteristic about the centroid, without its mean; a shift of the centre by d adds direction . d to
+    // it.
     double mean_square = 0;
     glm::dmat2 normal(0);
     glm::dvec2 right(0);
@@ -194,8 +195,7 @@ PointImage point_image(const Imaging& imaging, const Outline& outline, double he
         }
     }
     image.rms_spot = std::sqrt(mean_square);
-    const glm::dvec2 tilt =
-        glm::determinant(normal) > 0 ? glm::inverse(normal) * right : glm::dvec2(0);
+    const glm::dvec2 tilt = glm::determinant(normal) > 0 ? glm::inverse(normal) * right : glm::dvec2(0);
 
     double variance = 0;
     double reached = 0;
@@ -248,8 +248,7 @@ ImageQuality image_quality(const InstrumentDescription& description, const Instr
     quality.entrance_pupil_height = entrance.distance;
     quality.entrance_pupil_radius = stop_radius * std::abs(entrance.magnification);
     const std::size_t objective_end = objective_first + objective.surfaces.size();
-    const StopImage back =
-        stop_seen_from_behind(transfer_of_train(train.subspan(stop, objective_end - stop)));
+    const StopImage back = stop_seen_from_behind(transfer_of_train(train.subspan(stop, objective_end - stop)));
     quality.back_pupil_distance = back.distance;
     quality.back_pupil_radius = stop_radius * std::abs(back.magnification);
     const StopImage exit = stop_seen_from_behind(transfer_of_train(train.subspan(stop)), imaging.detector_index);
@@ -369,10 +368,10 @@ ImageQuality image_quality(const InstrumentDescription& description, const Instr
                         first_order.pixel_pitch * um_per_mm, wavelength / first_order.numerical_aperture * um_per_mm,
                         0.5 * quality.airy_radius * um_per_mm));
     } else if (first_order.pixel_pitch < far_finer * quality.airy_radius) {
-        quality.warnings.push_back(
-            fmt::format("The detector's pixel, {:.3g} um in the object, is far finer than the optics resolve, whose Airy "
-                        "radius is {:.3g} um: larger pixels would see as much, with less noise.",
-                        first_order.pixel_pitch * um_per_mm, quality.airy_radius * um_per_mm));
+        quality.warnings.push_back(fmt::format(
+            "The detector's pixel, {:.3g} um in the object, is far finer than the optics resolve, whose Airy "
+            "radius is {:.3g} um: larger pixels would see as much, with less noise.",
+            first_order.pixel_pitch * um_per_mm, quality.airy_radius * um_per_mm));
     }
     return quality;
 }

@@ -13,7 +13,7 @@ namespace vkfv::optics {
 
 // A wavelength of a quadrature over the spectrum.
 struct SpectralNode {
-    double spectral = 0;      // x of physics::Light
+    double spectral = 0; // x of physics::Light
     double wavelength_um = 0;
     double weight = 0; // share of the flux; they add up to 1
 };
@@ -37,7 +37,8 @@ struct PointImage {
     double relative_light = 0; // area of its cone over that on the axis
 };
 
-// Of the outline's point at `height` above the paraxial object plane; NaN where no light arrives. relative_light stays 0.
+// Of the outline's point at `height` above the paraxial object plane; NaN where no light arrives. relative_light stays
+// 0.
 PointImage point_image(const Imaging& imaging, const Outline& outline, double height,
                        std::span<const SpectralNode> spectrum);
 
@@ -67,18 +68,18 @@ struct ImageQuality {
     // Of the objective alone, seen from behind: from its last vertex towards the tube lens. What the source must fill.
     double back_pupil_distance = 0;
     double back_pupil_radius = 0;
-    // Of the axial cone's beam behind the objective, traced: n sin times f where the sine condition holds, from which the
-    // paraxial pupil's radius differs at high aperture.
+    // Of the axial cone's beam behind the objective, traced: n sin times f where the sine condition holds, from which
+    // the paraxial pupil's radius differs at high aperture.
     double beam_radius = 0;
     // Of the whole microscope: in front of the detector.
     double exit_pupil_distance = 0;
     double exit_pupil_radius = 0;
 
-    double wavelength_um = 0;      // the reference
-    double magnification = 0;      // signed, of the centroids of light from near the axis
-    double image_aperture = 0;     // numerical aperture at the detector, of the rim of the axial cone
-    double f_number = 0;           // 1 / (2 image_aperture)
-    double airy_radius = 0;        // in the object: first zero, 0.6098 lambda / NA
+    double wavelength_um = 0;  // the reference
+    double magnification = 0;  // signed, of the centroids of light from near the axis
+    double image_aperture = 0; // numerical aperture at the detector, of the rim of the axial cone
+    double f_number = 0;       // 1 / (2 image_aperture)
+    double airy_radius = 0;    // in the object: first zero, 0.6098 lambda / NA
     double detector_airy_radius = 0;
     double detector_depth_of_field = 0; // n e / NA with the pixel pitch e in the object: what one pixel blurs
     double field_side = 0;              // of the square that the detector sees
@@ -88,7 +89,8 @@ struct ImageQuality {
     PointImage axis;
     PointImage edge;
     PointImage corner;
-    // Of the centroid's way from that of the axis against the paraxial magnification, signed share; positive: pincushion.
+    // Of the centroid's way from that of the axis against the paraxial magnification, signed share; positive:
+    // pincushion.
     double edge_distortion = 0;
     double corner_distortion = 0;
     // Between the wavelengths that 5 and 95 % of the flux lie below; 0 for a single one.

@@ -87,8 +87,7 @@ Prescription with_stop(Prescription prescription, PrescribedSurface::Role role, 
 
 void require_surfaces(const Prescription& prescription, const char* key) {
     if (prescription.surfaces.empty()) {
-        refuse(key, prescription.name, "a prescription with surfaces", "Add a [[surface]].",
-               prescription.file);
+        refuse(key, prescription.name, "a prescription with surfaces", "Add a [[surface]].", prescription.file);
     }
 }
 
@@ -114,8 +113,7 @@ Part Assembly::plate(const Pose& first, double thickness, const Medium& glass, c
     return place_prescription(prescription, spectrum, description.interfaces, first, end);
 }
 
-PlacedSurface Assembly::mirror_plane(const Pose& pose, std::optional<double> semi_diameter,
-                                     std::string name) const {
+PlacedSurface Assembly::mirror_plane(const Pose& pose, std::optional<double> semi_diameter, std::string name) const {
     PlacedSurface mirror = dummy_plane(air, pose, std::move(name));
     mirror.surface.flags |= physics::f64::SURFACE_MIRROR;
     mirror.surface.reflectance = 1;
@@ -169,9 +167,9 @@ void Assembly::reduce() {
     constants.gate_position = imaging.pupil_curvature;
     constants.gate_slope = 1;
     // A little more than the field: aberrations let the detector see past its paraxial edge.
-    constants.gate_radius = gate_radius(imaging, 1.05 * field_half_diagonal,
-                                        first_order.best_focus_offset - description.greatest_defocus,
-                                        first_order.best_focus_offset + description.greatest_defocus);
+    constants.gate_radius =
+        gate_radius(imaging, 1.05 * field_half_diagonal, first_order.best_focus_offset - description.greatest_defocus,
+                    first_order.best_focus_offset + description.greatest_defocus);
     constants.spectrum_centre = spectrum.centre();
     constants.spectrum_half_width = spectrum.half_width();
     constants.spectral_bins = static_cast<int>(spectrum.bins.size());
@@ -218,7 +216,8 @@ Instrument assemble(const InstrumentDescription& description) {
     assembly.reduce();
     if (description.turned) {
         if (description.ring) {
-            refuse("trace.estimator", "\"backward\"", "a disc source; the backward estimator does not know the ring light",
+            refuse("trace.estimator", "\"backward\"",
+                   "a disc source; the backward estimator does not know the ring light",
                    "Use estimator = \"forward\".");
         }
         assembly.turn_round();

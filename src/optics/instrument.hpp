@@ -13,8 +13,8 @@
 namespace vkfv::optics {
 
 // Where a part stands: its first vertex moved and tilted from where the axis would have it, the parts that follow it
-// unmoved; or, with `global`, at a point of the specimen frame with its origin in the paraxial object plane (mm), tilted
-// against that frame's axes. Fold mirrors do not count: positions are in the straight space that they show.
+// unmoved; or, with `global`, at a point of the specimen frame with its origin in the paraxial object plane (mm),
+// tilted against that frame's axes. Fold mirrors do not count: positions are in the straight space that they show.
 struct Placement {
     CoordinateBreak change;
     std::optional<glm::dvec3> global;
@@ -26,8 +26,8 @@ struct RingLightDescription {
     double elevation = 0; // of that direction over the specimen's plane
     double width = 0;     // of the band, at right angles to that direction
     int segments = 1;
-    double fill = 1;         // share of its sector that a segment takes
-    std::vector<bool> on; // of each segment, counted from +x towards +y
+    double fill = 1;                  // share of its sector that a segment takes
+    std::vector<bool> on;             // of each segment, counted from +x towards +y
     std::optional<double> lit_radius; // of the circle about the axis that all of the ring must light; none: the field
 };
 
@@ -64,19 +64,18 @@ struct InstrumentDescription {
     double flux = 1;
     Spectrum spectrum = Spectrum::line(0.5876);
     std::optional<RingLightDescription> ring; // instead of the disc and its illuminator
-    std::optional<double> source_distance; // to the illumination's first vertex; none: the prescription's
+    std::optional<double> source_distance;    // to the illumination's first vertex; none: the prescription's
     Prescription illumination;
-    std::optional<double>
-        illumination_to_objective;           // last illumination vertex to the objective's last (back)
-                                             // vertex; none: the source is imaged into the pupil
-    std::optional<double> field_stop_radius; // none: the prescription's
+    std::optional<double> illumination_to_objective;    // last illumination vertex to the objective's last (back)
+                                                        // vertex; none: the source is imaged into the pupil
+    std::optional<double> field_stop_radius;            // none: the prescription's
     std::optional<double> illumination_aperture_radius; // of a stop at the source
     BeamSplitter splitter;
     std::vector<FoldMirror> fold_mirrors;
     Interfaces interfaces;
-    Prescription objective; // from the specimen to the back
-    std::optional<Medium> immersion;              // between specimen and objective; none: the prescription's
-    std::optional<double> aperture_stop_radius;   // none: the prescription's
+    Prescription objective;                     // from the specimen to the back
+    std::optional<Medium> immersion;            // between specimen and objective; none: the prescription's
+    std::optional<double> aperture_stop_radius; // none: the prescription's
     std::optional<CoverGlass> cover_glass;
     Placement objective_placement;
     Prescription tube_lens; // from the objective to the detector
@@ -86,7 +85,7 @@ struct InstrumentDescription {
     int detector_pixels = 0;
     Placement detector_placement;
     bool directed_emission = true; // aim the source at the cone that can pass the illumination train
-    bool turned = false; // the backward estimator's form is wanted too; not with a ring light
+    bool turned = false;           // the backward estimator's form is wanted too; not with a ring light
     double greatest_defocus = 0.2; // of the specimen's top plane from the plane of best focus, for the gate
 };
 
@@ -98,33 +97,34 @@ struct FirstOrder {
     double object_index = 1;       // of the medium over the specimen
     double working_distance = 0;   // paraxial focus to the first vertex over it (the objective's or the cover glass')
     double magnification = 0;      // signed, paraxial, at the detector
-    double depth_of_field =
-        0;                  // n lambda / NA^2: ISO 25178-604's optical depth of field
-    double pixel_pitch = 0; // in the object plane
+    double depth_of_field = 0;     // n lambda / NA^2: ISO 25178-604's optical depth of field
+    double pixel_pitch = 0;        // in the object plane
     // Height above the paraxial plane, towards the objective (+z), of the on-axis point whose rays have the
     // least RMS distance from their centroid on the detector. They fill the real apertures with uniform
     // density in direction cosines, as the light of a Lambertian specimen does.
     double best_focus_offset = 0;
-    double field_curvature = 0; // the same at the field's edge, from the on-axis best focus (+z)
-    double field_curvature_corner = 0; // in the field's corners
-    double field_edge = 0;      // the field height that belongs to it: half the detector's side in the object
+    double field_curvature = 0;           // the same at the field's edge, from the on-axis best focus (+z)
+    double field_curvature_corner = 0;    // in the field's corners
+    double field_edge = 0;                // the field height that belongs to it: half the detector's side in the object
     double pupil_radius_in_source = 0;    // radius of source that fills the objective's pupil; 0: a ring light
     double illumination_to_objective = 0; // as resolved
     double source_magnification = 0;      // paraxial, of the source's image in the objective's pupil
 };
 
-// An element as it stands in the room, for drawing and for non-sequential tracing. Frame: the specimen's with its origin on
-// the axis in the plane of best focus (mm), the objective at rest; the splitter and the mirrors fold the light's way.
+// An element as it stands in the room, for drawing and for non-sequential tracing. Frame: the specimen's with its
+// origin on the axis in the plane of best focus (mm), the objective at rest; the splitter and the mirrors fold the
+// light's way.
 struct Element {
     enum class Kind { surface, stop, mirror, splitter, ideal_lens, detector } kind = Kind::surface;
     physics::f64::Surface surface{}; // z of its frame: in the imaging direction, for the illuminator the light's
     Pose pose;
     std::string name;
-    std::string part; // "objective", "tube lens", "illuminator", "beam splitter", "cover glass", "fold mirror", "detector"
+    std::string
+        part; // "objective", "tube lens", "illuminator", "beam splitter", "cover glass", "fold mirror", "detector"
 };
 
-// The instrument with its light turned round, for the backward estimator (shaders/physics/backward.glsl): its illumination
-// train leads from the detector to the specimen, its imaging train from there to the source.
+// The instrument with its light turned round, for the backward estimator (shaders/physics/backward.glsl): its
+// illumination train leads from the detector to the specimen, its imaging train from there to the source.
 struct TurnedInstrument {
     std::vector<physics::f64::Surface> surfaces;
     physics::f64::Instrument constants{};
@@ -141,15 +141,17 @@ struct Instrument {
     physics::f64::Instrument constants{};
     std::uint32_t features = 0; // physics::FEATURE_*
     FirstOrder first_order;
-    double flux = 1; // W, emitted over the hemisphere
+    double flux = 1;                     // W, emitted over the hemisphere
     double splitter_reflectance = 0.5;   // for the illumination; 1 for a ring light, which does not meet it
     double splitter_transmittance = 0.5; // for the imaging
     // Surfaces of each train that light meets before the beam splitter's mirror.
     int illumination_surfaces_before_splitter = 0;
     int imaging_surfaces_before_splitter = 0;
-    // Front vertex of the objective (or cover glass) above the plane of best focus (z = 0 of the specimen frame, scan at 0).
+    // Front vertex of the objective (or cover glass) above the plane of best focus (z = 0 of the specimen frame, scan
+    // at 0).
     double front_vertex_height = 0;
-    std::vector<Element> elements; // in the order of the light: illuminator, splitter, cover glass, objective, ... detector
+    std::vector<Element>
+        elements;     // in the order of the light: illuminator, splitter, cover glass, objective, ... detector
     Pose source_pose; // of the source's frame, light towards its z (a ring light's: its aim), in the elements' frame
     std::optional<TurnedInstrument> turned; // where the description asks for it
     std::vector<std::string> warnings;

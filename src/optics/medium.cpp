@@ -39,9 +39,7 @@ double index_of(const IndexTable& table, double wavelength_um) {
     }
     // Cauchy's formula is the polynomial in 1 / lambda^2 through the points; in Lagrange's form it is exact
     // there.
-    const auto abscissa = [&](std::size_t i) {
-        return 1 / (table.wavelengths_um[i] * table.wavelengths_um[i]);
-    };
+    const auto abscissa = [&](std::size_t i) { return 1 / (table.wavelengths_um[i] * table.wavelengths_um[i]); };
     const double x = 1 / (wavelength_um * wavelength_um);
     double sum = 0;
     for (std::size_t i = first; i < first + count; ++i) {
@@ -142,8 +140,8 @@ Medium Medium::model(std::string name, double nd, double vd, std::string source)
     return {.name = std::move(name), .source = std::move(source), .dispersion = ModelGlass{nd, vd}};
 }
 
-Medium Medium::formula(std::string name, DispersionFormula formula, std::vector<double> coefficients,
-                       double minimum_um, double maximum_um, std::string source) {
+Medium Medium::formula(std::string name, DispersionFormula formula, std::vector<double> coefficients, double minimum_um,
+                       double maximum_um, std::string source) {
     coefficients.resize(coefficient_count(formula));
     return {.name = std::move(name),
             .source = std::move(source),
@@ -153,9 +151,8 @@ Medium Medium::formula(std::string name, DispersionFormula formula, std::vector<
 std::optional<Medium::Range> Medium::valid_range() const {
     return std::visit(Overloaded{[](const ConstantIndex&) { return std::optional<Range>(); },
                                  [](const IndexTable& table) {
-                                     return std::optional(
-                                         Range{table.wavelengths_um.front() - table_tolerance_um,
-                                               table.wavelengths_um.back() + table_tolerance_um});
+                                     return std::optional(Range{table.wavelengths_um.front() - table_tolerance_um,
+                                                                table.wavelengths_um.back() + table_tolerance_um});
                                  },
                                  [](const ModelGlass&) { return std::optional(model_range); },
                                  [](const GlassFormula& glass) {
@@ -177,8 +174,8 @@ double Medium::index(double wavelength_um) const {
         constexpr double longest_likely_um = 100;
         const bool in_nm = range->minimum_um > longest_likely_um;
         refuse(fmt::format("{} um", wavelength_um),
-               fmt::format("a wavelength in [{:.9g}, {:.9g}] um, where the numbers hold ({})",
-                           range->minimum_um, range->maximum_um, source.empty() ? "no source given" : source),
+               fmt::format("a wavelength in [{:.9g}, {:.9g}] um, where the numbers hold ({})", range->minimum_um,
+                           range->maximum_um, source.empty() ? "no source given" : source),
                in_nm ? "The medium's own wavelengths look like nanometres: divide them by 1000."
                      : "Choose such a wavelength, or describe the medium over a wider range in [media] of the "
                        "prescription.");
@@ -188,8 +185,8 @@ double Medium::index(double wavelength_um) const {
                               [&](const auto& dispersive) { return index_of(dispersive, wavelength_um); }},
                    dispersion);
     if (!(index > 0 && std::isfinite(index))) {
-        refuse(fmt::format("{} at {} um", index, wavelength_um),
-               "a dispersion whose index is finite and positive", "Correct the numbers of this medium.");
+        refuse(fmt::format("{} at {} um", index, wavelength_um), "a dispersion whose index is finite and positive",
+               "Correct the numbers of this medium.");
     }
     return index;
 }
@@ -198,15 +195,13 @@ std::string Medium::dispersion_text() const {
     return std::visit(
         Overloaded{[](const ConstantIndex& constant) { return fmt::format(" {}", constant.index); },
                    [](const IndexTable& table) {
-                       return fmt::format("{} {}", fmt::join(table.wavelengths_um, " "),
-                                          fmt::join(table.indices, " "));
+                       return fmt::format("{} {}", fmt::join(table.wavelengths_um, " "), fmt::join(table.indices, " "));
                    },
                    [](const ModelGlass& model) { return fmt::format("model {} {}", model.nd, model.vd); },
                    [](const GlassFormula& glass) {
-                       return fmt::format(
-                           "{} {} in {} {}",
-                           dispersion_formula_names[static_cast<std::size_t>(glass.formula) - 1],
-                           fmt::join(glass.coefficients, " "), glass.minimum_um, glass.maximum_um);
+                       return fmt::format("{} {} in {} {}",
+                                          dispersion_formula_names[static_cast<std::size_t>(glass.formula) - 1],
+                                          fmt::join(glass.coefficients, " "), glass.minimum_um, glass.maximum_um);
                    }},
         dispersion);
 }

@@ -32,7 +32,8 @@ std::filesystem::path asset_in(const std::filesystem::path& assets, const std::f
 std::vector<std::filesystem::path> asset_folders(const std::filesystem::path& base) {
     std::vector<std::filesystem::path> folders;
     std::error_code code;
-    for (auto beside = std::filesystem::absolute(base, code).lexically_normal(); !beside.empty(); beside = beside.parent_path()) {
+    for (auto beside = std::filesystem::absolute(base, code).lexically_normal(); !beside.empty();
+         beside = beside.parent_path()) {
         folders.push_back(beside / "assets");
         if (beside == beside.parent_path()) {
             break;
@@ -50,8 +51,8 @@ Medium read_table_medium(const TomlTable& table, const std::string& name, const 
     auto wavelengths_um = table.numbers("wavelengths_um", NumberRange::positive());
     auto indices = table.numbers("indices", index_range);
     if (wavelengths_um.empty() ||
-        std::adjacent_find(wavelengths_um.begin(), wavelengths_um.end(),
-                           [](double a, double b) { return a >= b; }) != wavelengths_um.end()) {
+        std::adjacent_find(wavelengths_um.begin(), wavelengths_um.end(), [](double a, double b) { return a >= b; }) !=
+            wavelengths_um.end()) {
         table.fail("wavelengths_um", "at least one wavelength in um, ascending", "Sort the wavelengths.");
     }
     if (indices.size() != wavelengths_um.size()) {
@@ -65,8 +66,8 @@ Medium read_formula_medium(const TomlTable& table, const std::string& name, cons
     const std::vector<std::string> names(dispersion_formula_names.begin(), dispersion_formula_names.end());
     const std::string chosen = table.choice("formula", names);
     table.require("formula"); // it decides on the coefficients
-    const auto formula = static_cast<DispersionFormula>(
-        1 + std::distance(names.begin(), std::find(names.begin(), names.end(), chosen)));
+    const auto formula =
+        static_cast<DispersionFormula>(1 + std::distance(names.begin(), std::find(names.begin(), names.end(), chosen)));
     auto coefficients = table.numbers("coefficients");
     if (coefficients.empty() || coefficients.size() > coefficient_count(formula)) {
         table.fail("coefficients", fmt::format("1 to {} coefficients", coefficient_count(formula)),
@@ -74,8 +75,7 @@ Medium read_formula_medium(const TomlTable& table, const std::string& name, cons
     }
     const auto range_um = table.numbers("range_um", NumberRange::positive());
     if (range_um.size() != 2 || range_um[0] >= range_um[1]) {
-        table.fail("range_um", "two wavelengths in um, ascending",
-                   "Give the ends of the range where it holds.");
+        table.fail("range_um", "two wavelengths in um, ascending", "Give the ends of the range where it holds.");
     }
     return Medium::formula(name, formula, std::move(coefficients), range_um[0], range_um[1], source);
 }
@@ -86,8 +86,7 @@ Medium read_medium(const TomlTable& table, const std::string& name, const std::s
     std::string form;
     for (const std::string key : {"wavelengths_um", "nd", "index", "formula"}) {
         if (table.has(key) && !std::exchange(form, key).empty()) {
-            table.fail(key, "one description of the medium",
-                       "Keep one of wavelengths_um, nd, index and formula.");
+            table.fail(key, "one description of the medium", "Keep one of wavelengths_um, nd, index and formula.");
         }
     }
     if (form == "nd") {
@@ -182,8 +181,8 @@ PrescribedSurface read_surface(const TomlTable& table, const Media& media) {
     surface.medium_after = medium_named(media, table, "medium");
     surface.semi_diameter = table.optional_number("semi_diameter_mm", NumberRange::positive());
     if (const auto role = table.optional_choice("role", {"aperture stop", "field stop"})) {
-        surface.role = *role == "aperture stop" ? PrescribedSurface::Role::aperture_stop
-                                                : PrescribedSurface::Role::field_stop;
+        surface.role =
+            *role == "aperture stop" ? PrescribedSurface::Role::aperture_stop : PrescribedSurface::Role::field_stop;
     }
     return surface;
 }
@@ -193,12 +192,10 @@ void read_surfaces(const std::vector<TomlTable>& tables, const Media& media, Pre
     bool has_field_stop = false;
     for (std::size_t i = 0; i < tables.size(); ++i) {
         auto surface = read_surface(tables[i], media);
-        surface.thickness = i + 1 < tables.size()
-                                ? tables[i].number("thickness_mm", length_range)
-                                : tables[i].optional_number("thickness_mm", length_range).value_or(0);
-        for (const auto& [role, seen] :
-             {std::pair{PrescribedSurface::Role::aperture_stop, &has_aperture_stop},
-              std::pair{PrescribedSurface::Role::field_stop, &has_field_stop}}) {
+        surface.thickness = i + 1 < tables.size() ? tables[i].number("thickness_mm", length_range)
+                                                  : tables[i].optional_number("thickness_mm", length_range).value_or(0);
+        for (const auto& [role, seen] : {std::pair{PrescribedSurface::Role::aperture_stop, &has_aperture_stop},
+                                         std::pair{PrescribedSurface::Role::field_stop, &has_field_stop}}) {
             if (surface.role == role && std::exchange(*seen, true)) {
                 tables[i].note("role", "one surface of this role", "Mark the one that limits the light.");
             }
@@ -207,8 +204,7 @@ void read_surfaces(const std::vector<TomlTable>& tables, const Media& media, Pre
     }
 }
 
-Prescription read_prescription(const TomlTable& root, const std::filesystem::path& file,
-                               const GlassCatalog& glasses) {
+Prescription read_prescription(const TomlTable& root, const std::filesystem::path& file, const GlassCatalog& glasses) {
     Prescription prescription;
     prescription.file = file;
     prescription.name = file.stem().string();
@@ -244,8 +240,7 @@ std::string searched_for_prescription(const std::string& name, const std::filesy
                        folder.generic_string(), name, beside.string(), VKFV_ASSETS_DIR);
 }
 
-std::optional<std::filesystem::path> find_prescription(const std::string& name,
-                                                       const std::filesystem::path& folder,
+std::optional<std::filesystem::path> find_prescription(const std::string& name, const std::filesystem::path& folder,
                                                        const std::filesystem::path& base) {
     std::error_code code;
     const auto is_file = [&](const std::filesystem::path& path) {
@@ -290,8 +285,7 @@ Prescription load_prescription(const std::string& name, const std::filesystem::p
     return read_prescription(TomlTable::open(*file), *file, glasses);
 }
 
-Prescription parse_prescription(std::string_view text, const std::filesystem::path& file,
-                                const GlassCatalog& glasses) {
+Prescription parse_prescription(std::string_view text, const std::filesystem::path& file, const GlassCatalog& glasses) {
     return read_prescription(TomlTable::parse(text, file), file, glasses);
 }
 

@@ -14,8 +14,8 @@
 namespace vkfv::optics {
 
 // A change of the frame that surfaces stand in: decentre, then tilts about the new x, y and z axes in this order (the
-// other way round if tilt_first), then the thickness along the new z. Positive tilts turn z towards -y (about x), z towards
-// x (about y) and x towards y (about z). Lengths in mm, angles in rad. It holds for all surfaces that follow.
+// other way round if tilt_first), then the thickness along the new z. Positive tilts turn z towards -y (about x), z
+// towards x (about y) and x towards y (about z). Lengths in mm, angles in rad. It holds for all surfaces that follow.
 struct CoordinateBreak {
     double decentre_x = 0;
     double decentre_y = 0;
@@ -29,7 +29,7 @@ struct CoordinateBreak {
 // One surface in the direction of the prescription. Lengths in mm.
 struct PrescribedSurface {
     std::vector<CoordinateBreak> breaks; // between the previous surface's thickness and this vertex, in order
-    double curvature = 0; // 1/mm
+    double curvature = 0;                // 1/mm
     double conic = 0;
     std::array<double, 7> aspheric{}; // a4 ... a16
     double thickness = 0;             // to the next vertex; of the last surface: unused
@@ -54,8 +54,7 @@ struct Prescription {
 // Where a prescription is: `name` is a path ending in .toml, relative to the folder `base`, or the stem of a
 // file that is looked for as assets/<folder>/<name>.toml beside `base`, beside the folders above it, and in
 // the assets that came with the program. None: no such file.
-std::optional<std::filesystem::path> find_prescription(const std::string& name,
-                                                       const std::filesystem::path& folder,
+std::optional<std::filesystem::path> find_prescription(const std::string& name, const std::filesystem::path& folder,
                                                        const std::filesystem::path& base);
 
 // Where find_prescription looks, for messages: "looked for ...".

@@ -40,9 +40,8 @@ std::string degrees(double angle) {
 }
 
 std::string key_of(const std::string& name) {
-    const bool bare =
-        !name.empty() && name.find_first_not_of("abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ"
-                                                "0123456789_-") == std::string::npos;
+    const bool bare = !name.empty() && name.find_first_not_of("abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ"
+                                                              "0123456789_-") == std::string::npos;
     return bare ? name : toml_quoted(name);
 }
 
@@ -127,9 +126,7 @@ std::string surface_text(const PrescribedSurface& surface, bool is_last) {
 }
 
 struct DispersionText {
-    std::string operator()(const ConstantIndex& constant) const {
-        return fmt::format("index = {}\n", constant.index);
-    }
+    std::string operator()(const ConstantIndex& constant) const { return fmt::format("index = {}\n", constant.index); }
     std::string operator()(const IndexTable& table) const {
         return fmt::format("wavelengths_um = [{}]\nindices = [{}]\n", fmt::join(table.wavelengths_um, ", "),
                            fmt::join(table.indices, ", "));

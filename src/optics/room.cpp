@@ -141,29 +141,25 @@ Room::Box Room::bounds(std::size_t index) const {
         low -= margin;
         high += margin;
     }
-    Box box{glm::dvec3(std::numeric_limits<double>::infinity()),
-            glm::dvec3(-std::numeric_limits<double>::infinity())};
+    Box box{glm::dvec3(std::numeric_limits<double>::infinity()), glm::dvec3(-std::numeric_limits<double>::infinity())};
     for (int corner = 0; corner < 8; ++corner) {
         const double x = (corner & 1) != 0 ? element.outer_radius : -element.outer_radius;
         const double y = (corner & 2) != 0 ? element.outer_radius : -element.outer_radius;
         const double z = (corner & 4) != 0 ? high : low;
-        const glm::dvec3 point =
-            element.origin + element.axis_x * x + element.axis_y * y + element.axis_z * z;
+        const glm::dvec3 point = element.origin + element.axis_x * x + element.axis_y * y + element.axis_z * z;
         box.lower = glm::min(box.lower, point);
         box.upper = glm::max(box.upper, point);
     }
     return box;
 }
 
-physics::f64::ElementHit nearest_element(const Room& room, glm::dvec3 origin, glm::dvec3 direction,
-                                         int left) {
+physics::f64::ElementHit nearest_element(const Room& room, glm::dvec3 origin, glm::dvec3 direction, int left) {
     using namespace physics::f64;
     const double least = least_distance(origin);
     ElementHit nearest{-1, std::numeric_limits<double>::infinity()};
     for (std::size_t i = 0; i < room.elements.size(); ++i) {
         const int index = static_cast<int>(i);
-        const ElementMeeting meeting =
-            meet_element(room.elements[i], origin, direction, index == left, least);
+        const ElementMeeting meeting = meet_element(room.elements[i], origin, direction, index == left, least);
         if (meeting.found == 1 && meeting.distance < nearest.distance) {
             nearest = {index, meeting.distance};
         }

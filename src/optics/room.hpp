@@ -1,5 +1,5 @@
-// The instrument's elements as the non-sequential trace takes them: with mounts and barrels, since light that finds its own
-// way must not find one past the lenses.
+// The instrument's elements as the non-sequential trace takes them: with mounts and barrels, since light that finds its
+// own way must not find one past the lenses.
 #pragma once
 
 #include "optics/instrument.hpp"

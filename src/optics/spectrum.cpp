@@ -69,9 +69,9 @@ Spectrum finish(std::vector<SpectralBin> bins, double mean_times_total, double t
 } // namespace
 
 double Spectrum::half_width() const {
-    return monochromatic() ? 1
-                           : std::max(1 / (shortest_um * shortest_um) - centre(),
-                                      centre() - 1 / (longest_um * longest_um));
+    return monochromatic()
+               ? 1
+               : std::max(1 / (shortest_um * shortest_um) - centre(), centre() - 1 / (longest_um * longest_um));
 }
 
 Spectrum Spectrum::line(double wavelength_um) {
@@ -85,10 +85,8 @@ Spectrum Spectrum::lines(const std::vector<double>& wavelengths_um, const std::v
     double moment = 0;
     for (std::size_t i = 0; i < wavelengths_um.size(); ++i) {
         if (weights[i] > 0) {
-            bins.push_back({.cumulative = weights[i],
-                            .start = wavelengths_um[i],
-                            .stop = wavelengths_um[i],
-                            .tilt = 0});
+            bins.push_back(
+                {.cumulative = weights[i], .start = wavelengths_um[i], .stop = wavelengths_um[i], .tilt = 0});
             total += weights[i];
             moment += weights[i] * wavelengths_um[i];
         }

@@ -19,7 +19,7 @@ struct Spectrum {
     bool monochromatic() const { return shortest_um == longest_um; }
     // Of the spectral coordinate x (physics::Light): x = 0 is the reference.
     double centre() const { return 1 / (reference_um * reference_um); } // 1/um^2
-    double half_width() const;                                         // 1/um^2; 1 for a single wavelength
+    double half_width() const;                                          // 1/um^2; 1 for a single wavelength
 
     static Spectrum line(double wavelength_um);
     // Relative fluxes of single wavelengths.

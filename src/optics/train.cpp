@@ -102,8 +102,8 @@ std::vector<PlacedSurface> reversed(const std::vector<PlacedSurface>& part) {
         Surface& surface = placed.surface;
         placed.pose = placed.pose.half_turn();
         surface.curvature = -surface.curvature;
-        for (double* coefficient : {&surface.a4, &surface.a6, &surface.a8, &surface.a10, &surface.a12, &surface.a14,
-                                    &surface.a16}) {
+        for (double* coefficient :
+             {&surface.a4, &surface.a6, &surface.a8, &surface.a10, &surface.a12, &surface.a14, &surface.a16}) {
             *coefficient = -*coefficient;
         }
         std::swap(surface.index_before, surface.index_after);
@@ -148,8 +148,8 @@ void link(std::vector<PlacedSurface>& train, const Pose& entry) {
 }
 
 bool is_displaced(const Surface& surface) {
-    return surface.decentre_x != 0 || surface.decentre_y != 0 || surface.rotation_xx != 1 ||
-           surface.rotation_yy != 1 || surface.rotation_zz != 1;
+    return surface.decentre_x != 0 || surface.decentre_y != 0 || surface.rotation_xx != 1 || surface.rotation_yy != 1 ||
+           surface.rotation_zz != 1;
 }
 
 std::vector<Surface> surfaces_of(const std::vector<PlacedSurface>& train) {

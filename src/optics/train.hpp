@@ -29,8 +29,8 @@ struct PlacedSurface {
     PrescribedSurface::Role role = PrescribedSurface::Role::refracting;
 };
 
-// The surfaces of a prescription, with the first vertex (before its coordinate breaks) at `first`. `end` becomes the last
-// vertex's frame.
+// The surfaces of a prescription, with the first vertex (before its coordinate breaks) at `first`. `end` becomes the
+// last vertex's frame.
 std::vector<PlacedSurface> place_prescription(const Prescription& prescription, const Spectrum& spectrum,
                                               const Interfaces& interfaces, const Pose& first, Pose& end);
 
@@ -65,8 +65,8 @@ struct TrainScene {
     const physics::f64::SpectralBin& spectral_bin(int index) const { return bins[static_cast<std::size_t>(index)]; }
 };
 
-// Through the whole train, from the entry's frame to the last vertex's. ray.direction is a unit vector; nothing is lost at
-// interfaces. spectral: x of physics::Light.
+// Through the whole train, from the entry's frame to the last vertex's. ray.direction is a unit vector; nothing is lost
+// at interfaces. spectral: x of physics::Light.
 physics::f64::TrainResult trace_through(std::span<const physics::f64::Surface> train, physics::f64::Ray ray,
                                         std::uint32_t apertures, double spectral = 0);
 

@@ -36,16 +36,14 @@ constexpr std::string_view white_space = " \t\f\v\r";
 
 // What Zemax computes, optimizes, simulates or displays with: no lens depends on it.
 constexpr std::string_view without_geometry[] = {
-    "VERS", "NOTE", "PFIL", "LANG", "ENPD", "FNUM", "OBNA", "FLOA", "GFAC", "GCAT",
-    "RAIM", "PUSH", "SDMA", "OMMA", "ROPD", "HYPR", "PICB", "XFLN", "YFLN", "FWGN",
-    "XFLD", "YFLD", "FWGT", "VDXN", "VDYN", "VCXN", "VCYN", "VANN", "ZVDX", "ZVDY",
-    "ZVCX", "ZVCY", "ZVAN", "WWGT", "WWGN", "POLS", "GLRS", "GSTD", "NSCD", "COFN"};
+    "VERS", "NOTE", "PFIL", "LANG", "ENPD", "FNUM", "OBNA", "FLOA", "GFAC", "GCAT", "RAIM", "PUSH", "SDMA", "OMMA",
+    "ROPD", "HYPR", "PICB", "XFLN", "YFLN", "FWGN", "XFLD", "YFLD", "FWGT", "VDXN", "VDYN", "VCXN", "VCYN", "VANN",
+    "ZVDX", "ZVDY", "ZVCX", "ZVCY", "ZVAN", "WWGT", "WWGN", "POLS", "GLRS", "GSTD", "NSCD", "COFN"};
 
 // Of a surface. Solves, pick-ups and variables (MAZH, PZUP, PPAR, VDSZ, VPAR, VCON) leave their outcome in
 // the value itself; MEMA is the glass's edge beyond the aperture.
-constexpr std::string_view without_geometry_of_surfaces[] = {"COMM", "FIMP", "HIDE", "MIRR", "SLAB",
-                                                             "POPS", "COAT", "MEMA", "MAZH", "PZUP",
-                                                             "PPAR", "VDSZ", "VPAR", "VCON"};
+constexpr std::string_view without_geometry_of_surfaces[] = {"COMM", "FIMP", "HIDE", "MIRR", "SLAB", "POPS", "COAT",
+                                                             "MEMA", "MAZH", "PZUP", "PPAR", "VDSZ", "VPAR", "VCON"};
 
 constexpr std::string_view of_surfaces[] = {"TYPE", "CURV", "DISZ", "GLAS", "CONI", "PARM",
                                             "DIAM", "CLAP", "FLAP", "OBDC", "STOP"};
@@ -160,11 +158,7 @@ class Decoder {
             if (lead == 0) {
                 refuse(i, "a NUL character");
             }
-            const std::size_t length = lead < 0x80   ? 1
-                                       : lead < 0xc2 ? 0
-                                       : lead < 0xe0 ? 2
-                                       : lead < 0xf0 ? 3
-                                                     : 4;
+            const std::size_t length = lead < 0x80 ? 1 : lead < 0xc2 ? 0 : lead < 0xe0 ? 2 : lead < 0xf0 ? 3 : 4;
             if (length == 0 || lead > 0xf4 || i + length > bytes_.size()) {
                 refuse(i, "bytes that are not UTF-8");
             }
@@ -211,8 +205,8 @@ struct Surface {
     std::optional<Medium> medium; // none: air
     Line medium_line;
     std::vector<InputProblem> medium_problems; // what is wrong with it, if light goes there
-    double diameter = 0; // half of it; 0: none
-    double aperture = 0; // the same, and rays are clipped there
+    double diameter = 0;                       // half of it; 0: none
+    double aperture = 0;                       // the same, and rays are clipped there
     bool stop = false;
     Line stop_line;
 
@@ -252,19 +246,18 @@ class Reader {
     }
 
     // Of the surface that is being read.
-    [[noreturn]] void refuse(const Line& line, std::string found, std::string expected,
-                             std::string remedy) const {
-        refuse_at(surfaces_.empty() || behind_surfaces_ ? "" : name_of(surfaces_.back()), line,
-                  std::move(found), std::move(expected), std::move(remedy));
+    [[noreturn]] void refuse(const Line& line, std::string found, std::string expected, std::string remedy) const {
+        refuse_at(surfaces_.empty() || behind_surfaces_ ? "" : name_of(surfaces_.back()), line, std::move(found),
+                  std::move(expected), std::move(remedy));
     }
 
-    [[noreturn]] void refuse(const Surface& surface, const Line& line, std::string found,
-                             std::string expected, std::string remedy) const {
+    [[noreturn]] void refuse(const Surface& surface, const Line& line, std::string found, std::string expected,
+                             std::string remedy) const {
         refuse_at(name_of(surface), line, std::move(found), std::move(expected), std::move(remedy));
     }
 
-    [[noreturn]] void refuse_at(const std::string& place, const Line& line, std::string found,
-                                std::string expected, std::string remedy) const {
+    [[noreturn]] void refuse_at(const std::string& place, const Line& line, std::string found, std::string expected,
+                                std::string remedy) const {
         if (found.size() > longest_quotation) {
             found = found.substr(0, longest_quotation) + "...";
         }
@@ -277,12 +270,10 @@ class Reader {
 
     static std::string name_of(const Surface& surface) { return fmt::format("surface {}: ", surface.number); }
 
-    double number_at(const Line& line, std::size_t word,
-                     const NumberRange& range = NumberRange::finite()) const {
+    double number_at(const Line& line, std::size_t word, const NumberRange& range = NumberRange::finite()) const {
         const auto value = word < line.words.size() ? as_number(line.words[word]) : std::nullopt;
         if (!value || !range.contains(*value)) {
-            refuse(line, line.rest,
-                   trimmed(fmt::format("as value {} a finite number {}", word + 1, range.to_string())),
+            refuse(line, line.rest, trimmed(fmt::format("as value {} a finite number {}", word + 1, range.to_string())),
                    "Correct the number; decimals take a point.");
         }
         return *value;
@@ -291,8 +282,7 @@ class Reader {
     int integer_at(const Line& line, std::size_t word, int minimum, int maximum) const {
         const double value = number_at(line, word);
         if (!(value >= minimum && value <= maximum && value == std::trunc(value))) {
-            refuse(line, line.rest,
-                   fmt::format("as value {} an integer in [{}, {}]", word + 1, minimum, maximum),
+            refuse(line, line.rest, fmt::format("as value {} an integer in [{}, {}]", word + 1, minimum, maximum),
                    "Correct the number.");
         }
         return static_cast<int>(value);
@@ -311,8 +301,7 @@ class Reader {
             }
         } else if (keyword == "MODE") {
             if (line.rest != "SEQ") {
-                refuse(line, line.rest, "the sequential mode, SEQ",
-                       "Convert the lens to a sequential one in Zemax.");
+                refuse(line, line.rest, "the sequential mode, SEQ", "Convert the lens to a sequential one in Zemax.");
             }
         } else if (keyword == "UNIT") {
             take_unit(line);
@@ -347,8 +336,8 @@ class Reader {
     // configurations: text behind few keywords, numbers behind all others.
     void take_other(const Line& line) {
         const bool behind = !surfaces_.empty() && !line.indented;
-        const bool text = line.keyword == "BLNK" || line.keyword == "TOL" || line.keyword == "MOFF" ||
-                          line.keyword == "DMFS";
+        const bool text =
+            line.keyword == "BLNK" || line.keyword == "TOL" || line.keyword == "MOFF" || line.keyword == "DMFS";
         const bool numbers = line.keyword.size() == 4 && !line.words.empty() &&
                              std::all_of(line.words.begin(), line.words.end(), [](const std::string& word) {
                                  return word == "\"\"" || as_number(word).has_value();
@@ -372,12 +361,10 @@ class Reader {
     }
 
     void take_unit(const Line& line) {
-        const std::map<std::string, double> units = {
-            {"MM", 1}, {"CM", 10}, {"IN", 25.4}, {"METER", 1000}}; // mm
+        const std::map<std::string, double> units = {{"MM", 1}, {"CM", 10}, {"IN", 25.4}, {"METER", 1000}}; // mm
         const auto found = line.words.empty() ? units.end() : units.find(line.words.front());
         if (found == units.end()) {
-            refuse(line, line.rest, "one of the lens units MM, CM, IN and METER",
-                   "Choose such a unit in Zemax.");
+            refuse(line, line.rest, "one of the lens units MM, CM, IN and METER", "Choose such a unit in Zemax.");
         }
         unit_ = found->second;
     }
@@ -431,8 +418,7 @@ class Reader {
             surface.diameter = number_at(line, 0, {.minimum = 0, .minimum_included = true});
         } else if (line.keyword == "CLAP" || line.keyword == "FLAP") {
             if (number_at(line, 0) != 0) {
-                refuse(line, line.rest, "a circular aperture without an obscuration",
-                       "Remove its inner radius.");
+                refuse(line, line.rest, "a circular aperture without an obscuration", "Remove its inner radius.");
             }
             surface.aperture = number_at(line, 1, NumberRange::positive());
         } else if (line.keyword == "OBDC") {
@@ -452,8 +438,7 @@ class Reader {
         }
         const std::string& name = line.words.front();
         if (name == "MIRROR") {
-            refuse(line, line.rest, "a refracting surface",
-                   "Mirrors are not imported: unfold the lens in Zemax.");
+            refuse(line, line.rest, "a refracting surface", "Mirrors are not imported: unfold the lens in Zemax.");
         }
         if (name == "AIR") {
             return Medium::air();
@@ -493,9 +478,7 @@ class Reader {
         }
     }
 
-    std::string source() const {
-        return fmt::format("imported from the Zemax file {}", file_.filename().string());
-    }
+    std::string source() const { return fmt::format("imported from the Zemax file {}", file_.filename().string()); }
 
     ZmxLens lens() {
         if (surfaces_.size() < 3) {
@@ -530,8 +513,7 @@ class Reader {
             prescription.surfaces.push_back(prescribed(surface));
             prescription.surfaces.back().breaks = std::exchange(breaks, {});
             if (surface.stop && std::exchange(has_stop, true)) {
-                refuse(surface, surface.stop_line, "a second stop", "one stop",
-                       "Keep the one that limits the light.");
+                refuse(surface, surface.stop_line, "a second stop", "one stop", "Keep the one that limits the light.");
             }
         }
         if (prescription.surfaces.empty()) {
@@ -564,14 +546,15 @@ class Reader {
         }
         if (image.medium) {
             spdlog::info("{}:{}: {} behind the image is left out: no light goes there", file_.string(),
-                         image.medium_line.number, image.medium_line.words.empty() ? "the glass" : image.medium_line.words.front());
+                         image.medium_line.number,
+                         image.medium_line.words.empty() ? "the glass" : image.medium_line.words.front());
         }
     }
 
     void check(const Surface& surface) const {
         if (!surface.curvature || !surface.thickness) {
-            refuse(surface, surface.line, surface.curvature ? "no DISZ" : "no CURV",
-                   "curvature and thickness", "The file looks cut off: copy it again.");
+            refuse(surface, surface.line, surface.curvature ? "no DISZ" : "no CURV", "curvature and thickness",
+                   "The file looks cut off: copy it again.");
         }
         const bool is_end = surface.number == 0 || surface.number + 1 == static_cast<int>(surfaces_.size());
         if (surface.stop && (is_end || surface.kind() == "COORDBRK")) {
@@ -589,8 +572,7 @@ class Reader {
         for (const auto& [number, parameter] : surface.parameters) {
             if (parameter.value != 0 && (number < 1 || number > most)) {
                 refuse(surface, parameter.line, parameter.line.rest,
-                       fmt::format("no parameter {} of a surface {}", number, surface.kind()),
-                       "Set it to 0.");
+                       fmt::format("no parameter {} of a surface {}", number, surface.kind()), "Set it to 0.");
             }
         }
         if (surface.kind() == "EVENASPH" && parameter_of(surface, 1) != 0) {
@@ -634,8 +616,7 @@ class Reader {
             const Line& line = found->second.line;
             const double value = convert(line, found->second.value);
             if (!range.contains(value)) {
-                refuse(surface, line, line.rest,
-                       fmt::format("a value {} in mm or degrees", range.to_string()),
+                refuse(surface, line, line.rest, fmt::format("a value {} in mm or degrees", range.to_string()),
                        "Choose a smaller decentre or tilt.");
             }
             return value;

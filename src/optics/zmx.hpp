@@ -11,7 +11,7 @@
 namespace vkfv::optics {
 
 struct ZmxLens {
-    Prescription prescription; // in mm, from the first surface behind the object to the last before the image
+    Prescription prescription;          // in mm, from the first surface behind the object to the last before the image
     std::vector<double> wavelengths_um; // as the file lists them
     double primary_wavelength_um = 0;
 };

@@ -93,8 +93,8 @@ Frame chart_frame(dvec2 corner, dvec2 size, const Axis& x, const Axis& y) {
     return {{corner.x + 58, corner.y + size.y - 38}, {corner.x + size.x - 12, corner.y + 26}, widened(x), widened(y)};
 }
 
-// Means over the blocks that divide the values into `columns` by `rows`, no more than there are; NaN where no value of a
-// block is finite.
+// Means over the blocks that divide the values into `columns` by `rows`, no more than there are; NaN where no value of
+// a block is finite.
 Grid<double> averaged(const Grid<double>& values, int columns, int rows) {
     const auto edge = [](int block, int blocks, int points) {
         return static_cast<int>(std::int64_t{block} * points / blocks);
@@ -227,7 +227,8 @@ void draw_map(Svg& svg, dvec2 corner, dvec2 size, const Map& map) {
     const dvec2 low{corner.x + 58, corner.y + 26 + scale * extent.y};
     const dvec2 high{low.x + scale * extent.x, corner.y + 26};
     const dvec2 first = dvec2(map.x0, map.y0) - 0.5 * map.pitch;
-    const Frame frame{low, high, {first.x, first.x + extent.x, "x / um", false}, {first.y, first.y + extent.y, "y / um", false}};
+    const Frame frame{
+        low, high, {first.x, first.x + extent.x, "x / um", false}, {first.y, first.y + extent.y, "y / um", false}};
 
     // Twice the picture's pixels keep their sharpness on screens of high resolution.
     const auto blocks = [](int points, double length) {

@@ -17,12 +17,12 @@ namespace vkfv::report {
 struct Axis {
     double from = 0;
     double to = 0;
-    std::string label; // quantity and unit: "x / um"
+    std::string label;    // quantity and unit: "x / um"
     bool decades = false; // logarithmic; ends positive
 };
 
 struct Curve {
-    std::string name; // empty: not in the legend
+    std::string name;               // empty: not in the legend
     std::vector<glm::dvec2> points; // a NaN breaks the line
     std::vector<double> spreads;    // relative: a bar of this share of y at each point; empty: none
     bool line = true;
@@ -53,8 +53,8 @@ struct Map {
     std::string title;
     std::string unit = "um"; // beside the colour bar
     Grid<double> values;
-    double x0 = 0, y0 = 0; // um, middle of value (0, 0)
-    glm::dvec2 pitch{1, 1}; // um
+    double x0 = 0, y0 = 0;    // um, middle of value (0, 0)
+    glm::dvec2 pitch{1, 1};   // um
     double low = 0, high = 1; // of the palette's ends
     Palette palette = Palette::height;
     std::optional<Grid<double>> brightness{}; // in [0, 1], dims the colours; none: 1 throughout

@@ -104,8 +104,8 @@ double width_of(const std::string& text, double size = label_size) {
     return 0.56 * size * static_cast<double>(text.size());
 }
 
-// Positions as near as possible to those wished for (ascending), each at least `spacing` behind the one before: isotonic
-// regression by pooling adjacent violators.
+// Positions as near as possible to those wished for (ascending), each at least `spacing` behind the one before:
+// isotonic regression by pooling adjacent violators.
 std::vector<double> spread(const std::vector<double>& wished, const std::vector<double>& spacing) {
     struct Pool {
         double sum;
@@ -197,8 +197,8 @@ class Drawing {
     std::vector<Label> objective_labels() const {
         std::vector<Label> chosen;
         for (const Label& label : labels_) {
-            if (label.text.starts_with("objective") || label.text == "cover glass" ||
-                label.text == "specimen" || label.text == "aperture stop") {
+            if (label.text.starts_with("objective") || label.text == "cover glass" || label.text == "specimen" ||
+                label.text == "aperture stop") {
                 chosen.push_back(label);
             }
         }
@@ -232,8 +232,8 @@ class Drawing {
     }
 
     std::vector<dvec2> profile(std::size_t i, double from, double to) const {
-        const bool plane = elements_[i].surface.curvature == 0 &&
-                           (elements_[i].surface.flags & physics::f64::SURFACE_ASPHERIC) == 0;
+        const bool plane =
+            elements_[i].surface.curvature == 0 && (elements_[i].surface.flags & physics::f64::SURFACE_ASPHERIC) == 0;
         const int pieces = plane ? 1 : 28;
         std::vector<dvec2> points;
         for (int k = 0; k <= pieces; ++k) {
@@ -260,8 +260,8 @@ class Drawing {
             for (std::size_t v = 0; v < ray.vertices.size(); ++v) {
                 if (ray.elements[v] != RoomRay::no_element) {
                     const auto i = static_cast<std::size_t>(ray.elements[v]);
-                    const dvec3 inside = glm::transpose(elements_[i].pose.axes) *
-                                         (ray.vertices[v] - elements_[i].pose.origin);
+                    const dvec3 inside =
+                        glm::transpose(elements_[i].pose.axes) * (ray.vertices[v] - elements_[i].pose.origin);
                     lit[i] = std::max(lit[i], std::hypot(inside.x, inside.y));
                     backs_[i] = glm::dot(ray.vertices[v] - ray.vertices[v - 1], elements_[i].pose.axes[2]) < 0 ? -1 : 1;
                 }
@@ -411,8 +411,7 @@ class Drawing {
             if (!is_glass || in_cube) {
                 continue;
             }
-            const std::string attributes =
-                fmt::format("fill=\"{}\" {}", glass(elements_[i].surface.index_after), edge);
+            const std::string attributes = fmt::format("fill=\"{}\" {}", glass(elements_[i].surface.index_after), edge);
             if (!across(elements_[i].pose)) {
                 add(rim(elements_[i].pose, radii_[i]), true, attributes);
                 continue;
@@ -472,14 +471,16 @@ class Drawing {
                 add_bars(i, std::max(1.12 * part_radius(element.part), radius + 0.004 * extent_), limits ? 2.6 : 1.4);
             }
             if (element.kind == Kind::splitter) {
-                const double half = coating ? std::min(radius, std::sqrt(0.5) * glm::length(elements_[i + 1].pose.origin -
-                                                                                            elements_[i - 1].pose.origin))
-                                            : radius;
+                const double half = coating
+                                        ? std::min(radius, std::sqrt(0.5) * glm::length(elements_[i + 1].pose.origin -
+                                                                                        elements_[i - 1].pose.origin))
+                                        : radius;
                 add({at(pose, -half, 0), at(pose, half, 0)}, false, "stroke=\"#7a3e9d\" stroke-width=\"2\"");
             }
             if (element.kind == Kind::mirror) {
                 if (!across(pose)) {
-                    add(rim(pose, radius), true, fmt::format("fill=\"#e4e4e4\" stroke=\"{}\" stroke-width=\"1.6\"", ink));
+                    add(rim(pose, radius), true,
+                        fmt::format("fill=\"#e4e4e4\" stroke=\"{}\" stroke-width=\"1.6\"", ink));
                     continue;
                 }
                 add({at(pose, -radius, 0), at(pose, radius, 0)}, false,
@@ -585,8 +586,8 @@ class Drawing {
                 label(element.part, part_box(element.part), upright);
             } else if (starts && element.part == "illuminator") {
                 const std::size_t lens = element.name == "illumination aperture" ? i + 1 : i;
-                labels_.push_back({Label::Place::bracket, "illuminator " + prescription_of(elements_[lens]),
-                                   part_box(element.part)});
+                labels_.push_back(
+                    {Label::Place::bracket, "illuminator " + prescription_of(elements_[lens]), part_box(element.part)});
             } else if (element.kind == Kind::mirror) {
                 labels_.push_back({Label::Place::behind, "fold mirror", own, flat(element.pose.axes[2]) * backs_[i]});
             } else if (element.kind == Kind::splitter) {
@@ -662,8 +663,8 @@ class Page {
         double left = 0;
         double over = 0;
         for (const Label& label : drawing_.labels()) {
-            const bool at_top = label.place != Label::Place::beside &&
-                                main_.scale * (bounds.upper.y - label.part.upper.y) < label_room;
+            const bool at_top =
+                label.place != Label::Place::beside && main_.scale * (bounds.upper.y - label.part.upper.y) < label_room;
             over = at_top ? label_room : over;
             left = std::max(left, label.place == Label::Place::beside ? width_of(label.text) : 0.0);
         }
@@ -708,10 +709,11 @@ class Page {
     }
 
     void write_label(dvec2 at, const std::string& text, const char* anchor) {
-        svg_.text(at, text,
-                  fmt::format("class=\"label\" font-size=\"{}\" text-anchor=\"{}\" fill=\"{}\"", label_size, anchor, ink));
+        svg_.text(
+            at, text,
+            fmt::format("class=\"label\" font-size=\"{}\" text-anchor=\"{}\" fill=\"{}\"", label_size, anchor, ink));
         const double width = width_of(text);
-        const double left = anchor == std::string("end") ? at.x - width
+        const double left = anchor == std::string("end")      ? at.x - width
                             : anchor == std::string("middle") ? at.x - 0.5 * width
                                                               : at.x;
         const Box box{{left, at.y - label_size}, {left + width, at.y + 4}};
@@ -720,7 +722,8 @@ class Page {
     }
 
     void leader(const std::vector<dvec2>& points) {
-        svg_.path(points, false, fmt::format("class=\"leader\" fill=\"none\" stroke=\"{}\" stroke-width=\"0.7\"", grey));
+        svg_.path(points, false,
+                  fmt::format("class=\"leader\" fill=\"none\" stroke=\"{}\" stroke-width=\"0.7\"", grey));
         occupy(points);
     }
 
@@ -786,9 +789,8 @@ class Page {
         double top = std::numeric_limits<double>::infinity();
         for (std::size_t i = 0; i < rows.size(); ++i) {
             wished.push_back(rows[i].box.middle().x);
-            spacing.push_back(i == 0 ? 0
-                                     : 0.5 * (width_of(rows[i - 1].label->text) + width_of(rows[i].label->text)) +
-                                           label_size);
+            spacing.push_back(
+                i == 0 ? 0 : 0.5 * (width_of(rows[i - 1].label->text) + width_of(rows[i].label->text)) + label_size);
             top = std::min(top, rows[i].box.lower.y);
         }
         const double height = top - label_room;
@@ -903,8 +905,9 @@ class Page {
             if (!drawing_.has(style.bundle)) {
                 continue;
             }
-            const std::string meaning =
-                drawing_.is_ring() && style.bundle == RoomRay::Bundle::illumination_centre ? "illumination" : style.meaning;
+            const std::string meaning = drawing_.is_ring() && style.bundle == RoomRay::Bundle::illumination_centre
+                                            ? "illumination"
+                                            : style.meaning;
             svg_.line({x, y}, {x + 26, y}, fmt::format("stroke=\"{}\" stroke-width=\"2.5\"", style.colour));
             write_label({x + 32, y + 0.35 * label_size}, meaning, "start");
             x += 60 + width_of(meaning);

@@ -7,9 +7,9 @@
 
 namespace vkfv::report {
 
-// A self-contained SVG document, the same bytes for the same instrument. `name` heads the title line. Lenses, stops, mirrors,
-// the splitter, the field on the specimen, the detector and the source have their true sizes and places, and rays are traced
-// (room_rays.hpp). Pale housings and the specimen's slab only help the eye.
+// A self-contained SVG document, the same bytes for the same instrument. `name` heads the title line. Lenses, stops,
+// mirrors, the splitter, the field on the specimen, the detector and the source have their true sizes and places, and
+// rays are traced (room_rays.hpp). Pale housings and the specimen's slab only help the eye.
 std::string layout_svg(const optics::Instrument& instrument, const std::string& name);
 
 } // namespace vkfv::report

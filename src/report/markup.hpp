@@ -6,7 +6,8 @@
 
 namespace vkfv::report {
 
-// As the content of an element, or of an attribute between double quotes; control characters become spaces, new lines stay.
+// As the content of an element, or of an attribute between double quotes; control characters become spaces, new lines
+// stay.
 std::string escaped(std::string_view text);
 
 } // namespace vkfv::report

@@ -10,7 +10,8 @@ namespace vkfv::report {
 namespace {
 
 constexpr const char* style =
-    "body { font: 15px/1.45 Helvetica, Arial, 'DejaVu Sans', sans-serif; color: #111; max-width: 1100px; margin: 2em auto; "
+    "body { font: 15px/1.45 Helvetica, Arial, 'DejaVu Sans', sans-serif; color: #111; max-width: 1100px; margin: 2em "
+    "auto; "
     "padding: 0 1em }\n"
     "h1 { font-size: 24px } h2 { font-size: 18px; margin-top: 2em }\n"
     "table { border-collapse: collapse; font-variant-numeric: tabular-nums }\n"

@@ -23,9 +23,8 @@ using Way = std::vector<Meeting>;
 
 // The elements up to here are the illumination's alone.
 std::size_t imaging_begin(const std::vector<Element>& elements) {
-    const auto first = std::ranges::find_if(elements, [](const Element& element) {
-        return element.part == "cover glass" || element.part == "objective";
-    });
+    const auto first = std::ranges::find_if(
+        elements, [](const Element& element) { return element.part == "cover glass" || element.part == "objective"; });
     return static_cast<std::size_t>(first - elements.begin());
 }
 
@@ -197,12 +196,12 @@ constexpr double steepest_sine = 0.999;
 void add_imaging(std::vector<RoomRay>& rays, const optics::Instrument& instrument) {
     RoomTracer tracer(instrument.elements, imaging_way(instrument.elements));
     const auto from = [&](double height, Bundle bundle, int count) {
-        append(rays, fan(
-                         [&](double sine) {
-                             return tracer.trace({0, height, 0}, in_plane(sine), instrument.constants.specimen_index,
-                                                 bundle);
-                         },
-                         steepest_sine, count));
+        append(rays,
+               fan(
+                   [&](double sine) {
+                       return tracer.trace({0, height, 0}, in_plane(sine), instrument.constants.specimen_index, bundle);
+                   },
+                   steepest_sine, count));
     };
     from(0, Bundle::imaging_axis, 7);
     from(instrument.first_order.field_edge, Bundle::imaging_edge, 5);
@@ -260,7 +259,8 @@ void add_ring(std::vector<RoomRay>& rays, const optics::Instrument& instrument) 
                                ring.distance * ring.elevation_sine);
         for (const double height : {-1.0, 0.0, 1.0}) {
             const glm::dvec3 aim(0, height * instrument.first_order.field_edge, 0);
-            if (auto ray = tracer.trace_to_focus(start, glm::normalize(aim - start), index, Bundle::illumination_centre)) {
+            if (auto ray =
+                    tracer.trace_to_focus(start, glm::normalize(aim - start), index, Bundle::illumination_centre)) {
                 rays.push_back(std::move(*ray));
             }
         }

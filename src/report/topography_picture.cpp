@@ -99,8 +99,7 @@ std::string topography_picture(const TopographyPicture& picture) {
     for (const Chart& chart : picture.charts)
         draw_chart(svg, next(), panel, chart.title, axis_over(chart.curves, 0, chart.x_label, chart.x_decades),
                    axis_over(chart.curves, 1, chart.y_label), chart.curves);
-    const dvec2 page = dvec2(margin, head) +
-                       (panel + dvec2(margin)) * dvec2(std::min(place, 3), (place + 2) / 3);
+    const dvec2 page = dvec2(margin, head) + (panel + dvec2(margin)) * dvec2(std::min(place, 3), (place + 2) / 3);
     return svg.document(page, picture.title);
 }
 

@@ -27,8 +27,7 @@ std::vector<double> ScanPlan::positions() const {
         refuse("z_start_um", z_start, "a finite height", "Give the lowest focal position in micrometres.");
     }
     if (!std::isfinite(z_stop) || z_stop < z_start) {
-        refuse("z_stop_um", z_stop,
-               fmt::format("a finite height not below z_start_um = {:.9g}", z_start * um_per_mm),
+        refuse("z_stop_um", z_stop, fmt::format("a finite height not below z_start_um = {:.9g}", z_start * um_per_mm),
                "Scan upwards: the stop is the highest focal position.");
     }
     if (!std::isfinite(z_step) || z_step <= 0) {

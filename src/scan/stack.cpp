@@ -47,10 +47,9 @@ StackSummary run_stack(const trace::Tracer& tracer, ImageStore& store, Progress&
         try {
             writing.get();
         } catch (const std::runtime_error& error) {
-            throw RunError(
-                fmt::format("{}. {} of {} images are stored in {}: free the disk, then give the same "
-                            "command again to continue",
-                            error.what(), summary.kept + summary.traced, images, store.folder().string()));
+            throw RunError(fmt::format("{}. {} of {} images are stored in {}: free the disk, then give the same "
+                                       "command again to continue",
+                                       error.what(), summary.kept + summary.traced, images, store.folder().string()));
         }
         ++summary.traced;
         tell_what_is_stored();
@@ -70,9 +69,8 @@ StackSummary run_stack(const trace::Tracer& tracer, ImageStore& store, Progress&
         finish_writing();
         rays_in_writing = exposure.rays;
         Grid<float> flux = visit ? as_stored(exposure.flux) : Grid<float>();
-        writing = std::async(std::launch::async, [&store, image, exposure = std::move(exposure)] {
-            store.store(image, exposure);
-        });
+        writing = std::async(std::launch::async,
+                             [&store, image, exposure = std::move(exposure)] { store.store(image, exposure); });
         if (visit) {
             visit(image, std::move(flux)); // while it is written
         }

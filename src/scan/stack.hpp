@@ -32,8 +32,8 @@ using ImageVisitor = std::function<void(int image, Grid<float> flux)>;
 // Exposes and stores all images of the shard that the store lacks; while one is written the next is traced.
 // The image's number keys its random numbers, so an image does not depend on which run traced it. Reports the
 // images of the shard. `visit` sees every image of the shard once, in their order: those stored before from
-// the disk, the others when they have been traced. Throws what the tracer throws, and RunError if an image cannot be stored: what is
-// stored stays, and the same call continues.
+// the disk, the others when they have been traced. Throws what the tracer throws, and RunError if an image cannot be
+// stored: what is stored stays, and the same call continues.
 StackSummary run_stack(const trace::Tracer& tracer, ImageStore& store, Progress& progress, Shard shard = {},
                        const ImageVisitor& visit = {});
 

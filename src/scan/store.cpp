@@ -49,10 +49,10 @@ std::vector<std::string> lines_of(std::string_view text) {
 }
 
 std::string stack_text(const StackDescription& description) {
-    std::string text = fmt::format(
-        "# A stack of vkfv: its configuration, every default spelled out. `vkfv --stack` takes this file.\n"
-        "# What its images depend on{}{}); a run that differs in any of it is refused here:\n",
-        digest_label, description.digest);
+    std::string text =
+        fmt::format("# A stack of vkfv: its configuration, every default spelled out. `vkfv --stack` takes this file.\n"
+                    "# What its images depend on{}{}); a run that differs in any of it is refused here:\n",
+                    digest_label, description.digest);
     for (const std::string& line : lines_of(description.identity)) {
         if (!line.empty()) {
             text += fmt::format("{}{}\n", identity_prefix, line);
@@ -136,8 +136,8 @@ std::string ledger_header(const trace::Ledger& ledger) {
 
 // Numbers in their shortest form that reads back to the same bits.
 std::string ledger_row(int image, double z, const trace::Image& exposure) {
-    std::string row = fmt::format("{},{},{},{},{}", image, micrometres_text(z), exposure.rays,
-                                  exposure.detected, exposure.ledger.emitted);
+    std::string row = fmt::format("{},{},{},{},{}", image, micrometres_text(z), exposure.rays, exposure.detected,
+                                  exposure.ledger.emitted);
     for (const auto& entry : exposure.ledger.entries) {
         row += fmt::format(",{}", entry.power);
     }
@@ -155,8 +155,8 @@ std::string described(const std::string& description, std::string_view key) {
     return description.substr(begin, description.find('\n', begin) - begin);
 }
 
-// In an image's description: the checksum of the whole file, taken with zeros in its place, so that pixels, directory and text
-// all stand under it and become durable with it.
+// In an image's description: the checksum of the whole file, taken with zeros in its place, so that pixels, directory
+// and text all stand under it and become durable with it.
 constexpr std::string_view seal_label = "\nsha256_with_zeros_here=";
 const std::string unsealed(64, '0');
 
@@ -164,7 +164,8 @@ const std::string unsealed(64, '0');
 std::optional<std::size_t> seal_place(std::string_view bytes) {
     const auto label = bytes.find(seal_label);
     const auto place = label + seal_label.size();
-    return label != std::string_view::npos && bytes.size() - place > unsealed.size() ? std::optional(place) : std::nullopt;
+    return label != std::string_view::npos && bytes.size() - place > unsealed.size() ? std::optional(place)
+                                                                                     : std::nullopt;
 }
 
 std::string sealed(std::string bytes) {
@@ -183,8 +184,7 @@ bool seal_is_whole(const std::string& bytes) {
     }
     const std::string_view all = bytes;
     const auto behind = *place + unsealed.size();
-    const std::string sum =
-        Digest().add(all.substr(0, *place)).add(unsealed).add(all.substr(behind)).sha256();
+    const std::string sum = Digest().add(all.substr(0, *place)).add(unsealed).add(all.substr(behind)).sha256();
     return sum == all.substr(*place, unsealed.size());
 }
 
@@ -195,9 +195,10 @@ struct Frame {
 
 Frame read_whole_frame(const fs::path& folder, int image, double z) {
     const fs::path path = folder / image_path(image);
-    Frame frame{.bytes = read_file(path, {.expected = "an image of the stack",
-                                          .remedy = "Trace the stack again with the same command: it keeps the other images."}),
-                .image = {}};
+    Frame frame{
+        .bytes = read_file(path, {.expected = "an image of the stack",
+                                  .remedy = "Trace the stack again with the same command: it keeps the other images."}),
+        .image = {}};
     if (!seal_is_whole(frame.bytes)) {
         refuse(path, "bytes that are not those stored", "a whole image of a stack",
                "Trace the stack again with the same command: it keeps the other images.");
@@ -251,7 +252,8 @@ Check check_images(const fs::path& folder) {
     }
     std::vector<fs::path> names;
     std::error_code error;
-    for (fs::directory_iterator entry(folder / images_name, error), end; !error && entry != end; entry.increment(error)) {
+    for (fs::directory_iterator entry(folder / images_name, error), end; !error && entry != end;
+         entry.increment(error)) {
         if (!is_unfinished_file(entry->path())) {
             names.push_back(fs::path(images_name) / entry->path().filename());
         }
@@ -352,8 +354,7 @@ void ImageStore::keep_whole_images() {
 }
 
 bool ImageStore::complete() const {
-    return std::none_of(ledger_rows_.begin(), ledger_rows_.end(),
-                        [](const std::string& row) { return row.empty(); });
+    return std::none_of(ledger_rows_.begin(), ledger_rows_.end(), [](const std::string& row) { return row.empty(); });
 }
 
 void ImageStore::store(int image, const trace::Image& exposure) {

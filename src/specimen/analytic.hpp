@@ -8,9 +8,7 @@ namespace vkfv::specimen {
 // The scene that the physics reads a lattice through; without a lattice it is never asked.
 struct LatticeScene {
     const HeightField* lattice = nullptr;
-    double lattice_at(int column, int row) const {
-        return static_cast<double>(lattice->heights(column, row));
-    }
+    double lattice_at(int column, int row) const { return static_cast<double>(lattice->heights(column, row)); }
 };
 
 // The specimen of a generated kind. Rough and roughness fields are periodic over their grids.

@@ -39,32 +39,32 @@ struct Description {
     Representation representation = Representation::facets;
     double size = 0;  // side of the square footprint, centred on the axis; surface: 0 for all of it
     double pitch = 0; // of the facets' grid (generated kinds) or of the image's pixels; surface: 0 for the file's own
-    double tilt_x = 0, tilt_y = 0; // plane: slope angles along x and y
-    double height = 0;             // step: upper minus lower level (upper at x > 0); sphere: of the cap over the
-                                   // plane (negative: a dimple); image: of the value 1 over the value 0
-    double wall = 0;               // step, groove: width of the flank; 0: one pitch
-    double width = 0;              // groove, between the middles of its flanks
-    double depth = 0;              // groove
-    double radius = 0;             // sphere; star: of its outer end
-    double amplitude = 0;          // sinusoid, chirp (half the peak-to-valley height)
-    double period = 0;             // sinusoid along x; chirp: at the lowest x
-    double period_stop = 0;        // chirp: at the highest x
-    double sq = 0;                 // rough, plateaus, air: root mean square height of the roughness
-    double correlation_length = 0; // rough, plateaus: Gaussian autocorrelation exp(-(r/l)^2)
-    std::uint32_t seed = 0;        // rough, plateaus, air
-    std::string text;              // plateaus: what they read; else they are those of `file`
-    std::string font;              // plateaus: a name that OpenImageIO finds, or a file
-    double text_width = 0;         // plateaus
-    std::vector<double> heights;   // plateaus: one for each, or one for all
-    int tiles = 1;                 // air: sub-surfaces along each side
-    double roll_off = 0;           // air: wavelength; longer ones have the power of it
-    double shortest = 0;           // air: wavelength
-    double hurst = 0;              // air: Hurst exponent
-    int petals = 0;                // star
-    std::filesystem::path file;    // plateaus, air, image, surface, stl, gltf
-    double unit = 1;               // stl, gltf: mm per unit of the file; surface: of an image's values, else 0
-    bool level = true;             // surface: remove the least-squares plane, mean height to z = 0
-    bool centre = true;            // stl, gltf: move the bounding box's centre to x = y = 0, mean height to z = 0
+    double tilt_x = 0, tilt_y = 0;      // plane: slope angles along x and y
+    double height = 0;                  // step: upper minus lower level (upper at x > 0); sphere: of the cap over the
+                                        // plane (negative: a dimple); image: of the value 1 over the value 0
+    double wall = 0;                    // step, groove: width of the flank; 0: one pitch
+    double width = 0;                   // groove, between the middles of its flanks
+    double depth = 0;                   // groove
+    double radius = 0;                  // sphere; star: of its outer end
+    double amplitude = 0;               // sinusoid, chirp (half the peak-to-valley height)
+    double period = 0;                  // sinusoid along x; chirp: at the lowest x
+    double period_stop = 0;             // chirp: at the highest x
+    double sq = 0;                      // rough, plateaus, air: root mean square height of the roughness
+    double correlation_length = 0;      // rough, plateaus: Gaussian autocorrelation exp(-(r/l)^2)
+    std::uint32_t seed = 0;             // rough, plateaus, air
+    std::string text;                   // plateaus: what they read; else they are those of `file`
+    std::string font;                   // plateaus: a name that OpenImageIO finds, or a file
+    double text_width = 0;              // plateaus
+    std::vector<double> heights;        // plateaus: one for each, or one for all
+    int tiles = 1;                      // air: sub-surfaces along each side
+    double roll_off = 0;                // air: wavelength; longer ones have the power of it
+    double shortest = 0;                // air: wavelength
+    double hurst = 0;                   // air: Hurst exponent
+    int petals = 0;                     // star
+    std::filesystem::path file;         // plateaus, air, image, surface, stl, gltf
+    double unit = 1;                    // stl, gltf: mm per unit of the file; surface: of an image's values, else 0
+    bool level = true;                  // surface: remove the least-squares plane, mean height to z = 0
+    bool centre = true;                 // stl, gltf: move the bounding box's centre to x = y = 0, mean height to z = 0
     std::optional<Roughness> roughness; // added to any kind but stl and gltf
     Material material;
     SourceLocation where; // of the [specimen] table, for messages
@@ -72,9 +72,9 @@ struct Description {
     bool operator==(const Description&) const = default;
 };
 
-// Throws InputError: missing or damaged files (with the byte offset), empty meshes, non-finite numbers, a footprint of no
-// extent, lengths that no device can hold apart, and more points than fit into memory, told before any is made. Keys are
-// those of the configuration ("specimen.pitch_um").
+// Throws InputError: missing or damaged files (with the byte offset), empty meshes, non-finite numbers, a footprint of
+// no extent, lengths that no device can hold apart, and more points than fit into memory, told before any is made. Keys
+// are those of the configuration ("specimen.pitch_um").
 Specimen make(const Description& description);
 
 // Truth on the detector's pixels: the mean of the surface's height over each pixel's area (5 x 5 points), seen from

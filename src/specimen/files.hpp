@@ -22,17 +22,19 @@ struct FileMesh {
     std::vector<glm::uvec3> triangles;
 };
 
-// All bytes of a regular file. `mention` is where the configuration names it: the place of the message where there is none.
+// All bytes of a regular file. `mention` is where the configuration names it: the place of the message where there is
+// none.
 std::string specimen_bytes(const std::filesystem::path& file, const SourceLocation& mention);
 
-// Binary where the size fits the count of triangles (84 + 50 n bytes), else ASCII, also with a byte-order mark and with any
-// ends of lines.
+// Binary where the size fits the count of triangles (84 + 50 n bytes), else ASCII, also with a byte-order mark and with
+// any ends of lines.
 FileMesh read_stl(const std::filesystem::path& file, const SourceLocation& mention);
 
-// The default scene of a .gltf or .glb of version 2.0 with its nodes' transforms, instances (EXT_mesh_gpu_instancing) and
-// morph targets at their weights. Coordinates are taken as they are: what a viewer shows from the front, x to the right and
-// y up, is what the objective sees, with z towards it. What would change the triangles and is not known here (skins,
-// compression, required extensions, later versions) is refused; what would not (animations, materials) is left out.
+// The default scene of a .gltf or .glb of version 2.0 with its nodes' transforms, instances (EXT_mesh_gpu_instancing)
+// and morph targets at their weights. Coordinates are taken as they are: what a viewer shows from the front, x to the
+// right and y up, is what the objective sees, with z towards it. What would change the triangles and is not known here
+// (skins, compression, required extensions, later versions) is refused; what would not (animations, materials) is left
+// out.
 FileMesh read_gltf(const std::filesystem::path& file, const SourceLocation& mention);
 
 // Grey values, integers scaled to 0..1 and floats as they are. The file's top row is the grid's last (highest
@@ -48,8 +50,8 @@ struct HeightField;
 struct Mesh;
 struct Description;
 
-// In mm and in float, centred if the description asks for it; triangles without area are dropped, and the log says how many.
-// Throws InputError where a vertex lies too far off for the others to be told apart.
+// In mm and in float, centred if the description asks for it; triangles without area are dropped, and the log says how
+// many. Throws InputError where a vertex lies too far off for the others to be told apart.
 Mesh placed_mesh(FileMesh source, const Description& description);
 
 // The surface in any file that surface::read_surface() knows, cropped around its centre, which comes to x = y = 0, and

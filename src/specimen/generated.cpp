@@ -44,11 +44,11 @@ std::string pitch_key(const Description& d, double pitch) {
     return d.roughness && pitch == d.roughness->pitch ? "roughness.pitch_um" : "pitch_um";
 }
 
-// A grid over a rectangle (mm) whose points a filter of this standard deviation goes over. The filter takes 12 standard deviations of points for
-// every point, in both directions, beside the drawing of its random numbers.
+// A grid over a rectangle (mm) whose points a filter of this standard deviation goes over. The filter takes 12 standard
+// deviations of points for every point, in both directions, beside the drawing of its random numbers.
 void require_work(double width, double height, double pitch, double deviation, const SourceLocation& where,
                   const std::string& key) {
-    constexpr double most_steps = 0x1p34; // half a minute of one processor core
+    constexpr double most_steps = 0x1p34;    // half a minute of one processor core
     constexpr double steps_of_drawing = 256; // and of the memory, 1.6 GB for the 2^26 points that this leaves at most
     const double columns = std::ceil(width / pitch) + 1, rows = std::ceil(height / pitch) + 1;
     const double points = columns * rows, taps = 12 * deviation / pitch;
@@ -59,10 +59,11 @@ void require_work(double width, double height, double pitch, double deviation, c
     const double area = width * height;
     const double least = std::max(std::cbrt(2 * 12 * deviation * area / most_steps),
                                   std::sqrt(2 * steps_of_drawing * area / most_steps));
-    throw InputError({where, "specimen." + key, fmt::format("{:.6g}", pitch * um_per_mm),
-                      fmt::format("a pitch that makes fewer points than {:.6g} x {:.6g}, each a mean over {:.3g} others", columns, rows,
-                                  2 * taps),
-                      fmt::format("Choose {} >= {:.3g}, or a smaller specimen.", key, least * um_per_mm)});
+    throw InputError(
+        {where, "specimen." + key, fmt::format("{:.6g}", pitch * um_per_mm),
+         fmt::format("a pitch that makes fewer points than {:.6g} x {:.6g}, each a mean over {:.3g} others", columns,
+                     rows, 2 * taps),
+         fmt::format("Choose {} >= {:.3g}, or a smaller specimen.", key, least * um_per_mm)});
 }
 
 // The continuous shape without any lattice.
@@ -129,8 +130,8 @@ void add_rough(HeightField& field, const Description& d) {
     require_um(std::isfinite(d.sq) && d.sq >= 0, d, "sq_um", d.sq, "a length, 0 or more");
     require_um(positive(d.correlation_length) && d.correlation_length <= d.size, d, "correlation_length_um",
                d.correlation_length, "a positive length, at most the size");
-    Grid<double> noise = filtered_noise(field.heights.columns, field.heights.rows,
-                                        0.5 * d.correlation_length / field.pitch_x, d.seed);
+    Grid<double> noise =
+        filtered_noise(field.heights.columns, field.heights.rows, 0.5 * d.correlation_length / field.pitch_x, d.seed);
     subtract_mean(noise);
     const double scale = d.sq / root_mean_square(noise);
     for (std::size_t i = 0; i < noise.values.size(); ++i) {
@@ -267,10 +268,9 @@ void add_roughness(HeightField& field, const Roughness& roughness, const SourceL
     const auto points = [&](int count, double pitch) {
         return static_cast<int>(std::ceil((count - 1) * pitch / roughness.pitch * (1 - 1e-9))) + 1;
     };
-    own.heights =
-        Grid<float>(points(field.heights.columns, field.pitch_x), points(field.heights.rows, field.pitch_y));
-    const Grid<double> noise = filtered_noise(own.heights.columns, own.heights.rows,
-                                              roughness.kernel / roughness.pitch, roughness.seed);
+    own.heights = Grid<float>(points(field.heights.columns, field.pitch_x), points(field.heights.rows, field.pitch_y));
+    const Grid<double> noise =
+        filtered_noise(own.heights.columns, own.heights.rows, roughness.kernel / roughness.pitch, roughness.seed);
     std::transform(noise.values.begin(), noise.values.end(), own.heights.values.begin(),
                    [&](double value) { return static_cast<float>(roughness.noise * value); });
     spdlog::info("roughness: Sq {:.4g} um of noise {:.4g} um, kernel {:.4g} um, pitch {:.4g} um",
@@ -289,11 +289,10 @@ void add_roughness(HeightField& field, const Roughness& roughness, const SourceL
     const LatticeScene scene{&*carrier.lattice};
     for (int row = 0; row < field.heights.rows; ++row) {
         for (int column = 0; column < field.heights.columns; ++column) {
-            const double added = same_grid
-                                     ? scene.lattice_at(column, row)
-                                     : surface_height(scene, record, field.x_min + column * field.pitch_x,
-                                                      field.y_min + row * field.pitch_y)
-                                           .height;
+            const double added = same_grid ? scene.lattice_at(column, row)
+                                           : surface_height(scene, record, field.x_min + column * field.pitch_x,
+                                                            field.y_min + row * field.pitch_y)
+                                                 .height;
             field.heights(column, row) = static_cast<float>(field.heights(column, row) + added);
         }
     }
@@ -304,13 +303,14 @@ std::variant<HeightField, Mesh, Analytic> generate(const Description& d) {
     double pitch = d.pitch;
     if (d.roughness && positive(d.roughness->pitch)) {
         const bool has_own_grid = d.kind == Kind::rough || d.representation == Representation::facets;
-        pitch =
-            has_own_grid && positive(d.pitch) ? std::min(d.pitch, d.roughness->pitch) : d.roughness->pitch;
+        pitch = has_own_grid && positive(d.pitch) ? std::min(d.pitch, d.roughness->pitch) : d.roughness->pitch;
     }
-    require(positive(d.size), d, "size_mm", d.size, fmt::format("a length from {:g} to {:g} mm", smallest_length, largest_length));
+    require(positive(d.size), d, "size_mm", d.size,
+            fmt::format("a length from {:g} to {:g} mm", smallest_length, largest_length));
     // Before any point is made.
     if (d.kind == Kind::rough || (d.kind == Kind::plateaus && d.sq > 0)) {
-        require_work(d.size, d.size, d.size / facets_along(d, pitch), 0.5 * d.correlation_length, d.where, pitch_key(d, pitch));
+        require_work(d.size, d.size, d.size / facets_along(d, pitch), 0.5 * d.correlation_length, d.where,
+                     pitch_key(d, pitch));
     }
     if (d.roughness) {
         check_roughness(d.size, d.size, *d.roughness, d.where);
@@ -332,10 +332,10 @@ std::variant<HeightField, Mesh, Analytic> generate(const Description& d) {
         const physics::f64::SpecimenRecord record = specimen::record({analytic, {}}, 1);
         for (int row = 0; row < field->heights.rows; ++row) {
             for (int column = 0; column < field->heights.columns; ++column) {
-                field->heights(column, row) = static_cast<float>(
-                    physics::f64::shape_height(record, field->x_min + column * field->pitch_x,
-                                               field->y_min + row * field->pitch_y)
-                        .height);
+                field->heights(column, row) =
+                    static_cast<float>(physics::f64::shape_height(record, field->x_min + column * field->pitch_x,
+                                                                  field->y_min + row * field->pitch_y)
+                                           .height);
             }
         }
     }

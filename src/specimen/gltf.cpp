@@ -34,11 +34,11 @@ constexpr std::uint64_t most_triangles = std::uint64_t{1} << 26, most_vertices =
 
 constexpr const char* instancing = "EXT_mesh_gpu_instancing";
 
-const gltf::Wanted wanted_indices{.purpose = "unsigned scalar indices",
-                                  .type = "SCALAR",
-                                  .components = {Component::unsigned_byte, Component::unsigned_short,
-                                                 Component::unsigned_int},
-                                  .interleaved = false};
+const gltf::Wanted wanted_indices{
+    .purpose = "unsigned scalar indices",
+    .type = "SCALAR",
+    .components = {Component::unsigned_byte, Component::unsigned_short, Component::unsigned_int},
+    .interleaved = false};
 
 // Floats or normalised integers.
 gltf::Wanted wanted_of_instances(std::string purpose, std::string type) {
@@ -118,8 +118,8 @@ class Reader {
         const auto scene = document_.root().integer("scene");
         if (const std::size_t scenes = document_.count("scenes"); scenes > 0 || scene) {
             if (scenes > 1 && !scene) {
-                spdlog::warn("{}: of {} scenes, none of them the default, the first is taken", document_.file().string(),
-                             scenes);
+                spdlog::warn("{}: of {} scenes, none of them the default, the first is taken",
+                             document_.file().string(), scenes);
             }
             return document_.item("scenes", "scene", scene.value_or(0)).integers("nodes");
         }
@@ -176,7 +176,8 @@ class Reader {
                 node.fail("matrix", "a matrix beside translation, rotation or scale", "either of them");
             }
             if (matrix[3] != 0 || matrix[7] != 0 || matrix[11] != 0 || matrix[15] != 1) {
-                node.fail("matrix", fmt::format("a last row {}, {}, {}, {}", matrix[3], matrix[7], matrix[11], matrix[15]),
+                node.fail("matrix",
+                          fmt::format("a last row {}, {}, {}, {}", matrix[3], matrix[7], matrix[11], matrix[15]),
                           "0, 0, 0, 1, column after column");
             }
             return glm::make_mat4(matrix.data());
@@ -185,7 +186,8 @@ class Reader {
         if (!rotation.empty()) {
             turn = rotation_of(rotation[0], rotation[1], rotation[2], rotation[3]);
             if (!turn) {
-                node.fail("rotation", fmt::format("({}, {}, {}, {})", rotation[0], rotation[1], rotation[2], rotation[3]),
+                node.fail("rotation",
+                          fmt::format("({}, {}, {}, {})", rotation[0], rotation[1], rotation[2], rotation[3]),
                           "a quaternion of length 1");
             }
         }
@@ -203,7 +205,8 @@ class Reader {
         const std::uint64_t copies = instances_of(node).size();
         if (size.triangles > (most_triangles - size_.triangles) / copies ||
             size.vertices > (most_vertices - size_.vertices) / copies) {
-            node.fail("mesh", fmt::format("{} triangles and {} vertices, {} times", size.triangles, size.vertices, copies),
+            node.fail("mesh",
+                      fmt::format("{} triangles and {} vertices, {} times", size.triangles, size.vertices, copies),
                       fmt::format("at most {} of each in all", most_triangles),
                       "Export a coarser mesh, or fewer copies of it.");
         }
@@ -277,17 +280,20 @@ class Reader {
             attributes.fail("", fmt::format("{} instances", *count), fmt::format("at most {}", most_triangles));
         }
         const auto vector = [](const std::optional<Elements>& elements, std::uint64_t k, double otherwise) {
-            return elements ? glm::dvec3(elements->at(k, 0), elements->at(k, 1), elements->at(k, 2)) : glm::dvec3(otherwise);
+            return elements ? glm::dvec3(elements->at(k, 0), elements->at(k, 1), elements->at(k, 2))
+                            : glm::dvec3(otherwise);
         };
         std::vector<glm::dmat4> result;
         result.reserve(*count);
         for (std::uint64_t k = 0; k < *count; ++k) {
             std::optional<glm::dquat> rotation = glm::dquat(1, 0, 0, 0);
             if (rotations) {
-                rotation = rotation_of(rotations->at(k, 0), rotations->at(k, 1), rotations->at(k, 2), rotations->at(k, 3));
+                rotation =
+                    rotation_of(rotations->at(k, 0), rotations->at(k, 1), rotations->at(k, 2), rotations->at(k, 3));
                 if (!rotation) {
                     attributes.fail(fmt::format("ROTATION of instance {}", k), "another length",
-                                    "a quaternion of length 1", "Export the file anew; it is damaged.", rotations->where(k));
+                                    "a quaternion of length 1", "Export the file anew; it is damaged.",
+                                    rotations->where(k));
                 }
             }
             result.push_back(placed(vector(translations, k, 0), *rotation, vector(scales, k, 1)));
@@ -312,7 +318,8 @@ class Reader {
     };
 
     // The targets that displace positions, with their weights.
-    std::vector<Morph> morphs_of(const Object& primitive, const std::vector<double>& weights, std::uint64_t points) const {
+    std::vector<Morph> morphs_of(const Object& primitive, const std::vector<double>& weights,
+                                 std::uint64_t points) const {
         std::vector<Morph> result;
         const auto targets = primitive.objects("targets");
         if (!weights.empty() && weights.size() != targets.size()) {
@@ -402,7 +409,8 @@ class Reader {
         // already.
         const bool mirrored = glm::determinant(glm::dmat3(to_scene)) < 0;
         const auto add = [&](std::uint64_t a, std::uint64_t b, std::uint64_t c, bool turned) {
-            mesh_.triangles.emplace_back(vertex(a), vertex(turned != mirrored ? c : b), vertex(turned != mirrored ? b : c));
+            mesh_.triangles.emplace_back(vertex(a), vertex(turned != mirrored ? c : b),
+                                         vertex(turned != mirrored ? b : c));
         };
         if (shape.mode == mode_triangles) {
             for (std::uint64_t i = 0; i < count; i += 3) {
@@ -420,8 +428,8 @@ class Reader {
     FileMesh mesh_;
     std::vector<bool> visited_; // nodes
     std::vector<Placement> placements_;
-    std::map<std::uint64_t, Size> sizes_; // of meshes
-    Size size_;                           // of all placements
+    std::map<std::uint64_t, Size> sizes_;             // of meshes
+    Size size_;                                       // of all placements
     std::set<std::string> lines_, without_positions_; // primitives that are left out
 };
 

@@ -75,19 +75,21 @@ Elements::Packed Elements::packed(const Document& document, const Object& owner,
     const std::uint64_t stride = view.integer("byteStride").value_or(element_bytes);
     if (view.has("byteStride") && (stride < std::max(element_bytes, least_stride) || stride > largest_stride)) {
         view.fail("byteStride", fmt::format("{}", stride),
-                  fmt::format("from {} to {} for elements of {} bytes", std::max(element_bytes, least_stride), largest_stride,
-                              element_bytes));
+                  fmt::format("from {} to {} for elements of {} bytes", std::max(element_bytes, least_stride),
+                              largest_stride, element_bytes));
     }
     if (!interleaved && stride != element_bytes) {
         view.fail("byteStride", fmt::format("{}", stride), "elements without gaps, as indices have to be");
     }
     const std::uint64_t length = buffer.bytes.size();
     // Every sum and product below is bounded by the one before, so none can wrap round.
-    const bool fits = view_offset <= length && view_length <= length - view_offset && offset <= view_length && count > 0 &&
-                      element_bytes <= view_length - offset && count - 1 <= (view_length - offset - element_bytes) / stride;
+    const bool fits = view_offset <= length && view_length <= length - view_offset && offset <= view_length &&
+                      count > 0 && element_bytes <= view_length - offset &&
+                      count - 1 <= (view_length - offset - element_bytes) / stride;
     if (!fits) {
-        owner.fail("", fmt::format("{} elements of {} bytes at {} of a view of {} bytes at {}", count, element_bytes, offset,
-                                   view_length, view_offset),
+        owner.fail("",
+                   fmt::format("{} elements of {} bytes at {} of a view of {} bytes at {}", count, element_bytes,
+                               offset, view_length, view_offset),
                    fmt::format("elements inside the {} bytes of the buffer", length));
     }
     Packed result;
@@ -108,9 +110,9 @@ Elements::Elements(const Document& document, std::uint64_t index, const Wanted& 
     const std::string* type = accessor.string("type");
     const bool normalised = accessor.boolean("normalized");
     if (!type || *type != wanted.type || std::ranges::find(wanted.components, component) == wanted.components.end()) {
-        accessor.fail("", fmt::format("type {} of components {}", type ? *type : "none",
-                                      static_cast<std::uint64_t>(component)),
-                      wanted.purpose);
+        accessor.fail(
+            "", fmt::format("type {} of components {}", type ? *type : "none", static_cast<std::uint64_t>(component)),
+            wanted.purpose);
     }
     if (wanted.normalised_only && component != Component::real && !normalised) {
         accessor.fail("normalized", "false", wanted.purpose);

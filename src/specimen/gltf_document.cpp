@@ -24,16 +24,35 @@ constexpr std::uint32_t container_version = 2, json_chunk = 0x4E4F534A, binary_c
 constexpr std::string_view byte_order_mark = "\xef\xbb\xbf";
 
 // They say how a surface looks or what it is called, never where it is: the triangles are the same without them.
-constexpr std::array of_appearance = {
-    "KHR_lights_punctual", "KHR_texture_basisu", "KHR_texture_transform", "KHR_xmp", "KHR_xmp_json_ld",
-    "EXT_lights_image_based", "EXT_lights_ies", "EXT_texture_avif", "EXT_texture_webp", "MSFT_texture_dds",
-    "MSFT_packing_normalRoughnessMetallic", "MSFT_packing_occlusionRoughnessMetallic", "KHR_materials_anisotropy",
-    "KHR_materials_clearcoat", "KHR_materials_diffuse_transmission", "KHR_materials_dispersion",
-    "KHR_materials_emissive_strength", "KHR_materials_ior", "KHR_materials_iridescence",
-    "KHR_materials_pbrSpecularGlossiness", "KHR_materials_sheen", "KHR_materials_specular", "KHR_materials_transmission",
-    "KHR_materials_unlit", "KHR_materials_variants", "KHR_materials_volume"};
+constexpr std::array of_appearance = {"KHR_lights_punctual",
+                                      "KHR_texture_basisu",
+                                      "KHR_texture_transform",
+                                      "KHR_xmp",
+                                      "KHR_xmp_json_ld",
+                                      "EXT_lights_image_based",
+                                      "EXT_lights_ies",
+                                      "EXT_texture_avif",
+                                      "EXT_texture_webp",
+                                      "MSFT_texture_dds",
+                                      "MSFT_packing_normalRoughnessMetallic",
+                                      "MSFT_packing_occlusionRoughnessMetallic",
+                                      "KHR_materials_anisotropy",
+                                      "KHR_materials_clearcoat",
+                                      "KHR_materials_diffuse_transmission",
+                                      "KHR_materials_dispersion",
+                                      "KHR_materials_emissive_strength",
+                                      "KHR_materials_ior",
+                                      "KHR_materials_iridescence",
+                                      "KHR_materials_pbrSpecularGlossiness",
+                                      "KHR_materials_sheen",
+                                      "KHR_materials_specular",
+                                      "KHR_materials_transmission",
+                                      "KHR_materials_unlit",
+                                      "KHR_materials_variants",
+                                      "KHR_materials_volume"};
 constexpr std::array of_geometry = {"EXT_mesh_gpu_instancing", "KHR_mesh_quantization"};
-constexpr std::array of_compression = {"KHR_draco_mesh_compression", "EXT_meshopt_compression", "KHR_meshopt_compression"};
+constexpr std::array of_compression = {"KHR_draco_mesh_compression", "EXT_meshopt_compression",
+                                       "KHR_meshopt_compression"};
 
 std::uint32_t word_at(std::string_view bytes, std::uint64_t offset) {
     std::uint32_t word = 0;
@@ -81,7 +100,10 @@ std::string_view Document::json_of_container() {
         return all.starts_with(byte_order_mark) ? all.substr(byte_order_mark.size()) : all;
     }
     const auto fail = [&](std::uint64_t offset, const std::string& found, const std::string& expected) {
-        throw InputError({{.file = file_, .byte_offset = offset}, "glTF", found, expected,
+        throw InputError({{.file = file_, .byte_offset = offset},
+                          "glTF",
+                          found,
+                          expected,
                           "Export or copy the file anew; it is damaged or truncated."});
     };
     if (all.size() < header_bytes + chunk_header_bytes) {
@@ -100,7 +122,8 @@ std::string_view Document::json_of_container() {
         const std::uint32_t type = word_at(all, at + 4);
         const std::uint64_t start = at + chunk_header_bytes;
         if (size > length - start) {
-            fail(at, fmt::format("a chunk of {} bytes", size), fmt::format("at most the {} that are left", length - start));
+            fail(at, fmt::format("a chunk of {} bytes", size),
+                 fmt::format("at most the {} that are left", length - start));
         }
         const bool first = at == header_bytes;
         if (first != (type == json_chunk)) {
@@ -164,8 +187,8 @@ void Document::check_version() const {
     }
     // What asks for no least version can be read by all readers of its major one.
     if (least && (least->major != 2 || least->minor != 0)) {
-        asset.fail("minVersion", fmt::format("{}.{}", least->major, least->minor), "glTF 2.0, which is all that is known here",
-                   remedy);
+        asset.fail("minVersion", fmt::format("{}.{}", least->major, least->minor),
+                   "glTF 2.0, which is all that is known here", remedy);
     }
     if (!least && version->major != 2) {
         asset.fail("version", fmt::format("{}.{}", version->major, version->minor), "glTF 2.0", remedy);
@@ -249,7 +272,8 @@ bool read_buffer_file(std::vector<unsigned char>* bytes, std::string*, const std
             throw InputError({{.file = path},
                               file.request.key,
                               fmt::format("{} bytes, of which {} are there", file.length, input.bytes()),
-                              "a buffer as long as it says", "Export or copy the files anew; this one is truncated."});
+                              "a buffer as long as it says",
+                              "Export or copy the files anew; this one is truncated."});
         }
         const std::string content = input.read(file.length);
         bytes->assign(content.begin(), content.end());

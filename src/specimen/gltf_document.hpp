@@ -32,7 +32,7 @@ class Object {
     bool boolean(const char* key) const;                         // false without
     const std::string* string(const char* key) const;            // null without
     std::vector<std::string> strings(const char* key) const;
-    std::vector<double> numbers(const char* key) const; // finite
+    std::vector<double> numbers(const char* key) const;                    // finite
     std::vector<double> numbers(const char* key, std::size_t count) const; // either none or as many
     std::vector<std::uint64_t> integers(const char* key) const;
     std::optional<Object> object(const char* key) const;
@@ -80,8 +80,8 @@ class Document {
     std::size_t count(const char* list) const;
     Object item(const char* list, const std::string& name, std::uint64_t index) const;
 
-    // Of a regular file beside the document, of a data URI or of the .glb; read when it is first asked for, so that what no
-    // triangle needs need not exist. As long as its byteLength, or InputError.
+    // Of a regular file beside the document, of a data URI or of the .glb; read when it is first asked for, so that
+    // what no triangle needs need not exist. As long as its byteLength, or InputError.
     const Buffer& buffer(std::uint64_t index) const;
 
   private:

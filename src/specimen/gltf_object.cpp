@@ -26,8 +26,8 @@ Object::Object(const Json& value, std::string name, const std::filesystem::path&
     }
 }
 
-void Object::fail(const std::string& key, const std::string& found, const std::string& expected, const std::string& remedy,
-                  std::optional<SourceLocation> where) const {
+void Object::fail(const std::string& key, const std::string& found, const std::string& expected,
+                  const std::string& remedy, std::optional<SourceLocation> where) const {
     const std::string dot = name_.empty() || key.empty() ? "" : ".";
     throw InputError({where.value_or(SourceLocation{.file = *file_}), name_ + dot + key, found, expected, remedy});
 }
@@ -121,7 +121,8 @@ std::vector<Object> Object::objects(const char* key) const {
     std::vector<Object> result;
     if (const Json* values = find(key, &Json::is_array, "an array")) {
         for (const Json& value : *values) {
-            result.emplace_back(value, fmt::format("{}{}{}[{}]", name_, name_.empty() ? "" : ".", key, result.size()), *file_);
+            result.emplace_back(value, fmt::format("{}{}{}[{}]", name_, name_.empty() ? "" : ".", key, result.size()),
+                                *file_);
         }
     }
     return result;

@@ -15,8 +15,8 @@
 namespace vkfv::specimen {
 namespace {
 
-// Packed pixels may be thousands of times smaller than they become; those of measured or drawn heights are not. An image
-// of more pixels than this holds a byte for every so many of them, or somebody made it to fill the memory.
+// Packed pixels may be thousands of times smaller than they become; those of measured or drawn heights are not. An
+// image of more pixels than this holds a byte for every so many of them, or somebody made it to fill the memory.
 constexpr std::uint64_t most_packed_pixels = std::uint64_t{1} << 26; // 256 MiB of heights
 constexpr std::uint64_t most_pixels_a_byte = 64;
 
@@ -27,11 +27,12 @@ std::string format_of(std::string_view bytes, const std::filesystem::path& file)
         std::string_view bytes;
         const char* format;
     };
-    constexpr Mark marks[] = {{"II*\0"sv, "tiff"}, {"MM\0*"sv, "tiff"},      {"II+\0"sv, "tiff"}, {"MM\0+"sv, "tiff"},
-                              {"\x89PNG"sv, "png"}, {"\xff\xd8\xff"sv, "jpeg"}, {"BM"sv, "bmp"},     {"#?RADIANCE"sv, "hdr"},
-                              {"#?RGBE"sv, "hdr"},  {"P1"sv, "pnm"},          {"P2"sv, "pnm"},     {"P3"sv, "pnm"},
-                              {"P4"sv, "pnm"},      {"P5"sv, "pnm"},          {"P6"sv, "pnm"},     {"Pf"sv, "pnm"},
-                              {"PF"sv, "pnm"},      {"\x76\x2f\x31\x01"sv, "openexr"}};
+    constexpr Mark marks[] = {{"II*\0"sv, "tiff"}, {"MM\0*"sv, "tiff"},     {"II+\0"sv, "tiff"},
+                              {"MM\0+"sv, "tiff"}, {"\x89PNG"sv, "png"},    {"\xff\xd8\xff"sv, "jpeg"},
+                              {"BM"sv, "bmp"},     {"#?RADIANCE"sv, "hdr"}, {"#?RGBE"sv, "hdr"},
+                              {"P1"sv, "pnm"},     {"P2"sv, "pnm"},         {"P3"sv, "pnm"},
+                              {"P4"sv, "pnm"},     {"P5"sv, "pnm"},         {"P6"sv, "pnm"},
+                              {"Pf"sv, "pnm"},     {"PF"sv, "pnm"},         {"\x76\x2f\x31\x01"sv, "openexr"}};
     for (const Mark& mark : marks) {
         if (bytes.starts_with(mark.bytes)) {
             return mark.format;
@@ -49,13 +50,13 @@ std::string format_of(std::string_view bytes, const std::filesystem::path& file)
 
 struct Channels {
     int count = 0;
-    int grey = 0;      // the first that is not opacity
+    int grey = 0; // the first that is not opacity
     bool colour = false;
 };
 
 Channels check(const OIIO::ImageSpec& spec, std::uint64_t file_bytes, const std::filesystem::path& file) {
-    const auto pixels = static_cast<std::uint64_t>(std::max(spec.width, 0)) *
-                        static_cast<std::uint64_t>(std::max(spec.height, 0));
+    const auto pixels =
+        static_cast<std::uint64_t>(std::max(spec.width, 0)) * static_cast<std::uint64_t>(std::max(spec.height, 0));
     if (spec.width < 2 || spec.height < 2 || spec.depth > 1 || pixels > largest_point_count) {
         fail(file, fmt::format("{} x {} x {} pixels", spec.width, spec.height, spec.depth),
              fmt::format("a flat image of at least 2 x 2 and at most {} pixels", largest_point_count),
@@ -63,7 +64,8 @@ Channels check(const OIIO::ImageSpec& spec, std::uint64_t file_bytes, const std:
     }
     if (pixels > most_packed_pixels && pixels / most_pixels_a_byte > file_bytes) {
         fail(file, fmt::format("{} x {} pixels in {} bytes", spec.width, spec.height, file_bytes),
-             fmt::format("beyond {} pixels a byte of the file for every {} of them", most_packed_pixels, most_pixels_a_byte),
+             fmt::format("beyond {} pixels a byte of the file for every {} of them", most_packed_pixels,
+                         most_pixels_a_byte),
              "Crop or scale the image, or save it without compression if it is really so large.");
     }
     const bool opacity = spec.alpha_channel >= 0;
@@ -77,15 +79,15 @@ Channels check(const OIIO::ImageSpec& spec, std::uint64_t file_bytes, const std:
 bool read_rows(OIIO::ImageInput& input, const OIIO::ImageSpec& spec, int channels, int first, int end, float* band) {
     const int top = spec.y + first, bottom = spec.y + end;
     const bool read = spec.tile_width > 0
-                          ? input.read_tiles(0, 0, spec.x, spec.x + spec.width, top, bottom, spec.z, spec.z + 1, 0, channels,
-                                             OIIO::TypeDesc::FLOAT, band)
+                          ? input.read_tiles(0, 0, spec.x, spec.x + spec.width, top, bottom, spec.z, spec.z + 1, 0,
+                                             channels, OIIO::TypeDesc::FLOAT, band)
                           : input.read_scanlines(0, 0, top, bottom, spec.z, 0, channels, OIIO::TypeDesc::FLOAT, band);
     // Rows that the file does not have may come as zeros, with an error that only this tells.
     return read && !input.has_error();
 }
 
-// Rows are read in bands that exist in the file before room is made for the next: a header that lies about the size ends at
-// the first band that is missing. From the top.
+// Rows are read in bands that exist in the file before room is made for the next: a header that lies about the size
+// ends at the first band that is missing. From the top.
 std::vector<float> read_heights(OIIO::ImageInput& input, const OIIO::ImageSpec& spec, const Channels& channels,
                                 const std::filesystem::path& file) {
     constexpr int rows_at_once = 64;

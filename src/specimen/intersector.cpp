@@ -97,13 +97,11 @@ Hit no_hit() {
 class FieldWalk {
   public:
     explicit FieldWalk(const HeightField& field) : field_(field) {
-        const auto [lowest, highest] =
-            std::minmax_element(field.heights.values.begin(), field.heights.values.end());
+        const auto [lowest, highest] = std::minmax_element(field.heights.values.begin(), field.heights.values.end());
         bottom_ = static_cast<double>(*lowest);
         top_ = static_cast<double>(*highest);
-        margin_ = selection_margin *
-                  std::max({std::abs(field.x_min), std::abs(field.x_max()), std::abs(field.y_min),
-                            std::abs(field.y_max()), std::abs(bottom_), std::abs(top_)});
+        margin_ = selection_margin * std::max({std::abs(field.x_min), std::abs(field.x_max()), std::abs(field.y_min),
+                                               std::abs(field.y_max()), std::abs(bottom_), std::abs(top_)});
     }
 
     Hit hit(const glm::dvec3& origin, const glm::dvec3& direction) const {
@@ -171,8 +169,7 @@ class FieldWalk {
             nearest.found = 1;
             nearest.distance = *distance;
             nearest.position = ray.at(*distance);
-            nearest.normal =
-                glm::normalize(glm::cross(b - a, c - a)); // counter-clockwise from above: towards +z
+            nearest.normal = glm::normalize(glm::cross(b - a, c - a)); // counter-clockwise from above: towards +z
         }
     }
 
@@ -187,8 +184,7 @@ class Hierarchy {
     explicit Hierarchy(const Mesh& mesh) {
         triangles_.reserve(mesh.triangles.size());
         for (const glm::uvec3& triangle : mesh.triangles) {
-            triangles_.push_back({glm::dvec3(mesh.vertices[triangle.x]),
-                                  glm::dvec3(mesh.vertices[triangle.y]),
+            triangles_.push_back({glm::dvec3(mesh.vertices[triangle.x]), glm::dvec3(mesh.vertices[triangle.y]),
                                   glm::dvec3(mesh.vertices[triangle.z])});
         }
         if (!triangles_.empty()) {
@@ -209,11 +205,9 @@ class Hierarchy {
             const Node& node = nodes_[stack[--depth]];
             Interval inside{0, nearest.distance};
             for (int axis = 0; axis < 3; ++axis) {
-                const double margin =
-                    selection_margin *
-                    (std::abs(origin[axis]) + std::abs(node.lower[axis]) + std::abs(node.upper[axis]));
-                inside.clip(origin[axis], direction[axis], node.lower[axis] - margin,
-                            node.upper[axis] + margin);
+                const double margin = selection_margin * (std::abs(origin[axis]) + std::abs(node.lower[axis]) +
+                                                          std::abs(node.upper[axis]));
+                inside.clip(origin[axis], direction[axis], node.lower[axis] - margin, node.upper[axis] + margin);
             }
             if (inside.empty()) {
                 continue;
@@ -263,12 +257,9 @@ class Hierarchy {
         nodes_.push_back(node);
         if (node.count > leaf_size) {
             const glm::dvec3 extent = node.upper - node.lower;
-            const int axis =
-                extent.x >= extent.y && extent.x >= extent.z ? 0 : (extent.y >= extent.z ? 1 : 2);
+            const int axis = extent.x >= extent.y && extent.x >= extent.z ? 0 : (extent.y >= extent.z ? 1 : 2);
             const std::size_t middle = begin + node.count / 2;
-            const auto at = [&](std::size_t i) {
-                return triangles_.begin() + static_cast<std::ptrdiff_t>(i);
-            };
+            const auto at = [&](std::size_t i) { return triangles_.begin() + static_cast<std::ptrdiff_t>(i); };
             std::nth_element(at(begin), at(middle), at(end), [axis](const Triangle& a, const Triangle& b) {
                 return a[0][axis] + a[1][axis] + a[2][axis] < b[0][axis] + b[1][axis] + b[2][axis];
             });
@@ -320,8 +311,7 @@ Intersector::~Intersector() = default;
 Intersector::Intersector(Intersector&&) noexcept = default;
 
 Hit Intersector::hit(glm::dvec3 origin, glm::dvec3 direction) const {
-    return std::visit([&](const auto& geometry) { return geometry.hit(origin, direction); },
-                      state_->geometry);
+    return std::visit([&](const auto& geometry) { return geometry.hit(origin, direction); }, state_->geometry);
 }
 
 } // namespace vkfv::specimen

@@ -97,8 +97,8 @@ LatticeBounds bounds_of(const HeightField& lattice) {
                 slope_x = std::max(slope_x, largest_cubic_slope(along_x[j]));
                 slope_y = std::max(slope_y, largest_cubic_slope(along_y[j]));
             }
-            result.slope = std::max(result.slope, largest_weight_sum * std::hypot(slope_x / lattice.pitch_x,
-                                                                                  slope_y / lattice.pitch_y));
+            result.slope = std::max(result.slope, largest_weight_sum *
+                                                      std::hypot(slope_x / lattice.pitch_x, slope_y / lattice.pitch_y));
         }
     }
     return result;
@@ -140,8 +140,7 @@ ShapeBounds bounds_of_shape(const Analytic& a) {
     default: // sinusoid, chirp
         result.height.include(-std::abs(p[0]));
         result.height.include(std::abs(p[0]));
-        result.slope =
-            std::abs(p[0]) * 2 * pi / (a.shape == physics::f64::SHAPE_CHIRP ? std::min(p[1], p[2]) : p[1]);
+        result.slope = std::abs(p[0]) * 2 * pi / (a.shape == physics::f64::SHAPE_CHIRP ? std::min(p[1], p[2]) : p[1]);
         break;
     }
     return result;
@@ -163,8 +162,7 @@ struct Recorder {
     void operator()(const HeightField& field) const {
         record.kind = physics::f64::SPECIMEN_FACETS;
         grid(field);
-        const auto [lowest, highest] =
-            std::minmax_element(field.heights.values.begin(), field.heights.values.end());
+        const auto [lowest, highest] = std::minmax_element(field.heights.values.begin(), field.heights.values.end());
         record.bottom = static_cast<double>(*lowest);
         record.top = static_cast<double>(*highest);
     }
@@ -218,8 +216,8 @@ void check_extent(const Specimen& specimen, const SourceLocation& where) {
     // Not finite: neither.
     if (!(farthest <= largest_length && narrowest >= smallest_length)) {
         throw InputError({where, "specimen",
-                          fmt::format("a surface of {:.6g} x {:.6g} mm, from {:.6g} to {:.6g} mm high", r.x_max - r.x_min,
-                                      r.y_max - r.y_min, r.bottom, r.top),
+                          fmt::format("a surface of {:.6g} x {:.6g} mm, from {:.6g} to {:.6g} mm high",
+                                      r.x_max - r.x_min, r.y_max - r.y_min, r.bottom, r.top),
                           fmt::format("lengths from {} to {} mm", smallest_length, largest_length),
                           "Correct the lengths in [specimen], or the unit of its file."});
     }
@@ -230,8 +228,7 @@ void check_extent(const Specimen& specimen, const SourceLocation& where) {
 Specimen make(const Description& d) {
     (void)material_record(d.material, d.where);
     if (d.roughness && (d.kind == Kind::stl || d.kind == Kind::gltf)) {
-        throw InputError({d.where, "specimen.roughness", "roughness on a mesh",
-                          "a height field or a generated kind",
+        throw InputError({d.where, "specimen.roughness", "roughness on a mesh", "a height field or a generated kind",
                           "Remove [specimen.roughness], or put the roughness into the mesh."});
     }
     Specimen specimen;

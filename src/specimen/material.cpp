@@ -22,8 +22,8 @@ physics::f64::Lobe lobe_record(const Lobe& lobe, const SourceLocation& where) {
                           "Correct the name or the number of parameters."});
     }
     if (!(lobe.weight > 0 && lobe.weight <= 1)) {
-        throw InputError({where, "specimen.material.weight", fmt::format("{}", lobe.weight),
-                          "a number in (0, 1]", "Correct the weight, or leave the lobe out."});
+        throw InputError({where, "specimen.material.weight", fmt::format("{}", lobe.weight), "a number in (0, 1]",
+                          "Correct the weight, or leave the lobe out."});
     }
     std::array<double, 4> parameters{};
     for (std::size_t k = 0; k < lobe.parameters.size(); ++k) {
@@ -60,9 +60,8 @@ physics::f64::Material material_record(const Material& material, const SourceLoc
         reflectance += lobes[k].weight;
     }
     if (reflectance > 1 + weight_rounding) {
-        throw InputError({where, "specimen.material.lobe",
-                          fmt::format("weights that add up to {:.6g}", reflectance), "at most 1",
-                          "Choose smaller weights; what they leave of 1 is absorbed."});
+        throw InputError({where, "specimen.material.lobe", fmt::format("weights that add up to {:.6g}", reflectance),
+                          "at most 1", "Choose smaller weights; what they leave of 1 is absorbed."});
     }
     return {lobes[0], lobes[1], lobes[2], lobes[3]};
 }

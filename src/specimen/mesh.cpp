@@ -42,8 +42,8 @@ double mean_height(const Mesh& mesh) {
     const Box box = box_of({mesh.vertices.begin(), mesh.vertices.end()});
     const double pitch_x = (box.upper.x - box.lower.x) / pixels;
     const double pitch_y = (box.upper.y - box.lower.y) / pixels;
-    const surface::HeightMap map = truth({mesh, {}}, pixels, pixels, box.lower.x + 0.5 * pitch_x,
-                                         box.lower.y + 0.5 * pitch_y, pitch_x, pitch_y);
+    const surface::HeightMap map =
+        truth({mesh, {}}, pixels, pixels, box.lower.x + 0.5 * pitch_x, box.lower.y + 0.5 * pitch_y, pitch_x, pitch_y);
     double sum = 0;
     int count = 0;
     for (const double height : map.height.values) {
@@ -104,8 +104,8 @@ class Placing {
             to_float(centre);
         }
         const glm::dvec3 extent = box.upper - box.lower;
-        spdlog::info("{}: {} triangles, {:.6g} x {:.6g} x {:.6g} mm; {} without area dropped", description_.file.string(),
-                     mesh_.triangles.size(), extent.x, extent.y, extent.z, flat_ + lost_);
+        spdlog::info("{}: {} triangles, {:.6g} x {:.6g} x {:.6g} mm; {} without area dropped",
+                     description_.file.string(), mesh_.triangles.size(), extent.x, extent.y, extent.z, flat_ + lost_);
         return std::move(mesh_);
     }
 
@@ -145,7 +145,8 @@ class Placing {
         // Of all shapes that are meant to be seen whole, none is so lopsided.
         constexpr double far = 1e4;
         if (outlier.distance > far * outlier.usual) {
-            warn("a vertex at {} lies {:.3g} mm from where most of the {} vertices are, half of them within {:.3g} mm. If it is "
+            warn("a vertex at {} lies {:.3g} mm from where most of the {} vertices are, half of them within {:.3g} mm. "
+                 "If it is "
                  "wrong, export the mesh anew; it moves the whole mesh when that is centred",
                  text_of(outlier.vertex), outlier.distance, source_.vertices.size(), outlier.usual);
         }
@@ -158,8 +159,8 @@ class Placing {
         }
     }
 
-    // Facets without area are met by no ray. Those of the file are dropped; those that only lose it among large coordinates
-    // are what the file was to show.
+    // Facets without area are met by no ray. Those of the file are dropped; those that only lose it among large
+    // coordinates are what the file was to show.
     void keep_facets_with_area(const glm::dvec3& centre, const Outlier& outlier) {
         constexpr double thinnest = 1e-9; // beside the square of its length: rounding of what is a line in the file
         std::vector<double> sides;
@@ -202,16 +203,19 @@ class Placing {
         const std::size_t whole = mesh_.triangles.size();
         if (2 * lost_ > whole || side < fewest_steps * step) {
             fail("file",
-                 fmt::format("{}: of {} triangles {} lose their area, since coordinates up to {:.3g} mm are kept to {:.3g} mm "
-                             "and half the triangles are less than {:.3g} mm wide",
-                             description_.file.string(), whole + lost_, lost_, farthest, step, side),
+                 fmt::format(
+                     "{}: of {} triangles {} lose their area, since coordinates up to {:.3g} mm are kept to {:.3g} mm "
+                     "and half the triangles are less than {:.3g} mm wide",
+                     description_.file.string(), whole + lost_, lost_, farthest, step, side),
                  "a mesh whose facets are not lost in its extent",
                  fmt::format("Look at the vertex at {}; bring the mesh near the origin, or set centre = true.",
                              text_of(outlier.vertex)));
         }
         if (lost_ > 0 || side < fine_steps * step) {
-            warn("its coordinates, up to {:.3g} mm from {}, are kept to {:.3g} mm, and half its triangles are less than {:.3g} "
-                 "mm wide: {} of {} lose their area and are dropped. Bring the mesh near the origin, or set centre = true",
+            warn("its coordinates, up to {:.3g} mm from {}, are kept to {:.3g} mm, and half its triangles are less "
+                 "than {:.3g} "
+                 "mm wide: {} of {} lose their area and are dropped. Bring the mesh near the origin, or set centre = "
+                 "true",
                  farthest, text_of(centre), step, side, lost_, whole + lost_);
         }
     }

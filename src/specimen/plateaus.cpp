@@ -70,12 +70,14 @@ void set_text(HeightField& field, const Description& d) {
              fmt::format("one, or one for each of the {} letters", count), "Give each letter its height.");
     if (!(d.text_width > 0 && d.text_width <= d.size))
         fail(d, "text_width_mm", fmt::format("{}", d.text_width),
-             fmt::format("a positive length, at most the specimen's {}", d.size), "Choose narrower text or a larger specimen.");
+             fmt::format("a positive length, at most the specimen's {}", d.size),
+             "Choose narrower text or a larger specimen.");
     // Each letter is drawn over the whole grid.
     constexpr double most_drawn_points = 0x1p31; // some tens of seconds
     const double points = static_cast<double>(field.heights.values.size());
     if (static_cast<double>(count) * points > most_drawn_points)
-        fail(d, "text", fmt::format("{} letters on a grid of {} x {} points", count, field.heights.columns, field.heights.rows),
+        fail(d, "text",
+             fmt::format("{} letters on a grid of {} x {} points", count, field.heights.columns, field.heights.rows),
              fmt::format("at most {:.0f} letters on so fine a grid", most_drawn_points / points),
              "Choose a coarser pitch_um or less text, or draw the letters as an image and name it in specimen.file.");
     // Widths follow the font's size; it is found from those at a large one.
@@ -89,7 +91,8 @@ void set_text(HeightField& field, const Description& d) {
     constexpr int highest = 8;
     if (font_size > highest * field.heights.rows)
         fail(d, "text_width_mm", fmt::format("{}", d.text_width),
-             fmt::format("letters at most {} times as high as the specimen", highest), "Choose narrower text, or more of it.");
+             fmt::format("letters at most {} times as high as the specimen", highest),
+             "Choose narrower text, or more of it.");
     const std::vector<Letter> letters = letters_of(d, font_size);
     // The text's bounding box has its middle on the axis.
     int top = 0, bottom = 0;
@@ -139,8 +142,8 @@ void set_mask(HeightField& field, const Description& d) {
             const auto pixel = [](int at, int points, int pixels) {
                 return std::min(pixels - 1, static_cast<int>(std::int64_t{at} * pixels / points));
             };
-            const float value = mask(pixel(column, field.heights.columns, mask.columns),
-                                     pixel(row, field.heights.rows, mask.rows));
+            const float value =
+                mask(pixel(column, field.heights.columns, mask.columns), pixel(row, field.heights.rows, mask.rows));
             if (value != 0)
                 field.heights(column, row) = static_cast<float>(
                     height_of(d, static_cast<std::size_t>(std::distance(levels.begin(), levels.find(value)))));
@@ -157,8 +160,7 @@ HeightField plateaus(const Description& d, double pitch) {
         if (std::filesystem::exists(d.font, none))
             (void)InputFile(d.font, {.key = "specimen.font", .expected = "the file of a font"});
         set_text(field, d);
-    }
-    else
+    } else
         set_mask(field, d);
     return field;
 }

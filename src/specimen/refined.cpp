@@ -20,7 +20,8 @@ HeightField on_grid(const HeightField& field, double x0, double y0, int columns,
     std::copy(field.heights.values.begin(), field.heights.values.end(), map.height.values.begin());
     const surface::HeightMap resampled = surface::resampled(
         map, {.height = Grid<double>(columns, rows), .x0 = x0, .y0 = y0, .pitch_x = pitch, .pitch_y = pitch});
-    HeightField result{.heights = Grid<float>(columns, rows), .x_min = x0, .y_min = y0, .pitch_x = pitch, .pitch_y = pitch};
+    HeightField result{
+        .heights = Grid<float>(columns, rows), .x_min = x0, .y_min = y0, .pitch_x = pitch, .pitch_y = pitch};
     std::ranges::transform(resampled.height.values, result.heights.values.begin(),
                            [](double height) { return static_cast<float>(height); });
     if (!field.interpolated.empty()) {
@@ -41,9 +42,10 @@ HeightField refined(const HeightField& field, double pitch, const SourceLocation
     const auto points = [pitch](double extent) { return std::floor(extent / pitch * (1 + 1e-9)) + 1; };
     if (!(points(width) * points(height) <= static_cast<double>(largest_point_count))) {
         const double least = std::sqrt(width * height / static_cast<double>(largest_point_count));
-        throw InputError({where, "specimen.roughness.pitch_um", fmt::format("{:.6g}", pitch * um_per_mm),
-                          fmt::format("at most {} points on the file's {:.6g} x {:.6g} mm", largest_point_count, width, height),
-                          fmt::format("Choose roughness.pitch_um >= {:.3g}.", 1.01 * least * um_per_mm)});
+        throw InputError(
+            {where, "specimen.roughness.pitch_um", fmt::format("{:.6g}", pitch * um_per_mm),
+             fmt::format("at most {} points on the file's {:.6g} x {:.6g} mm", largest_point_count, width, height),
+             fmt::format("Choose roughness.pitch_um >= {:.3g}.", 1.01 * least * um_per_mm)});
     }
     const int columns = static_cast<int>(points(width)), rows = static_cast<int>(points(height));
     // Around the same centre.

@@ -19,8 +19,8 @@ HeightField plateaus(const Description& description, double pitch);
 // surface of its own whose power spectrum is constant below the frequency 1 / roll_off, falls with the power
 // -2 (1 + hurst) above it and ends at 1 / shortest (B. N. J. Persson et al., "On the nature of surface roughness with
 // application to contact mechanics, sealing, rubber friction and adhesion", 2005); its mean is 0 and its Sq is `sq`
-// exactly. Or each is the middle of the measured surface in `file`, levelled as a whole and of mean 0. Neighbours do not
-// meet in height: the seams are steps one pitch wide.
+// exactly. Or each is the middle of the measured surface in `file`, levelled as a whole and of mean 0. Neighbours do
+// not meet in height: the seams are steps one pitch wide.
 HeightField sub_surfaces(const Description& description, double pitch);
 
 // Type ASG (ISO 25178-70): a star of `petals` raised sectors, `height` over the sectors between them, out to `radius`;

@@ -21,8 +21,7 @@ class Welder {
     void add(const glm::vec3& position) {
         // Adding zero makes -0 and 0 the same vertex.
         const glm::vec3 key = position + 0.0f;
-        const auto [entry, is_new] =
-            indices_.try_emplace(key, static_cast<std::uint32_t>(mesh_.vertices.size()));
+        const auto [entry, is_new] = indices_.try_emplace(key, static_cast<std::uint32_t>(mesh_.vertices.size()));
         if (is_new) {
             mesh_.vertices.emplace_back(key);
         }
@@ -207,7 +206,8 @@ bool looks_like_text(std::string_view text) {
 }
 
 [[noreturn]] void fail(const std::filesystem::path& file, std::uint64_t offset, const std::string& found,
-                       const std::string& expected, const std::string& remedy = "Export the file anew; it is damaged.") {
+                       const std::string& expected,
+                       const std::string& remedy = "Export the file anew; it is damaged.") {
     throw InputError({{file, 0, 0, offset}, "STL", found, expected, remedy});
 }
 

@@ -30,14 +30,13 @@ HeightField generated(const Description& d, int points, double pitch, std::uint3
     fourier_transform(spectrum);
     for (int m = 0; m < points; ++m)
         for (int l = 0; l < points; ++l)
-            spectrum(l, m) *= std::sqrt(relative_power(
-                d, std::hypot(fourier_frequency(l, points), fourier_frequency(m, points)) / pitch));
+            spectrum(l, m) *= std::sqrt(
+                relative_power(d, std::hypot(fourier_frequency(l, points), fourier_frequency(m, points)) / pitch));
     inverse_fourier_transform(spectrum);
     Grid<double> surface(points, points);
     std::transform(spectrum.values.begin(), spectrum.values.end(), surface.values.begin(),
                    [](const std::complex<double>& value) { return value.real(); });
-    const double square =
-        std::inner_product(surface.values.begin(), surface.values.end(), surface.values.begin(), 0.0);
+    const double square = std::inner_product(surface.values.begin(), surface.values.end(), surface.values.begin(), 0.0);
     const double scale = d.sq / std::sqrt(square / static_cast<double>(surface.values.size()));
     HeightField field{.heights = Grid<float>(points, points)};
     std::transform(surface.values.begin(), surface.values.end(), field.heights.values.begin(),
@@ -71,8 +70,8 @@ HeightField measured(const Description& d, int points, double pitch) {
 HeightField sub_surfaces(const Description& d, double pitch) {
     const auto require = [&](bool condition, const char* key, double found, const std::string& expected) {
         if (!condition)
-            throw InputError({d.where, fmt::format("specimen.{}", key), fmt::format("{:.6g}", found * um_per_mm), expected,
-                              "Correct the value in the configuration."});
+            throw InputError({d.where, fmt::format("specimen.{}", key), fmt::format("{:.6g}", found * um_per_mm),
+                              expected, "Correct the value in the configuration."});
     };
     HeightField field = level_field(d, pitch);
     const int points = (field.heights.columns - 1) / d.tiles;
@@ -85,11 +84,12 @@ HeightField sub_surfaces(const Description& d, double pitch) {
                 fmt::format("at most the roll-off wavelength, {} um", d.roll_off * um_per_mm));
         require(d.roll_off <= d.size / d.tiles * (1 + 1e-9), "roll_off_wavelength_um", d.roll_off,
                 fmt::format("at most the sub-surface's {} um", d.size / d.tiles * um_per_mm));
-        require(points <= most_points_of_spectrum, "pitch_um", pitch,
-                fmt::format("at most {} points along a sub-surface, so that its spectrum fits into memory; for its {} um a "
-                            "pitch of {:.3g}",
-                            most_points_of_spectrum, d.size / d.tiles * um_per_mm,
-                            d.size / d.tiles / most_points_of_spectrum * um_per_mm));
+        require(
+            points <= most_points_of_spectrum, "pitch_um", pitch,
+            fmt::format("at most {} points along a sub-surface, so that its spectrum fits into memory; for its {} um a "
+                        "pitch of {:.3g}",
+                        most_points_of_spectrum, d.size / d.tiles * um_per_mm,
+                        d.size / d.tiles / most_points_of_spectrum * um_per_mm));
     }
     std::optional<HeightField> repeated;
     if (!d.file.empty())

@@ -48,9 +48,11 @@ HeightField read_surface_field(const Description& d) {
     const auto gaps = std::ranges::count_if(map.height.values, [](double z) { return !std::isfinite(z); });
     const auto points = std::ssize(map.height.values);
     if (map.columns() < 2 || map.rows() < 2 || gaps == points) {
-        throw InputError({{d.file, 0, 0, {}}, "surface",
+        throw InputError({{d.file, 0, 0, {}},
+                          "surface",
                           fmt::format("{} x {} points, {} of them measured", map.columns(), map.rows(), points - gaps),
-                          "at least 2 x 2 points, not all of them gaps", "Name another file or choose a larger size."});
+                          "at least 2 x 2 points, not all of them gaps",
+                          "Name another file or choose a larger size."});
     }
     if (d.level) {
         map = remove_plane(map, surface::least_squares_plane(map));

@@ -108,20 +108,18 @@ struct Fill {
     void operator()(const Analytic& analytic) const {
         const physics::f64::SpecimenRecord record = specimen::record({analytic, {}}, 1);
         const LatticeScene scene{analytic.lattice ? &*analytic.lattice : nullptr};
-        each(analytic.x_min, analytic.x_max, analytic.y_min, analytic.y_max,
-             [&](double x, double y, double& height) {
-                 if (x >= analytic.x_min && x <= analytic.x_max && y >= analytic.y_min &&
-                     y <= analytic.y_max) {
-                     height = physics::f64::surface_height(scene, record, x, y).height;
-                 }
-             });
+        each(analytic.x_min, analytic.x_max, analytic.y_min, analytic.y_max, [&](double x, double y, double& height) {
+            if (x >= analytic.x_min && x <= analytic.x_max && y >= analytic.y_min && y <= analytic.y_max) {
+                height = physics::f64::surface_height(scene, record, x, y).height;
+            }
+        });
     }
 };
 
 } // namespace
 
-surface::HeightMap truth(const Specimen& specimen, int columns, int rows, double x0, double y0,
-                         double pitch_x, double pitch_y) {
+surface::HeightMap truth(const Specimen& specimen, int columns, int rows, double x0, double y0, double pitch_x,
+                         double pitch_y) {
     surface::HeightMap map;
     map.height = Grid<double>(columns, rows);
     map.x0 = x0;
@@ -148,9 +146,8 @@ surface::HeightMap truth(const Specimen& specimen, int columns, int rows, double
                         sum += points.heights(column * subdivision + i, row * subdivision + j);
                     }
                 }
-                map.height(column, first + row) = std::isfinite(sum)
-                                                      ? sum / (subdivision * subdivision)
-                                                      : std::numeric_limits<double>::quiet_NaN();
+                map.height(column, first + row) =
+                    std::isfinite(sum) ? sum / (subdivision * subdivision) : std::numeric_limits<double>::quiet_NaN();
             }
         }
     }

@@ -77,7 +77,8 @@ SurfaceFile parse_al3d(std::string_view bytes, const std::filesystem::path& path
         for (std::uint64_t column = 0; column < columns; ++column) {
             const float metres = element<float>(values, column);
             // The text is rounded; heights beyond any surface are gaps without it as well.
-            const bool measured = std::abs(metres) < 1e30f && !(gap && std::abs(metres - *gap) <= 1e-6f * std::abs(*gap));
+            const bool measured =
+                std::abs(metres) < 1e30f && !(gap && std::abs(metres - *gap) <= 1e-6f * std::abs(*gap));
             result.map.height(static_cast<int>(column), static_cast<int>(rows - 1 - row)) =
                 measured ? height_from_metres(static_cast<double>(metres)) : std::numeric_limits<double>::quiet_NaN();
         }

@@ -24,8 +24,8 @@ static_assert(std::endian::native == std::endian::little, "the formats are littl
 // More points than this are a damaged header (2 GiB of heights).
 inline constexpr std::uint64_t largest_point_count = std::uint64_t{1} << 28;
 
-// Packed points may be a thousand times smaller than they become; those of a measurement are not. Beyond this many bytes a
-// file holds at least a 64th of them, or somebody made it to fill the memory.
+// Packed points may be a thousand times smaller than they become; those of a measurement are not. Beyond this many
+// bytes a file holds at least a 64th of them, or somebody made it to fill the memory.
 inline constexpr std::uint64_t freely_packed_bytes = std::uint64_t{1} << 28; // 256 MiB
 inline constexpr std::uint64_t largest_packing = 64;
 
@@ -85,7 +85,8 @@ class ByteReader {
     void check_packing(std::uint64_t unpacked, const std::string& what) const {
         if (unpacked > freely_packed_bytes && unpacked / largest_packing > size())
             fail({}, what, fmt::format("{} bytes of heights in a file of {}", unpacked, size()),
-                 fmt::format("beyond {} bytes at most {} times as many as the file has", freely_packed_bytes, largest_packing),
+                 fmt::format("beyond {} bytes at most {} times as many as the file has", freely_packed_bytes,
+                             largest_packing),
                  "Export a part of the surface, or the whole without packing if it is really so large.");
     }
     // In any unit.

@@ -29,8 +29,7 @@ Grid<double> convolve_columns(const Grid<double>& grid, const std::vector<double
     const int radius = static_cast<int>(weights.size() / 2);
     Grid<double> result(grid.columns, grid.rows);
     for (int row = 0; row < grid.rows; ++row)
-        for (int source = std::max(0, row - radius); source <= std::min(grid.rows - 1, row + radius);
-             ++source) {
+        for (int source = std::max(0, row - radius); source <= std::min(grid.rows - 1, row + radius); ++source) {
             const double weight = weights[static_cast<std::size_t>(source - row + radius)];
             for (int column = 0; column < grid.columns; ++column)
                 result(column, row) += weight * grid(column, source);
@@ -44,8 +43,8 @@ Grid<double> convolve_rows(const Grid<double>& grid, const std::vector<double>& 
     for (int row = 0; row < grid.rows; ++row)
         for (int column = 0; column < grid.columns; ++column) {
             double sum = 0;
-            for (int source = std::max(0, column - radius);
-                 source <= std::min(grid.columns - 1, column + radius); ++source)
+            for (int source = std::max(0, column - radius); source <= std::min(grid.columns - 1, column + radius);
+                 ++source)
                 sum += weights[static_cast<std::size_t>(source - column + radius)] * grid(source, row);
             result(column, row) = sum;
         }
@@ -135,9 +134,8 @@ HeightMap gaussian_low_pass(const HeightMap& map, double nesting_index) {
     const Grid<double> weight = convolve(present);
     HeightMap result = map;
     for (std::size_t k = 0; k < result.height.values.size(); ++k)
-        result.height.values[k] = std::isfinite(map.height.values[k])
-                                      ? sum.values[k] / weight.values[k]
-                                      : std::numeric_limits<double>::quiet_NaN();
+        result.height.values[k] = std::isfinite(map.height.values[k]) ? sum.values[k] / weight.values[k]
+                                                                      : std::numeric_limits<double>::quiet_NaN();
     return result;
 }
 

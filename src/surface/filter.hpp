@@ -14,9 +14,7 @@ struct Plane {
     double x_centre = 0;
     double y_centre = 0;
 
-    double height(double x, double y) const {
-        return offset + slope_x * (x - x_centre) + slope_y * (y - y_centre);
-    }
+    double height(double x, double y) const { return offset + slope_x * (x - x_centre) + slope_y * (y - y_centre); }
 };
 
 // Least squares along z over the measured points. Points on one line leave the tilt across it open: it is then zero.

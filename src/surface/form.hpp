@@ -26,8 +26,8 @@ std::string form_name(const Form& form);
 // The greatest magnitude of a measured height; 0 without any.
 double greatest_height(const HeightMap& map);
 
-// What a form or a filter left of heights of up to `greatest`. Where it varies by no more than the rounding of these (Sq
-// below 1e-13 of them) it is level, 0: shape and direction of rounding are no surface's.
+// What a form or a filter left of heights of up to `greatest`. Where it varies by no more than the rounding of these
+// (Sq below 1e-13 of them) it is level, 0: shape and direction of rounding are no surface's.
 HeightMap without_rounding(HeightMap rest, double greatest);
 
 // By filter.hpp, polynomial.hpp and sphere.hpp, and without_rounding(). Where the points settle no sphere none is left

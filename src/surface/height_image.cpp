@@ -56,9 +56,10 @@ SurfaceFile parse_height_image(std::string_view bytes, const std::filesystem::pa
         if (!value || !(std::isfinite(*value) && *value > 0))
             reject(key, value ? fmt::format("{}", *value) : "not given",
                    "a positive length, which an image does not state",
-                   fmt::format("Give the {} that belongs to this image; vkfv --surface IMAGE --pitch_um P --unit_um U --out "
-                               "NAME.x3p writes a file that states its own.",
-                               key));
+                   fmt::format(
+                       "Give the {} that belongs to this image; vkfv --surface IMAGE --pitch_um P --unit_um U --out "
+                       "NAME.x3p writes a file that states its own.",
+                       key));
     };
     check("pitch", scale.pitch);
     check("unit", scale.unit);

@@ -16,8 +16,7 @@ HeightParameters height_parameters(const HeightMap& map) {
         }
     HeightParameters result;
     if (count == 0) {
-        result.mean = result.sa = result.sq = result.ssk = result.sku = result.sp = result.sv = result.sz =
-            undefined;
+        result.mean = result.sa = result.sq = result.ssk = result.sku = result.sp = result.sv = result.sz = undefined;
         return result;
     }
     result.mean = sum / count;

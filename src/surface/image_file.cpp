@@ -108,8 +108,8 @@ std::string single_page(std::span<const Grid<Value>> channels, const ImageTags& 
     return {bytes.begin(), bytes.end()};
 }
 
-[[noreturn]] void reject(const std::filesystem::path& path, std::string key, std::string found,
-                         std::string expected, std::string remedy) {
+[[noreturn]] void reject(const std::filesystem::path& path, std::string key, std::string found, std::string expected,
+                         std::string remedy) {
     throw InputError({.where = {.file = path, .line = 0, .column = 0, .byte_offset = {}},
                       .key = std::move(key),
                       .found = std::move(found),
@@ -173,8 +173,8 @@ OpenImage open_image(const std::filesystem::path& path) {
             .bytes = bytes};
 }
 
-// What a header may ask for before a pixel is read: small images as they come, larger ones as far as the file's own size
-// speaks for them.
+// What a header may ask for before a pixel is read: small images as they come, larger ones as far as the file's own
+// size speaks for them.
 constexpr double largest_pixel_count = 1 << 28;
 constexpr double freely_given_bytes = 1 << 28;
 constexpr double largest_packing = 64;
@@ -196,13 +196,12 @@ void check_size(const OpenImage& image, const OIIO::ImageSpec& spec, const std::
 }
 
 template <class Value, class Stored>
-Grid<Value> read_values(OIIO::ImageInput& input, const OIIO::ImageSpec& spec,
-                        const std::filesystem::path& path, int page, int channel) {
+Grid<Value> read_values(OIIO::ImageInput& input, const OIIO::ImageSpec& spec, const std::filesystem::path& path,
+                        int page, int channel) {
     Grid<Stored> stored(spec.width, spec.height);
     // A strip that cannot be read leaves an error and zeros, but counts as success.
     if (!input.read_image(page, 0, channel, channel + 1, type_of<Stored>(), stored.values.data()) || input.has_error())
-        reject(path, fmt::format("page {}", page), input.geterror(),
-               "pixel values up to the end of the image",
+        reject(path, fmt::format("page {}", page), input.geterror(), "pixel values up to the end of the image",
                "The file is truncated or damaged: write or copy it anew.");
     const std::vector<Stored> rows = flipped_rows(stored);
     Grid<Value> image(spec.width, spec.height);
@@ -245,8 +244,7 @@ template <class Value>
 Grid<Value> read_page(const OpenImage& image, const std::filesystem::path& path, int page) {
     const OIIO::ImageSpec spec = spec_of_page(*image.input, path, page);
     if (spec.nchannels != 1 || spec.depth > 1)
-        reject(path, fmt::format("page {}", page),
-               fmt::format("{} channels, depth {}", spec.nchannels, spec.depth),
+        reject(path, fmt::format("page {}", page), fmt::format("{} channels, depth {}", spec.nchannels, spec.depth),
                "one channel and two dimensions", "Convert the image to greyscale without alpha.");
     check_size(image, spec, path);
     return read_channel<Value>(*image.input, spec, path, page, 0);
@@ -257,8 +255,7 @@ std::string description_of(const OpenImage& image) {
 }
 
 // The value of "key=value" on a line of its own.
-double described_number(const std::filesystem::path& path, std::string_view description,
-                        std::string_view key) {
+double described_number(const std::filesystem::path& path, std::string_view description, std::string_view key) {
     const std::string label = fmt::format("\n{}=", key);
     const auto at = description.find(label);
     double value = 0;
@@ -269,8 +266,7 @@ double described_number(const std::filesystem::path& path, std::string_view desc
         good = error == std::errc() && std::isfinite(value);
     }
     if (!good)
-        reject(path, std::string(key), "no such number in the ImageDescription",
-               fmt::format("{}=<number>", key),
+        reject(path, std::string(key), "no such number in the ImageDescription", fmt::format("{}=<number>", key),
                "Use a height map that vkfv wrote, or give a plain image with its pitch as a specimen.");
     return value;
 }
@@ -321,19 +317,16 @@ std::string image_description(const std::filesystem::path& path) {
 
 std::string height_map_bytes(const HeightMap& map, const Provenance& provenance) {
     Grid<float> heights(map.columns(), map.rows());
-    std::transform(map.height.values.begin(), map.height.values.end(), heights.values.begin(),
-                   [](double height) {
-                       return std::isfinite(height) ? static_cast<float>(height * um_per_mm)
-                                                    : std::numeric_limits<float>::quiet_NaN();
-                   });
+    std::transform(map.height.values.begin(), map.height.values.end(), heights.values.begin(), [](double height) {
+        return std::isfinite(height) ? static_cast<float>(height * um_per_mm) : std::numeric_limits<float>::quiet_NaN();
+    });
     return tiff_bytes(
-        heights,
-        {.pitch_x = map.pitch_x,
-         .pitch_y = map.pitch_y,
-         .description = fmt::format("vkfv height map: heights in um, NaN is not measured, the first row has "
-                                    "the highest y; x0 and y0 are of the last row's first pixel\n"
-                                    "x0_mm={}\ny0_mm={}\npitch_x_mm={}\npitch_y_mm={}\n{}",
-                                    map.x0, map.y0, map.pitch_x, map.pitch_y, provenance_text(provenance))});
+        heights, {.pitch_x = map.pitch_x,
+                  .pitch_y = map.pitch_y,
+                  .description = fmt::format("vkfv height map: heights in um, NaN is not measured, the first row has "
+                                             "the highest y; x0 and y0 are of the last row's first pixel\n"
+                                             "x0_mm={}\ny0_mm={}\npitch_x_mm={}\npitch_y_mm={}\n{}",
+                                             map.x0, map.y0, map.pitch_x, map.pitch_y, provenance_text(provenance))});
 }
 
 StoredImage parse_tiff(std::string_view bytes, const std::filesystem::path& path) {
@@ -355,12 +348,13 @@ HeightMap height_map_of(const DescribedImage& image, const std::filesystem::path
     map.pitch_x = described_number(path, image.description, "pitch_x_mm");
     map.pitch_y = described_number(path, image.description, "pitch_y_mm");
     if (map.pitch_x <= 0 || map.pitch_y <= 0)
-        reject(path, "pitch_x_mm, pitch_y_mm", fmt::format("{}, {}", map.pitch_x, map.pitch_y),
-               "positive pitches", "Use a height map that vkfv wrote.");
+        reject(path, "pitch_x_mm, pitch_y_mm", fmt::format("{}, {}", map.pitch_x, map.pitch_y), "positive pitches",
+               "Use a height map that vkfv wrote.");
     map.height = Grid<double>(image.values.columns, image.values.rows);
-    std::transform(image.values.values.begin(), image.values.values.end(), map.height.values.begin(), [](double height) {
-        return std::isfinite(height) ? height * mm_per_um : std::numeric_limits<double>::quiet_NaN();
-    });
+    std::transform(image.values.values.begin(), image.values.values.end(), map.height.values.begin(),
+                   [](double height) {
+                       return std::isfinite(height) ? height * mm_per_um : std::numeric_limits<double>::quiet_NaN();
+                   });
     return map;
 }
 

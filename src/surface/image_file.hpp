@@ -22,8 +22,8 @@ namespace vkfv::surface {
 
 // What a TIFF says of its pixels beside their values.
 struct ImageTags {
-    double pitch_x = 0; // mm in the object plane; 0 leaves out the resolution tags. Written in pixels per cm,
-    double pitch_y = 0; // which Fiji turns into micrometres for pitches below 10 um
+    double pitch_x = 0;      // mm in the object plane; 0 leaves out the resolution tags. Written in pixels per cm,
+    double pitch_y = 0;      // which Fiji turns into micrometres for pitches below 10 um
     std::string description; // ImageDescription: ASCII
 };
 
@@ -58,7 +58,7 @@ StoredImage parse_tiff(std::string_view bytes, const std::filesystem::path& path
 enum class ImageFormat { tiff, openexr };
 
 struct DescribedImage {
-    Grid<double> values; // as stored
+    Grid<double> values;     // as stored
     std::string description; // ImageDescription; empty without one
 };
 

@@ -25,8 +25,8 @@ std::string ply_bytes(const HeightMap& map, const Provenance& provenance) {
     for (int row = 0; row + 1 < map.rows(); ++row)
         for (int column = 0; column + 1 < map.columns(); ++column) {
             const std::int32_t from = vertex(column, row), to = vertex(column + 1, row + 1);
-            for (const auto& corners : {std::array{from, vertex(column + 1, row), to},
-                                        std::array{from, to, vertex(column, row + 1)}})
+            for (const auto& corners :
+                 {std::array{from, vertex(column + 1, row), to}, std::array{from, to, vertex(column, row + 1)}})
                 if (corners[0] >= 0 && corners[1] >= 0 && corners[2] >= 0) {
                     append(faces, static_cast<std::uint8_t>(corners.size()));
                     append(faces, corners);

@@ -48,7 +48,8 @@ class Words {
 } // namespace
 
 bool looks_like_pnm(std::string_view bytes) {
-    return bytes.size() > 2 && bytes[0] == 'P' && std::string_view("123456fF").find(bytes[1]) != std::string_view::npos &&
+    return bytes.size() > 2 && bytes[0] == 'P' &&
+           std::string_view("123456fF").find(bytes[1]) != std::string_view::npos &&
            std::isspace(static_cast<unsigned char>(bytes[2])) != 0;
 }
 
@@ -71,7 +72,9 @@ void check_pnm(std::string_view bytes, const std::filesystem::path& path) {
     }
     const std::uint64_t values = columns * (kind == '3' || kind == '6' || kind == 'F' ? 3 : 1);
     // Of text a digit a value, and a blank before each but those of bits.
-    const std::uint64_t row_bytes = text ? (bits ? values : 2 * values) : bits ? (values + 7) / 8 : values * value_bytes;
+    const std::uint64_t row_bytes = text   ? (bits ? values : 2 * values)
+                                    : bits ? (values + 7) / 8
+                                           : values * value_bytes;
     if (row_bytes * rows > words.rest()) {
         file.fail({}, "size", fmt::format("{} x {} pixels in {} bytes", columns, rows, words.rest()),
                   fmt::format("at least {} bytes for them", row_bytes * rows));

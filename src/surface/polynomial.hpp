@@ -21,9 +21,9 @@ struct Polynomial {
 };
 
 // Least squares along z over the measured points, by orthogonal transformations of the equations of a row, then of all
-// rows (1000 x 1000 points: degree 6 in 0.1 s, degree 20 in 0.3 s); degree 0 to 20, std::invalid_argument otherwise. What
-// the points leave open (points on one line, fewer points than terms) is settled by the smallest coefficients. Without
-// measured points the heights are NaN.
+// rows (1000 x 1000 points: degree 6 in 0.1 s, degree 20 in 0.3 s); degree 0 to 20, std::invalid_argument otherwise.
+// What the points leave open (points on one line, fewer points than terms) is settled by the smallest coefficients.
+// Without measured points the heights are NaN.
 Polynomial least_squares_polynomial(const HeightMap& map, int degree);
 
 HeightMap remove_polynomial(HeightMap map, const Polynomial& polynomial);

@@ -19,9 +19,8 @@ constexpr std::string_view comment_key = "comment=";
 
 std::string trimmed(std::string_view text) {
     const auto begin = text.find_first_not_of(" \n");
-    return begin == std::string_view::npos
-               ? std::string()
-               : std::string(text.substr(begin, text.find_last_not_of(" \n") + 1 - begin));
+    return begin == std::string_view::npos ? std::string()
+                                           : std::string(text.substr(begin, text.find_last_not_of(" \n") + 1 - begin));
 }
 
 } // namespace
@@ -29,8 +28,8 @@ std::string trimmed(std::string_view text) {
 std::string provenance_text(const Provenance& provenance) {
     std::string text;
     for (const auto& [key, member] : lines_of)
-        if (const std::string value = member == &Provenance::date ? known_date(provenance.date)
-                                                                  : plain_line(provenance.*member);
+        if (const std::string value =
+                member == &Provenance::date ? known_date(provenance.date) : plain_line(provenance.*member);
             !value.empty())
             text += fmt::format("{}={}\n", key, value);
     if (const std::string comment = plain_lines(provenance.comment); !comment.empty())

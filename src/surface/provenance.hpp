@@ -8,7 +8,7 @@ namespace vkfv::surface {
 
 // Empty means not known.
 struct Provenance {
-    std::string creator{}; // program or person
+    std::string creator{};                                    // program or person
     std::string manufacturer{}, model{}, serial{}, version{}; // of the instrument
     std::string date{};    // of the measurement, xsd:dateTime ("2026-01-31T12:00:00Z")
     std::string comment{}; // lines
@@ -32,7 +32,7 @@ struct DateTime {
     int year = 1970, month = 1, day = 1, hour = 0, minute = 0, second = 0;
 
     bool operator==(const DateTime&) const = default;
-    bool valid() const; // years from 1 to 9999
+    bool valid() const;       // years from 1 to 9999
     std::string text() const; // as xsd:dateTime, in UTC
 };
 // What formats that cannot leave the date out get for one that is unknown or damaged: 1970-01-01T00:00:00.

@@ -79,8 +79,7 @@ Falls falls_of_autocorrelation(const HeightMap& map, const HeightParameters& par
         const double angle = pi * direction / directions;
         const double step_x = 0.5 * std::cos(angle), step_y = 0.5 * std::sin(angle);
         double fall = undefined, before = 1;
-        for (int k = 1; std::abs(k * step_x) <= columns + rounding && std::abs(k * step_y) <= rows + rounding;
-             ++k) {
+        for (int k = 1; std::abs(k * step_x) <= columns + rounding && std::abs(k * step_y) <= rows + rounding; ++k) {
             const double here = bilinear(sums, k * step_x, k * step_y, normalised);
             if (here < s) {
                 const double steps = k - 1 + (before - s) / (before - here);

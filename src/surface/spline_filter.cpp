@@ -57,7 +57,7 @@ HeightMap spline_low_pass(const HeightMap& map, double nesting_index) {
             weight[k] = 1;
             residual[k] = z - mean;
         }
-    const double goal = 1e-10 * dot(residual, residual); // squared: a relative 1e-5
+    const double goal = 1e-10 * dot(residual, residual);      // squared: a relative 1e-5
     std::vector<double> direction(points), stretched(points); // stretched = (1 + mu B) direction
     double before = 0;
     // As many steps as points would end it but for rounding, which must not keep it going.

@@ -13,8 +13,8 @@ namespace vkfv::surface {
 //
 // Not-measured points have no weight and stay so. Borders mirror: what tilt a map has bends there, so level it first.
 // By cosine transforms, in some 70 bytes a point: one pair without gaps; with them a pair each step of the conjugate
-// gradients, to 1e-5 of the heights about their mean, of which gaps wider than L take hundreds (545 000 points with 1 % of
-// gaps: 4 s). gaussian_low_pass() serves where such gaps are many.
+// gradients, to 1e-5 of the heights about their mean, of which gaps wider than L take hundreds (545 000 points with 1 %
+// of gaps: 4 s). gaussian_low_pass() serves where such gaps are many.
 HeightMap spline_low_pass(const HeightMap& map, double nesting_index);
 
 } // namespace vkfv::surface

@@ -58,8 +58,8 @@ class Archive {
         }
     }
 
-    // Nothing without such an entry. Memory grows as the data come, up to the limit, which an entry that states to be longer
-    // does not come near.
+    // Nothing without such an entry. Memory grows as the data come, up to the limit, which an entry that states to be
+    // longer does not come near.
     std::optional<std::string> read(std::string name, std::uint64_t largest) const {
         if (name.starts_with("./"))
             name.erase(0, 2);
@@ -170,8 +170,7 @@ void read_heights(std::string_view points, std::string_view valid, double offset
             const bool measured =
                 valid.empty() || (static_cast<unsigned char>(valid[index / 8]) >> (index % 8) & 1) != 0;
             const double metres = offset + increment * static_cast<double>(element<Stored>(points, index));
-            heights(column, row) =
-                measured ? height_from_metres(metres) : std::numeric_limits<double>::quiet_NaN();
+            heights(column, row) = measured ? height_from_metres(metres) : std::numeric_limits<double>::quiet_NaN();
         }
 }
 

@@ -34,6 +34,7 @@ Deviation compare(const surface::HeightMap& measured, const surface::HeightMap& 
 
 // Measured less true after the treatment of compare(); its root mean square is Deviation::rms.
 surface::HeightMap deviation_map(const LevelledPair& treated);
-surface::HeightMap deviation_map(const surface::HeightMap& measured, const surface::HeightMap& truth, const Band& band = {});
+surface::HeightMap deviation_map(const surface::HeightMap& measured, const surface::HeightMap& truth,
+                                 const Band& band = {});
 
 } // namespace vkfv::topography

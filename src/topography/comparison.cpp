@@ -60,8 +60,7 @@ Comparison compare_with_truth(std::span<const HeightMap> measurements, const Hei
         result.deviation = std::move(deviations.front());
     }
 
-    const HeightMap levelled =
-        band == Band{} ? result.deviation : mean_levelled_deviation(measurements, result.truth);
+    const HeightMap levelled = band == Band{} ? result.deviation : mean_levelled_deviation(measurements, result.truth);
     HeightMap mean_measurement = result.truth;
     for (std::size_t k = 0; k < mean_measurement.height.values.size(); ++k)
         mean_measurement.height.values[k] += levelled.height.values[k];

@@ -82,8 +82,8 @@ f64::FocusPlan plan_of(const Channels& image, FocusMeasure measure, const FocusW
 } // namespace
 
 const std::vector<std::string>& focus_measure_names() {
-    static const std::vector<std::string> names = {"standard-deviation", "tenengrad", "modified-laplacian",
-                                                   "brenner", "wavelet"};
+    static const std::vector<std::string> names = {"standard-deviation", "tenengrad", "modified-laplacian", "brenner",
+                                                   "wavelet"};
     return names;
 }
 

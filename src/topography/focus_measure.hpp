@@ -1,5 +1,5 @@
-// Focus measures: how much lateral texture an image has around each pixel. What they compute stands in shaders/focus/, a
-// file each, shared with the device.
+// Focus measures: how much lateral texture an image has around each pixel. What they compute stands in shaders/focus/,
+// a file each, shared with the device.
 #pragma once
 
 #include "core/grid.hpp"
@@ -19,8 +19,8 @@ enum class FocusMeasure {
     standard_deviation = focus::f64::FOCUS_STANDARD_DEVIATION, // local standard deviation
     tenengrad = focus::f64::FOCUS_TENENGRAD,                   // root mean square of Sobel's gradient
     modified_laplacian = focus::f64::FOCUS_MODIFIED_LAPLACIAN, // mean of the modified Laplacian
-    brenner = focus::f64::FOCUS_BRENNER, // root mean square of differences of pixels two apart
-    wavelet = focus::f64::FOCUS_WAVELET, // root mean square of the detail bands
+    brenner = focus::f64::FOCUS_BRENNER,                       // root mean square of differences of pixels two apart
+    wavelet = focus::f64::FOCUS_WAVELET,                       // root mean square of the detail bands
 };
 
 // "standard-deviation", "tenengrad", "modified-laplacian", "brenner", "wavelet".
@@ -47,21 +47,21 @@ class FocusWindow {
     std::vector<double> weights_;
 };
 
-// The measure over the window around every pixel, over all channels (response.glsl), divided by the brightness there and
-// so dimensionless: a slowly varying illumination cancels. Where the local mean is not positive the measure is 0. In
-// double; rows are shared among threads, and the result does not depend on how.
+// The measure over the window around every pixel, over all channels (response.glsl), divided by the brightness there
+// and so dimensionless: a slowly varying illumination cancels. Where the local mean is not positive the measure is 0.
+// In double; rows are shared among threads, and the result does not depend on how.
 Grid<float> focus_measure(const Channels& image, FocusMeasure measure, const FocusWindow& window);
 
 // Weighted mean over the same windows.
 Grid<float> window_mean(const Grid<float>& image, const FocusWindow& window);
 
-// Standard deviation of the measure over a window of n pixels, for independent image noise of relative standard deviation 1
-// in every pixel; noise passes linearly for small values. Narrow windows average less of what correlates between pixels,
-// and have up to a fifth less.
+// Standard deviation of the measure over a window of n pixels, for independent image noise of relative standard
+// deviation 1 in every pixel; noise passes linearly for small values. Narrow windows average less of what correlates
+// between pixels, and have up to a fifth less.
 //
-// Roots of energies: sqrt(<e^2> / <e> / n) with the power response e of the measure's masks to waves of all directions and
-// lengths: 1 (standard deviation), 130/3 (Tenengrad), 5 (Brenner), 269165/36096 (wavelet). That is the noise where white
-// texture exceeds it; without texture it is 1 / sqrt(2) of that.
+// Roots of energies: sqrt(<e^2> / <e> / n) with the power response e of the measure's masks to waves of all directions
+// and lengths: 1 (standard deviation), 130/3 (Tenengrad), 5 (Brenner), 269165/36096 (wavelet). That is the noise where
+// white texture exceeds it; without texture it is 1 / sqrt(2) of that.
 //
 // Modified Laplacian: sqrt(12 / n): the second differences along x and y each have the variance 6, and their absolute
 // values, without texture, have the covariances (2/pi)(sqrt(1 - r^2) + r asin r - 1) between pixels, which add up to

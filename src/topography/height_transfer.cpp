@@ -54,7 +54,8 @@ std::vector<TransferBand> height_transfer(const surface::HeightMap& measured, co
                 continue;
             // The transform of a + i b, a and b real, is A + i B; at the opposite frequency conj(A) + i conj(B).
             const Complex here = grid(column, row);
-            const Complex there = std::conj(grid(column == 0 ? 0 : grid.columns - column, row == 0 ? 0 : grid.rows - row));
+            const Complex there =
+                std::conj(grid(column == 0 ? 0 : grid.columns - column, row == 0 ? 0 : grid.rows - row));
             const Complex a = (here + there) / 2.0, b = (here - there) / Complex(0, 2);
             rings[ring].cross += a * std::conj(b);
             rings[ring].measured += std::norm(a);

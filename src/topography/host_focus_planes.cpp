@@ -32,8 +32,7 @@ class HostFocusPlanes final : public FocusPlanes {
           averaged_(plan.averaged_curves_kept) {
         summary_.brightness = summary_.squared_differences = Grid<float>(plan_.columns, plan_.rows);
         summary_.curves = Grid<f64::CurveRecord>(plan_.columns, plan_.rows, f64::empty_curve());
-        summary_.all_in_focus.assign(static_cast<std::size_t>(plan_.channels),
-                                     Grid<float>(plan_.columns, plan_.rows));
+        summary_.all_in_focus.assign(static_cast<std::size_t>(plan_.channels), Grid<float>(plan_.columns, plan_.rows));
     }
 
     void take(int image, Channels channels) override {
@@ -44,8 +43,8 @@ class HostFocusPlanes final : public FocusPlanes {
                 const float value = images_[image][channel].values[k];
                 summary_.brightness.values[k] += share * value;
                 if (image >= 2) {
-                    const float difference = images_[image - 2][channel].values[k] -
-                                             2 * images_[image - 1][channel].values[k] + value;
+                    const float difference =
+                        images_[image - 2][channel].values[k] - 2 * images_[image - 1][channel].values[k] + value;
                     summary_.squared_differences.values[k] += difference * difference;
                 }
             });
@@ -59,8 +58,7 @@ class HostFocusPlanes final : public FocusPlanes {
         }
         Channels mean;
         for (std::size_t channel = 0; channel < static_cast<std::size_t>(plan_.channels); ++channel)
-            mean.push_back(weighted_mean(
-                shares, [&](int k) -> const Grid<float>& { return images_[k][channel]; }));
+            mean.push_back(weighted_mean(shares, [&](int k) -> const Grid<float>& { return images_[k][channel]; }));
         curves_[image] = focus_measure(mean, measure, window_);
     }
 
@@ -86,8 +84,8 @@ class HostFocusPlanes final : public FocusPlanes {
     void pixels(const Task& task) const {
         parallel_rows(plan_.columns, plan_.rows, [&](int first, int end) {
             const auto columns = static_cast<std::size_t>(plan_.columns);
-            for (std::size_t k = columns * static_cast<std::size_t>(first);
-                 k < columns * static_cast<std::size_t>(end); ++k)
+            for (std::size_t k = columns * static_cast<std::size_t>(first); k < columns * static_cast<std::size_t>(end);
+                 ++k)
                 task(k);
         });
     }

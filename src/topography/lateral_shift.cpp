@@ -72,8 +72,7 @@ Starts starting_shifts(const LevelledPair& pair) {
         for (int column = 0; column < first.columns; ++column) {
             const int opposite_column = column == 0 ? 0 : first.columns - column;
             const int opposite_row = row == 0 ? 0 : first.rows - row;
-            const std::size_t here = first.index(column, row),
-                              there = first.index(opposite_column, opposite_row);
+            const std::size_t here = first.index(column, row), there = first.index(opposite_column, opposite_row);
             if (there < here)
                 continue;
             // The transform of a + i b, a and b real, is A + i B; at the opposite frequency conj(A) + i
@@ -114,8 +113,8 @@ Starts starting_shifts(const LevelledPair& pair) {
             const double variance_b = third.values[lag].imag() / n - mean_b * mean_b;
             // Of 1 at lag zero: what is left of less is rounding.
             if (variance_a > 1e-9 && variance_b > 1e-9)
-                evidences(i + reach_x, j + reach_y) = evidence(
-                    n, (first.values[lag].imag() / n - mean_a * mean_b) / std::sqrt(variance_a * variance_b));
+                evidences(i + reach_x, j + reach_y) =
+                    evidence(n, (first.values[lag].imag() / n - mean_a * mean_b) / std::sqrt(variance_a * variance_b));
         }
 
     struct Peak {
@@ -131,9 +130,9 @@ Starts starting_shifts(const LevelledPair& pair) {
                 for (int i = std::max(column - 1, 0); i <= std::min(column + 1, evidences.columns - 1); ++i)
                     highest = highest && evidences(i, j) <= here;
             if (highest)
-                peaks.push_back({here,
-                                 {.x = (column - reach_x) * pair.measured.pitch_x,
-                                  .y = (row - reach_y) * pair.measured.pitch_y}});
+                peaks.push_back(
+                    {here,
+                     {.x = (column - reach_x) * pair.measured.pitch_x, .y = (row - reach_y) * pair.measured.pitch_y}});
         }
     std::ranges::stable_sort(peaks, std::greater{}, &Peak::evidence);
     Starts starts;
@@ -171,11 +170,9 @@ Step gauss_newton_step(const HeightMap& measured, const HeightMap& truth) {
             const double residual = measured.height(column, row) - truth.height(column, row);
             // Zero along an axis of fewer than three points.
             const double slope_x =
-                (truth.height(column + border_x, row) - truth.height(column - border_x, row)) /
-                (2 * measured.pitch_x);
+                (truth.height(column + border_x, row) - truth.height(column - border_x, row)) / (2 * measured.pitch_x);
             const double slope_y =
-                (truth.height(column, row + border_y) - truth.height(column, row - border_y)) /
-                (2 * measured.pitch_y);
+                (truth.height(column, row + border_y) - truth.height(column, row - border_y)) / (2 * measured.pitch_y);
             if (!std::isfinite(residual + slope_x + slope_y))
                 continue;
             Vector terms;
@@ -184,8 +181,7 @@ Step gauss_newton_step(const HeightMap& measured, const HeightMap& truth) {
             right += residual * terms;
         }
     // Unknowns of unlike magnitude are brought to one.
-    const Vector scale =
-        matrix.diagonal().unaryExpr([](double value) { return value > 0 ? 1 / std::sqrt(value) : 0; });
+    const Vector scale = matrix.diagonal().unaryExpr([](double value) { return value > 0 ? 1 / std::sqrt(value) : 0; });
     const Eigen::Vector3d plane_scale = scale.tail<3>();
     const Eigen::Matrix3d plane =
         plane_scale.asDiagonal() * matrix.bottomRightCorner<3, 3>() * plane_scale.asDiagonal();
@@ -195,8 +191,7 @@ Step gauss_newton_step(const HeightMap& measured, const HeightMap& truth) {
     planes.compute(plane);
     const Eigen::Matrix<double, 3, 2> coupling = plane_scale.asDiagonal() * matrix.bottomLeftCorner<3, 2>();
     const Eigen::Vector3d plane_right = plane_scale.asDiagonal() * right.tail<3>();
-    const Eigen::Matrix2d shifts =
-        matrix.topLeftCorner<2, 2>() - coupling.transpose() * planes.solve(coupling);
+    const Eigen::Matrix2d shifts = matrix.topLeftCorner<2, 2>() - coupling.transpose() * planes.solve(coupling);
     const Eigen::Vector2d shift_right = right.head<2>() - coupling.transpose() * planes.solve(plane_right);
     const Eigen::SelfAdjointEigenSolver<Eigen::Matrix2d> directions(shifts);
     const double least = telling * matrix.topLeftCorner<2, 2>().trace();
@@ -220,8 +215,7 @@ LateralShift refined_shift(const HeightMap& measured, const HeightMap& truth, co
     const Eigen::Array2d reach = Eigen::Array2d(measured.columns() / 4, measured.rows() / 4) + beyond;
     Eigen::Array2d place(start.x, start.y), share(1, 1), before(0, 0);
     for (int iteration = 0; iteration < most_iterations; ++iteration) {
-        const Step step =
-            gauss_newton_step(measured, shifted_onto(truth, measured, {.x = place[0], .y = place[1]}));
+        const Step step = gauss_newton_step(measured, shifted_onto(truth, measured, {.x = place[0], .y = place[1]}));
         if (step.known.isZero(0))
             return none;
         if (iteration == 0)

@@ -18,7 +18,7 @@ struct SystematicAndRandom {
     // By the jackknife over repetitions (Efron 1982), which needs no independence of points; NaN below three.
     double systematic_error = 0;
     double random_error = 0;
-    double points = 0; // that two or more repetitions measured; the others do not count
+    double points = 0;                     // that two or more repetitions measured; the others do not count
     surface::HeightMap mean_deviation;     // mm; NaN at the points that do not count
     surface::HeightMap standard_deviation; // of one repetition, mm; likewise
 };

@@ -44,25 +44,23 @@ const TopographyOptions& checked(const TopographyOptions& options) {
             "Give the probability with which noise may pass as a height.");
     require(options.least_contrast >= 0, "topography.least_contrast", fmt::format("{}", options.least_contrast),
             "a number >= 0", "Give it in standard deviations of the focus curve's noise.");
-    require(options.most_fit_residual > 0, "topography.most_fit_residual",
-            fmt::format("{}", options.most_fit_residual), "a number > 0",
-            "Give it as a share of the focus curve's maximum.");
-    require(options.most_peaks >= 1, "topography.most_peaks", fmt::format("{}", options.most_peaks),
-            "an integer >= 1", "Give how many peaks a focus curve may have.");
+    require(options.most_fit_residual > 0, "topography.most_fit_residual", fmt::format("{}", options.most_fit_residual),
+            "a number > 0", "Give it as a share of the focus curve's maximum.");
+    require(options.most_peaks >= 1, "topography.most_peaks", fmt::format("{}", options.most_peaks), "an integer >= 1",
+            "Give how many peaks a focus curve may have.");
     return options;
 }
 
-// Standard deviation of a single image's noise over brightness, both over the window and all images. The variances of the
-// channels are added, as their energies are: that is the noise of the measure if the channels' noises agree, as after
-// demosaicing, and an upper bound of it if not.
+// Standard deviation of a single image's noise over brightness, both over the window and all images. The variances of
+// the channels are added, as their energies are: that is the noise of the measure if the channels' noises agree, as
+// after demosaicing, and an upper bound of it if not.
 Grid<float> relative_noise(const StackSummary& stack, const FocusWindow& window, int images, std::size_t channels) {
     const Grid<float> brightness = window_mean(stack.brightness, window);
     Grid<float> noise = window_mean(stack.squared_differences, window);
     constexpr double gain = 1 + 4 + 1; // of the second difference on the variance of independent values
     for (std::size_t k = 0; k < noise.values.size(); ++k) {
         const double mean = brightness.values[k] / images * std::sqrt(static_cast<double>(channels));
-        noise.values[k] =
-            mean > 0 ? static_cast<float>(std::sqrt(noise.values[k] / (images - 2) / gain) / mean) : 0.0f;
+        noise.values[k] = mean > 0 ? static_cast<float>(std::sqrt(noise.values[k] / (images - 2) / gain) / mean) : 0.0f;
     }
     return noise;
 }
@@ -75,14 +73,13 @@ double contrast_threshold(int images, double false_peak_rate) {
 
 StackEvaluator::StackEvaluator(const TopographyOptions& options, FocusPlanesMaker make_planes)
     : options_(checked(options)), measure_(focus_measure_from_name(options.focus_measure)),
-      window_(options.window_px,
-              options.window_shape == "gaussian" ? WindowShape::gaussian : WindowShape::box),
+      window_(options.window_px, options.window_shape == "gaussian" ? WindowShape::gaussian : WindowShape::box),
       axial_weights_(axial_weights(options.smoothing_steps)), make_planes_(std::move(make_planes)) {}
 
 void StackEvaluator::check(const Channels& image, double z) const {
     const std::string which = fmt::format("image {}", z_.size());
-    require(!image.empty() && image[0].columns > 0 && image[0].rows > 0, which, "no pixels",
-            "at least one pixel", "Check the image.");
+    require(!image.empty() && image[0].columns > 0 && image[0].rows > 0, which, "no pixels", "at least one pixel",
+            "Check the image.");
     for (const Grid<float>& channel : image)
         require(std::all_of(channel.values.begin(), channel.values.end(), [](float v) { return std::isfinite(v); }),
                 which, "a value that is not finite", "finite values", "Take or trace the image anew.");
@@ -142,7 +139,8 @@ void StackEvaluator::add(Channels image, double z) {
     advance(false);
 }
 
-// Does what the images at hand allow, each step as soon as it can be done: no plane is asked for that has left its ring.
+// Does what the images at hand allow, each step as soon as it can be done: no plane is asked for that has left its
+// ring.
 void StackEvaluator::advance(bool all_taken) {
     const int radius = static_cast<int>(axial_weights_.size()) - 1;
     const int images = static_cast<int>(z_.size());
@@ -176,8 +174,7 @@ Topography StackEvaluator::finish(double x0, double y0, double pitch) {
     planes_.reset();
 
     const int images = static_cast<int>(z_.size());
-    const double threshold =
-        std::max(contrast_threshold(images, options_.false_peak_rate), options_.least_contrast);
+    const double threshold = std::max(contrast_threshold(images, options_.false_peak_rate), options_.least_contrast);
     const std::vector<AveragedPoint> points = averaged_points(axial_weights_, images);
     // Of a place between the curve's points.
     const auto position = [&](double at) {

@@ -16,10 +16,10 @@
 //   stack itself: from second differences along z, in which texture that changes slowly cancels. Further limits
 //   of quality can be set.
 //
-// Near the ends of the scan the averages hold only the images there are. The places that they stand for, and their larger
-// noise, are reckoned with, but a curve is blunted less there than elsewhere, which draws peaks towards the end. The two
-// averages reach 6 smoothing_steps: plan the scan so much wider than the specimen at either side, and a depth of focus
-// at least.
+// Near the ends of the scan the averages hold only the images there are. The places that they stand for, and their
+// larger noise, are reckoned with, but a curve is blunted less there than elsewhere, which draws peaks towards the end.
+// The two averages reach 6 smoothing_steps: plan the scan so much wider than the specimen at either side, and a depth
+// of focus at least.
 #pragma once
 
 #include "core/grid.hpp"
@@ -38,9 +38,9 @@ namespace vkfv::topography {
 
 struct TopographyOptions {
     std::string focus_measure = "wavelet"; // one of focus_measure_names(); the least noise in tools/focus_table
-    int window_px = 7;                                // odd, at least 3
-    std::string window_shape = "box";                 // or "gaussian"; see FocusWindow
-    std::string peak = "gaussian";                    // one of peak_method_names()
+    int window_px = 7;                     // odd, at least 3
+    std::string window_shape = "box";      // or "gaussian"; see FocusWindow
+    std::string peak = "gaussian";         // one of peak_method_names()
     // Half width of the range around the maximum that fits, fit_residual and the number of peaks are of, in steps.
     int peak_range_steps = 3;
     // Standard deviation, in steps of the scan, of the Gaussian average along z; 0 switches it off. Best at
@@ -91,8 +91,7 @@ class StackEvaluator {
   public:
     // `make_planes` makes what does the work: the host's cores unless a device is given. Throws InputError where an
     // option is out of its range.
-    explicit StackEvaluator(const TopographyOptions& options,
-                            FocusPlanesMaker make_planes = make_host_focus_planes);
+    explicit StackEvaluator(const TopographyOptions& options, FocusPlanesMaker make_planes = make_host_focus_planes);
 
     // The image at height z (mm). Images come in ascending z, equidistant to a hundredth of a step and all of
     // one size and number of channels, with finite values: InputError otherwise.

@@ -27,9 +27,9 @@ struct Agreement {
 };
 inline constexpr int block_side = 8;
 
-// A block's variance is taken from the mean of both images, each image's as its light is shared out: a count's own would be
-// small where the count happens to be. Two Poisson counts with one expectation then give a chi-square of mean 1 exactly,
-// whatever their numbers of rays.
+// A block's variance is taken from the mean of both images, each image's as its light is shared out: a count's own
+// would be small where the count happens to be. Two Poisson counts with one expectation then give a chi-square of mean
+// 1 exactly, whatever their numbers of rays.
 Agreement compare(const Measured& a, const Measured& b);
 
 } // namespace vkfv::trace

@@ -23,8 +23,9 @@ BackwardPlan backward_plan(std::uint64_t rays, int detector_pixels) {
 
 std::uint64_t launched_rays(const TraceOptions& options, int detector_pixels) {
     const auto side = static_cast<std::uint64_t>(detector_pixels);
-    return options.estimator == Estimator::backward ? backward_plan(options.rays, detector_pixels).rays_per_pixel() * side * side
-                                                    : options.rays;
+    return options.estimator == Estimator::backward
+               ? backward_plan(options.rays, detector_pixels).rays_per_pixel() * side * side
+               : options.rays;
 }
 
 physics::f64::Lattice BackwardPlan::lattice() const {
@@ -33,7 +34,8 @@ physics::f64::Lattice BackwardPlan::lattice() const {
     return {bits, z[0], z[1], z[2], z[3], z[4], z[5], z[6], z[7]};
 }
 
-physics::f64::BackwardOptics backward_optics(const optics::Instrument& instrument, const physics::f64::Material& material) {
+physics::f64::BackwardOptics backward_optics(const optics::Instrument& instrument,
+                                             const physics::f64::Material& material) {
     using namespace physics::f64;
     BackwardOptics optics = instrument.turned.value().optics;
     // What the sharpest lobe sends into the source's cone along its mirror direction, were it flat over the cone.
@@ -45,9 +47,9 @@ physics::f64::BackwardOptics backward_optics(const optics::Instrument& instrumen
                                       optics.source_outer);
         }
     }
-    // Where a lobe changes little over the cone, one direction keeps the lattice whole, which a choice among several does
-    // not: measured at g = 0.3 (peak 0.06), 0.67 against 4.0 in variance at 1024 paths a pixel; at g = 0.8 (1.0) it is 72
-    // against 21. A lobe much narrower than the cone is found by drawing it, not by drawing the cone.
+    // Where a lobe changes little over the cone, one direction keeps the lattice whole, which a choice among several
+    // does not: measured at g = 0.3 (peak 0.06), 0.67 against 4.0 in variance at 1024 paths a pixel; at g = 0.8 (1.0)
+    // it is 72 against 21. A lobe much narrower than the cone is found by drawing it, not by drawing the cone.
     optics.cone_candidates = peak < 0.3 ? 1 : 8;
     optics.lobe_candidates = peak > 2 ? 1 : 0;
     return optics;
@@ -59,7 +61,8 @@ BackwardImage::BackwardImage(const optics::Instrument& instrument, const Backwar
     const auto& constants = instrument.constants;
     const double radiance = instrument.flux / (pi * pi * constants.source_radius * constants.source_radius);
     const double pitch = 2 * constants.detector_half_size / pixels_;
-    const double pupil = pi * instrument.turned.value().optics.pupil_radius * instrument.turned.value().optics.pupil_radius;
+    const double pupil =
+        pi * instrument.turned.value().optics.pupil_radius * instrument.turned.value().optics.pupil_radius;
     scale_ = radiance * pitch * pitch * pupil * instrument.splitter_reflectance * instrument.splitter_transmittance;
 }
 

@@ -10,7 +10,8 @@
 
 namespace vkfv::trace {
 
-// How many paths each pixel has: `points` of one lattice in each of `randomisations`, whose scatter gives the standard error.
+// How many paths each pixel has: `points` of one lattice in each of `randomisations`, whose scatter gives the standard
+// error.
 struct BackwardPlan {
     std::uint32_t randomisations = 2;
     std::uint32_t points = 1; // a power of two, at most 2^14
@@ -22,7 +23,8 @@ struct BackwardPlan {
 BackwardPlan backward_plan(std::uint64_t rays, int detector_pixels);
 
 // Of an instrument that was turned round, with the numbers of candidates that suit a material.
-physics::f64::BackwardOptics backward_optics(const optics::Instrument& instrument, const physics::f64::Material& material);
+physics::f64::BackwardOptics backward_optics(const optics::Instrument& instrument,
+                                             const physics::f64::Material& material);
 
 // Gathers the pixels' sums of one randomisation after another.
 class BackwardImage {
@@ -39,7 +41,7 @@ class BackwardImage {
     double flux_;  // W, emitted
     double scale_; // W, of a pixel whose values' mean is 1
     int pixels_;
-    Grid<double> sum_;     // of the randomisations' means
+    Grid<double> sum_; // of the randomisations' means
     Grid<double> squares_;
 };
 

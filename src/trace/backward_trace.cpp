@@ -40,7 +40,8 @@ std::vector<vulkan::BindingDeclaration> declarations(const DeviceScene& scene) {
     return all;
 }
 
-std::vector<vulkan::SpecializationConstant> constants(const DeviceScene& scene, const physics::f64::BackwardOptics& optics) {
+std::vector<vulkan::SpecializationConstant> constants(const DeviceScene& scene,
+                                                      const physics::f64::BackwardOptics& optics) {
     // The way to the source is traced by a loop.
     const auto& trains = scene.instrument.constants;
     auto all = scene.is_specialised()
@@ -54,9 +55,9 @@ std::vector<vulkan::SpecializationConstant> constants(const DeviceScene& scene, 
 }
 
 std::span<const std::uint32_t> variant(const DeviceScene& scene) {
-    return scene.is_specialised() ? scene.variant(backward_specialised_quadtree, backward_specialised_ray_query,
-                                                  backward_specialised_bvh)
-                                  : scene.variant(backward_quadtree, backward_ray_query, backward_bvh);
+    return scene.is_specialised()
+               ? scene.variant(backward_specialised_quadtree, backward_specialised_ray_query, backward_specialised_bvh)
+               : scene.variant(backward_quadtree, backward_ray_query, backward_bvh);
 }
 
 // The kernel's uniform block.
@@ -67,10 +68,15 @@ struct BackwardBlock {
 static_assert(sizeof(BackwardBlock) == (9 + 9) * 4);
 
 physics::f32::BackwardOptics to_float(const physics::f64::BackwardOptics& optics) {
-    return {static_cast<float>(optics.pupil_position), static_cast<float>(optics.pupil_radius),
-            static_cast<float>(optics.source_position), static_cast<float>(optics.source_outer),
-            static_cast<float>(optics.source_inner), static_cast<float>(optics.inner_field),
-            static_cast<float>(optics.object_distance),  optics.cone_candidates, optics.lobe_candidates};
+    return {static_cast<float>(optics.pupil_position),
+            static_cast<float>(optics.pupil_radius),
+            static_cast<float>(optics.source_position),
+            static_cast<float>(optics.source_outer),
+            static_cast<float>(optics.source_inner),
+            static_cast<float>(optics.inner_field),
+            static_cast<float>(optics.object_distance),
+            optics.cone_candidates,
+            optics.lobe_candidates};
 }
 
 } // namespace
@@ -78,23 +84,20 @@ physics::f32::BackwardOptics to_float(const physics::f64::BackwardOptics& optics
 BackwardTrace::BackwardTrace(const DeviceScene& scene, const physics::f64::BackwardOptics& optics,
                              const BackwardPlan& plan, std::uint64_t asked_batch)
     : scene_(scene), pixels_(pixel_count(scene)), points_per_chunk_(std::min(plan.points, most_points_per_chunk)),
-      sums_(scene.device, std::size_t{pixels_} * sizeof(std::uint64_t)),
-      optics_(scene.device, sizeof(BackwardBlock)),
-      kernel_(scene.device, "backward", variant(scene),
-              declarations(scene), sizeof(Chunks), constants(scene, optics)) {
+      sums_(scene.device, std::size_t{pixels_} * sizeof(std::uint64_t)), optics_(scene.device, sizeof(BackwardBlock)),
+      kernel_(scene.device, "backward", variant(scene), declarations(scene), sizeof(Chunks), constants(scene, optics)) {
     BackwardBlock block{to_float(optics), {}};
     const auto lattice = plan.lattice();
     block.lattice = {lattice.size_bits, lattice.z_0, lattice.z_1, lattice.z_2, lattice.z_3,
                      lattice.z_4,       lattice.z_5, lattice.z_6, lattice.z_7};
     optics_.write_values(std::span<const BackwardBlock>(&block, 1));
-    const std::uint64_t wanted = asked_batch > 0     ? asked_batch
+    const std::uint64_t wanted = asked_batch > 0    ? asked_batch
                                  : scene.software() ? std::uint64_t{1} << 19
                                                     : std::uint64_t{1} << 27;
     const std::uint64_t most_chunks = std::uint64_t{most_groups_in_a_row} * workgroup / pixels_;
     const std::uint64_t chunks =
         std::clamp<std::uint64_t>(wanted / pixels_ / points_per_chunk_, 1, std::max<std::uint64_t>(1, most_chunks));
-    points_per_batch_ = static_cast<std::uint32_t>(
-        std::min<std::uint64_t>(plan.points, chunks * points_per_chunk_));
+    points_per_batch_ = static_cast<std::uint32_t>(std::min<std::uint64_t>(plan.points, chunks * points_per_chunk_));
 }
 
 void BackwardTrace::clear(vulkan::Commands& commands) const {
@@ -113,7 +116,9 @@ void BackwardTrace::record(vulkan::Commands& commands, std::uint32_t randomisati
     commands.barrier();
 }
 
-std::vector<std::uint64_t> BackwardTrace::sums() const { return sums_.read_values<std::uint64_t>(pixels_); }
+std::vector<std::uint64_t> BackwardTrace::sums() const {
+    return sums_.read_values<std::uint64_t>(pixels_);
+}
 
 namespace {
 
@@ -138,7 +143,8 @@ class BackwardTracer final : public Tracer {
                 if (first == 0) {
                     trace_.clear(commands);
                 }
-                trace_.record(commands, randomisation, first, std::min(trace_.points_per_batch(), plan_.points - first));
+                trace_.record(commands, randomisation, first,
+                              std::min(trace_.points_per_batch(), plan_.points - first));
                 commands.timestamp();
                 commands.submit_and_wait();
                 device_seconds += commands.seconds()[1];

@@ -18,7 +18,8 @@ class BackwardTrace {
 
     void clear(vulkan::Commands& commands) const;
     // Points first ... first + count - 1 of every pixel, multiples of points_per_chunk().
-    void record(vulkan::Commands& commands, std::uint32_t randomisation, std::uint32_t first, std::uint32_t count) const;
+    void record(vulkan::Commands& commands, std::uint32_t randomisation, std::uint32_t first,
+                std::uint32_t count) const;
     std::vector<std::uint64_t> sums() const;
 
     std::uint32_t points_per_chunk() const { return points_per_chunk_; }

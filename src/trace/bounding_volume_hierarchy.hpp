@@ -15,13 +15,13 @@ namespace vkfv::trace {
 // compressed wide BVHs", HPG 2017. Slot s stands towards + along axis a of the node where bit a of s is set, as far
 // as its other children let it, so that a ray's signs alone say which slot to visit first.
 struct HierarchyNode {
-    glm::vec3 origin;               // lowest corner, in the boxes' unit
-    std::uint8_t exponents[3];      // a step along an axis is 2^(exponent - 127)
-    std::uint8_t inner;             // bit s: slot s is a node
-    std::uint32_t first_node;       // its nodes follow one another in the order of their slots
-    std::uint32_t first_primitive;  // of those in its slots
-    std::uint8_t slots[8];          // 0: empty; a node: 32 + 24 + slot; else primitives, see below
-    std::uint8_t lower[3][8];       // corners by axis and slot, in steps from the origin
+    glm::vec3 origin;              // lowest corner, in the boxes' unit
+    std::uint8_t exponents[3];     // a step along an axis is 2^(exponent - 127)
+    std::uint8_t inner;            // bit s: slot s is a node
+    std::uint32_t first_node;      // its nodes follow one another in the order of their slots
+    std::uint32_t first_primitive; // of those in its slots
+    std::uint8_t slots[8];         // 0: empty; a node: 32 + 24 + slot; else primitives, see below
+    std::uint8_t lower[3][8];      // corners by axis and slot, in steps from the origin
     std::uint8_t upper[3][8];
 };
 static_assert(sizeof(HierarchyNode) == 80);

@@ -75,8 +75,8 @@ physics::f32::Surface to_float(const physics::f64::Surface& surface) {
     // Of spheres alone: elsewhere the curvature that bends is the ray's own.
     if (surface.conic == 0 && (surface.flags & physics::f64::SURFACE_ASPHERIC) == 0) {
         const float bend = result.curvature * (result.index_after - result.index_before);
-        result.bend_residual = static_cast<float>(
-            surface.curvature * (surface.index_after - surface.index_before) - static_cast<double>(bend));
+        result.bend_residual = static_cast<float>(surface.curvature * (surface.index_after - surface.index_before) -
+                                                  static_cast<double>(bend));
     }
     result.dispersion_before = to_float(surface.dispersion_before);
     result.dispersion_after = to_float(surface.dispersion_after);
@@ -157,8 +157,7 @@ physics::f32::Instrument to_float(const physics::f64::Instrument& instrument) {
 physics::f32::Exposure to_float(const physics::f64::Exposure& exposure) {
     physics::f32::Exposure result{};
     result.top_distance = static_cast<float>(exposure.top_distance);
-    result.top_distance_residual =
-        static_cast<float>(exposure.top_distance - static_cast<double>(result.top_distance));
+    result.top_distance_residual = static_cast<float>(exposure.top_distance - static_cast<double>(result.top_distance));
     result.seed = exposure.seed;
     result.image = exposure.image;
     result.focal_height = static_cast<float>(exposure.focal_height);

@@ -27,11 +27,12 @@ TracerIdentity DeviceScene::identity() const {
 }
 
 bool DeviceScene::is_specialised() const {
-    // A processor compiles such kernels in 2 to 3 s at every start and then saves about 0.4 us a ray; a GPU compiles them
-    // in 1.4 s once, as they are kept (vulkan/pipeline_cache.hpp), and saves 25 ps a ray.
+    // A processor compiles such kernels in 2 to 3 s at every start and then saves about 0.4 us a ray; a GPU compiles
+    // them in 1.4 s once, as they are kept (vulkan/pipeline_cache.hpp), and saves 25 ps a ray.
     constexpr std::uint64_t rays_that_pay = 20000000;
     const bool pays = !software() || rays >= rays_that_pay;
-    return instrument.surfaces.size() <= std::size_t{physics::f32::KNOWN_SURFACES} && instrument_in_constants.value_or(pays);
+    return instrument.surfaces.size() <= std::size_t{physics::f32::KNOWN_SURFACES} &&
+           instrument_in_constants.value_or(pays);
 }
 
 std::vector<vulkan::SpecializationConstant> DeviceScene::specialised_constants(std::uint32_t stop_after, int first,

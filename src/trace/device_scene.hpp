@@ -23,15 +23,13 @@ std::vector<vulkan::Box> boxes_of(const optics::Room& room);
 // Device, buffers and bindings that every use of the trace on a device shares.
 class DeviceScene {
   public:
-    DeviceScene(const optics::Instrument& instrument, const specimen::Specimen& specimen,
-                const TraceOptions& options)
+    DeviceScene(const optics::Instrument& instrument, const specimen::Specimen& specimen, const TraceOptions& options)
         : instrument(instrument), device(vulkan::DeviceOptions{options.device}),
           room(options.nonsequential ? optics::furnish(instrument) : optics::Room{}),
-          accounts(options.nonsequential ? Accounts(instrument, room.names) : Accounts(instrument, options.directed_scatter)),
-          features(instrument.features |
-                   (options.directed_scatter ? physics::f32::FEATURE_DIRECTED_SCATTER : 0u)),
-          traversal(
-              choose_traversal(device.report(), specimen, options.traversal, reason, options.nonsequential)),
+          accounts(options.nonsequential ? Accounts(instrument, room.names)
+                                         : Accounts(instrument, options.directed_scatter)),
+          features(instrument.features | (options.directed_scatter ? physics::f32::FEATURE_DIRECTED_SCATTER : 0u)),
+          traversal(choose_traversal(device.report(), specimen, options.traversal, reason, options.nonsequential)),
           device_specimen(device, specimen, traversal, boxes_of(room)),
           host_record(specimen::record(specimen, options.max_bounces)), seed(options.seed), rays(options.rays),
           instrument_in_constants(options.instrument_in_constants),
@@ -76,8 +74,7 @@ class DeviceScene {
     }
     std::vector<vulkan::BindingDeclaration> declarations(std::initializer_list<std::uint32_t> further) const {
         using enum vulkan::BindingKind;
-        std::vector<vulkan::BindingDeclaration> all = {
-            {0, uniform_buffer}, {1, uniform_buffer}, {14, uniform_buffer}};
+        std::vector<vulkan::BindingDeclaration> all = {{0, uniform_buffer}, {1, uniform_buffer}, {14, uniform_buffer}};
         const auto of_specimen = device_specimen.declarations();
         all.insert(all.end(), of_specimen.begin(), of_specimen.end());
         if (elements) {
@@ -99,7 +96,8 @@ class DeviceScene {
         return all;
     }
 
-    // Whether the forward kernels have the instrument as constants: if it is small enough, and where that pays or is asked for.
+    // Whether the forward kernels have the instrument as constants: if it is small enough, and where that pays or is
+    // asked for.
     bool is_specialised() const;
     // For such kernels: those of all kernels and of shaders/device/prescription.glsl, for the surfaces first ...
     // first + count - 1 that the kernel traces through.
@@ -110,9 +108,7 @@ class DeviceScene {
     std::span<const std::uint32_t> variant(std::span<const std::uint32_t> by_quadtree,
                                            std::span<const std::uint32_t> by_ray_query,
                                            std::span<const std::uint32_t> by_bvh) const {
-        return traversal == Traversal::ray_query ? by_ray_query
-               : traversal == Traversal::bvh     ? by_bvh
-                                                 : by_quadtree;
+        return traversal == Traversal::ray_query ? by_ray_query : traversal == Traversal::bvh ? by_bvh : by_quadtree;
     }
     // Of an instrument that paths run through in this scene's direction.
     TracerIdentity identity() const;
@@ -128,7 +124,7 @@ class DeviceScene {
     DeviceSpecimen device_specimen;
     physics::f64::SpecimenRecord host_record;
     std::uint32_t seed;
-    std::uint64_t rays; // of an image
+    std::uint64_t rays;                          // of an image
     std::optional<bool> instrument_in_constants; // see TraceOptions
     vulkan::Buffer surfaces;
     vulkan::Buffer parameters;

@@ -88,8 +88,7 @@ Triangulation triangulate(const specimen::HeightField& field) {
     for (int row = 0; row < heights.rows; ++row) {
         for (int column = 0; column < heights.columns; ++column) {
             result.vertices.emplace_back(static_cast<float>(field.x_min + column * field.pitch_x),
-                                         static_cast<float>(field.y_min + row * field.pitch_y),
-                                         heights(column, row));
+                                         static_cast<float>(field.y_min + row * field.pitch_y), heights(column, row));
         }
     }
     result.triangles.reserve(2 * heights.values.size());
@@ -152,14 +151,9 @@ std::vector<vulkan::Box> boxes_of(const Pyramid& pyramid, const specimen::Analyt
     for (int row = 0; row * side < header.cells_y; ++row) {
         for (int column = 0; column * side < header.cells_x; ++column) {
             const glm::vec2 range = pyramid.range(level, column, row);
-            const auto x = [&](int block) {
-                return surface.x_min + std::min(block * side, header.cells_x) * cell.x;
-            };
-            const auto y = [&](int block) {
-                return surface.y_min + std::min(block * side, header.cells_y) * cell.y;
-            };
-            boxes.push_back(
-                {glm::vec3(x(column), y(row), range.x), glm::vec3(x(column + 1), y(row + 1), range.y)});
+            const auto x = [&](int block) { return surface.x_min + std::min(block * side, header.cells_x) * cell.x; };
+            const auto y = [&](int block) { return surface.y_min + std::min(block * side, header.cells_y) * cell.y; };
+            boxes.push_back({glm::vec3(x(column), y(row), range.x), glm::vec3(x(column + 1), y(row + 1), range.y)});
             centres.push_back(0.5F * (boxes.back().minimum + boxes.back().maximum));
         }
     }
@@ -175,10 +169,9 @@ class Uploader {
     void expect(const char* what, std::size_t bytes) const {
         const std::uint64_t limit = device_->report().max_storage_buffer_bytes;
         if (bytes > limit) {
-            throw DeviceError(
-                fmt::format("the specimen's {} take {} bytes, but {} reaches at most {} bytes of one "
-                            "buffer; give the specimen fewer points (a larger pitch or a smaller size)",
-                            what, bytes, device_->report().name, limit));
+            throw DeviceError(fmt::format("the specimen's {} take {} bytes, but {} reaches at most {} bytes of one "
+                                          "buffer; give the specimen fewer points (a larger pitch or a smaller size)",
+                                          what, bytes, device_->report().name, limit));
         }
     }
 
@@ -193,8 +186,8 @@ class Uploader {
     }
 
     void put_ceilings(const Ceilings& ceilings) {
-        vulkan::Buffer& buffer = reserve(ceilings_slot, "ceilings",
-                                         sizeof ceilings.header + ceilings.heights.size() * sizeof(float));
+        vulkan::Buffer& buffer =
+            reserve(ceilings_slot, "ceilings", sizeof ceilings.header + ceilings.heights.size() * sizeof(float));
         buffer.write(std::as_bytes(std::span(&ceilings.header, 1)));
         buffer.write(std::as_bytes(std::span(ceilings.heights)), sizeof ceilings.header);
     }
@@ -258,8 +251,8 @@ const char* traversal_name(Traversal traversal) {
     return traversal == Traversal::ray_query ? "ray-query" : traversal == Traversal::bvh ? "bvh" : "quadtree";
 }
 
-Traversal choose_traversal(const vulkan::DeviceReport& device, const specimen::Specimen& specimen,
-                           Traversal asked, std::string& reason, bool nonsequential) {
+Traversal choose_traversal(const vulkan::DeviceReport& device, const specimen::Specimen& specimen, Traversal asked,
+                           std::string& reason, bool nonsequential) {
     const bool mesh = std::holds_alternative<specimen::Mesh>(specimen.geometry);
     if (nonsequential && asked == Traversal::quadtree) {
         throw std::logic_error("elements are traced by ray query or bvh");
@@ -294,8 +287,8 @@ Traversal choose_traversal(const vulkan::DeviceReport& device, const specimen::S
     return Traversal::ray_query;
 }
 
-DeviceSpecimen::DeviceSpecimen(const vulkan::Device& device, const specimen::Specimen& specimen,
-                               Traversal traversal, std::span<const vulkan::Box> elements)
+DeviceSpecimen::DeviceSpecimen(const vulkan::Device& device, const specimen::Specimen& specimen, Traversal traversal,
+                               std::span<const vulkan::Box> elements)
     : record_(to_float(specimen::record(specimen, 0))) {
     if (traversal == Traversal::automatic) {
         throw std::logic_error("DeviceSpecimen takes a traversal that has been chosen");
@@ -330,8 +323,8 @@ DeviceSpecimen::DeviceSpecimen(const vulkan::Device& device, const specimen::Spe
         if (ray_query) {
             const std::vector<vulkan::Box> boxes = boxes_of(pyramid, *surface);
             uploader.put(tiles_slot, "tiles", boxes);
-            structure_ = std::make_unique<vulkan::AccelerationStructure>(
-                vulkan::AccelerationStructure::of_boxes(device, boxes));
+            structure_ =
+                std::make_unique<vulkan::AccelerationStructure>(vulkan::AccelerationStructure::of_boxes(device, boxes));
         } else if (bvh) {
             const std::vector<vulkan::Box> boxes = boxes_of(pyramid, *surface);
             // A march costs far more than a box.

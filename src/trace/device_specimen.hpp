@@ -18,8 +18,8 @@ namespace vkfv::trace {
 // sentence's part that names it and says why. Throws InputError (the quadtree needs a height field) or
 // DeviceError (ray query asked for or needed where the device has none).
 const char* traversal_name(Traversal traversal);
-Traversal choose_traversal(const vulkan::DeviceReport& device, const specimen::Specimen& specimen,
-                           Traversal asked, std::string& reason, bool nonsequential = false);
+Traversal choose_traversal(const vulkan::DeviceReport& device, const specimen::Specimen& specimen, Traversal asked,
+                           std::string& reason, bool nonsequential = false);
 
 // What shaders/device/specimen_hit.glsl is bound to: the slots 8 and up of set 0. The device must outlive it.
 class DeviceSpecimen {

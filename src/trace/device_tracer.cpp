@@ -55,7 +55,7 @@ class DeviceTracer final : public Tracer {
             const std::uint64_t end = std::min(rays_, first + per_submission);
             for (std::uint64_t path = first; path < end; path += trace_->batch()) {
                 trace_->record(commands, path,
-                                static_cast<std::uint32_t>(std::min<std::uint64_t>(trace_->batch(), end - path)));
+                               static_cast<std::uint32_t>(std::min<std::uint64_t>(trace_->batch(), end - path)));
             }
             commands.timestamp();
             commands.submit_and_wait();
@@ -110,7 +110,8 @@ TracerIdentity expected_identity(const optics::Instrument& instrument, const spe
     const auto& report = reports[vulkan::choose_device(reports, {options.device})];
     std::string reason;
     return device_identity(
-        report, traversal_name(choose_traversal(report, specimen, options.traversal, reason, options.nonsequential)), traced);
+        report, traversal_name(choose_traversal(report, specimen, options.traversal, reason, options.nonsequential)),
+        traced);
 }
 
 std::vector<PathEnd> device_paths(const optics::Instrument& instrument, const specimen::Specimen& specimen,
@@ -124,8 +125,7 @@ std::vector<PathEnd> device_paths(const optics::Instrument& instrument, const sp
         scene.device, "probe_paths",
         nonsequential ? scene.variant({}, probe_nonsequential_ray_query, probe_nonsequential_bvh)
                       : scene.variant(probe_paths_quadtree, probe_paths_ray_query, probe_paths_bvh),
-        scene.declarations({6}), nonsequential ? sizeof(NonsequentialBatch) : sizeof(Batch),
-        scene.kernel_constants(0));
+        scene.declarations({6}), nonsequential ? sizeof(NonsequentialBatch) : sizeof(Batch), scene.kernel_constants(0));
     vulkan::Commands commands(scene.device);
     const std::uint32_t groups = (count + 63) / 64;
     if (nonsequential) {

@@ -35,7 +35,8 @@ Diffraction::Diffraction(const optics::AiryPattern& pattern, int columns, int ro
     symmetric_(0, 0) = 1; // as the sum is, but for rounding
 }
 
-Diffraction::Diffraction(const Grid<float>& point_spread, double point_spread_pitch, int columns, int rows, double pitch)
+Diffraction::Diffraction(const Grid<float>& point_spread, double point_spread_pitch, int columns, int rows,
+                         double pitch)
     : columns_(columns), rows_(rows), any_(2 * columns, 2 * rows) {
     if (!(point_spread_pitch > 0 && point_spread_pitch <= pitch * (1 + 1e-9)))
         throw std::invalid_argument("diffraction: a point spread function of pixels no coarser than the image's");
@@ -92,8 +93,7 @@ Grid<float> Diffraction::apply_any(const Grid<float>& image) const {
     const auto mirrored = [](int k, int count) { return k < count ? k : 2 * count - 1 - k; };
     for (int row = 0; row < grid.rows; ++row)
         for (int column = 0; column < grid.columns; ++column)
-            grid(column, row) =
-                static_cast<double>(image(mirrored(column, columns_), mirrored(row, rows_)));
+            grid(column, row) = static_cast<double>(image(mirrored(column, columns_), mirrored(row, rows_)));
     fourier_transform(grid);
     for (std::size_t k = 0; k < grid.values.size(); ++k)
         grid.values[k] *= any_.values[k];

@@ -31,8 +31,8 @@ class Diffraction {
     Grid<float> apply_any(const Grid<float>& image) const;
 
     int columns_, rows_;
-    Grid<double> symmetric_;           // at the frequencies of cosine_transform(); empty: any_ is used
-    Grid<std::complex<double>> any_;   // of the image and its mirror images, twice the size
+    Grid<double> symmetric_;         // at the frequencies of cosine_transform(); empty: any_ is used
+    Grid<std::complex<double>> any_; // of the image and its mirror images, twice the size
 };
 
 } // namespace vkfv::trace

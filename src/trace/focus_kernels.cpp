@@ -61,7 +61,8 @@ std::vector<vulkan::BindingDeclaration> storage_buffers(std::uint32_t count) {
 struct FocusKernels::State {
     State(const std::string& selector, const FocusPlan& plan_, std::span<const float> window_weights,
           const FocusDepths& depths_)
-        : plan(plan_), depths(depths_), pixels(static_cast<std::size_t>(plan.columns) * static_cast<std::size_t>(plan.rows)),
+        : plan(plan_), depths(depths_),
+          pixels(static_cast<std::size_t>(plan.columns) * static_cast<std::size_t>(plan.rows)),
           channels(static_cast<std::size_t>(plan.channels)), device(vulkan::DeviceOptions{selector}),
           mean(device, "focus_mean", focus_mean, storage_buffers(2), sizeof(Term)),
           noise(device, "focus_noise", focus_noise, storage_buffers(5), sizeof(NoiseSizes)),
@@ -154,12 +155,12 @@ void FocusKernels::take(int image, std::span<const Grid<float>> channels) {
         s.image(image).write_values(std::span<const float>(channels[channel].values), channel * s.pixels);
     }
     const bool differences = image >= 2;
-    s.dispatch(s.noise,
-               {&s.image(image), &s.image(differences ? image - 1 : image), &s.image(differences ? image - 2 : image),
-                &s.brightness, &s.squared_differences},
-               NoiseSizes{static_cast<std::uint32_t>(s.pixels), static_cast<std::uint32_t>(s.channels),
-                          differences ? 1u : 0u},
-               s.pixels);
+    s.dispatch(
+        s.noise,
+        {&s.image(image), &s.image(differences ? image - 1 : image), &s.image(differences ? image - 2 : image),
+         &s.brightness, &s.squared_differences},
+        NoiseSizes{static_cast<std::uint32_t>(s.pixels), static_cast<std::uint32_t>(s.channels), differences ? 1u : 0u},
+        s.pixels);
 }
 
 void FocusKernels::measure(int image, std::span<const FocusTerm> terms) {
@@ -168,8 +169,8 @@ void FocusKernels::measure(int image, std::span<const FocusTerm> terms) {
     if (terms.size() == 1) {
         measured = &s.image(terms[0].image);
     } else {
-        s.weighted_mean(terms, [&](int k) -> const vulkan::Buffer& { return s.image(k); }, s.mean_image, 0,
-                        s.channels * s.pixels);
+        s.weighted_mean(
+            terms, [&](int k) -> const vulkan::Buffer& { return s.image(k); }, s.mean_image, 0, s.channels* s.pixels);
     }
     if (s.plan.measure != focus::f32::FOCUS_STANDARD_DEVIATION) {
         s.dispatch(s.response, {measured, &s.responses}, s.plan, s.pixels);
@@ -180,8 +181,9 @@ void FocusKernels::measure(int image, std::span<const FocusTerm> terms) {
 
 void FocusKernels::average(int image, std::span<const FocusTerm> terms) {
     State& s = *state_;
-    s.weighted_mean(terms, [&](int k) -> const vulkan::Buffer& { return s.curve(k); }, s.averaged,
-                    static_cast<std::size_t>(image % s.depths.averaged_curves) * s.pixels, s.pixels);
+    s.weighted_mean(
+        terms, [&](int k) -> const vulkan::Buffer& { return s.curve(k); }, s.averaged,
+        static_cast<std::size_t>(image % s.depths.averaged_curves) * s.pixels, s.pixels);
 }
 
 void FocusKernels::follow(int image, int images) {

@@ -1,5 +1,5 @@
-// The evaluation of a focus stack on a Vulkan device, in float: images come from the trace, each is handed over once, and
-// only what is left of all of them comes back. The algorithm is shaders/focus/'s.
+// The evaluation of a focus stack on a Vulkan device, in float: images come from the trace, each is handed over once,
+// and only what is left of all of them comes back. The algorithm is shaders/focus/'s.
 #pragma once
 
 #include "core/grid.hpp"

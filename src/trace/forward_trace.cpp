@@ -1,16 +1,16 @@
 #include "trace/forward_trace.hpp"
 
 #include "spirv/forward_illumination_bvh.h"
-#include "spirv/forward_illumination_specialised_bvh.h"
 #include "spirv/forward_illumination_quadtree.h"
-#include "spirv/forward_illumination_specialised_quadtree.h"
 #include "spirv/forward_illumination_ray_query.h"
+#include "spirv/forward_illumination_specialised_bvh.h"
+#include "spirv/forward_illumination_specialised_quadtree.h"
 #include "spirv/forward_illumination_specialised_ray_query.h"
 #include "spirv/forward_imaging_bvh.h"
-#include "spirv/forward_imaging_specialised_bvh.h"
 #include "spirv/forward_imaging_quadtree.h"
-#include "spirv/forward_imaging_specialised_quadtree.h"
 #include "spirv/forward_imaging_ray_query.h"
+#include "spirv/forward_imaging_specialised_bvh.h"
+#include "spirv/forward_imaging_specialised_quadtree.h"
 #include "spirv/forward_imaging_specialised_ray_query.h"
 
 namespace vkfv::trace {
@@ -51,8 +51,7 @@ ForwardTrace::ForwardTrace(const DeviceScene& scene, std::uint32_t batch, std::u
                constants_for(scene, stop_imaging, scene.instrument.constants.imaging_first,
                              scene.instrument.constants.imaging_count)) {}
 
-void ForwardTrace::record(vulkan::Commands& commands, std::uint64_t first, std::uint32_t count,
-                                bool timed) const {
+void ForwardTrace::record(vulkan::Commands& commands, std::uint64_t first, std::uint32_t count, bool timed) const {
     commands.fill_zero(survivor_count_);
     commands.barrier();
     if (timed) {
@@ -66,8 +65,7 @@ void ForwardTrace::record(vulkan::Commands& commands, std::uint64_t first, std::
     }
     // The number of survivors is known to the device alone: a fixed grid strides over them.
     const std::uint32_t groups = scene_.software() ? 64 : 4096;
-    commands.dispatch(imaging_,
-                      scene_.bindings({{2, &survivors_}, {3, &pixels_}, {4, &fates_}, {5, &survivor_count_}}),
+    commands.dispatch(imaging_, scene_.bindings({{2, &survivors_}, {3, &pixels_}, {4, &fates_}, {5, &survivor_count_}}),
                       std::span<const std::byte>{}, groups);
     commands.barrier();
     if (timed) {

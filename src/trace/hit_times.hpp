@@ -16,8 +16,8 @@ enum class HitOrder {
 };
 
 struct HitTimes {
-    std::string description; // device and traversal
-    std::uint64_t rays = 0;  // a run
+    std::string description;    // device and traversal
+    std::uint64_t rays = 0;     // a run
     double hits_per_second = 0; // rays tested per device second, the making of each included: median of the runs
     double spread = 0;          // (maximum - minimum) / median
     double share_met = 0;       // of the rays

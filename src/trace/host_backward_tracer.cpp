@@ -65,9 +65,8 @@ class HostBackwardTracer final : public Tracer {
         const LatticeShift shift = lattice_shift(exposure.seed, exposure.image, pixel, randomisation);
         double sum = 0;
         for (std::uint32_t point = 0; point < plan_.points; ++point) {
-            sum += trace_backward(scene, turned_.constants, optics_, record_, exposure,
-                                  static_cast<int>(pixel % side), static_cast<int>(pixel / side), randomisation, lattice_, shift,
-                                  point);
+            sum += trace_backward(scene, turned_.constants, optics_, record_, exposure, static_cast<int>(pixel % side),
+                                  static_cast<int>(pixel / side), randomisation, lattice_, shift, point);
         }
         return static_cast<std::uint64_t>(sum * BACKWARD_UNIT + 0.5);
     }

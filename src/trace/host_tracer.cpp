@@ -25,14 +25,15 @@ uvec2 path_of(std::uint64_t index) {
 
 // What becomes of a path's light: of its own, and with directed scatter of a survivor beside it, with its weight.
 struct HostPath {
-    Fate own{};       // PATH_ALIVE: the survivor stands for it
+    Fate own{}; // PATH_ALIVE: the survivor stands for it
     bool survives = false;
     Survivor survivor{};
-    Detection end{};  // of the survivor, else the own fate
+    Detection end{}; // of the survivor, else the own fate
 };
 
-HostPath trace_host_path(const HostScene& scene, const physics::f64::Instrument& constants, const SpecimenRecord& record,
-                         const Exposure& exposure, const optics::Room& room, bool nonsequential, std::uint64_t index) {
+HostPath trace_host_path(const HostScene& scene, const physics::f64::Instrument& constants,
+                         const SpecimenRecord& record, const Exposure& exposure, const optics::Room& room,
+                         bool nonsequential, std::uint64_t index) {
     HostPath path;
     if (nonsequential) {
         path.end = trace_nonsequential(scene, constants, record, exposure, room.source, path_of(index));
@@ -74,8 +75,7 @@ class HostTracer final : public Tracer {
         const HostScene scene{trains_of(instrument_, options_), &intersector_, &room_};
         const unsigned workers = std::max(1u, std::thread::hardware_concurrency());
         std::vector<std::vector<std::uint64_t>> counts(workers, std::vector<std::uint64_t>(accounts_.pixel_numbers()));
-        std::vector<std::vector<std::uint64_t>> fates(
-            workers, std::vector<std::uint64_t>(accounts_.ledger_numbers()));
+        std::vector<std::vector<std::uint64_t>> fates(workers, std::vector<std::uint64_t>(accounts_.ledger_numbers()));
         {
             std::vector<std::jthread> threads;
             for (unsigned worker = 0; worker < workers; ++worker) {

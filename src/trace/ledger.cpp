@@ -50,8 +50,7 @@ double Ledger::residual() const {
 
 Accounts::Accounts(const optics::Instrument& instrument, bool directed_scatter)
     : flux_(instrument.flux), aimed_(instrument.constants.emission_sine * instrument.constants.emission_sine),
-      left_{1.0, instrument.splitter_reflectance,
-            instrument.splitter_reflectance * instrument.splitter_transmittance},
+      left_{1.0, instrument.splitter_reflectance, instrument.splitter_reflectance * instrument.splitter_transmittance},
       pixels_(instrument.constants.detector_pixels), weighted_(directed_scatter) {
     const auto& constants = instrument.constants;
     add_slots(instrument.surface_names, splitter_passes(instrument), crossings_up_to(instrument),
@@ -81,7 +80,7 @@ void Accounts::add_slots(const std::vector<std::string>& names, const std::vecto
     slots_.assign(plain.begin(), plain.end());
     slots_.resize(PATH_STATUS_COUNT); // statuses that belong to surfaces count there
     const std::array<const char*, SURFACE_STATUS_COUNT> kinds = {"vignetted", "missed", "totally reflected",
-                                                                "lost in reflection"};
+                                                                 "lost in reflection"};
     for (std::size_t surface = 0; surface < names.size(); ++surface) {
         for (const char* kind : kinds) {
             slots_.push_back({std::string(kind) + " at " + names[surface], passes[surface], crossings[surface]});

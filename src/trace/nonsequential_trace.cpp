@@ -20,8 +20,7 @@ void NonsequentialTrace::record(vulkan::Commands& commands, std::uint64_t first,
         commands.timestamp();
     }
     commands.dispatch(kernel_, scene_.bindings({{3, &pixels_}, {4, &fates_}}),
-                      make_nonsequential_batch(scene_, first, count),
-                      (count + paths_per_group - 1) / paths_per_group);
+                      make_nonsequential_batch(scene_, first, count), (count + paths_per_group - 1) / paths_per_group);
     commands.barrier();
     if (timed) {
         commands.timestamp();

@@ -41,7 +41,9 @@ class PathTrace {
     virtual void record(vulkan::Commands& commands, std::uint64_t first, std::uint32_t count,
                         bool timed = false) const = 0;
 
-    std::vector<std::uint64_t> pixels() const { return pixels_.read_values<std::uint64_t>(scene_.accounts.pixel_numbers()); }
+    std::vector<std::uint64_t> pixels() const {
+        return pixels_.read_values<std::uint64_t>(scene_.accounts.pixel_numbers());
+    }
     std::vector<std::uint64_t> fates() const {
         return fates_.read_values<std::uint64_t>(scene_.accounts.ledger_numbers());
     }

@@ -36,8 +36,7 @@ PyramidHeader make_header(int cells_x, int cells_y) {
 }
 
 std::size_t first_of_level(const PyramidHeader& header, int level) {
-    const std::size_t finest =
-        static_cast<std::size_t>(header.padded_x) * static_cast<std::size_t>(header.padded_y);
+    const std::size_t finest = static_cast<std::size_t>(header.padded_x) * static_cast<std::size_t>(header.padded_y);
     return 4 * (finest - (finest >> (2 * level))) / 3;
 }
 
@@ -61,13 +60,11 @@ Pyramid build(PyramidHeader header, double rounding, const std::function<glm::dv
             for (int column = 0; column < header.padded_x >> level; ++column) {
                 glm::vec2 range(infinity, -infinity);
                 for (int child = 0; child < 4; ++child) {
-                    const glm::vec2 part =
-                        pyramid.range(level - 1, 2 * column + (child & 1), 2 * row + (child >> 1));
+                    const glm::vec2 part = pyramid.range(level - 1, 2 * column + (child & 1), 2 * row + (child >> 1));
                     range = glm::vec2(std::min(range.x, part.x), std::max(range.y, part.y));
                 }
                 pyramid.ranges[first_of_level(header, level) +
-                               static_cast<std::size_t>(row) *
-                                   static_cast<std::size_t>(header.padded_x >> level) +
+                               static_cast<std::size_t>(row) * static_cast<std::size_t>(header.padded_x >> level) +
                                static_cast<std::size_t>(column)] = range;
             }
         }
@@ -93,8 +90,9 @@ double largest_height(const specimen::HeightField& field) {
 // jump brings it close to the surface, and one over finer blocks to within a few cells of where it meets it.
 int coarse_level_for(double relief, double cell, int cells) {
     const int suitable = std::ilogb(std::max(0.5 * relief / cell, 1.0));
-    return std::clamp(suitable, 1, std::max(1, std::min(largest_level, static_cast<int>(std::bit_width(
-                                                                        static_cast<unsigned>(cells - 1))))));
+    return std::clamp(
+        suitable, 1,
+        std::max(1, std::min(largest_level, static_cast<int>(std::bit_width(static_cast<unsigned>(cells - 1))))));
 }
 
 // Highest points of cells, row-major, to those of blocks of twice the side.
@@ -133,8 +131,7 @@ Ceilings ceilings_over(Grid<float> highest, double cell_x, double cell_y, double
     header.per_x = static_cast<float>(1 / cell_x);
     header.per_y = static_cast<float>(1 / cell_y);
     header.steepest = static_cast<float>(steepest);
-    header.coarse_level =
-        coarse_level_for(relief, std::min(cell_x, cell_y), std::max(highest.columns, highest.rows));
+    header.coarse_level = coarse_level_for(relief, std::min(cell_x, cell_y), std::max(highest.columns, highest.rows));
     header.fine_level = std::max(1, header.coarse_level / 2);
     for (int level = 1; level <= header.coarse_level; ++level) {
         highest = halved(highest);
@@ -158,9 +155,8 @@ glm::vec2 Pyramid::range(int level, int column, int row) const {
 }
 
 glm::ivec2 pyramid_cells(const specimen::Analytic& surface) {
-    return surface.lattice
-               ? glm::ivec2(surface.lattice->heights.columns - 1, surface.lattice->heights.rows - 1)
-               : glm::ivec2(tiles_along_side);
+    return surface.lattice ? glm::ivec2(surface.lattice->heights.columns - 1, surface.lattice->heights.rows - 1)
+                           : glm::ivec2(tiles_along_side);
 }
 
 Pyramid make_pyramid(const specimen::Analytic& surface, const physics::f64::SpecimenRecord& shape) {
@@ -174,8 +170,7 @@ Pyramid make_pyramid(const specimen::Analytic& surface, const physics::f64::Spec
     const double height = std::max(std::abs(shape.bottom), std::abs(shape.top)) +
                           (surface.lattice ? largest_height(*surface.lattice) : 0);
     const double rounding =
-        float_rounding(surface.x_min, surface.x_max, surface.y_min, surface.y_max, height) *
-        (1 + shape.lipschitz);
+        float_rounding(surface.x_min, surface.x_max, surface.y_min, surface.y_max, height) * (1 + shape.lipschitz);
     const double reach = shape.lipschitz * 0.5 * std::hypot(cell_x, cell_y);
     return build(header, rounding, [&](int column, int row) {
         const double centre = physics::f64::shape_height(shape, surface.x_min + (column + 0.5) * cell_x,
@@ -206,7 +201,8 @@ Pyramid make_pyramid(const specimen::Analytic& surface, const physics::f64::Spec
 Ceilings make_ceilings(const specimen::HeightField& field) {
     const Grid<float>& heights = field.heights;
     const auto [bottom, top] = std::ranges::minmax(heights.values);
-    const double rounding = float_rounding(field.x_min, field.x_max(), field.y_min, field.y_max(), largest_height(field));
+    const double rounding =
+        float_rounding(field.x_min, field.x_max(), field.y_min, field.y_max(), largest_height(field));
     Grid<float> highest(heights.columns - 1, heights.rows - 1);
     double steepest = 0; // squared
     for (int row = 0; row < highest.rows; ++row) {

@@ -88,8 +88,7 @@ std::vector<physics::f64::Ray> entering(const optics::Instrument& instrument, st
     for (const RayInput& input : inputs) {
         physics::f64::Ray ray{};
         ray.position = {input.x, input.y, input.z - instrument.first_order.working_distance};
-        ray.direction =
-            glm::normalize(glm::dvec3(input.l, input.m, input.n)) * instrument.constants.specimen_index;
+        ray.direction = glm::normalize(glm::dvec3(input.l, input.m, input.n)) * instrument.constants.specimen_index;
         rays.push_back(ray);
     }
     return rays;
@@ -153,18 +152,12 @@ std::vector<TracedRay> trace_train_on_device(const optics::Instrument& instrumen
     // Given rays are monochromatic and lose nothing.
     const std::array<vulkan::SpecializationConstant, 1> constants = {
         {{3, instrument.features & (physics::f32::FEATURE_PLACEMENT | physics::f32::FEATURE_IDEAL_LENS)}}};
-    const vulkan::Kernel kernel(device, "trace_rays", ::trace_rays,
-                                {{0, uniform_buffer},
-                                 {1, uniform_buffer},
-                                 {2, storage_buffer},
-                                 {3, storage_buffer},
-                                 {14, uniform_buffer}},
-                                sizeof(Passage), constants);
-    const std::array<vulkan::Binding, 5> bindings = {{{0, &surface_buffer},
-                                                      {1, &parameter_buffer},
-                                                      {2, &ray_buffer},
-                                                      {3, &traced_buffer},
-                                                      {14, &spectrum_buffer}}};
+    const vulkan::Kernel kernel(
+        device, "trace_rays", ::trace_rays,
+        {{0, uniform_buffer}, {1, uniform_buffer}, {2, storage_buffer}, {3, storage_buffer}, {14, uniform_buffer}},
+        sizeof(Passage), constants);
+    const std::array<vulkan::Binding, 5> bindings = {
+        {{0, &surface_buffer}, {1, &parameter_buffer}, {2, &ray_buffer}, {3, &traced_buffer}, {14, &spectrum_buffer}}};
     const TrainEnds ends = ends_of(instrument, train);
     const Passage push{.count = static_cast<std::uint32_t>(rays.size()),
                        .apertures = apertures ? 1u : 0u,

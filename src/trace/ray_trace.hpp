@@ -34,8 +34,8 @@ std::vector<TracedRay> trace_rays_on_host(const optics::Instrument& instrument, 
 std::vector<TracedRay> trace_rays_on_device(const optics::Instrument& instrument, std::span<const RayInput> rays,
                                             bool apertures, const std::string& device);
 
-// The same for rays in the frame of a train's first vertex, directions scaled by the index. The illumination's end on the plane
-// of best focus, in the frame of its last vertex.
+// The same for rays in the frame of a train's first vertex, directions scaled by the index. The illumination's end on
+// the plane of best focus, in the frame of its last vertex.
 enum class Train { illumination, imaging };
 std::vector<TracedRay> trace_train_on_host(const optics::Instrument& instrument, Train train,
                                            std::span<const physics::f64::Ray> rays, bool apertures);

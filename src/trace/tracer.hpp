@@ -21,13 +21,13 @@ enum class Estimator { forward, backward };
 
 struct TraceOptions {
     Estimator estimator = Estimator::forward; // backward asks for an instrument that was turned round too
-    std::uint64_t rays = 0; // launched per image; backward: at least, see backward_plan()
+    std::uint64_t rays = 0;                   // launched per image; backward: at least, see backward_plan()
     std::uint32_t seed = 1;
     int max_bounces = 2;
     Traversal traversal = Traversal::automatic;
-    std::uint64_t batch = 0; // rays in flight at once; 0: what suits the device
-    std::string device;      // selector: an index or a part of the name
-    bool nonsequential = false; // light finds its own way, and interfaces split it
+    std::uint64_t batch = 0;       // rays in flight at once; 0: what suits the device
+    std::string device;            // selector: an index or a part of the name
+    bool nonsequential = false;    // light finds its own way, and interfaces split it
     bool directed_scatter = false; // forward, sequential: every bounce also aims at the pupil, and light has weights
     std::optional<bool> instrument_in_constants; // of the forward kernels; none: where it pays
 };

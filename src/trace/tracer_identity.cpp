@@ -25,7 +25,8 @@ std::string TracerIdentity::toml() const {
     if (!traversal.empty()) {
         text += fmt::format("traversal = {}\n", toml_quoted(traversal));
     }
-    return text + fmt::format("kernels_digest = {}\ninstrument_digest = {}\n", toml_quoted(kernels), toml_quoted(instrument));
+    return text +
+           fmt::format("kernels_digest = {}\ninstrument_digest = {}\n", toml_quoted(kernels), toml_quoted(instrument));
 }
 
 std::string TracerIdentity::text() const {

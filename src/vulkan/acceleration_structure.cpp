@@ -45,8 +45,8 @@ std::uint32_t count_of(const Device& device, std::size_t primitives) {
         throw std::logic_error("an acceleration structure of no primitives");
     }
     // Counts are 32 bits wide in build ranges, whatever the device allows.
-    const std::uint64_t allowed = std::min<std::uint64_t>(limits_of(device).maxPrimitiveCount,
-                                                          std::numeric_limits<std::uint32_t>::max());
+    const std::uint64_t allowed =
+        std::min<std::uint64_t>(limits_of(device).maxPrimitiveCount, std::numeric_limits<std::uint32_t>::max());
     if (primitives > allowed) {
         throw DeviceError(
             fmt::format("{} primitives are more than the {} that {} puts into one acceleration structure. "
@@ -72,13 +72,12 @@ vk::raii::AccelerationStructureKHR build(const Device& device, std::vector<Buffe
         .setFlags(vk::BuildAccelerationStructureFlagBitsKHR::ePreferFastTrace)
         .setMode(vk::BuildAccelerationStructureModeKHR::eBuild)
         .setGeometries(geometry);
-    const vk::AccelerationStructureBuildSizesInfoKHR sizes =
-        device.handle().getAccelerationStructureBuildSizesKHR(vk::AccelerationStructureBuildTypeKHR::eDevice,
-                                                              info, primitives);
+    const vk::AccelerationStructureBuildSizesInfoKHR sizes = device.handle().getAccelerationStructureBuildSizesKHR(
+        vk::AccelerationStructureBuildTypeKHR::eDevice, info, primitives);
     const Buffer& memory = storage.emplace_back(device, sizes.accelerationStructureSize);
     vk::raii::AccelerationStructureKHR structure(
-        device.handle(), vk::AccelerationStructureCreateInfoKHR({}, memory.handle(), 0,
-                                                                sizes.accelerationStructureSize, type));
+        device.handle(),
+        vk::AccelerationStructureCreateInfoKHR({}, memory.handle(), 0, sizes.accelerationStructureSize, type));
 
     const vk::DeviceSize alignment = limits_of(device).minAccelerationStructureScratchOffsetAlignment;
     const Buffer scratch(device, sizes.buildScratchSize + alignment);
@@ -116,11 +115,10 @@ void order(std::span<Primitive> primitives) {
         }
         const std::size_t left = (primitives.size() + 1) / 2;
         // Ties fall by index, so that the order does not depend on the library's nth_element.
-        std::nth_element(primitives.begin(), primitives.begin() + static_cast<std::ptrdiff_t>(left),
-                         primitives.end(), [longest](const Primitive& a, const Primitive& b) {
-                             return a.centre[longest] != b.centre[longest]
-                                        ? a.centre[longest] < b.centre[longest]
-                                        : a.index < b.index;
+        std::nth_element(primitives.begin(), primitives.begin() + static_cast<std::ptrdiff_t>(left), primitives.end(),
+                         [longest](const Primitive& a, const Primitive& b) {
+                             return a.centre[longest] != b.centre[longest] ? a.centre[longest] < b.centre[longest]
+                                                                           : a.index < b.index;
                          });
         order(primitives.subspan(left));
         primitives = primitives.first(left);
@@ -129,8 +127,7 @@ void order(std::span<Primitive> primitives) {
 
 } // namespace
 
-AccelerationStructure::AccelerationStructure(const Device& device,
-                                             const vk::AccelerationStructureGeometryKHR& geometry,
+AccelerationStructure::AccelerationStructure(const Device& device, const vk::AccelerationStructureGeometryKHR& geometry,
                                              std::uint32_t primitives) {
     try {
         bottoms_.push_back(
@@ -187,15 +184,15 @@ AccelerationStructure AccelerationStructure::join(const Device& device, std::vec
         if (may_pass_next_time(error)) {
             throw run_error_of(error, device.report().name);
         }
-        throw DeviceError(fmt::format("Acceleration structures cannot be joined on {}: {}. Use --traversal quadtree or another "
-                                      "device",
-                                      device.report().name, error.what()));
+        throw DeviceError(
+            fmt::format("Acceleration structures cannot be joined on {}: {}. Use --traversal quadtree or another "
+                        "device",
+                        device.report().name, error.what()));
     }
     return joined;
 }
 
-AccelerationStructure AccelerationStructure::of_triangles(const Device& device,
-                                                          std::span<const glm::vec3> vertices,
+AccelerationStructure AccelerationStructure::of_triangles(const Device& device, std::span<const glm::vec3> vertices,
                                                           std::span<const glm::uvec3> triangles) {
     const std::uint32_t count = count_of(device, triangles.size());
     if (!std::ranges::all_of(vertices, is_finite)) {
@@ -203,8 +200,7 @@ AccelerationStructure AccelerationStructure::of_triangles(const Device& device,
     }
     for (const glm::uvec3& triangle : triangles) {
         if (std::max({triangle.x, triangle.y, triangle.z}) >= vertices.size()) {
-            throw std::logic_error(
-                "a triangle of an acceleration structure has a vertex that does not exist");
+            throw std::logic_error("a triangle of an acceleration structure has a vertex that does not exist");
         }
     }
     const Buffer vertex_buffer = upload(device, vertices);
@@ -216,10 +212,10 @@ AccelerationStructure AccelerationStructure::of_triangles(const Device& device,
         .setMaxVertex(static_cast<std::uint32_t>(vertices.size() - 1))
         .setIndexType(vk::IndexType::eUint32)
         .setIndexData(index_buffer.address());
-    return {device,
-            vk::AccelerationStructureGeometryKHR(vk::GeometryTypeKHR::eTriangles, data,
-                                                 vk::GeometryFlagBitsKHR::eOpaque),
-            count};
+    return {
+        device,
+        vk::AccelerationStructureGeometryKHR(vk::GeometryTypeKHR::eTriangles, data, vk::GeometryFlagBitsKHR::eOpaque),
+        count};
 }
 
 AccelerationStructure AccelerationStructure::of_boxes(const Device& device, std::span<const Box> boxes) {
@@ -228,8 +224,7 @@ AccelerationStructure AccelerationStructure::of_boxes(const Device& device, std:
     for (const Box& box : boxes) {
         if (!is_finite(box.minimum) || !is_finite(box.maximum) ||
             glm::any(glm::greaterThan(box.minimum, box.maximum))) {
-            throw std::logic_error(
-                "a box of an acceleration structure is not finite or is turned inside out");
+            throw std::logic_error("a box of an acceleration structure is not finite or is turned inside out");
         }
         for (int axis = 0; axis < 3; ++axis) {
             largest = std::max({largest, std::abs(box.minimum[axis]), std::abs(box.maximum[axis])});

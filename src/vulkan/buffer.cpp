@@ -29,10 +29,10 @@ vk::BufferUsageFlags usage_on(const Device& device) {
 
 [[noreturn]] void throw_too_large(const Device& device, std::size_t bytes, std::string_view limit,
                                   std::uint64_t allowed) {
-    throw RunError(
-        fmt::format("A buffer of {} bytes does not fit on {}: its {} is {} bytes. Set a smaller trace.batch, take fewer "
-                    "pixels, a smaller specimen or another device",
-                    bytes, device.report().name, limit, allowed));
+    throw RunError(fmt::format(
+        "A buffer of {} bytes does not fit on {}: its {} is {} bytes. Set a smaller trace.batch, take fewer "
+        "pixels, a smaller specimen or another device",
+        bytes, device.report().name, limit, allowed));
 }
 
 // Cached memory where there is some: the host reads the others slowly.
@@ -50,17 +50,16 @@ std::uint32_t host_memory_type(const Device& device, std::uint32_t type_bits) {
 
 Buffer::Buffer(const Device& device, std::size_t bytes, Memory memory)
     : device_(&device), bytes_(bytes), memory_(memory) {
-    const auto limits =
-        device.physical()
-            .getProperties2<vk::PhysicalDeviceProperties2, vk::PhysicalDeviceVulkan11Properties>()
-            .get<vk::PhysicalDeviceVulkan11Properties>();
+    const auto limits = device.physical()
+                            .getProperties2<vk::PhysicalDeviceProperties2, vk::PhysicalDeviceVulkan11Properties>()
+                            .get<vk::PhysicalDeviceVulkan11Properties>();
     if (bytes > limits.maxMemoryAllocationSize - 2 * padding) {
         throw_too_large(device, bytes, "largest allocation", limits.maxMemoryAllocationSize);
     }
     const vk::DeviceSize padded = (bytes + padding + padding - 1) / padding * padding;
     try {
-        buffer_ = vk::raii::Buffer(
-            device.handle(), vk::BufferCreateInfo({}, padded, usage_on(device), vk::SharingMode::eExclusive));
+        buffer_ = vk::raii::Buffer(device.handle(),
+                                   vk::BufferCreateInfo({}, padded, usage_on(device), vk::SharingMode::eExclusive));
         const vk::MemoryRequirements needed = buffer_.getMemoryRequirements();
         const std::uint32_t type =
             memory == Memory::host
@@ -72,15 +71,14 @@ Buffer::Buffer(const Device& device, std::size_t bytes, Memory memory)
             throw_too_large(device, bytes, "memory", heap);
         }
         const vk::MemoryAllocateFlagsInfo flags(vk::MemoryAllocateFlagBits::eDeviceAddress);
-        allocation_ =
-            vk::raii::DeviceMemory(device.handle(), vk::MemoryAllocateInfo(needed.size, type, &flags));
+        allocation_ = vk::raii::DeviceMemory(device.handle(), vk::MemoryAllocateInfo(needed.size, type, &flags));
         buffer_.bindMemory(*allocation_, 0);
         if (memory == Memory::host) {
             mapped_ = static_cast<std::byte*>(allocation_.mapMemory(0, VK_WHOLE_SIZE, {}));
         }
     } catch (const vk::SystemError& error) {
         throw run_error_of(error, fmt::format("{}, asked for {} of its {} bytes,", device.report().name, bytes,
-                                                device.report().memory_bytes));
+                                              device.report().memory_bytes));
     }
 }
 
@@ -90,8 +88,7 @@ vk::DeviceAddress Buffer::address() const {
 
 void Buffer::write(std::span<const std::byte> data, std::size_t offset) {
     if (offset > bytes_ || data.size() > bytes_ - offset) {
-        throw std::logic_error(
-            fmt::format("write of {} bytes at {} into a buffer of {}", data.size(), offset, bytes_));
+        throw std::logic_error(fmt::format("write of {} bytes at {} into a buffer of {}", data.size(), offset, bytes_));
     }
     if (data.empty()) {
         return;
@@ -112,8 +109,7 @@ void Buffer::write(std::span<const std::byte> data, std::size_t offset) {
 
 void Buffer::read(std::span<std::byte> data, std::size_t offset) const {
     if (offset > bytes_ || data.size() > bytes_ - offset) {
-        throw std::logic_error(
-            fmt::format("read of {} bytes at {} from a buffer of {}", data.size(), offset, bytes_));
+        throw std::logic_error(fmt::format("read of {} bytes at {} from a buffer of {}", data.size(), offset, bytes_));
     }
     if (data.empty()) {
         return;

@@ -32,8 +32,8 @@ constexpr std::array ray_query_extensions = {VK_KHR_DEFERRED_HOST_OPERATIONS_EXT
                                              VK_KHR_RAY_QUERY_EXTENSION_NAME};
 
 // In the order of preference.
-constexpr std::array<std::string_view, 5> type_names = {"discrete GPU", "integrated GPU", "virtual GPU",
-                                                        "CPU", "other"};
+constexpr std::array<std::string_view, 5> type_names = {"discrete GPU", "integrated GPU", "virtual GPU", "CPU",
+                                                        "other"};
 
 std::string_view name_of(vk::PhysicalDeviceType type) {
     switch (type) {
@@ -63,24 +63,23 @@ std::string driver_selection() {
             set.push_back(fmt::format("{}={}", variable, value));
         }
     }
-    return set.empty() ? ""
-                       : fmt::format(" The environment restricts the drivers: {}.", fmt::join(set, ", "));
+    return set.empty() ? "" : fmt::format(" The environment restricts the drivers: {}.", fmt::join(set, ", "));
 }
 
 [[noreturn]] void throw_no_driver(std::string_view cause) {
     const std::string selection = driver_selection();
-    throw DeviceError(fmt::format(
-        "No Vulkan driver can be used ({}).{} {} the driver of the graphics card, or the package "
-        "mesa-vulkan-drivers, which also holds a driver for the CPU (lavapipe)",
-        cause, selection, selection.empty() ? "Install" : "Unset what names no driver, or install"));
+    throw DeviceError(
+        fmt::format("No Vulkan driver can be used ({}).{} {} the driver of the graphics card, or the package "
+                    "mesa-vulkan-drivers, which also holds a driver for the CPU (lavapipe)",
+                    cause, selection, selection.empty() ? "Install" : "Unset what names no driver, or install"));
 }
 
 vk::raii::Context make_context() {
     try {
         return vk::raii::Context();
     } catch (const std::runtime_error& error) {
-        throw DeviceError(fmt::format("The Vulkan loader cannot be used ({}). Install the package libvulkan1",
-                                      error.what()));
+        throw DeviceError(
+            fmt::format("The Vulkan loader cannot be used ({}). Install the package libvulkan1", error.what()));
     }
 }
 
@@ -90,8 +89,7 @@ constexpr const char* validation_layer = "VK_LAYER_KHRONOS_validation";
 
 VKAPI_ATTR VkBool32 VKAPI_CALL on_validation_message(VkDebugUtilsMessageSeverityFlagBitsEXT,
                                                      VkDebugUtilsMessageTypeFlagsEXT,
-                                                     const VkDebugUtilsMessengerCallbackDataEXT* data,
-                                                     void*) {
+                                                     const VkDebugUtilsMessengerCallbackDataEXT* data, void*) {
     // Not thrown: the frames above are the layer's, in C.
     std::fprintf(stderr, "Vulkan validation: %s\n", data->pMessage);
     std::abort();
@@ -103,8 +101,7 @@ vk::DebugUtilsMessengerCreateInfoEXT messenger_info() {
     info.sType = VK_STRUCTURE_TYPE_DEBUG_UTILS_MESSENGER_CREATE_INFO_EXT;
     info.messageSeverity =
         VK_DEBUG_UTILS_MESSAGE_SEVERITY_WARNING_BIT_EXT | VK_DEBUG_UTILS_MESSAGE_SEVERITY_ERROR_BIT_EXT;
-    info.messageType =
-        VK_DEBUG_UTILS_MESSAGE_TYPE_VALIDATION_BIT_EXT | VK_DEBUG_UTILS_MESSAGE_TYPE_PERFORMANCE_BIT_EXT;
+    info.messageType = VK_DEBUG_UTILS_MESSAGE_TYPE_VALIDATION_BIT_EXT | VK_DEBUG_UTILS_MESSAGE_TYPE_PERFORMANCE_BIT_EXT;
     info.pfnUserCallback = on_validation_message;
     return info;
 }
@@ -119,13 +116,11 @@ vk::raii::Instance make_instance(const vk::raii::Context& context) {
     if (std::ranges::none_of(layers, [](const vk::LayerProperties& layer) {
             return std::strcmp(layer.layerName, validation_layer) == 0;
         })) {
-        throw DeviceError(
-            fmt::format("This build validates its Vulkan calls, but the layer {} is not installed. "
-                        "Install the package vulkan-validationlayers, or use the release build",
-                        validation_layer));
+        throw DeviceError(fmt::format("This build validates its Vulkan calls, but the layer {} is not installed. "
+                                      "Install the package vulkan-validationlayers, or use the release build",
+                                      validation_layer));
     }
-    const std::array extensions = {VK_EXT_DEBUG_UTILS_EXTENSION_NAME,
-                                   VK_EXT_VALIDATION_FEATURES_EXTENSION_NAME};
+    const std::array extensions = {VK_EXT_DEBUG_UTILS_EXTENSION_NAME, VK_EXT_VALIDATION_FEATURES_EXTENSION_NAME};
     const vk::ValidationFeatureEnableEXT enabled = vk::ValidationFeatureEnableEXT::eSynchronizationValidation;
     vk::DebugUtilsMessengerCreateInfoEXT messenger = messenger_info();
     vk::ValidationFeaturesEXT validation(enabled);
@@ -145,10 +140,9 @@ vk::raii::Instance make_instance(const vk::raii::Context& context) {
     } catch (const vk::IncompatibleDriverError& error) {
         throw_no_driver(error.what());
     } catch (const vk::SystemError& error) {
-        throw DeviceError(
-            fmt::format("Vulkan does not start: {}.{} Check that the Vulkan loader and the drivers fit "
-                        "each other: `vulkaninfo` should run",
-                        error.what(), driver_selection()));
+        throw DeviceError(fmt::format("Vulkan does not start: {}.{} Check that the Vulkan loader and the drivers fit "
+                                      "each other: `vulkaninfo` should run",
+                                      error.what(), driver_selection()));
     }
 }
 
@@ -168,8 +162,7 @@ std::vector<vk::raii::PhysicalDevice> physical_devices(const vk::raii::Instance&
 std::optional<std::uint32_t> compute_family(const vk::raii::PhysicalDevice& device) {
     const auto families = device.getQueueFamilyProperties();
     for (std::uint32_t family = 0; family < families.size(); ++family) {
-        if ((families[family].queueFlags & vk::QueueFlagBits::eCompute) &&
-            families[family].timestampValidBits > 0) {
+        if ((families[family].queueFlags & vk::QueueFlagBits::eCompute) && families[family].timestampValidBits > 0) {
             return family;
         }
     }
@@ -184,9 +177,8 @@ DeviceReport examine(const vk::raii::PhysicalDevice& device, int index) {
     report.vendor_id = basic.vendorID;
     report.device_id = basic.deviceID;
     report.type = name_of(basic.deviceType);
-    report.api_version =
-        fmt::format("{}.{}.{}", VK_API_VERSION_MAJOR(basic.apiVersion),
-                    VK_API_VERSION_MINOR(basic.apiVersion), VK_API_VERSION_PATCH(basic.apiVersion));
+    report.api_version = fmt::format("{}.{}.{}", VK_API_VERSION_MAJOR(basic.apiVersion),
+                                     VK_API_VERSION_MINOR(basic.apiVersion), VK_API_VERSION_PATCH(basic.apiVersion));
     report.max_storage_buffer_bytes = basic.limits.maxStorageBufferRange;
     for (const vk::MemoryHeap& heap : device.getMemoryProperties().memoryHeaps) {
         if (heap.flags & vk::MemoryHeapFlagBits::eDeviceLocal) {
@@ -204,9 +196,8 @@ DeviceReport examine(const vk::raii::PhysicalDevice& device, int index) {
         return report; // what follows cannot be asked of it
     }
 
-    const auto properties =
-        device.getProperties2<vk::PhysicalDeviceProperties2, vk::PhysicalDeviceVulkan11Properties,
-                              vk::PhysicalDeviceVulkan12Properties>();
+    const auto properties = device.getProperties2<vk::PhysicalDeviceProperties2, vk::PhysicalDeviceVulkan11Properties,
+                                                  vk::PhysicalDeviceVulkan12Properties>();
     const auto& properties_11 = properties.get<vk::PhysicalDeviceVulkan11Properties>();
     const auto& properties_12 = properties.get<vk::PhysicalDeviceVulkan12Properties>();
     report.driver = fmt::format("{} {}", properties_12.driverName.data(), properties_12.driverInfo.data());
@@ -221,28 +212,23 @@ DeviceReport examine(const vk::raii::PhysicalDevice& device, int index) {
             return std::strcmp(extension.extensionName, name) == 0;
         });
     };
-    const auto features =
-        device.getFeatures2<vk::PhysicalDeviceFeatures2, vk::PhysicalDeviceVulkan12Features>();
+    const auto features = device.getFeatures2<vk::PhysicalDeviceFeatures2, vk::PhysicalDeviceVulkan12Features>();
     const auto& features_10 = features.get<vk::PhysicalDeviceFeatures2>().features;
     const auto& features_12 = features.get<vk::PhysicalDeviceVulkan12Features>();
-    require(has_extension(VK_KHR_PUSH_DESCRIPTOR_EXTENSION_NAME),
-            "push descriptors (VK_KHR_push_descriptor)");
+    require(has_extension(VK_KHR_PUSH_DESCRIPTOR_EXTENSION_NAME), "push descriptors (VK_KHR_push_descriptor)");
     require(features_12.bufferDeviceAddress, "buffer device addresses (bufferDeviceAddress)");
     require(features_12.scalarBlockLayout, "scalar block layout (scalarBlockLayout)");
     require(features_10.shaderInt64, "64-bit integers in shaders (shaderInt64)");
-    require(features_12.shaderBufferInt64Atomics,
-            "64-bit atomic operations on buffers (shaderBufferInt64Atomics)");
+    require(features_12.shaderBufferInt64Atomics, "64-bit atomic operations on buffers (shaderBufferInt64Atomics)");
     require(has_subgroup(vk::SubgroupFeatureFlagBits::eBallot), "subgroup ballot in compute shaders");
     require(has_subgroup(vk::SubgroupFeatureFlagBits::eArithmetic), "subgroup arithmetic in compute shaders");
 
     if (std::ranges::all_of(ray_query_extensions, has_extension)) {
         const auto ray =
-            device
-                .getFeatures2<vk::PhysicalDeviceFeatures2, vk::PhysicalDeviceAccelerationStructureFeaturesKHR,
-                              vk::PhysicalDeviceRayQueryFeaturesKHR>();
-        report.ray_query =
-            ray.get<vk::PhysicalDeviceAccelerationStructureFeaturesKHR>().accelerationStructure &&
-            ray.get<vk::PhysicalDeviceRayQueryFeaturesKHR>().rayQuery;
+            device.getFeatures2<vk::PhysicalDeviceFeatures2, vk::PhysicalDeviceAccelerationStructureFeaturesKHR,
+                                vk::PhysicalDeviceRayQueryFeaturesKHR>();
+        report.ray_query = ray.get<vk::PhysicalDeviceAccelerationStructureFeaturesKHR>().accelerationStructure &&
+                           ray.get<vk::PhysicalDeviceRayQueryFeaturesKHR>().rayQuery;
     }
     return report;
 }
@@ -258,9 +244,9 @@ std::vector<DeviceReport> examine(std::span<const vk::raii::PhysicalDevice> devi
 std::string describe(std::span<const DeviceReport> reports) {
     std::string text;
     for (const DeviceReport& report : reports) {
-        text += fmt::format(
-            "\n  [{}] {} ({}, Vulkan {}): {}", report.index, report.name, report.type, report.api_version,
-            report.lacking.empty() ? "usable" : fmt::format("lacks {}", fmt::join(report.lacking, ", ")));
+        text +=
+            fmt::format("\n  [{}] {} ({}, Vulkan {}): {}", report.index, report.name, report.type, report.api_version,
+                        report.lacking.empty() ? "usable" : fmt::format("lacks {}", fmt::join(report.lacking, ", ")));
     }
     return text;
 }
@@ -292,16 +278,14 @@ std::string pipelines_name(const vk::raii::PhysicalDevice& device) {
 
 std::string explain(std::span<const DeviceReport> reports, std::size_t chosen, const DeviceOptions& options) {
     const DeviceReport& report = reports[chosen];
-    const auto usable =
-        std::ranges::count_if(reports, [](const DeviceReport& r) { return r.lacking.empty(); });
+    const auto usable = std::ranges::count_if(reports, [](const DeviceReport& r) { return r.lacking.empty(); });
     constexpr double bytes_per_gib = 1024.0 * 1024.0 * 1024.0;
     const std::string reason =
         !options.selector.empty() ? fmt::format("selected by \"{}\"", options.selector)
-        : usable == 1
-            ? "the only usable device"
-            : fmt::format("{} with {:.1f} GiB, the first of {} usable devices in the order "
-                          "discrete, integrated, virtual, CPU, then memory",
-                          report.type, static_cast<double>(report.memory_bytes) / bytes_per_gib, usable);
+        : usable == 1             ? "the only usable device"
+                                  : fmt::format("{} with {:.1f} GiB, the first of {} usable devices in the order "
+                                                            "discrete, integrated, virtual, CPU, then memory",
+                                                report.type, static_cast<double>(report.memory_bytes) / bytes_per_gib, usable);
     return fmt::format("{} ({}): {}", report.name, report.driver, reason);
 }
 
@@ -376,7 +360,7 @@ struct Device::State {
     vk::raii::Device device{nullptr};
     vk::raii::Queue queue{nullptr};
     vk::raii::PipelineCache pipelines{nullptr};
-    std::string pipelines_name; // of this device and driver
+    std::string pipelines_name;     // of this device and driver
     std::size_t pipelines_read = 0; // bytes
     std::uint32_t queue_family = 0;
     double timestamp_period_ns = 0;
@@ -415,10 +399,9 @@ std::size_t choose_device(std::span<const DeviceReport> reports, const DeviceOpt
     const std::string subject = options.selector.empty()
                                     ? "No Vulkan device is usable"
                                     : fmt::format("The Vulkan device \"{}\" is not usable", options.selector);
-    throw DeviceError(
-        fmt::format("{}; there are:{}\nUpdate the driver of the graphics card, or install the package "
-                    "mesa-vulkan-drivers, whose lavapipe (Mesa 25 or newer) runs on the CPU.{}",
-                    subject, describe(reports), driver_selection()));
+    throw DeviceError(fmt::format("{}; there are:{}\nUpdate the driver of the graphics card, or install the package "
+                                  "mesa-vulkan-drivers, whose lavapipe (Mesa 25 or newer) runs on the CPU.{}",
+                                  subject, describe(reports), driver_selection()));
 }
 
 Device::Device(const DeviceOptions& options) : state_(std::make_unique<State>()) {
@@ -436,8 +419,7 @@ Device::Device(const DeviceOptions& options) : state_(std::make_unique<State>())
 
     std::vector<const char*> extensions = {VK_KHR_PUSH_DESCRIPTOR_EXTENSION_NAME};
     vk::StructureChain<vk::DeviceCreateInfo, vk::PhysicalDeviceFeatures2, vk::PhysicalDeviceVulkan12Features,
-                       vk::PhysicalDeviceAccelerationStructureFeaturesKHR,
-                       vk::PhysicalDeviceRayQueryFeaturesKHR>
+                       vk::PhysicalDeviceAccelerationStructureFeaturesKHR, vk::PhysicalDeviceRayQueryFeaturesKHR>
         chain;
     chain.get<vk::PhysicalDeviceFeatures2>().features.setShaderInt64(VK_TRUE);
     chain.get<vk::PhysicalDeviceVulkan12Features>()
@@ -463,10 +445,9 @@ Device::Device(const DeviceOptions& options) : state_(std::make_unique<State>())
         if (may_pass_next_time(error)) {
             throw run_error_of(error, state.report.name);
         }
-        throw DeviceError(
-            fmt::format("The device {} does not open: {}. Another program may hold all of it: end that, "
-                        "or choose another device",
-                        state.report.name, error.what()));
+        throw DeviceError(fmt::format("The device {} does not open: {}. Another program may hold all of it: end that, "
+                                      "or choose another device",
+                                      state.report.name, error.what()));
     }
     state.queue = vk::raii::Queue(state.device, state.queue_family, 0);
     state.pipelines_name = pipelines_name(state.physical);
@@ -474,8 +455,8 @@ Device::Device(const DeviceOptions& options) : state_(std::make_unique<State>())
     state.pipelines_read = pipelines.size();
     try {
         // The driver checks that it wrote them itself.
-        state.pipelines = vk::raii::PipelineCache(
-            state.device, vk::PipelineCacheCreateInfo({}, pipelines.size(), pipelines.data()));
+        state.pipelines =
+            vk::raii::PipelineCache(state.device, vk::PipelineCacheCreateInfo({}, pipelines.size(), pipelines.data()));
     } catch (const vk::SystemError& error) {
         throw run_error_of(error, state.report.name);
     }
@@ -517,8 +498,8 @@ std::uint32_t Device::memory_type(std::uint32_t type_bits, vk::MemoryPropertyFla
             return type;
         }
     }
-    throw DeviceError(fmt::format("The device {} has no memory that is {}. Choose another device",
-                                  state_->report.name, vk::to_string(properties)));
+    throw DeviceError(fmt::format("The device {} has no memory that is {}. Choose another device", state_->report.name,
+                                  vk::to_string(properties)));
 }
 
 std::vector<DeviceReport> list_devices() {

@@ -15,10 +15,10 @@ namespace vkfv::vulkan {
 struct DeviceReport {
     int index = 0; // in the order of vkEnumeratePhysicalDevices
     std::string name;
-    std::string driver; // driver name and version
+    std::string driver;          // driver name and version
     std::uint32_t vendor_id = 0; // PCI's
     std::uint32_t device_id = 0;
-    std::string type;   // "discrete GPU", "integrated GPU", "CPU", ...
+    std::string type; // "discrete GPU", "integrated GPU", "CPU", ...
     std::string api_version;
     bool ray_query = false; // not needed: the trace has other traversals
     std::uint32_t subgroup_size = 0;
@@ -55,8 +55,8 @@ class Device {
     const vk::raii::Device& handle() const;
     const vk::raii::PhysicalDevice& physical() const;
     const vk::raii::Queue& queue() const;
-    // What the driver has compiled, here and in earlier runs on this device and driver (pipeline_cache.hpp); kept on disk
-    // when the device closes.
+    // What the driver has compiled, here and in earlier runs on this device and driver (pipeline_cache.hpp); kept on
+    // disk when the device closes.
     const vk::raii::PipelineCache& pipelines() const;
     std::uint32_t queue_family() const;
     double timestamp_period_ns() const;
@@ -68,9 +68,9 @@ class Device {
     std::unique_ptr<State> state_;
 };
 
-// While it lives, the drivers that a first device has opened stay open, for the many devices that a sweep of stacks makes
-// one after the other: a driver that is opened and closed each time is refused at about the hundredth (NVIDIA 580.159). One
-// in a process, in main(): the drivers are closed before their static objects end.
+// While it lives, the drivers that a first device has opened stay open, for the many devices that a sweep of stacks
+// makes one after the other: a driver that is opened and closed each time is refused at about the hundredth (NVIDIA
+// 580.159). One in a process, in main(): the drivers are closed before their static objects end.
 class DriverScope {
   public:
     DriverScope();

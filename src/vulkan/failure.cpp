@@ -26,18 +26,21 @@ bool lacks_memory(const vk::SystemError& failure) {
 RunError run_error_of(const vk::SystemError& failure, const std::string& device) {
     const std::string subject = device.empty() ? "The device" : "The device " + device;
     if (is_lost(failure)) {
-        return RunError(fmt::format("{} was lost: its driver gave up, often because one batch took too long. Run the same "
-                                   "command again to continue, with a smaller trace.batch",
-                                   subject));
+        return RunError(
+            fmt::format("{} was lost: its driver gave up, often because one batch took too long. Run the same "
+                        "command again to continue, with a smaller trace.batch",
+                        subject));
     }
     if (lacks_memory(failure)) {
-        return RunError(fmt::format("{} has not enough memory ({}). End other programs on it, set a smaller trace.batch, take "
-                                   "fewer pixels or a coarser specimen, and run the same command again",
-                                   subject, failure.what()));
+        return RunError(
+            fmt::format("{} has not enough memory ({}). End other programs on it, set a smaller trace.batch, take "
+                        "fewer pixels or a coarser specimen, and run the same command again",
+                        subject, failure.what()));
     }
-    return RunError(fmt::format("{} failed: {}. Run the same command again to continue; if it fails again, update the driver "
-                               "or choose another device",
-                               subject, failure.what()));
+    return RunError(
+        fmt::format("{} failed: {}. Run the same command again to continue; if it fails again, update the driver "
+                    "or choose another device",
+                    subject, failure.what()));
 }
 
 bool may_pass_next_time(const vk::SystemError& failure) {

@@ -12,8 +12,8 @@ namespace vkfv::vulkan {
 // A lost device, exhausted memory or another failure, each with its remedy. device: its name; empty: not known.
 RunError run_error_of(const vk::SystemError& failure, const std::string& device = {});
 
-// Whether the same call may succeed when the command is run again: the device was lost, or has not enough memory. Others tell
-// of a device or a driver that cannot do what is asked.
+// Whether the same call may succeed when the command is run again: the device was lost, or has not enough memory.
+// Others tell of a device or a driver that cannot do what is asked.
 bool may_pass_next_time(const vk::SystemError& failure);
 
 } // namespace vkfv::vulkan

@@ -38,12 +38,10 @@ const Binding& binding_at(std::uint32_t slot, std::span<const Binding> bindings,
     return *found;
 }
 
-void check_range(const Device& device, const Kernel& kernel, const BindingDeclaration& declaration,
-                 std::size_t bytes) {
+void check_range(const Device& device, const Kernel& kernel, const BindingDeclaration& declaration, std::size_t bytes) {
     const vk::PhysicalDeviceLimits limits = device.physical().getProperties().limits;
-    const std::uint32_t allowed = declaration.kind == BindingKind::uniform_buffer
-                                      ? limits.maxUniformBufferRange
-                                      : limits.maxStorageBufferRange;
+    const std::uint32_t allowed =
+        declaration.kind == BindingKind::uniform_buffer ? limits.maxUniformBufferRange : limits.maxStorageBufferRange;
     if (bytes > allowed) {
         throw DeviceError(
             fmt::format("{} binds at most {} bytes to a kernel, but {} needs {} at slot {}. Use a smaller "
@@ -59,9 +57,8 @@ Kernel::Kernel(const Device& device, std::string name, std::span<const std::uint
                std::span<const SpecializationConstant> constants)
     : name_(std::move(name)), bindings_(std::move(bindings)), push_constant_bytes_(push_constant_bytes) {
     if (push_constant_bytes_ > portable_push_constant_bytes || push_constant_bytes_ % 4 != 0) {
-        throw std::logic_error(
-            fmt::format("kernel {}: {} bytes of push constants, expected a multiple of 4 up to {}", name_,
-                        push_constant_bytes_, portable_push_constant_bytes));
+        throw std::logic_error(fmt::format("kernel {}: {} bytes of push constants, expected a multiple of 4 up to {}",
+                                           name_, push_constant_bytes_, portable_push_constant_bytes));
     }
     std::vector<vk::DescriptorSetLayoutBinding> slots;
     for (const BindingDeclaration& declaration : bindings_) {
@@ -97,8 +94,8 @@ Kernel::Kernel(const Device& device, std::string name, std::span<const std::uint
         const vk::raii::ShaderModule module(device.handle(), module_info);
         const vk::PipelineShaderStageCreateInfo stage({}, vk::ShaderStageFlagBits::eCompute, *module, "main",
                                                       &specialization);
-        pipeline_ = vk::raii::Pipeline(device.handle(), device.pipelines(),
-                                       vk::ComputePipelineCreateInfo({}, stage, *layout_));
+        pipeline_ =
+            vk::raii::Pipeline(device.handle(), device.pipelines(), vk::ComputePipelineCreateInfo({}, stage, *layout_));
     } catch (const vk::SystemError& error) {
         if (may_pass_next_time(error)) {
             throw run_error_of(error, device.report().name);
@@ -111,15 +108,14 @@ Kernel::Kernel(const Device& device, std::string name, std::span<const std::uint
 }
 
 Commands::Commands(const Device& device, std::uint32_t timestamp_capacity) try
-    : device_(&device),
-      pool_(device.handle(),
-            vk::CommandPoolCreateInfo(vk::CommandPoolCreateFlagBits::eTransient, device.queue_family())),
+    : device_(&device), pool_(device.handle(), vk::CommandPoolCreateInfo(vk::CommandPoolCreateFlagBits::eTransient,
+                                                                         device.queue_family())),
       buffers_(device.handle(), vk::CommandBufferAllocateInfo(*pool_, vk::CommandBufferLevel::ePrimary, 1)),
       timestamp_capacity_(timestamp_capacity) {
     handle().begin(vk::CommandBufferBeginInfo(vk::CommandBufferUsageFlagBits::eOneTimeSubmit));
     if (timestamp_capacity_ > 0) {
-        queries_ = vk::raii::QueryPool(
-            device.handle(), vk::QueryPoolCreateInfo({}, vk::QueryType::eTimestamp, timestamp_capacity_));
+        queries_ = vk::raii::QueryPool(device.handle(),
+                                       vk::QueryPoolCreateInfo({}, vk::QueryType::eTimestamp, timestamp_capacity_));
         handle().resetQueryPool(*queries_, 0, timestamp_capacity_);
     }
     barrier();
@@ -128,22 +124,20 @@ Commands::Commands(const Device& device, std::uint32_t timestamp_capacity) try
 }
 
 void Commands::dispatch(const Kernel& kernel, std::span<const Binding> bindings,
-                        std::span<const std::byte> push_constants, std::uint32_t groups_x,
-                        std::uint32_t groups_y) {
+                        std::span<const std::byte> push_constants, std::uint32_t groups_x, std::uint32_t groups_y) {
     const vk::PhysicalDeviceLimits limits = device_->physical().getProperties().limits;
     if (groups_x > limits.maxComputeWorkGroupCount[0] || groups_y > limits.maxComputeWorkGroupCount[1]) {
-        throw std::logic_error(
-            fmt::format("kernel {}: {} x {} workgroups, the device allows {} x {}", kernel.name(), groups_x,
-                        groups_y, limits.maxComputeWorkGroupCount[0], limits.maxComputeWorkGroupCount[1]));
+        throw std::logic_error(fmt::format("kernel {}: {} x {} workgroups, the device allows {} x {}", kernel.name(),
+                                           groups_x, groups_y, limits.maxComputeWorkGroupCount[0],
+                                           limits.maxComputeWorkGroupCount[1]));
     }
     if (push_constants.size() != kernel.push_constant_bytes()) {
-        throw std::logic_error(fmt::format("kernel {}: {} bytes of push constants, expected {}",
-                                           kernel.name(), push_constants.size(),
-                                           kernel.push_constant_bytes()));
+        throw std::logic_error(fmt::format("kernel {}: {} bytes of push constants, expected {}", kernel.name(),
+                                           push_constants.size(), kernel.push_constant_bytes()));
     }
     if (bindings.size() != kernel.bindings().size()) {
-        throw std::logic_error(fmt::format("kernel {}: {} bindings, expected {}", kernel.name(),
-                                           bindings.size(), kernel.bindings().size()));
+        throw std::logic_error(fmt::format("kernel {}: {} bindings, expected {}", kernel.name(), bindings.size(),
+                                           kernel.bindings().size()));
     }
 
     const std::size_t count = bindings.size();
@@ -156,9 +150,7 @@ void Commands::dispatch(const Kernel& kernel, std::span<const Binding> bindings,
         const BindingDeclaration& declaration = kernel.bindings()[i];
         const Binding& binding = binding_at(declaration.slot, bindings, kernel);
         vk::WriteDescriptorSet& write = writes[i];
-        write.setDstBinding(declaration.slot)
-            .setDescriptorCount(1)
-            .setDescriptorType(type_of(declaration.kind));
+        write.setDstBinding(declaration.slot).setDescriptorCount(1).setDescriptorType(type_of(declaration.kind));
         const auto* buffer = std::get_if<const Buffer*>(&binding.resource);
         if ((buffer == nullptr) != (declaration.kind == BindingKind::acceleration_structure)) {
             throw std::logic_error(fmt::format("kernel {}: slot {} is bound to the wrong kind of resource",
@@ -184,8 +176,7 @@ void Commands::dispatch(const Kernel& kernel, std::span<const Binding> bindings,
     if (!push_constants.empty()) {
         handle().pushConstants<std::byte>(
             kernel.layout(), vk::ShaderStageFlagBits::eCompute, 0,
-            vk::ArrayProxy<const std::byte>(static_cast<std::uint32_t>(push_constants.size()),
-                                            push_constants.data()));
+            vk::ArrayProxy<const std::byte>(static_cast<std::uint32_t>(push_constants.size()), push_constants.data()));
     }
     handle().dispatch(groups_x, groups_y, 1);
 }
@@ -243,8 +234,7 @@ void Commands::submit_and_wait() {
         device_->queue().submit(info, *done);
         const vk::Fence fence = *done;
         // Without a limit the wait ends in success or throws.
-        static_cast<void>(
-            device_->handle().waitForFences(fence, VK_TRUE, std::numeric_limits<std::uint64_t>::max()));
+        static_cast<void>(device_->handle().waitForFences(fence, VK_TRUE, std::numeric_limits<std::uint64_t>::max()));
     } catch (const vk::SystemError& error) {
         throw run_error_of(error, device_->report().name);
     }
@@ -259,10 +249,11 @@ std::vector<double> Commands::seconds() const {
     }
     std::vector<std::uint64_t> ticks;
     try {
-        ticks = queries_
-                    .getResults<std::uint64_t>(0, timestamps_, timestamps_ * sizeof(std::uint64_t), sizeof(std::uint64_t),
-                                               vk::QueryResultFlagBits::e64 | vk::QueryResultFlagBits::eWait)
-                    .second;
+        ticks =
+            queries_
+                .getResults<std::uint64_t>(0, timestamps_, timestamps_ * sizeof(std::uint64_t), sizeof(std::uint64_t),
+                                           vk::QueryResultFlagBits::e64 | vk::QueryResultFlagBits::eWait)
+                .second;
     } catch (const vk::SystemError& error) {
         throw run_error_of(error, device_->report().name);
     }

@@ -61,12 +61,11 @@ class Commands {
     // Bindings must name every slot the kernel declares (throws std::logic_error otherwise). Throws
     // DeviceError for a buffer larger than a descriptor may span on this device: reach that one by its
     // address.
-    void dispatch(const Kernel& kernel, std::span<const Binding> bindings,
-                  std::span<const std::byte> push_constants, std::uint32_t groups_x,
-                  std::uint32_t groups_y = 1);
+    void dispatch(const Kernel& kernel, std::span<const Binding> bindings, std::span<const std::byte> push_constants,
+                  std::uint32_t groups_x, std::uint32_t groups_y = 1);
     template <class Push>
-    void dispatch(const Kernel& kernel, std::span<const Binding> bindings, const Push& push,
-                  std::uint32_t groups_x, std::uint32_t groups_y = 1) {
+    void dispatch(const Kernel& kernel, std::span<const Binding> bindings, const Push& push, std::uint32_t groups_x,
+                  std::uint32_t groups_y = 1) {
         dispatch(kernel, bindings, std::as_bytes(std::span(&push, 1)), groups_x, groups_y);
     }
     void fill_zero(const Buffer& buffer);

@@ -29,26 +29,68 @@ std::vector<std::string> warnings_of(const nlohmann::json& report) {
     return report["warnings"];
 }
 
-const std::vector<std::string> figures = {
-    "efl_objective_mm", "objective_front_principal_plane_mm", "objective_back_principal_plane_mm", "efl_tube_lens_mm",
-    "tube_lens_front_principal_plane_mm", "tube_lens_back_principal_plane_mm", "working_distance_mm", "free_distance_mm",
-    "best_focus_offset_um", "numerical_aperture", "entrance_pupil_height_mm", "entrance_pupil_radius_mm",
-    "back_pupil_distance_mm", "back_pupil_radius_mm", "beam_radius_mm", "exit_pupil_distance_mm", "exit_pupil_radius_mm",
-    "source_radius_mm", "pupil_radius_in_source_mm", "illumination_to_objective_mm", "magnification",
-    "real_magnification", "detector_numerical_aperture", "f_number", "field_of_view_um", "field_diagonal_um",
-    "pixel_pitch_um", "wavelength_um", "airy_radius_um", "detector_airy_radius_um", "pixels_per_airy_radius",
-    "depth_of_field_um", "detector_depth_of_field_um", "field_edge_um", "rms_spot_axis_um", "rms_spot_edge_um",
-    "rms_spot_corner_um", "detector_rms_spot_axis_um", "detector_rms_spot_edge_um", "detector_rms_spot_corner_um",
-    "wavefront_rms_axis_waves", "wavefront_rms_edge_waves", "wavefront_rms_corner_waves", "strehl_axis", "strehl_edge",
-    "strehl_corner", "field_curvature_um", "field_curvature_corner_um", "distortion_edge_percent", "distortion_corner_percent",
-    "relative_light_edge_percent", "relative_light_corner_percent", "axial_colour_um", "lateral_colour_um"};
+const std::vector<std::string> figures = {"efl_objective_mm",
+                                          "objective_front_principal_plane_mm",
+                                          "objective_back_principal_plane_mm",
+                                          "efl_tube_lens_mm",
+                                          "tube_lens_front_principal_plane_mm",
+                                          "tube_lens_back_principal_plane_mm",
+                                          "working_distance_mm",
+                                          "free_distance_mm",
+                                          "best_focus_offset_um",
+                                          "numerical_aperture",
+                                          "entrance_pupil_height_mm",
+                                          "entrance_pupil_radius_mm",
+                                          "back_pupil_distance_mm",
+                                          "back_pupil_radius_mm",
+                                          "beam_radius_mm",
+                                          "exit_pupil_distance_mm",
+                                          "exit_pupil_radius_mm",
+                                          "source_radius_mm",
+                                          "pupil_radius_in_source_mm",
+                                          "illumination_to_objective_mm",
+                                          "magnification",
+                                          "real_magnification",
+                                          "detector_numerical_aperture",
+                                          "f_number",
+                                          "field_of_view_um",
+                                          "field_diagonal_um",
+                                          "pixel_pitch_um",
+                                          "wavelength_um",
+                                          "airy_radius_um",
+                                          "detector_airy_radius_um",
+                                          "pixels_per_airy_radius",
+                                          "depth_of_field_um",
+                                          "detector_depth_of_field_um",
+                                          "field_edge_um",
+                                          "rms_spot_axis_um",
+                                          "rms_spot_edge_um",
+                                          "rms_spot_corner_um",
+                                          "detector_rms_spot_axis_um",
+                                          "detector_rms_spot_edge_um",
+                                          "detector_rms_spot_corner_um",
+                                          "wavefront_rms_axis_waves",
+                                          "wavefront_rms_edge_waves",
+                                          "wavefront_rms_corner_waves",
+                                          "strehl_axis",
+                                          "strehl_edge",
+                                          "strehl_corner",
+                                          "field_curvature_um",
+                                          "field_curvature_corner_um",
+                                          "distortion_edge_percent",
+                                          "distortion_corner_percent",
+                                          "relative_light_edge_percent",
+                                          "relative_light_corner_percent",
+                                          "axial_colour_um",
+                                          "lateral_colour_um"};
 
 TEST(Check, EveryMicroscopeHasEveryFigure) {
     for (const char* objective : {"5x_0.15", "10x_0.28", "20x_0.41", "50x_0.66", "100x_0.83"}) {
         const auto report = check(replaced(small_configuration, "10x_0.28", objective));
         for (const auto& name : figures) {
             ASSERT_TRUE(report.contains(name)) << objective << " " << name;
-            EXPECT_TRUE(report[name].is_number() && std::isfinite(report[name].get<double>())) << objective << " " << name;
+            EXPECT_TRUE(report[name].is_number() && std::isfinite(report[name].get<double>()))
+                << objective << " " << name;
         }
     }
 }
@@ -128,8 +170,9 @@ TEST(Check, NamesTheLensThatClipsTheCorner) {
 // The corners of 1 mm by 1 mm come into focus 14.7 um below the middle.
 TEST(Check, WarnsOfAScanThatTheFieldCurvatureLeaves) {
     const auto wide_with = [](const std::string& start) {
-        return check(small_configuration, {"--set", "detector.size_mm=10", "--set", "detector.pixels=1000", "--set",
-                                           "scan.z_start_um=" + start, "--set", "scan.z_stop_um=5", "--set", "scan.z_step_um=1"});
+        return check(small_configuration,
+                     {"--set", "detector.size_mm=10", "--set", "detector.pixels=1000", "--set",
+                      "scan.z_start_um=" + start, "--set", "scan.z_stop_um=5", "--set", "scan.z_step_um=1"});
     };
     const auto cut = wide_with("-10");
     EXPECT_NEAR(cut["field_curvature_corner_um"], 14.7, 0.1);

@@ -1,6 +1,6 @@
 // vkfv --compare through the real program.
-#include "support/surface_files.hpp"
 #include "app/program.hpp"
+#include "support/surface_files.hpp"
 #include "surface/filter.hpp"
 #include "surface/height_parameters.hpp"
 #include "surface/image_file.hpp"
@@ -23,9 +23,10 @@ using Json = nlohmann::json;
 
 constexpr double um = 1e-3; // mm
 
-// Two crossed waves of 0.5 um, 12 and 17 um long: a map of `size` x `size` points, `pitch` um apart from `start` um, whose
-// waves lie `shift` um further along x; with an offset, normal noise, and a corner of 5 x 5 points not measured.
-void write_map(const std::filesystem::path& file, int size, double start, double pitch, double shift, double noise, unsigned seed) {
+// Two crossed waves of 0.5 um, 12 and 17 um long: a map of `size` x `size` points, `pitch` um apart from `start` um,
+// whose waves lie `shift` um further along x; with an offset, normal noise, and a corner of 5 x 5 points not measured.
+void write_map(const std::filesystem::path& file, int size, double start, double pitch, double shift, double noise,
+               unsigned seed) {
     HeightMap map{.height = Grid<double>(size, size),
                   .x0 = start * um,
                   .y0 = start * um,
@@ -37,7 +38,8 @@ void write_map(const std::filesystem::path& file, int size, double start, double
         for (int column = 0; column < size; ++column) {
             const double x = start + column * pitch - shift, y = start + row * pitch;
             map.height(column, row) =
-                (3 + 0.5 * std::sin(2 * M_PI * x / 12) + 0.5 * std::sin(2 * M_PI * y / 17) + noise * normal(random)) * um;
+                (3 + 0.5 * std::sin(2 * M_PI * x / 12) + 0.5 * std::sin(2 * M_PI * y / 17) + noise * normal(random)) *
+                um;
             if (noise > 0 && column < 5 && row < 5) {
                 map.height(column, row) = std::nan("");
             }
@@ -107,8 +109,8 @@ TEST_F(Compare, WritesMapsAndTables) {
     EXPECT_THAT(read_file(folder / "out/transfer.csv"), HasSubstr("frequency_per_mm,wavelength_um,transfer,"));
     EXPECT_THAT(read_file(folder / "out/slope.csv"), HasSubstr("slope_from_deg,slope_to_deg,points,measured_share,"));
     EXPECT_NEAR(Json::parse(read_file(folder / "out/compare.json"))["rms_deviation_um"], 0.080, 0.002);
-    // Along a row only the wave of 12 um is seen, 0.989 of it after the mean over 1 um; sections are 23.8 um long, at which
-    // the Gaussian leaves 1 - 2^-(23.8/12)^2 = 0.935 of its amplitude. Ra is 2 / pi of that, 0.294 um. The window
+    // Along a row only the wave of 12 um is seen, 0.989 of it after the mean over 1 um; sections are 23.8 um long, at
+    // which the Gaussian leaves 1 - 2^-(23.8/12)^2 = 0.935 of its amplitude. Ra is 2 / pi of that, 0.294 um. The window
     // is cut off over a quarter of the profile at either end, which lets up to 0.1 of the amplitude through there.
     const auto profile = Json::parse(read_file(folder / "out/compare.json"))["profile"];
     EXPECT_NEAR(profile["true"]["Ra_um"], 2 / M_PI * 0.5 * 0.989 * 0.935, 0.02);
@@ -120,7 +122,8 @@ TEST_F(Compare, IsOfTheSurfacesAsTreated) {
     const auto plain = report({"measured_0.tif", "same_grid.tif"});
     const auto treated = report({"measured_0.tif", "same_grid.tif", "--form", "polynomial-3", "--s_filter_um", "6",
                                  "--l-filter-um", "30", "--out", "treated"});
-    EXPECT_EQ(plain["treatment"], Json({{"form", "plane"}, {"s_filter_um", 0}, {"l_filter_um", 0}, {"filter", "gaussian"}}));
+    EXPECT_EQ(plain["treatment"],
+              Json({{"form", "plane"}, {"s_filter_um", 0}, {"l_filter_um", 0}, {"filter", "gaussian"}}));
     EXPECT_EQ(treated["treatment"],
               Json({{"form", "polynomial-3"}, {"s_filter_um", 6}, {"l_filter_um", 30}, {"filter", "gaussian"}}));
 
@@ -151,7 +154,8 @@ TEST_F(Compare, IsOfTheSurfacesAsTreated) {
     // The smoothed truth along the middle row, and the shift, which no filter changes.
     EXPECT_LT(treated["profile"]["true"]["Rq_um"], plain["profile"]["true"]["Rq_um"]);
     EXPECT_EQ(treated["measured"][0]["lateral_shift"], plain["measured"][0]["lateral_shift"]);
-    const auto text = run_program({"--compare", "measured_0.tif", "same_grid.tif", "--s_filter_um", "6", "--filter", "spline"}, folder);
+    const auto text = run_program(
+        {"--compare", "measured_0.tif", "same_grid.tif", "--s_filter_um", "6", "--filter", "spline"}, folder);
     EXPECT_THAT(text.standard_output, HasSubstr("form plane, S-filter 6 um (spline)"));
 }
 

@@ -42,7 +42,8 @@ std::vector<InputProblem> problems_of(const std::vector<std::string>& lines, con
 // Where "key = value" on one line begins its value; none for other lines.
 std::optional<std::size_t> value_in(const std::string& line) {
     const auto equals = line.find(" = ");
-    const bool whole = equals != std::string::npos && line[0] >= 'a' && line[0] <= 'z' && !line.ends_with('[') && !line.ends_with(',');
+    const bool whole =
+        equals != std::string::npos && line[0] >= 'a' && line[0] <= 'z' && !line.ends_with('[') && !line.ends_with(',');
     return whole ? std::optional(equals + 3) : std::nullopt;
 }
 
@@ -52,12 +53,14 @@ std::string all_of(const std::vector<InputProblem>& problems) {
 
 TEST(ConfigurationProblems, ADamagedValueIsToldOnceAndNothingElse) {
     int damaged = 0;
-    for (const auto& entry : std::filesystem::directory_iterator(std::filesystem::path(VKFV_SOURCE_DIR) / "assets" / "stacks")) {
+    for (const auto& entry :
+         std::filesystem::directory_iterator(std::filesystem::path(VKFV_SOURCE_DIR) / "assets" / "stacks")) {
         if (entry.path().extension() != ".toml") {
             continue;
         }
         const auto lines = lines_of(entry.path());
-        ASSERT_TRUE(problems_of(lines, entry.path()).empty()) << entry.path() << all_of(problems_of(lines, entry.path()));
+        ASSERT_TRUE(problems_of(lines, entry.path()).empty())
+            << entry.path() << all_of(problems_of(lines, entry.path()));
         for (std::size_t i = 0; i < lines.size(); ++i) {
             const auto value = value_in(lines[i]);
             if (!value) {

@@ -17,8 +17,8 @@ using test::small_configuration;
 using test::write_file;
 using testing::HasSubstr;
 
-Configuration load(const std::string& name, const std::string& text,
-                   const std::vector<TomlOverride>& overrides = {}, Needs needs = Needs::stack) {
+Configuration load(const std::string& name, const std::string& text, const std::vector<TomlOverride>& overrides = {},
+                   Needs needs = Needs::stack) {
     const auto file = fresh_folder(name) / "c.toml";
     write_file(file, text);
     return load_configuration(file, overrides, needs);
@@ -37,16 +37,15 @@ TEST(Configuration, ConvertsUnitsOnceAtTheBorder) {
     EXPECT_EQ(configuration.trace.rays, 2000u);
     EXPECT_EQ(configuration.instrument.directed_emission, true);
     EXPECT_EQ(configuration.trace.directed_scatter, false);
-    const auto tilted = load("tilt", replaced(replaced(small_configuration, "\"step\"", "\"plane\""),
-                                              "height_um = 2.0", "tilt_x_deg = 45"));
+    const auto tilted = load(
+        "tilt", replaced(replaced(small_configuration, "\"step\"", "\"plane\""), "height_um = 2.0", "tilt_x_deg = 45"));
     EXPECT_NEAR(std::tan(tilted.specimen->tilt_x), 1.0, 1e-15); // one rounding of the angle
 }
 
 TEST(Configuration, PathsAreRelativeToTheFile) {
     const auto configuration = load("paths", small_configuration);
     EXPECT_EQ(configuration.output_directory, configuration.file.parent_path() / "out");
-    const auto overridden =
-        load("paths", small_configuration, {{"output.directory", "\"elsewhere\"", "--out"}});
+    const auto overridden = load("paths", small_configuration, {{"output.directory", "\"elsewhere\"", "--out"}});
     EXPECT_EQ(overridden.output_directory, "elsewhere");
 }
 
@@ -62,8 +61,8 @@ TEST(Configuration, OverridesWin) {
 
 TEST(Configuration, CanonicalTextReadsBackToItself) {
     // 0.1 um, 0.7 um, 1/3: numbers whose conversion to mm and back would not be exact.
-    const auto text = replaced(replaced(small_configuration, "z_step_um = 1.0", "z_step_um = 0.7"),
-                               "pitch_um = 1.0", "pitch_um = 0.3333333333333333");
+    const auto text = replaced(replaced(small_configuration, "z_step_um = 1.0", "z_step_um = 0.7"), "pitch_um = 1.0",
+                               "pitch_um = 0.3333333333333333");
     const auto first = load("canonical", text);
     const auto second = load("canonical_again", first.canonical);
     EXPECT_EQ(first.canonical, second.canonical);
@@ -79,8 +78,10 @@ TEST(Configuration, CanonicalTextReadsBackToItself) {
 TEST(Configuration, IdentityHoldsWhatChangesImagesAndNothingElse) {
     const auto reference = load("identity", small_configuration).identity;
     const std::vector<TomlOverride> neutral = {
-        {"trace.batch", "4096", ""},       {"trace.traversal", "\"quadtree\"", ""},
-        {"trace.device", "\"host\"", ""},  {"output.directory", "\"other\"", ""},
+        {"trace.batch", "4096", ""},
+        {"trace.traversal", "\"quadtree\"", ""},
+        {"trace.device", "\"host\"", ""},
+        {"output.directory", "\"other\"", ""},
         {"output.surfaces", "[\"sur\"]", ""},
         {"diffraction.point_spread", "\"airy\"", ""},
         {"topography.focus_measure", "\"brenner\"", ""},
@@ -171,8 +172,7 @@ TEST(Configuration, IdentityFollowsTheContentOfACataloguesGlass) {
     const auto reference = load_with("a.agf", glass);
     EXPECT_THAT(reference.canonical,
                 HasSubstr("glass_catalogs = [\"" +
-                          (std::filesystem::absolute(reference.file.parent_path()) / "a.agf").string() +
-                          "\"]\n"));
+                          (std::filesystem::absolute(reference.file.parent_path()) / "a.agf").string() + "\"]\n"));
     EXPECT_EQ(load("catalogue_again", reference.canonical).canonical, reference.canonical);
     EXPECT_EQ(load_with("b.agf", glass + "NM OTHER 5\nCD 1.5\nLD 0.4 0.7\n").identity, reference.identity);
     EXPECT_NE(load_with("a.agf", "NM MINE 5\nCD 1.6226\nLD 0.4 0.7\n").identity, reference.identity);
@@ -211,14 +211,14 @@ TEST(Configuration, RingLightsAreRead) {
     EXPECT_EQ(switched.ring->fill, 0.8);
     EXPECT_EQ(switched.ring->on, (std::vector<bool>{true, false, true}));
     EXPECT_EQ(described(disc_lines, keys + "segments = 4\n").ring->on, std::vector<bool>(4, true));
-    EXPECT_EQ(described(disc_lines + "\n[beam_splitter]\nreflectance = 0.5",
-                        keys + "[beam_splitter]\nreflectance = 0\n")
-                  .splitter.transmittance,
-              1);
+    EXPECT_EQ(
+        described(disc_lines + "\n[beam_splitter]\nreflectance = 0.5", keys + "[beam_splitter]\nreflectance = 0\n")
+            .splitter.transmittance,
+        1);
 }
 
-// Every point of the specimen must be lit, whatever its size and wherever it stands: the aim is the cone about the band's
-// normal that holds the ball through the footprint's farthest corner at its farthest height.
+// Every point of the specimen must be lit, whatever its size and wherever it stands: the aim is the cone about the
+// band's normal that holds the ball through the footprint's farthest corner at its farthest height.
 TEST(Configuration, RingLightsAimAtTheWholeSpecimen) {
     const auto configuration =
         load("aim", replaced(small_configuration, disc_lines,
@@ -260,8 +260,8 @@ TEST(Configuration, SpectraAreRead) {
 }
 
 TEST(Configuration, ASpectrumsFileCountsByItsContent) {
-    const auto text = replaced(small_configuration, wavelength_line,
-                               "[source.spectrum]\nkind = \"table\"\nfile = \"led.csv\"\n");
+    const auto text =
+        replaced(small_configuration, wavelength_line, "[source.spectrum]\nkind = \"table\"\nfile = \"led.csv\"\n");
     const auto load_with = [&](const std::string& points) {
         const auto folder = fresh_folder("spectrum_file");
         write_file(folder / "led.csv", "wavelength_um,density\n" + points);
@@ -332,14 +332,14 @@ TEST(Configuration, InterfacesAndMediaAreRead) {
     EXPECT_EQ(covered->thickness, 0.17);
     EXPECT_EQ(covered->glass.name, "N-BK7");
     EXPECT_FALSE(covered->distance);
-    EXPECT_EQ(with("[cover_glass]\nthickness_mm = 0.1\nglass = \"fused silica\"\ndistance_mm = 1\n")
-                  .cover_glass->distance,
-              1);
+    EXPECT_EQ(
+        with("[cover_glass]\nthickness_mm = 0.1\nglass = \"fused silica\"\ndistance_mm = 1\n").cover_glass->distance,
+        1);
 }
 
 TEST(Configuration, LensesStopsAndPlacementsAreRead) {
     const auto ideal = described("prescription = \"10x_0.28\"", "kind = \"ideal\"\nfocal_length_mm = 8\n"
-                                                               "numerical_aperture = 1.2\nimmersion = \"water\"\n");
+                                                                "numerical_aperture = 1.2\nimmersion = \"water\"\n");
     ASSERT_EQ(ideal.objective.surfaces.size(), 2u);
     EXPECT_EQ(ideal.objective.surfaces[0].ideal_power, 0.125);
     EXPECT_EQ(ideal.objective.surfaces[0].thickness, 8);
@@ -420,8 +420,8 @@ TEST(Configuration, EveryKindOfSpecimenIsRead) {
         {"gltf", "file = \"a.glb\"\n"},
     };
     for (const auto& [kind, keys] : kinds) {
-        const auto text = small_configuration.substr(0, start) + "kind = \"" + kind + "\"\n" + keys +
-                          small_configuration.substr(end);
+        const auto text =
+            small_configuration.substr(0, start) + "kind = \"" + kind + "\"\n" + keys + small_configuration.substr(end);
         const auto configuration = load("kind_" + kind, text);
         ASSERT_TRUE(configuration.specimen) << kind;
         EXPECT_EQ(load("kind_again", configuration.canonical).canonical, configuration.canonical) << kind;

@@ -32,8 +32,8 @@ std::vector<Channels> stack(int channels) {
                 for (int column = 0; column < columns; ++column) {
                     const double height = 11 + 4 * std::sin(0.2 * column) * std::cos(0.15 * row);
                     float& value = channel(column, row);
-                    value = static_cast<float>(1e-9 * (1 + value * std::exp(-0.5 * std::pow((k - height) / 3, 2)) +
-                                                       0.002 * normal(random)));
+                    value = static_cast<float>(
+                        1e-9 * (1 + value * std::exp(-0.5 * std::pow((k - height) / 3, 2)) + 0.002 * normal(random)));
                 }
     }
     return result;
@@ -47,20 +47,20 @@ topography::Topography evaluated(const std::vector<Channels>& stack, const topog
     return evaluator.finish(0, 0, 0.002);
 }
 
-// u = 2^-24. A value of a curve is a chain of at most 150 float operations without cancellation (means of at most 7 images
-// and curves, masks of 25 pixels, two windows of 7 and their squares) on positive numbers, except that masks subtract
-// pixels of 1 that differ by 0.02 or more over a window: their differences have u / 0.02 = 50 u each, at random. So a
-// curve's values are right to 200 u = 1.2e-5. Around the maximum the curve bends by 1 / 3^2 a step^2, or less where the
-// averages widen it, some 1 / 15: a position, difference of values over twice the bend, is right to 1.2e-5 * 15 = 2e-4
-// steps.
+// u = 2^-24. A value of a curve is a chain of at most 150 float operations without cancellation (means of at most 7
+// images and curves, masks of 25 pixels, two windows of 7 and their squares) on positive numbers, except that masks
+// subtract pixels of 1 that differ by 0.02 or more over a window: their differences have u / 0.02 = 50 u each, at
+// random. So a curve's values are right to 200 u = 1.2e-5. Around the maximum the curve bends by 1 / 3^2 a step^2, or
+// less where the averages widen it, some 1 / 15: a position, difference of values over twice the bend, is right
+// to 1.2e-5 * 15 = 2e-4 steps.
 constexpr double value_bound = 1.2e-5, position_bound = 2e-4;
 
 void expect_same(const topography::Topography& host, const topography::Topography& device, const std::string& which) {
     int compared = 0, other_image = 0;
     for (std::size_t k = 0; k < host.state.values.size(); ++k) {
         const double a = host.height.height.values[k], b = device.height.height.values[k];
-        // Two values of the curve may be so near each other that rounding decides which is the largest: a three-point fit is
-        // continuous there, fits over a range are not; few points are on such an edge.
+        // Two values of the curve may be so near each other that rounding decides which is the largest: a three-point
+        // fit is continuous there, fits over a range are not; few points are on such an edge.
         if (host.state.values[k] != device.state.values[k] || std::abs(a - b) > 0.2 * step) {
             ++other_image;
             continue;
@@ -88,8 +88,7 @@ TEST(DeviceFocusPlanes, GiveTheHostsHeightsByEveryMeasureAndPeakMethod) {
             const topography::TopographyOptions options{
                 .focus_measure = measure, .peak = peak, .peak_range_steps = 3, .smoothing_steps = 0.9};
             expect_same(evaluated(grey, options, topography::make_host_focus_planes),
-                        evaluated(grey, options, device_focus_planes("")),
-                        measure + " " + peak);
+                        evaluated(grey, options, device_focus_planes("")), measure + " " + peak);
         }
 }
 
@@ -99,8 +98,7 @@ TEST(DeviceFocusPlanes, GiveTheHostsHeightsOfColourAndWithAGaussianWindow) {
         const topography::TopographyOptions options{
             .focus_measure = measure, .window_px = 7, .window_shape = "gaussian", .smoothing_steps = 0};
         expect_same(evaluated(colour, options, topography::make_host_focus_planes),
-                    evaluated(colour, options, device_focus_planes("")),
-                    measure);
+                    evaluated(colour, options, device_focus_planes("")), measure);
     }
 }
 

@@ -1,6 +1,6 @@
 // [diffraction] blurs images after the trace and leaves the traced ones as they are.
-#include "support/surface_files.hpp"
 #include "app/program.hpp"
+#include "support/surface_files.hpp"
 #include "surface/image_file.hpp"
 
 #include <gmock/gmock.h>

@@ -28,7 +28,8 @@ TEST(ExitCode, OfAFolderInUseIsFive) {
     write_file(folder / "c.toml", small_configuration);
     ASSERT_EQ(run_program({"--stack", "c.toml", "--quiet"}, folder).exit_code, 0);
     const ResultFolder holder(folder / "out");
-    for (const auto& command : {std::vector<std::string>{"--stack", "c.toml"}, {"--topography", "out"},
+    for (const auto& command : {std::vector<std::string>{"--stack", "c.toml"},
+                                {"--topography", "out"},
                                 {"--compare", "out/truth.tif", "out/truth.tif", "--form", "none", "--out", "out"}}) {
         const auto result = run_program(command, folder);
         EXPECT_EQ(result.exit_code, 5) << command.front() << result.standard_error;
@@ -54,9 +55,9 @@ TEST(ExitCode, OfAnOutputThatIsLostIsFour) {
     const auto folder = fresh_folder("full");
     write_file(folder / "c.toml", small_configuration);
     for (const char* arguments : {"--check c.toml --json", "--devices", "--check c.toml", "--help"}) {
-        const int status = std::system(fmt::format("cd '{}' && '{}/vkfv' {} >/dev/full 2>error", folder.string(),
-                                                   VKFV_BINARY_DIR, arguments)
-                                           .c_str());
+        const int status = std::system(
+            fmt::format("cd '{}' && '{}/vkfv' {} >/dev/full 2>error", folder.string(), VKFV_BINARY_DIR, arguments)
+                .c_str());
         EXPECT_EQ(WEXITSTATUS(status), 4) << arguments;
         EXPECT_THAT(read_file(folder / "error"), HasSubstr("standard output cannot be written"));
     }
@@ -97,7 +98,8 @@ TEST(Identity, IsTheDeviceAndNotTheReasonForIt) {
     EXPECT_EQ(again.exit_code, 0) << again.standard_error;
     EXPECT_THAT(again.standard_error, HasSubstr("0 images traced, 5 kept"));
     const std::string stack = read_file(folder / "out/stack.toml");
-    for (const char* key : {"device", "vendor_id", "device_id", "driver", "traversal", "kernels_digest", "instrument_digest"}) {
+    for (const char* key :
+         {"device", "vendor_id", "device_id", "driver", "traversal", "kernels_digest", "instrument_digest"}) {
         EXPECT_THAT(stack, HasSubstr(fmt::format("\n#: {} = ", key)));
     }
     // A program with other kernels is told by name.
@@ -116,7 +118,9 @@ TEST(Identity, IsTheDeviceAndNotTheReasonForIt) {
 TEST(Results, TellTheRaysOfTheLedger) {
     const auto folder = fresh_folder("rays");
     write_file(folder / "c.toml", small_configuration);
-    ASSERT_EQ(run_program({"--stack", "c.toml", "--quiet", "--estimator", "backward", "--rays", "5000"}, folder).exit_code, 0);
+    ASSERT_EQ(
+        run_program({"--stack", "c.toml", "--quiet", "--estimator", "backward", "--rays", "5000"}, folder).exit_code,
+        0);
     const auto results = nlohmann::json::parse(read_file(folder / "out/results.json"));
     // 8 x 8 pixels, 79 paths each, rounded up to two lattices of 64.
     EXPECT_EQ(results["rays_per_image"], 8192);

@@ -16,10 +16,19 @@ static const std::filesystem::path source_folder = VKFV_SOURCE_DIR;
 TEST(Handedness, ALetterReadsCorrectlyAsImageMeshGltfAndSurface) {
     for (const char* name : {"image_letter", "stl_letter", "gltf_letter", "surface_letter"}) {
         const auto folder = fresh_folder(std::string("hand_") + name);
-        std::vector<std::string> arguments = {
-            "--stack", (source_folder / "assets/stacks" / name).string() + ".toml",
-            "--out", "out", "--rays", "2e6", "--quiet", "--set", "scan.z_start_um=-12",
-            "--set", "scan.z_stop_um=12", "--set", "scan.z_step_um=12"};
+        std::vector<std::string> arguments = {"--stack",
+                                              (source_folder / "assets/stacks" / name).string() + ".toml",
+                                              "--out",
+                                              "out",
+                                              "--rays",
+                                              "2e6",
+                                              "--quiet",
+                                              "--set",
+                                              "scan.z_start_um=-12",
+                                              "--set",
+                                              "scan.z_stop_um=12",
+                                              "--set",
+                                              "scan.z_step_um=12"};
         if (name == std::string("image_letter") || name == std::string("surface_letter")) {
             arguments.insert(arguments.end(), {"--set", "specimen.roughness.noise_um=0.01"}); // the relief alone
         }

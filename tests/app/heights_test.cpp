@@ -32,8 +32,8 @@ double correlation(const surface::HeightMap& measured, const surface::HeightMap&
 
 } // namespace
 
-// The demo with an eighth of its rays and every other image. Its full form reaches 0.95 before long waves are removed; fewer
-// rays and coarser steps are given a loss of 0.15. The wrong twins are the truth mirrored.
+// The demo with an eighth of its rays and every other image. Its full form reaches 0.95 before long waves are removed;
+// fewer rays and coarser steps are given a loss of 0.15. The wrong twins are the truth mirrored.
 TEST(Heights, OfTheDemoAreTheSpecimens) {
     const auto folder = fresh_folder("heights");
     const auto demo = (std::filesystem::path(VKFV_SOURCE_DIR) / "assets/stacks/demo.toml").string();

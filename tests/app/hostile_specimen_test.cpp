@@ -1,5 +1,5 @@
-// Specimens that no careful hand wrote, through the real program: what would fill the memory or run for minutes is refused
-// before anything is made, and light that goes astray is told of.
+// Specimens that no careful hand wrote, through the real program: what would fill the memory or run for minutes is
+// refused before anything is made, and light that goes astray is told of.
 #include "app/program.hpp"
 
 #include <gmock/gmock.h>
@@ -17,7 +17,8 @@ using testing::Not;
 constexpr const char* step = "kind = \"step\"\nsize_mm = 0.2\nheight_um = 2.0\n";
 const std::string roughness = "[specimen.roughness]\nnoise_um = 0.1\nkernel_um = 1.0\npitch_um = 1.0\nseed = 7\n";
 
-ProgramResult checked(const std::string& configuration, const std::vector<std::string>& arguments = {"--check", "c.toml"}) {
+ProgramResult checked(const std::string& configuration,
+                      const std::vector<std::string>& arguments = {"--check", "c.toml"}) {
     const auto folder = fresh_folder("hostile");
     write_file(folder / "c.toml", configuration);
     return run_program(arguments, folder);
@@ -31,22 +32,30 @@ struct Refused {
 TEST(HostileSpecimen, GridsAreBoundedBeforeTheyAreMade) {
     const std::vector<Refused> cases = {
         {"pitch_um = 1.0", "pitch_um = 1e-300", {"c.toml:33:12", "specimen.roughness.pitch_um = 1e-300"}},
-        {"pitch_um = 1.0", "pitch_um = 1e-5", {"c.toml:33:12", "fewer points than", "Choose roughness.pitch_um >= 0.0382"}},
-        {"pitch_um = 1.0", "pitch_um = 1.3e-2", {"c.toml:33:12", "specimen.roughness.pitch_um = 0.013", "fewer points than",
-                                                 "Choose roughness.pitch_um >= 0.0382"}},
-        {"height_um = 2.0", "height_um = 2.0\npitch_um = 1e-3",
+        {"pitch_um = 1.0",
+         "pitch_um = 1e-5",
+         {"c.toml:33:12", "fewer points than", "Choose roughness.pitch_um >= 0.0382"}},
+        {"pitch_um = 1.0",
+         "pitch_um = 1.3e-2",
+         {"c.toml:33:12", "specimen.roughness.pitch_um = 0.013", "fewer points than",
+          "Choose roughness.pitch_um >= 0.0382"}},
+        {"height_um = 2.0",
+         "height_um = 2.0\npitch_um = 1e-3",
          {"c.toml:28:12", "specimen.pitch_um = 0.001", "at most 16383 facets along the specimen's 0.2 mm"}},
         {"kernel_um = 1.0", "kernel_um = 1e300", {"c.toml:32:13", "specimen.roughness.kernel_um"}},
         {"height_um = 2.0", "height_um = 1e300", {"c.toml", "specimen", "Correct the lengths"}},
         {"height_um = 2.0", "height_um = 2.0\nwall_um = 1e-300", {"c.toml:28:11", "specimen.wall_um = 1e-300"}},
         {"size_mm = 0.2", "size_mm = 1e300", {"c.toml:26:11", "specimen.size_mm", "from 1e-10 to 1e+06 mm"}},
         {"size_mm = 0.2", "size_mm = 1e-300", {"c.toml:26:11", "specimen.size_mm"}},
-        {step, "kind = \"rough\"\nsize_mm = 5\nsq_um = 1\ncorrelation_length_um = 1000\n",
+        {step,
+         "kind = \"rough\"\nsize_mm = 5\nsq_um = 1\ncorrelation_length_um = 1000\n",
          {"specimen.pitch_um = 0.5", "fewer points than", "Choose pitch_um >="}},
-        {step, "kind = \"air\"\ntiles = 1\ntile_size_mm = 5\npitch_um = 0.5\nsq_um = 1\nroll_off_wavelength_um = 100\n"
-               "shortest_wavelength_um = 10\nhurst_exponent = 0.8\n",
+        {step,
+         "kind = \"air\"\ntiles = 1\ntile_size_mm = 5\npitch_um = 0.5\nsq_um = 1\nroll_off_wavelength_um = 100\n"
+         "shortest_wavelength_um = 10\nhurst_exponent = 0.8\n",
          {"specimen.pitch_um = 0.5", "at most 8192 points along a sub-surface"}},
-        {step, "kind = \"image\"\nfile = \"map.pgm\"\npitch_um = 1\nheight_um = 1\n",
+        {step,
+         "kind = \"image\"\nfile = \"map.pgm\"\npitch_um = 1\nheight_um = 1\n",
          {"map.pgm", "16384 x 16384 pixels in 2 bytes"}},
         {"flux_W = 1.0", "flux_W = 1e45", {"c.toml:4:10", "source.flux_W = 1e+45"}},
         {"flux_W = 1.0", "flux_W = 1e-45", {"c.toml:4:10", "source.flux_W = 1e-45"}},
@@ -54,8 +63,9 @@ TEST(HostileSpecimen, GridsAreBoundedBeforeTheyAreMade) {
     for (const Refused& refused : cases) {
         const auto folder = fresh_folder("hostile");
         const bool bare = refused.from == step; // without the roughness that belongs to it
-        write_file(folder / "c.toml", replaced(bare ? replaced(small_configuration, roughness, "") : small_configuration,
-                                               refused.from, refused.to));
+        write_file(folder / "c.toml",
+                   replaced(bare ? replaced(small_configuration, roughness, "") : small_configuration, refused.from,
+                            refused.to));
         write_file(folder / "map.pgm", "P5 16384 16384 255\n ");
         const auto begin = std::chrono::steady_clock::now();
         const auto result = run_program({"--check", "c.toml"}, folder);
@@ -90,14 +100,15 @@ TEST(HostileSpecimen, LightThatGoesAstrayIsToldOf) {
                    " 0\nvertex " + x + " " + y + " 0\nendloop\nendfacet\n";
         };
         write_file(folder / "part.stl", "solid s\n" + facet(low, high) + facet(high, low) + "endsolid s\n");
-        write_file(folder / "c.toml",
-                   replaced(replaced(small_configuration, roughness, ""), step, "kind = \"stl\"\nfile = \"part.stl\"\n" + keys));
+        write_file(folder / "c.toml", replaced(replaced(small_configuration, roughness, ""), step,
+                                               "kind = \"stl\"\nfile = \"part.stl\"\n" + keys));
         return run_program(arguments, folder);
     };
     const std::vector<std::string> check = {"--check", "c.toml"};
     const auto unseen = run("9", "10", "centre = false\n", check);
-    EXPECT_THAT(unseen.standard_output, HasSubstr("The detector does not see the specimen: it is 1000 x 1000 um across, from x = "
-                                                  "9000 and y = 9000 um on. Correct specimen.unit"));
+    EXPECT_THAT(unseen.standard_output,
+                HasSubstr("The detector does not see the specimen: it is 1000 x 1000 um across, from x = "
+                          "9000 and y = 9000 um on. Correct specimen.unit"));
     // Centred it fills the field, but not in another unit.
     EXPECT_THAT(run("9", "10", "", check).standard_output, Not(HasSubstr("of the field of view: it is")));
     EXPECT_THAT(run("9", "15", "unit = \"um\"\n", check).standard_output,

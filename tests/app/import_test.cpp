@@ -76,8 +76,7 @@ TEST(Import, WritesAPrescriptionThatAConfigurationNames) {
 TEST(Import, TakesGlassesOfACatalogue) {
     const auto folder = fresh_folder("import_catalogue");
     write_file(folder / "lens.zmx", replaced(read_file(lens_path("singlet.zmx")), "GLAS N-BK7", "GLAS MINE"));
-    write_file(folder / "mine.agf",
-               "CC made up\nNM MINE 5 0 1.5 50 0 0 0\nCD 1.5 0 0 0 0 0 0 0 0 0\nLD 0.3 2.5\n");
+    write_file(folder / "mine.agf", "CC made up\nNM MINE 5 0 1.5 50 0 0 0\nCD 1.5 0 0 0 0 0 0 0 0 0\nLD 0.3 2.5\n");
     const auto report = report_of({"lens.zmx", "--glass-catalog", "mine.agf"}, folder);
     EXPECT_NEAR(report["efl_mm"].get<double>(), 1 / (0.5 * (0.045 - 0.5 * 5 * 0.0005 / 1.5)), 1e-11);
     // The prescription needs no catalogue any more.
@@ -95,8 +94,7 @@ TEST(Import, AnAfocalLensHasNoFocalLength) {
 
 TEST(Import, SaysWhereItCannotWrite) {
     const auto folder = fresh_folder("import_nowhere");
-    const auto result =
-        run_program({"--import", lens_path("singlet.zmx"), "--out", "no/such/lens.toml"}, folder);
+    const auto result = run_program({"--import", lens_path("singlet.zmx"), "--out", "no/such/lens.toml"}, folder);
     EXPECT_EQ(result.exit_code, 4);
     EXPECT_THAT(result.standard_error, HasSubstr("no/such/lens.toml"));
 }

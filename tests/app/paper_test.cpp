@@ -43,8 +43,8 @@ TEST(Paper, LogoUnderFullFactorialVariation) {
     ASSERT_EQ(ratio.size(), 3u);
     for (const auto& [g, of_rays] : ratio) {
         ASSERT_EQ(of_rays.size(), 4u);
-        // A hundred times the rays, ten times the ratio. n detected rays leave it a relative error of 1 / (2 sqrt(n)); at
-        // N = 1e5 at least 3500 are detected: five of them are 4 %.
+        // A hundred times the rays, ten times the ratio. n detected rays leave it a relative error of 1 / (2 sqrt(n));
+        // at N = 1e5 at least 3500 are detected: five of them are 4 %.
         EXPECT_NEAR(of_rays.at("1e7") / of_rays.at("1e5"), 10, 0.42) << g;
     }
     // A sharper lobe sends more into the pupil; a level mirror would send all.
@@ -56,13 +56,14 @@ TEST(Paper, LogoUnderFullFactorialVariation) {
     EXPECT_EQ(sheet.select_nodes("//image").size(), 12u);
 }
 
-// With half of its light and every other image; the whole reaches a correlation of 0.82 and 0.93 of Sq. The wrong twin is
-// the stack in a random order.
+// With half of its light and every other image; the whole reaches a correlation of 0.82 and 0.93 of Sq. The wrong twin
+// is the stack in a random order.
 TEST(Paper, TopographyOfTypeAir) {
     const auto folder = fresh_folder("air");
-    const auto result = run_program({"--stack", stack("paper_air_small.toml"), "--out", "out", "--quiet", "--rays", "2.6e5",
-                                     "--set", "scan.z_step_um=0.8", "--set", "topography.smoothing_steps=1.25"},
-                                    folder);
+    const auto result =
+        run_program({"--stack", stack("paper_air_small.toml"), "--out", "out", "--quiet", "--rays", "2.6e5", "--set",
+                     "scan.z_step_um=0.8", "--set", "topography.smoothing_steps=1.25"},
+                    folder);
     ASSERT_EQ(result.exit_code, 0) << result.standard_error;
     const auto figures = [&](const fs::path& file) { return nlohmann::json::parse(read_file(folder / file)); };
     const auto found = figures("out/results.json");

@@ -36,14 +36,13 @@ class ExampleStack : public testing::TestWithParam<std::filesystem::path> {};
 // Few rays, few pixels, three positions: whether it runs, not what comes out.
 TEST_P(ExampleStack, RunsWithFewRays) {
     const auto folder = fresh_folder("example_" + GetParam().stem().string());
-    const auto result =
-        run_program({"--stack", GetParam().string(), "--out", "out", "--rays", "2000", "--set",
-                     "detector.pixels=8", "--set", "topography.window_px=3", "--set", "scan.z_start_um=-1",
-                     "--set", "scan.z_stop_um=1", "--set", "scan.z_step_um=1"},
-                    folder);
+    const auto result = run_program({"--stack", GetParam().string(), "--out", "out", "--rays", "2000", "--set",
+                                     "detector.pixels=8", "--set", "topography.window_px=3", "--set",
+                                     "scan.z_start_um=-1", "--set", "scan.z_stop_um=1", "--set", "scan.z_step_um=1"},
+                                    folder);
     ASSERT_EQ(result.exit_code, 0) << result.standard_error;
-    for (const char* name : {"stack.toml", "images/z_0000.tif", "images/z_0002.tif", "ledger.csv",
-                             "topography.tif", "truth.tif", "deviation.tif", "results.json"}) {
+    for (const char* name : {"stack.toml", "images/z_0000.tif", "images/z_0002.tif", "ledger.csv", "topography.tif",
+                             "truth.tif", "deviation.tif", "results.json"}) {
         EXPECT_TRUE(std::filesystem::exists(folder / "out" / name)) << name;
     }
     EXPECT_FALSE(std::filesystem::exists(folder / "out/images/z_0003.tif"));
@@ -58,8 +57,7 @@ TEST(ExampleStacks, CoverEveryKindOfSpecimen) {
     for (const auto& file : example_stacks()) {
         all += read_file(file);
     }
-    for (const char* kind :
-         {"plane", "step", "sphere", "sinusoid", "chirp", "rough", "image", "stl", "gltf"}) {
+    for (const char* kind : {"plane", "step", "sphere", "sinusoid", "chirp", "rough", "image", "stl", "gltf"}) {
         EXPECT_THAT(all, HasSubstr(std::string("kind = \"") + kind + "\""));
     }
     EXPECT_THAT(all, HasSubstr("representation = \"analytic\""));
@@ -71,9 +69,8 @@ TEST(Program, CheckReportsTheInstrument) {
     const auto result = run_program({"--check", "c.toml", "--json"}, folder);
     ASSERT_EQ(result.exit_code, 0) << result.standard_error;
     const auto report = nlohmann::json::parse(result.standard_output);
-    for (const char* name :
-         {"efl_objective_mm", "numerical_aperture", "working_distance_mm", "magnification",
-          "depth_of_field_um", "pixel_pitch_um", "best_focus_offset_um", "field_curvature_um"}) {
+    for (const char* name : {"efl_objective_mm", "numerical_aperture", "working_distance_mm", "magnification",
+                             "depth_of_field_um", "pixel_pitch_um", "best_focus_offset_um", "field_curvature_um"}) {
         ASSERT_TRUE(report.contains(name)) << name;
         EXPECT_TRUE(report[name].is_number()) << name;
     }
@@ -93,8 +90,7 @@ TEST(Program, CheckWarnsOfASpecimenBeyondTheScan) {
     EXPECT_EQ(result.exit_code, 0) << result.standard_error;
     EXPECT_THAT(result.standard_output, HasSubstr("beyond the scan"));
     write_file(folder / "c.toml", small_configuration);
-    EXPECT_THAT(run_program({"--check", "c.toml"}, folder).standard_output,
-                testing::Not(HasSubstr("beyond the scan")));
+    EXPECT_THAT(run_program({"--check", "c.toml"}, folder).standard_output, testing::Not(HasSubstr("beyond the scan")));
 }
 
 TEST(Program, DevicesAreListedAsTextAndJson) {
@@ -105,9 +101,7 @@ TEST(Program, DevicesAreListedAsTextAndJson) {
     ASSERT_EQ(json.exit_code, 0) << json.standard_error;
     const auto devices = nlohmann::json::parse(json.standard_output);
     ASSERT_GE(devices.size(), 1u);
-    EXPECT_EQ(
-        std::count_if(devices.begin(), devices.end(), [](const auto& device) { return device["preferred"]; }),
-        1);
+    EXPECT_EQ(std::count_if(devices.begin(), devices.end(), [](const auto& device) { return device["preferred"]; }), 1);
     EXPECT_THAT(text.standard_output, HasSubstr(devices[0]["name"].get<std::string>()));
 }
 
@@ -115,8 +109,7 @@ TEST(Program, HelpAndVersion) {
     const auto folder = fresh_folder("help");
     const auto help = run_program({"--help"}, folder);
     EXPECT_EQ(help.exit_code, 0);
-    EXPECT_THAT(help.standard_output,
-                AllOf(HasSubstr("--stack"), HasSubstr("--trace-rays"), HasSubstr("Exit codes")));
+    EXPECT_THAT(help.standard_output, AllOf(HasSubstr("--stack"), HasSubstr("--trace-rays"), HasSubstr("Exit codes")));
     const auto version = run_program({"--version"}, folder);
     EXPECT_EQ(version.exit_code, 0);
     EXPECT_THAT(version.standard_output, testing::StartsWith("vkfv "));
@@ -150,8 +143,7 @@ TEST(Program, ImageOfAScanPositionIsThatImageOfTheStack) {
     write_file(folder / "c.toml", small_configuration);
     const auto stack = run_program({"--stack", "c.toml", "--rays", "1e5"}, folder);
     ASSERT_EQ(stack.exit_code, 0) << stack.standard_error;
-    const auto image =
-        run_program({"--image", "c.toml", "--rays", "1e5", "--z", "1", "--out", "one.tif"}, folder);
+    const auto image = run_program({"--image", "c.toml", "--rays", "1e5", "--z", "1", "--out", "one.tif"}, folder);
     ASSERT_EQ(image.exit_code, 0) << image.standard_error;
     EXPECT_THAT(image.standard_output, AllOf(HasSubstr("detected"), HasSubstr("residual")));
     // z = 1 um is the fourth position of five.
@@ -172,13 +164,14 @@ TEST(Program, TopographyEvaluatesAStackAnew) {
                     folder);
     ASSERT_EQ(stack.exit_code, 0) << stack.standard_error;
     const auto results = nlohmann::json::parse(read_file(folder / "out/results.json"));
-    for (const char* name : {"sq_measured_um", "sq_true_um", "rms_deviation_um", "correlation",
-                             "measured_share", "rays_per_image", "device", "seed"}) {
+    for (const char* name : {"sq_measured_um", "sq_true_um", "rms_deviation_um", "correlation", "measured_share",
+                             "rays_per_image", "device", "seed"}) {
         EXPECT_TRUE(results.contains(name)) << name;
     }
     EXPECT_GT(results["measured_share"].get<double>(), 0);
     // Of the same points, levelled: Sq by way of the parameters is that of the comparison.
-    EXPECT_NEAR(results["parameters"]["Sq_um"]["measured"].get<double>(), results["sq_measured_um"].get<double>(), 1e-9);
+    EXPECT_NEAR(results["parameters"]["Sq_um"]["measured"].get<double>(), results["sq_measured_um"].get<double>(),
+                1e-9);
     EXPECT_NEAR(results["parameters"]["Sq_um"]["true"].get<double>(), results["sq_true_um"].get<double>(), 1e-9);
     const auto page = read_file(folder / "out/report.html");
     EXPECT_TRUE(pugi::xml_document().load_string(page.c_str()));
@@ -192,12 +185,10 @@ TEST(Program, TopographyEvaluatesAStackAnew) {
     EXPECT_EQ(nlohmann::json::parse(read_file(folder / "out/results.json"))["device"], results["device"]);
     // Evaluated otherwise, it is another map.
     const auto other = run_program(
-        {"--topography", "out", "--set", "topography.window_px=5", "--set", "topography.l_filter_um=10"},
-        folder);
+        {"--topography", "out", "--set", "topography.window_px=5", "--set", "topography.l_filter_um=10"}, folder);
     ASSERT_EQ(other.exit_code, 0) << other.standard_error;
     EXPECT_NE(read_file(folder / "out/topography.tif"), height_map);
-    EXPECT_EQ(nlohmann::json::parse(read_file(folder / "out/results.json"))["filtered"]["l_filter_um"],
-              10.0);
+    EXPECT_EQ(nlohmann::json::parse(read_file(folder / "out/results.json"))["filtered"]["l_filter_um"], 10.0);
     EXPECT_THAT(read_file(folder / "out/report.html"), HasSubstr("L-filter 10 um"));
     // What the images depend on has been decided.
     for (const char* setting : {"detector.size_mm=2.5", "specimen.material.g=0.1", "trace.seed=99"}) {

@@ -43,8 +43,7 @@ Differences compare_with_reference(const Scope& scope, const std::vector<std::st
     write_file(folder / "c.toml",
                replaced(small_configuration, "\"10x_0.28\"", "\"" + std::string(scope.objective) + "\""));
     // Columns of the reference: x0 y0 z0 L0 M0 N0 xs ys Ls Ms Ns opl inside_semi_diameters.
-    const auto reference =
-        rows_of(read_file(std::filesystem::path(VKFV_SOURCE_DIR) / "tests/data/rays" / scope.rays));
+    const auto reference = rows_of(read_file(std::filesystem::path(VKFV_SOURCE_DIR) / "tests/data/rays" / scope.rays));
     std::string input = "x_mm,y_mm,z_mm,l,m,n\n";
     for (const auto& row : reference) {
         input += row[0] + "," + row[1] + "," + row[2] + "," + row[3] + "," + row[4] + "," + row[5] + "\n";
@@ -69,8 +68,7 @@ Differences compare_with_reference(const Scope& scope, const std::vector<std::st
                             std::stod(reference[i][static_cast<std::size_t>(column + 6)]));
         };
         differences.position = std::max({differences.position, difference(0), difference(1)});
-        differences.direction =
-            std::max({differences.direction, difference(2), difference(3), difference(4)});
+        differences.direction = std::max({differences.direction, difference(2), difference(3), difference(4)});
         differences.path = std::max(differences.path, difference(5));
         ++differences.rays;
     }
@@ -113,9 +111,7 @@ TEST_P(ReferenceRays, WrongDistanceIsSeen) {
 INSTANTIATE_TEST_SUITE_P(Scopes, ReferenceRays,
                          testing::Values(Scope{"10x_0.28", "scope_obj10x_028_tube200_nikon.csv"},
                                          Scope{"5x_0.15", "scope_obj5x_015_tube200_nikon.csv"}),
-                         [](const auto& info) {
-                             return std::string(info.index == 0 ? "Tenfold" : "Fivefold");
-                         });
+                         [](const auto& info) { return std::string(info.index == 0 ? "Tenfold" : "Fivefold"); });
 
 } // namespace
 } // namespace vkfv::test

@@ -20,9 +20,19 @@ const std::string demo = (source_folder / "assets/stacks/demo.toml").string();
 
 // A stack of nine images of the demo's microscope and specimen.
 std::vector<std::string> short_stack(const std::string& out, std::vector<std::string> further = {}) {
-    std::vector<std::string> arguments = {"--stack", demo, "--out", out, "--rays", "30000", "--quiet",
-                                          "--set", "scan.z_start_um=-8", "--set", "scan.z_stop_um=8",
-                                          "--set", "scan.z_step_um=2"};
+    std::vector<std::string> arguments = {"--stack",
+                                          demo,
+                                          "--out",
+                                          out,
+                                          "--rays",
+                                          "30000",
+                                          "--quiet",
+                                          "--set",
+                                          "scan.z_start_um=-8",
+                                          "--set",
+                                          "scan.z_stop_um=8",
+                                          "--set",
+                                          "scan.z_step_um=2"};
     arguments.insert(arguments.end(), further.begin(), further.end());
     return arguments;
 }
@@ -119,7 +129,8 @@ TEST(Reproducibility, EveryRowOfTheLedgerCloses) {
     int rows = 0;
     while (std::getline(ledger, line)) {
         ++rows;
-        EXPECT_LT(std::abs(std::stod(line.substr(line.rfind(',') + 1))), 1e-12) << line; // of 1 W emitted, of which about 1e-3 W is traced
+        EXPECT_LT(std::abs(std::stod(line.substr(line.rfind(',') + 1))), 1e-12)
+            << line; // of 1 W emitted, of which about 1e-3 W is traced
     }
     EXPECT_EQ(rows, 9);
 }
@@ -129,8 +140,8 @@ TEST(Reproducibility, EveryRowOfTheLedgerCloses) {
 TEST(Reproducibility, TheDemoIsTheSameByEveryTraversal) {
     const auto folder = fresh_folder("traversals");
     const auto image = [&](const std::string& name, const std::vector<std::string>& further) {
-        std::vector<std::string> arguments = {"--image", demo, "--z", "0", "--rays", "300000",
-                                              "--quiet", "--out", name};
+        std::vector<std::string> arguments = {"--image", demo,      "--z",   "0", "--rays",
+                                              "300000",  "--quiet", "--out", name};
         arguments.insert(arguments.end(), further.begin(), further.end());
         const auto result = run_program(arguments, folder);
         EXPECT_EQ(result.exit_code, 0) << result.standard_error;

@@ -1,7 +1,7 @@
 // vkfv --surface through the real program.
-#include "support/surface_files.hpp"
 #include "app/program.hpp"
 #include "core/units.hpp"
+#include "support/surface_files.hpp"
 #include "surface/image_file.hpp"
 #include "surface/surface_file.hpp"
 
@@ -25,8 +25,8 @@ using Json = nlohmann::json;
 constexpr double um = 1e-3; // mm
 constexpr double not_measured = std::numeric_limits<double>::quiet_NaN();
 
-// On a tilt and an offset ten whole periods of a wave of 0.5 um along x, 12 points long and even about the middle, which
-// makes it orthogonal to the tilt; 1 x 2 um apart.
+// On a tilt and an offset ten whole periods of a wave of 0.5 um along x, 12 points long and even about the middle,
+// which makes it orthogonal to the tilt; 1 x 2 um apart.
 HeightMap wavy() {
     HeightMap map{.height = Grid<double>(120, 50), .x0 = 10 * um, .y0 = -20 * um, .pitch_x = 1 * um, .pitch_y = 2 * um};
     for (int row = 0; row < map.rows(); ++row) {
@@ -96,15 +96,16 @@ TEST_F(Surface, TakesTheProfileWhereItIsAskedFor) {
 }
 
 TEST_F(Surface, FiltersAsTold) {
-    // Half of the amplitude passes at the nesting index. Within one index of either end, a fifth of the surface, the window
-    // lacks up to half of its weight, which changes what passes by up to as much.
+    // Half of the amplitude passes at the nesting index. Within one index of either end, a fifth of the surface, the
+    // window lacks up to half of its weight, which changes what passes by up to as much.
     const double half = 0.25 / std::sqrt(2);
     EXPECT_NEAR(report({"wavy.x3p", "--s_filter_um", "12"})["parameters"]["Sq_um"], half, 0.2 * half);
     EXPECT_NEAR(report({"wavy.x3p", "--l-filter-um", "12"})["parameters"]["Sq_um"], half, 0.2 * half);
     // 1 / (1 + 2^4) of the spline, 2^-4 of the Gaussian.
     const auto spline = report({"wavy.x3p", "--s_filter_um", "24", "--filter", "spline"});
     EXPECT_NEAR(spline["parameters"]["Sq_um"], 2 * half / 17, 0.4 * 2 * half / 17);
-    EXPECT_EQ(spline["treatment"], Json({{"form", "plane"}, {"s_filter_um", 24}, {"l_filter_um", 0}, {"filter", "spline"}}));
+    EXPECT_EQ(spline["treatment"],
+              Json({{"form", "plane"}, {"s_filter_um", 24}, {"l_filter_um", 0}, {"filter", "spline"}}));
     EXPECT_NE(spline["parameters"]["Sq_um"], report({"wavy.x3p", "--s_filter_um", "24"})["parameters"]["Sq_um"]);
 }
 
@@ -173,7 +174,8 @@ TEST_F(Surface, RefusesWhatItCannotDo) {
     refused({"wavy.x3p", "--out", "./wavy.x3p"}, {"--out = ./wavy.x3p", "Name a new one"});
     EXPECT_EQ(read_file(folder / "wavy.x3p"), original);
     refused({"wavy.x3p", "--out", "picture.png"}, {"picture.png", ".x3p, .sur, .sdf, .tif or .ply"});
-    refused({"wavy.x3p", "--profile", "0,0,500,0"}, {"--profile = 0,0,500,0", "x from 10 to 129 um, y from -20 to 78 um"});
+    refused({"wavy.x3p", "--profile", "0,0,500,0"},
+            {"--profile = 0,0,500,0", "x from 10 to 129 um, y from -20 to 78 um"});
     refused({"wavy.x3p", "--profile", "20,0,20,0"}, {"longer than a pitch"});
     refused({"nowhere.x3p"}, {"nowhere.x3p"});
     HeightMap map = wavy();

@@ -59,8 +59,8 @@ TEST(Sweep, ImagesOfEveryCombination) {
     ASSERT_EQ(rows[0][0], "g");
     ASSERT_EQ(rows[0][2], "signal to noise");
     const auto ratio = [&](std::size_t row) { return std::stod(rows[row][2]); };
-    // Sixteen times the rays, four times the ratio. With n rays detected its own relative error is 1 / (2 sqrt(n)); five
-    // of them for the fewest, some 500, are 11 %.
+    // Sixteen times the rays, four times the ratio. With n rays detected its own relative error is 1 / (2 sqrt(n));
+    // five of them for the fewest, some 500, are 11 %.
     EXPECT_NEAR(ratio(2) / ratio(1), 4, 0.45);
     EXPECT_NEAR(ratio(4) / ratio(3), 4, 0.45);
     EXPECT_GT(ratio(3), 1.2 * ratio(1)); // a mirror sends more light back into the pupil
@@ -108,12 +108,15 @@ TEST(Sweep, AnotherDeviceOrBlurIsAnotherImage) {
 
 TEST(Sweep, ImagesAtSeveralHeightsAreThoseImages) {
     const auto folder = fresh_folder("heights");
-    write_file(folder / "c.toml", with_sweep("[sweep]\n\n[[sweep.parameter]]\nkey = \"sweep.z_um\"\nlabel = \"z\"\nvalues = [0.0, 1.5]\n"));
+    write_file(
+        folder / "c.toml",
+        with_sweep("[sweep]\n\n[[sweep.parameter]]\nkey = \"sweep.z_um\"\nlabel = \"z\"\nvalues = [0.0, 1.5]\n"));
     const auto sweep = run_program({"--sweep", "c.toml", "--out", "out", "--quiet", "--rays", "2e4"}, folder);
     ASSERT_EQ(sweep.exit_code, 0) << sweep.standard_error;
     const auto image = run_program({"--image", "c.toml", "--z", "1.5", "--out", "one.tif", "--rays", "2e4"}, folder);
     ASSERT_EQ(image.exit_code, 0) << image.standard_error;
-    EXPECT_EQ(surface::read_image(folder / "out/z=1.5/image.tif").values, surface::read_image(folder / "one.tif").values);
+    EXPECT_EQ(surface::read_image(folder / "out/z=1.5/image.tif").values,
+              surface::read_image(folder / "one.tif").values);
     EXPECT_NE(surface::read_image(folder / "out/z=0/image.tif").values, surface::read_image(folder / "one.tif").values);
 }
 

@@ -1,7 +1,7 @@
 // --topography of stacks that vkfv did not make.
-#include "support/surface_files.hpp"
 #include "app/image_order.hpp"
 #include "app/program.hpp"
+#include "support/surface_files.hpp"
 #include "surface/image_file.hpp"
 
 #include <OpenImageIO/imageio.h>
@@ -24,7 +24,9 @@ using ::testing::HasSubstr;
 constexpr int side = 24, images = 12;
 
 // Texture whose contrast is exp(-(k - height)^2 / 4) in image k: sharp at 4 on the left and at 7.25 on the right.
-double height_at(int column) { return column < side / 2 ? 4 : 7.25; }
+double height_at(int column) {
+    return column < side / 2 ? 4 : 7.25;
+}
 
 std::vector<std::vector<int>> stack_values(int largest) {
     std::mt19937 random(3);
@@ -35,9 +37,9 @@ std::vector<std::vector<int>> stack_values(int largest) {
     for (int k = 0; k < images; ++k) {
         std::vector<int>& image = stack.emplace_back();
         for (int p = 0; p < side * side; ++p)
-            image.push_back(static_cast<int>(std::lround(
-                largest * (0.5 + texture[static_cast<std::size_t>(p)] *
-                                     std::exp(-std::pow(k - height_at(p % side), 2) / 4)))));
+            image.push_back(static_cast<int>(
+                std::lround(largest * (0.5 + texture[static_cast<std::size_t>(p)] *
+                                                 std::exp(-std::pow(k - height_at(p % side), 2) / 4)))));
     }
     return stack;
 }
@@ -63,8 +65,12 @@ void write_pages(const std::filesystem::path& path, const std::vector<std::vecto
 
 ProgramResult evaluate(const std::filesystem::path& folder, const std::string& stack, const std::string& out,
                        const std::vector<std::string>& further = {}) {
-    std::vector<std::string> arguments = {"--topography", stack, "--z_step_um", "0.5", "--pitch_um", "2", "--out", out,
-                                          "--set", "topography.window_px=3", "--set", "topography.smoothing_steps=0"};
+    std::vector<std::string> arguments = {"--topography", stack,
+                                          "--z_step_um",  "0.5",
+                                          "--pitch_um",   "2",
+                                          "--out",        out,
+                                          "--set",        "topography.window_px=3",
+                                          "--set",        "topography.smoothing_steps=0"};
     arguments.insert(arguments.end(), further.begin(), further.end());
     return run_program(arguments, folder);
 }
@@ -88,9 +94,9 @@ TEST(Topography, ATiffOfPagesAndAFolderInNaturalOrderGiveTheSameHeights) {
 
     const auto map = surface::read_height_map(folder / "of_images/topography.tif");
     EXPECT_NEAR(map.pitch_x, 0.002, 1e-15);
-    // The contrast is Gaussian along z, but it is divided by a brightness that rises with it by up to 0.2 of 0.5 (the mean
-    // of 9 texture values of standard deviation 0.29): a symmetric change of the curve's shape, which between steps shifts
-    // the three-point fit by less than a hundredth of a step of 0.5 um.
+    // The contrast is Gaussian along z, but it is divided by a brightness that rises with it by up to 0.2 of 0.5 (the
+    // mean of 9 texture values of standard deviation 0.29): a symmetric change of the curve's shape, which between
+    // steps shifts the three-point fit by less than a hundredth of a step of 0.5 um.
     for (const int column : {5, 18})
         for (const int row : {5, 18})
             EXPECT_NEAR(map.height(column, row), height_at(column) * 0.5e-3, 5e-6) << column << " " << row;
@@ -123,7 +129,8 @@ TEST(Topography, DepthOfPixelsAndColourDoNotChangeHeights) {
     for (std::size_t k = 0; k < grey.size(); ++k) {
         ASSERT_EQ(std::isnan(grey[k]), std::isnan(colour[k]));
         if (!std::isnan(grey[k])) {
-            EXPECT_NEAR(colour[k], grey[k], 1e-8); // the curve's float32 over the peak's curvature of some 0.2, in 0.5 um
+            EXPECT_NEAR(colour[k], grey[k],
+                        1e-8); // the curve's float32 over the peak's curvature of some 0.2, in 0.5 um
         }
     }
     EXPECT_EQ(surface::read_channels(folder / "colour/all_in_focus.tif").size(), 3u);
@@ -136,10 +143,10 @@ TEST(Topography, ADescendingStackHasItsHeightsTheOtherWay) {
     std::ranges::reverse(reversed);
     write_pages<std::uint16_t>(folder / "down.tif", reversed, 1, OIIO::TypeDesc::UINT16);
     ASSERT_EQ(evaluate(folder, "up.tif", "up").exit_code, 0);
-    const auto result = run_program({"--topography", "down.tif", "--z-step-um", "-0.5", "--pitch-um", "2",
-                                     "--z-start-um", "5.5", "--out", "down", "--set", "topography.window_px=3", "--set",
-                                     "topography.smoothing_steps=0"},
-                                    folder);
+    const auto result =
+        run_program({"--topography", "down.tif", "--z-step-um", "-0.5", "--pitch-um", "2", "--z-start-um", "5.5",
+                     "--out", "down", "--set", "topography.window_px=3", "--set", "topography.smoothing_steps=0"},
+                    folder);
     ASSERT_EQ(result.exit_code, 0) << result.standard_error;
     EXPECT_EQ(read_file(folder / "up/topography.tif"), read_file(folder / "down/topography.tif"));
 }
@@ -163,7 +170,8 @@ TEST(Topography, AMeasuredFlatTakesTheFieldCurvatureOff) {
         for (const int row : {2, 18})
             if (const double height = raw.height(column, row); !std::isnan(height)) {
                 // Files hold float32: 6e-8 of 4 um.
-                EXPECT_NEAR(corrected.height(column, row), height - curvature(column, row), 1e-9) << column << " " << row;
+                EXPECT_NEAR(corrected.height(column, row), height - curvature(column, row), 1e-9)
+                    << column << " " << row;
             }
     const auto results = nlohmann::json::parse(read_file(folder / "corrected/results.json"));
     EXPECT_NEAR(results["flatness"]["deviation_um"], 0.23 + 0.529, 1e-3); // over columns and rows of 0 to 23
@@ -249,13 +257,16 @@ TEST(Topography, DoubtsAboutTheHeightsOfImagesAreTold) {
     write("z+2 copy.tif", 7);
     EXPECT_THAT(evaluate(folder, "images", "copy").standard_error, HasSubstr("natural order"));
 
-    write_pages<std::int16_t>(folder / "negative.tif", [&] {
-        auto lower = stack;
-        for (auto& image : lower)
-            for (int& value : image)
-                value -= 128;
-        return lower;
-    }(), 1, OIIO::TypeDesc::INT16);
+    write_pages<std::int16_t>(
+        folder / "negative.tif",
+        [&] {
+            auto lower = stack;
+            for (auto& image : lower)
+                for (int& value : image)
+                    value -= 128;
+            return lower;
+        }(),
+        1, OIIO::TypeDesc::INT16);
     EXPECT_THAT(evaluate(folder, "negative.tif", "negative").standard_error, HasSubstr("below zero"));
 }
 
@@ -264,8 +275,8 @@ TEST(Topography, ResultsAreOfTheLastEvaluationAlone) {
     const auto folder = fresh_folder("last");
     write_pages<std::uint8_t>(folder / "stack.tif", stack_values(255), 1, OIIO::TypeDesc::UINT8);
     ASSERT_EQ(evaluate(folder, "stack.tif", "out", {"--shuffle", "3"}).exit_code, 0);
-    write_file(folder / "out/results.json",
-               replaced(read_file(folder / "out/results.json"), "\"shuffle_seed\"", "\"device\": \"another\", \"shuffle_seed\""));
+    write_file(folder / "out/results.json", replaced(read_file(folder / "out/results.json"), "\"shuffle_seed\"",
+                                                     "\"device\": \"another\", \"shuffle_seed\""));
     ASSERT_EQ(evaluate(folder, "stack.tif", "out").exit_code, 0);
     const auto results = nlohmann::json::parse(read_file(folder / "out/results.json"));
     EXPECT_FALSE(results.contains("shuffle_seed"));
@@ -275,7 +286,8 @@ TEST(Topography, ResultsAreOfTheLastEvaluationAlone) {
 TEST(Topography, WhatIsMissingIsNamed) {
     const auto folder = fresh_folder("missing");
     write_pages<std::uint8_t>(folder / "stack.tif", stack_values(255), 1, OIIO::TypeDesc::UINT8);
-    write_pages<std::uint8_t>(folder / "two.tif", {stack_values(255)[0], stack_values(255)[1]}, 1, OIIO::TypeDesc::UINT8);
+    write_pages<std::uint8_t>(folder / "two.tif", {stack_values(255)[0], stack_values(255)[1]}, 1,
+                              OIIO::TypeDesc::UINT8);
     std::filesystem::create_directory(folder / "empty");
     const auto refused = [&](std::vector<std::string> arguments, const std::string& words) {
         arguments.insert(arguments.begin(), "--topography");
@@ -288,7 +300,8 @@ TEST(Topography, WhatIsMissingIsNamed) {
     refused({"stack.tif", "--z_step_um", "1", "--pitch_um", "-1", "--out", "out"}, "no --pitch_um");
     refused({"stack.tif", "--z_step_um", "1", "--pitch_um", "nan", "--out", "out"}, "no --pitch_um");
     refused({"stack.tif", "--z_step_um", "inf", "--pitch_um", "1", "--out", "out"}, "no --z_step_um");
-    refused({"stack.tif", "--z_step_um", "1", "--pitch_um", "1", "--z_start_um", "nan", "--out", "out"}, "--z_start_um");
+    refused({"stack.tif", "--z_step_um", "1", "--pitch_um", "1", "--z_start_um", "nan", "--out", "out"},
+            "--z_start_um");
     refused({"stack.tif", "--z_step_um", "1", "--pitch_um", "1"}, "no --out");
     refused({".", "--z_step_um", "1", "--pitch_um", "1", "--out", "../missing"}, "mixed");
     std::filesystem::create_directory(folder / "another");
@@ -338,14 +351,15 @@ TEST(ImageOrder, IsThatOfTheNumberInWhichNamesDiffer) {
         return std::pair(result, found.doubt.empty());
     };
     using Names = std::vector<std::string>;
-    for (const Names& names : {Names{"z_0", "z_0.25", "z_0.5", "z_0.75", "z_1"}, Names{"z-1 um", "z-0.5 um", "z0 um", "z+0.5 um"},
-                               Names{"image-8", "image-9", "image-10"}, Names{"x2_9", "x2_10", "x2_11"}, Names{"-2", "-1", "0", "1"},
-                               Names{"a08", "a09", "a10"}, Names{"s.001", "s.002", "s.003"}, Names{"z0.333", "z0.667", "z1.000"}})
+    for (const Names& names :
+         {Names{"z_0", "z_0.25", "z_0.5", "z_0.75", "z_1"}, Names{"z-1 um", "z-0.5 um", "z0 um", "z+0.5 um"},
+          Names{"image-8", "image-9", "image-10"}, Names{"x2_9", "x2_10", "x2_11"}, Names{"-2", "-1", "0", "1"},
+          Names{"a08", "a09", "a10"}, Names{"s.001", "s.002", "s.003"}, Names{"z0.333", "z0.667", "z1.000"}})
         for (int k = 0; k < 5; ++k)
             EXPECT_EQ(ordered(names), std::pair(names, true));
-    for (const Names& names : {Names{"a1", "a2", "a4"}, Names{"a1", "a2", "b3"}, Names{"v1.9", "v1.10", "v1.11"},
-                               Names{"a01", "a1"}, Names{"t1_z2", "t2_z1"}, Names{"bright", "dark"},
-                               Names{"1", "99999999999999999998", "99999999999999999999"}})
+    for (const Names& names :
+         {Names{"a1", "a2", "a4"}, Names{"a1", "a2", "b3"}, Names{"v1.9", "v1.10", "v1.11"}, Names{"a01", "a1"},
+          Names{"t1_z2", "t2_z1"}, Names{"bright", "dark"}, Names{"1", "99999999999999999998", "99999999999999999999"}})
         EXPECT_EQ(ordered(names), std::pair(names, false)) << names.back();
 }
 

@@ -33,7 +33,8 @@ void damage(const fs::path& file) {
 }
 
 // Damages every file, one after the other: found and named; then all, and `command` makes them as they were.
-void expect_found_and_healed(const fs::path& folder, const std::string& results, const std::vector<std::string>& command) {
+void expect_found_and_healed(const fs::path& folder, const std::string& results,
+                             const std::vector<std::string>& command) {
     const auto files = files_in(folder / results);
     ASSERT_GE(files.size(), 5u);
     std::map<fs::path, std::string> whole;
@@ -42,7 +43,8 @@ void expect_found_and_healed(const fs::path& folder, const std::string& results,
         damage(file);
         const auto found = run_program({"--verify", results}, folder);
         EXPECT_EQ(found.exit_code, 4) << file;
-        EXPECT_THAT(found.standard_output, HasSubstr(file.filename() == "checksums.sha256" ? "" : file.filename().string()));
+        EXPECT_THAT(found.standard_output,
+                    HasSubstr(file.filename() == "checksums.sha256" ? "" : file.filename().string()));
         write_file(file, whole[file]);
     }
     const auto good = run_program({"--verify", results}, folder);

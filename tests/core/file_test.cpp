@@ -38,9 +38,9 @@ class File : public testing::Test {
         return found;
     }
 
-    fs::path folder =
-        fs::temp_directory_path() /
-        (std::string("vkfv_file_") + testing::UnitTest::GetInstance()->current_test_info()->name() + std::to_string(getpid()));
+    fs::path folder = fs::temp_directory_path() /
+                      (std::string("vkfv_file_") + testing::UnitTest::GetInstance()->current_test_info()->name() +
+                       std::to_string(getpid()));
     fs::path file = folder / "a.txt";
 };
 

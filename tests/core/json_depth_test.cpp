@@ -25,7 +25,8 @@ std::string message_of(const std::string& text, std::optional<std::uint64_t> fir
 TEST(JsonDepth, IsBoundedWithPlaceAndRemedy) {
     const std::string deepest(most_json_depth, '['), brackets = "{\n " + deepest;
     EXPECT_EQ(message_of(deepest), "no error");
-    EXPECT_THAT(message_of(brackets), HasSubstr("a.json:2:101: JSON = brackets nested 101 deep: expected at most 100 levels"));
+    EXPECT_THAT(message_of(brackets),
+                HasSubstr("a.json:2:101: JSON = brackets nested 101 deep: expected at most 100 levels"));
     EXPECT_THAT(message_of(brackets, 20), HasSubstr("a.json@122: JSON"));
     EXPECT_THAT(message_of(brackets), HasSubstr("Remove what is nested so deep"));
     // Side by side is not deep, and neither are brackets in strings.

@@ -54,7 +54,9 @@ TEST_F(ResultFolderTest, TheListFindsEveryFlippedByte) {
         results.write_checksums();
     }
     EXPECT_THAT(damaged(), IsEmpty());
-    EXPECT_EQ(std::system(fmt::format("cd '{}' && sha256sum --quiet --strict -c checksums.sha256", folder.string()).c_str()), 0);
+    EXPECT_EQ(
+        std::system(fmt::format("cd '{}' && sha256sum --quiet --strict -c checksums.sha256", folder.string()).c_str()),
+        0);
     for (const char* name : {"one.txt", "sub/two.txt", "checksums.sha256"}) {
         const std::string whole = vkfv::read_file(folder / name);
         for (std::size_t place = 0; place < whole.size(); ++place) {

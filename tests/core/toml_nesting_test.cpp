@@ -48,7 +48,8 @@ TEST(TomlNesting, IsBoundedWithPlaceAndRemedy) {
         {"inline tables", "a = " + repeated("{a=", many) + "1" + repeated("}", many) + "\n", "c.toml:1:194"},
         {"keys of an inline table", "a = { x = 1, " + repeated("a.", many) + "a = 1 }\n", "c.toml:1:139"},
         {"without an end", "a = " + repeated("[", many), "c.toml:1:68"},
-        {"behind strings", "a = \"\\\"[\"\nb = '''\n[[ '' \\'''\nc = \"\"\"\\\n\"\"\"\"\"\nd = " + repeated("[", many), "c.toml:6:68"},
+        {"behind strings", "a = \"\\\"[\"\nb = '''\n[[ '' \\'''\nc = \"\"\"\\\n\"\"\"\"\"\nd = " + repeated("[", many),
+         "c.toml:6:68"},
     };
     for (const auto& row : rows) {
         EXPECT_THAT(message_of(row.text),

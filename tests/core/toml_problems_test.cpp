@@ -64,7 +64,8 @@ TEST(TomlProblems, WhatIsRightIsRead) {
 }
 
 TEST(TomlProblems, AllAreToldInTheOrderOfPlaces) {
-    EXPECT_EQ(message_of("colour = 1\n" + lens + "focus = 2\n[scan]\nz_start_um = \"low\"\nz_stop_um = 9\nz_step_um = -1\n"
+    EXPECT_EQ(message_of("colour = 1\n" + lens +
+                         "focus = 2\n[scan]\nz_start_um = \"low\"\nz_stop_um = 9\nz_step_um = -1\n"
                          "[[line]]\nwavelength_um = 1\n[[line]]\nwavelength_um = 0\n"),
               "c.toml:1:1: colour = 1: expected a known key (one of line, scan, tube_lens). Remove it.\n"
               "c.toml:5:1: tube_lens.focus = 2: expected a known key (one of focal_length_mm, kind). Remove it.\n"
@@ -117,26 +118,30 @@ TEST(TomlProblems, AMissingKeyNamesTheMisspeltOne) {
     EXPECT_EQ(message_of("[scan]\nz_start_um = 0\nz_stop_um = 9\nz_step_nm = 1000\n" + lens),
               "c.toml:4:1: scan.z_step_nm = 1000: expected scan.z_step_um as a finite number > 0. Did you mean "
               "\"z_step_um\"? Rename it, and give its value in um.");
-    EXPECT_EQ(message_of(scan + "[tubelens]\nkind = \"ideal\"\n"),
-              "c.toml:5:2: tubelens = a table {kind = 'ideal'}: expected tube_lens as a table. Did you mean \"tube_lens\"? "
-              "Rename it.");
+    EXPECT_EQ(
+        message_of(scan + "[tubelens]\nkind = \"ideal\"\n"),
+        "c.toml:5:2: tubelens = a table {kind = 'ideal'}: expected tube_lens as a table. Did you mean \"tube_lens\"? "
+        "Rename it.");
     // Of two that are missing each has its own; a key that is far from all stays by itself.
     EXPECT_THAT(message_of("[scan]\nz_strat_um = 0\nz_spot_um = 9\nz_step_um = 1\nfoo = 2\n" + lens),
                 AllOf(HasSubstr("2:1: scan.z_strat_um = 0: expected scan.z_start_um"),
                       HasSubstr("3:1: scan.z_spot_um = 9: expected scan.z_stop_um"),
                       HasSubstr("5:1: scan.foo = 2: expected a known key")));
-    EXPECT_THAT(message_of("[scan]\nz_start_um = 0\nz_stop_um = 9\nfoo = 2\n" + lens),
-                AllOf(HasSubstr("1:1: scan.z_step_um: expected a finite number > 0, found nothing. Add z_step_um to [scan]"),
-                      HasSubstr("4:1: scan.foo = 2: expected a known key")));
+    EXPECT_THAT(
+        message_of("[scan]\nz_start_um = 0\nz_stop_um = 9\nfoo = 2\n" + lens),
+        AllOf(HasSubstr("1:1: scan.z_step_um: expected a finite number > 0, found nothing. Add z_step_um to [scan]"),
+              HasSubstr("4:1: scan.foo = 2: expected a known key")));
 }
 
 TEST(TomlProblems, LengthsThatLookLikeNanometresAreTold) {
-    EXPECT_THAT(message_of(scan + lens + "[[line]]\nwavelength_um = 587.562\n"),
-                HasSubstr("9:17: line[0].wavelength_um = 587.562: expected a finite number in [0.1, 100]. 587.562 looks like "
-                          "nanometres: write 0.587562."));
-    EXPECT_THAT(message_of(scan + lens + "[[line]]\nwavelength_um = 0.5\nmore_um = [0.4, 656.3]\n"),
-                HasSubstr("line[0].more_um[1] = 656.3: expected a finite number in [0.1, 100]. 656.3 looks like nanometres: "
-                          "write 0.6563."));
+    EXPECT_THAT(
+        message_of(scan + lens + "[[line]]\nwavelength_um = 587.562\n"),
+        HasSubstr("9:17: line[0].wavelength_um = 587.562: expected a finite number in [0.1, 100]. 587.562 looks like "
+                  "nanometres: write 0.587562."));
+    EXPECT_THAT(
+        message_of(scan + lens + "[[line]]\nwavelength_um = 0.5\nmore_um = [0.4, 656.3]\n"),
+        HasSubstr("line[0].more_um[1] = 656.3: expected a finite number in [0.1, 100]. 656.3 looks like nanometres: "
+                  "write 0.6563."));
     EXPECT_THAT(message_of(scan + lens + "[[line]]\nwavelength_um = 1e7\n"), Not(HasSubstr("nanometres")));
     EXPECT_THAT(message_of(scan + lens + "[[line]]\nwavelength_um = 0.01\n"), Not(HasSubstr("nanometres")));
 }
@@ -169,7 +174,8 @@ TEST(TomlProblems, ErrorsOfOtherFilesStandBehind) {
         ASSERT_EQ(error.problems().size(), 3u);
         EXPECT_EQ(error.problem().key, "size");
         EXPECT_EQ(error.problems()[1].key, "a"); // as that file told them
-        EXPECT_THAT(error.with_each([](InputProblem& problem) { problem.key = "z"; }).what(), StartsWith("c.toml:2:8: z = 0"));
+        EXPECT_THAT(error.with_each([](InputProblem& problem) { problem.key = "z"; }).what(),
+                    StartsWith("c.toml:2:8: z = 0"));
     }
 }
 

@@ -69,8 +69,7 @@ TEST(TomlReader, KnowsWhereEveryValueStands) {
 }
 
 TEST(TomlReader, NamesPlaceKeyValueExpectationAndRemedy) {
-    const auto root =
-        table_of("[material]\ng = 1.5\nscatter = \"lambert\"\nradii = [1, \"two\"]\nfine = 0.5\n");
+    const auto root = table_of("[material]\ng = 1.5\nscatter = \"lambert\"\nradii = [1, \"two\"]\nfine = 0.5\n");
     const auto material = root.table("material");
     EXPECT_THAT(message_of([&] { (void)material.number("g", NumberRange::within(-1, 1)); }),
                 AllOf(HasSubstr("lens.toml:2:5: material.g = 1.5: expected a finite number in [-1, 1]"),
@@ -84,8 +83,7 @@ TEST(TomlReader, NamesPlaceKeyValueExpectationAndRemedy) {
                 AllOf(HasSubstr("lens.toml:4:13"), HasSubstr("material.radii[1]"), HasSubstr("two")));
     EXPECT_THAT(message_of([&] { (void)material.number("absent", NumberRange::positive()); }),
                 AllOf(HasSubstr("lens.toml:1:1"), HasSubstr("material.absent"),
-                      HasSubstr("expected a finite number > 0, found nothing"),
-                      HasSubstr("Add absent to [material]")));
+                      HasSubstr("expected a finite number > 0, found nothing"), HasSubstr("Add absent to [material]")));
     EXPECT_THAT(message_of([&] { (void)material.integer("fine", 1, 9); }), HasSubstr("an integer in [1, 9]"));
     EXPECT_THAT(message_of([&] { (void)material.string("g"); }), HasSubstr("expected a string"));
     EXPECT_THAT(message_of([&] { (void)material.table("g"); }), HasSubstr("Write [material.g]"));
@@ -113,9 +111,8 @@ TEST(TomlReader, SuggestsTheNearestKnownKey) {
     const auto detector = root.table("detector");
     (void)detector.optional_integer("pixels", 1, 16384);
     (void)detector.optional_number("size_mm");
-    EXPECT_THAT(
-        message_of([&] { root.reject_unknown_keys(); }),
-        AllOf(HasSubstr("lens.toml:2:1: detector.pixles = 64"), HasSubstr("Did you mean \"pixels\"?")));
+    EXPECT_THAT(message_of([&] { root.reject_unknown_keys(); }),
+                AllOf(HasSubstr("lens.toml:2:1: detector.pixles = 64"), HasSubstr("Did you mean \"pixels\"?")));
     EXPECT_EQ(nearest_word("raduis_mm", {"radius_mm", "flux_W"}), "radius_mm");
     EXPECT_EQ(nearest_word("zebra", {"radius_mm", "flux_W"}), std::nullopt);
     EXPECT_EQ(nearest_word("gg", {"scatter", "g"}), "g");
@@ -157,8 +154,7 @@ TEST(TomlReader, ListsOfPathsAreRelativeToWhereTheyWereWritten) {
     EXPECT_THAT(root.optional_file_paths("absent"), testing::IsEmpty());
     EXPECT_THAT(TomlTable::open(file, {{"files", "[\"a.agf\"]", "--set"}}).optional_file_paths("files"),
                 testing::ElementsAre("a.agf")); // from the working directory
-    EXPECT_THAT(message_of([&] { (void)root.optional_file_paths("words"); }),
-                HasSubstr("paths.toml:2:9: words"));
+    EXPECT_THAT(message_of([&] { (void)root.optional_file_paths("words"); }), HasSubstr("paths.toml:2:9: words"));
     EXPECT_THAT(message_of([&] { (void)root.optional_file_paths("bad"); }), HasSubstr("bad[1]"));
 }
 

@@ -1,5 +1,5 @@
-// Disks that fail: each call by which a command changes files fails once. The command says so, every file is the one of before
-// or the new one, whole, and the same command once more ends as if nothing had been.
+// Disks that fail: each call by which a command changes files fails once. The command says so, every file is the one of
+// before or the new one, whole, and the same command once more ends as if nothing had been.
 #include "faults/faults.hpp"
 
 #include <fmt/format.h>
@@ -51,8 +51,8 @@ bool concerns(const Fault& fault, const char* name) {
 
 // Whether the command may well end as if nothing had been.
 bool may_pass(const Fault& fault) {
-    return fault.effect == "short"                                                    // the rest is written next
-           || (fault.call == "close" && concerns(fault, ".lock"))                     // nothing was written to it
+    return fault.effect == "short"                                // the rest is written next
+           || (fault.call == "close" && concerns(fault, ".lock")) // nothing was written to it
            || (fault.effect == "lost" && (concerns(fault, "timings.csv") || concerns(fault, growing)));
 }
 
@@ -77,11 +77,14 @@ bool is_list_between(const std::string& name, const std::string& bytes, const Fi
 // A file that is as it was, as it is to be, or a beginning of that in whole lines where it grows.
 bool is_whole(const std::string& name, const std::string& bytes, const Files& before, const Files& after) {
     const auto is_in = [&](const Files& files) { return files.contains(name) && files.at(name) == bytes; };
-    const bool grows = name.ends_with(growing) && after.at(name).starts_with(bytes) && (bytes.empty() || bytes.ends_with('\n'));
-    return is_in(before) || is_in(after) || grows || is_list_between(name, bytes, before, after) || name.ends_with(".part");
+    const bool grows =
+        name.ends_with(growing) && after.at(name).starts_with(bytes) && (bytes.empty() || bytes.ends_with('\n'));
+    return is_in(before) || is_in(after) || grows || is_list_between(name, bytes, before, after) ||
+           name.ends_with(".part");
 }
 
-// Whether this call is to fail on a machine with little time: each that writes, and of the others some of every file and kind.
+// Whether this call is to fail on a machine with little time: each that writes, and of the others some of every file
+// and kind.
 bool is_taken(const Fault& call, std::size_t place, std::size_t calls) {
     constexpr std::size_t few = 40, step = 11; // a file takes seven calls
     return every_fault() || calls < few || call.call == "write" || place % step == 0;
@@ -101,14 +104,15 @@ std::vector<std::string> effects_of(const Fault& call) {
 class FileFaults : public testing::Test {
   protected:
     FileFaults() : folder_(fresh_folder("work")) {
-        write_file(folder_ / "c.toml", replaced(small_configuration, "[trace]\n", "[trace]\ndevice = \"host\"\n") +
-                                           "[sweep]\nz_um = 0\n[[sweep.parameter]]\nkey = \"specimen.material.g\"\nvalues = [0.3, 1.0]\n");
+        write_file(folder_ / "c.toml",
+                   replaced(small_configuration, "[trace]\n", "[trace]\ndevice = \"host\"\n") +
+                       "[sweep]\nz_um = 0\n[[sweep.parameter]]\nkey = \"specimen.material.g\"\nvalues = [0.3, 1.0]\n");
     }
 
     // Three small images by the host, so that many runs cost little.
     static Arguments traced(const std::string& command, const std::string& out, const Arguments& further = {}) {
-        return joined({command, "c.toml", "--out", out, "--rays", "500", "--quiet", "--set", "scan.z_start_um=-1", "--set",
-                       "scan.z_stop_um=1"},
+        return joined({command, "c.toml", "--out", out, "--rays", "500", "--quiet", "--set", "scan.z_start_um=-1",
+                       "--set", "scan.z_stop_um=1"},
                       further);
     }
 
@@ -164,7 +168,8 @@ class FileFaults : public testing::Test {
         // The sanitizer wants to be the first library, but need not be. Leaks are looked for by other tests.
         const char* options = std::getenv("ASAN_OPTIONS");
         return {{"LD_PRELOAD", VKFV_FILE_CALLS},
-                {"ASAN_OPTIONS", fmt::format("{}:verify_asan_link_order=0:detect_leaks=0", options != nullptr ? options : "")},
+                {"ASAN_OPTIONS",
+                 fmt::format("{}:verify_asan_link_order=0:detect_leaks=0", options != nullptr ? options : "")},
                 {"VKFV_FAULT_FOLDER", fs::canonical(folder_ / results).string()}};
     }
 
@@ -224,7 +229,8 @@ TEST_F(FileFaults, OfTheTopographyOfAStack) {
 
 TEST_F(FileFaults, OfTheTopographyOfImages) {
     prepare(traced("--stack", "stack"));
-    const Arguments arguments = {"--topography", "stack/images", "--z_step_um", "1", "--pitch_um", "2", "--out", "results/out"};
+    const Arguments arguments = {"--topography", "stack/images", "--z_step_um", "1", "--pitch_um", "2",
+                                 "--out",        "results/out"};
     prepare(arguments);
     fail_every_call_of(joined(arguments, {"--set", "topography.window_px=3"}));
 }

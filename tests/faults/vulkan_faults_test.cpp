@@ -1,5 +1,5 @@
-// Devices that fail: each call of Vulkan that a command makes fails once. The command says so in words of its own, and once
-// more ends in the same bytes.
+// Devices that fail: each call of Vulkan that a command makes fails once. The command says so in words of its own, and
+// once more ends in the same bytes.
 #include "faults/faults.hpp"
 
 #include <fmt/format.h>
@@ -34,8 +34,8 @@ bool is_of_the_loader(const Fault& call) {
            call.call == "vkEnumerateDeviceExtensionProperties";
 }
 
-// Without what such a call gives nothing is lost: compiled kernels are kept for the next run, and layers beside vkfv ask for
-// extensions too.
+// Without what such a call gives nothing is lost: compiled kernels are kept for the next run, and layers beside vkfv
+// ask for extensions too.
 bool may_pass(const Fault& call) {
     return call.call == "vkGetPipelineCacheData" || call.call == "vkEnumerateDeviceExtensionProperties";
 }
@@ -47,7 +47,8 @@ std::vector<std::string> effects_of(const Fault& call, std::size_t turn) {
     return every_fault() ? effects : Arguments{effects[turn % effects.size()]};
 }
 
-// For a machine with little time: a call of every name, or of each so many-th; the first of one name, the last of the next.
+// For a machine with little time: a call of every name, or of each so many-th; the first of one name, the last of the
+// next.
 std::vector<Fault> one_of_each(const std::vector<Fault>& calls, std::size_t every) {
     std::map<std::string, std::vector<Fault>> by_name;
     for (const Fault& call : calls) {
@@ -65,14 +66,13 @@ std::vector<Fault> one_of_each(const std::vector<Fault>& calls, std::size_t ever
 
 class VulkanFaults : public testing::Test {
   protected:
-    VulkanFaults() : folder_(fresh_folder("work")) {
-        write_file(folder_ / "c.toml", small_configuration);
-    }
+    VulkanFaults() : folder_(fresh_folder("work")) { write_file(folder_ / "c.toml", small_configuration); }
 
     // Three small images.
     static Arguments traced(const std::string& command, const Arguments& further) {
-        Arguments arguments = {command, "c.toml", "--out", "out", "--rays", "500", "--quiet", "--set", "scan.z_start_um=-1",
-                               "--set", "scan.z_stop_um=1"};
+        Arguments arguments = {
+            command, "c.toml",          "--out", "out", "--rays", "500", "--quiet", "--set", "scan.z_start_um=-1",
+            "--set", "scan.z_stop_um=1"};
         arguments.insert(arguments.end(), further.begin(), further.end());
         return arguments;
     }

@@ -17,7 +17,7 @@ namespace {
 
 // With the ending that belongs to the bytes.
 std::filesystem::path file_for(std::string_view bytes) {
-    const char* ending = bytes.starts_with("\x89PNG")           ? ".png"
+    const char* ending = bytes.starts_with("\x89PNG")            ? ".png"
                          : bytes.starts_with("\xff\xd8")         ? ".jpg"
                          : bytes.starts_with("BM")               ? ".bmp"
                          : bytes.starts_with("P")                ? ".pgm"

@@ -1,4 +1,5 @@
-// Any bytes are a mesh, every index of which is one of a vertex, and which can be placed or is refused, or an InputError.
+// Any bytes are a mesh, every index of which is one of a vertex, and which can be placed or is refused, or an
+// InputError.
 #include "core/error.hpp"
 #include "specimen/description.hpp"
 #include "specimen/files.hpp"

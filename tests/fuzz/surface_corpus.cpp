@@ -79,8 +79,13 @@ int main(int argument_count, char** arguments) {
         return 2;
     }
     const fs::path root = arguments[1];
-    const Provenance provenance{.creator = "vkfv", .manufacturer = "none", .model = "virtual", .serial = "1",
-                                .version = "2", .date = "2026-01-31T12:34:56Z", .comment = "two\nlines"};
+    const Provenance provenance{.creator = "vkfv",
+                                .manufacturer = "none",
+                                .model = "virtual",
+                                .serial = "1",
+                                .version = "2",
+                                .date = "2026-01-31T12:34:56Z",
+                                .comment = "two\nlines"};
     for (const char* reader : {"x3p", "sur", "sdf", "al3d", "height_image"})
         fs::create_directories(root / reader);
     const auto whole = [&](const char* reader, const std::string& name, bool gaps) {
@@ -150,7 +155,8 @@ int main(int argument_count, char** arguments) {
     write(root / "height_image" / "window_negative.exr", ExrBytes{.window = {2, 1, 0, 0}}.bytes());
     write(root / "height_image" / "tile_largest.exr", ExrBytes{.tile = 0xffffffff}.bytes());
     constexpr std::string_view compression("compression\0compression\0", 24);
-    write(root / "height_image" / "attribute_long.exr", with(exr, exr.find(compression) + compression.size() + 2, 0x68));
+    write(root / "height_image" / "attribute_long.exr",
+          with(exr, exr.find(compression) + compression.size() + 2, 0x68));
     const auto description = tiff.find("vkfv height map");
     write(root / "height_image" / "own.exr",
           ExrBytes{.description = tiff.substr(description, tiff.find('\0', description) - description)}.bytes());

@@ -13,8 +13,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     static const auto glasses = optics::GlassCatalog::builtin();
     std::string text;
     try {
-        const auto lens =
-            optics::parse_zmx({reinterpret_cast<const char*>(data), size}, "fuzzed.zmx", glasses);
+        const auto lens = optics::parse_zmx({reinterpret_cast<const char*>(data), size}, "fuzzed.zmx", glasses);
         text = optics::prescription_text(lens.prescription);
     } catch (const InputError&) {
         return 0;

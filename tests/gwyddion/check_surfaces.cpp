@@ -72,8 +72,8 @@ void check_against_gwyddion(const std::filesystem::path& file, const surface::He
     const auto loaded = test::load_in_gwyddion(file);
     GwyDataField* heights = test::gwyddion_field(loaded, "/0/data");
     GwyDataField* mask = test::gwyddion_field(loaded, "/0/mask");
-    const bool same_size = heights && gwy_data_field_get_xres(heights) == map.columns() &&
-                           gwy_data_field_get_yres(heights) == map.rows();
+    const bool same_size =
+        heights && gwy_data_field_get_xres(heights) == map.columns() && gwy_data_field_get_yres(heights) == map.rows();
     check(same_size, fmt::format("Gwyddion's {} has the same size", test::gwyddion_import(file)));
     if (!same_size)
         return;
@@ -103,8 +103,8 @@ void check_against_gwyddion(const std::filesystem::path& file, const surface::He
                       highest * um_per_mm, largest * um_per_mm));
 }
 
-// Every parameter that both have. Gwyddion's area has half a level cell more around the map, and its gradient is that of
-// the cells' edges; the others are sums over the same points.
+// Every parameter that both have. Gwyddion's area has half a level cell more around the map, and its gradient is that
+// of the cells' edges; the others are sums over the same points.
 void check_parameters(const std::filesystem::path& file, const surface::HeightMap& map) {
     constexpr double same_sum = 1e-10;
     const double other_definition = 0.01 + 1.0 / map.columns() + 1.0 / map.rows();
@@ -114,22 +114,25 @@ void check_parameters(const std::filesystem::path& file, const surface::HeightMa
     const auto masking = mask ? GWY_MASK_EXCLUDE : GWY_MASK_IGNORE;
     const int columns = map.columns(), rows = map.rows();
     double mean, sa, sq, skewness, excess, lowest, highest;
-    gwy_data_field_area_get_stats_mask(heights, mask, masking, 0, 0, columns, rows, &mean, &sa, &sq, &skewness, &excess);
+    gwy_data_field_area_get_stats_mask(heights, mask, masking, 0, 0, columns, rows, &mean, &sa, &sq, &skewness,
+                                       &excess);
     gwy_data_field_area_get_min_max_mask(heights, mask, masking, 0, 0, columns, rows, &lowest, &highest);
     double measured = 0;
     for (const double height : map.height.values)
         measured += std::isfinite(height) ? 1 : 0;
     const double area = measured * gwy_data_field_get_dx(heights) * gwy_data_field_get_dy(heights);
-    const double sdr = gwy_data_field_area_get_surface_area_mask(heights, mask, masking, 0, 0, columns, rows) / area - 1;
+    const double sdr =
+        gwy_data_field_area_get_surface_area_mask(heights, mask, masking, 0, 0, columns, rows) / area - 1;
     const double sdq = gwy_data_field_area_get_surface_slope_mask(heights, mask, masking, 0, 0, columns, rows);
     const auto ours = surface::height_parameters(map);
     const auto hybrid = surface::hybrid_parameters(map);
-    // Heights are rounded at their offset, here and there in another unit; a mean of them moves by some of it, and Ssk, which
-    // may be near 0, by three times as much in units of Sq.
+    // Heights are rounded at their offset, here and there in another unit; a mean of them moves by some of it, and Ssk,
+    // which may be near 0, by three times as much in units of Sq.
     const double rounding = 8 * std::numeric_limits<double>::epsilon() * std::abs(mean) / sq;
     const auto compare = [](const char* name, double found, double expected, double tolerance) {
         const double apart = std::abs(found / expected - 1);
-        check(apart <= tolerance, fmt::format("{:<6} {:>14.8g}, Gwyddion {:>14.8g}, {:.1e} apart", name, found, expected, apart));
+        check(apart <= tolerance,
+              fmt::format("{:<6} {:>14.8g}, Gwyddion {:>14.8g}, {:.1e} apart", name, found, expected, apart));
     };
     compare("Sq um", ours.sq * um_per_mm, sq * 1e6, same_sum);
     compare("Ssk", ours.ssk, skewness, same_sum + rounding / std::abs(skewness));

@@ -1,6 +1,6 @@
 // Every file that vkfv writes, as Gwyddion's own import modules see it.
-#include "support/surface_files.hpp"
 #include "gwyddion/gwyddion.hpp"
+#include "support/surface_files.hpp"
 #include "surface/surface_file.hpp"
 
 #include <gtest/gtest.h>
@@ -56,9 +56,9 @@ HeightMap letter() {
 
 // What a format keeps. Gwyddion shows a field's first row on top.
 struct Kept {
-    double unit = 1e-3;   // of Gwyddion's heights per mm
+    double unit = 1e-3;    // of Gwyddion's heights per mm
     double height = 1e-20; // largest deviation of a height there
-    double pitch = 0;     // and of a pitch, relative; infinite: the format's import knows none
+    double pitch = 0;      // and of a pitch, relative; infinite: the format's import knows none
     bool mask = true;
 };
 
@@ -73,8 +73,8 @@ void expect_same(const GwyddionFile& container, const HeightMap& map, const Kept
         EXPECT_NEAR(gwy_data_field_get_dx(heights), map.pitch_x / 1e3, rounding * map.pitch_x / 1e3);
         EXPECT_NEAR(gwy_data_field_get_dy(heights), map.pitch_y / 1e3, rounding * map.pitch_y / 1e3);
         for (GwySIUnit* unit : {gwy_data_field_get_si_unit_xy(heights), gwy_data_field_get_si_unit_z(heights)}) {
-            const std::unique_ptr<gchar, decltype(&g_free)> text(
-                gwy_si_unit_get_string(unit, GWY_SI_UNIT_FORMAT_PLAIN), &g_free);
+            const std::unique_ptr<gchar, decltype(&g_free)> text(gwy_si_unit_get_string(unit, GWY_SI_UNIT_FORMAT_PLAIN),
+                                                                 &g_free);
             EXPECT_STREQ(text.get(), "m");
         }
     }

@@ -28,7 +28,8 @@ HeightMap rough() {
 
 template <class Value>
 Field field_of(const HeightMap& map, const Value& value) {
-    Field field(gwy_data_field_new(map.columns(), map.rows(), map.columns() * map.pitch_x, map.rows() * map.pitch_y, TRUE));
+    Field field(
+        gwy_data_field_new(map.columns(), map.rows(), map.columns() * map.pitch_x, map.rows() * map.pitch_y, TRUE));
     for (std::size_t k = 0; k < map.height.values.size(); ++k)
         gwy_data_field_get_data(field.get())[k] = value(map.height.values[k]);
     return field;
@@ -40,8 +41,8 @@ TEST(GwyddionParameters, HeightsAreTheSameWithGaps) {
     const Field heights = field_of(map, [](double z) { return std::isnan(z) ? 0 : z; });
     const Field mask = field_of(map, [](double z) { return std::isnan(z) ? 0 : 1; });
     double mean, sa, sq, skewness, excess, lowest, highest;
-    gwy_data_field_area_get_stats_mask(heights.get(), mask.get(), GWY_MASK_INCLUDE, 0, 0, map.columns(), map.rows(), &mean,
-                                       &sa, &sq, &skewness, &excess);
+    gwy_data_field_area_get_stats_mask(heights.get(), mask.get(), GWY_MASK_INCLUDE, 0, 0, map.columns(), map.rows(),
+                                       &mean, &sa, &sq, &skewness, &excess);
     gwy_data_field_area_get_min_max_mask(heights.get(), mask.get(), GWY_MASK_INCLUDE, 0, 0, map.columns(), map.rows(),
                                          &lowest, &highest);
     // Sums of 48 000 rounded terms.

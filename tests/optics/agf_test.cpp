@@ -78,10 +78,8 @@ TEST(Agf, ReadsEveryEncodingAndLineEnd) {
     EXPECT_EQ(parse_agf(wide, "x")[0].name, expected);
     // A code point beyond 16 bits, and half of one.
     const std::string pair = std::string("\x3c\xd8", 2) + "\x0d\xdf"; // U+1F30D
-    EXPECT_EQ(parse_agf(utf16("NM ", false) + pair + utf16(rest, false).substr(2), "x")[0].name,
-              "\xf0\x9f\x8c\x8d");
-    EXPECT_EQ(parse_agf(utf16("NM ", false) + pair.substr(0, 2) + utf16(rest, false).substr(2), "x")[0].name,
-              "?");
+    EXPECT_EQ(parse_agf(utf16("NM ", false) + pair + utf16(rest, false).substr(2), "x")[0].name, "\xf0\x9f\x8c\x8d");
+    EXPECT_EQ(parse_agf(utf16("NM ", false) + pair.substr(0, 2) + utf16(rest, false).substr(2), "x")[0].name, "?");
 }
 
 TEST(Agf, TakesAllThirteenFormulas) {
@@ -117,7 +115,8 @@ TEST(Agf, LinesOfNumbersContinueTheOneBefore) {
 TEST(Agf, TheFirstGlassOfANameIsTakenAndTheLogTellsOfOthers) {
     std::ostringstream log;
     const auto before = spdlog::default_logger();
-    spdlog::set_default_logger(std::make_shared<spdlog::logger>("test", std::make_shared<spdlog::sinks::ostream_sink_st>(log)));
+    spdlog::set_default_logger(
+        std::make_shared<spdlog::logger>("test", std::make_shared<spdlog::sinks::ostream_sink_st>(log)));
     const std::string first = "NM G 5\nCD 1.5\nLD 1 2\n";
     const auto same = parse_agf(first + first, "x.agf");
     const std::string without_twins = log.str();

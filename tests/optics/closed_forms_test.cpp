@@ -70,8 +70,7 @@ TEST(DecentredThinLens, MovesTheImageOfAPointByOneMinusMagnification) {
         const double image_distance = 1 / (1 / focal_length - 1 / object_distance);
         const double magnification = -image_distance / object_distance;
         for (const double slope : {-1e-4, 0.0, 1e-4}) {
-            const auto image =
-                at(test::trace(train, {0, 0, -object_distance}, {slope, 0, 1}).ray, image_distance);
+            const auto image = at(test::trace(train, {0, 0, -object_distance}, {slope, 0, 1}).ray, image_distance);
             EXPECT_NEAR(image.x, decentre * (1 - magnification), 1e-8);
             EXPECT_GT(std::abs(image.x - decentre * (-magnification)), 1e-3); // wrong twin
         }
@@ -130,7 +129,7 @@ TEST(CoverPlate, MovesTheMarginalFocus) {
         const double expected = 0.17 * (1 - std::tan(std::asin(na / n)) / std::tan(std::asin(na)));
         EXPECT_NEAR(shift(na), expected, 1e-13);
     }
-    EXPECT_NEAR(shift(0.4), 63.5e-3, 5e-5);                   // issue 3's figure
+    EXPECT_NEAR(shift(0.4), 63.5e-3, 5e-5);                     // issue 3's figure
     EXPECT_GT(std::abs(shift(0.4) - 0.17 * (1 - 1 / n)), 4e-3); // wrong twin: paraxial
 }
 
@@ -158,7 +157,8 @@ TEST(CoverGlass, MovesTheObjectiveByItsReducedThickness) {
                                     {0, 0, -2}, {1e-5, 0, 1});
     const auto landed = physics::f64::fly_to_plane(traced.ray, with.constants.detector_distance, 1);
     EXPECT_NEAR(landed.position.x, 0, 1e-9);
-    // The plate over-corrects the margin: best focus moves down against the paraxial one by what the cone's rays are moved.
+    // The plate over-corrects the margin: best focus moves down against the paraxial one by what the cone's rays are
+    // moved.
     const double na = with.first_order.numerical_aperture;
     const double marginal = 0.17 * (1 - std::tan(std::asin(na / n)) / std::tan(std::asin(na)) - (1 - 1 / n));
     const double moved = with.first_order.best_focus_offset - without.first_order.best_focus_offset;
@@ -168,10 +168,9 @@ TEST(CoverGlass, MovesTheObjectiveByItsReducedThickness) {
 
 // Landings of rays from the object's axis with small slopes, against the undisturbed instrument's.
 glm::dvec2 landing(const Instrument& instrument, double slope = 0) {
-    const std::vector<physics::f64::Surface> train(
-        instrument.surfaces.begin() + instrument.constants.imaging_first, instrument.surfaces.end());
-    const auto result =
-        test::trace(train, {0, 0, -instrument.first_order.working_distance}, {slope, 0, 1});
+    const std::vector<physics::f64::Surface> train(instrument.surfaces.begin() + instrument.constants.imaging_first,
+                                                   instrument.surfaces.end());
+    const auto result = test::trace(train, {0, 0, -instrument.first_order.working_distance}, {slope, 0, 1});
     EXPECT_EQ(result.status, PATH_ALIVE);
     const auto landed = physics::f64::fly_to_plane(result.ray, instrument.constants.detector_distance, 1);
     return {landed.position.x, landed.position.y};
@@ -184,7 +183,8 @@ Instrument displaced(const std::function<void(InstrumentDescription&)>& change) 
 }
 
 RingLightDescription any_ring(double distance) {
-    return {.distance = distance, .elevation = 0.5, .width = 1, .segments = 1, .fill = 1, .on = {true}, .lit_radius = 0.1};
+    return {
+        .distance = distance, .elevation = 0.5, .width = 1, .segments = 1, .fill = 1, .on = {true}, .lit_radius = 0.1};
 }
 
 // Ideal lenses of the same focal lengths have no aberration, so decentres and tilts may be large.
@@ -225,8 +225,8 @@ TEST(IdealInstrument, HasItsFirstOrder) {
     }
 }
 
-// In the infinity space a tube lens takes the image along; the objective moves it by minus the magnification times its own
-// decentre; a decentred detector sees it the other way.
+// In the infinity space a tube lens takes the image along; the objective moves it by minus the magnification times its
+// own decentre; a decentred detector sees it the other way.
 TEST(DecentredParts, MoveTheImage) {
     const double far = 0.7;
     const auto tube = ideal([&](auto& d) { d.tube_lens_placement.change.decentre_x = far; });
@@ -240,8 +240,8 @@ TEST(DecentredParts, MoveTheImage) {
     }
 }
 
-// An ideal lens tilted by t takes a ray through its vertex, which leans by t against its axis, from the height f tan(t) in
-// its front focal plane to the sine tan(t) behind: it turns it by asin(tan t) - t, of the third order.
+// An ideal lens tilted by t takes a ray through its vertex, which leans by t against its axis, from the height f tan(t)
+// in its front focal plane to the sine tan(t) behind: it turns it by asin(tan t) - t, of the third order.
 TEST(TiltedParts, TurnTheRayThroughTheVertexByTheThirdOrder) {
     const double tilt = 0.05;
     const double turn = std::asin(std::tan(tilt)) - tilt;
@@ -352,8 +352,8 @@ TEST(BeamSplitter, LeavesTheImage) {
     }
 }
 
-// The cone that the source is aimed into is found with a stop at the source as without: about a pinhole for a field stop, which
-// a search about the wrong direction misses.
+// The cone that the source is aimed into is found with a stop at the source as without: about a pinhole for a field
+// stop, which a search about the wrong direction misses.
 TEST(IlluminationAperture, LeavesTheAim) {
     const auto pinhole = [](std::optional<double> aperture) {
         return ideal([&](auto& d) {

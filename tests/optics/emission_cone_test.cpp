@@ -1,4 +1,5 @@
-// The cones that sources are aimed into hold all light that passes: of a few hundred illuminators that nobody would build.
+// The cones that sources are aimed into hold all light that passes: of a few hundred illuminators that nobody would
+// build.
 #include "optics/emission_cone.hpp"
 
 #include "core/units.hpp"
@@ -43,10 +44,12 @@ void clip(Surface& surface, double radius) {
 }
 
 void displace(Surface& surface, Random& random) {
-    Pose pose = Pose{}.along_z(surface.distance).turned({.decentre_x = random.between(-0.5, 0.5),
-                                                         .decentre_y = random.between(-0.5, 0.5),
-                                                         .tilt_x = random.between(-0.15, 0.15),
-                                                         .tilt_y = random.between(-0.15, 0.15)});
+    Pose pose = Pose{}
+                    .along_z(surface.distance)
+                    .turned({.decentre_x = random.between(-0.5, 0.5),
+                             .decentre_y = random.between(-0.5, 0.5),
+                             .tilt_x = random.between(-0.15, 0.15),
+                             .tilt_y = random.between(-0.15, 0.15)});
     PlacedSurface placed;
     placed.surface = surface;
     placed.pose = pose;
@@ -61,9 +64,9 @@ void add_singlet(std::vector<Surface>& train, double distance, bool dispersive, 
     const double radius = random.of_any_size(1, 12);
     for (const bool leaving : {false, true}) {
         const double curvature = random.chance(0.2) ? 0 : random.between(-0.8, 0.8) / radius;
-        Surface surface = test::surface(curvature, leaving ? random.between(0.2, 0.6) * radius : distance,
-                                        leaving ? glass : 1.0, leaving ? 1.0 : glass,
-                                        random.chance(0.3) ? random.between(-2, 1) : 0);
+        Surface surface =
+            test::surface(curvature, leaving ? random.between(0.2, 0.6) * radius : distance, leaving ? glass : 1.0,
+                          leaving ? 1.0 : glass, random.chance(0.3) ? random.between(-2, 1) : 0);
         if (dispersive) {
             (leaving ? surface.dispersion_before : surface.dispersion_after).c1 = 0.01;
         }
@@ -135,8 +138,8 @@ bool passes(const Illuminator& illuminator, const EmissionBox& box, const Place&
     return trace_through(illuminator.train, ray, 1, x).status == PATH_ALIVE;
 }
 
-// Analog light of the hemisphere, and what of it an adversary makes of it: from each ray that passes, steps of ever smaller size
-// towards larger angles. The largest sine that passes; 0: none does.
+// Analog light of the hemisphere, and what of it an adversary makes of it: from each ray that passes, steps of ever
+// smaller size towards larger angles. The largest sine that passes; 0: none does.
 double largest_passing_sine(const Illuminator& illuminator, Random& random) {
     const EmissionBox whole = whole_of(illuminator.source);
     Place best{};
@@ -189,8 +192,8 @@ TEST(EmissionCone, HoldsAllThatPassesRandomIlluminators) {
         close += passing > 0 && aim < 1.1 * passing;
         if (symmetric && i % 5 == 0) {
             const RayTransfer towards_stop = free_space(illuminator.source.distance);
-            lost_by_samples += passing > 1.02 * largest_sampled_sine(illuminator.train, true, illuminator.source,
-                                                                     towards_stop);
+            lost_by_samples +=
+                passing > 1.02 * largest_sampled_sine(illuminator.train, true, illuminator.source, towards_stop);
         }
     }
     EXPECT_GT(lit, illuminators / 2);
@@ -243,7 +246,8 @@ TEST(EmissionCone, KeepsThePowerOfAnalogEmission) {
     EXPECT_GT(rejected_twins, 15);
 }
 
-// Boxes of every size: where the bounds exclude one, no ray of it passes; where all of a small one is stopped, they mostly do.
+// Boxes of every size: where the bounds exclude one, no ray of it passes; where all of a small one is stopped, they
+// mostly do.
 TEST(BundleTracer, ExcludesOnlyWhatIsStopped) {
     Random random(32);
     int excluded = 0;
@@ -274,8 +278,8 @@ TEST(BundleTracer, ExcludesOnlyWhatIsStopped) {
     EXPECT_GT(dark_and_excluded, 0.9 * dark);
 }
 
-// A source of 1 mm, a field stop as large 1 mm behind it and a field lens without edge: what passes from one rim of the source to
-// the other of the stop is a thin cone far off the axis.
+// A source of 1 mm, a field stop as large 1 mm behind it and a field lens without edge: what passes from one rim of the
+// source to the other of the stop is a thin cone far off the axis.
 TEST(EmissionCone, HoldsThinConesOfAnAssembledIlluminator) {
     PrescribedSurface stop;
     stop.medium_after = Medium::air();
@@ -296,8 +300,11 @@ TEST(EmissionCone, HoldsThinConesOfAnAssembledIlluminator) {
 
     constexpr std::uint32_t rays = 400000;
     physics::f64::SpecimenRecord specimen{};
-    const physics::f64::Exposure exposure{
-        .top_distance = analog.front_vertex_height, .seed = 43, .image = 0, .focal_height = 0, .top_distance_residual = 0};
+    const physics::f64::Exposure exposure{.top_distance = analog.front_vertex_height,
+                                          .seed = 43,
+                                          .image = 0,
+                                          .focal_height = 0,
+                                          .top_distance_residual = 0};
     const auto arrived = [&](const Instrument& instrument, auto&& each) {
         int count = 0;
         for (std::uint32_t k = 0; k < rays; ++k) {
@@ -333,7 +340,8 @@ TEST(RingLight, IsAimedAtAllThatItMustLight) {
             .distance = 12, .elevation = 0.5, .width = 2, .segments = 1, .fill = 1, .on = {true}, .lit_radius = 0.3};
         description.greatest_defocus = 1.5;
         if (cover > 0) {
-            description.cover_glass = CoverGlass{.thickness = cover, .glass = Medium::constant("glass", 1.5), .distance = 1.0};
+            description.cover_glass =
+                CoverGlass{.thickness = cover, .glass = Medium::constant("glass", 1.5), .distance = 1.0};
         }
         const Instrument instrument = assemble(description);
         physics::f64::Instrument constants = instrument.constants;
@@ -346,13 +354,14 @@ TEST(RingLight, IsAimedAtAllThatItMustLight) {
             auto ray = physics::f64::emit_from_ring(constants.ring, 1, u[0], u[1], u[2], u[3]);
             ray.position.z += constants.ring.aim_distance;
             const double sine = std::sqrt(u[2]);
-            auto end = trace_through(std::span(instrument.surfaces).first(std::size_t(constants.illumination_count)), ray, 1);
+            auto end =
+                trace_through(std::span(instrument.surfaces).first(std::size_t(constants.illumination_count)), ray, 1);
             if (end.status != PATH_ALIVE) {
                 continue;
             }
             for (const double height : {-1.5, 0.0, 1.5}) {
-                const auto landed = physics::f64::fly_to_plane(
-                    end.ray, instrument.front_vertex_height - height, end.index);
+                const auto landed =
+                    physics::f64::fly_to_plane(end.ray, instrument.front_vertex_height - height, end.index);
                 if (std::hypot(landed.position.x, landed.position.y) < 0.3) {
                     largest = std::max(largest, sine);
                 }

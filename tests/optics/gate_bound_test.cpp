@@ -1,5 +1,5 @@
-// The pupil's gate, found by samples, holds all light of the field that reaches the detector's plane: proved by bounds for every
-// objective of the library but the 100x, whose proof takes ten times as long as all others (it holds too).
+// The pupil's gate, found by samples, holds all light of the field that reaches the detector's plane: proved by bounds
+// for every objective of the library but the 100x, whose proof takes ten times as long as all others (it holds too).
 #include "optics/bundle.hpp"
 
 #include "core/units.hpp"
@@ -15,13 +15,14 @@
 namespace vkfv::optics {
 namespace {
 
-// The gate of physics::Instrument for rays that start on the object plane, seen from the planes that the specimen's top takes.
+// The gate of physics::Instrument for rays that start on the object plane, seen from the planes that the specimen's top
+// takes.
 struct Gate {
     double position = 0; // 1/mm
     std::array<double, 2> heights{};
 
-    // The largest |position * place + (1 + position * height) * slope| in a box. Its square is convex in place and slope and
-    // linear in the cosine between them, so that the box's corners hold it.
+    // The largest |position * place + (1 + position * height) * slope| in a box. Its square is convex in place and
+    // slope and linear in the cosine between them, so that the box's corners hold it.
     double largest_in(const EmissionBox& box) const {
         const auto& [low, high] = box[azimuth]; // within a half turn, where the cosine falls
         double largest = 0;
@@ -63,7 +64,9 @@ Verdict holds_all(const FieldLight& light, const Gate& gate, double radius) {
     whole[from_axis] = {0, light.field_radius};
     whole[polar_angle] = {0, 0.5 * pi};
     whole[azimuth] = {0, pi};
-    const auto is_nearer = [&](const EmissionBox& a, const EmissionBox& b) { return gate.largest_in(a) < gate.largest_in(b); };
+    const auto is_nearer = [&](const EmissionBox& a, const EmissionBox& b) {
+        return gate.largest_in(a) < gate.largest_in(b);
+    };
     std::priority_queue<EmissionBox, std::vector<EmissionBox>, decltype(is_nearer)> left(is_nearer);
     left.push(whole);
     constexpr int most_boxes = 150000;

@@ -18,9 +18,9 @@ namespace {
 using ::testing::HasSubstr;
 
 // Spectral lines in um: i, h, g, F', F, e, d, C', C, r, s, t.
-constexpr double line_i = 0.3650146, line_h = 0.4046561, line_g = 0.4358343, line_f2 = 0.4799914,
-                 line_f = 0.4861327, line_e = 0.5460740, line_d = 0.5875618, line_c2 = 0.6438469,
-                 line_c = 0.6562725, line_r = 0.7065188, line_s = 0.8521101, line_t = 1.0139798;
+constexpr double line_i = 0.3650146, line_h = 0.4046561, line_g = 0.4358343, line_f2 = 0.4799914, line_f = 0.4861327,
+                 line_e = 0.5460740, line_d = 0.5875618, line_c2 = 0.6438469, line_c = 0.6562725, line_r = 0.7065188,
+                 line_s = 0.8521101, line_t = 1.0139798;
 
 // The data sheets' indices, which their vendors round to the last digit given here.
 TEST(GlassCatalog, HasPublishedIndicesToTheLastDigit) {
@@ -83,8 +83,7 @@ TEST(GlassCatalog, HasEveryGlassOfTheAssets) {
     const auto glasses = GlassCatalog::builtin();
     std::size_t count = 0;
     for (const char* folder : {"objectives", "tube_lenses", "illuminators"}) {
-        for (const auto& entry :
-             std::filesystem::directory_iterator(test::source_folder() / "assets" / folder)) {
+        for (const auto& entry : std::filesystem::directory_iterator(test::source_folder() / "assets" / folder)) {
             for (const auto& surface :
                  load_prescription(entry.path().filename(), folder, entry.path().parent_path()).surfaces) {
                 const Medium& medium = surface.medium_after;
@@ -98,8 +97,7 @@ TEST(GlassCatalog, HasEveryGlassOfTheAssets) {
                 ++count;
                 for (std::size_t i = 0; i < table->indices.size(); ++i) {
                     // The wavelengths are given to 1e-6 um, and glass changes by less than 0.3 per um.
-                    EXPECT_NEAR(found->index(table->wavelengths_um[i]), table->indices[i], 3e-7)
-                        << medium.name;
+                    EXPECT_NEAR(found->index(table->wavelengths_um[i]), table->indices[i], 3e-7) << medium.name;
                 }
             }
         }

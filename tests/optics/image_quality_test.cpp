@@ -12,11 +12,11 @@
 namespace vkfv::optics {
 namespace {
 
+using test::surface;
 using ::testing::Contains;
 using ::testing::HasSubstr;
 using ::testing::IsEmpty;
 using ::testing::Not;
-using test::surface;
 
 // Closed forms in double: a dozen operations, so 1e-13 relative; lengths to 100 mm.
 constexpr double rounding = 1e-11;
@@ -145,7 +145,8 @@ TEST(PointImage, DefocusIsASinc) {
     }
 }
 
-// Exactly, at high aperture: |integral of exp(i k z (1 - cos theta)) over s = sin^2 / NA^2|^2 by a midpoint rule of 20000.
+// Exactly, at high aperture: |integral of exp(i k z (1 - cos theta)) over s = sin^2 / NA^2|^2 by a midpoint rule of
+// 20000.
 TEST(PointImage, DefocusAtHighAperture) {
     const double aperture = 0.8, z = 1e-3;
     const Imaging imaging = ideal_microscope(aperture);
@@ -215,21 +216,21 @@ TEST_P(Library, IsFiniteAndConsistent) {
     const auto instrument = assemble(description);
     const auto quality = image_quality(description, instrument);
     const FirstOrder& first_order = instrument.first_order;
-    for (const double value :
-         {quality.objective.front_principal_plane, quality.objective.back_principal_plane,
-          quality.tube_lens.front_principal_plane, quality.tube_lens.back_principal_plane,
-          quality.entrance_pupil_height, quality.back_pupil_distance, quality.exit_pupil_distance,
-          quality.edge_distortion, quality.corner_distortion}) {
+    for (const double value : {quality.objective.front_principal_plane, quality.objective.back_principal_plane,
+                               quality.tube_lens.front_principal_plane, quality.tube_lens.back_principal_plane,
+                               quality.entrance_pupil_height, quality.back_pupil_distance, quality.exit_pupil_distance,
+                               quality.edge_distortion, quality.corner_distortion}) {
         EXPECT_TRUE(std::isfinite(value));
     }
-    // Two ways to the same: the source that fills the pupil; focal points; paraxial rays from the axis to the pupils' rims,
-    // whose angles go with the magnification; real ones by the sine condition, which these objectives offend by less
-    // than 4 % (and paraxial pupils by 20 % at the highest aperture).
+    // Two ways to the same: the source that fills the pupil; focal points; paraxial rays from the axis to the pupils'
+    // rims, whose angles go with the magnification; real ones by the sine condition, which these objectives offend by
+    // less than 4 % (and paraxial pupils by 20 % at the highest aperture).
     EXPECT_NEAR(quality.back_pupil_radius / first_order.pupil_radius_in_source,
                 std::abs(first_order.source_magnification), 1e-9);
-    EXPECT_NEAR(quality.objective.front_principal_plane + first_order.working_distance, first_order.efl_objective, 1e-9);
-    EXPECT_NEAR(quality.tube_lens.back_principal_plane + first_order.efl_tube_lens, instrument.constants.detector_distance,
+    EXPECT_NEAR(quality.objective.front_principal_plane + first_order.working_distance, first_order.efl_objective,
                 1e-9);
+    EXPECT_NEAR(quality.tube_lens.back_principal_plane + first_order.efl_tube_lens,
+                instrument.constants.detector_distance, 1e-9);
     EXPECT_NEAR(quality.image_aperture * std::abs(first_order.magnification), first_order.numerical_aperture,
                 0.04 * first_order.numerical_aperture);
     EXPECT_NEAR(quality.beam_radius, first_order.numerical_aperture * first_order.efl_objective,
@@ -293,7 +294,8 @@ TEST(Warnings, OfPixelsCoarserAndFinerThanTheOptics) {
     description.detector_size = 1.28; // 2 um a pixel in the object; lambda / NA is 2.12 um
     EXPECT_THAT(image_quality(description, assemble(description)).warnings, IsEmpty());
     description.detector_pixels = 60;
-    EXPECT_THAT(image_quality(description, assemble(description)).warnings, Contains(HasSubstr("coarser than the optics")));
+    EXPECT_THAT(image_quality(description, assemble(description)).warnings,
+                Contains(HasSubstr("coarser than the optics")));
     description.detector_pixels = 980; // 0.1306 um; a tenth of Airy's radius is 0.1293 um
     EXPECT_THAT(image_quality(description, assemble(description)).warnings, IsEmpty());
     description.detector_pixels = 1000;

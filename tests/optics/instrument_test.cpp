@@ -42,8 +42,7 @@ TEST(Instrument, FirstOrderOfTheMicroscopes) {
     const double na = ten.first_order.numerical_aperture;
     EXPECT_NEAR(ten.first_order.depth_of_field, 0.587562e-3 / (na * na), 1e-15);
     EXPECT_NEAR(ten.first_order.pixel_pitch, 1.3 / 64 / 9.999284329364341, 1e-12);
-    EXPECT_NEAR(ten.front_vertex_height, ten.first_order.working_distance - ten.first_order.best_focus_offset,
-                1e-15);
+    EXPECT_NEAR(ten.front_vertex_height, ten.first_order.working_distance - ten.first_order.best_focus_offset, 1e-15);
 
     const auto five = assemble(test::microscope("5x_0.15"));
     EXPECT_NEAR(five.first_order.working_distance, 65.90129633001145, 1e-9);
@@ -92,14 +91,12 @@ TEST_P(ReferenceRays, ThroughTheWholeMicroscope) {
         const glm::dvec3 cosines(row[3], row[4], row[5]);
         const auto result = test::trace(train, start, cosines);
         ASSERT_EQ(result.status, PATH_ALIVE);
-        const auto landed =
-            physics::f64::fly_to_plane(result.ray, instrument.constants.detector_distance, 1.0);
+        const auto landed = physics::f64::fly_to_plane(result.ray, instrument.constants.detector_distance, 1.0);
         const auto beside =
             physics::f64::fly_to_plane(result.ray, instrument.constants.detector_distance + mm_per_um, 1.0);
-        position =
-            std::max({position, std::abs(landed.position.x - row[6]), std::abs(landed.position.y - row[7])});
-        direction = std::max({direction, std::abs(landed.direction.x - row[8]),
-                              std::abs(landed.direction.y - row[9]), std::abs(landed.direction.z - row[10])});
+        position = std::max({position, std::abs(landed.position.x - row[6]), std::abs(landed.position.y - row[7])});
+        direction = std::max({direction, std::abs(landed.direction.x - row[8]), std::abs(landed.direction.y - row[9]),
+                              std::abs(landed.direction.z - row[10])});
         path = std::max(path, std::abs(landed.path_length - row[11]));
         twin = std::max(twin, std::abs(beside.position.x - row[6]));
         const auto clipped = test::trace(train, start, cosines, 1u);
@@ -138,8 +135,7 @@ TEST(BestFocus, OfOtherProgramsGrid) {
         double denominator = 0;
         for (int ring = 1; ring <= 20; ++ring) {
             const auto result = test::trace(train, {row.beam_radius * ring / 20, 0, -1}, {0, 0, 1});
-            const auto focal =
-                physics::f64::fly_to_plane(result.ray, instrument.first_order.working_distance, 1.0);
+            const auto focal = physics::f64::fly_to_plane(result.ray, instrument.first_order.working_distance, 1.0);
             const double slope = focal.direction.x / focal.direction.z;
             numerator += ring * focal.position.x * slope;
             denominator += ring * slope * slope;
@@ -165,8 +161,7 @@ TEST(BestFocus, OfRandomLight) {
             double n = 0, y = 0, r = 0, yy = 0, yr = 0, rr = 0; // sums of landings y and rates r
             std::vector<std::pair<double, double>> samples;
             const double reach = 1.3 * first_order.numerical_aperture;
-            const double expected =
-                first_order.best_focus_offset + (field > 0 ? first_order.field_curvature : 0);
+            const double expected = first_order.best_focus_offset + (field > 0 ? first_order.field_curvature : 0);
             while (samples.size() < 40000) {
                 const double l = reach * uniform(generator);
                 const double m = reach * uniform(generator);
@@ -175,11 +170,10 @@ TEST(BestFocus, OfRandomLight) {
                 }
                 const glm::dvec3 direction(l, m, std::sqrt(1 - l * l - m * m));
                 const auto landing = [&](double height, unsigned apertures) {
-                    const auto result = test::trace(train, {field, 0, height - first_order.working_distance},
-                                                    direction, apertures);
-                    return std::pair(
-                        result.status,
-                        physics::f64::fly_to_plane(result.ray, instrument.constants.detector_distance, 1.0));
+                    const auto result =
+                        test::trace(train, {field, 0, height - first_order.working_distance}, direction, apertures);
+                    return std::pair(result.status, physics::f64::fly_to_plane(
+                                                        result.ray, instrument.constants.detector_distance, 1.0));
                 };
                 if (landing(0, 1u).first != PATH_ALIVE) {
                     continue;
@@ -246,15 +240,14 @@ TEST(Gate, HoldsAllThatIsDetected) {
             // Near the pupil's rim, where it matters.
             const double sine = reach * std::sqrt(1 - 0.4 * std::abs(uniform(generator)));
             const double azimuth = pi * uniform(generator);
-            const glm::dvec3 direction(sine * std::cos(azimuth), sine * std::sin(azimuth),
-                                       std::sqrt(1 - sine * sine));
+            const glm::dvec3 direction(sine * std::cos(azimuth), sine * std::sin(azimuth), std::sqrt(1 - sine * sine));
             const double top = 0.2 * uniform(generator); // of the top plane, above best focus
             const double below = 0.05 * std::abs(uniform(generator));
             // Aimed at the plane of focus, so that it may be detected.
             const glm::dvec3 aim(field * uniform(generator), field * uniform(generator), 0);
             const glm::dvec3 position = aim + direction * ((top - below) / direction.z);
-            const auto result = test::trace(
-                train, position - glm::dvec3(0, 0, instrument.front_vertex_height), direction, 1u);
+            const auto result =
+                test::trace(train, position - glm::dvec3(0, 0, instrument.front_vertex_height), direction, 1u);
             const auto landed = physics::f64::fly_to_plane(result.ray, constants.detector_distance, 1.0);
             if (result.status != PATH_ALIVE || std::abs(landed.position.x) >= constants.detector_half_size ||
                 std::abs(landed.position.y) >= constants.detector_half_size) {
@@ -286,12 +279,11 @@ TEST(DirectedEmission, HoldsAllThatPasses) {
         int passed = 0;
         int outside_narrow = 0;
         for (int i = 0; i < 100000; ++i) {
-            const auto ray = physics::f64::emit_from_disc(
-                description.source_radius, std::min(1.0, 1.5 * sine), uniform(generator), uniform(generator),
-                uniform(generator), uniform(generator));
-            const auto result =
-                test::trace(train, ray.position - glm::dvec3(0, 0, instrument.constants.source_distance),
-                            ray.direction, 1u);
+            const auto ray =
+                physics::f64::emit_from_disc(description.source_radius, std::min(1.0, 1.5 * sine), uniform(generator),
+                                             uniform(generator), uniform(generator), uniform(generator));
+            const auto result = test::trace(
+                train, ray.position - glm::dvec3(0, 0, instrument.constants.source_distance), ray.direction, 1u);
             if (result.status == PATH_ALIVE) {
                 const double own = std::hypot(ray.direction.x, ray.direction.y);
                 ++passed;
@@ -325,9 +317,8 @@ TEST(Koehler, ImagesTheSourceIntoThePupil) {
         EXPECT_LT(std::abs(from_centre.ray.position.x), 1e-7) << name;
         const double filling = instrument.first_order.pupil_radius_in_source;
         const auto from_rim = test::trace(train, {small * filling, 0, -source_distance}, {0, 0, 1});
-        EXPECT_NEAR(std::abs(from_rim.ray.position.x) /
-                        (small * std::sqrt(train.back().semi_diameter_squared)),
-                    1, 1e-6)
+        EXPECT_NEAR(std::abs(from_rim.ray.position.x) / (small * std::sqrt(train.back().semi_diameter_squared)), 1,
+                    1e-6)
             << name;
         const std::vector illuminator(train.begin(), train.begin() + 6);
         const auto image = image_of(transfer_of_train(illuminator), source_distance);
@@ -348,11 +339,10 @@ TEST(Koehler, ImagesTheFieldStopOntoTheSpecimen) {
     double sum = 0;
     int count = 0;
     while (count < 40000) {
-        const auto ray =
-            physics::f64::emit_from_disc(0.96, instrument.constants.emission_sine, uniform(generator),
-                                         uniform(generator), uniform(generator), uniform(generator));
-        const auto result = test::trace(
-            train, ray.position - glm::dvec3(0, 0, instrument.constants.source_distance), ray.direction, 1u);
+        const auto ray = physics::f64::emit_from_disc(0.96, instrument.constants.emission_sine, uniform(generator),
+                                                      uniform(generator), uniform(generator), uniform(generator));
+        const auto result = test::trace(train, ray.position - glm::dvec3(0, 0, instrument.constants.source_distance),
+                                        ray.direction, 1u);
         if (result.status == PATH_ALIVE) {
             const auto arrived = physics::f64::fly_to_plane(result.ray, instrument.front_vertex_height, 1.0);
             sum += arrived.position.x * arrived.position.x + arrived.position.y * arrived.position.y;

@@ -13,9 +13,9 @@ namespace {
 
 using physics::f64::PATH_ALIVE;
 
-constexpr double field_stop_radius = 0.85;                                        // mm
-constexpr double lit_radius = field_stop_radius * 10.000000444 / 149.97575906;    // its image on the specimen
-constexpr double field_radius = 0.85 * lit_radius; // inside the blur of the stop's image
+constexpr double field_stop_radius = 0.85;                                     // mm
+constexpr double lit_radius = field_stop_radius * 10.000000444 / 149.97575906; // its image on the specimen
+constexpr double field_radius = 0.85 * lit_radius;                             // inside the blur of the stop's image
 constexpr double false_positive_rate = 1e-4;
 
 InstrumentDescription koehler_20x() {
@@ -29,8 +29,11 @@ std::vector<double> arrivals(const Instrument& instrument, std::uint32_t paths) 
     constexpr int rings = 10;
     constexpr int sectors = 8;
     physics::f64::SpecimenRecord specimen{};
-    const physics::f64::Exposure exposure{
-        .top_distance = instrument.front_vertex_height, .seed = 41, .image = 0, .focal_height = 0, .top_distance_residual = 0};
+    const physics::f64::Exposure exposure{.top_distance = instrument.front_vertex_height,
+                                          .seed = 41,
+                                          .image = 0,
+                                          .focal_height = 0,
+                                          .top_distance_residual = 0};
     std::vector<double> cells(rings * sectors);
     for (std::uint32_t k = 0; k < paths; ++k) {
         const auto arrival =
@@ -77,8 +80,8 @@ double irradiance(const Instrument& instrument, double source_radius, double x) 
         backward.push_back(surface);
     }
     const auto comes_from_source = [&](double l, double m) {
-        const auto result = test::trace(backward, {x, 0, -instrument.front_vertex_height},
-                                        {l, m, std::sqrt(1 - l * l - m * m)}, 1u);
+        const auto result =
+            test::trace(backward, {x, 0, -instrument.front_vertex_height}, {l, m, std::sqrt(1 - l * l - m * m)}, 1u);
         const auto at_source = physics::f64::fly_to_plane(result.ray, constants.source_distance, 1);
         return result.status == PATH_ALIVE && std::hypot(at_source.position.x, at_source.position.y) < source_radius;
     };
@@ -113,8 +116,8 @@ TEST(KoehlerField, IsUniformByTheRadianceThatReachesIt) {
     const auto description = koehler_20x();
     const auto instrument = assemble(description);
     const double middle = irradiance(instrument, description.source_radius, 0);
-    // The objective's numerical aperture is filled: pi NA^2. The imaging's cone starts a best focus offset away, and its
-    // pupil is seen the other way through: they differ by its aberration.
+    // The objective's numerical aperture is filled: pi NA^2. The imaging's cone starts a best focus offset away, and
+    // its pupil is seen the other way through: they differ by its aberration.
     EXPECT_NEAR(middle / (pi * std::pow(instrument.first_order.numerical_aperture, 2)), 1, 2e-3);
     for (const double share : {0.35, 0.7, 1.0}) {
         // Less than the statistics of any image could show.

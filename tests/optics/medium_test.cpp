@@ -35,8 +35,7 @@ TEST(Medium, IsCauchysFormulaThroughItsPoints) {
 
 TEST(Medium, TakesTheThreeNearestOfMore) {
     // The formula through the lower three is 1.5, through the upper three it is not.
-    const Medium medium =
-        Medium::tabulated("glass", {0.40, 0.45, 0.50, 0.70, 0.75}, {1.5, 1.5, 1.5, 1.6, 1.6});
+    const Medium medium = Medium::tabulated("glass", {0.40, 0.45, 0.50, 0.70, 0.75}, {1.5, 1.5, 1.5, 1.6, 1.6});
     EXPECT_NEAR(medium.index(0.46), 1.5, 1e-14);
     EXPECT_GT(medium.index(0.68), 1.55);
     EXPECT_EQ(Medium::air().index(10.6), 1.0);
@@ -108,11 +107,7 @@ const std::vector<Evaluation>& evaluations() {
         {extended, {2, 0.5, 4, 32, 192, 1024, 5120, 24576}, 2, 14 + 5 + 6, true},
         {sellmeier_5, {1, 2, 2, 3, 3, -4, 4, -12, 5, -16}, 2, 1 + 2 + 8 + 1.5 + 1 + 1, true},
         {extended_2, {2, 0.5, 4, 32, 192, 1024, 0.3125, 0.09375}, 2, 14 + 5 + 6, true},
-        {extended_3,
-         {1, 0.5, 0.1875, 16, 80, 384, 1792, 8192, 36864},
-         2,
-         1 + 2 + 3 + 4 + 5 + 6 + 7 + 8 + 9,
-         true},
+        {extended_3, {1, 0.5, 0.1875, 16, 80, 384, 1792, 8192, 36864}, 2, 1 + 2 + 3 + 4 + 5 + 6 + 7 + 8 + 9, true},
     };
     return rows;
 }
@@ -181,8 +176,7 @@ TEST(Medium, TextTellsDispersionsApart) {
             EXPECT_EQ(media[i].dispersion_text() == media[j].dispersion_text(), i == j) << i << ' ' << j;
         }
     }
-    EXPECT_EQ(Medium::constant("a", 1.5).dispersion_text(),
-              Medium::constant("b", 1.5, "x").dispersion_text());
+    EXPECT_EQ(Medium::constant("a", 1.5).dispersion_text(), Medium::constant("b", 1.5, "x").dispersion_text());
 }
 
 } // namespace

@@ -51,8 +51,8 @@ inline std::vector<std::vector<double>> read_rows(const std::filesystem::path& f
 }
 
 // One surface in air or glass, for closed forms.
-inline physics::f64::Surface surface(double curvature, double distance, double index_before,
-                                     double index_after, double conic = 0) {
+inline physics::f64::Surface surface(double curvature, double distance, double index_before, double index_after,
+                                     double conic = 0) {
     physics::f64::Surface result{};
     result.curvature = curvature;
     result.conic = conic;

@@ -31,7 +31,8 @@ TEST(Pose, TiltsRightHanded) {
 
 // About the new axes: the second turn leaves the axis that the first has brought, not the first frame's.
 TEST(Pose, TiltsAboutTheNewAxesInOrder) {
-    const CoordinateBreak change{.decentre_x = 1, .decentre_y = 2, .tilt_x = 0.2, .tilt_y = 0.4, .tilt_z = 0.7, .thickness = 5};
+    const CoordinateBreak change{
+        .decentre_x = 1, .decentre_y = 2, .tilt_x = 0.2, .tilt_y = 0.4, .tilt_z = 0.7, .thickness = 5};
     const Pose steps = Pose{{1, 2, 0}}.turned({.tilt_x = 0.2}).turned({.tilt_y = 0.4}).turned({.tilt_z = 0.7});
     const Pose once = Pose{}.turned(change);
     const Pose other_order = Pose{}.turned({.tilt_z = 0.7}).turned({.tilt_y = 0.4}).turned({.tilt_x = 0.2});
@@ -55,12 +56,8 @@ TEST(Pose, TiltsAboutTheNewAxesInOrder) {
 TEST(Pose, IsRestoredByTheReturnBreak) {
     const Pose start = Pose{{3, -1, 7}}.turned({.tilt_x = 0.5, .tilt_y = -0.2});
     const CoordinateBreak change{.decentre_x = 1, .decentre_y = 2, .tilt_x = 0.2, .tilt_y = 0.4, .tilt_z = 0.7};
-    const CoordinateBreak back{.decentre_x = -1,
-                               .decentre_y = -2,
-                               .tilt_x = -0.2,
-                               .tilt_y = -0.4,
-                               .tilt_z = -0.7,
-                               .tilt_first = true};
+    const CoordinateBreak back{
+        .decentre_x = -1, .decentre_y = -2, .tilt_x = -0.2, .tilt_y = -0.4, .tilt_z = -0.7, .tilt_first = true};
     const Pose restored = start.turned(change).turned(back);
     expect_near(restored.origin, start.origin, 4e-15);
     for (int axis = 0; axis < 3; ++axis) {

@@ -79,8 +79,7 @@ TEST(Prescription, AssetsHaveTheirFocalLengths) {
         const auto transfer = transfer_of_train(surfaces_of(lens));
         const bool tube = std::string(row.folder) == "tube_lenses";
         EXPECT_NEAR(focal_length(transfer), row.efl, 1e-9) << row.name;
-        EXPECT_NEAR(tube ? back_focal_distance(transfer) : front_focal_distance(transfer), row.bfd, 1e-9)
-            << row.name;
+        EXPECT_NEAR(tube ? back_focal_distance(transfer) : front_focal_distance(transfer), row.bfd, 1e-9) << row.name;
         EXPECT_LT(std::abs(lens.source_distance.value_or(row.bfd) - row.bfd), 1e-9) << row.name;
     }
 }
@@ -99,13 +98,11 @@ TEST(Prescription, CondenserAgreesWithReferenceRays) {
     const auto worst_with = [&](const std::vector<physics::f64::Surface>& lens) {
         double worst = 0;
         for (std::size_t i = 0; i < in.size(); ++i) {
-            const auto result =
-                test::trace(lens, {in[i][0], in[i][1], in[i][2]}, {in[i][3], in[i][4], in[i][5]});
+            const auto result = test::trace(lens, {in[i][0], in[i][1], in[i][2]}, {in[i][3], in[i][4], in[i][5]});
             const auto focal = physics::f64::fly_to_plane(result.ray, 12.123873456, 1.0);
-            worst =
-                std::max({worst, std::abs(focal.position.x - out[i][0]),
-                          std::abs(focal.position.y - out[i][1]), std::abs(focal.direction.x - out[i][3]),
-                          std::abs(focal.direction.y - out[i][4]), std::abs(focal.direction.z - out[i][5])});
+            worst = std::max({worst, std::abs(focal.position.x - out[i][0]), std::abs(focal.position.y - out[i][1]),
+                              std::abs(focal.direction.x - out[i][3]), std::abs(focal.direction.y - out[i][4]),
+                              std::abs(focal.direction.z - out[i][5])});
         }
         return worst;
     };
@@ -167,15 +164,13 @@ constexpr const char* a_lens = "source = \"a test\"\nlicence = \"none\"\n[[surfa
 
 TEST_F(WrittenPrescription, IsFoundBesideTheConfigurationAndAboveIt) {
     write("assets/objectives/mine.toml", a_lens);
-    const auto expected =
-        std::filesystem::absolute(folder_ / "assets/objectives/mine.toml").lexically_normal();
+    const auto expected = std::filesystem::absolute(folder_ / "assets/objectives/mine.toml").lexically_normal();
     for (const char* base : {".", "stacks", "stacks/deep"}) {
         const auto found = find_prescription("mine", "objectives", folder_ / base);
         ASSERT_TRUE(found.has_value()) << base;
         EXPECT_EQ(*found, expected) << base;
     }
-    EXPECT_EQ(load_prescription("../assets/objectives/mine.toml", "objectives", folder_ / "stacks").name,
-              "mine");
+    EXPECT_EQ(load_prescription("../assets/objectives/mine.toml", "objectives", folder_ / "stacks").name, "mine");
     EXPECT_TRUE(find_prescription("10x_0.28", "objectives", folder_)) << "comes with the program";
     EXPECT_FALSE(find_prescription("mine", "tube_lenses", folder_));
     EXPECT_THROW(load_prescription("11x", "objectives", folder_), InputError);
@@ -183,8 +178,7 @@ TEST_F(WrittenPrescription, IsFoundBesideTheConfigurationAndAboveIt) {
 }
 
 TEST_F(WrittenPrescription, ReadsEveryKey) {
-    write("lens.toml", std::string("title = \"lens\"\nsource_distance_mm = 7\nmedium_before = \"oil\"\n") +
-                           a_lens +
+    write("lens.toml", std::string("title = \"lens\"\nsource_distance_mm = 7\nmedium_before = \"oil\"\n") + a_lens +
                            "conic = -1.5\naspheric = [1e-5, -2e-7]\nthickness_mm = 3\nmedium = \"glass\"\n"
                            "semi_diameter_mm = 4\nrole = \"aperture stop\"\n"
                            "[[surface]]\ncurvature_per_mm = -0.02\n[[surface]]\nrole = \"field stop\"\n"
@@ -228,10 +222,9 @@ TEST(ParsedPrescription, MediaHaveEveryForm) {
                                          "range_um = [0.4, 0.7]\n"
                                          "[media.d]\nwavelengths_um = [0.5]\nindices = [1.75]\n",
                                          "lens.toml");
-    const std::vector<Medium> expected = {
-        Medium::constant("a", 1.25), Medium::model("b", 1.5, 60),
-        Medium::formula("c", DispersionFormula::conrady, {1.5, 0.01}, 0.4, 0.7),
-        Medium::tabulated("d", {0.5}, {1.75})};
+    const std::vector<Medium> expected = {Medium::constant("a", 1.25), Medium::model("b", 1.5, 60),
+                                          Medium::formula("c", DispersionFormula::conrady, {1.5, 0.01}, 0.4, 0.7),
+                                          Medium::tabulated("d", {0.5}, {1.75})};
     ASSERT_EQ(lens.surfaces.size(), expected.size());
     for (std::size_t i = 0; i < expected.size(); ++i) {
         EXPECT_EQ(lens.surfaces[i].medium_after.name, expected[i].name);
@@ -257,8 +250,7 @@ TEST_F(WrittenPrescription, UnknownMediumNamesTheNearest) {
     EXPECT_THAT(problem_of("[[surface]]\nmedium = \"N-BK8\"\n").remedy, HasSubstr("\"N-BK7\""));
     EXPECT_THAT(problem_of("[[surface]]\nmedium = \"glas\"\n[media.glass]\nindex = 1.5\n").remedy,
                 HasSubstr("\"glass\""));
-    EXPECT_THAT(problem_of("[[surface]]\nmedium = \"516640\"\n").remedy,
-                HasSubstr("nd = 1.516 and vd = 64.0"));
+    EXPECT_THAT(problem_of("[[surface]]\nmedium = \"516640\"\n").remedy, HasSubstr("nd = 1.516 and vd = 64.0"));
 }
 
 TEST_F(WrittenPrescription, FaultsNamePlaceAndKey) {
@@ -281,8 +273,7 @@ TEST_F(WrittenPrescription, FaultsNamePlaceAndKey) {
              {"[[surface]]\nradius = 5\n", "radius", 4},
              {"[[surface]]\nideal_focal_length_mm = 0\n", "ideal_focal_length_mm", 4},
              {"[[surface]]\nideal_focal_length_mm = 5\nconic = -1\n", "conic", 5},
-             {"[[surface]]\n[media.g]\nwavelengths_um = [0.6, 0.5]\nindices = [1.5, 1.5]\n", "wavelengths_um",
-              5},
+             {"[[surface]]\n[media.g]\nwavelengths_um = [0.6, 0.5]\nindices = [1.5, 1.5]\n", "wavelengths_um", 5},
              {"[[surface]]\n[media.g]\nwavelengths_um = [0.5, 0.6]\nindices = [1.5]\n", "indices", 6},
              {"[[surface]]\n[media.g]\nwavelengths_um = [0.5]\nindices = [0.5]\n", "indices", 6},
              {"[[surface]]\n[media.g]\n", "wavelengths_um", 4},
@@ -292,14 +283,11 @@ TEST_F(WrittenPrescription, FaultsNamePlaceAndKey) {
              {"[[surface]]\n[media.g]\nindex = 0.5\n", "index", 5},
              {"[[surface]]\n[media.g]\nindex = 1.5\nnd = 1.5\nvd = 50\n", "index", 5},
              {"[[surface]]\n[media.g]\nformula = \"sellmeier\"\n", "formula", 5},
-             {"[[surface]]\n[media.g]\nformula = \"conrady\"\ncoefficients = [1, 2, 3, 4]\n", "coefficients",
-              6},
+             {"[[surface]]\n[media.g]\nformula = \"conrady\"\ncoefficients = [1, 2, 3, 4]\n", "coefficients", 6},
              {"[[surface]]\n[media.g]\nformula = \"conrady\"\ncoefficients = []\n", "coefficients", 6},
              {"[[surface]]\n[media.g]\nformula = \"conrady\"\ncoefficients = [1]\n", "range_um", 4},
-             {"[[surface]]\n[media.g]\nformula = \"conrady\"\ncoefficients = [1]\nrange_um = [2, 1]\n",
-              "range_um", 7},
-             {"[[surface]]\nrole = \"field stop\"\nthickness_mm = 1\n[[surface]]\nrole = \"field stop\"\n",
-              "role", 7},
+             {"[[surface]]\n[media.g]\nformula = \"conrady\"\ncoefficients = [1]\nrange_um = [2, 1]\n", "range_um", 7},
+             {"[[surface]]\nrole = \"field stop\"\nthickness_mm = 1\n[[surface]]\nrole = \"field stop\"\n", "role", 7},
          }) {
         const InputProblem problem = problem_of(fault.text);
         EXPECT_THAT(problem.key, HasSubstr(fault.key)) << fault.text;

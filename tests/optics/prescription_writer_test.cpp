@@ -69,8 +69,7 @@ TEST(PrescriptionWriter, ImportedLensesReadBackToTheSameBits) {
     for (const char* name : {"singlet.zmx", "doublet.zmx", "tilted_asphere.zmx"}) {
         SCOPED_TRACE(name);
         const auto lens =
-            read_zmx(test::source_folder() / "tests" / "data" / "zmx" / name, GlassCatalog::builtin())
-                .prescription;
+            read_zmx(test::source_folder() / "tests" / "data" / "zmx" / name, GlassCatalog::builtin()).prescription;
         expect_same(read_back(lens), lens);
         EXPECT_EQ(prescription_text(read_back(lens)), prescription_text(lens));
     }
@@ -141,23 +140,20 @@ TEST(PrescriptionWriter, IdealLensesReadBackToTheSameBits) {
 }
 
 TEST(PrescriptionWriter, WritesWhatAPersonWould) {
-    const auto text = prescription_text(parse_prescription(
-        "source = \"a\"\nlicence = \"b\"\n[[surface]]\ncurvature_per_mm = 0.02\nmedium = \"N-BK7\"\n"
-        "thickness_mm = 3\n[[surface]]\nradius_mm = -20.3\n",
-        "lens.toml"));
-    EXPECT_EQ(
-        text,
-        "title = \"lens\"\nsource = \"a\"\nlicence = \"b\"\n\n[[surface]]\nradius_mm = 50\nthickness_mm = 3\n"
-        "medium = \"N-BK7\"\n\n[[surface]]\nradius_mm = -20.3\n");
+    const auto text = prescription_text(
+        parse_prescription("source = \"a\"\nlicence = \"b\"\n[[surface]]\ncurvature_per_mm = 0.02\nmedium = \"N-BK7\"\n"
+                           "thickness_mm = 3\n[[surface]]\nradius_mm = -20.3\n",
+                           "lens.toml"));
+    EXPECT_EQ(text,
+              "title = \"lens\"\nsource = \"a\"\nlicence = \"b\"\n\n[[surface]]\nradius_mm = 50\nthickness_mm = 3\n"
+              "medium = \"N-BK7\"\n\n[[surface]]\nradius_mm = -20.3\n");
 }
 
 // A glass by the name of a built-in one, but with other indices, is written with them.
 TEST(PrescriptionWriter, GlassesOfOtherCataloguesAreWrittenOut) {
-    auto lens =
-        parse_prescription("source = \"a\"\nlicence = \"b\"\n[[surface]]\nmedium = \"N-BK7\"\n", "lens.toml");
+    auto lens = parse_prescription("source = \"a\"\nlicence = \"b\"\n[[surface]]\nmedium = \"N-BK7\"\n", "lens.toml");
     EXPECT_THAT(prescription_text(lens), Not(HasSubstr("[media")));
-    lens.surfaces[0].medium_after =
-        Medium::formula("N-BK7", DispersionFormula::conrady, {1.5, 0.01, 0.001}, 0.3, 2.5);
+    lens.surfaces[0].medium_after = Medium::formula("N-BK7", DispersionFormula::conrady, {1.5, 0.01, 0.001}, 0.3, 2.5);
     EXPECT_THAT(prescription_text(lens), HasSubstr("[media.N-BK7]\nformula = \"conrady\""));
     expect_same(read_back(lens), lens);
 }

@@ -66,7 +66,8 @@ TEST(Spectrum, DrawsLinesByTheirWeights) {
     const auto spectrum = Spectrum::lines(lines, {1, 5, 0, 2});
     std::vector<double> seen(3);
     for (const double wavelength : drawn_wavelengths(spectrum, 31)) {
-        const auto nearest = std::ranges::min_element(lines, {}, [&](double line) { return std::abs(line - wavelength); });
+        const auto nearest =
+            std::ranges::min_element(lines, {}, [&](double line) { return std::abs(line - wavelength); });
         ASSERT_NEAR(*nearest, wavelength, 1e-12);
         ASSERT_NE(*nearest, 0.5780); // has no weight
         seen[*nearest == 0.4358 ? 0 : *nearest == 0.5461 ? 1 : 2] += 1;
@@ -84,8 +85,8 @@ TEST(Spectrum, DrawsLinesByTheirWeights) {
     EXPECT_NEAR(spectrum.reference_um, (0.4358 + 5 * 0.5461 + 2 * 0.6563) / 8, 1e-15);
 }
 
-// The cut at four standard deviations s makes the variance s^2 (1 - 2 t phi(t) / (2 Phi(t) - 1)), t = 4, and the straight
-// lines between points h = s / 16 apart add h^2 / 6.
+// The cut at four standard deviations s makes the variance s^2 (1 - 2 t phi(t) / (2 Phi(t) - 1)), t = 4, and the
+// straight lines between points h = s / 16 apart add h^2 / 6.
 TEST(Spectrum, DrawsAGaussian) {
     const double full_width = 0.03;
     const double sigma = full_width / (2 * std::sqrt(2 * std::log(2.0)));
@@ -196,12 +197,11 @@ Deviation deviation(const char* glass, const Spectrum& spectrum) {
     const SpectralIndex index = spectral_index(medium, spectrum);
     Deviation result;
     for (int i = 0; i <= 400; ++i) {
-        const double wavelength =
-            spectrum.shortest_um + (spectrum.longest_um - spectrum.shortest_um) * i / 400;
+        const double wavelength = spectrum.shortest_um + (spectrum.longest_um - spectrum.shortest_um) * i / 400;
         const double x = (1 / (wavelength * wavelength) - spectrum.centre()) / spectrum.half_width();
         const double exact = medium.index(wavelength);
-        result.whole = std::max(result.whole,
-                                std::abs(index.centre + physics::f64::disperse(index.dispersion, x) - exact));
+        result.whole =
+            std::max(result.whole, std::abs(index.centre + physics::f64::disperse(index.dispersion, x) - exact));
         result.linear = std::max(result.linear, std::abs(index.centre + index.dispersion.c1 * x - exact));
     }
     return result;

@@ -10,7 +10,7 @@ namespace {
 namespace f64 = vkfv::physics::f64;
 namespace f32 = vkfv::physics::f32;
 
-constexpr double glass = 1.5168; // N-BK7 at d, Schott's catalogue
+constexpr double glass = 1.5168;  // N-BK7 at d, Schott's catalogue
 constexpr double fluoride = 1.38; // MgF2
 constexpr double design = 0.55;   // um
 
@@ -18,10 +18,9 @@ double square(double x) {
     return x * x;
 }
 
-// R of one layer by its characteristic matrix (Born and Wolf, section 1.6.2) in complex admittances, which needs no case
-// for total reflection. Unpolarised.
-double matrix_reflectance(double before, double layer, double after, double sine, double thickness,
-                          double wavelength) {
+// R of one layer by its characteristic matrix (Born and Wolf, section 1.6.2) in complex admittances, which needs no
+// case for total reflection. Unpolarised.
+double matrix_reflectance(double before, double layer, double after, double sine, double thickness, double wavelength) {
     using complex = std::complex<double>;
     const auto cosine = [&](double index) { return std::sqrt(complex(1 - square(before * sine / index))); };
     const complex phase = 2 * M_PI * layer * thickness / wavelength * cosine(layer);

@@ -23,7 +23,8 @@ constexpr std::array<double, 7> sines = {-0.95, -0.6, -0.2, 0.0, 0.3, 0.7, 0.95}
 
 } // namespace
 
-// A point of the front focal plane becomes one plane wave: one direction, one optical path to a wavefront, at any aperture.
+// A point of the front focal plane becomes one plane wave: one direction, one optical path to a wavefront, at any
+// aperture.
 TEST(IdealLens, images_its_front_focal_plane_to_infinity) {
     for (const auto& [before, after] : {std::pair(1.0, 1.0), {immersion, 1.0}, {1.0, immersion}}) {
         for (const double x : {0.0, 1.5, -4.0}) {
@@ -56,15 +57,15 @@ TEST(IdealLens, obeys_the_sine_condition) {
     }
 }
 
-// Objective and tube lens: all rays of a point meet in one point, along equal optical paths, wherever the tube lens stands.
+// Objective and tube lens: all rays of a point meet in one point, along equal optical paths, wherever the tube lens
+// stands.
 TEST(IdealLens, two_of_them_image_a_point_to_a_point) {
     constexpr double tube = 200;
     for (const double distance : {30.0, 170.0}) {
         double spread = 0; // on a detector 1 um off: the wrong twin
         std::optional<double> path;
         for (const double l : sines) {
-            const IdealLens first =
-                pass({0.4, -0.3, -immersion * focal_length}, immersion * l, 0.2, immersion, 1);
+            const IdealLens first = pass({0.4, -0.3, -immersion * focal_length}, immersion * l, 0.2, immersion, 1);
             const IdealLens second =
                 pass_ideal_lens(first.position - real3(0, 0, distance), first.direction, 1 / tube, 1, 1);
             EXPECT_NEAR(second.position.x, -0.4 * tube / focal_length, 1e-12);
@@ -79,8 +80,8 @@ TEST(IdealLens, two_of_them_image_a_point_to_a_point) {
     }
 }
 
-// (x, y, p, q) on one plane to those on another has the determinant 1 between any planes: etendue is kept. A thin lens of
-// tangents is the wrong twin.
+// (x, y, p, q) on one plane to those on another has the determinant 1 between any planes: etendue is kept. A thin lens
+// of tangents is the wrong twin.
 TEST(IdealLens, keeps_etendue) {
     const auto canonical = [](std::array<double, 4> in, bool tangents) {
         const double axial = std::sqrt(immersion * immersion - in[2] * in[2] - in[3] * in[3]);
@@ -88,7 +89,8 @@ TEST(IdealLens, keeps_etendue) {
         if (tangents) {
             const double x = in[0] + 12 * in[2] / axial;
             const double y = in[1] + 12 * in[3] / axial;
-            const real3 slope = glm::normalize(real3(in[2] / axial - x / focal_length, in[3] / axial - y / focal_length, 1));
+            const real3 slope =
+                glm::normalize(real3(in[2] / axial - x / focal_length, in[3] / axial - y / focal_length, 1));
             return std::array{x, y, slope.x, slope.y};
         }
         const IdealLens lens = pass_ideal_lens(start, real3(in[2], in[3], axial), 1 / focal_length, immersion, 1);
@@ -107,14 +109,13 @@ TEST(IdealLens, keeps_etendue) {
             const auto from = canonical(low, tangents);
             const auto to = canonical(high, tangents);
             for (int j = 0; j < 4; ++j) {
-                jacobian[i][j] =
-                    (to[static_cast<std::size_t>(j)] - from[static_cast<std::size_t>(j)]) / (2 * step);
+                jacobian[i][j] = (to[static_cast<std::size_t>(j)] - from[static_cast<std::size_t>(j)]) / (2 * step);
             }
         }
         return glm::determinant(jacobian);
     };
-    for (const std::array<double, 4> at : {std::array{0.0, 0.0, 0.0, 0.0}, {1.0, 0.5, 0.3, -0.2},
-                                           {-1.0, 2.0, 0.9, 0.3}, {2.0, 0.0, -1.0, 0.5}}) {
+    for (const std::array<double, 4> at :
+         {std::array{0.0, 0.0, 0.0, 0.0}, {1.0, 0.5, 0.3, -0.2}, {-1.0, 2.0, 0.9, 0.3}, {2.0, 0.0, -1.0, 0.5}}) {
         // Central differences: step^2 times third derivatives, a few hundred at the steepest.
         EXPECT_NEAR(determinant(at, false), 1, 1e-5);
     }

@@ -11,8 +11,8 @@
 
 using namespace vkfv::physics::f64;
 
-// The known answers published with the generator's reference implementation (Random123, kat_vectors), at ten rounds and at
-// the seven that the paths use.
+// The known answers published with the generator's reference implementation (Random123, kat_vectors), at ten rounds and
+// at the seven that the paths use.
 TEST(Random, philox_gives_the_published_answers) {
     const uint ones = 0xffffffffu;
     const uvec4 digits(0x243f6a88u, 0x85a308d3u, 0x13198a2eu, 0x03707344u);
@@ -56,7 +56,9 @@ Numbers numbers_of(uvec4 bits) {
     return {cell(draws.u0), cell(draws.u1), cell(draws.u2), cell(draws.u3), cell(draws.u4), cell(draws.u5)};
 }
 
-double two_sided(double upper_tail) { return 2 * std::min(upper_tail, 1 - upper_tail); }
+double two_sided(double upper_tail) {
+    return 2 * std::min(upper_tail, 1 - upper_tail);
+}
 
 double uniform_p(const std::vector<std::uint32_t>& counts, double total) {
     const double expected = total / static_cast<double>(counts.size());
@@ -77,8 +79,9 @@ double cells_p(const std::vector<Numbers>& drawn, std::size_t cells, Cell cell) 
     return uniform_p(counts, static_cast<double>(drawn.size()));
 }
 
-// How many of n throws into m cells meet a cell that is taken: mean and variance of the occupancy problem (W. Feller, "An
-// Introduction to Probability Theory and Its Applications" I, 3rd ed., IX.9), normal for the thousands that there are.
+// How many of n throws into m cells meet a cell that is taken: mean and variance of the occupancy problem (W. Feller,
+// "An Introduction to Probability Theory and Its Applications" I, 3rd ed., IX.9), normal for the thousands that there
+// are.
 template <class Cell>
 double collisions_p(const std::vector<Numbers>& drawn, Cell cell) {
     constexpr double m = 0x1p21;
@@ -115,16 +118,15 @@ void test_sequence(const std::vector<Numbers>& drawn, std::vector<double>& p) {
         for (std::size_t j = i + 1; j < 6; ++j) {
             p.push_back(
                 cells_p(drawn, 4096, [&](std::size_t k) { return 64 * (drawn[k][i] >> 15) + (drawn[k][j] >> 15); }));
-            p.push_back(collisions_p(drawn, [&](const Numbers& numbers) {
-                return (numbers[i] >> 11 << 11) | (numbers[j] >> 10);
-            }));
+            p.push_back(collisions_p(
+                drawn, [&](const Numbers& numbers) { return (numbers[i] >> 11 << 11) | (numbers[j] >> 10); }));
         }
     }
 }
 
-// Whether images of consecutive seeds scatter as independent ones do: 256 seeds, each with 2048 paths in 8 x 8 pixels by each
-// pair of numbers. The sum of squared deviations has 256 * 63 degrees of freedom, so 1.1 % of it is one standard
-// deviation, and 11 % of excess variance is ten.
+// Whether images of consecutive seeds scatter as independent ones do: 256 seeds, each with 2048 paths in 8 x 8 pixels
+// by each pair of numbers. The sum of squared deviations has 256 * 63 degrees of freedom, so 1.1 % of it is one
+// standard deviation, and 11 % of excess variance is ten.
 void test_dispersion(const Generator& generator, std::vector<double>& p) {
     constexpr uint seeds = 256, paths = 2048;
     std::array<std::array<double, 6>, 6> chi_square{};
@@ -153,7 +155,8 @@ void test_dispersion(const Generator& generator, std::vector<double>& p) {
     }
 }
 
-// The least p-value of the battery, and how many there were: 2^17 draws over consecutive paths, seeds, images and blocks.
+// The least p-value of the battery, and how many there were: 2^17 draws over consecutive paths, seeds, images and
+// blocks.
 struct Verdict {
     double least;
     int tests;
@@ -192,8 +195,8 @@ TEST(Random, numbers_pass_the_battery_over_paths_seeds_images_and_blocks) {
     EXPECT_LT(battery(pcg4d).least, level);
 }
 
-// Wrong twins: four rounds, and images of 11 % more variance than independent paths have, since a path of 18 repeats the one
-// before: of n paths a share f so repeated makes the variance of a pixel 1 + 2 f times as large.
+// Wrong twins: four rounds, and images of 11 % more variance than independent paths have, since a path of 18 repeats
+// the one before: of n paths a share f so repeated makes the variance of a pixel 1 + 2 f times as large.
 TEST(Random, images_of_consecutive_seeds_scatter_as_independent_ones) {
     const auto least = [](const Generator& generator) {
         std::vector<double> p;
@@ -203,13 +206,14 @@ TEST(Random, images_of_consecutive_seeds_scatter_as_independent_ones) {
     const double level = vkfv::test::sidak(1e-3, 15);
     EXPECT_GT(least([](uint seed, uint image, uint path, uint block) {
                   return philox(seed, image, path, block, PHILOX_ROUNDS);
-              }), level);
-    EXPECT_LT(least([](uint seed, uint image, uint path, uint block) {
-                  return philox(seed, image, path, block, 4);
-              }), level);
+              }),
+              level);
+    EXPECT_LT(least([](uint seed, uint image, uint path, uint block) { return philox(seed, image, path, block, 4); }),
+              level);
     EXPECT_LT(least([](uint seed, uint image, uint path, uint block) {
                   return philox(seed, image, path % 18 == 17 ? path - 1 : path, block, PHILOX_ROUNDS);
-              }), level);
+              }),
+              level);
 }
 
 TEST(Random, a_draw_is_the_generator_at_its_path) {

@@ -25,14 +25,18 @@ double phase(double cosine, double g) {
     return (1 - g * g) / (4 * M_PI * std::pow(1 + g * g - 2 * g * cosine, 1.5));
 }
 
-real3 incoming_at(double theta) { return {std::sin(theta), 0.0, -std::cos(theta)}; }
+real3 incoming_at(double theta) {
+    return {std::sin(theta), 0.0, -std::cos(theta)};
+}
 const real3 up{0.0, 0.0, 1.0};
 
 Lobe lobe(uint model, double weight, double parameter_0 = 0) {
     return tabulated({model, weight, parameter_0, 0, 0, 0, {}});
 }
 
-Material henyey_greenstein(double g) { return {lobe(SCATTER_HENYEY_GREENSTEIN, 1, g), {}, {}, {}}; }
+Material henyey_greenstein(double g) {
+    return {lobe(SCATTER_HENYEY_GREENSTEIN, 1, g), {}, {}, {}};
+}
 
 struct Case {
     std::string name;
@@ -55,7 +59,8 @@ std::vector<Case> cases() {
                 values[k] = parameter.minimum + place * (parameter.maximum - parameter.minimum);
                 name += " " + std::string(parameter.name) + " = " + std::to_string(values[k]);
             }
-            result.push_back({name, entry.delta,
+            result.push_back({name,
+                              entry.delta,
                               {tabulated({model, 1, values[0], values[1], values[2], values[3], {}}), {}, {}, {}}});
         }
     }
@@ -139,7 +144,8 @@ std::vector<double> expected_in_cells(const std::function<double(real3)>& densit
 double deviation_p(const Material& material, double theta, uint seed, uint draws, const Material& expected,
                    double turn = 0) {
     const auto density = [&](real3 d) {
-        const real3 turned{d.x * std::cos(turn) + d.z * std::sin(turn), d.y, d.z * std::cos(turn) - d.x * std::sin(turn)};
+        const real3 turned{d.x * std::cos(turn) + d.z * std::sin(turn), d.y,
+                           d.z * std::cos(turn) - d.x * std::sin(turn)};
         return scatter_density(expected, incoming_at(theta), up, turned);
     };
     return vkfv::test::chi_square_p(seen_in_cells(material, theta, seed, draws), expected_in_cells(density, draws));
@@ -301,7 +307,7 @@ TEST(Scatter, moments_at_normal_incidence_are_shifted_by_the_cosine) {
     const double error_p2 = std::sqrt((sum_p2_squared / n - mean_p2 * mean_p2) / n);
     EXPECT_LT(std::abs(mean - 0.9099), z_limit * error + 5e-5);
     EXPECT_LT(std::abs(mean_p2 - 0.7678), z_limit * error_p2 + 5e-5);
-    EXPECT_GT(std::abs(mean - g), z_limit * error);         // wrong twins: the bare moments g and g^2
+    EXPECT_GT(std::abs(mean - g), z_limit * error); // wrong twins: the bare moments g and g^2
     EXPECT_GT(std::abs(mean_p2 - g * g), z_limit * error_p2);
 }
 
@@ -480,8 +486,13 @@ TEST(Scatter, float_draws_the_same_directions_as_double) {
     const auto differing = [](const Material& material, double twin) {
         const Lobe& lobe = material.lobe_0;
         f32::Material single{};
-        single.lobe_0 = {lobe.model, float(lobe.weight), float(lobe.parameter_0 + twin), float(lobe.parameter_1),
-                         float(lobe.parameter_2), float(lobe.parameter_3), {}};
+        single.lobe_0 = {lobe.model,
+                         float(lobe.weight),
+                         float(lobe.parameter_0 + twin),
+                         float(lobe.parameter_1),
+                         float(lobe.parameter_2),
+                         float(lobe.parameter_3),
+                         {}};
         uint count = 0;
         for (uint k = 0; k < 20000; ++k) {
             const auto in = incoming_at(0.3);

@@ -80,14 +80,16 @@ TEST(Source, an_aimed_disc_is_the_cone_cut_out_of_the_whole) {
         const Draws u = draw(13u, 0u, uvec2(k, 0u), 0u);
         const double a = emit_from_disc(1.0, 1.0, u.u0, u.u1, u.u2, u.u3).direction.z;
         const double b = emit_from_disc(1.0, sine, u.u0, u.u1, u.u2, u.u3).direction.z;
-        const auto bin = [&](double cosine) { return static_cast<std::size_t>((1 - cosine * cosine) / (sine * sine) * 20); };
+        const auto bin = [&](double cosine) {
+            return static_cast<std::size_t>((1 - cosine * cosine) / (sine * sine) * 20);
+        };
         if (bin(a) < 20) {
             whole[bin(a)] += 1;
             inside += 1;
         }
         aimed[std::min<std::size_t>(bin(b), 19)] += 1;
     }
-    EXPECT_LT(vkfv::test::share_z(inside, rays, sine * sine), 4.0);     // two-sided, 6e-5
+    EXPECT_LT(vkfv::test::share_z(inside, rays, sine * sine), 4.0);        // two-sided, 6e-5
     EXPECT_GT(vkfv::test::share_z(inside, rays, sine * sine * 1.03), 4.0); // wrong twin
     const std::vector<double> uniform_aimed(20, rays / 20.0), uniform_whole(20, inside / 20.0);
     EXPECT_GT(chi_square_p(aimed, uniform_aimed), false_positive_rate);
@@ -183,8 +185,8 @@ TEST(RingLight, is_uniform_over_its_area) {
     EXPECT_GT(chi_square_p(azimuths, std::vector<double>(30, 1e4)), false_positive_rate);
 }
 
-// About the normal towards the aim: sin^2 of the angle to it is uniform up to that of the cone, the cosine (the wrong twin)
-// is not, and the azimuth about it is.
+// About the normal towards the aim: sin^2 of the angle to it is uniform up to that of the cone, the cosine (the wrong
+// twin) is not, and the azimuth about it is.
 TEST(RingLight, is_lambertian_about_the_way_to_its_aim) {
     const RingLight ring = broad_ring();
     const double sine = 0.9;
@@ -199,8 +201,8 @@ TEST(RingLight, is_lambertian_about_the_way_to_its_aim) {
         ASSERT_NEAR(glm::length(ray.direction), 1, 1e-14);
         const double share = (1 - cosine * cosine) / (sine * sine);
         squares[static_cast<std::size_t>(std::clamp(20 * share, 0.0, 19.5))] += 1;
-        cosines[static_cast<std::size_t>(
-            std::clamp(20 * (cosine - least_cosine) / (1 - least_cosine), 0.0, 19.5))] += 1;
+        cosines[static_cast<std::size_t>(std::clamp(20 * (cosine - least_cosine) / (1 - least_cosine), 0.0, 19.5))] +=
+            1;
         const double angle =
             std::atan2(glm::dot(ray.direction, around), glm::dot(ray.direction, glm::cross(normal, around)));
         azimuths[static_cast<std::size_t>(std::clamp(10 * (1 + angle / pi), 0.0, 19.5))] += 1;

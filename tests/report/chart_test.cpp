@@ -75,12 +75,14 @@ TEST(Png, holds_the_pixels_with_the_lowest_row_last) {
     Grid<Rgb> pixels(2, 3);
     for (int row = 0; row < 3; ++row)
         for (int column = 0; column < 2; ++column)
-            pixels(column, row) = {static_cast<std::uint8_t>(10 * row + column), 7, static_cast<std::uint8_t>(200 + row)};
+            pixels(column, row) = {static_cast<std::uint8_t>(10 * row + column), 7,
+                                   static_cast<std::uint8_t>(200 + row)};
     int columns = 0, rows = 0;
     const auto values = decoded(bytes_of(base64(png_bytes(pixels))), columns, rows);
     EXPECT_EQ(columns, 2);
     EXPECT_EQ(rows, 3);
-    EXPECT_EQ(values, (std::vector<std::uint8_t>{20, 7, 202, 21, 7, 202, 10, 7, 201, 11, 7, 201, 0, 7, 200, 1, 7, 200}));
+    EXPECT_EQ(values,
+              (std::vector<std::uint8_t>{20, 7, 202, 21, 7, 202, 10, 7, 201, 11, 7, 201, 0, 7, 200, 1, 7, 200}));
     EXPECT_EQ(png_bytes(pixels), png_bytes(pixels));
 }
 
@@ -125,7 +127,8 @@ TEST(RangeOf, leaves_out_the_share_that_is_asked_for) {
 }
 
 TEST(Chart, points_stand_between_the_ticks_of_their_values) {
-    const std::vector<Curve> curves = {{.name = "a", .points = {{1, 10}, {10, 100}, {100, 1000}}, .spreads = {}, .markers = true}};
+    const std::vector<Curve> curves = {
+        {.name = "a", .points = {{1, 10}, {10, 100}, {100, 1000}}, .spreads = {}, .markers = true}};
     Svg svg;
     draw_chart(svg, {0, 0}, {400, 300}, "T", axis_over(curves, 0, "N", true), axis_over(curves, 1, "y", true), curves);
     const auto document = parsed(svg.document({400, 300}, "T"));
@@ -185,10 +188,15 @@ TEST(Map, keeps_its_shape_and_its_places_when_its_values_are_averaged) {
 }
 
 TEST(TopographyPicture, has_a_panel_for_each_map_and_the_profile) {
-    surface::HeightMap heights{.height = Grid<double>(8, 6, 0.001), .x0 = -0.01, .y0 = 0, .pitch_x = 0.002, .pitch_y = 0.002};
+    surface::HeightMap heights{
+        .height = Grid<double>(8, 6, 0.001), .x0 = -0.01, .y0 = 0, .pitch_x = 0.002, .pitch_y = 0.002};
     heights.height(3, 3) = nan;
-    const auto document = parsed(topography_picture(
-        {.title = "a < b", .measured = heights, .truth = heights, .deviation = heights, .all_in_focus = Grid<float>(8, 6, 1.0f), .charts = {}}));
+    const auto document = parsed(topography_picture({.title = "a < b",
+                                                     .measured = heights,
+                                                     .truth = heights,
+                                                     .deviation = heights,
+                                                     .all_in_focus = Grid<float>(8, 6, 1.0f),
+                                                     .charts = {}}));
     // Five maps and the colour bars of them all.
     EXPECT_EQ(all(document, "image").size(), 10u);
     EXPECT_STREQ(document.child("svg").child("title").child_value(), "a < b");

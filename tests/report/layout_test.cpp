@@ -1,4 +1,5 @@
-// The picture of the instrument: its rays lie where the elements stand, and what it shows has the sizes and places it says.
+// The picture of the instrument: its rays lie where the elements stand, and what it shows has the sizes and places it
+// says.
 #include "report/layout.hpp"
 
 #include "core/units.hpp"
@@ -84,9 +85,8 @@ std::vector<Case> cases() {
         {"cover glass",
          [] {
              auto d = microscope();
-             d.cover_glass = optics::CoverGlass{.thickness = 1,
-                                                .glass = d.objective.surfaces.front().medium_after,
-                                                .distance = std::nullopt};
+             d.cover_glass = optics::CoverGlass{
+                 .thickness = 1, .glass = d.objective.surfaces.front().medium_after, .distance = std::nullopt};
              return d;
          }},
         {"tilted tube lens",
@@ -191,11 +191,11 @@ TEST_P(LayoutTest, RaysEndWhereTheSequentialTrainsSay) {
             continue; // a straight line
         }
         const auto& pose = instrument.source_pose;
-        start.position = ring ? glm::dvec3(first.x, -first.y, -first.z + constants.ring.aim_distance)
-                              : glm::transpose(pose.axes) * (first - pose.origin) -
-                                    glm::dvec3(0, 0, constants.source_distance);
-        start.direction = ring ? glm::dvec3(direction.x, -direction.y, -direction.z)
-                               : glm::transpose(pose.axes) * direction;
+        start.position =
+            ring ? glm::dvec3(first.x, -first.y, -first.z + constants.ring.aim_distance)
+                 : glm::transpose(pose.axes) * (first - pose.origin) - glm::dvec3(0, 0, constants.source_distance);
+        start.direction =
+            ring ? glm::dvec3(direction.x, -direction.y, -direction.z) : glm::transpose(pose.axes) * direction;
         const auto result = trace_train(instrument.scene(), constants.illumination_first, constants.illumination_count,
                                         start, 1, 0, light);
         const auto arrived = fly_to_plane(result.ray, instrument.front_vertex_height, result.index);
@@ -318,7 +318,8 @@ TEST(Layout, IsToScale) {
         const auto field = two_points(document.select_node((in_group + "//path[@class='field']").c_str()).node());
         EXPECT_NEAR(field.z - field.x, scale * 2 * instrument.first_order.field_edge, 0.011 + 1e-4 * scale);
         if (std::string(group) == "microscope") {
-            const auto sensor = two_points(document.select_node((in_group + "//path[@class='detector']").c_str()).node());
+            const auto sensor =
+                two_points(document.select_node((in_group + "//path[@class='detector']").c_str()).node());
             EXPECT_NEAR(std::abs(sensor.z - sensor.x), scale * 1.3, 0.02);
             const double height = instrument.elements.back().pose.origin.z;
             EXPECT_GT(height, 300);

@@ -31,8 +31,7 @@ inline double flux(int column, int row, double z, std::uint32_t image, int seed)
 
 class FakeTracer : public trace::Tracer {
   public:
-    explicit FakeTracer(int seed = 1, std::chrono::microseconds duration = {})
-        : seed_(seed), duration_(duration) {}
+    explicit FakeTracer(int seed = 1, std::chrono::microseconds duration = {}) : seed_(seed), duration_(duration) {}
     trace::Image expose(double focal_height, std::uint32_t image) const override {
         std::this_thread::sleep_for(duration_);
         exposed.push_back(static_cast<int>(image));

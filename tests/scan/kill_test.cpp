@@ -68,8 +68,7 @@ TEST(Kill, AKilledStackEndsInTheSameBytes) {
         const bool to_be_killed = run < kills;
         // Half of the kills fall into the opening of the folder, half after a new image.
         const auto it_is_time = [&] {
-            return run % 2 == 0 ? fs::exists(sign_of_life(folder.path()))
-                                : stored_images(folder.path()) > before;
+            return run % 2 == 0 ? fs::exists(sign_of_life(folder.path())) : stored_images(folder.path()) > before;
         };
         int status = 0;
         pid_t ended = 0; // the victim's once it has been waited for

@@ -33,11 +33,10 @@ TEST_P(PlanCounts, AreThoseOfTheDecimalNumbers) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Scan, PlanCounts,
-                         testing::Values(Case{0, 0.3, 0.1, 4},   // 0.3 / 0.1 < 3 in double
-                                         Case{-12, 12, 0.8, 31}, //
-                                         Case{-0.3, 0.6, 0.1, 10},
-                                         Case{0, 0.7, 0.1, 8},    // 0.7 / 0.1 < 7 in double
-                                         Case{-1, 1, 0.7, 3},     // the stop is not reached
+                         testing::Values(Case{0, 0.3, 0.1, 4},                           // 0.3 / 0.1 < 3 in double
+                                         Case{-12, 12, 0.8, 31},                         //
+                                         Case{-0.3, 0.6, 0.1, 10}, Case{0, 0.7, 0.1, 8}, // 0.7 / 0.1 < 7 in double
+                                         Case{-1, 1, 0.7, 3},                            // the stop is not reached
                                          Case{0, 0.2999, 0.1, 3}, // a thousandth of a step short: not reached
                                          Case{5, 5, 0.1, 1},      //
                                          Case{0, 999.9, 0.1, 10000}));

@@ -94,8 +94,7 @@ TEST(ImageStore, WritesFluxWithTheHighestRowFirst) {
         const double z = describe().positions[image];
         for (int row = 0; row < rows; ++row) {
             for (int column = 0; column < columns; ++column) {
-                EXPECT_EQ(tiff.pixel(column, row),
-                          static_cast<float>(flux(column, rows - 1 - row, z, image, 1)));
+                EXPECT_EQ(tiff.pixel(column, row), static_cast<float>(flux(column, rows - 1 - row, z, image, 1)));
             }
         }
     }
@@ -123,8 +122,7 @@ TEST(ImageStore, FramesReadBackWithTheLowestRowFirst) {
     ASSERT_EQ(frame.rows, rows);
     EXPECT_EQ(frame(4, 0), static_cast<float>(flux(4, 0, z, 1, 1)));
     EXPECT_EQ(frame(0, 2), static_cast<float>(flux(0, 2, z, 1, 1)));
-    EXPECT_THAT(message_of([&] { read_frame(folder.path(), 1, z + 1e-4); }),
-                HasSubstr("expected the focal height"));
+    EXPECT_THAT(message_of([&] { read_frame(folder.path(), 1, z + 1e-4); }), HasSubstr("expected the focal height"));
     EXPECT_THAT(message_of([&] { read_frame(folder.path(), 9, z); }), HasSubstr("z_0009.tif"));
 }
 
@@ -134,14 +132,12 @@ TEST(ImageStore, LedgerHasARowAnImageThatReadsBackExactly) {
     std::istringstream lines(bytes_of(folder.path() / "ledger.csv"));
     std::string line;
     std::getline(lines, line);
-    EXPECT_EQ(line,
-              "image,z_um,rays,detected_rays,emitted_W,detected_W,\"vignetted at imaging 3 (10x, back)_W\","
-              "residual_W");
+    EXPECT_EQ(line, "image,z_um,rays,detected_rays,emitted_W,detected_W,\"vignetted at imaging 3 (10x, back)_W\","
+                    "residual_W");
     const char* heights[] = {"-1.2", "-0.4", "0.4", "1.2"};
     for (int image = 0; image < 4; ++image) {
         ASSERT_TRUE(std::getline(lines, line));
-        EXPECT_THAT(line,
-                    testing::StartsWith(fmt::format("{},{},1000,{},1,", image, heights[image], 100 + image)));
+        EXPECT_THAT(line, testing::StartsWith(fmt::format("{},{},1000,{},1,", image, heights[image], 100 + image)));
         std::vector<double> numbers;
         std::istringstream fields(line);
         for (std::string field; std::getline(fields, field, ',');) {
@@ -201,8 +197,7 @@ TEST(Stack, ShowsEveryImageOnceInOrderAsItIsStored) {
         });
         EXPECT_THAT(images, ElementsAre(0, 1, 2, 3));
         for (std::size_t k = 0; k < fluxes.size(); ++k) {
-            EXPECT_EQ(fluxes[k],
-                      read_frame(folder.path(), static_cast<int>(k), describe().positions[k]).values);
+            EXPECT_EQ(fluxes[k], read_frame(folder.path(), static_cast<int>(k), describe().positions[k]).values);
         }
     };
     show(FakeTracer());

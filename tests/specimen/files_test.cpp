@@ -17,9 +17,9 @@
 namespace vkfv::specimen {
 namespace {
 
-using testing::HasSubstr;
 using test::base64;
 using test::raw;
+using testing::HasSubstr;
 using Files = test::TemporaryFiles;
 
 // A tetrahedron with corners that floats hold exactly.
@@ -47,8 +47,8 @@ std::string ascii_stl() {
         text += " facet normal 0 0 +1.0\n  outer loop\n";
         for (int i = 0; i < 3; ++i) {
             const glm::vec3& p = corners[face[i]];
-            text += "   vertex " + std::to_string(p.x) + " " + std::to_string(p.y) + "\t" +
-                    std::to_string(p.z) + "\r\n";
+            text +=
+                "   vertex " + std::to_string(p.x) + " " + std::to_string(p.y) + "\t" + std::to_string(p.z) + "\r\n";
         }
         text += "  endloop\n endfacet\n";
     }
@@ -106,8 +106,8 @@ struct Gltf {
                R"(}, {"bufferView": 1, "componentType": 5123, "type": "SCALAR", "count": 12}],)"
                R"("bufferViews": [{"buffer": 0, "byteLength": )" +
                std::to_string(view_length) + R"(}, {"buffer": 0, "byteOffset": 48, "byteLength": 24}],)" +
-               R"("buffers": [{"byteLength": 72, "uri": "data:application/octet-stream;base64,)" +
-               base64(data) + R"("}]})";
+               R"("buffers": [{"byteLength": 72, "uri": "data:application/octet-stream;base64,)" + base64(data) +
+               R"("}]})";
     }
 };
 
@@ -131,9 +131,8 @@ void expect_letter(const Specimen& specimen, double low, double high) {
         bool on_letter;
     };
     const Place places[] = {
-        {-0.03, -0.05, true}, {-0.03, 0.0, true}, {-0.03, 0.05, true},  {0.03, 0.05, true},
-        {0.01, 0.0, true},    {0.03, 0.0, false}, {0.03, -0.05, false}, {0.0, 0.025, false},
-        {0.0, -0.05, false},  {0.07, 0.0, false},
+        {-0.03, -0.05, true}, {-0.03, 0.0, true},   {-0.03, 0.05, true}, {0.03, 0.05, true},  {0.01, 0.0, true},
+        {0.03, 0.0, false},   {0.03, -0.05, false}, {0.0, 0.025, false}, {0.0, -0.05, false}, {0.07, 0.0, false},
     };
     for (const Place& place : places) {
         const auto map = truth(specimen, 1, 1, place.x, place.y, 0.002, 0.002);
@@ -194,9 +193,8 @@ TEST_F(Files, ImageRowsStartAtTheTopAndValuesScale) {
 
 TEST_F(Files, TrianglesWithoutAreaAreDropped) {
     std::string text = ascii_stl();
-    text.insert(text.find(" facet"),
-                " facet normal 0 0 1\n outer loop\n vertex 0 0 0\n vertex 1 1 1\n vertex 2 2 2\n"
-                " endloop\n endfacet\n");
+    text.insert(text.find(" facet"), " facet normal 0 0 1\n outer loop\n vertex 0 0 0\n vertex 1 1 1\n vertex 2 2 2\n"
+                                     " endloop\n endfacet\n");
     Description d;
     d.kind = Kind::stl;
     d.file = write("line.stl", text);
@@ -239,9 +237,8 @@ TEST_F(Files, DamageIsNamedWithItsPlace) {
     };
     const float nan = std::numeric_limits<float>::quiet_NaN();
     const float inf = std::numeric_limits<float>::infinity();
-    const std::string flat =
-        "solid flat\nfacet normal 0 0 1\nouter loop\nvertex 1 0 0\nvertex 1 1 0\nvertex 1 1 2\n"
-        "endloop\nendfacet\nendsolid\n";
+    const std::string flat = "solid flat\nfacet normal 0 0 1\nouter loop\nvertex 1 0 0\nvertex 1 1 0\nvertex 1 1 2\n"
+                             "endloop\nendfacet\nendsolid\n";
     const std::vector<BadFile> cases = {
         {"none.stl", "", {"none.stl@0", "84"}},
         {"short.stl", std::string(50, '\x01'), {"short.stl@50", "84"}},
@@ -252,20 +249,14 @@ TEST_F(Files, DamageIsNamedWithItsPlace) {
         {"empty.stl", std::string(84, '\0'), {"empty.stl", "0 triangles"}},
         {"solid.stl", "solid nothing\nendsolid nothing\n", {"solid.stl", "0 triangles"}},
         {"end.stl", ascii_stl().substr(0, 150), {"end.stl:", "the end of the file"}},
-        {"word.stl",
-         replaced(ascii_stl(), "vertex 0.000000", "vertex zero"),
-         {"word.stl:4:", "`zero`", "finite"}},
-        {"text.stl",
-         replaced(ascii_stl(), "vertex 0.000000", "vertex nan"),
-         {"text.stl:4:", "`nan`", "finite"}},
+        {"word.stl", replaced(ascii_stl(), "vertex 0.000000", "vertex zero"), {"word.stl:4:", "`zero`", "finite"}},
+        {"text.stl", replaced(ascii_stl(), "vertex 0.000000", "vertex nan"), {"text.stl:4:", "`nan`", "finite"}},
         {"loop.stl", replaced(ascii_stl(), "outer loop", "outer hoop"), {"loop.stl:3:", "`loop`"}},
         {"flat.stl", flat, {"footprint"}},
         {"none.gltf", "", {"none.gltf", "glTF 2.0"}},
         {"json.gltf", Gltf().text().substr(0, 100), {"json.gltf"}},
         {"cut.glb", std::string("glTF\2\0\0\0\xff\0\0\0", 12), {"cut.glb"}},
-        {"count.gltf",
-         gltf([](Gltf& g) { g.point_count = 2000000000; }),
-         {"accessor 0", "2000000000 elements"}},
+        {"count.gltf", gltf([](Gltf& g) { g.point_count = 2000000000; }), {"accessor 0", "2000000000 elements"}},
         {"view.gltf", gltf([](Gltf& g) { g.view_length = 4096; }), {"accessor 0"}},
         {"index.gltf", gltf([](Gltf& g) { g.first_index = 4; }), {"index 0", "below 4"}},
         {"position.gltf", gltf([](Gltf& g) { g.position = 7; }), {"accessor = 7"}},

@@ -48,8 +48,8 @@ double autocorrelation(const Grid<float>& grid, int lag) {
     double sum = 0;
     for (int row = 0; row < grid.rows; ++row) {
         for (int column = 0; column < grid.columns; ++column) { // periodic, as the field is
-            sum += static_cast<double>(grid(column, row)) *
-                   static_cast<double>(grid((column + lag) % grid.columns, row));
+            sum +=
+                static_cast<double>(grid(column, row)) * static_cast<double>(grid((column + lag) % grid.columns, row));
         }
     }
     return sum / static_cast<double>(grid.values.size()) / (rms(grid) * rms(grid));
@@ -91,9 +91,7 @@ TEST(Roughness, LeavesWhatTheFilterLeavesOfTheNoise) {
     }
     // In squares, which are unbiased; 4.44 is the level 1e-3 for 11 degrees of freedom. The twin: a kernel 5
     // % wider.
-    const auto expected = [](double kernel) {
-        return std::pow(0.0002 * 0.0005 / (2 * std::sqrt(pi) * kernel), 2);
-    };
+    const auto expected = [](double kernel) { return std::pow(0.0002 * 0.0005 / (2 * std::sqrt(pi) * kernel), 2); };
     EXPECT_LT(t_value(remaining, expected(0.001)), 4.44);
     EXPECT_GT(t_value(remaining, expected(0.00105)), 4.44);
 }
@@ -168,8 +166,7 @@ TEST(Generated, FacetsAndFunctionAreMetAtTheSamePlaces) {
     d.period = 0.04;
     d.period_stop = 0.015;
     // A (w^2 + w'), the frequency rising by (1/0.015 - 1/0.04) over 0.1 mm.
-    pairs.push_back(
-        {"chirp", d, 0.001 * (std::pow(2 * pi / 0.015, 2) + 2 * pi * (1 / 0.015 - 1 / 0.04) / 0.1)});
+    pairs.push_back({"chirp", d, 0.001 * (std::pow(2 * pi / 0.015, 2) + 2 * pi * (1 / 0.015 - 1 / 0.04) / 0.1)});
     RandomRays random(7);
     for (const Pair& pair : pairs) {
         Description facets = pair.description;

@@ -22,11 +22,11 @@
 namespace vkfv::specimen {
 namespace {
 
+using test::base64;
+using test::raw;
 using testing::AllOf;
 using testing::HasSubstr;
 using testing::IsEmpty;
-using test::base64;
-using test::raw;
 using Gltf = test::TemporaryFiles;
 
 const std::vector<glm::vec3> triangle = {{0, 0, 0}, {1, 0, 0}, {0, 2, 0.5f}};
@@ -76,7 +76,8 @@ struct Text {
     void add(const std::string& more, const std::string& accessor, const std::string& view_keys = "") {
         const std::size_t views_before = static_cast<std::size_t>(std::count(views.begin(), views.end(), '{'));
         bytes.resize((bytes.size() + 3) / 4 * 4, '\0');
-        accessors.insert(accessors.size() - 1, R"(, {"bufferView": )" + std::to_string(views_before) + ", " + accessor + "}");
+        accessors.insert(accessors.size() - 1,
+                         R"(, {"bufferView": )" + std::to_string(views_before) + ", " + accessor + "}");
         views.insert(views.size() - 1, R"(, {"buffer": 0, "byteOffset": )" + std::to_string(bytes.size()) +
                                            R"(, "byteLength": )" + std::to_string(more.size()) + view_keys + "}");
         bytes += more;
@@ -124,9 +125,8 @@ TEST_F(Gltf, TextAndBinaryAreTheSame) {
     expect_points(parse_gltf(Text{}.binary(), "part.glb"), plain);
     // A buffer beside the file, with blanks in its name.
     write("the points.bin", floats(triangle));
-    const auto file = write("beside.gltf", with([](Text& t) {
-                                               t.buffers = R"([{"byteLength": 36, "uri": "the%20points.bin"}])";
-                                           }).text());
+    const auto file = write(
+        "beside.gltf", with([](Text& t) { t.buffers = R"([{"byteLength": 36, "uri": "the%20points.bin"}])"; }).text());
     expect_points(read_gltf(file, {}), plain);
 }
 
@@ -152,26 +152,35 @@ TEST_F(Gltf, WhatIsAskedForAndNotGivenIsRefused) {
                    for (const std::uint16_t value : values) {
                        bytes += raw(value);
                    }
-                   t.add(bytes, R"("componentType": 5123, "type": "SCALAR", "count": )" + std::to_string(values.size()), keys);
+                   t.add(bytes, R"("componentType": 5123, "type": "SCALAR", "count": )" + std::to_string(values.size()),
+                         keys);
                    t.primitive = R"({"attributes": {"POSITION": 0}, "indices": 1})";
-               }).text();
+               })
+            .text();
     };
     const std::vector<Refusal> cases = {
-        {"required", required("EXT_unheard_of"),
-         {"extensionsRequired = \"EXT_unheard_of\"", "EXT_mesh_gpu_instancing", "Export the file without this extension"}},
+        {"required",
+         required("EXT_unheard_of"),
+         {"extensionsRequired = \"EXT_unheard_of\"", "EXT_mesh_gpu_instancing",
+          "Export the file without this extension"}},
         {"draco", required("KHR_draco_mesh_compression"), {"not compressed", "without compression"}},
         {"meshopt", required("EXT_meshopt_compression"), {"not compressed"}},
-        {"version 1", asset(R"({"version": "1.0"})"), {"asset.version = 1.0", "glTF 2.0", "Export the file as glTF 2.0"}},
+        {"version 1",
+         asset(R"({"version": "1.0"})"),
+         {"asset.version = 1.0", "glTF 2.0", "Export the file as glTF 2.0"}},
         {"version 3", asset(R"({"version": "3.0"})"), {"asset.version = 3.0"}},
         {"no version", asset("{}"), {"asset.version = nothing"}},
         {"number", asset(R"({"version": 2.0})"), {"asset.version = 2.0", "a string"}},
         {"least version", asset(R"({"version": "2.0", "minVersion": "3.0"})"), {"asset.minVersion = 3.0"}},
         {"later minor", asset(R"({"version": "2.1", "minVersion": "2.1"})"), {"asset.minVersion = 2.1"}},
-        {"matrix of 12", nodes(R"([{"mesh": 0, "matrix": [1,0,0,0, 0,1,0,0, 0,0,1,0]}])"),
+        {"matrix of 12",
+         nodes(R"([{"mesh": 0, "matrix": [1,0,0,0, 0,1,0,0, 0,0,1,0]}])"),
          {"node 0.matrix = 12 numbers", "16 numbers"}},
-        {"matrix and scale", nodes(R"([{"mesh": 0, "scale": [1,1,1], "matrix": [1,0,0,0, 0,1,0,0, 0,0,1,0, 0,0,0,1]}])"),
+        {"matrix and scale",
+         nodes(R"([{"mesh": 0, "scale": [1,1,1], "matrix": [1,0,0,0, 0,1,0,0, 0,0,1,0, 0,0,0,1]}])"),
          {"node 0.matrix", "either of them"}},
-        {"matrix by rows", nodes(R"([{"mesh": 0, "matrix": [1,0,0,5, 0,1,0,0, 0,0,1,0, 0,0,0,1]}])"),
+        {"matrix by rows",
+         nodes(R"([{"mesh": 0, "matrix": [1,0,0,5, 0,1,0,0, 0,0,1,0, 0,0,0,1]}])"),
          {"node 0.matrix", "column after column"}},
         {"scale of 2", nodes(R"([{"mesh": 0, "scale": [1,1]}])"), {"node 0.scale = 2 numbers", "3 numbers"}},
         {"scale of words", nodes(R"([{"mesh": 0, "scale": ["1",1,1]}])"), {"node 0.scale = \"1\"", "finite numbers"}},
@@ -180,46 +189,65 @@ TEST_F(Gltf, WhatIsAskedForAndNotGivenIsRefused) {
         {"no such mesh", nodes(R"([{"mesh": 1}])"), {"mesh = 1", "an index below 1"}},
         {"children", nodes(R"([{"children": {}}])"), {"node 0.children", "an array of integers"}},
         {"skin", nodes(R"([{"mesh": 0, "skin": 0}])"), {"node 0.skin", "Apply the skeleton's pose"}},
-        {"four indices", indices({0, 1, 2, 0}), {"mesh 0.primitives[0].indices = 4 vertices", "three for every triangle"}},
+        {"four indices",
+         indices({0, 1, 2, 0}),
+         {"mesh 0.primitives[0].indices = 4 vertices", "three for every triangle"}},
         {"index beyond", indices({0, 1, 3}), {"index 2 = 3", "an index below 3"}},
         {"spaced indices", indices({0, 1, 2, 0, 0, 0}, R"(, "byteStride": 4)"), {"byteStride = 4", "without gaps"}},
         {"mode 7", primitive(R"({"attributes": {"POSITION": 0}, "mode": 7})"), {".mode = 7", "0 to 6"}},
         {"mode 4.5", primitive(R"({"attributes": {"POSITION": 0}, "mode": 4.5})"), {".mode = 4.5", "an integer"}},
-        {"indices as text", primitive(R"({"attributes": {"POSITION": 0}, "indices": "0"})"),
+        {"indices as text",
+         primitive(R"({"attributes": {"POSITION": 0}, "indices": "0"})"),
          {".indices = \"0\"", "an integer"}},
-        {"floats as indices", primitive(R"({"attributes": {"POSITION": 0}, "indices": 0})"), {"accessor 0", "scalar indices"}},
+        {"floats as indices",
+         primitive(R"({"attributes": {"POSITION": 0}, "indices": 0})"),
+         {"accessor 0", "scalar indices"}},
         {"two points of a strip",
          with([](Text& t) {
              t.primitive = R"({"attributes": {"POSITION": 0}, "mode": 5})";
              t.accessors = R"([{"bufferView": 0, "componentType": 5126, "type": "VEC3", "count": 2}])";
          }).text(),
          {"2 vertices", "at least three"}},
-        {"shorts", accessors(R"([{"bufferView": 0, "componentType": 5122, "type": "VEC3", "count": 3}])"),
+        {"shorts",
+         accessors(R"([{"bufferView": 0, "componentType": 5122, "type": "VEC3", "count": 3}])"),
          {"accessor 0 = type VEC3 of components 5122", "positions of three floats"}},
         {"vec4", accessors(R"([{"bufferView": 0, "componentType": 5126, "type": "VEC4", "count": 3}])"), {"type VEC4"}},
-        {"count 0", accessors(R"([{"bufferView": 0, "componentType": 5126, "type": "VEC3", "count": 0}])"), {"count = 0"}},
-        {"count -1", accessors(R"([{"bufferView": 0, "componentType": 5126, "type": "VEC3", "count": -1}])"),
+        {"count 0",
+         accessors(R"([{"bufferView": 0, "componentType": 5126, "type": "VEC3", "count": 0}])"),
+         {"count = 0"}},
+        {"count -1",
+         accessors(R"([{"bufferView": 0, "componentType": 5126, "type": "VEC3", "count": -1}])"),
          {"count = -1", "an integer"}},
-        {"compressed", accessors(R"([{"componentType": 5126, "type": "VEC3", "count": 3}])"),
+        {"compressed",
+         accessors(R"([{"componentType": 5126, "type": "VEC3", "count": 3}])"),
          {"accessor 0.bufferView = nothing", "without compression"}},
-        {"beyond the view", accessors(R"([{"bufferView": 0, "byteOffset": 4, "componentType": 5126, "type": "VEC3", "count": 3}])"),
+        {"beyond the view",
+         accessors(R"([{"bufferView": 0, "byteOffset": 4, "componentType": 5126, "type": "VEC3", "count": 3}])"),
          {"accessor 0 = 3 elements of 12 bytes at 4"}},
-        {"stride 8", views(R"([{"buffer": 0, "byteLength": 36, "byteStride": 8}])"), {"buffer view 0.byteStride = 8", "from 12"}},
+        {"stride 8",
+         views(R"([{"buffer": 0, "byteLength": 36, "byteStride": 8}])"),
+         {"buffer view 0.byteStride = 8", "from 12"}},
         {"beyond the buffer", views(R"([{"buffer": 0, "byteOffset": 4, "byteLength": 36}])"), {"inside the 36 bytes"}},
         {"no buffer", views(R"([{"buffer": 1, "byteLength": 36}])"), {"buffer = 1", "an index below 1"}},
         {"no uri", buffers(R"([{"byteLength": 36}])"), {"buffer 0.uri = nothing", "within a .glb"}},
-        {"host", buffers(R"([{"byteLength": 36, "uri": "https://a.example/b.bin"}])"), {"buffer 0.uri", "a relative path"}},
+        {"host",
+         buffers(R"([{"byteLength": 36, "uri": "https://a.example/b.bin"}])"),
+         {"buffer 0.uri", "a relative path"}},
         {"absolute", buffers(R"([{"byteLength": 36, "uri": "/dev/zero"}])"), {"buffer 0.uri", "a relative path"}},
-        {"base64", buffers(R"([{"byteLength": 36, "uri": "data:application/octet-stream;base64,AA*A"}])"),
+        {"base64",
+         buffers(R"([{"byteLength": 36, "uri": "data:application/octet-stream;base64,AA*A"}])"),
          {"buffer 0.uri", "whole base64 digits"}},
-        {"short buffer", buffers(R"([{"byteLength": 36, "uri": "data:application/octet-stream;base64,AAAA"}])"),
+        {"short buffer",
+         buffers(R"([{"byteLength": 36, "uri": "data:application/octet-stream;base64,AAAA"}])"),
          {"buffer 0.uri", "of 36 bytes"}},
         {"no JSON", "{\n  \"asset\": nix}", {"part.gltf:2:13", "no valid JSON"}},
         {"cut", Text{}.text().substr(0, 50), {"part.gltf:1:", "the end of the JSON text"}},
         {"array", "[]", {"no JSON object"}},
         {"binary of version 1", "glTF" + raw(1u) + raw(28u) + std::string(16, ' '), {"part.gltf@4", "version 1"}},
         {"cut binary", Text{}.binary().substr(0, 100), {"part.gltf@8", "in a file of 100"}},
-        {"long chunk", "glTF" + raw(2u) + raw(20u) + raw(0xffffffffu) + "JSON", {"part.gltf@12", "a chunk of 4294967295 bytes"}},
+        {"long chunk",
+         "glTF" + raw(2u) + raw(20u) + raw(0xffffffffu) + "JSON",
+         {"part.gltf@12", "a chunk of 4294967295 bytes"}},
     };
     for (const Refusal& refusal : cases) {
         const std::string message = message_of(refusal.bytes);
@@ -230,7 +258,8 @@ TEST_F(Gltf, WhatIsAskedForAndNotGivenIsRefused) {
 }
 
 TEST_F(Gltf, ExtensionsOfAppearanceAndLaterMinorVersionsAreRead) {
-    for (const char* name : {"KHR_materials_unlit", "KHR_texture_basisu", "KHR_mesh_quantization", "EXT_mesh_gpu_instancing"}) {
+    for (const char* name :
+         {"KHR_materials_unlit", "KHR_texture_basisu", "KHR_mesh_quantization", "EXT_mesh_gpu_instancing"}) {
         expect_points(parse_gltf(with([&](Text& t) {
                                      t.head = std::string(R"(, "extensionsRequired": [")") + name + "\"]";
                                  }).text(),
@@ -241,8 +270,9 @@ TEST_F(Gltf, ExtensionsOfAppearanceAndLaterMinorVersionsAreRead) {
         expect_points(parse_gltf(with([&](Text& t) { t.asset = asset; }).text(), "part.gltf"), plain);
     }
     // Used but not required: the file is whole without it.
-    expect_points(parse_gltf(with([](Text& t) { t.head = R"(, "extensionsUsed": ["EXT_unheard_of"])"; }).text(), "part.gltf"),
-                  plain);
+    expect_points(
+        parse_gltf(with([](Text& t) { t.head = R"(, "extensionsUsed": ["EXT_unheard_of"])"; }).text(), "part.gltf"),
+        plain);
 }
 
 TEST_F(Gltf, InstancesStandWhereTheyArePlaced) {
@@ -256,8 +286,9 @@ TEST_F(Gltf, InstancesStandWhereTheyArePlaced) {
     text.add(rotations, R"("componentType": 5122, "normalized": true, "type": "VEC4", "count": 2)");
     text.add(floats({{1, 1, 1}, {2, 3, 4}}), R"("componentType": 5126, "type": "VEC3", "count": 2)");
     const std::string attributes = R"({"TRANSLATION": 1, "ROTATION": 2, "SCALE": 3, "_ID": 0})";
-    text.nodes = R"([{"mesh": 0, "translation": [0, 0, 100], "extensions": {"EXT_mesh_gpu_instancing": {"attributes": )" +
-                 attributes + "}}}]";
+    text.nodes =
+        R"([{"mesh": 0, "translation": [0, 0, 100], "extensions": {"EXT_mesh_gpu_instancing": {"attributes": )" +
+        attributes + "}}}]";
     for (const char* head : {R"(, "extensionsRequired": ["EXT_mesh_gpu_instancing"])", ""}) {
         text.head = head;
         const FileMesh mesh = parse_gltf(text.text(), "part.gltf");
@@ -284,8 +315,8 @@ TEST_F(Gltf, QuantisedPositionsNeedTheirExtension) {
     text.bytes.clear();
     text.views = R"([{"buffer": 0, "byteLength": 24, "byteStride": 8}])";
     for (const auto& [x, y, z] : {std::tuple{0, 0, 0}, std::tuple{32767, 0, 0}, std::tuple{0, -32768, 16384}}) {
-        text.bytes += raw(static_cast<std::int16_t>(x)) + raw(static_cast<std::int16_t>(y)) + raw(static_cast<std::int16_t>(z)) +
-                      std::string(2, '\0');
+        text.bytes += raw(static_cast<std::int16_t>(x)) + raw(static_cast<std::int16_t>(y)) +
+                      raw(static_cast<std::int16_t>(z)) + std::string(2, '\0');
     }
     text.accessors = R"([{"bufferView": 0, "componentType": 5122, "normalized": true, "type": "VEC3", "count": 3}])";
     EXPECT_THAT(message_of(text.text()), HasSubstr("positions of three floats"));
@@ -329,7 +360,8 @@ TEST_F(Gltf, SparseValuesReplaceThoseOfTheBuffer) {
 TEST_F(Gltf, WhatLeavesTheTrianglesAloneIsWarnedOf) {
     const Text lines = with([](Text& t) {
         t.head = R"(, "animations": [{}], "skins": [{}])";
-        t.primitive = R"({"attributes": {"POSITION": 0}}, {"attributes": {"POSITION": 0}, "mode": 1}, {"attributes": {}})";
+        t.primitive =
+            R"({"attributes": {"POSITION": 0}}, {"attributes": {"POSITION": 0}, "mode": 1}, {"attributes": {}})";
     });
     const std::string log = log_of([&] { expect_points(parse_gltf(lines.text(), "part.gltf"), plain); });
     EXPECT_THAT(log, HasSubstr("1 primitives of points and lines are left out"));
@@ -344,7 +376,8 @@ TEST_F(Gltf, CopiesAreCountedBeforeTheyAreMade) {
     constexpr int points = 30000;
     text.bytes = std::string(12 * points, '\0');
     text.views = R"([{"buffer": 0, "byteLength": )" + std::to_string(12 * points) + "}]";
-    text.accessors = R"([{"bufferView": 0, "componentType": 5126, "type": "VEC3", "count": )" + std::to_string(points) + "}]";
+    text.accessors =
+        R"([{"bufferView": 0, "componentType": 5126, "type": "VEC3", "count": )" + std::to_string(points) + "}]";
     text.add(std::string(1200000, '\0'), R"("componentType": 5126, "type": "VEC3", "count": 100000)");
     text.nodes = R"([{"mesh": 0, "extensions": {"EXT_mesh_gpu_instancing": {"attributes": {"TRANSLATION": 1}}}}])";
     EXPECT_THAT(message_of(text.text()),
@@ -387,8 +420,7 @@ TEST_F(Gltf, ChainsOfNodesAndNestedExtrasNeedNoStack) {
         return with([&](Text& t) { t.head = ", \"extras\": " + extras; });
     };
     on_stack(256 << 10, [&] {
-        expect_points(parse_gltf(chain, "chain.gltf"),
-                      {{0, 0, links - 1}, {1, 0, links - 1}, {0, 2, links - 0.5}});
+        expect_points(parse_gltf(chain, "chain.gltf"), {{0, 0, links - 1}, {1, 0, links - 1}, {0, 2, links - 0.5}});
         for (const auto& [open, close] : {std::pair{"[", "]"}, std::pair{"{\"a\":", "}"}}) {
             EXPECT_EQ(message_of(nested(90, open, close).text()), "no error");
             EXPECT_THAT(message_of(nested(20000, open, close).text()), HasSubstr("part.gltf:1:"));
@@ -397,10 +429,9 @@ TEST_F(Gltf, ChainsOfNodesAndNestedExtrasNeedNoStack) {
             EXPECT_THAT(message_of(nested(20000, open, close).binary()), HasSubstr("part.gltf@"));
         }
         // Brackets within strings are none.
-        EXPECT_EQ(message_of(with([](Text& t) {
-                                 t.head = R"(, "extras": "\"[[[)" + std::string(1000, '[') + "\"";
-                             }).text()),
-                  "no error");
+        EXPECT_EQ(
+            message_of(with([](Text& t) { t.head = R"(, "extras": "\"[[[)" + std::string(1000, '[') + "\""; }).text()),
+            "no error");
     });
 }
 
@@ -414,12 +445,12 @@ TEST_F(Gltf, BuffersAreRegularFiles) {
     ASSERT_LT(name.size(), sizeof address.sun_path);
     name.copy(address.sun_path, name.size());
     ASSERT_EQ(bind(listener, reinterpret_cast<const sockaddr*>(&address), sizeof address), 0);
-    for (const auto& [uri, found] : {std::pair{"pipe", "a named pipe"}, std::pair{"zero", "a device"},
-                                     std::pair{"folder", "a directory"}, std::pair{"socket", "a socket"},
-                                     std::pair{"absent.bin", "no such file"}}) {
-        const auto file = write("part.gltf", with([&](Text& t) {
-                                                 t.buffers = std::string(R"([{"byteLength": 36, "uri": ")") + uri + "\"}]";
-                                             }).text());
+    for (const auto& [uri, found] :
+         {std::pair{"pipe", "a named pipe"}, std::pair{"zero", "a device"}, std::pair{"folder", "a directory"},
+          std::pair{"socket", "a socket"}, std::pair{"absent.bin", "no such file"}}) {
+        const auto file = write(
+            "part.gltf",
+            with([&](Text& t) { t.buffers = std::string(R"([{"byteLength": 36, "uri": ")") + uri + "\"}]"; }).text());
         try {
             (void)read_gltf(file, {});
             ADD_FAILURE() << uri;

@@ -21,15 +21,17 @@
 namespace vkfv::specimen {
 namespace {
 
+using test::raw;
 using testing::AllOf;
 using testing::HasSubstr;
-using test::raw;
 using Hostile = test::TemporaryFiles;
 
 // A cube of side 1, its first vertex at another place.
 std::vector<std::array<glm::vec3, 3>> cube(const glm::vec3& first = {0, 0, 0}) {
     const auto corner = [&](int k) {
-        return k == 0 ? first : glm::vec3(static_cast<float>(k & 1), static_cast<float>(k >> 1 & 1), static_cast<float>(k >> 2));
+        return k == 0
+                   ? first
+                   : glm::vec3(static_cast<float>(k & 1), static_cast<float>(k >> 1 & 1), static_cast<float>(k >> 2));
     };
     constexpr int faces[6][4] = {{0, 2, 3, 1}, {4, 5, 7, 6}, {0, 1, 5, 4}, {2, 6, 7, 3}, {0, 4, 6, 2}, {1, 3, 7, 5}};
     std::vector<std::array<glm::vec3, 3>> facets;
@@ -101,10 +103,13 @@ TEST_F(Hostile, StlThatIsNoneIsToldApart) {
         wide += {c, '\0'};
     }
     EXPECT_THAT(stl_message(wide), AllOf(HasSubstr("text in UTF-16"), HasSubstr("Save the text as UTF-8")));
-    EXPECT_THAT(stl_message("\xef\xbb\xbf# another text, which is long enough for the header of a binary file, that is 84 bytes"),
-                HasSubstr("text that does not begin with \"solid\""));
-    EXPECT_THAT(stl_message("v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n# a mesh in another format, long enough for the header"),
-                HasSubstr("part.stl@80: STL = neither ASCII"));
+    EXPECT_THAT(
+        stl_message(
+            "\xef\xbb\xbf# another text, which is long enough for the header of a binary file, that is 84 bytes"),
+        HasSubstr("text that does not begin with \"solid\""));
+    EXPECT_THAT(
+        stl_message("v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n# a mesh in another format, long enough for the header"),
+        HasSubstr("part.stl@80: STL = neither ASCII"));
     // A damaged binary file is not taken for text by its header alone.
     std::string cut = binary(cube());
     cut.replace(0, 10, "solid cube");
@@ -215,7 +220,8 @@ TEST_F(Hostile, ImagesMadeToFillTheMemoryAreRefused) {
     ASSERT_TRUE(output->close());
     EXPECT_THAT(message_of([&] { (void)read_image(file, {}); }),
                 AllOf(HasSubstr("16384 x 4097 pixels in"), HasSubstr("Crop or scale")));
-    EXPECT_THAT(message_of([&] { (void)parse_image("no image at all", "map.xyz"); }), HasSubstr("a file of unknown kind"));
+    EXPECT_THAT(message_of([&] { (void)parse_image("no image at all", "map.xyz"); }),
+                HasSubstr("a file of unknown kind"));
     EXPECT_THAT(message_of([&] { (void)parse_image("", "map"); }), HasSubstr("a file of unknown kind"));
 }
 

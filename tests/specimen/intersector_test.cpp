@@ -85,8 +85,7 @@ TEST(Intersector, FindsTheNearestOfAllTriangles) {
     int missed = 0;
     for (int i = 0; i < 4000; ++i) {
         // From above and from the side, down and up, and every eighth straight down.
-        const glm::dvec3 origin(random.uniform(-0.02, 0.02), random.uniform(-0.02, 0.02),
-                                random.uniform(-0.001, 0.01));
+        const glm::dvec3 origin(random.uniform(-0.02, 0.02), random.uniform(-0.02, 0.02), random.uniform(-0.001, 0.01));
         const glm::dvec3 direction = i % 8 == 0 ? glm::dvec3(0, 0, -1) : random.direction(0, 3.14159);
         const std::optional<double> expected = triangles.nearest(origin, direction);
         const auto walked = by_walk.hit(origin, direction);
@@ -142,8 +141,7 @@ TEST(Intersector, LetsNothingThroughAtCornersAndEdges) {
     const Triangles triangles(field);
     for (const Intersector& intersector :
          {Intersector(Specimen{field, {}}), Intersector(Specimen{triangles.mesh(), {}})}) {
-        EXPECT_EQ(0, slipped_through(intersector, field,
-                                     [&](int i, int j, double) { return vertex(field, i, j); }));
+        EXPECT_EQ(0, slipped_through(intersector, field, [&](int i, int j, double) { return vertex(field, i, j); }));
         for (const auto& [di, dj] : {std::pair{1, 0}, {0, 1}, {1, 1}}) {
             EXPECT_EQ(0, slipped_through(intersector, field, [&, di = di, dj = dj](int i, int j, double u) {
                           return glm::mix(vertex(field, i, j), vertex(field, i + di, j + dj), u);
@@ -221,8 +219,7 @@ TEST(Truth, OfAPlaneIsThePlaneAndOfAnOverhangTheUppermost) {
         shelves.vertices.insert(shelves.vertices.end(), {{-1, -1, z}, {1, -1, z}, {0, 1, z}});
         shelves.triangles.emplace_back(first, first + 1, first + 2);
     }
-    EXPECT_FLOAT_EQ(static_cast<float>(truth(Specimen{shelves, {}}, 1, 1, 0, 0, 0.1, 0.1).height(0, 0)),
-                    0.003f);
+    EXPECT_FLOAT_EQ(static_cast<float>(truth(Specimen{shelves, {}}, 1, 1, 0, 0, 0.1, 0.1).height(0, 0)), 0.003f);
 }
 
 } // namespace

@@ -40,8 +40,8 @@ TEST(ScatterRegistry, NamesEveryModelWithItsParameters) {
 }
 
 TEST(Material, BecomesTheRecordLobeByLobe) {
-    const auto record = material_record(
-        {{{"mirror", 0.1, {}}, {"henyey-greenstein", 0.2, {0.7}}, {"lambertian", 0.3, {}}}});
+    const auto record =
+        material_record({{{"mirror", 0.1, {}}, {"henyey-greenstein", 0.2, {0.7}}, {"lambertian", 0.3, {}}}});
     EXPECT_EQ(record.lobe_0.model, physics::f64::SCATTER_MIRROR);
     EXPECT_EQ(record.lobe_1.model, physics::f64::SCATTER_HENYEY_GREENSTEIN);
     EXPECT_EQ(record.lobe_1.parameter_0, 0.7);
@@ -67,7 +67,8 @@ TEST(Material, RefusesWhatIsNoMaterial) {
     const Lobe fifth{"lambertian", 0.2, {}};
     EXPECT_EQ(problem_of({{fifth, fifth, fifth, fifth}}), "");
     EXPECT_THAT(problem_of({{fifth, fifth, fifth, fifth, fifth}}), AllOf(HasSubstr("5 lobes"), HasSubstr("at most 4")));
-    EXPECT_EQ(problem_of({{{"lambertian", 0.7, {}}, {"mirror", 0.1, {}}, {"mirror", 0.2, {}}}}), ""); // 1 but for rounding
+    EXPECT_EQ(problem_of({{{"lambertian", 0.7, {}}, {"mirror", 0.1, {}}, {"mirror", 0.2, {}}}}),
+              ""); // 1 but for rounding
     EXPECT_THAT(problem_of({{{"lambertian", 0.7, {}}, {"mirror", 0.31, {}}}}),
                 AllOf(HasSubstr("add up to 1.01"), HasSubstr("at most 1")));
     EXPECT_THAT(problem_of({{{"lambertian", 0, {}}}}), HasSubstr("specimen.material.weight"));

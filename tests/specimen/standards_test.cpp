@@ -1,8 +1,8 @@
 #include "specimen/standards.hpp"
 
-#include "support/surface_files.hpp"
 #include "core/fourier.hpp"
 #include "core/units.hpp"
+#include "support/surface_files.hpp"
 #include "surface/surface_file.hpp"
 
 #include <gtest/gtest.h>
@@ -189,7 +189,8 @@ TEST(SubSurfaces, of_a_measured_surface_repeat_its_middle) {
     surface::HeightMap map{.height = Grid<double>(61, 51), .x0 = 0, .y0 = 0, .pitch_x = 0.002, .pitch_y = 0.002};
     for (int row = 0; row < 51; ++row)
         for (int column = 0; column < 61; ++column)
-            map.height(column, row) = 0.001 * std::sin(2 * pi * (column - 30) / 20.0) * std::cos(2 * pi * (row - 25) / 25.0);
+            map.height(column, row) =
+                0.001 * std::sin(2 * pi * (column - 30) / 20.0) * std::cos(2 * pi * (row - 25) / 25.0);
     map.height(30, 25) = std::numeric_limits<double>::quiet_NaN();
     surface::write_surface(file, map);
     Description d = of(Kind::air, 0.16, 0.001);
@@ -198,11 +199,12 @@ TEST(SubSurfaces, of_a_measured_surface_repeat_its_middle) {
     const Specimen made = make(d);
     const HeightField& field = field_of(made);
     ASSERT_EQ(field.heights.columns, 161);
-    // A tile's middle lies between its points 39 and 40, at the file's point (30, 25). Levelling a wave of whole periods
-    // moves little, and cubic convolution errs by (pi / 20)^3 = 0.004 of the amplitude.
+    // A tile's middle lies between its points 39 and 40, at the file's point (30, 25). Levelling a wave of whole
+    // periods moves little, and cubic convolution errs by (pi / 20)^3 = 0.004 of the amplitude.
     for (const int tile : {0, 80})
         for (const int k : {-10, 7, 15})
-            EXPECT_NEAR(field.heights(tile + 40 + k, 40), 0.001 * std::sin(2 * pi * (k + 0.5) / 40.0), 3e-5) << tile << k;
+            EXPECT_NEAR(field.heights(tile + 40 + k, 40), 0.001 * std::sin(2 * pi * (k + 0.5) / 40.0), 3e-5)
+                << tile << k;
     std::size_t gaps = 0;
     for (const bool gap : field.interpolated)
         gaps += gap;

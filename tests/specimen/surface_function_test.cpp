@@ -78,15 +78,13 @@ std::vector<Shape> shapes() {
     Description plane = analytic(Kind::plane);
     plane.tilt_x = 0.1;
     plane.tilt_y = -0.2;
-    list.push_back(
-        {"plane", plane, [](double x, double y) { return x * std::tan(0.1) - y * std::tan(0.2); }});
+    list.push_back({"plane", plane, [](double x, double y) { return x * std::tan(0.1) - y * std::tan(0.2); }});
     Description step = analytic(Kind::step);
     step.height = 0.004;
     step.wall = 0.002;
-    list.push_back(
-        {"step", step, [](double x, double) {
-             return x <= -0.001 ? -0.002 : x >= 0.001 ? 0.002 : -0.002 + 0.004 * (x + 0.001) / 0.002;
-         }});
+    list.push_back({"step", step, [](double x, double) {
+                        return x <= -0.001 ? -0.002 : x >= 0.001 ? 0.002 : -0.002 + 0.004 * (x + 0.001) / 0.002;
+                    }});
     list.push_back({"cap", sphere_cap(), [](double x, double y) {
                         const double r2 = x * x + y * y;
                         return r2 < 0.01 ? std::max(std::sqrt(0.01 - r2) - 0.07, 0.0) : 0.0;
@@ -100,8 +98,7 @@ std::vector<Shape> shapes() {
     Description sinusoid = analytic(Kind::sinusoid);
     sinusoid.amplitude = 0.001;
     sinusoid.period = 0.013;
-    list.push_back(
-        {"sinusoid", sinusoid, [](double x, double) { return 0.001 * std::sin(2 * pi * x / 0.013); }});
+    list.push_back({"sinusoid", sinusoid, [](double x, double) { return 0.001 * std::sin(2 * pi * x / 0.013); }});
     Description chirp = analytic(Kind::chirp);
     chirp.amplitude = 0.001;
     chirp.period = 0.04;
@@ -273,8 +270,8 @@ TEST(March, MeetsASphereWhereTheClosedFormDoes) {
         EXPECT_NEAR(glm::length(hit.position - point), 0, 1e-12);
         const glm::dvec3 normal = cap ? (point - glm::dvec3(0, 0, -0.07)) / 0.1 : glm::dvec3(0, 0, 1);
         EXPECT_NEAR(glm::length(hit.normal - normal), 0, 1e-10);
-        const auto in_float = physics::f32::march_surface(
-            no_lattice, f, glm::vec3(origin), glm::vec3(direction), 0.0f, std::numeric_limits<float>::max());
+        const auto in_float = physics::f32::march_surface(no_lattice, f, glm::vec3(origin), glm::vec3(direction), 0.0f,
+                                                          std::numeric_limits<float>::max());
         ASSERT_EQ(in_float.found, 1u);
         // On the surface to its own rounding: 4 ulp of the coordinates times slope.
         const double x = static_cast<double>(in_float.position.x);
@@ -320,8 +317,8 @@ TEST(March, FindsTheFirstCrossingOfARoughSurface) {
             (gap(middle) > 0 ? lower : upper) = middle;
         }
         const auto hit = intersector.hit(origin, direction);
-        const auto in_float = physics::f32::march_surface(
-            float_scene, f, glm::vec3(origin), glm::vec3(direction), 0.0f, std::numeric_limits<float>::max());
+        const auto in_float = physics::f32::march_surface(float_scene, f, glm::vec3(origin), glm::vec3(direction), 0.0f,
+                                                          std::numeric_limits<float>::max());
         if (expected) {
             ++met;
             ASSERT_EQ(hit.found, 1u) << i;
@@ -389,16 +386,15 @@ TEST(March, LetsGoOfAConvexSurface) {
     EXPECT_EQ(0, meetings_after_leaving<double>(
                      r,
                      [](const auto& record, glm::dvec3 origin, glm::dvec3 direction) {
-                         return physics::f64::march_surface(LatticeScene{}, record, origin, direction, 0.0,
-                                                            infinity);
+                         return physics::f64::march_surface(LatticeScene{}, record, origin, direction, 0.0, infinity);
                      },
                      0x1p-20));
     // Wrong twin: a start below the surface by 10 nm is met, every time.
     EXPECT_LT(10000, meetings_after_leaving<double>(
                          r,
                          [](const auto& record, glm::dvec3 origin, glm::dvec3 direction) {
-                             return physics::f64::march_surface(LatticeScene{}, record, origin, direction,
-                                                                0.0, infinity);
+                             return physics::f64::march_surface(LatticeScene{}, record, origin, direction, 0.0,
+                                                                infinity);
                          },
                          -1e-4));
 }
@@ -409,8 +405,7 @@ TEST(March, StartBelowIsMetAtOnceAndEntryBelowFromBelow) {
     d.period = 0.05;
     const auto r = record(make(d), 1);
     const auto march = [&](glm::dvec3 origin, glm::dvec3 direction) {
-        return physics::f64::march_surface(LatticeScene{}, r, origin, glm::normalize(direction), 0.0,
-                                           infinity);
+        return physics::f64::march_surface(LatticeScene{}, r, origin, glm::normalize(direction), 0.0, infinity);
     };
     const auto below = march({0.0125, 0, 0.001}, {0, 0, 1}); // the crest there is at 0.002
     EXPECT_EQ(below.found, 1u);
@@ -434,9 +429,9 @@ TEST(March, MeetsALevelPlaneFromItsTopAndAStepOnItsFlank) {
                                                       glm::dvec3(0, 0, -1), 0.0, infinity);
     EXPECT_EQ(on_plane.found, 1u);
     EXPECT_EQ(on_plane.position.z, 0.0);
-    const auto in_float = physics::f32::march_surface(FloatLattice{}, to_float(plane),
-                                                      glm::vec3(0.01f, 0, static_cast<float>(plane.top)),
-                                                      glm::vec3(0, 0, -1), 0.0f, 1e30f);
+    const auto in_float =
+        physics::f32::march_surface(FloatLattice{}, to_float(plane), glm::vec3(0.01f, 0, static_cast<float>(plane.top)),
+                                    glm::vec3(0, 0, -1), 0.0f, 1e30f);
     EXPECT_EQ(in_float.found, 1u);
 
     Description d = analytic(Kind::step);

@@ -150,7 +150,8 @@ TEST_F(SurfaceSpecimen, NothingMeasuredIsRefused) {
 
 // A file's points may lie further apart than the roughness needs them.
 TEST(RefinedField, KeepsTheSurfaceAndItsGaps) {
-    HeightField coarse{.heights = Grid<float>(41, 41), .x_min = -0.02, .y_min = -0.02, .pitch_x = 0.001, .pitch_y = 0.001};
+    HeightField coarse{
+        .heights = Grid<float>(41, 41), .x_min = -0.02, .y_min = -0.02, .pitch_x = 0.001, .pitch_y = 0.001};
     for (int row = 0; row < 41; ++row)
         for (int column = 0; column < 41; ++column)
             coarse.heights(column, row) = static_cast<float>(0.002 * std::sin(2 * M_PI * (column - 20) / 16.0));

@@ -36,7 +36,9 @@ inline double chi_square_p(const std::vector<double>& observed, const std::vecto
 }
 
 // Significance of each of n tests that together err with the probability `level` (Sidak 1967).
-inline double sidak(double level, int tests) { return 1.0 - std::pow(1.0 - level, 1.0 / tests); }
+inline double sidak(double level, int tests) {
+    return 1.0 - std::pow(1.0 - level, 1.0 / tests);
+}
 
 // |z| of a share seen in n draws.
 inline double share_z(double seen, double n, double expected_share) {

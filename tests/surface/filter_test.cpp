@@ -105,8 +105,8 @@ TEST(GaussianFilter, HalfOfTheAmplitudePassesAtTheNestingIndex) {
     for (const bool along_x : {true, false}) {
         EXPECT_NEAR(transmission(0.08, 0.08, along_x), 0.5, 1e-5);
         for (const double wavelength : {0.04, 0.16, 0.32})
-            EXPECT_NEAR(transmission(wavelength, 0.08, along_x),
-                        std::exp(-pi * std::pow(alpha * 0.08 / wavelength, 2)), 1e-5);
+            EXPECT_NEAR(transmission(wavelength, 0.08, along_x), std::exp(-pi * std::pow(alpha * 0.08 / wavelength, 2)),
+                        1e-5);
     }
     // The wrong twin, a Gaussian of standard deviation L / (2 pi), passes exp(-1/2) = 0.607.
     EXPECT_GT(std::abs(transmission(0.08, 0.08, true) - 0.607), 0.1);

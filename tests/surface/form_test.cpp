@@ -47,8 +47,8 @@ TEST(Form, OfASphereLeavesTheWavesOnIt) {
     // of up to 0.14 weigh the points by up to 2 % less, which changes that share as much.
     const double waves = amplitude / std::sqrt(2);
     EXPECT_NEAR(sq_after("sphere", map), waves, 1e-4 * waves);
-    // The wrong twins: a parabola leaves r^4 / (8 R^3), up to 5 amplitudes, of which a quarter is not parabolic; a plane
-    // leaves nearly all.
+    // The wrong twins: a parabola leaves r^4 / (8 R^3), up to 5 amplitudes, of which a quarter is not parabolic; a
+    // plane leaves nearly all.
     EXPECT_GT(sq_after("polynomial-2", map), 1.02 * waves);
     EXPECT_GT(sq_after("plane", map), 100 * waves);
 }

@@ -33,9 +33,9 @@ TEST(HeightImage, ExrIsReadWithItsScale) {
     EXPECT_EQ(file.map.x0, 0);
     EXPECT_EQ(file.map.y0, 0);
     // The first row of the file has the highest y; small integers in float32 are exact.
-    EXPECT_THAT(file.map.height.values, testing::ElementsAre(testing::DoubleEq(4e-3), testing::DoubleEq(5e-3),
-                                                             testing::DoubleEq(6e-3), testing::DoubleEq(1e-3),
-                                                             testing::IsNan(), testing::DoubleEq(3e-3)));
+    EXPECT_THAT(file.map.height.values,
+                testing::ElementsAre(testing::DoubleEq(4e-3), testing::DoubleEq(5e-3), testing::DoubleEq(6e-3),
+                                     testing::DoubleEq(1e-3), testing::IsNan(), testing::DoubleEq(3e-3)));
     EXPECT_THROW((void)parse_height_image(exr.bytes(), "a.exr", {}), InputError);
     EXPECT_THROW((void)parse_height_image(exr.bytes(), "a.exr", {.pitch = 0.002, .unit = {}}), InputError);
     EXPECT_THROW((void)parse_height_image(exr.bytes(), "a.exr", {.pitch = {}, .unit = 1e-3}), InputError);
@@ -78,9 +78,8 @@ TEST(HeightImage, TruncatedExrIsRefused) {
 TEST(HeightImage, ExrWhoseHeaderLiesIsRefused) {
     constexpr std::int32_t largest = std::numeric_limits<std::int32_t>::max(), half = (1 << 30) - 2;
     const std::vector<std::vector<std::int32_t>> windows = {
-        {0, 0, 1 << 20, 1},  {0, 0, 2, 1 << 20},       {0, 0, 65535, 65535}, {0, 0, half, 1},
-        {0, 0, 2, half},     {0, 0, half, half},       {0, 0, largest, 1},   {0, 0, largest, largest},
-        {2, 1, 0, 0},        {-largest, 0, largest, 1}};
+        {0, 0, 1 << 20, 1}, {0, 0, 2, 1 << 20}, {0, 0, 65535, 65535},     {0, 0, half, 1}, {0, 0, 2, half},
+        {0, 0, half, half}, {0, 0, largest, 1}, {0, 0, largest, largest}, {2, 1, 0, 0},    {-largest, 0, largest, 1}};
     for (const int parts : {1, 2})
         for (const std::uint32_t tile : {0u, 2u, 1u << 15, 1u << 20, 0x7fffffffu}) {
             for (const auto& window : windows)

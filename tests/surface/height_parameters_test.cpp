@@ -16,9 +16,8 @@ using namespace test;
 TEST(HeightParameters, OfASinusoidAreItsClosedForms) {
     const double amplitude = 0.003;
     // Four whole periods of 25 points: sums over whole periods are exact for sin, sin^2, sin^3 and sin^4.
-    const auto map = sampled(100, 7, 0.002, [=](double x, double) {
-        return 0.5 + amplitude * std::sin(2 * pi * (x + 0.3) / 0.05);
-    });
+    const auto map =
+        sampled(100, 7, 0.002, [=](double x, double) { return 0.5 + amplitude * std::sin(2 * pi * (x + 0.3) / 0.05); });
     const HeightParameters p = height_parameters(map);
     EXPECT_NEAR(p.mean, 0.5, 1e-14);
     EXPECT_NEAR(p.sq, amplitude / std::sqrt(2.0), 1e-14);
@@ -47,8 +46,7 @@ TEST(HeightParameters, OfFourPointsAreThoseOfTheHand) {
 }
 
 TEST(HeightParameters, AreUndefinedWithoutMeasuredPoints) {
-    const HeightMap map{
-        .height = Grid<double>(2, 2, not_measured), .x0 = 0, .y0 = 0, .pitch_x = 1, .pitch_y = 1};
+    const HeightMap map{.height = Grid<double>(2, 2, not_measured), .x0 = 0, .y0 = 0, .pitch_x = 1, .pitch_y = 1};
     const HeightParameters p = height_parameters(map);
     EXPECT_TRUE(std::isnan(p.sq));
     EXPECT_EQ(p.measured_share, 0);

@@ -54,7 +54,8 @@ TEST(HybridParameters, OfASphereCapGiveItsArea) {
 }
 
 TEST(HybridParameters, AreUndefinedWithoutAWholeCell) {
-    const auto map = sampled(5, 5, 1, [](double x, double) { return std::fmod(x + 0.3, 2.0) < 0.5 ? 0 : not_measured; });
+    const auto map =
+        sampled(5, 5, 1, [](double x, double) { return std::fmod(x + 0.3, 2.0) < 0.5 ? 0 : not_measured; });
     EXPECT_TRUE(std::isnan(hybrid_parameters(map).sdq));
     EXPECT_TRUE(std::isnan(hybrid_parameters(map).sdr));
 }

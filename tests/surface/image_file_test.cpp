@@ -80,14 +80,13 @@ struct RawTiff {
             const auto count = get<std::uint32_t>(at + 4);
             const std::map<int, std::size_t> size = {{1, 1}, {2, 1}, {3, 2}, {4, 4}, {5, 8}, {7, 1}};
             const std::size_t length = count * (size.contains(type) ? size.at(type) : 8);
-            entries[get<std::uint16_t>(at)] = {
-                type, count, length <= 4 ? at + 8 : std::size_t{get<std::uint32_t>(at + 8)}};
+            entries[get<std::uint16_t>(at)] = {type, count,
+                                               length <= 4 ? at + 8 : std::size_t{get<std::uint32_t>(at + 8)}};
         }
     }
     std::uint32_t number(int tag, std::size_t index = 0) const {
         const Entry& entry = entries.at(tag);
-        return entry.type == 3 ? get<std::uint16_t>(entry.at + 2 * index)
-                               : get<std::uint32_t>(entry.at + 4 * index);
+        return entry.type == 3 ? get<std::uint16_t>(entry.at + 2 * index) : get<std::uint32_t>(entry.at + 4 * index);
     }
     double rational(int tag) const {
         const std::size_t at = entries.at(tag).at;
@@ -159,8 +158,7 @@ TEST_F(ImageFile, ReaderReturnsWhatWasWritten) {
 }
 
 TEST_F(ImageFile, PitchBecomesPixelsPerCentimetre) {
-    write_tiff(file("pitch.tif"), letter_grid(1.0f, 0.0f),
-               {.pitch_x = 0.002, .pitch_y = 0.004, .description = "d"});
+    write_tiff(file("pitch.tif"), letter_grid(1.0f, 0.0f), {.pitch_x = 0.002, .pitch_y = 0.004, .description = "d"});
     const RawTiff tiff(file("pitch.tif"));
     EXPECT_EQ(tiff.number(296), 3u) << "resolution unit: centimetre";
     // 10 mm / pitch; the library's rationals hold float32.
@@ -170,11 +168,9 @@ TEST_F(ImageFile, PitchBecomesPixelsPerCentimetre) {
 }
 
 TEST_F(ImageFile, TwoWritesAreByteIdenticalAndLeaveNothingAside) {
-    write_tiff(file("a.tif"), letter_grid(1.0f, 0.0f),
-               {.pitch_x = 0.002, .pitch_y = 0.002, .description = "text"});
+    write_tiff(file("a.tif"), letter_grid(1.0f, 0.0f), {.pitch_x = 0.002, .pitch_y = 0.002, .description = "text"});
     ::sleep(1); // a clock in the file would show: TIFF's DateTime has whole seconds
-    write_tiff(file("b.tif"), letter_grid(1.0f, 0.0f),
-               {.pitch_x = 0.002, .pitch_y = 0.002, .description = "text"});
+    write_tiff(file("b.tif"), letter_grid(1.0f, 0.0f), {.pitch_x = 0.002, .pitch_y = 0.002, .description = "text"});
     EXPECT_EQ(bytes_of(file("a.tif")), bytes_of(file("b.tif")));
     int files = 0;
     for ([[maybe_unused]] const auto& entry : std::filesystem::directory_iterator(folder_))

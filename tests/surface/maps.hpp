@@ -12,8 +12,7 @@ inline constexpr double not_measured = std::numeric_limits<double>::quiet_NaN();
 
 template <class Function>
 HeightMap sampled(int columns, int rows, double pitch, const Function& function) {
-    HeightMap map{
-        .height = Grid<double>(columns, rows), .x0 = -0.3, .y0 = 0.2, .pitch_x = pitch, .pitch_y = pitch};
+    HeightMap map{.height = Grid<double>(columns, rows), .x0 = -0.3, .y0 = 0.2, .pitch_x = pitch, .pitch_y = pitch};
     for (int row = 0; row < rows; ++row)
         for (int column = 0; column < columns; ++column)
             map.height(column, row) = function(map.x(column), map.y(row));

@@ -15,8 +15,12 @@ namespace {
 
 using namespace test;
 
-double density(double t) { return std::exp(-t * t / 2) / std::sqrt(2 * pi); }
-double tail(double t) { return 0.5 * std::erfc(t / std::sqrt(2.0)); }
+double density(double t) {
+    return std::exp(-t * t / 2) / std::sqrt(2 * pi);
+}
+double tail(double t) {
+    return 0.5 * std::erfc(t / std::sqrt(2.0));
+}
 
 // tail(result) = share
 double quantile(double share) {
@@ -113,9 +117,8 @@ TEST(MaterialRatio, OfATriangleIsThatOfATiltedPlane) {
 TEST(MaterialRatio, OfASinusoidHasItsClosedForm) {
     // Smc(q) = A cos(pi q); the volume above the share q: A (sin(pi q) / pi - q cos(pi q)).
     const double amplitude = 0.01;
-    const auto map = sampled(4000, 1, 1, [=](double x, double) {
-        return amplitude * std::sin(2 * pi * (x + 0.3 + 0.25) / 400);
-    });
+    const auto map =
+        sampled(4000, 1, 1, [=](double x, double) { return amplitude * std::sin(2 * pi * (x + 0.3 + 0.25) / 400); });
     const MaterialRatioCurve curve(map);
     const auto material = [=](double q) { return amplitude * (std::sin(pi * q) / pi - q * std::cos(pi * q)); };
     // Two points stand nearly level: the curve is a stair of 200 treads, wrong by at most a tread of pi A / 200.

@@ -18,7 +18,8 @@ using namespace test;
 
 // Every term up to degree 4, over a frame far from the origin.
 double quartic(double x, double y) {
-    return 0.1 + x - 2 * y + 3 * x * x - x * y + y * y + 5 * x * x * x - 2 * x * y * y + 7 * x * x * y * y + y * y * y * y;
+    return 0.1 + x - 2 * y + 3 * x * x - x * y + y * y + 5 * x * x * x - 2 * x * y * y + 7 * x * x * y * y +
+           y * y * y * y;
 }
 
 TEST(Polynomial, IsFoundToRoundingOverTheMeasuredPoints) {
@@ -87,7 +88,8 @@ double worst_projection(const HeightMap& level, int degree) {
         for (int j = 0; i + j <= degree; ++j) {
             double product = 0, squares = 0, powers = 0;
             over_measured([&](double x, double y, double z) {
-                const double u = (2 * x - x_low - x_high) / (x_high - x_low), v = (2 * y - y_low - y_high) / (y_high - y_low);
+                const double u = (2 * x - x_low - x_high) / (x_high - x_low),
+                             v = (2 * y - y_low - y_high) / (y_high - y_low);
                 const double power = std::pow(u, i) * std::pow(v, j);
                 product += z * power;
                 squares += z * z;

@@ -52,8 +52,7 @@ TEST(Resample, AveragesAFinerMapOverTheCell) {
     const HeightMap coarse = resampled(map, grid(6, 4, -0.2, 0.27, width));
     const double u = pi * width / wavelength;
     for (int column = 0; column < 6; ++column)
-        EXPECT_NEAR(coarse.height(column, 2),
-                    std::sin(u) / u * std::cos(2 * pi * coarse.x(column) / wavelength), 3e-3);
+        EXPECT_NEAR(coarse.height(column, 2), std::sin(u) / u * std::cos(2 * pi * coarse.x(column) / wavelength), 3e-3);
     // What the coarse grid cannot resolve does not alias: point by point it would be seen in full.
     const auto fine = sampled(60, 50, pitch, [=](double x, double) { return std::cos(2 * pi * x / width); });
     for (const double z : resampled(fine, grid(6, 4, -0.2, 0.27, width)).height.values)
@@ -65,8 +64,8 @@ TEST(Resample, KeepsPlanesWhereTheMapIsFiner) {
     const HeightMap map = sampled(60, 50, 0.01, plane);
     for (const double ratio : {1.02, 1.25, 1.5, 1.9, 2.0, 2.3, 3.0, 3.7, 4.0}) {
         // From border to border.
-        const HeightMap coarse = resampled(map, grid(static_cast<int>(59 / ratio) + 1, static_cast<int>(49 / ratio) + 1,
-                                                     -0.3, 0.2, 0.01 * ratio));
+        const HeightMap coarse = resampled(
+            map, grid(static_cast<int>(59 / ratio) + 1, static_cast<int>(49 / ratio) + 1, -0.3, 0.2, 0.01 * ratio));
         int measured = 0;
         for (int row = 0; row < coarse.rows(); ++row)
             for (int column = 0; column < coarse.columns(); ++column)
@@ -85,7 +84,8 @@ TEST(Resample, KeepsPlanesWhereTheMapIsFiner) {
 TEST(Resample, IsThePlainMeanAtWholeRatios) {
     const HeightMap map = sampled(60, 50, 0.01, [](double x, double y) { return std::sin(90 * x) * std::cos(70 * y); });
     // Cells of three points about a point, and of two between points.
-    const HeightMap three = resampled(map, grid(10, 8, -0.2, 0.3, 0.03)), two = resampled(map, grid(10, 8, -0.195, 0.305, 0.02));
+    const HeightMap three = resampled(map, grid(10, 8, -0.2, 0.3, 0.03)),
+                    two = resampled(map, grid(10, 8, -0.195, 0.305, 0.02));
     for (int row = 0; row < 8; ++row)
         for (int column = 0; column < 10; ++column) {
             double of_three = 0, of_two = 0;

@@ -18,7 +18,9 @@ using namespace test;
 constexpr double pitch = 0.002;
 
 // Mirrored at its borders this wave goes on as it is.
-double mode(int k, int point, int points) { return std::cos(pi * k * (point + 0.5) / points); }
+double mode(int k, int point, int points) {
+    return std::cos(pi * k * (point + 0.5) / points);
+}
 
 HeightMap mode_map(int k, int l) {
     return sampled(40, 30, pitch, [=](double x, double y) {
@@ -39,9 +41,9 @@ TEST(SplineFilter, PassesEveryDirectionByItsTransmission) {
     }
     // The wrong twin, the Gaussian filter, passes 2^-(1/4) of twice the nesting index.
     const HeightMap wave = mode_map(4, 0);
-    EXPECT_GT(std::abs(spline_low_pass(wave, 0.5 * 40 * pitch / 2).height(0, 0) / wave.height(0, 0) -
-                       std::pow(0.5, 0.25)),
-              0.05);
+    EXPECT_GT(
+        std::abs(spline_low_pass(wave, 0.5 * 40 * pitch / 2).height(0, 0) / wave.height(0, 0) - std::pow(0.5, 0.25)),
+        0.05);
 }
 
 // Gauss's elimination with pivots.

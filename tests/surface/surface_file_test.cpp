@@ -554,7 +554,8 @@ TEST_F(SurfaceFiles, HostileSurIsRefused) {
     refused(with(with(good, 108, std::int32_t{65536}), 112, std::int32_t{32768}), "65536 x 32768 points");
     refused(with(good, 112, std::int32_t{1 << 20}), "bytes from here on");
     const std::string packed = "DSCOMPRESSED" + good.substr(12);
-    refused(with(with(packed, 108, std::int32_t{16384}), 112, std::int32_t{16384}), "2147483648 bytes of heights in a file of");
+    refused(with(with(packed, 108, std::int32_t{16384}), 112, std::int32_t{16384}),
+            "2147483648 bytes of heights in a file of");
     refused(with(good, 120, std::numeric_limits<float>::quiet_NaN()), "spacing along x");
     refused(with(good, 124, 0.0f), "spacing along y");
     refused(with(good, 128, 0.0f), "step of z");

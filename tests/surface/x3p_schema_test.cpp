@@ -42,8 +42,11 @@ Element optional(Element element) {
 }
 
 Element axis(const char* name, const char* type) {
-    return {name, nullptr,
-            {{"AxisType", type}, optional({"DataType", "[ILFD]"}), optional({"Increment", number}),
+    return {name,
+            nullptr,
+            {{"AxisType", type},
+             optional({"DataType", "[ILFD]"}),
+             optional({"Increment", number}),
              optional({"Offset", number})}};
 }
 
@@ -56,19 +59,22 @@ const Element& grammar() {
           {{"Revision", "ISO5436 - 2000"},
            {"FeatureType", "PRF|SUR|PCL"},
            {"Axes", nullptr, {axis("CX", "[IA]"), axis("CY", "[IA]"), axis("CZ", "A")}}}},
-         optional({"Record2",
-                   nullptr,
-                   {{"Date", date_time},
-                    optional({"Creator", token}),
-                    {"Instrument",
-                     nullptr,
-                     {{"Manufacturer", token}, {"Model", token}, {"Serial", token}, {"Version", token}}},
-                    {"CalibrationDate", date_time},
-                    {"ProbingSystem", nullptr, {{"Type", "Contacting|NonContacting|Software"}, {"Identification", token}}},
-                    optional({"Comment", anything})}}),
+         optional(
+             {"Record2",
+              nullptr,
+              {{"Date", date_time},
+               optional({"Creator", token}),
+               {"Instrument",
+                nullptr,
+                {{"Manufacturer", token}, {"Model", token}, {"Serial", token}, {"Version", token}}},
+               {"CalibrationDate", date_time},
+               {"ProbingSystem", nullptr, {{"Type", "Contacting|NonContacting|Software"}, {"Identification", token}}},
+               optional({"Comment", anything})}}),
          {"Record3",
           nullptr,
-          {{"MatrixDimension", nullptr, {{"SizeX", positive_integer}, {"SizeY", positive_integer}, {"SizeZ", positive_integer}}},
+          {{"MatrixDimension",
+            nullptr,
+            {{"SizeX", positive_integer}, {"SizeY", positive_integer}, {"SizeZ", positive_integer}}},
            {"DataLink",
             nullptr,
             {{"PointDataLink", anything},
@@ -114,7 +120,8 @@ std::string fault_of(const pugi::xml_document& document) {
 }
 
 pugi::xml_document main_xml(const HeightMap& map, const Provenance& provenance) {
-    const auto file = std::filesystem::path(testing::TempDir()) / ("vkfv_schema_" + std::to_string(::getpid()) + ".x3p");
+    const auto file =
+        std::filesystem::path(testing::TempDir()) / ("vkfv_schema_" + std::to_string(::getpid()) + ".x3p");
     write_surface(file, map, provenance);
     pugi::xml_document document;
     zip_t* archive = zip_open(file.c_str(), ZIP_RDONLY, nullptr);
@@ -139,8 +146,13 @@ HeightMap map_with_gap() {
     return map;
 }
 
-const Provenance full = {.creator = "a & b", .manufacturer = "c", .model = "d", .serial = "e", .version = "f",
-                         .date = "2026-11-21T12:00:00Z", .comment = "g\n<h>"};
+const Provenance full = {.creator = "a & b",
+                         .manufacturer = "c",
+                         .model = "d",
+                         .serial = "e",
+                         .version = "f",
+                         .date = "2026-11-21T12:00:00Z",
+                         .comment = "g\n<h>"};
 
 TEST(X3pSchema, WhatIsWrittenConforms) {
     HeightMap whole = map_with_gap();
@@ -163,16 +175,18 @@ TEST(X3pSchema, FaultsAreFound) {
     EXPECT_NE(fault_after([](pugi::xml_node root) { // the order counts
                   auto record = root.child("Record2");
                   record.insert_move_before(record.child("Creator"), record.child("Date"));
-              }), "");
-    EXPECT_NE(fault_after([](pugi::xml_node root) {
-                  root.child("Record2").child("Date").text().set("21.11.2026");
-              }), "");
+              }),
+              "");
+    EXPECT_NE(fault_after([](pugi::xml_node root) { root.child("Record2").child("Date").text().set("21.11.2026"); }),
+              "");
     EXPECT_NE(fault_after([](pugi::xml_node root) {
                   root.child("Record1").child("Axes").child("CX").child("Increment").text().set("1 um");
-              }), "");
+              }),
+              "");
     EXPECT_NE(fault_after([](pugi::xml_node root) {
                   root.child("Record3").child("DataLink").child("MD5ChecksumPointData").text().set("abc");
-              }), "");
+              }),
+              "");
     EXPECT_EQ(fault_after([](pugi::xml_node root) { root.remove_child("Record2"); }), ""); // it is optional
 }
 

@@ -23,8 +23,9 @@ TEST(AxialAverage, IsTheNormalisedWeightedMeanAlsoAtTheEnds) {
             double total = 0;
             for (int i = 0; i < images; ++i) {
                 const bool within = i == k || std::abs(i - k) <= std::ceil(3 * s);
-                expected[static_cast<std::size_t>(i)] =
-                    !within ? 0 : i == k ? 1 : std::exp(-0.5 * std::pow((i - k) / s, 2));
+                expected[static_cast<std::size_t>(i)] = !within  ? 0
+                                                        : i == k ? 1
+                                                                 : std::exp(-0.5 * std::pow((i - k) / s, 2));
                 total += expected[static_cast<std::size_t>(i)];
             }
             for (const Share& share : shares) {
@@ -52,7 +53,8 @@ TEST(AxialAverage, PositionsAreWhatTheAveragesMakeOfAStraightLine) {
         }
         const auto points = averaged_points(weights, images);
         for (int k = 0; k < images; ++k)
-            EXPECT_NEAR(points[static_cast<std::size_t>(k)].position, line[static_cast<std::size_t>(k)], 1e-5) << s; // float32
+            EXPECT_NEAR(points[static_cast<std::size_t>(k)].position, line[static_cast<std::size_t>(k)], 1e-5)
+                << s;                                 // float32
         EXPECT_EQ(points[0].position > 0.5, s > 0.5); // further inside, unless hardly anything is averaged
     }
     const auto far = averaged_points(axial_weights(2), 60);

@@ -165,8 +165,8 @@ TEST(FocusMeasure, RowsSharedAmongThreadsGiveWhatOneRowAloneGives) {
     }
 }
 
-// Standard deviation of the measure of images of noise over a texture, over noise_gain(). Windows that do not overlap: 400 in
-// an image. The texture is the same in all images of one seed: deviations are from each place's own mean.
+// Standard deviation of the measure of images of noise over a texture, over noise_gain(). Windows that do not overlap:
+// 400 in an image. The texture is the same in all images of one seed: deviations are from each place's own mean.
 double gain_over_model(FocusMeasure measure, const FocusWindow& window, double texture, unsigned seed) {
     constexpr int side = 420, images = 12, spacing = 21;
     constexpr double relative_noise = 0.002;
@@ -196,9 +196,9 @@ double gain_over_model(FocusMeasure measure, const FocusWindow& window, double t
 
 TEST(FocusMeasure, NoiseGainIsThatOfNoise) {
     // 400 places with 11 degrees of freedom each: a standard deviation known to 1 / sqrt(2 * 4400) = 1.07 %; five of
-    // these (rate 6e-7) are 5.4 %. Narrow windows average less of what correlates between pixels by up to the masks' width
-    // over the window's, a quarter for the wavelet's 5 of 19 pixels at both edges; and without texture the root of the
-    // energies has 1 / sqrt(2) of the noise, the modified Laplacian all of it.
+    // these (rate 6e-7) are 5.4 %. Narrow windows average less of what correlates between pixels by up to the masks'
+    // width over the window's, a quarter for the wavelet's 5 of 19 pixels at both edges; and without texture the root
+    // of the energies has 1 / sqrt(2) of the noise, the modified Laplacian all of it.
     const FocusWindow box(19, WindowShape::box), gaussian(21, WindowShape::gaussian);
     for (const auto measure : all_measures)
         for (const FocusWindow& window : {box, gaussian}) {

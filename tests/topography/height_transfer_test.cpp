@@ -20,7 +20,9 @@ constexpr double pitch = 0.002;
 constexpr int columns = 180, rows = 150;
 constexpr double highest = 0.4 / pitch;
 
-double all(double) { return 1; }
+double all(double) {
+    return 1;
+}
 
 // A Gaussian low-pass that halves heights at the cut-off wavelength.
 auto gaussian(double cut_off) {

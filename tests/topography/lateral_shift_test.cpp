@@ -18,7 +18,9 @@ using surface::HeightMap;
 
 constexpr double pitch = 0.002;
 
-double all(double) { return 1; }
+double all(double) {
+    return 1;
+}
 
 // Wavelengths of 6 to 40 pitches; with tilt, noise of a tenth of Sq, and a tenth of the points not measured.
 HeightMap rough(double shift_x, double shift_y, unsigned seed) {
@@ -36,8 +38,8 @@ HeightMap rough(double shift_x, double shift_y, unsigned seed) {
 }
 
 TEST(LateralShift, IsFoundToAFiftiethOfAPitch) {
-    const HeightMap truth = map_of(random_waves(60, 1 / (40 * pitch), 1 / (6 * pitch), 1e-3, 1), 150, 120, pitch, 0, 0,
-                                   all);
+    const HeightMap truth =
+        map_of(random_waves(60, 1 / (40 * pitch), 1 / (6 * pitch), 1e-3, 1), 150, 120, pitch, 0, 0, all);
     // Noise of 5e-4 mm over a slope of about 5.5e-3 / 1.6 mm a pitch and 14 000 points leaves 1e-3 of a pitch; the
     // cubic convolution's phase at six pitches a wave is wrong by less than 0.01 of a pitch.
     for (const auto& [x, y] : {std::pair(0.0, 0.0), std::pair(0.37, -0.21), std::pair(-12.63, 7.5)}) {
@@ -53,8 +55,8 @@ TEST(LateralShift, IsFoundToAFiftiethOfAPitch) {
 }
 
 TEST(LateralShift, MovesTheTruthUnderTheMeasurement) {
-    const HeightMap truth = map_of(random_waves(60, 1 / (40 * pitch), 1 / (6 * pitch), 1e-3, 1), 150, 120, pitch, 0, 0,
-                                   all);
+    const HeightMap truth =
+        map_of(random_waves(60, 1 / (40 * pitch), 1 / (6 * pitch), 1e-3, 1), 150, 120, pitch, 0, 0, all);
     const HeightMap measured = map_of(random_waves(60, 1 / (40 * pitch), 1 / (6 * pitch), 1e-3, 1), 150, 120, pitch,
                                       0.37 * pitch, -0.21 * pitch, all);
     const HeightMap moved = shifted_onto(truth, measured, lateral_shift(measured, truth));
@@ -127,8 +129,7 @@ struct Pair {
 
 // Two maps of one surface, `shift_x` and `shift_y` points apart, 20 at most; the measured one with noise of
 // `noise`, and of either the share `gaps` of the points left out.
-Pair moved_pair(int points, double sigma, int shift_x, int shift_y, double noise, double gaps,
-                unsigned seed) {
+Pair moved_pair(int points, double sigma, int shift_x, int shift_y, double noise, double gaps, unsigned seed) {
     const Grid<double> surface = smooth_noise(points + 40, points + 40, sigma, seed);
     std::mt19937_64 random(seed + 1000);
     std::normal_distribution<double> normal(0, noise);
@@ -203,8 +204,8 @@ TEST(LateralShift, OfUnrelatedSurfacesIsNotFound) {
 
 TEST(LateralShift, OfATiltedObliqueGrooveIsAcrossIt) {
     const auto groove = [](double shift_x, double shift_y) {
-        HeightMap map = map_of({{1e-3, 0.08 / pitch, 0.03 / pitch, 0.4}}, 130, 70, pitch, shift_x * pitch,
-                               shift_y * pitch, all);
+        HeightMap map =
+            map_of({{1e-3, 0.08 / pitch, 0.03 / pitch, 0.4}}, 130, 70, pitch, shift_x * pitch, shift_y * pitch, all);
         std::mt19937_64 random(5);
         std::normal_distribution<double> normal(0, 1e-5);
         for (int row = 0; row < map.rows(); ++row)
@@ -219,8 +220,8 @@ TEST(LateralShift, OfATiltedObliqueGrooveIsAcrossIt) {
 
 TEST(LateralShift, OfAProfileIsAlongIt) {
     const std::vector<Wave> waves = {{1e-3, 0.05 / pitch, 0, 0.4}, {1e-3, 0.013 / pitch, 0, 1}};
-    const LateralShift shift = lateral_shift(map_of(waves, 200, 1, pitch, 3.3 * pitch, 0, all),
-                                             map_of(waves, 200, 1, pitch, 0, 0, all));
+    const LateralShift shift =
+        lateral_shift(map_of(waves, 200, 1, pitch, 3.3 * pitch, 0, all), map_of(waves, 200, 1, pitch, 0, 0, all));
     EXPECT_NEAR(shift.x / pitch, 3.3, 0.02);
     EXPECT_EQ(shift.y, 0);
 }

@@ -90,8 +90,8 @@ TEST(Peak, APolynomialFitIsThatOfTheNormalEquations) {
 }
 
 TEST(Peak, TheCentreOfGravityIsThatOfWhatStandsAboveTheSmallestValue) {
-    // A triangle of height 4 and half width 4, shifted by a half, above a pedestal of 7: values 7 + (0.5 1.5 2.5 3.5 3.5 2.5
-    // 1.5), of which the smallest falls away: (1*-2 + 2*-1 + 3*0 + 3*1 + 2*2 + 1*3) / 12.
+    // A triangle of height 4 and half width 4, shifted by a half, above a pedestal of 7: values 7 +
+    // (0.5 1.5 2.5 3.5 3.5 2.5 1.5), of which the smallest falls away: (1*-2 + 2*-1 + 3*0 + 3*1 + 2*2 + 1*3) / 12.
     EXPECT_NEAR(located(PEAK_CENTRE_OF_GRAVITY, Curve{{7.5, 8.5, 9.5, 10.5, 10.5, 9.5, 8.5}}, 3), 6.0 / 12, 1e-15);
     // Of a Gaussian whose feet are in the range: its centre, but for the tail cut off, exp(-0.5 (5.7/1.2)^2) = 1e-5.
     EXPECT_NEAR(located(PEAK_CENTRE_OF_GRAVITY, sampled(gaussian(0.3, 1.2), 6), 6), 0.3, 1e-3);
@@ -139,8 +139,8 @@ TEST(Peak, ThereIsNoneWithoutAMaximum) {
 }
 
 TEST(Peak, OutsideTheRangeThereIsNone) {
-    // The largest value stands in the middle of a rise that bends downwards: the fit's maximum lies beyond the range, and no
-    // image out there is taken for the sharpest.
+    // The largest value stands in the middle of a rise that bends downwards: the fit's maximum lies beyond the range,
+    // and no image out there is taken for the sharpest.
     const Curve curve{{1, 11, 19, 26.9, 26.8, 30, 34}};
     const FocusPlan plan = plan_of(PEAK_POLYNOMIAL_FIT, 3);
     const PeakFit fit = locate_peak(curve, plan, 3, 3);
@@ -188,7 +188,7 @@ TEST(FocusCurve, CountsItsPeaks) {
     EXPECT_EQ(peaks({1, 1, 9, 1, 1, 3, 1, 1}, 2), 1); // the mean is 2.25, half way 5.6
     EXPECT_EQ(peaks({1, 1, 9, 1, 8, 1, 1, 1}, 2), 1); // within the range of the other
     EXPECT_EQ(peaks({1, 1, 9, 1, 8, 1, 1, 1}, 1), 2);
-    EXPECT_EQ(peaks({1, 1, 9, 9, 1, 1, 1, 1}, 2), 1); // a plateau is one
+    EXPECT_EQ(peaks({1, 1, 9, 9, 1, 1, 1, 1}, 2), 1);          // a plateau is one
     EXPECT_EQ(peaks({1, 9, 1, 9, 1, 9, 1, 9, 1, 9, 1}, 1), 4); // or more
 }
 

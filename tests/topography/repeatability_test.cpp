@@ -62,13 +62,14 @@ TEST(Repeatability, KnowsItsErrors) {
     for (int draw = 0; draw < draws; ++draw) {
         auto maps = repetitions(6, 1e-4, static_cast<unsigned>(1000 + draw));
         for (HeightMap& map : maps) // a corner of 20 x 20 is enough
-            map = {.height = [&] {
-                       Grid<double> corner(20, 20);
-                       for (int row = 0; row < 20; ++row)
-                           for (int column = 0; column < 20; ++column)
-                               corner(column, row) = map.height(column, row);
-                       return corner;
-                   }(),
+            map = {.height =
+                       [&] {
+                           Grid<double> corner(20, 20);
+                           for (int row = 0; row < 20; ++row)
+                               for (int column = 0; column < 20; ++column)
+                                   corner(column, row) = map.height(column, row);
+                           return corner;
+                       }(),
                    .x0 = 0,
                    .y0 = 0,
                    .pitch_x = 1,

@@ -23,7 +23,8 @@ HeightMap over_angles(const Function& height) {
     for (int row = 0; row < map.rows(); ++row)
         for (int column = 0; column < map.columns(); ++column) {
             const double share = std::hypot(map.x(column), map.y(row)) / radius;
-            map.height(column, row) = share < std::sin(61 * radians_per_degree) ? height(std::asin(share)) : not_measured;
+            map.height(column, row) =
+                share < std::sin(61 * radians_per_degree) ? height(std::asin(share)) : not_measured;
         }
     return map;
 }

@@ -40,14 +40,12 @@ SyntheticStack make_stack(double counts, unsigned seed) {
     std::mt19937 random(seed);
     std::normal_distribution<double> normal;
     SyntheticStack stack;
-    stack.truth = {
-        .height = Grid<double>(pixels, pixels), .x0 = 0.01, .y0 = -0.02, .pitch_x = pitch, .pitch_y = pitch};
+    stack.truth = {.height = Grid<double>(pixels, pixels), .x0 = 0.01, .y0 = -0.02, .pitch_x = pitch, .pitch_y = pitch};
     Grid<double> texture(pixels, pixels);
     for (int j = 0; j < pixels; ++j)
         for (int i = 0; i < pixels; ++i) {
             // Whole periods either way, so that mirror images are opposite and the transposed is orthogonal.
-            stack.truth.height(i, j) =
-                amplitude * std::sin(2 * pi * i / 48.0) * std::cos(2 * pi * (j - 5.5) / 24.0);
+            stack.truth.height(i, j) = amplitude * std::sin(2 * pi * i / 48.0) * std::cos(2 * pi * (j - 5.5) / 24.0);
             texture(i, j) = std::max(0.05, 1 + 0.3 * normal(random));
         }
     for (int k = 0; k < images; ++k) {
@@ -71,8 +69,7 @@ SyntheticStack make_stack(double counts, unsigned seed) {
             }
         Grid<float> image(pixels, pixels);
         for (std::size_t p = 0; p < image.values.size(); ++p)
-            image.values[p] =
-                static_cast<float>(std::poisson_distribution<int>(counts * blurred.values[p])(random));
+            image.values[p] = static_cast<float>(std::poisson_distribution<int>(counts * blurred.values[p])(random));
         stack.images.push_back(std::move(image));
         stack.z.push_back(z);
     }
@@ -98,12 +95,11 @@ TEST(Reconstruct, FindsTheHeightsOfASyntheticStack) {
         EXPECT_LT(deviation.sq_measured / deviation.sq_true, 1.1) << measure;
         // The three are bound by the law of cosines.
         const double ratio = deviation.sq_measured / deviation.sq_true;
-        EXPECT_NEAR(deviation.rms / deviation.sq_true,
-                    std::sqrt(1 + ratio * ratio - 2 * deviation.correlation * ratio), 1e-9)
+        EXPECT_NEAR(deviation.rms / deviation.sq_true, std::sqrt(1 + ratio * ratio - 2 * deviation.correlation * ratio),
+                    1e-9)
             << measure;
         RecordProperty(measure + "_correlation", std::to_string(deviation.correlation));
-        RecordProperty(measure + "_sq_ratio",
-                       std::to_string(deviation.sq_measured / deviation.sq_true));
+        RecordProperty(measure + "_sq_ratio", std::to_string(deviation.sq_measured / deviation.sq_true));
         RecordProperty(measure + "_rms_um", std::to_string(deviation.rms * um_per_mm));
     }
 }
@@ -111,8 +107,7 @@ TEST(Reconstruct, FindsTheHeightsOfASyntheticStack) {
 TEST(Reconstruct, HeightsAreNotMirroredOrTransposed) {
     const SyntheticStack stack = make_stack(300, 2);
     const HeightMap height = evaluate(stack).height;
-    HeightMap mirrored_x = stack.truth, mirrored_y = stack.truth, transposed = stack.truth,
-              negative = stack.truth;
+    HeightMap mirrored_x = stack.truth, mirrored_y = stack.truth, transposed = stack.truth, negative = stack.truth;
     for (int j = 0; j < pixels; ++j)
         for (int i = 0; i < pixels; ++i) {
             mirrored_x.height(i, j) = stack.truth.height(pixels - 1 - i, j);
@@ -150,8 +145,8 @@ TEST(Reconstruct, NoiseWithoutTextureIsNotMeasured) {
         for (float& value : image.values)
             value = static_cast<float>(poisson(random));
     const auto measured = [&](const std::string& measure, double smoothing_steps, double rate) {
-        const auto topography = evaluate(
-            stack, {.focus_measure = measure, .smoothing_steps = smoothing_steps, .false_peak_rate = rate});
+        const auto topography =
+            evaluate(stack, {.focus_measure = measure, .smoothing_steps = smoothing_steps, .false_peak_rate = rate});
         return std::count_if(topography.height.height.values.begin(), topography.height.height.values.end(),
                              [](double z) { return std::isfinite(z); });
     };
@@ -176,14 +171,13 @@ TEST(Reconstruct, PeaksBeyondTheScanAreNotMeasured) {
         }
     ASSERT_GE(images.size(), 5u);
     const Topography topography = reconstruct(images, z, 0, 0, pitch, {.smoothing_steps = 1});
-    const auto measured =
-        std::count_if(topography.height.height.values.begin(), topography.height.height.values.end(),
-                      [](double h) { return std::isfinite(h); });
+    const auto measured = std::count_if(topography.height.height.values.begin(), topography.height.height.values.end(),
+                                        [](double h) { return std::isfinite(h); });
     EXPECT_LT(measured, pixels * pixels / 50);
 }
 
-// A stack whose texture of standard deviation `contrast`, beside noise of 1, is in focus at image `at` everywhere, and fades as
-// a Gaussian of standard deviation `depth` images.
+// A stack whose texture of standard deviation `contrast`, beside noise of 1, is in focus at image `at` everywhere, and
+// fades as a Gaussian of standard deviation `depth` images.
 SyntheticStack level_stack(int images, double at, double depth, double contrast) {
     constexpr double brightness = 100;
     std::mt19937 random(17);
@@ -261,9 +255,7 @@ TEST(Reconstruct, FollowsTheScanAndNotTheUnitOfLight) {
 }
 
 TEST(Reconstruct, RejectsWhatItCannotEvaluate) {
-    const auto rejects = [](const TopographyOptions& options) {
-        EXPECT_THROW(StackEvaluator{options}, InputError);
-    };
+    const auto rejects = [](const TopographyOptions& options) { EXPECT_THROW(StackEvaluator{options}, InputError); };
     rejects({.focus_measure = "entropy"});
     rejects({.window_px = 4});
     rejects({.window_px = 1});
@@ -368,7 +360,8 @@ TEST(Reconstruct, HoldsFewImagesHoweverLongTheStack) {
 TEST(Reconstruct, AnImageAtATimeGivesWhatTheWholeStackGives) {
     // The definition, with all curves in memory and no ring: a wrong index anywhere would show.
     const SyntheticStack stack = make_stack(300, 7);
-    const TopographyOptions options{.focus_measure = "standard-deviation", .peak = "gaussian-fit", .peak_range_steps = 2, .smoothing_steps = 0.6};
+    const TopographyOptions options{
+        .focus_measure = "standard-deviation", .peak = "gaussian-fit", .peak_range_steps = 2, .smoothing_steps = 0.6};
     const Topography streamed = evaluate(stack, options);
     const int images = static_cast<int>(stack.images.size());
     const auto weights = axial_weights(options.smoothing_steps);
@@ -406,8 +399,8 @@ TEST(Reconstruct, AnImageAtATimeGivesWhatTheWholeStackGives) {
         if (std::isnan(height))
             continue;
         ASSERT_EQ(fit.found, 1);
-        // The images are scaled by a power of two; curves differ in their float32 sums' last digits, over curvatures of the
-        // peak of some 0.02: 1e-5 steps of 0.8 um.
+        // The images are scaled by a power of two; curves differ in their float32 sums' last digits, over curvatures of
+        // the peak of some 0.02: 1e-5 steps of 0.8 um.
         EXPECT_NEAR(height, stack.z[0] + 0.0008 * (at + fit.offset), 1e-5 * 0.0008);
         const auto nearest = static_cast<std::size_t>(std::lround(at + fit.offset));
         if (std::abs(at + fit.offset - std::floor(at + fit.offset) - 0.5) > 1e-4) {
@@ -433,10 +426,12 @@ TEST(Reconstruct, LimitsOfQualityTakePointsOut) {
     std::vector<double> contrasts = all.contrast.values, residuals = all.fit_residual.values;
     std::ranges::nth_element(contrasts, contrasts.begin() + pixels * pixels / 2);
     std::ranges::nth_element(residuals, residuals.begin() + pixels * pixels / 2);
-    EXPECT_NEAR(count({.smoothing_steps = 1, .least_contrast = contrasts[pixels * pixels / 2]}, PointState::low_contrast),
-                pixels * pixels / 2, pixels * pixels / 20); // some have no peak at all
-    EXPECT_NEAR(count({.smoothing_steps = 1, .most_fit_residual = residuals[pixels * pixels / 2]}, PointState::poor_fit),
-                pixels * pixels / 2, pixels * pixels / 20);
+    EXPECT_NEAR(
+        count({.smoothing_steps = 1, .least_contrast = contrasts[pixels * pixels / 2]}, PointState::low_contrast),
+        pixels * pixels / 2, pixels * pixels / 20); // some have no peak at all
+    EXPECT_NEAR(
+        count({.smoothing_steps = 1, .most_fit_residual = residuals[pixels * pixels / 2]}, PointState::poor_fit),
+        pixels * pixels / 2, pixels * pixels / 20);
     EXPECT_EQ(count({.smoothing_steps = 1, .most_peaks = 1}, PointState::many_peaks),
               std::ranges::count_if(all.peaks.values, [](int peaks) { return peaks > 1; }));
 }
@@ -489,8 +484,7 @@ TEST(Compare, LevelsBothAndUsesCommonPointsOnly) {
     const HeightMap map = deviation_map(measured, truth);
     EXPECT_TRUE(std::isnan(map.height(0, 0)));
     EXPECT_TRUE(std::isnan(map.height(30, 20)));
-    EXPECT_NEAR(map.height(40, 7), -0.1 * (deviation.sq_true * std::sqrt(2.0)) * std::sin(2 * pi * 40 / 12.0),
-                2e-5);
+    EXPECT_NEAR(map.height(40, 7), -0.1 * (deviation.sq_true * std::sqrt(2.0)) * std::sin(2 * pi * 40 / 12.0), 2e-5);
 }
 
 TEST(Compare, TheLFilterRemovesWhatIsLongInBoth) {

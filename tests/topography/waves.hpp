@@ -23,8 +23,8 @@ inline std::vector<Wave> random_waves(int count, double lowest, double highest, 
     for (int k = 0; k < count; ++k) {
         const double frequency = std::sqrt(std::lerp(lowest * lowest, highest * highest, share(random)));
         const double direction = 2 * pi * share(random);
-        waves.push_back({amplitude, frequency * std::cos(direction), frequency * std::sin(direction),
-                         2 * pi * share(random)});
+        waves.push_back(
+            {amplitude, frequency * std::cos(direction), frequency * std::sin(direction), 2 * pi * share(random)});
     }
     return waves;
 }
@@ -32,16 +32,15 @@ inline std::vector<Wave> random_waves(int count, double lowest, double highest, 
 template <class Transfer>
 surface::HeightMap map_of(const std::vector<Wave>& waves, int columns, int rows, double pitch, double shift_x,
                           double shift_y, const Transfer& transfer) {
-    surface::HeightMap map{
-        .height = Grid<double>(columns, rows), .x0 = 0, .y0 = 0, .pitch_x = pitch, .pitch_y = pitch};
+    surface::HeightMap map{.height = Grid<double>(columns, rows), .x0 = 0, .y0 = 0, .pitch_x = pitch, .pitch_y = pitch};
     for (const Wave& wave : waves) {
         const double amplitude = wave.amplitude * transfer(wave.frequency());
         for (int row = 0; row < rows; ++row)
             for (int column = 0; column < columns; ++column)
-                map.height(column, row) +=
-                    amplitude * std::cos(2 * pi * (wave.frequency_x * (map.x(column) - shift_x) +
-                                                   wave.frequency_y * (map.y(row) - shift_y)) +
-                                         wave.phase);
+                map.height(column, row) += amplitude * std::cos(2 * pi *
+                                                                    (wave.frequency_x * (map.x(column) - shift_x) +
+                                                                     wave.frequency_y * (map.y(row) - shift_y)) +
+                                                                wave.phase);
     }
     return map;
 }

@@ -1,8 +1,8 @@
 // The backward estimator against the forward one, which is the arbiter, and what it promises of itself.
-#include "trace/microscope.hpp"
 #include "trace/device_tracer.hpp"
 #include "trace/host_tracer.hpp"
 #include "trace/lattice_generators.hpp"
+#include "trace/microscope.hpp"
 
 #include "core/error.hpp"
 #include "core/units.hpp"
@@ -41,23 +41,21 @@ trace::TraceOptions options(trace::Estimator estimator, std::uint64_t rays, int 
     return result;
 }
 
-trace::Image backward_image(const optics::Instrument& instrument, const specimen::Specimen& specimen,
-                            int max_bounces, std::uint64_t rays = 1 << 19, std::uint32_t image = 0) {
-    return trace::make_device_tracer(instrument, specimen,
-                                     options(trace::Estimator::backward, rays, max_bounces))
+trace::Image backward_image(const optics::Instrument& instrument, const specimen::Specimen& specimen, int max_bounces,
+                            std::uint64_t rays = 1 << 19, std::uint32_t image = 0) {
+    return trace::make_device_tracer(instrument, specimen, options(trace::Estimator::backward, rays, max_bounces))
         ->expose(focal_height, image);
 }
 
-trace::Image forward_image(const optics::Instrument& instrument, const specimen::Specimen& specimen,
-                           int max_bounces, std::uint64_t rays = 4'000'000) {
-    return trace::make_device_tracer(instrument, specimen,
-                                     options(trace::Estimator::forward, rays, max_bounces))
+trace::Image forward_image(const optics::Instrument& instrument, const specimen::Specimen& specimen, int max_bounces,
+                           std::uint64_t rays = 4'000'000) {
+    return trace::make_device_tracer(instrument, specimen, options(trace::Estimator::forward, rays, max_bounces))
         ->expose(focal_height, 0);
 }
 
 // Probability of a greater sum over the pixels of (difference)^2 / variance. Forward counts are Poisson's about the
-// expectation, which backward knows better; backward's own variances have one degree of freedom a pixel, so what is used is
-// their sum over the field, shared out as the light is.
+// expectation, which backward knows better; backward's own variances have one degree of freedom a pixel, so what is
+// used is their sum over the field, shared out as the light is.
 double agreement(const trace::Image& forward, const trace::Image& backward) {
     const auto pixels = forward.flux.values.size();
     const auto total = [](const Grid<double>& grid) {
@@ -121,9 +119,9 @@ TEST(Backward, knows_every_material) {
     const auto rough = test::rough_specimen();
     const specimen::Material mixture{
         {{"lambertian", 0.4, {}}, {"henyey-greenstein", 0.3, {0.95}}, {"mirror", 0.2, {}}}};
-    for (const auto& material : {mixture, specimen::Material::henyey_greenstein(1),
-                                 specimen::Material::henyey_greenstein(-0.4),
-                                 specimen::Material::henyey_greenstein(0.97)}) {
+    for (const auto& material :
+         {mixture, specimen::Material::henyey_greenstein(1), specimen::Material::henyey_greenstein(-0.4),
+          specimen::Material::henyey_greenstein(0.97)}) {
         const auto specimen = with_material(rough, material);
         expect_agreement(forward_image(instrument, specimen, 2), backward_image(instrument, specimen, 2));
     }
@@ -151,7 +149,8 @@ TEST(Backward, knows_every_instrument) {
         SCOPED_TRACE(description.splitter.size + description.tube_lens_placement.change.decentre_x);
         const auto instrument = optics::assemble(description);
         // Bare interfaces leave a third of the light.
-        const std::uint64_t rays = description.interfaces.model == optics::Interfaces::Model::ideal ? 4'000'000 : 12'000'000;
+        const std::uint64_t rays =
+            description.interfaces.model == optics::Interfaces::Model::ideal ? 4'000'000 : 12'000'000;
         expect_agreement(forward_image(instrument, rough, 1, rays), backward_image(instrument, rough, 1));
     }
 }
@@ -177,8 +176,8 @@ TEST(Backward, every_traversal_gives_the_same_image) {
     }
 }
 
-// In double and in float: the same points, so the same values but for paths within rounding of an edge, and of the choice
-// between two candidates.
+// In double and in float: the same points, so the same values but for paths within rounding of an edge, and of the
+// choice between two candidates.
 TEST(Backward, host_and_device_follow_the_same_paths) {
     const auto instrument = optics::assemble(small_description());
     const auto specimen = test::steep_specimen(0.65);
@@ -218,7 +217,8 @@ TEST(Backward, states_its_standard_error) {
     const auto instrument = optics::assemble(small_description());
     const auto specimen = test::plane_specimen(0.3);
     constexpr int images = 16;
-    const auto tracer = trace::make_device_tracer(instrument, specimen, options(trace::Estimator::backward, 1 << 13, 1));
+    const auto tracer =
+        trace::make_device_tracer(instrument, specimen, options(trace::Estimator::backward, 1 << 13, 1));
     std::vector<double> sums(256), squares(256);
     double stated = 0;
     for (int image = 0; image < images; ++image) {
@@ -236,8 +236,8 @@ TEST(Backward, states_its_standard_error) {
     EXPECT_NEAR(stated / seen, 1.0, 5 * std::sqrt(2.0 / 256 * (1.0 / 15 + 1)));
 }
 
-// What the gates promise, for each microscope of the library, in double: all light within the inner one is from the source,
-// none outside the outer one.
+// What the gates promise, for each microscope of the library, in double: all light within the inner one is from the
+// source, none outside the outer one.
 TEST(Backward, gates_hold_for_every_microscope) {
     for (const char* objective : {"5x_0.15", "10x_0.28", "20x_0.41", "50x_0.66", "100x_0.83"}) {
         SCOPED_TRACE(objective);
@@ -274,8 +274,7 @@ TEST(Backward, gates_hold_for_every_microscope) {
         for (int k = 0; k < 4000; ++k) {
             dark_within += seen(disc(optics.inner_field), disc(optics.source_inner)) ? 0 : 1;
             const glm::dvec2 direction = disc(1);
-            const glm::dvec2 outside =
-                glm::normalize(direction) * optics.source_outer * (1 + 0.2 * uniform(engine));
+            const glm::dvec2 outside = glm::normalize(direction) * optics.source_outer * (1 + 0.2 * uniform(engine));
             lit_outside += seen(disc(optics.inner_field), outside) ? 1 : 0;
         }
         EXPECT_EQ(dark_within, 0);
@@ -285,7 +284,8 @@ TEST(Backward, gates_hold_for_every_microscope) {
 
 TEST(Backward, refuses_a_ring_light) {
     auto description = small_description();
-    description.ring = optics::RingLightDescription{.distance = 25, .elevation = 0.5, .width = 0.2, .on = {true}, .lit_radius = 0.1};
+    description.ring =
+        optics::RingLightDescription{.distance = 25, .elevation = 0.5, .width = 0.2, .on = {true}, .lit_radius = 0.1};
     EXPECT_THROW(optics::assemble(description), InputError);
     description.turned = false;
     EXPECT_NO_THROW(optics::assemble(description));

@@ -17,10 +17,10 @@ namespace {
 using vulkan::Box;
 
 struct Check {
-    std::size_t outside = 0;         // primitives and nodes that stand out of the box of a slot above them
-    std::size_t misread = 0;         // slots and masks that contradict each other
-    std::vector<int> times;          // each primitive is met in the whole tree
-    std::size_t nodes = 0;           // met
+    std::size_t outside = 0; // primitives and nodes that stand out of the box of a slot above them
+    std::size_t misread = 0; // slots and masks that contradict each other
+    std::vector<int> times;  // each primitive is met in the whole tree
+    std::size_t nodes = 0;   // met
     std::size_t largest_leaf = 0;
     int depth = 0;
 
@@ -36,7 +36,8 @@ bool within(const Box& inner, const glm::dvec3& lower, const glm::dvec3& upper) 
 }
 
 // The box around all primitives below a node.
-Box examine(const BoundingVolumeHierarchy& tree, const std::vector<Box>& boxes, std::size_t index, int depth, Check& check) {
+Box examine(const BoundingVolumeHierarchy& tree, const std::vector<Box>& boxes, std::size_t index, int depth,
+            Check& check) {
     constexpr float infinity = std::numeric_limits<float>::infinity();
     const HierarchyNode& node = tree.nodes.at(index);
     ++check.nodes;
@@ -129,8 +130,8 @@ TEST(BoundingVolumeHierarchy, AShrunkBoxIsNoticed) {
 TEST(BoundingVolumeHierarchy, TakesDegenerateBoxes) {
     std::vector<std::vector<Box>> cases;
     cases.emplace_back(1, Box{glm::vec3(0), glm::vec3(0)});
-    cases.emplace_back(5000, Box{glm::vec3(1, 2, 3), glm::vec3(1, 2, 3)});    // all the same point
-    cases.emplace_back(5000, Box{glm::vec3(-1), glm::vec3(1)});               // all the same box
+    cases.emplace_back(5000, Box{glm::vec3(1, 2, 3), glm::vec3(1, 2, 3)}); // all the same point
+    cases.emplace_back(5000, Box{glm::vec3(-1), glm::vec3(1)});            // all the same box
     std::vector<Box> line;
     std::vector<Box> flat;
     std::vector<Box> nested;

@@ -30,8 +30,9 @@ double blur_diameter(const optics::Instrument& instrument, double height, double
 
 // A point z out of focus is blurred over 2 z tan(asin NA), exactly so by a lens that obeys the sine condition. This one
 // offends it at the rim by 0.27 % (an aperture of 0.2770 where pupil radius over focal length is 0.2778), with the
-// square of the aperture; the blur follows the derivative of aperture times offence, three times as much: 0.8 %. Spherical
-// aberration cancels to first order in the mean of equal defocus to both sides, and leaves (7 um / 200 um)^2, 0.1 %.
+// square of the aperture; the blur follows the derivative of aperture times offence, three times as much: 0.8 %.
+// Spherical aberration cancels to first order in the mean of equal defocus to both sides, and leaves (7 um / 200 um)^2,
+// 0.1 %.
 TEST(Defocus, the_blur_has_the_diameter_of_the_marginal_cone) {
     const auto instrument = test::microscope();
     const double na = instrument.first_order.numerical_aperture * (1 - 1e-6);

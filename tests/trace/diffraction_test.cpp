@@ -89,7 +89,7 @@ TEST(Diffraction, long_waves_keep_the_contrast_of_the_transfer_function) {
                          std::cos(2 * pi * cycles * (column + 0.5) / size);
         const double frequency = cycles / (size * pitch), cutoff = 2 * aperture / wavelength;
         const double expected = 0.5 * optics::circular_pupil_transfer(frequency, cutoff);
-        EXPECT_NEAR(amplitude / expected, 1, 0.11) << cycles; // sinc(1/4) = 0.90 for the shortest of them
+        EXPECT_NEAR(amplitude / expected, 1, 0.11) << cycles;     // sinc(1/4) = 0.90 for the shortest of them
         EXPECT_GT(std::abs(amplitude / 0.5 - 1), 0.04) << cycles; // it does something
     }
 }
@@ -117,11 +117,12 @@ TEST(Diffraction, both_ways_agree) {
     const Grid<float> spread = Diffraction(pattern(), 257, 257, 0.1 * pitch).apply(point(257, 128, 128));
     const Grid<float> by_pattern = Diffraction(pattern(), size, size, pitch).apply(point(size, 30, 33));
     const Grid<float> by_file = Diffraction(spread, 0.1 * pitch, size, size, pitch).apply(point(size, 30, 33));
-    // The file's own pixels widen it twice more, each by q^2 / 24 of the curvature (2 pi NA / wavelength)^2 / 2 along both
-    // axes: 0.7 % of the peak for q = 0.1 um. The tails that the file leaves out are another 1 %.
+    // The file's own pixels widen it twice more, each by q^2 / 24 of the curvature (2 pi NA / wavelength)^2 / 2 along
+    // both axes: 0.7 % of the peak for q = 0.1 um. The tails that the file leaves out are another 1 %.
     for (int row = 28; row < 39; ++row)
         for (int column = 25; column < 36; ++column)
-            EXPECT_NEAR(by_file(column, row), by_pattern(column, row), 0.02f * by_pattern(30, 33)) << column << " " << row;
+            EXPECT_NEAR(by_file(column, row), by_pattern(column, row), 0.02f * by_pattern(30, 33))
+                << column << " " << row;
 }
 
 TEST(AiryPattern, averages_over_the_spectrum) {

@@ -1,7 +1,7 @@
 // Directed scatter: the image and the ledger of the analog form, with less noise.
-#include "trace/microscope.hpp"
 #include "trace/device_tracer.hpp"
 #include "trace/host_tracer.hpp"
+#include "trace/microscope.hpp"
 
 #include "support/statistics.hpp"
 
@@ -70,8 +70,9 @@ double power(const trace::Image& image, const std::string& name) {
 
 } // namespace
 
-// A plane that scatters by Lambert's law under the middle of the gate, which is a circle of the slope r there: the share
-// r^2 / (1 + r^2) of its light passes. Both samples together have that mean; either with the weight 1 has another.
+// A plane that scatters by Lambert's law under the middle of the gate, which is a circle of the slope r there: the
+// share r^2 / (1 + r^2) of its light passes. Both samples together have that mean; either with the weight 1 has
+// another.
 TEST(DirectedScatter, both_samples_together_have_the_mean_of_the_light_in_the_gate) {
     const auto instrument = test::microscope().constants;
     const Lobe lambertian{SCATTER_LAMBERTIAN, 1, 0, 0, 0, 0, {}};
@@ -86,7 +87,8 @@ TEST(DirectedScatter, both_samples_together_have_the_mean_of_the_light_in_the_ga
         const Draws u = draw(9, 1, uvec2(k, 0), 0);
         const ScatterTry own = lambertian_try(incidence, u.u0, u.u1, 0.5);
         const double own_ratio = density_ratio(lambertian, incidence, disc, own.direction);
-        const double own_weight = passes_gate(instrument, 0.01, real3(0.0), own.direction) ? own_ratio / (1 + own_ratio) : 0;
+        const double own_weight =
+            passes_gate(instrument, 0.01, real3(0.0), own.direction) ? own_ratio / (1 + own_ratio) : 0;
         const double aimed_ratio = density_ratio(lambertian, incidence, disc, direction_in_disc(disc, u.u2, u.u3));
         const double weight = own_weight + aimed_ratio / (1 + aimed_ratio);
         sum += weight;
@@ -96,7 +98,7 @@ TEST(DirectedScatter, both_samples_together_have_the_mean_of_the_light_in_the_ga
     }
     const double mean = sum / draws;
     const double error = std::sqrt((squares / draws - mean * mean) / draws);
-    EXPECT_LT(std::abs(mean - share) / error, 4.0); // 6e-5
+    EXPECT_LT(std::abs(mean - share) / error, 4.0);              // 6e-5
     EXPECT_GT(std::abs(own_alone / draws - share) / error, 4.0); // wrong twins
     EXPECT_GT(std::abs(aimed_alone / draws - share) / error, 4.0);
 }
@@ -117,8 +119,8 @@ TEST(DirectedScatter, the_aim_is_the_gate) {
     EXPECT_EQ(outside, points);
 }
 
-// Chi-square per pixel and a z-test of the sum, twelve tests that err together once in 1e4. Two fifths of the light missing
-// is found out.
+// Chi-square per pixel and a z-test of the sum, twelve tests that err together once in 1e4. Two fifths of the light
+// missing is found out.
 TEST(DirectedScatter, the_expected_image_is_the_analog_one) {
     const auto instrument = coarse_microscope();
     const double level = test::sidak(1e-4, 12);
@@ -159,7 +161,8 @@ TEST(DirectedScatter, the_image_has_less_noise) {
     EXPECT_LT(variance(directed), 0.2 * variance(analog)); // 0.10 seen
 }
 
-// Over images of other random numbers the residual varies as its stated error says: chi-square of 16 of them, 1e-4 each.
+// Over images of other random numbers the residual varies as its stated error says: chi-square of 16 of them, 1e-4
+// each.
 TEST(DirectedScatter, the_ledger_closes_in_expectation) {
     const auto instrument = coarse_microscope();
     const auto specimen = mixed_specimen();
@@ -189,8 +192,7 @@ TEST(DirectedScatter, the_ledger_closes_in_expectation) {
 TEST(DirectedScatter, a_mirror_stays_as_it_was) {
     const auto instrument = coarse_microscope();
     auto specimen = test::rough_specimen(0);
-    for (const specimen::Lobe& lobe :
-         {specimen::Lobe{"mirror", 1, {}}, specimen::Lobe{"henyey-greenstein", 1, {1}}}) {
+    for (const specimen::Lobe& lobe : {specimen::Lobe{"mirror", 1, {}}, specimen::Lobe{"henyey-greenstein", 1, {1}}}) {
         specimen.material.lobes = {lobe};
         const auto analog = expose(instrument, specimen, options(false));
         const auto directed = expose(instrument, specimen, options(true));
@@ -240,8 +242,8 @@ TEST(DirectedScatter, traversals_and_host_give_the_same_image) {
     EXPECT_GT(differing(expose(instrument, test::steep_specimen(0.6), options(true, 3))), 5e-3); // wrong twin
 }
 
-// Path by path: the same fate, place and weight but for ties within rounding, which mirrors on facets enlarge: 76 of 16146
-// that arrived when this was written, and 8 of 770 in the analog form.
+// Path by path: the same fate, place and weight but for ties within rounding, which mirrors on facets enlarge: 76 of
+// 16146 that arrived when this was written, and 8 of 770 in the analog form.
 TEST(DirectedScatter, host_and_device_trace_the_same_paths) {
     const auto instrument = test::microscope();
     const auto specimen = mixed_specimen();

@@ -1,7 +1,7 @@
 // Whole images: ledger, determinism, traversals, radiometry.
-#include "trace/microscope.hpp"
 #include "trace/device_tracer.hpp"
 #include "trace/host_tracer.hpp"
+#include "trace/microscope.hpp"
 
 #include "support/statistics.hpp"
 
@@ -69,8 +69,8 @@ TEST(Image, the_ledger_closes_for_analog_and_aimed_emission) {
     }
 }
 
-// Uncoated interfaces: every loss is counted at its surface. Light from the source meets the first one, of B270 (n = 1.523 at
-// d), all but normally.
+// Uncoated interfaces: every loss is counted at its surface. Light from the source meets the first one, of B270 (n
+// = 1.523 at d), all but normally.
 TEST(Image, the_ledger_counts_what_interfaces_reflect) {
     auto description = test::microscope_description();
     const auto ideal = optics::assemble(description);
@@ -95,14 +95,15 @@ TEST(Image, the_ledger_counts_what_interfaces_reflect) {
     }
     EXPECT_EQ(rays, image.rays);
     const double first = std::pow(0.523 / 2.523, 2);
-    EXPECT_LT(test::share_z(lost(image, "illumination 1 ("), double(image.rays), first), 4.0); // 6e-5
+    EXPECT_LT(test::share_z(lost(image, "illumination 1 ("), double(image.rays), first), 4.0);       // 6e-5
     EXPECT_GT(test::share_z(lost(image, "illumination 1 ("), double(image.rays), 1.1 * first), 4.0); // wrong twin
     EXPECT_GT(lost(image, "imaging"), 1000);
     EXPECT_EQ(lost(lossless, ""), 0);
     EXPECT_LT(double(image.detected), 0.7 * double(lossless.detected));
 }
 
-// Power per ray: whole before the splitter, R beyond it, R (1 - R) beyond its second pass; a wrong split would still close.
+// Power per ray: whole before the splitter, R beyond it, R (1 - R) beyond its second pass; a wrong split would still
+// close.
 TEST(Image, the_ledger_gives_each_loss_the_power_it_carried) {
     auto description = test::microscope_description();
     description.splitter.reflectance = 0.3;
@@ -143,7 +144,7 @@ TEST(Image, aimed_emission_detects_the_power_of_the_whole_source) {
     const auto error = [&](const trace::Image& image) { return power(image) / std::sqrt(double(image.detected)); };
     ASSERT_GT(b.detected, 500u);
     const double z = std::abs(power(a) - power(b)) / std::hypot(error(a), error(b));
-    EXPECT_LT(z, 4.0); // 6e-5
+    EXPECT_LT(z, 4.0);                                                                    // 6e-5
     EXPECT_GT(std::abs(1.3 * power(a) - power(b)) / std::hypot(error(a), error(b)), 4.0); // wrong twin
 }
 
@@ -218,8 +219,8 @@ TEST(Image, an_instrument_in_constants_gives_the_image_of_one_in_a_buffer) {
                 1e-3 * static_cast<double>(known.detected));
 }
 
-// One scatter event on a plane: every ray that comes to the specimen is absorbed or not by its reflectance, and the ledger
-// closes with its power in a row of its own. As many bounces change nothing, as a plane is met once.
+// One scatter event on a plane: every ray that comes to the specimen is absorbed or not by its reflectance, and the
+// ledger closes with its power in a row of its own. As many bounces change nothing, as a plane is met once.
 TEST(Image, what_the_specimen_does_not_reflect_is_absorbed) {
     const auto instrument = test::microscope();
     specimen::Specimen plane = test::plane_specimen(0.0);

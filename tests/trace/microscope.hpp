@@ -22,10 +22,12 @@ inline optics::InstrumentDescription microscope_description() {
     return description;
 }
 
-inline optics::Instrument microscope() { return optics::assemble(microscope_description()); }
+inline optics::Instrument microscope() {
+    return optics::assemble(microscope_description());
+}
 
-// Rough enough that light meets it more than once. Only slopes above 3.5 turn back light that is within the pupil, which
-// steep_specimen() has.
+// Rough enough that light meets it more than once. Only slopes above 3.5 turn back light that is within the pupil,
+// which steep_specimen() has.
 inline specimen::Specimen rough_specimen(double g = 0.65, double sq = 0.003, double correlation_length = 0.012) {
     specimen::Description description;
     description.kind = specimen::Kind::rough;
@@ -38,7 +40,9 @@ inline specimen::Specimen rough_specimen(double g = 0.65, double sq = 0.003, dou
     return specimen::make(description);
 }
 
-inline specimen::Specimen steep_specimen(double g) { return rough_specimen(g, 0.016, 0.009); }
+inline specimen::Specimen steep_specimen(double g) {
+    return rough_specimen(g, 0.016, 0.009);
+}
 
 inline specimen::Specimen plane_specimen(double g) {
     specimen::Description description;

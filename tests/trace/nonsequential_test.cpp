@@ -1,10 +1,10 @@
-// Light that finds its own way: the sequential image without Fresnel's reflections, closed forms with them, the ledger, and
-// the device against the host.
-#include "trace/microscope.hpp"
+// Light that finds its own way: the sequential image without Fresnel's reflections, closed forms with them, the ledger,
+// and the device against the host.
 #include "optics/room.hpp"
 #include "support/statistics.hpp"
 #include "trace/device_tracer.hpp"
 #include "trace/host_tracer.hpp"
+#include "trace/microscope.hpp"
 
 #include <gtest/gtest.h>
 
@@ -44,7 +44,9 @@ double same_expectation_p(const trace::Image& a, const trace::Image& b) {
 }
 
 // Little roughness and a narrow lobe, so that much of the light returns.
-specimen::Specimen smooth_specimen() { return test::rough_specimen(0.95, 0.0002); }
+specimen::Specimen smooth_specimen() {
+    return test::rough_specimen(0.95, 0.0002);
+}
 
 // A scene of given elements alone.
 struct Bench {
@@ -104,12 +106,14 @@ constexpr SourceFrame below_the_axis() {
     return {{0, 0, -1}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
 }
 
-std::vector<Detection> trace_bench(const Bench& bench, const physics::f64::Instrument& instrument, std::uint32_t paths) {
+std::vector<Detection> trace_bench(const Bench& bench, const physics::f64::Instrument& instrument,
+                                   std::uint32_t paths) {
     std::vector<Detection> ends;
     ends.reserve(paths);
     const Exposure exposure{.top_distance = 0, .seed = 5, .image = 1, .focal_height = 0, .top_distance_residual = 0};
     for (std::uint32_t path = 0; path < paths; ++path) {
-        ends.push_back(trace_nonsequential(bench, instrument, SpecimenRecord{}, exposure, below_the_axis(), uvec2(path, 0)));
+        ends.push_back(
+            trace_nonsequential(bench, instrument, SpecimenRecord{}, exposure, below_the_axis(), uvec2(path, 0)));
     }
     return ends;
 }
@@ -131,7 +135,8 @@ TEST(Nonsequential, WithoutFresnelItGivesTheSequentialImage) {
     constexpr double level = 1e-4; // false-positive rate of each comparison
     const auto sequential =
         trace::make_device_tracer(instrument, specimen, options(trace::Traversal::quadtree, false))->expose(0.001, 2);
-    const auto by_bvh = trace::make_device_tracer(instrument, specimen, options(trace::Traversal::bvh))->expose(0.001, 3);
+    const auto by_bvh =
+        trace::make_device_tracer(instrument, specimen, options(trace::Traversal::bvh))->expose(0.001, 3);
     EXPECT_GT(same_expectation_p(sequential, by_bvh), level);
     EXPECT_GT(by_bvh.detected, 5000u);
     const auto by_ray_query =
@@ -144,8 +149,7 @@ TEST(Nonsequential, WithoutFresnelItGivesTheSequentialImage) {
     other.splitter.transmittance = 0.65;
     auto twin_options = options(trace::Traversal::quadtree, false);
     twin_options.rays *= 4;
-    const auto twin =
-        trace::make_device_tracer(optics::assemble(other), specimen, twin_options)->expose(0.001, 2);
+    const auto twin = trace::make_device_tracer(optics::assemble(other), specimen, twin_options)->expose(0.001, 2);
     double sum = 0;
     double twin_sum = 0;
     for (std::size_t k = 0; k < twin.flux.values.size(); ++k) {
@@ -174,17 +178,16 @@ TEST(Nonsequential, TheLedgerClosesWithGhosts) {
     }
 }
 
-// The device's float against the host's double, path by path, with Fresnel's reflections: a path whose random number lies
-// within float rounding of a reflectance parts, and so do all after many turns; so a share of fates may differ, and detected
-// ones land within the bound.
+// The device's float against the host's double, path by path, with Fresnel's reflections: a path whose random number
+// lies within float rounding of a reflectance parts, and so do all after many turns; so a share of fates may differ,
+// and detected ones land within the bound.
 TEST(Nonsequential, HostAndDeviceTraceTheSamePaths) {
     auto description = coarse_microscope();
     description.interfaces.model = optics::Interfaces::Model::fresnel;
     const auto instrument = optics::assemble(description);
     const auto specimen = smooth_specimen();
     constexpr std::uint32_t paths = 3000;
-    const auto host =
-        trace::host_paths(instrument, specimen, options(trace::Traversal::automatic), 0.002, 7, 0, paths);
+    const auto host = trace::host_paths(instrument, specimen, options(trace::Traversal::automatic), 0.002, 7, 0, paths);
     for (const auto traversal : {trace::Traversal::bvh, trace::Traversal::ray_query}) {
         const auto device = trace::device_paths(instrument, specimen, options(traversal), 0.002, 7, 0, paths);
         int differing = 0;
@@ -204,8 +207,8 @@ TEST(Nonsequential, HostAndDeviceTraceTheSamePaths) {
     }
 }
 
-// Five uncoated plates of N-BK7 at normal incidence with all multiple reflections pass (1 - R) / (1 + 9 R): G. G. Stokes,
-// Proc. R. Soc. 11 (1862) 545. Single passes alone (the sequential mode) would leave (1 - R)^10.
+// Five uncoated plates of N-BK7 at normal incidence with all multiple reflections pass (1 - R) / (1 + 9 R): G. G.
+// Stokes, Proc. R. Soc. 11 (1862) 545. Single passes alone (the sequential mode) would leave (1 - R)^10.
 TEST(Nonsequential, FivePlatesPassWhatStokesSays) {
     constexpr double index = 1.5168;
     Bench bench;
@@ -222,8 +225,8 @@ TEST(Nonsequential, FivePlatesPassWhatStokesSays) {
     EXPECT_GT(test::share_z(share * paths, paths, std::pow(1 - reflectance, 10)), 4);
 }
 
-// Light reflected twice inside a plate leaves parallel to what passes, t 2 cos(theta) tan(theta') beside it, with R^2 of its
-// power; and twice as far with R^4.
+// Light reflected twice inside a plate leaves parallel to what passes, t 2 cos(theta) tan(theta') beside it, with R^2
+// of its power; and twice as far with R^4.
 TEST(Nonsequential, ThePlatesGhostHasItsPlaceAndStrength) {
     constexpr double index = 2.0;
     constexpr double thickness = 3.0;

@@ -1,7 +1,7 @@
 // Host in double against device in float, path by path, and what the gate and the ledger promise.
-#include "trace/microscope.hpp"
 #include "trace/device_tracer.hpp"
 #include "trace/host_tracer.hpp"
+#include "trace/microscope.hpp"
 
 #include "support/statistics.hpp"
 
@@ -61,13 +61,22 @@ TEST(Paths, host_and_device_trace_the_same_paths) {
         }
         for (const std::uint32_t k : suspects) {
             bool explained = false;
-            for (const auto& [scale, height] : std::vector<std::pair<double, double>>{
-                     {0x1p-21, 0}, {-0x1p-21, 0}, {1e-5, 0}, {-1e-5, 0}, {4e-5, 0}, {-4e-5, 0}, {1e-4, 0},
-                     {-1e-4, 0}, {0, 5e-6}, {0, -5e-6}, {0, 2e-5}, {0, -2e-5}}) {
-                const auto moved = trace::host_paths(instrument, specimen, options(), focal_height + height, 7, k, 1,
-                                                     1 + scale);
-                const bool same = same_fate(moved[0], host[k]) &&
-                                  std::hypot(moved[0].x - host[k].x, moved[0].y - host[k].y) < 0.5e-3;
+            for (const auto& [scale, height] : std::vector<std::pair<double, double>>{{0x1p-21, 0},
+                                                                                      {-0x1p-21, 0},
+                                                                                      {1e-5, 0},
+                                                                                      {-1e-5, 0},
+                                                                                      {4e-5, 0},
+                                                                                      {-4e-5, 0},
+                                                                                      {1e-4, 0},
+                                                                                      {-1e-4, 0},
+                                                                                      {0, 5e-6},
+                                                                                      {0, -5e-6},
+                                                                                      {0, 2e-5},
+                                                                                      {0, -2e-5}}) {
+                const auto moved =
+                    trace::host_paths(instrument, specimen, options(), focal_height + height, 7, k, 1, 1 + scale);
+                const bool same =
+                    same_fate(moved[0], host[k]) && std::hypot(moved[0].x - host[k].x, moved[0].y - host[k].y) < 0.5e-3;
                 explained = explained || !same;
             }
             unexplained += explained ? 0 : 1;

@@ -1,7 +1,7 @@
-// Float on the device against double on the host, in object space, for every microscope of the library: at most 1 nm rms and
-// 5 nm at worst (the 5x: 1.3 and 8, see bounds()), and the same ends. Both begin at the same numbers, so what differs is rounding on the way and in the
-// prescription. Field: the detector of bench_paper_chain.toml, 8 mm square, with its field stop and beam-splitter cube (the
-// microscope_*.toml have 1.28 mm, which is within it).
+// Float on the device against double on the host, in object space, for every microscope of the library: at most 1 nm
+// rms and 5 nm at worst (the 5x: 1.3 and 8, see bounds()), and the same ends. Both begin at the same numbers, so what
+// differs is rounding on the way and in the prescription. Field: the detector of bench_paper_chain.toml, 8 mm square,
+// with its field stop and beam-splitter cube (the microscope_*.toml have 1.28 mm, which is within it).
 #include "trace/microscope.hpp"
 #include "trace/ray_trace.hpp"
 
@@ -83,7 +83,8 @@ Deviation deviation(std::span<const trace::TracedRay> exact, std::span<const tra
     return result;
 }
 
-// Whether the ray ends as the device says when it starts within a few roundings of its start (2^-22 in the direction, 2 nm).
+// Whether the ray ends as the device says when it starts within a few roundings of its start (2^-22 in the direction, 2
+// nm).
 bool passes_within_rounding(const optics::Instrument& instrument, Train train, const Ray& ray,
                             const trace::TracedRay& rounded) {
     std::vector<Ray> beside;
@@ -91,8 +92,8 @@ bool passes_within_rounding(const optics::Instrument& instrument, Train train, c
         Ray turned = ray;
         turned.direction.x += 0x1p-22 * step.x;
         turned.direction.y += 0x1p-22 * step.y;
-        turned.direction.z = std::sqrt(1 - turned.direction.x * turned.direction.x -
-                                       turned.direction.y * turned.direction.y);
+        turned.direction.z =
+            std::sqrt(1 - turned.direction.x * turned.direction.x - turned.direction.y * turned.direction.y);
         beside.push_back(turned);
         Ray moved = ray;
         moved.position.x += 2 * nm * step.x;
@@ -105,8 +106,8 @@ bool passes_within_rounding(const optics::Instrument& instrument, Train train, c
     });
 }
 
-// The 5x is bound by float itself: its focal length of 40 mm turns half a rounding of a direction of 0.25, 0.86e-8 rms, into
-// 0.34 nm, and its beam of 12 mm rounds by 0.14 nm rms at each surface, in two coordinates and at ten surfaces.
+// The 5x is bound by float itself: its focal length of 40 mm turns half a rounding of a direction of 0.25, 0.86e-8 rms,
+// into 0.34 nm, and its beam of 12 mm rounds by 0.14 nm rms at each surface, in two coordinates and at ten surfaces.
 struct Bounds {
     double rms;
     double worst;
@@ -154,8 +155,7 @@ INSTANTIATE_TEST_SUITE_P(Library, Precision,
                                                               "100x_0.83"),
                                             ::testing::Values("180mm", "200mm", "200mm_achromat", "200mm_kurata")),
                          [](const auto& info) {
-                             std::string name =
-                                 std::string(std::get<0>(info.param)) + "_" + std::get<1>(info.param);
+                             std::string name = std::string(std::get<0>(info.param)) + "_" + std::get<1>(info.param);
                              std::erase(name, '.');
                              return name;
                          });
@@ -165,9 +165,9 @@ class IlluminationPrecision : public ::testing::TestWithParam<const char*> {};
 TEST_P(IlluminationPrecision, of_the_illumination_train_in_float) {
     const auto instrument = optics::assemble(described(GetParam(), "200mm"));
     const auto& constants = instrument.constants;
-    const auto rays = filling(30000, std::min(constants.source_radius, 1.05 * instrument.first_order.pupil_radius_in_source),
-                              -constants.source_distance, constants.emission_sine,
-                              [](double x, double y) { return x * x + y * y <= 1; });
+    const auto rays = filling(
+        30000, std::min(constants.source_radius, 1.05 * instrument.first_order.pupil_radius_in_source),
+        -constants.source_distance, constants.emission_sine, [](double x, double y) { return x * x + y * y <= 1; });
     expect_precise(instrument, Train::illumination, rays, 1, bounds(GetParam()));
 }
 

@@ -25,12 +25,13 @@ optics::InstrumentDescription described(const Microscope& microscope) {
     description.tube_lens = optics::load_prescription(microscope.tube_lens, "tube_lenses", base);
     description.detector_size = 8; // mm: a common sensor
     // The imaging is what is traced; a ring light needs no illuminator to be fitted to the objective.
-    description.ring =
-        optics::RingLightDescription{.distance = 30, .elevation = 0.5, .width = 1, .segments = 1, .fill = 1, .on = {true}, .lit_radius = 0.1};
+    description.ring = optics::RingLightDescription{
+        .distance = 30, .elevation = 0.5, .width = 1, .segments = 1, .fill = 1, .on = {true}, .lit_radius = 0.1};
     return description;
 }
 
-// From all over the detector's field, filling the numerical aperture and a little more, from 20 um about the object plane.
+// From all over the detector's field, filling the numerical aperture and a little more, from 20 um about the object
+// plane.
 std::vector<trace::RayInput> filling_rays(const optics::Instrument& instrument) {
     std::mt19937_64 generator(17);
     std::uniform_real_distribution<double> uniform(-1, 1);
@@ -71,10 +72,10 @@ TEST_P(RayTrace, InFloatAgreesWithDouble) {
     }
     RecordProperty("worst_nm", static_cast<int>(1e6 * worst));
     EXPECT_GT(arrived, 700);
-    EXPECT_LT(arrived, 1000);   // edges are met
-    EXPECT_LT(worst, 0.5e-3);   // issue 3: 0.5 um at the detector
-    EXPECT_GT(worst, 1e-7);     // it was not double on both
-    EXPECT_LE(differing, 1);    // one ray of 1000 may pass within float's 1e-6 mm of an edge
+    EXPECT_LT(arrived, 1000); // edges are met
+    EXPECT_LT(worst, 0.5e-3); // issue 3: 0.5 um at the detector
+    EXPECT_GT(worst, 1e-7);   // it was not double on both
+    EXPECT_LE(differing, 1);  // one ray of 1000 may pass within float's 1e-6 mm of an edge
     // Wrong twin: an object 1 um of the image to the side is seen.
     auto beside = rays;
     for (trace::RayInput& ray : beside) {

@@ -61,9 +61,9 @@ TEST(Records, the_device_sees_every_field_where_the_host_wrote_it) {
     spectrum_buffer.write_values(std::span<const physics::f32::SpectralBin>(bins));
     survivor_buffer.write_values(std::span<const physics::f32::Survivor>(survivors));
     using enum vulkan::BindingKind;
-    const vulkan::Kernel kernel(device, "probe_records", ::probe_records,
-                                {{0, uniform_buffer}, {1, uniform_buffer}, {2, storage_buffer}, {3, storage_buffer},
-                                 {14, uniform_buffer}});
+    const vulkan::Kernel kernel(
+        device, "probe_records", ::probe_records,
+        {{0, uniform_buffer}, {1, uniform_buffer}, {2, storage_buffer}, {3, storage_buffer}, {14, uniform_buffer}});
     const std::array<vulkan::Binding, 5> bindings = {
         {{0, &surface_buffer}, {1, &parameter_buffer}, {2, &survivor_buffer}, {3, &echo}, {14, &spectrum_buffer}}};
     vulkan::Commands commands(device);

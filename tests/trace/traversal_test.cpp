@@ -48,8 +48,7 @@ const vulkan::Device& device() {
 
 constexpr Traversal every_traversal[] = {Traversal::quadtree, Traversal::ray_query, Traversal::bvh};
 
-std::vector<Hit> meet(const specimen::Specimen& specimen, Traversal traversal,
-                      const std::vector<ProbeRay>& rays) {
+std::vector<Hit> meet(const specimen::Specimen& specimen, Traversal traversal, const std::vector<ProbeRay>& rays) {
     const DeviceSpecimen on_device(device(), specimen, traversal);
     Parameters parameters{};
     parameters.specimen = on_device.record(1);
@@ -72,8 +71,7 @@ std::vector<Hit> meet(const specimen::Specimen& specimen, Traversal traversal,
         : traversal == Traversal::bvh     ? std::span<const std::uint32_t>(probe_hits_bvh)
                                           : std::span<const std::uint32_t>(probe_hits_quadtree);
     const auto count = static_cast<std::uint32_t>(rays.size());
-    const vulkan::Kernel kernel(device(), "probe_hits", spirv, declarations, sizeof count,
-                                on_device.constants());
+    const vulkan::Kernel kernel(device(), "probe_hits", spirv, declarations, sizeof count, on_device.constants());
     vulkan::Commands commands(device());
     commands.dispatch(kernel, bindings, count, (count + 63) / 64);
     commands.submit_and_wait();
@@ -144,13 +142,10 @@ std::vector<ProbeRay> rays_from_top(const specimen::Specimen& specimen, std::siz
     for (ProbeRay& ray : rays) {
         const double sine = aperture * std::sqrt(uniform(generator));
         const double angle = two_pi * uniform(generator);
-        const double x =
-            record.x_min - margin + uniform(generator) * (record.x_max - record.x_min + 2 * margin);
-        const double y =
-            record.y_min - margin + uniform(generator) * (record.y_max - record.y_min + 2 * margin);
+        const double x = record.x_min - margin + uniform(generator) * (record.x_max - record.x_min + 2 * margin);
+        const double y = record.y_min - margin + uniform(generator) * (record.y_max - record.y_min + 2 * margin);
         ray.origin = glm::vec3(x, y, record.top);
-        ray.direction =
-            glm::vec3(sine * std::cos(angle), sine * std::sin(angle), -std::sqrt(1 - sine * sine));
+        ray.direction = glm::vec3(sine * std::cos(angle), sine * std::sin(angle), -std::sqrt(1 - sine * sine));
     }
     return rays;
 }
@@ -163,8 +158,8 @@ std::vector<ProbeRay> scattered_rays(const std::vector<Hit>& hits, std::uint32_t
     for (const Hit& hit : hits) {
         if (hit.found == 1) {
             const glm::vec3 random(normal(generator), normal(generator), normal(generator));
-            rays.push_back({physics::f32::scatter_origin(hit),
-                            glm::normalize(hit.normal + 0.999F * glm::normalize(random))});
+            rays.push_back(
+                {physics::f32::scatter_origin(hit), glm::normalize(hit.normal + 0.999F * glm::normalize(random))});
         }
     }
     return rays;
@@ -183,8 +178,7 @@ bool within_rounding(const specimen::Intersector& reference, const ProbeRay& ray
     for (int k = 0; k < 26; ++k) {
         const int code = k < 13 ? k : k + 1; // the 26 neighbours, without the ray itself
         const glm::dvec3 aside(code % 3 - 1, code / 3 % 3 - 1, code / 9 - 1);
-        const auto moved =
-            reference.hit(glm::dvec3(ray.origin) + 4 * rounding * aside, glm::dvec3(ray.direction));
+        const auto moved = reference.hit(glm::dvec3(ray.origin) + 4 * rounding * aside, glm::dvec3(ray.direction));
         if (moved.found == hit.found &&
             (hit.found == 0 || std::abs(moved.position.z - static_cast<double>(hit.position.z)) < nm)) {
             return true;
@@ -216,9 +210,8 @@ Comparison compare(const specimen::Intersector& reference, const std::vector<Pro
             result.both += a.found;
             if (a.found == 1) {
                 result.largest_height = std::max(result.largest_height, height);
-                result.largest_distance =
-                    std::max(result.largest_distance,
-                             std::abs(static_cast<double>(a.distance) - static_cast<double>(b.distance)));
+                result.largest_distance = std::max(result.largest_distance, std::abs(static_cast<double>(a.distance) -
+                                                                                     static_cast<double>(b.distance)));
                 const double turn = glm::length(glm::dvec3(a.normal) - glm::dvec3(b.normal));
                 result.largest_normal = std::max(result.largest_normal, turn);
                 result.turned += turn > turn_by_rounding ? 1 : 0;
@@ -273,8 +266,7 @@ TEST(Traversal, AllAgreeOnARoughSurface) {
         EXPECT_GT(seen.both, rays.size() * 9 / 10);
         EXPECT_EQ(seen.one_only, 0u);
         EXPECT_EQ(seen.apart, 0u);
-        EXPECT_LE(static_cast<double>(seen.for_rounding),
-                  share_for_rounding * static_cast<double>(rays.size()));
+        EXPECT_LE(static_cast<double>(seen.for_rounding), share_for_rounding * static_cast<double>(rays.size()));
         // The distance is as much longer than the height as the steepest slope against the flattest ray makes it.
         EXPECT_LT(seen.largest_distance, 4 * nm);
         // Within two roundings of the edges, 3.4 pitches of which belong to each cell, either facet is right.
@@ -304,8 +296,7 @@ TEST(Traversal, EachAgreesWithTheHostsReferenceInDouble) {
         const Comparison seen = compare(reference, rays, meet(rough(), traversal, rays), expected, nm);
         EXPECT_GT(seen.both, rays.size() * 9 / 10);
         EXPECT_EQ(seen.one_only + seen.apart, 0u);
-        EXPECT_LE(static_cast<double>(seen.for_rounding),
-                  share_for_rounding * static_cast<double>(rays.size()));
+        EXPECT_LE(static_cast<double>(seen.for_rounding), share_for_rounding * static_cast<double>(rays.size()));
     }
     const auto wrong = meet(shifted(rough(), 3 * nm), Traversal::quadtree, rays);
     EXPECT_GT(compare(reference, {rays.begin(), rays.begin() + 1000}, wrong, expected, nm).apart, 900u);
@@ -327,8 +318,7 @@ TEST(Traversal, ScatteredLightIsMetAlike) {
           compare(reference, rays, bvh, quadtree, nm), compare(reference, rays, bvh, ray_query, nm)}) {
         EXPECT_EQ(seen.one_only, 0u);
         EXPECT_EQ(seen.apart, 0u);
-        EXPECT_LE(static_cast<double>(seen.for_rounding),
-                  10 * share_for_rounding * static_cast<double>(rays.size()));
+        EXPECT_LE(static_cast<double>(seen.for_rounding), 10 * share_for_rounding * static_cast<double>(rays.size()));
     }
 }
 
@@ -354,8 +344,7 @@ TEST(Traversal, LightFromTheSideIsMetAlike) {
         const Comparison seen = compare(reference, rays, meet(rough(), traversal, rays), expected, 4 * nm);
         EXPECT_GT(seen.both, rays.size() / 2);
         EXPECT_EQ(seen.one_only + seen.apart, 0u);
-        EXPECT_LE(static_cast<double>(seen.for_rounding),
-                  10 * share_for_rounding * static_cast<double>(rays.size()));
+        EXPECT_LE(static_cast<double>(seen.for_rounding), 10 * share_for_rounding * static_cast<double>(rays.size()));
     }
     const auto wrong = meet(shifted(rough(), 10 * nm), Traversal::quadtree, rays);
     EXPECT_GT(compare(reference, {rays.begin(), rays.begin() + 1000}, wrong, expected, 4 * nm).apart, 100u);
@@ -393,8 +382,7 @@ TEST(Traversal, NoRayAtAVertexOrAnEdgeIsLost) {
             for (int row = 10; row < 2 * 129 - 20; ++row) {
                 for (int column = 10; column < 2 * 129 - 20; ++column) {
                     const glm::vec3 target(field.x_min + 0.5 * column * field.pitch_x,
-                                           field.y_min + 0.5 * row * field.pitch_y,
-                                           field.heights(column / 2, row / 2));
+                                           field.y_min + 0.5 * row * field.pitch_y, field.heights(column / 2, row / 2));
                     rays.push_back({target + direction * ((top - target.z) / direction.z), direction});
                     rays.back().origin.z = top;
                 }
@@ -413,7 +401,8 @@ TEST(Traversal, ARayFromAfarIsMetAsOnTheHost) {
     const specimen::Specimen hills{make_field(129, 0.001, RandomWaves(0.0005, 0.01, 7)), {}};
     const auto& field = std::get<specimen::HeightField>(hills.geometry);
     std::vector<ProbeRay> rays;
-    for (const glm::vec3& direction : {glm::normalize(glm::vec3(0.1F, 0, -1)), glm::vec3(0.24F, -0.32F, -0.91651514F)}) {
+    for (const glm::vec3& direction :
+         {glm::normalize(glm::vec3(0.1F, 0, -1)), glm::vec3(0.24F, -0.32F, -0.91651514F)}) {
         for (int row = 86; row < 170; ++row) {
             for (int column = 86; column < 170; ++column) {
                 const glm::vec3 target(field.x_min + 0.5 * column * field.pitch_x,
@@ -489,15 +478,12 @@ Pair chirp() {
 // / sqrt(2) is at most that squared / 2 times the largest curvature R^2 / (R^2 - r^2)^(3/2).
 Pair sphere() {
     const double radius = 0.2;
-    const double cap =
-        0.05; // its rim stands at r = sqrt(2 R cap - cap^2) = 0.13 mm, beyond the corners at 0.073 mm
+    const double cap = 0.05; // its rim stands at r = sqrt(2 R cap - cap^2) = 0.13 mm, beyond the corners at 0.073 mm
     const double r_squared = 2 * half * half;
     const double z = std::sqrt(radius * radius - r_squared);
     return {analytic_shape(physics::f64::SHAPE_SPHERE, radius, cap, 0, half),
             make_field(points, pitch,
-                       [=](double x, double y) {
-                           return cap - radius + std::sqrt(radius * radius - x * x - y * y);
-                       }),
+                       [=](double x, double y) { return cap - radius + std::sqrt(radius * radius - x * x - y * y); }),
             pitch * pitch / 4 * radius * radius / (z * z * z), std::sqrt(r_squared) / z};
 }
 
@@ -578,8 +564,7 @@ TEST(Traversal, FunctionsAreMetAsOnTheHost) {
         for (const auto& probes : {down, rays}) {
             const auto expected = meet(reference, probes);
             for (const Traversal traversal : every_traversal) {
-                const Comparison seen =
-                    compare(reference, probes, meet(function, traversal, probes), expected, nm);
+                const Comparison seen = compare(reference, probes, meet(function, traversal, probes), expected, nm);
                 EXPECT_EQ(seen.one_only + seen.apart, 0u);
                 EXPECT_GT(seen.both, 0u);
             }
@@ -596,8 +581,7 @@ specimen::Mesh octahedral_sphere(double radius, int halvings) {
     for (int k = 0; k < halvings; ++k) {
         std::map<std::pair<std::uint32_t, std::uint32_t>, std::uint32_t> middles;
         const auto middle = [&](std::uint32_t a, std::uint32_t b) {
-            const auto [at, made] =
-                middles.try_emplace(std::minmax(a, b), static_cast<std::uint32_t>(vertices.size()));
+            const auto [at, made] = middles.try_emplace(std::minmax(a, b), static_cast<std::uint32_t>(vertices.size()));
             if (made) {
                 vertices.push_back(glm::normalize(vertices[a] + vertices[b]));
             }
@@ -658,10 +642,9 @@ TEST(Traversal, AMeshIsMetLikeTheSphereItApproximates) {
     // equilateral one).
     double longest = 0;
     for (const glm::uvec3& t : mesh.triangles) {
-        longest =
-            std::max({longest, static_cast<double>(glm::distance(mesh.vertices[t.x], mesh.vertices[t.y])),
-                      static_cast<double>(glm::distance(mesh.vertices[t.y], mesh.vertices[t.z])),
-                      static_cast<double>(glm::distance(mesh.vertices[t.z], mesh.vertices[t.x]))});
+        longest = std::max({longest, static_cast<double>(glm::distance(mesh.vertices[t.x], mesh.vertices[t.y])),
+                            static_cast<double>(glm::distance(mesh.vertices[t.y], mesh.vertices[t.z])),
+                            static_cast<double>(glm::distance(mesh.vertices[t.z], mesh.vertices[t.x]))});
     }
     const double sagitta = radius - std::sqrt(radius * radius - longest * longest / 2);
 
@@ -671,10 +654,8 @@ TEST(Traversal, AMeshIsMetLikeTheSphereItApproximates) {
     std::vector<ProbeRay> rays = rays_from_top(ball, 50'000, 0.3, 0.01, 18);
     // And from all sides: from 0.09 mm off the centre towards a point of a slightly larger ball.
     for (int k = 0; k < 50'000; ++k) {
-        const glm::vec3 from =
-            glm::normalize(glm::vec3(normal(generator), normal(generator), normal(generator)));
-        const glm::vec3 to =
-            glm::normalize(glm::vec3(normal(generator), normal(generator), normal(generator)));
+        const glm::vec3 from = glm::normalize(glm::vec3(normal(generator), normal(generator), normal(generator)));
+        const glm::vec3 to = glm::normalize(glm::vec3(normal(generator), normal(generator), normal(generator)));
         rays.push_back({0.09F * from, glm::normalize(0.055F * uniform(generator) * to - 0.09F * from)});
     }
     for (const Traversal traversal : {Traversal::ray_query, Traversal::bvh}) {
@@ -760,8 +741,7 @@ TEST(Traversal, AnyMeshIsMetAsOnTheHost) {
         EXPECT_GT(seen.both, rays.size() / 3);
         EXPECT_EQ(seen.one_only + seen.apart, 0u);
         // There are more edges to pass than on a height field.
-        EXPECT_LE(static_cast<double>(seen.for_rounding),
-                  10 * share_for_rounding * static_cast<double>(rays.size()));
+        EXPECT_LE(static_cast<double>(seen.for_rounding), 10 * share_for_rounding * static_cast<double>(rays.size()));
     }
 }
 
@@ -837,12 +817,10 @@ TEST(Pyramid, EnclosesTheSurface) {
             const double u = uniform(generator);
             const double v = uniform(generator);
             const double height =
-                physics::f64::surface_height(scene, record, -half + u * 2 * half, -half + v * 2 * half)
-                    .height;
+                physics::f64::surface_height(scene, record, -half + u * 2 * half, -half + v * 2 * half).height;
             for (int level = 0; level <= pyramid.header.top_level; ++level) {
-                const glm::dvec2 range =
-                    pyramid.range(level, static_cast<int>(u * pyramid.header.cells_x) >> level,
-                                  static_cast<int>(v * pyramid.header.cells_y) >> level);
+                const glm::dvec2 range = pyramid.range(level, static_cast<int>(u * pyramid.header.cells_x) >> level,
+                                                       static_cast<int>(v * pyramid.header.cells_y) >> level);
                 outside += height < range.x || height > range.y ? 1 : 0;
                 const double middle = 0.5 * (range.x + range.y);
                 outside_half += std::abs(height - middle) > 0.25 * (range.y - range.x) ? 1 : 0;

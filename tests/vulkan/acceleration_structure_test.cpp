@@ -59,9 +59,8 @@ std::vector<Hit> trace(const AccelerationStructure& structure, const std::vector
                         sizeof(Push));
     const Push push{static_cast<std::uint32_t>(rays.size()), flags};
     Commands commands(device);
-    commands.dispatch(
-        kernel, std::vector<Binding>{{0, &structure}, {1, &ray_buffer}, {2, &sphere_buffer}, {3, &hits}},
-        push, (push.count + 63) / 64);
+    commands.dispatch(kernel, std::vector<Binding>{{0, &structure}, {1, &ray_buffer}, {2, &sphere_buffer}, {3, &hits}},
+                      push, (push.count + 63) / 64);
     commands.submit_and_wait();
     return hits.read_values<Hit>(rays.size());
 }
@@ -106,8 +105,7 @@ std::vector<Ray> random_rays(std::size_t count, float z) {
     std::uniform_real_distribution<float> tilt(-0.5F, 0.5F);
     std::vector<Ray> rays;
     for (std::size_t i = 0; i < count; ++i) {
-        const glm::vec3 direction =
-            glm::normalize(glm::vec3(tilt(random), tilt(random), z > 0 ? -1.0F : 1.0F));
+        const glm::vec3 direction = glm::normalize(glm::vec3(tilt(random), tilt(random), z > 0 ? -1.0F : 1.0F));
         rays.push_back({{lateral(random), lateral(random), z}, 0.0F, direction, 100.0F});
     }
     return rays;
@@ -185,12 +183,10 @@ TEST_F(RayQuery, MeetsTrianglesWhereThePlaneIs) {
         if (hits[i].t >= 0) {
             const glm::uvec3 t = plane.triangles.at(hits[i].primitive);
             const glm::vec3 p = rays[i].origin + hits[i].t * rays[i].direction;
-            const glm::vec3 lower =
-                glm::min(glm::min(plane.vertices[t.x], plane.vertices[t.y]), plane.vertices[t.z]);
-            const glm::vec3 upper =
-                glm::max(glm::max(plane.vertices[t.x], plane.vertices[t.y]), plane.vertices[t.z]);
-            ASSERT_TRUE(p.x > lower.x - float_bound && p.x < upper.x + float_bound &&
-                        p.y > lower.y - float_bound && p.y < upper.y + float_bound)
+            const glm::vec3 lower = glm::min(glm::min(plane.vertices[t.x], plane.vertices[t.y]), plane.vertices[t.z]);
+            const glm::vec3 upper = glm::max(glm::max(plane.vertices[t.x], plane.vertices[t.y]), plane.vertices[t.z]);
+            ASSERT_TRUE(p.x > lower.x - float_bound && p.x < upper.x + float_bound && p.y > lower.y - float_bound &&
+                        p.y < upper.y + float_bound)
                 << i;
         }
     }
@@ -316,9 +312,8 @@ TEST_F(RayQuery, PrimitivesThatAreNoneAreRefused) {
     EXPECT_THROW(AccelerationStructure::of_triangles(device, vertices, std::vector<glm::uvec3>{{0, 1, 3}}),
                  std::logic_error);
     EXPECT_THROW(AccelerationStructure::of_boxes(device, {}), std::logic_error);
-    EXPECT_THROW(
-        AccelerationStructure::of_boxes(device, std::vector<Box>{{glm::vec3(0), glm::vec3(1, nan, 1)}}),
-        std::logic_error);
+    EXPECT_THROW(AccelerationStructure::of_boxes(device, std::vector<Box>{{glm::vec3(0), glm::vec3(1, nan, 1)}}),
+                 std::logic_error);
     EXPECT_THROW(AccelerationStructure::of_boxes(device, std::vector<Box>{{glm::vec3(1), glm::vec3(0)}}),
                  std::logic_error);
 }
@@ -387,8 +382,7 @@ TEST(MedianOrder, CoincidentCentresKeepTheirOrderInSplits) {
 }
 
 TEST(MedianOrder, RefusesCentresThatAreNotFinite) {
-    const std::vector<glm::vec3> centres = {glm::vec3(0),
-                                            glm::vec3(std::numeric_limits<float>::infinity(), 0, 0)};
+    const std::vector<glm::vec3> centres = {glm::vec3(0), glm::vec3(std::numeric_limits<float>::infinity(), 0, 0)};
     EXPECT_THROW(static_cast<void>(median_order(centres)), std::logic_error);
 }
 

@@ -73,16 +73,15 @@ TEST(Devices, AnUnknownSelectorIsRefusedWithAllThereAre) {
         const Device device({"no such device"});
         FAIL() << "opened " << device.report().name;
     } catch (const DeviceError& error) {
-        EXPECT_THAT(error.what(),
-                    AllOf(HasSubstr("no such device"), HasSubstr(shared_device().report().name)));
+        EXPECT_THAT(error.what(), AllOf(HasSubstr("no such device"), HasSubstr(shared_device().report().name)));
     }
 }
 
 TEST(Devices, DiscreteBeforeIntegratedBeforeVirtualBeforeCpuThenMemory) {
-    std::vector<DeviceReport> reports = {
-        report(0, "lavapipe", "CPU", 1000), report(1, "virtio", "virtual GPU", 50),
-        report(2, "iris", "integrated GPU", 100), report(3, "radeon small", "discrete GPU", 8),
-        report(4, "radeon large", "discrete GPU", 16)};
+    std::vector<DeviceReport> reports = {report(0, "lavapipe", "CPU", 1000), report(1, "virtio", "virtual GPU", 50),
+                                         report(2, "iris", "integrated GPU", 100),
+                                         report(3, "radeon small", "discrete GPU", 8),
+                                         report(4, "radeon large", "discrete GPU", 16)};
     for (const std::size_t expected : {4U, 3U, 2U, 1U, 0U}) {
         EXPECT_EQ(choose_device(reports, {}), expected);
         reports[expected].lacking = {"something"};
@@ -106,14 +105,11 @@ TEST(Devices, ASelectorIsAnIndexOrElsePartOfAName) {
 TEST(Devices, AnErrorSaysWhatEachDeviceLacksAndTheRemedy) {
     const std::vector<DeviceReport> reports = {
         report(0, "Old Card", "discrete GPU", 1, {"Vulkan 1.2 (it offers 1.1.0)"}),
-        report(1, "Phone", "integrated GPU", 1,
-               {"64-bit integers in shaders (shaderInt64)", "subgroup ballot"})};
+        report(1, "Phone", "integrated GPU", 1, {"64-bit integers in shaders (shaderInt64)", "subgroup ballot"})};
     EXPECT_THAT(message_of(reports, ""),
                 AllOf(HasSubstr("[0] Old Card"), HasSubstr("lacks Vulkan 1.2"), HasSubstr("[1] Phone"),
-                      HasSubstr("shaderInt64"), HasSubstr("subgroup ballot"),
-                      HasSubstr("mesa-vulkan-drivers")));
-    EXPECT_THAT(message_of(reports, "phone"),
-                AllOf(HasSubstr("\"phone\" is not usable"), HasSubstr("shaderInt64")));
+                      HasSubstr("shaderInt64"), HasSubstr("subgroup ballot"), HasSubstr("mesa-vulkan-drivers")));
+    EXPECT_THAT(message_of(reports, "phone"), AllOf(HasSubstr("\"phone\" is not usable"), HasSubstr("shaderInt64")));
     EXPECT_THAT(message_of(reports, "radeon"), HasSubstr("No Vulkan device matches \"radeon\""));
 }
 
@@ -137,14 +133,12 @@ class DeviceDeathTest : public ::testing::Test {
 }
 
 TEST_F(DeviceDeathTest, DriverFilesThatPointNowhereAreNamedWithTheRemedy) {
-    EXPECT_EXIT(
-        report_missing_driver("VK_DRIVER_FILES", "/nonexistent/driver.json"), ::testing::ExitedWithCode(3),
-        "No Vulkan driver can be used.*VK_DRIVER_FILES=/nonexistent/driver.json.*mesa-vulkan-drivers");
+    EXPECT_EXIT(report_missing_driver("VK_DRIVER_FILES", "/nonexistent/driver.json"), ::testing::ExitedWithCode(3),
+                "No Vulkan driver can be used.*VK_DRIVER_FILES=/nonexistent/driver.json.*mesa-vulkan-drivers");
 }
 
 TEST_F(DeviceDeathTest, ADriverSelectionThatMatchesNothingIsNamedWithTheRemedy) {
-    EXPECT_EXIT(report_missing_driver("VK_LOADER_DRIVERS_SELECT", "*no_such_driver*"),
-                ::testing::ExitedWithCode(3),
+    EXPECT_EXIT(report_missing_driver("VK_LOADER_DRIVERS_SELECT", "*no_such_driver*"), ::testing::ExitedWithCode(3),
                 "VK_LOADER_DRIVERS_SELECT=.no_such_driver.*mesa-vulkan-drivers");
 }
 
@@ -153,8 +147,8 @@ TEST_F(DeviceDeathTest, AValidationMessageIsFatal) {
     EXPECT_DEATH(
         {
             const Device device;
-            const vk::raii::Buffer empty(
-                device.handle(), vk::BufferCreateInfo({}, 0, vk::BufferUsageFlagBits::eStorageBuffer));
+            const vk::raii::Buffer empty(device.handle(),
+                                         vk::BufferCreateInfo({}, 0, vk::BufferUsageFlagBits::eStorageBuffer));
         },
         "Vulkan validation: .*VUID-VkBufferCreateInfo-size");
 }
@@ -164,15 +158,13 @@ TEST_F(DeviceDeathTest, AMissingBarrierIsFatal) {
     EXPECT_DEATH(
         {
             const Device device;
-            const vk::raii::Buffer buffer(
-                device.handle(), vk::BufferCreateInfo({}, 64, vk::BufferUsageFlagBits::eTransferDst));
+            const vk::raii::Buffer buffer(device.handle(),
+                                          vk::BufferCreateInfo({}, 64, vk::BufferUsageFlagBits::eTransferDst));
             const vk::MemoryRequirements needed = buffer.getMemoryRequirements();
             const vk::raii::DeviceMemory memory(
-                device.handle(),
-                vk::MemoryAllocateInfo(needed.size, device.memory_type(needed.memoryTypeBits, {})));
+                device.handle(), vk::MemoryAllocateInfo(needed.size, device.memory_type(needed.memoryTypeBits, {})));
             buffer.bindMemory(*memory, 0);
-            const vk::raii::CommandPool pool(device.handle(),
-                                             vk::CommandPoolCreateInfo({}, device.queue_family()));
+            const vk::raii::CommandPool pool(device.handle(), vk::CommandPoolCreateInfo({}, device.queue_family()));
             const vk::raii::CommandBuffers commands(
                 device.handle(), vk::CommandBufferAllocateInfo(*pool, vk::CommandBufferLevel::ePrimary, 1));
             commands.front().begin(vk::CommandBufferBeginInfo());

@@ -36,11 +36,10 @@ constexpr std::uint32_t workgroup = 64;
 
 Kernel arithmetic_kernel(std::uint32_t factor) {
     const SpecializationConstant constant{3, factor};
-    return Kernel(shared_device(), "probe_vulkan_arithmetic", probe_vulkan_arithmetic,
-                  {{5, BindingKind::storage_buffer},
-                   {0, BindingKind::uniform_buffer},
-                   {2, BindingKind::storage_buffer}},
-                  sizeof(Push), std::span(&constant, 1));
+    return Kernel(
+        shared_device(), "probe_vulkan_arithmetic", probe_vulkan_arithmetic,
+        {{5, BindingKind::storage_buffer}, {0, BindingKind::uniform_buffer}, {2, BindingKind::storage_buffer}},
+        sizeof(Push), std::span(&constant, 1));
 }
 
 struct Arithmetic {
@@ -152,22 +151,18 @@ TEST(Kernels, RefuseBindingsAndConstantsTheyDoNotDeclare) {
     const std::vector<Binding>& good = memory.bindings;
     EXPECT_NO_THROW(commands.dispatch(kernel, good, push, 1));
     EXPECT_THROW(commands.dispatch(kernel, std::span(good).first(2), push, 1), std::logic_error);
-    EXPECT_THROW(
-        commands.dispatch(kernel, std::vector<Binding>{good[0], good[1], {6, &memory.padded}}, push, 1),
-        std::logic_error);
-    EXPECT_THROW(commands.dispatch(kernel, std::vector<Binding>{good[0], good[1], good[1]}, push, 1),
+    EXPECT_THROW(commands.dispatch(kernel, std::vector<Binding>{good[0], good[1], {6, &memory.padded}}, push, 1),
                  std::logic_error);
+    EXPECT_THROW(commands.dispatch(kernel, std::vector<Binding>{good[0], good[1], good[1]}, push, 1), std::logic_error);
     EXPECT_THROW(commands.dispatch(kernel, good, std::uint32_t{0}, 1), std::logic_error);
-    EXPECT_THROW(commands.dispatch(kernel, good, push, 1, std::numeric_limits<std::uint32_t>::max()),
-                 std::logic_error);
+    EXPECT_THROW(commands.dispatch(kernel, good, push, 1, std::numeric_limits<std::uint32_t>::max()), std::logic_error);
     EXPECT_THROW(Kernel(shared_device(), "pushy", probe_vulkan_arithmetic, {}, 132), std::logic_error);
 }
 
 TEST(Kernels, RefuseABufferLargerThanADescriptorSpans) {
     const Kernel kernel = arithmetic_kernel(1);
     Arithmetic memory;
-    const Buffer large(shared_device(),
-                       shared_device().physical().getProperties().limits.maxUniformBufferRange + 64U);
+    const Buffer large(shared_device(), shared_device().physical().getProperties().limits.maxUniformBufferRange + 64U);
     memory.bindings[0].resource = &large;
     Commands commands(shared_device());
     EXPECT_THROW(commands.dispatch(kernel, memory.bindings, Push{}, 1), DeviceError);

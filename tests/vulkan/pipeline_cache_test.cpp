@@ -1,6 +1,6 @@
 // What is kept of compiled kernels: given back unharmed, or not at all.
-#include "vulkan/pipeline_cache.hpp"
 #include "vulkan/kernel.hpp"
+#include "vulkan/pipeline_cache.hpp"
 
 #include "spirv/probe_vulkan_arithmetic.h"
 
@@ -40,11 +40,9 @@ void overwrite(const std::filesystem::path& path, std::streamoff place, char val
 std::vector<std::filesystem::path> compile() {
     {
         const Device device;
-        const Kernel kernel(device, "probe_vulkan_arithmetic", probe_vulkan_arithmetic,
-                            {{5, BindingKind::storage_buffer},
-                             {0, BindingKind::uniform_buffer},
-                             {2, BindingKind::storage_buffer}},
-                            24);
+        const Kernel kernel(
+            device, "probe_vulkan_arithmetic", probe_vulkan_arithmetic,
+            {{5, BindingKind::storage_buffer}, {0, BindingKind::uniform_buffer}, {2, BindingKind::storage_buffer}}, 24);
     }
     std::vector<std::filesystem::path> files;
     std::error_code missing;

@@ -41,8 +41,7 @@ std::vector<peer::Surface> train(const vkfv::optics::Instrument& instrument, int
         to.curvature = from.curvature;
         to.conic = from.conic;
         to.index_ratio = from.index_before / from.index_after;
-        to.semi_diameter_squared =
-            (from.flags & SURFACE_CLIPPED) != 0 ? from.semi_diameter_squared : peer::unlimited;
+        to.semi_diameter_squared = (from.flags & SURFACE_CLIPPED) != 0 ? from.semi_diameter_squared : peer::unlimited;
         using Shape = peer::Surface::Shape;
         to.shape = from.curvature == 0 ? Shape::plane : from.conic == 0 ? Shape::sphere : Shape::conic;
         if ((from.flags & SURFACE_ASPHERIC) != 0) {
@@ -54,20 +53,18 @@ std::vector<peer::Surface> train(const vkfv::optics::Instrument& instrument, int
     return result;
 }
 
-peer::Chain make_chain(const vkfv::app::Configuration& configuration,
-                       const vkfv::optics::Instrument& instrument, const vkfv::specimen::Specimen& specimen,
-                       double focal_height, bool gate) {
+peer::Chain make_chain(const vkfv::app::Configuration& configuration, const vkfv::optics::Instrument& instrument,
+                       const vkfv::specimen::Specimen& specimen, double focal_height, bool gate) {
     if (instrument.features != 0 || configuration.trace.nonsequential) {
-        refuse(configuration, "",
-               "an instrument with a ring light, a spectrum, ideal lenses, losses or tilted parts",
+        refuse(configuration, "", "an instrument with a ring light, a spectrum, ideal lenses, losses or tilted parts",
                "the plain chain: disc, surfaces of revolution about one axis, one wavelength",
                "Compare with vkfv --device host.");
     }
     const auto& lobes = specimen.material.lobes;
     if (lobes.size() != 1 || lobes[0].model != "henyey-greenstein" || lobes[0].weight != 1 ||
         lobes[0].parameters[0] < 0 || lobes[0].parameters[0] >= 1) {
-        refuse(configuration, "specimen.material", "another material",
-               "one Henyey-Greenstein lobe with 0 <= g < 1", "Compare with vkfv --device host.");
+        refuse(configuration, "specimen.material", "another material", "one Henyey-Greenstein lobe with 0 <= g < 1",
+               "Compare with vkfv --device host.");
     }
     const auto record = vkfv::specimen::record(specimen, configuration.trace.max_bounces);
     const auto& constants = instrument.constants;
@@ -106,15 +103,13 @@ peer::Triangles make_triangles(const vkfv::app::Configuration& configuration,
         const auto rows = static_cast<std::uint32_t>(field->heights.rows);
         for (std::uint32_t j = 0; j < rows; ++j) {
             for (std::uint32_t i = 0; i < columns; ++i) {
-                triangles.points.insert(triangles.points.end(),
-                                        {static_cast<float>(field->x_min + i * field->pitch_x),
-                                         static_cast<float>(field->y_min + j * field->pitch_y),
-                                         field->heights.values[std::size_t{j} * columns + i]});
+                triangles.points.insert(triangles.points.end(), {static_cast<float>(field->x_min + i * field->pitch_x),
+                                                                 static_cast<float>(field->y_min + j * field->pitch_y),
+                                                                 field->heights.values[std::size_t{j} * columns + i]});
                 if (i + 1 < columns && j + 1 < rows) { // split from (i, j) to (i + 1, j + 1)
                     const std::uint32_t corner = j * columns + i;
-                    triangles.corners.insert(triangles.corners.end(),
-                                             {corner, corner + 1, corner + columns + 1, corner,
-                                              corner + columns + 1, corner + columns});
+                    triangles.corners.insert(triangles.corners.end(), {corner, corner + 1, corner + columns + 1, corner,
+                                                                       corner + columns + 1, corner + columns});
                 }
             }
         }
@@ -146,11 +141,9 @@ void declare(CLI::App& app, Arguments& given) {
     app.add_option("--rays", given.rays, "Rays to launch; the configuration's unless given")
         ->transform([](const std::string& text) { return fmt::format("{:.0f}", std::stod(text)); });
     app.add_option("--seed", given.seed);
-    app.add_option("--runs", given.runs, "Times to trace, each with a seed of its own")
-        ->check(CLI::Range(1, 1000));
+    app.add_option("--runs", given.runs, "Times to trace, each with a seed of its own")->check(CLI::Range(1, 1000));
     app.add_option("--threads", given.threads)->check(CLI::Range(1, 1024));
-    app.add_option("--packet", given.packet, "Rays that Embree takes at once")
-        ->check(CLI::IsMember({1, 8, 16}));
+    app.add_option("--packet", given.packet, "Rays that Embree takes at once")->check(CLI::IsMember({1, 8, 16}));
     app.add_option("--block", given.block,
                    "Rays that go through the lenses together, surface by surface; 1: ray by ray")
         ->check(CLI::Range(1, 256));
@@ -165,15 +158,13 @@ void run(const Arguments& given) {
     std::vector<vkfv::TomlOverride> overrides;
     for (const auto& setting : given.settings) {
         const auto equals = setting.find('=');
-        overrides.push_back({setting.substr(0, equals),
-                             equals == std::string::npos ? "" : setting.substr(equals + 1), "--set"});
+        overrides.push_back(
+            {setting.substr(0, equals), equals == std::string::npos ? "" : setting.substr(equals + 1), "--set"});
     }
-    const auto configuration =
-        vkfv::app::load_configuration(given.file, overrides, vkfv::app::Needs::exposure);
+    const auto configuration = vkfv::app::load_configuration(given.file, overrides, vkfv::app::Needs::exposure);
     const double focal_height = given.z_um / vkfv::um_per_mm;
     const auto specimen = vkfv::specimen::make(*configuration.specimen);
-    const auto instrument =
-        vkfv::app::assemble_instrument(configuration, specimen, std::span(&focal_height, 1));
+    const auto instrument = vkfv::app::assemble_instrument(configuration, specimen, std::span(&focal_height, 1));
     const auto chain = make_chain(configuration, instrument, specimen, focal_height, given.gate);
 
     using Clock = std::chrono::steady_clock;
@@ -209,8 +200,7 @@ void run(const Arguments& given) {
                                [&](std::uint32_t count) { return static_cast<float>(per_ray * count); });
         const double pitch = instrument.first_order.pixel_pitch;
         vkfv::surface::write_tiff(
-            given.out, flux,
-            {.pitch_x = pitch, .pitch_y = pitch, .description = "radiant flux in W, by the peer"});
+            given.out, flux, {.pitch_x = pitch, .pitch_y = pitch, .description = "radiant flux in W, by the peer"});
     }
     std::ranges::sort(seconds);
     std::ranges::sort(processor_seconds);
@@ -237,16 +227,15 @@ void run(const Arguments& given) {
     const auto share = [&](std::uint64_t count) {
         return 100 * static_cast<double>(count) / static_cast<double>(counts.launched);
     };
-    fmt::print(
-        "Embree and lenses in double, {} threads, packets of {}, blocks of {}\n"
-        "  rays/s    {:.4g}  (median of {} runs of {:.3g} rays, {:.3g} to {:.3g} s; {:.3g} s of all "
-        "threads)\n"
-        "  arrived at the specimen {:.3f} %, met it {:.3f} %, within the gate {:.3f} %, detected {:.4f} %\n"
-        "  specimen of {} triangles built in {:.2f} s\n",
-        settings.threads, settings.packet, settings.block, rate, seconds.size(),
-        static_cast<double>(settings.rays), seconds.front(), seconds.back(), processor_median,
-        share(counts.arrived), share(counts.met), share(counts.gated), share(counts.detected),
-        triangles.corners.size() / 3, build_seconds);
+    fmt::print("Embree and lenses in double, {} threads, packets of {}, blocks of {}\n"
+               "  rays/s    {:.4g}  (median of {} runs of {:.3g} rays, {:.3g} to {:.3g} s; {:.3g} s of all "
+               "threads)\n"
+               "  arrived at the specimen {:.3f} %, met it {:.3f} %, within the gate {:.3f} %, detected {:.4f} %\n"
+               "  specimen of {} triangles built in {:.2f} s\n",
+               settings.threads, settings.packet, settings.block, rate, seconds.size(),
+               static_cast<double>(settings.rays), seconds.front(), seconds.back(), processor_median,
+               share(counts.arrived), share(counts.met), share(counts.gated), share(counts.detected),
+               triangles.corners.size() / 3, build_seconds);
 }
 
 } // namespace

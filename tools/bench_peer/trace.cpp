@@ -67,8 +67,7 @@ class Generator {
         for (int first = 0; first < count; first += 8) {
             for (int k = 0; k < 8; ++k) {
                 const std::uint64_t sum = state_[0][k] + state_[3][k];
-                u[static_cast<std::size_t>(first + k)] =
-                    std::bit_cast<double>((sum >> 12) | 0x3FF0000000000000u) - 1.0;
+                u[static_cast<std::size_t>(first + k)] = std::bit_cast<double>((sum >> 12) | 0x3FF0000000000000u) - 1.0;
                 const std::uint64_t shifted = state_[1][k] << 17;
                 state_[2][k] ^= state_[0][k];
                 state_[3][k] ^= state_[1][k];
@@ -175,8 +174,7 @@ void pass(const Surface& surface, Rays& rays, Lane& alive) {
 
 template <Surface::Shape shape>
 void pass(const Surface& surface, Rays& rays, Lane& alive) {
-    surface.index_ratio == 1 ? pass<shape, false>(surface, rays, alive)
-                             : pass<shape, true>(surface, rays, alive);
+    surface.index_ratio == 1 ? pass<shape, false>(surface, rays, alive) : pass<shape, true>(surface, rays, alive);
 }
 
 // Only what came through is left. Rays close up when a quarter of them has gone.
@@ -270,8 +268,7 @@ void scatter(double g, Generator& generator, Rays& rays, const Normals& normals)
     int count = rays.count;
     for (int i = 0; i < count; ++i) {
         const auto k = static_cast<std::size_t>(i);
-        const double twice =
-            2 * (rays.dx[k] * normals.x[k] + rays.dy[k] * normals.y[k] + rays.dz[k] * normals.z[k]);
+        const double twice = 2 * (rays.dx[k] * normals.x[k] + rays.dy[k] * normals.y[k] + rays.dz[k] * normals.z[k]);
         pending.mx[k] = rays.dx[k] - twice * normals.x[k];
         pending.my[k] = rays.dy[k] - twice * normals.y[k];
         pending.mz[k] = rays.dz[k] - twice * normals.z[k];
@@ -314,8 +311,8 @@ void scatter(double g, Generator& generator, Rays& rays, const Normals& normals)
                 const double cosine = g != 0 ? (1 + g * g - ratio * ratio) / (2 * g) : 2 * u3[k] - 1;
                 const double along = sx * mx + sy * my + sz * mz;
                 const double tx = sx - along * mx, ty = sy - along * my, tz = sz - along * mz;
-                const double scale = std::sqrt(std::max(1 - cosine * cosine, 0.0) /
-                                               std::max(tx * tx + ty * ty + tz * tz, 1e-30));
+                const double scale =
+                    std::sqrt(std::max(1 - cosine * cosine, 0.0) / std::max(tx * tx + ty * ty + tz * tz, 1e-30));
                 dx = cosine * mx + scale * tx;
                 dy = cosine * my + scale * ty;
                 dz = cosine * mz + scale * tz;
@@ -337,8 +334,7 @@ void scatter(double g, Generator& generator, Rays& rays, const Normals& normals)
                 continue;
             }
             const auto to = static_cast<std::size_t>(left++);
-            for (Lane* lane :
-                 {&pending.mx, &pending.my, &pending.mz, &pending.nx, &pending.ny, &pending.nz}) {
+            for (Lane* lane : {&pending.mx, &pending.my, &pending.mz, &pending.nx, &pending.ny, &pending.nz}) {
                 (*lane)[to] = (*lane)[k];
             }
             pending.ray[to] = pending.ray[k];
@@ -520,8 +516,8 @@ class Worker {
 
     Counts run(std::uint64_t rays) {
         while (counts_.launched < rays) {
-            const int count = static_cast<int>(
-                std::min<std::uint64_t>(static_cast<std::uint64_t>(block_), rays - counts_.launched));
+            const int count =
+                static_cast<int>(std::min<std::uint64_t>(static_cast<std::uint64_t>(block_), rays - counts_.launched));
             launch(count);
             counts_.launched += static_cast<std::uint64_t>(count);
         }
@@ -563,10 +559,10 @@ class Worker {
             const auto k = static_cast<std::size_t>(i);
             const double dz = rays_.dz[k];
             const double rise = chain_.top - rays_.z[k];
-            const double gx = chain_.gate_position * (rays_.x[k] * dz + rays_.dx[k] * rise) +
-                              chain_.gate_slope * rays_.dx[k];
-            const double gy = chain_.gate_position * (rays_.y[k] * dz + rays_.dy[k] * rise) +
-                              chain_.gate_slope * rays_.dy[k];
+            const double gx =
+                chain_.gate_position * (rays_.x[k] * dz + rays_.dx[k] * rise) + chain_.gate_slope * rays_.dx[k];
+            const double gy =
+                chain_.gate_position * (rays_.y[k] * dz + rays_.dy[k] * rise) + chain_.gate_slope * rays_.dy[k];
             const double limit = chain_.gate_radius * dz;
             if (dz <= 0 || gx * gx + gy * gy > limit * limit || (again && (*again)[k] > 0)) {
                 continue;
@@ -602,9 +598,8 @@ class Worker {
             const double column = (turn * survivors_.x[k] + half) * scale;
             const double row = (turn * survivors_.y[k] + half) * scale;
             if (column >= 0 && row >= 0 && column < chain_.detector_pixels && row < chain_.detector_pixels) {
-                counts_
-                    .pixels[static_cast<std::size_t>(row) * static_cast<std::size_t>(chain_.detector_pixels) +
-                            static_cast<std::size_t>(column)] += 1;
+                counts_.pixels[static_cast<std::size_t>(row) * static_cast<std::size_t>(chain_.detector_pixels) +
+                               static_cast<std::size_t>(column)] += 1;
                 counts_.detected += 1;
             }
         }
@@ -630,8 +625,8 @@ Counts trace_with(const Chain& chain, RTCScene scene, const Settings& settings) 
             threads.emplace_back([&, thread] {
                 const std::uint64_t first = settings.rays * thread / settings.threads;
                 const std::uint64_t end = settings.rays * (thread + 1) / settings.threads;
-                const auto worker = std::make_unique<Worker<width>>(
-                    chain, scene, settings.block, settings.seed * 0xD1342543DE82EF95u + thread);
+                const auto worker = std::make_unique<Worker<width>>(chain, scene, settings.block,
+                                                                    settings.seed * 0xD1342543DE82EF95u + thread);
                 shares[thread] = worker->run(end - first);
             });
         }
@@ -658,8 +653,8 @@ Specimen::Specimen(const Triangles& triangles) {
     }
     const RTCScene scene = rtcNewScene(device);
     const RTCGeometry geometry = rtcNewGeometry(device, RTC_GEOMETRY_TYPE_TRIANGLE);
-    void* points = rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3,
-                                           3 * sizeof(float), triangles.points.size() / 3);
+    void* points = rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3, 3 * sizeof(float),
+                                           triangles.points.size() / 3);
     std::ranges::copy(triangles.points, static_cast<float*>(points));
     void* corners = rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3,
                                             3 * sizeof(std::uint32_t), triangles.corners.size() / 3);

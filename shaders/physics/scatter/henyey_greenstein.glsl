@@ -42,9 +42,9 @@ VKFV_FUNCTION ScatterTry henyey_greenstein_try(real g, Incidence incidence, real
     return result;
 }
 
-// N(theta_i, g) by the table, to 1e-6 of itself for g up to 0.999 and 2e-6 up to 0.9999, float's rounding included. As a
-// function of the complex cosine N has branch points at +-i d, d = (1 - g^2) / (2 |g|), and no others; in
-// x = sqrt(cosine^2 + d^2), N - g cosine / 2, which is even in the cosine, is smooth but on the negative axis, and a
+// N(theta_i, g) by the table, to 1e-6 of itself for g up to 0.999 and 2e-6 up to 0.9999, float's rounding included. As
+// a function of the complex cosine N has branch points at +-i d, d = (1 - g^2) / (2 |g|), and no others; in x =
+// sqrt(cosine^2 + d^2), N - g cosine / 2, which is even in the cosine, is smooth but on the negative axis, and a
 // quotient of polynomials of degrees 6 and 5 follows it. For g < 0 that difference would cancel, and N itself is taken,
 // in cosine + x.
 struct HenyeyGreensteinPlace {
@@ -62,7 +62,8 @@ VKFV_FUNCTION HenyeyGreensteinPlace henyey_greenstein_place(real g, real distanc
 VKFV_FUNCTION real henyey_greenstein_norm(real g, real table[LOBE_TABLE_SIZE], real cosine) {
     HenyeyGreensteinPlace place = henyey_greenstein_place(g, table[12], cosine);
     real x = place.x;
-    real above = table[0] + x * (table[1] + x * (table[2] + x * (table[3] + x * (table[4] + x * (table[5] + x * table[6])))));
+    real above =
+        table[0] + x * (table[1] + x * (table[2] + x * (table[3] + x * (table[4] + x * (table[5] + x * table[6])))));
     real below = real(1.0) + x * (table[7] + x * (table[8] + x * (table[9] + x * (table[10] + x * table[11]))));
     return place.linear + above / below;
 }
@@ -87,8 +88,8 @@ VKFV_FUNCTION real henyey_greenstein_bsdf(real g, real table[LOBE_TABLE_SIZE], I
 // and smooth where the lobe is sharp. I is an integral over mu = |cos(theta_o)|, the one over the azimuth being
 //   4 E(m) / ((a - b) sqrt(a + b)),  a + b = (s + rho)^2 + (mu + |z|)^2,  a - b = (s - rho)^2 + (mu + |z|)^2,
 // s = sqrt(1 - mu^2), rho the point's distance from the normal, 1 - m = (a - b) / (a + b), E the complete elliptic
-// integral. It changes over the point's distance from the horizon, hence mu = distance sinh(t), in panels of three Gauss
-// points.
+// integral. It changes over the point's distance from the horizon, hence mu = distance sinh(t), in panels of three
+// Gauss points.
 inline double henyey_greenstein_exact_norm(double g, double cosine) {
     const double sine = std::sqrt(std::max(1 - cosine * cosine, 0.0));
     const double magnitude = std::abs(g), height = magnitude * cosine, rho = magnitude * sine;

@@ -7,7 +7,8 @@
 //   short-ENOSPC    the same, and then there is no more space
 //   lost            half is written, and the call claims that all is
 //
-// Files that are opened through C's streams are counted as "fopen" and never fail: they have calls of their own within libc.
+// Files that are opened through C's streams are counted as "fopen" and never fail: they have calls of their own within
+// libc.
 #include "plan.hpp"
 
 #include <cstdarg>
@@ -156,14 +157,16 @@ extern "C" {
 #define PWRITE(name, offset_type)                                                                                      \
     ssize_t name(int file, const void* data, std::size_t bytes, offset_type at) {                                      \
         const auto some = [&](std::size_t count) { return next(::name, #name)(file, data, count, at); };               \
-        return write_or_fail(file, bytes, some, [&] { return some(bytes); });                                 \
+        return write_or_fail(file, bytes, some, [&] { return some(bytes); });                                          \
     }
 #define FTRUNCATE(name, offset_type)                                                                                   \
     int name(int file, offset_type bytes) noexcept {                                                                   \
         return fails("ftruncate", Path(file), truncations) ? -1 : next(::name, #name)(file, bytes);                    \
     }
 #define SYNC(name)                                                                                                     \
-    int name(int file) { return fails("fsync", Path(file), syncs) ? -1 : next(::name, #name)(file); }
+    int name(int file) {                                                                                               \
+        return fails("fsync", Path(file), syncs) ? -1 : next(::name, #name)(file);                                     \
+    }
 
 OPEN(open)
 OPEN(open64)
@@ -208,7 +211,9 @@ int rename(const char* from, const char* to) noexcept {
 }
 
 int renameat(int from_folder, const char* from, int to_folder, const char* to) noexcept {
-    return fails("rename", Path(to_folder, to), renames) ? -1 : next(::renameat, "renameat")(from_folder, from, to_folder, to);
+    return fails("rename", Path(to_folder, to), renames)
+               ? -1
+               : next(::renameat, "renameat")(from_folder, from, to_folder, to);
 }
 
 int mkdir(const char* path, mode_t mode) noexcept {
@@ -224,7 +229,8 @@ int unlink(const char* path) noexcept {
 }
 
 int unlinkat(int folder, const char* path, int flags) noexcept {
-    return fails("unlink", Path(folder, path), removals, false) ? -1 : next(::unlinkat, "unlinkat")(folder, path, flags);
+    return fails("unlink", Path(folder, path), removals, false) ? -1
+                                                                : next(::unlinkat, "unlinkat")(folder, path, flags);
 }
 
 } // extern "C"

@@ -1,6 +1,7 @@
-// A Vulkan layer in which one call fails that might. The settings are those of plan.hpp; VKFV_FAULT_CALL is the name of a
-// function, VKFV_FAULT_EFFECT the name of the VkResult that it returns: VK_ERROR_DEVICE_LOST, after which no queue takes or
-// finishes work any more, VK_ERROR_OUT_OF_DEVICE_MEMORY, VK_ERROR_OUT_OF_HOST_MEMORY or VK_ERROR_INITIALIZATION_FAILED.
+// A Vulkan layer in which one call fails that might. The settings are those of plan.hpp; VKFV_FAULT_CALL is the name of
+// a function, VKFV_FAULT_EFFECT the name of the VkResult that it returns: VK_ERROR_DEVICE_LOST, after which no queue
+// takes or finishes work any more, VK_ERROR_OUT_OF_DEVICE_MEMORY, VK_ERROR_OUT_OF_HOST_MEMORY or
+// VK_ERROR_INITIALIZATION_FAILED.
 //
 // One instance and one kind of device at a time, as vkfv has them.
 #include "plan.hpp"
