@@ -1,4 +1,5 @@
-#include "app/bench.hpp"
+#include "app/commands.hpp"
+#include "bench/bench.hpp"
 #include "core/result_folder.hpp"
 
 #include <fmt/format.h>
@@ -7,6 +8,8 @@
 #include <optional>
 
 namespace vkfv::app {
+
+using bench::Json;
 
 namespace {
 
@@ -138,11 +141,18 @@ void run_bench(const CommandOptions& options) {
     const auto write_files = [&](const Json& so_far) {
         if (results) {
             results->write("bench.json", so_far.dump(2) + "\n");
-            results->write("bench.svg", bench_picture(so_far));
+            results->write("bench.svg", bench::bench_picture(so_far));
             results->write_checksums();
         }
     };
-    const Json report = measure_bench(options, write_files);
+    const Json report = bench::measure_bench({.file = options.file,
+                                              .overrides = options.overrides,
+                                              .runs = options.runs,
+                                              .parts = options.bench_parts,
+                                              .quick = options.quick,
+                                              .peer = options.peer,
+                                              .commit = options.commit},
+                                             write_files);
     write_files(report);
     if (options.json) {
         fmt::print("{}\n", report.dump(2));

@@ -1,7 +1,8 @@
 #include "app/commands.hpp"
+#include "measurement/assembly.hpp"
 
-#include "app/specimen_view.hpp"
 #include "core/units.hpp"
+#include "measurement/specimen_view.hpp"
 #include "optics/image_quality.hpp"
 
 #include <fmt/format.h>
@@ -119,7 +120,7 @@ std::string value_text(double value) {
 
 void run_check(const CommandOptions& options) {
     const auto configuration = load_configuration(options.file, options.overrides, Needs::instrument);
-    const auto instrument = assemble_instrument(configuration);
+    const auto instrument = measurement::assemble_instrument(configuration);
     const auto quality = optics::image_quality(configuration.instrument, instrument);
     std::vector<std::string> warnings = instrument.warnings;
     warnings.insert(warnings.end(), quality.warnings.begin(), quality.warnings.end());
@@ -160,10 +161,10 @@ void run_check(const CommandOptions& options) {
         }
     }
     if (configuration.specimen) {
-        const auto specimen = make_specimen(configuration);
+        const auto specimen = measurement::make_specimen(configuration);
         const int pixels = configuration.instrument.detector_pixels;
-        const auto relief = relief_of(specimen, instrument.first_order.pixel_pitch * pixels, pixels);
-        const auto sparse = warning_of_sparse_field(configuration, specimen, relief);
+        const auto relief = measurement::relief_of(specimen, instrument.first_order.pixel_pitch * pixels, pixels);
+        const auto sparse = measurement::warning_of_sparse_field(configuration, specimen, relief);
         warnings.insert(warnings.end(), sparse.begin(), sparse.end());
         report["specimen_seen_share"] = relief.seen_share;
         const auto record = specimen::record(specimen, configuration.trace.max_bounces);

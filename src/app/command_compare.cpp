@@ -1,12 +1,13 @@
 #include "app/commands.hpp"
-#include "app/parameter_table.hpp"
+#include "report/parameter_table.hpp"
 
 #include "core/result_folder.hpp"
 #include "core/units.hpp"
+#include "images/image_file.hpp"
 #include "report/topography_picture.hpp"
-#include "surface/image_file.hpp"
 #include "surface/resample.hpp"
-#include "surface/surface_file.hpp"
+#include "surface_files/height_image.hpp"
+#include "surface_files/surface_file.hpp"
 #include "topography/comparison.hpp"
 
 #include <fmt/format.h>
@@ -79,18 +80,18 @@ MeanAndError over(const topography::Comparison& comparison, const Figure& figure
 
 // One parameter over the measurements, and of the truth under them.
 struct ComparedParameter {
-    ParameterRow named; // its value does not count
+    report::ParameterRow named; // its value does not count
     MeanAndError measured;
     double truth = 0;
 };
 
 std::vector<ComparedParameter> compared_parameters(const topography::Comparison& comparison) {
-    std::vector<std::vector<ParameterRow>> measured, truth;
+    std::vector<std::vector<report::ParameterRow>> measured, truth;
     for (const auto& measurement : comparison.measurements) {
-        measured.push_back(parameter_rows(measurement.measured));
-        truth.push_back(parameter_rows(measurement.truth));
+        measured.push_back(report::parameter_rows(measurement.measured));
+        truth.push_back(report::parameter_rows(measurement.truth));
     }
-    const auto of = [](const std::vector<std::vector<ParameterRow>>& rows, std::size_t k) {
+    const auto of = [](const std::vector<std::vector<report::ParameterRow>>& rows, std::size_t k) {
         std::vector<double> values;
         for (const auto& row : rows) {
             values.push_back(row[k].value);
@@ -128,7 +129,7 @@ Json json_of(const topography::Comparison& comparison, const CommandOptions& opt
     }
     report["measured"] = std::move(measured);
     report["truth"] = options.compared_files.back().string();
-    report["treatment"] = treatment_json(options.band);
+    report["treatment"] = report::treatment_json(options.band);
     report["aligned"] = options.align;
     report["removed_shift_um"] = {comparison.removed_shift.x * um_per_mm, comparison.removed_shift.y * um_per_mm};
     add(report, "measured_share", over(comparison, [](const auto& one) { return one.deviation.measured_share; }));
@@ -179,7 +180,7 @@ std::string text_of(const topography::Comparison& comparison, const CommandOptio
                             ? fmt::format("removed: x {:+.4f} um, y {:+.4f} um", comparison.removed_shift.x * um_per_mm,
                                           comparison.removed_shift.y * um_per_mm)
                             : "not removed (--align removes it)");
-    text += fmt::format("{:<22} {}\n", "treatment", treatment_text(options.band));
+    text += fmt::format("{:<22} {}\n", "treatment", report::treatment_text(options.band));
     text +=
         fmt::format("{:<22} {}\n", "RMS deviation",
                     with_error(over(comparison, [](const auto& one) { return one.deviation.rms; }), um_per_mm, "um"));
@@ -196,8 +197,8 @@ std::string text_of(const topography::Comparison& comparison, const CommandOptio
     for (const auto& row : compared_parameters(comparison)) {
         const double ratio = row.measured.mean / row.truth;
         text += fmt::format("{:<5} {:<12} {:>12} {:>12} {:>12} {:>8}\n", row.named.name, row.named.unit,
-                            number_text(row.measured.mean), number_text(row.measured.error), number_text(row.truth),
-                            row.named.unit == "deg" ? "-" : ratio_text(ratio));
+                            report::number_text(row.measured.mean), report::number_text(row.measured.error),
+                            report::number_text(row.truth), row.named.unit == "deg" ? "-" : ratio_text(ratio));
     }
     return text;
 }
@@ -227,30 +228,32 @@ std::string slope_csv(const topography::Comparison& comparison) {
 
 // Along the middle row, of the first measurement and of the truth under it, treated.
 struct ComparedProfile {
-    ProfileLine line;
-    RoughnessProfile measured, truth;
+    surface::ProfileLine line;
+    surface::RoughnessProfile measured, truth;
 };
 
 ComparedProfile compared_profile(const topography::LevelledPair& pair) {
-    const ProfileLine line = middle_row(pair.measured);
-    return {line, roughness_profile(pair.measured, line), roughness_profile(pair.truth, line)};
+    const surface::ProfileLine line = surface::middle_row(pair.measured);
+    return {line, surface::roughness_profile(pair.measured, line), surface::roughness_profile(pair.truth, line)};
 }
 
 Json profile_json(const ComparedProfile& profile) {
     return {{"y_um", profile.line.y_start * um_per_mm},
             {"section_length_um", profile.measured.section_length * um_per_mm},
-            {"measured", json_of(parameter_rows(profile.measured.parameters))},
-            {"true", json_of(parameter_rows(profile.truth.parameters))}};
+            {"measured", json_of(report::parameter_rows(profile.measured.parameters))},
+            {"true", json_of(report::parameter_rows(profile.truth.parameters))}};
 }
 
 std::string profile_text(const ComparedProfile& profile) {
     std::string text = fmt::format("\nISO 21920-2, profile at y = {:.4g} um, section length {:.4g} um\n",
                                    profile.line.y_start * um_per_mm, profile.measured.section_length * um_per_mm);
-    const auto measured = parameter_rows(profile.measured.parameters), truth = parameter_rows(profile.truth.parameters);
+    const auto measured = report::parameter_rows(profile.measured.parameters),
+               truth = report::parameter_rows(profile.truth.parameters);
     for (std::size_t k = 0; k < measured.size(); ++k) {
         const double ratio = measured[k].value / truth[k].value;
         text += fmt::format("{:<5} {:<12} {:>12} {:>12} {:>12} {:>8}\n", measured[k].name, measured[k].unit,
-                            number_text(measured[k].value), "-", number_text(truth[k].value), ratio_text(ratio));
+                            report::number_text(measured[k].value), "-", report::number_text(truth[k].value),
+                            ratio_text(ratio));
     }
     return text;
 }

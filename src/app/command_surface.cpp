@@ -1,9 +1,9 @@
 #include "app/commands.hpp"
-#include "app/parameter_table.hpp"
+#include "report/parameter_table.hpp"
 
 #include "core/file.hpp"
 #include "core/units.hpp"
-#include "surface/surface_file.hpp"
+#include "surface_files/surface_file.hpp"
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
@@ -64,9 +64,9 @@ HeightMap treated(const CommandOptions& options, const HeightMap& map) {
     return result;
 }
 
-ProfileLine line_of(const CommandOptions& options, const HeightMap& map) {
+surface::ProfileLine line_of(const CommandOptions& options, const HeightMap& map) {
     if (!options.profile_line) {
-        return middle_row(map);
+        return surface::middle_row(map);
     }
     const auto& line = *options.profile_line;
     const auto within = [](double value, double first, double last, double pitch) {
@@ -92,19 +92,19 @@ ProfileLine line_of(const CommandOptions& options, const HeightMap& map) {
 // All that is said of the surface.
 struct Figures {
     std::ptrdiff_t not_measured = 0; // beyond a sphere too
-    std::vector<ParameterRow> parameters;
-    ProfileLine line;
+    std::vector<report::ParameterRow> parameters;
+    surface::ProfileLine line;
     double section_length = 0; // mm
-    std::vector<ParameterRow> profile;
+    std::vector<report::ParameterRow> profile;
 };
 
-Figures figures_of(const HeightMap& map, const ProfileLine& line) {
-    const auto profile = roughness_profile(map, line);
+Figures figures_of(const HeightMap& map, const surface::ProfileLine& line) {
+    const auto profile = surface::roughness_profile(map, line);
     return {.not_measured = std::ssize(map.height.values) - measured_points(map),
-            .parameters = parameter_rows(surface::areal_parameters(map)),
+            .parameters = report::parameter_rows(surface::areal_parameters(map)),
             .line = line,
             .section_length = profile.section_length,
-            .profile = parameter_rows(profile.parameters)};
+            .profile = report::parameter_rows(profile.parameters)};
 }
 
 std::string json_text(const CommandOptions& options, const HeightMap& map, const Figures& figures) {
@@ -115,7 +115,7 @@ std::string json_text(const CommandOptions& options, const HeightMap& map, const
     report["pitch_um"] = {map.pitch_x * um_per_mm, map.pitch_y * um_per_mm};
     report["first_point_um"] = {map.x0 * um_per_mm, map.y0 * um_per_mm};
     report["not_measured_points"] = figures.not_measured;
-    report["treatment"] = treatment_json(options.band);
+    report["treatment"] = report::treatment_json(options.band);
     report["parameters"] = json_of(figures.parameters);
     const auto& line = figures.line;
     report["profile"] = {{"start_um", {line.x_start * um_per_mm, line.y_start * um_per_mm}},
@@ -135,10 +135,10 @@ std::string text_of(const CommandOptions& options, const HeightMap& map, const F
     text +=
         fmt::format("{:<14} {} points ({:.3g} %)\n", "not measured", figures.not_measured,
                     100.0 * static_cast<double>(figures.not_measured) / static_cast<double>(map.height.values.size()));
-    text += fmt::format("{:<14} {}\n", "treatment", treatment_text(options.band));
-    const auto table = [&text](const std::vector<ParameterRow>& rows) {
+    text += fmt::format("{:<14} {}\n", "treatment", report::treatment_text(options.band));
+    const auto table = [&text](const std::vector<report::ParameterRow>& rows) {
         for (const auto& row : rows) {
-            text += fmt::format("{:<5} {:<12} {:>12}\n", row.name, row.unit, number_text(row.value));
+            text += fmt::format("{:<5} {:<12} {:>12}\n", row.name, row.unit, report::number_text(row.value));
         }
     };
     text += "\nISO 25178-2\n";
@@ -157,7 +157,7 @@ std::string text_of(const CommandOptions& options, const HeightMap& map, const F
 void run_surface(const CommandOptions& options) {
     auto [original, provenance] = read_file(options);
     const HeightMap map = treated(options, original);
-    const ProfileLine line = line_of(options, map);
+    const surface::ProfileLine line = line_of(options, map);
     if (options.out) {
         std::error_code none;
         if (std::filesystem::equivalent(*options.out, options.file, none)) {
@@ -165,7 +165,7 @@ void run_surface(const CommandOptions& options) {
                    "Name a new one.");
         }
         provenance.comment += fmt::format("\nvkfv {}: {}, {}", VKFV_VERSION, options.file.filename().string(),
-                                          treatment_text(options.band));
+                                          report::treatment_text(options.band));
         write_file(*options.out, surface::surface_bytes(*options.out, map, provenance));
     }
     const Figures figures = figures_of(map, line);

@@ -1,13 +1,16 @@
 #include "app/commands.hpp"
-#include "app/sweep_report.hpp"
 #include "core/digest.hpp"
+#include "measurement/assembly.hpp"
+#include "measurement/exposure.hpp"
+#include "measurement/sweep_report.hpp"
+#include "specimen/geometry_digest.hpp"
 
 #include "core/file.hpp"
 #include "core/result_folder.hpp"
 #include "core/units.hpp"
+#include "images/image_file.hpp"
 #include "scan/store.hpp"
-#include "surface/image_file.hpp"
-#include "surface/surface_file.hpp"
+#include "surface_files/surface_file.hpp"
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
@@ -72,7 +75,7 @@ Json figures_of(const trace::Image& image, bool ledger_tells) {
         square += value * value;
     }
     const auto pixels = static_cast<double>(image.flux.values.size());
-    const double mean = flux / pixels, ratio = signal_to_noise(image);
+    const double mean = flux / pixels, ratio = measurement::signal_to_noise(image);
     Json figures;
     figures["signal to noise"] = ratio;
     // What is left of the spread of the pixels without the noise.
@@ -98,8 +101,8 @@ class Surfaces {
         geometry.material = {};
         geometry.where = {};
         if (!made_of_ || *made_of_ != geometry) {
-            surface_.specimen = make_specimen(configuration);
-            surface_.digest = geometry_digest(surface_.specimen);
+            surface_.specimen = measurement::make_specimen(configuration);
+            surface_.digest = specimen::geometry_digest(surface_.specimen);
             made_of_ = std::move(geometry);
         }
         surface_.specimen.material = configuration.specimen->material;
@@ -121,27 +124,28 @@ std::string image_digest(const Configuration& configuration, const std::string& 
 }
 
 // The image and its figures, from an earlier run if they are there and whole.
-SweepRow image_row(const Configuration& configuration, ResultFolder& results, const fs::path& name,
-                   Surfaces& surfaces) {
+measurement::SweepRow image_row(const Configuration& configuration, ResultFolder& results, const fs::path& name,
+                                Surfaces& surfaces) {
     const double focal_height = configuration.sweep->focal_height;
     const fs::path image_name = name / "image.tif", figures_name = name / "image.json";
     const auto& surface = surfaces.of(configuration);
-    const auto instrument = instrument_for(configuration, surface.specimen, focal_height);
+    const auto instrument = measurement::instrument_for(configuration, surface.specimen, focal_height);
     const auto tracer = trace::expected_identity(instrument, surface.specimen, configuration.trace);
     const std::string digest =
-        image_digest(configuration, image_identity(configuration, surface.digest, tracer), focal_height);
-    SweepRow row;
+        image_digest(configuration, measurement::image_identity(configuration, surface.digest, tracer), focal_height);
+    measurement::SweepRow row;
     const bool whole = results.holds(image_name) && results.holds(figures_name) &&
                        (!configuration.diffraction.any() || results.holds(name / "image_diffracted.tif"));
     const Json earlier = whole ? read_json(results.path() / figures_name) : Json::object();
     if (earlier.value("digest", "") == digest) {
         row.figures = earlier.at("figures");
     } else {
-        const Exposure exposure = expose(configuration, instrument, surface.specimen, focal_height);
+        const measurement::Exposure exposure =
+            measurement::expose(configuration, instrument, surface.specimen, focal_height);
         const bool tells =
             configuration.trace.estimator == trace::Estimator::forward && !configuration.trace.directed_scatter;
         row.figures = figures_of(exposure.image, tells);
-        for (const auto& [file, bytes] : image_files(image_name, exposure, focal_height)) {
+        for (const auto& [file, bytes] : measurement::image_files(image_name, exposure, focal_height)) {
             results.write(file, bytes);
         }
         results.write(figures_name,
@@ -152,14 +156,14 @@ SweepRow image_row(const Configuration& configuration, ResultFolder& results, co
                             static_cast<double>(exposure.image.rays));
         spdlog::info("traced in {:.3g} s", exposure.image.seconds);
     }
-    row.picture = surface::read_image(results.path() / image_name);
+    row.picture = images::read_image(results.path() / image_name);
     return row;
 }
 
 // Stacks of the same surface with different seeds of the trace: how far their heights agree with each other, and their
 // mean figures.
-SweepRow stack_row(const CommandOptions& options, const std::vector<TomlOverride>& overrides, int repeats,
-                   const fs::path& folder) {
+measurement::SweepRow stack_row(const CommandOptions& options, const std::vector<TomlOverride>& overrides, int repeats,
+                                const fs::path& folder) {
     std::vector<surface::HeightMap> maps;
     std::vector<Json> results;
     const auto configuration = load_configuration(options.file, overrides);
@@ -183,7 +187,7 @@ SweepRow stack_row(const CommandOptions& options, const std::vector<TomlOverride
         maps.push_back(surface::read_surface(*one.out / *readable).map);
         results.push_back(read_json(*one.out / "results.json"));
     }
-    SweepRow row;
+    measurement::SweepRow row;
     const auto mean_of = [&](const char* key) {
         double sum = 0;
         for (const Json& result : results) {
@@ -257,9 +261,9 @@ void run_sweep(const CommandOptions& options) {
     }
     ResultFolder results(folder);
     Surfaces surfaces;
-    std::vector<SweepRow> rows;
+    std::vector<measurement::SweepRow> rows;
     for (const auto& values : list) {
-        const std::string name = sweep_name(sweep, values);
+        const std::string name = measurement::sweep_name(sweep, values);
         spdlog::info("{} of {}: {}", rows.size() + 1, list.size(), name);
         const auto overrides = overrides_of(values);
         rows.push_back(sweep.stacks ? stack_row(options, overrides, sweep.repeats, folder / name)
@@ -268,12 +272,12 @@ void run_sweep(const CommandOptions& options) {
         rows.back().values = values;
     }
     const std::string title = options.file.stem().string();
-    results.write("sweep.csv", sweep_csv(sweep, rows));
-    results.write("sweep.md", sweep_markdown(sweep, rows));
-    results.write("sweep.svg", sweep_contact_sheet(sweep, rows, title));
-    results.write("charts.svg", sweep_charts(sweep, rows, title));
+    results.write("sweep.csv", measurement::sweep_csv(sweep, rows));
+    results.write("sweep.md", measurement::sweep_markdown(sweep, rows));
+    results.write("sweep.svg", measurement::sweep_contact_sheet(sweep, rows, title));
+    results.write("charts.svg", measurement::sweep_charts(sweep, rows, title));
     results.write_checksums();
-    fmt::print("{}results in {}\n", sweep_markdown(sweep, rows), folder.string());
+    fmt::print("{}results in {}\n", measurement::sweep_markdown(sweep, rows), folder.string());
 }
 
 } // namespace vkfv::app

@@ -1,6 +1,7 @@
 #include "app/commands.hpp"
-#include "app/evaluation.hpp"
-#include "app/image_series.hpp"
+#include "measurement/assembly.hpp"
+#include "measurement/evaluation.hpp"
+#include "scan/image_series.hpp"
 
 #include "core/units.hpp"
 #include "scan/store.hpp"
@@ -44,15 +45,16 @@ std::vector<int> order_of_images(std::size_t count, const std::optional<std::uin
 
 // Images from a disk come slower than the host evaluates them: a device only when asked for.
 topography::FocusPlanesMaker planes_for(const Configuration& configuration) {
-    return focus_planes_for(configuration.evaluate_on == "device" ? "device" : "host", configuration.trace.device);
+    return measurement::focus_planes_for(configuration.evaluate_on == "device" ? "device" : "host",
+                                         configuration.trace.device);
 }
 
 // An evaluation and what its files say beside it.
 struct Evaluated {
-    Evaluation evaluation;
+    measurement::Evaluation evaluation;
     nlohmann::ordered_json more = nlohmann::ordered_json::object();
-    StackSource source;
-    TopographyFiles files;
+    measurement::StackSource source;
+    measurement::TopographyFiles files;
 };
 
 // The first line of what the images depend on that overrides change: "key = value", as it is then.
@@ -80,18 +82,18 @@ Evaluated evaluate_own(const CommandOptions& options) {
                "Set keys of [topography], [diffraction] and [output] alone; --stack traces other images.");
     }
     const auto positions = configuration.scan->positions();
-    const auto specimen = make_specimen(configuration);
-    const auto instrument = assemble_instrument(configuration, specimen, positions);
+    const auto specimen = measurement::make_specimen(configuration);
+    const auto instrument = measurement::assemble_instrument(configuration, specimen, positions);
     const int pixels = configuration.instrument.detector_pixels;
-    const auto flat = read_flat(configuration, pixels, pixels, instrument.first_order.pixel_pitch);
+    const auto flat = measurement::read_flat(configuration, pixels, pixels, instrument.first_order.pixel_pitch);
     const auto order = order_of_images(positions.size(), options.shuffle);
-    StackEvaluation evaluation(configuration.topography, planes_for(configuration),
-                               make_diffraction(configuration, instrument));
+    measurement::StackEvaluation evaluation(configuration.topography, planes_for(configuration),
+                                            measurement::make_diffraction(configuration, instrument));
     for (std::size_t place = 0; place < positions.size(); ++place) {
         const int image = order[place];
         evaluation.add({scan::read_frame(folder, image, positions[static_cast<std::size_t>(image)])}, positions[place]);
     }
-    auto more = run_of(folder);
+    auto more = measurement::run_of(folder);
     std::error_code none; // a folder to be made is another
     if (options.out && !std::filesystem::equivalent(*options.out, folder, none)) {
         more = {{"stack", folder.string()},
@@ -99,16 +101,16 @@ Evaluated evaluate_own(const CommandOptions& options) {
                 {"rays_per_image", trace::launched_rays(configuration.trace, pixels)},
                 {"seed", configuration.trace.seed}};
     }
-    return {.evaluation =
-                evaluation.finish(truth_on_pixels(instrument, configuration, specimen), configuration.band, flat),
+    return {.evaluation = evaluation.finish(measurement::truth_on_pixels(instrument, configuration, specimen),
+                                            configuration.band, flat),
             .more = std::move(more),
-            .source = stack_source(configuration, instrument),
-            .files = topography_files(configuration)};
+            .source = measurement::stack_source(configuration, instrument),
+            .files = measurement::topography_files(configuration)};
 }
 
 // Images alone: what an instrument's file says of them, the command line must say.
 Evaluated evaluate_foreign(const CommandOptions& options) {
-    const ImageSeries series(options.file);
+    const scan::ImageSeries series(options.file);
     const bool step_good = options.z_step && std::isfinite(*options.z_step) && *options.z_step != 0;
     if (!step_good || !options.pitch || !std::isfinite(*options.pitch) || *options.pitch <= 0) {
         refuse(
@@ -135,17 +137,18 @@ Evaluated evaluate_foreign(const CommandOptions& options) {
     auto overrides = options.overrides;
     std::erase_if(overrides, [](const TomlOverride& given) { return given.origin == "--out"; });
     const auto configuration = topography_configuration(overrides);
-    StackEvaluation evaluation(configuration.topography, planes_for(configuration));
+    measurement::StackEvaluation evaluation(configuration.topography, planes_for(configuration));
     const auto order = order_of_images(static_cast<std::size_t>(series.size()), options.shuffle);
     spdlog::info("{} images, {} to {}", series.size(), series.name(0), series.name(series.size() - 1));
-    std::optional<Flat> flat;
+    std::optional<measurement::Flat> flat;
     bool negative = false;
     for (int place = 0; place < series.size(); ++place) {
         // Heights ascend, whichever way the instrument went.
         const int image = *options.z_step > 0 ? place : series.size() - 1 - place;
         auto channels = series.read(order[static_cast<std::size_t>(image)]);
         if (place == 0) {
-            flat = read_flat(configuration, channels.front().columns, channels.front().rows, *options.pitch);
+            flat =
+                measurement::read_flat(configuration, channels.front().columns, channels.front().rows, *options.pitch);
         }
         negative = negative || std::ranges::any_of(channels, [](const Grid<float>& channel) {
                        return std::ranges::any_of(channel.values, [](float value) { return value < 0; });
@@ -177,7 +180,7 @@ void run_topography(const CommandOptions& options) {
     auto [evaluation, more, source, files] = own ? evaluate_own(options) : evaluate_foreign(options);
     if (options.shuffle && !options.out) {
         // A control is no result of the stack.
-        fmt::print("{}images shuffled, nothing written\n", summary(evaluation));
+        fmt::print("{}images shuffled, nothing written\n", measurement::summary(evaluation));
         return;
     }
     const auto destination = options.out.value_or(options.file);
@@ -185,8 +188,8 @@ void run_topography(const CommandOptions& options) {
         more["shuffle_seed"] = *options.shuffle;
     }
     ResultFolder results(destination);
-    write_evaluation(results, evaluation, more, source, files);
-    fmt::print("{}results in {}\n", summary(evaluation), destination.string());
+    measurement::write_evaluation(results, evaluation, more, source, files);
+    fmt::print("{}results in {}\n", measurement::summary(evaluation), destination.string());
 }
 
 } // namespace vkfv::app

@@ -2,10 +2,10 @@
 // All throw InputError, DeviceError or RunError.
 #pragma once
 
-#include "app/configuration.hpp"
-#include "app/roughness_profile.hpp"
+#include "configuration/configuration.hpp"
+#include "optics/diffraction.hpp"
 #include "surface/band.hpp"
-#include "trace/diffraction.hpp"
+#include "surface/roughness_profile.hpp"
 
 #include <cstdint>
 #include <filesystem>
@@ -30,7 +30,7 @@ struct CommandOptions {
     std::vector<std::filesystem::path> compared_files; // --compare: measurements, then the truth
     bool align = false;                                // --compare: the lateral shift is removed
     surface::Band band;                                // --compare, --surface: form and filters
-    std::optional<ProfileLine> profile_line;           // --surface; none: the middle row
+    std::optional<surface::ProfileLine> profile_line;  // --surface; none: the middle row
     bool float_precision = false;                      // --trace-rays: on the device
     bool apertures = true;                             // --trace-rays
     int runs = 5;                                      // --bench
@@ -46,9 +46,6 @@ struct CommandOptions {
     std::optional<double> unit;    // --surface: mm per unit of an image's value
     std::optional<double> z_start; // of the first image; none: 0
 };
-
-// The parts of --bench, in the order in which they are measured.
-extern const std::vector<std::string> bench_parts;
 
 // A whole stack with its topography and deviation from truth; continues one that was interrupted.
 void run_stack(const CommandOptions& options);
@@ -86,55 +83,5 @@ void run_verify(const CommandOptions& options);
 
 // A Zemax lens as a prescription: in the file `out`, else on standard output.
 void run_import(const CommandOptions& options);
-
-// The configured instrument. Throws InputError at the place of the key that does not fit.
-optics::Instrument assemble_instrument(const Configuration& configuration);
-// The same for exposures of a specimen at these heights of the focal plane (mm), with its warnings in the
-// log.
-optics::Instrument assemble_instrument(const Configuration& configuration, const specimen::Specimen& specimen,
-                                       std::span<const double> focal_heights);
-
-// The configured specimen. Throws InputError at the place of the key that does not fit.
-specimen::Specimen make_specimen(const Configuration& configuration);
-
-// On the device that the options ask for; the selector "host" means the reference in double on the host's
-// cores.
-std::unique_ptr<trace::Tracer> make_tracer(const optics::Instrument& instrument, const specimen::Specimen& specimen,
-                                           const trace::TraceOptions& options);
-
-// All that decides the bits of an image but its height: the configuration's part, the surface as made, instrument,
-// program and device, for another device rounds otherwise. TOML lines.
-std::string image_identity(const Configuration& configuration, const std::string& surface_digest,
-                           const trace::TracerIdentity& tracer);
-
-// One exposure at a height of the focal plane (mm), as an image of the configuration's stack if its scan has that
-// height.
-struct Exposure {
-    trace::Image image;
-    double first = 0; // of the pixels in the object plane, mm: x and y of pixel (0, 0)
-    double pitch = 0;
-    trace::TracerIdentity tracer;
-    std::optional<Grid<float>> diffracted; // its light after diffraction, if the configuration has one
-};
-// The instrument of the configuration's stack, also where the focal height is none of its scan's.
-optics::Instrument instrument_for(const Configuration& configuration, const specimen::Specimen& specimen,
-                                  double focal_height);
-Exposure expose(const Configuration& configuration, const optics::Instrument& instrument,
-                const specimen::Specimen& specimen, double focal_height);
-// The pixels' mean over the root mean square of their standard errors.
-double signal_to_noise(const trace::Image& image);
-// The files of an exposure by their names, beside each other: NAME, float32 W per pixel, and the diffracted image as
-// NAME_diffracted.
-std::vector<std::pair<std::filesystem::path, std::string>> image_files(const std::filesystem::path& name,
-                                                                       const Exposure& exposure, double focal_height);
-
-// The blur that the configuration asks for, on its detector; none if it asks for none. InputError where the file of a
-// point spread function is at fault.
-std::optional<trace::Diffraction> make_diffraction(const Configuration& configuration,
-                                                   const optics::Instrument& instrument);
-
-// The true surface on the detector's pixels, in the object plane.
-surface::HeightMap truth_on_pixels(const optics::Instrument& instrument, const Configuration& configuration,
-                                   const specimen::Specimen& specimen);
 
 } // namespace vkfv::app

@@ -1,6 +1,7 @@
 // The command line; the only main(). Every failure ends here, as a message on standard error and an exit
 // code.
 #include "app/commands.hpp"
+#include "bench/bench.hpp"
 
 #include "core/interruption.hpp"
 #include "core/result_folder.hpp"
@@ -194,7 +195,7 @@ void declare(CLI::App& app, Arguments& given) {
         ->check(CLI::Range(1, 1000))
         ->option_text("N")
         ->group(specific);
-    auto parts = vkfv::app::bench_parts;
+    auto parts = vkfv::bench::bench_parts;
     parts.emplace_back("all");
     app.add_option("--bench-parts", given.bench_parts,
                    fmt::format("What to measure (--bench): {}; stages unless given", fmt::join(parts, ", ")))
@@ -272,7 +273,7 @@ vkfv::surface::Band band_from(const Arguments& given) {
             .form = *form};
 }
 
-std::optional<vkfv::app::ProfileLine> profile_line_from(const std::string& text) {
+std::optional<vkfv::surface::ProfileLine> profile_line_from(const std::string& text) {
     if (text.empty()) {
         return std::nullopt;
     }
@@ -287,7 +288,7 @@ std::optional<vkfv::app::ProfileLine> profile_line_from(const std::string& text)
         ends[k] /= vkfv::um_per_mm;
         at = after + 1;
     }
-    return vkfv::app::ProfileLine{ends[0], ends[1], ends[2], ends[3]};
+    return vkfv::surface::ProfileLine{ends[0], ends[1], ends[2], ends[3]};
 }
 
 vkfv::app::CommandOptions options_from(const Arguments& given) {
@@ -300,7 +301,7 @@ vkfv::app::CommandOptions options_from(const Arguments& given) {
     options.runs = given.runs;
     options.bench_parts = given.bench_parts;
     if (std::ranges::find(given.bench_parts, "all") != given.bench_parts.end()) {
-        options.bench_parts = vkfv::app::bench_parts;
+        options.bench_parts = vkfv::bench::bench_parts;
     }
     options.quick = given.quick;
     options.peer = given.peer;

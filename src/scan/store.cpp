@@ -4,7 +4,7 @@
 #include "core/error.hpp"
 #include "core/file.hpp"
 #include "core/units.hpp"
-#include "surface/image_file.hpp"
+#include "images/image_file.hpp"
 
 #include <fmt/format.h>
 
@@ -190,7 +190,7 @@ bool seal_is_whole(const std::string& bytes) {
 
 struct Frame {
     std::string bytes; // of the file
-    surface::StoredImage image;
+    images::StoredImage image;
 };
 
 Frame read_whole_frame(const fs::path& folder, int image, double z) {
@@ -203,7 +203,7 @@ Frame read_whole_frame(const fs::path& folder, int image, double z) {
         refuse(path, "bytes that are not those stored", "a whole image of a stack",
                "Trace the stack again with the same command: it keeps the other images.");
     }
-    frame.image = surface::parse_tiff(frame.bytes, path);
+    frame.image = images::parse_tiff(frame.bytes, path);
     const std::string found = described(frame.image.description, "z_um");
     if (found != micrometres_text(z)) {
         refuse(path, fmt::format("z_um = {}", found.empty() ? "none" : found),
@@ -265,7 +265,7 @@ Check check_images(const fs::path& folder) {
             const std::string bytes = read_file(folder / name);
             if (!seal_is_whole(bytes)) {
                 check.damages.push_back({name, "is not the file that was written"});
-            } else if (described(surface::parse_tiff(bytes, name).description, "stack") != digest) {
+            } else if (described(images::parse_tiff(bytes, name).description, "stack") != digest) {
                 check.damages.push_back({name, "is an image of another stack"});
             }
         } catch (const InputError& error) {
@@ -378,7 +378,7 @@ void ImageStore::store(int image, const trace::Image& exposure) {
                         "ledger_columns={}\nledger_row={}{}{}\n",
                         image, micrometres_text(z), description_.digest, header, row, seal_label, unsealed);
     results_->write(image_path(image),
-                    sealed(surface::tiff_bytes(
+                    sealed(images::tiff_bytes(
                         flux, {.pitch_x = description_.pitch, .pitch_y = description_.pitch, .description = text})));
 
     const bool first = ledger_header_.empty();

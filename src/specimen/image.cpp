@@ -1,7 +1,7 @@
 #include "specimen/files.hpp"
 
-#include "surface/exr_header.hpp"
-#include "surface/pnm_header.hpp"
+#include "images/exr_header.hpp"
+#include "images/pnm_header.hpp"
 
 #include <OpenImageIO/filesystem.h>
 #include <OpenImageIO/imageio.h>
@@ -123,11 +123,11 @@ std::vector<float> read_heights(OIIO::ImageInput& input, const OIIO::ImageSpec& 
 } // namespace
 
 Grid<float> parse_image(std::string_view bytes, const std::filesystem::path& file) {
-    if (surface::looks_like_exr(bytes)) {
-        surface::check_exr_attributes(bytes, file);
+    if (images::looks_like_exr(bytes)) {
+        images::check_exr_attributes(bytes, file);
     }
-    if (surface::looks_like_pnm(bytes)) {
-        surface::check_pnm(bytes, file);
+    if (images::looks_like_pnm(bytes)) {
+        images::check_pnm(bytes, file);
     }
     const std::string format = format_of(bytes, file);
     OIIO::Filesystem::IOMemReader memory(bytes.data(), bytes.size()); // outlives the input that reads it

@@ -4,7 +4,7 @@
 #include "core/units.hpp"
 #include "surface/fill.hpp"
 #include "surface/filter.hpp"
-#include "surface/surface_file.hpp"
+#include "surface_files/surface_file.hpp"
 
 #include <fmt/format.h>
 #include <spdlog/spdlog.h>

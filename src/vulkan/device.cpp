@@ -512,4 +512,9 @@ std::vector<DeviceReport> list_devices() {
     return reports;
 }
 
+bool is_hardware(const std::string& selector) {
+    const auto reports = list_devices();
+    return reports[choose_device(reports, {selector})].type != "CPU";
+}
+
 } // namespace vkfv::vulkan

@@ -82,4 +82,8 @@ class DriverScope {
 // Every device the loader finds; throws DeviceError if there is no Vulkan at all.
 std::vector<DeviceReport> list_devices();
 
+// Whether the device of this selector has cores of its own, so that work there costs the host nothing. Throws
+// DeviceError.
+bool is_hardware(const std::string& selector);
+
 } // namespace vkfv::vulkan

@@ -1,9 +1,9 @@
 // vkfv --compare through the real program.
 #include "app/program.hpp"
+#include "images/image_file.hpp"
 #include "support/surface_files.hpp"
 #include "surface/filter.hpp"
 #include "surface/height_parameters.hpp"
-#include "surface/image_file.hpp"
 #include "surface/polynomial.hpp"
 
 #include <gmock/gmock.h>

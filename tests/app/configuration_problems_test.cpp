@@ -1,7 +1,7 @@
 // One mistake is told once, whatever else depends on it: every value of every example is damaged by itself, and every
 // key misspelt.
-#include "app/configuration.hpp"
 #include "app/program.hpp"
+#include "configuration/configuration.hpp"
 
 #include <fmt/format.h>
 #include <gtest/gtest.h>
@@ -11,7 +11,7 @@
 namespace vkfv::test {
 namespace {
 
-using app::Needs;
+using Needs;
 
 std::vector<std::string> lines_of(const std::filesystem::path& file) {
     std::istringstream stream(read_file(file));
@@ -32,7 +32,7 @@ std::string joined(const std::vector<std::string>& lines) {
 
 std::vector<InputProblem> problems_of(const std::vector<std::string>& lines, const std::filesystem::path& file) {
     try {
-        (void)app::read_configuration(TomlTable::parse(joined(lines), file), Needs::exposure);
+        (void)read_configuration(TomlTable::parse(joined(lines), file), Needs::exposure);
     } catch (const InputError& error) {
         return error.problems();
     }

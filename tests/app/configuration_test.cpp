@@ -1,7 +1,7 @@
 // Configurations in process: values, units, canonical text and identity.
 #include "app/commands.hpp"
-#include "app/configuration.hpp"
 #include "app/program.hpp"
+#include "configuration/configuration.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

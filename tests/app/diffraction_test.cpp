@@ -1,7 +1,7 @@
 // [diffraction] blurs images after the trace and leaves the traced ones as they are.
 #include "app/program.hpp"
+#include "images/image_file.hpp"
 #include "support/surface_files.hpp"
-#include "surface/image_file.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -38,8 +38,8 @@ TEST(Diffraction, BlursBesideTheTracedImage) {
     run("a.tif", {});
     run("b.tif", {"--set", "diffraction.point_spread=airy"});
     EXPECT_EQ(read_file(folder / "a.tif"), read_file(folder / "b.tif"));
-    const auto traced = surface::read_image(folder / "b.tif");
-    const auto blurred = surface::read_image(folder / "b_diffracted.tif");
+    const auto traced = images::read_image(folder / "b.tif");
+    const auto blurred = images::read_image(folder / "b_diffracted.tif");
     // Rounding to float of each pixel.
     EXPECT_NEAR(sum(blurred) / sum(traced), 1, 1e-6);
     EXPECT_LT(spread(blurred), 0.9 * spread(traced));
@@ -50,7 +50,7 @@ TEST(Diffraction, BlursBesideTheTracedImage) {
     surface::write_tiff(folder / "point.tif", point);
     run("c.tif", {"--set", "diffraction.point_spread=file", "--set", "diffraction.file=point.tif", "--set",
                   "diffraction.pitch_um=0.001"});
-    const auto same = surface::read_image(folder / "c_diffracted.tif");
+    const auto same = images::read_image(folder / "c_diffracted.tif");
     for (std::size_t k = 0; k < same.values.size(); ++k)
         EXPECT_NEAR(same.values[k], traced.values[k], 1e-6 * sum(traced));
 }

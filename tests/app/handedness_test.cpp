@@ -1,6 +1,6 @@
 // What is seen from +z with x to the right has y up, in every file.
 #include "app/program.hpp"
-#include "surface/image_file.hpp"
+#include "images/image_file.hpp"
 
 #include <gtest/gtest.h>
 
@@ -74,7 +74,7 @@ TEST(Handedness, ALetterReadsCorrectlyAsImageMeshGltfAndSurface) {
 
         // The walls of the letter scatter light away: the image is darker where the truth has edges, and is not where
         // the truth turned left to right, up to down or both has them.
-        const auto image = surface::read_image(folder / "out/images/z_0001.tif");
+        const auto image = images::read_image(folder / "out/images/z_0001.tif");
         const auto darkness_at_edges = [&](bool turn_x, bool turn_y) {
             double dark = 0, weight = 0, mean = 0, points = 0;
             for (int j = 1; j + 1 < side; ++j) {

@@ -1,6 +1,6 @@
 // The heights that a traced stack gives are the specimen's: sign, place and size.
 #include "app/program.hpp"
-#include "surface/image_file.hpp"
+#include "images/image_file.hpp"
 
 #include <gtest/gtest.h>
 

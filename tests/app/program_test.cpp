@@ -1,6 +1,6 @@
 // The program's commands from end to end, on the device at hand.
 #include "app/program.hpp"
-#include "surface/image_file.hpp"
+#include "images/image_file.hpp"
 
 #include <fmt/format.h>
 #include <gmock/gmock.h>
@@ -147,9 +147,9 @@ TEST(Program, ImageOfAScanPositionIsThatImageOfTheStack) {
     ASSERT_EQ(image.exit_code, 0) << image.standard_error;
     EXPECT_THAT(image.standard_output, AllOf(HasSubstr("detected"), HasSubstr("residual")));
     // z = 1 um is the fourth position of five.
-    const auto pixels = surface::read_image(folder / "one.tif").values;
-    EXPECT_EQ(pixels, surface::read_image(folder / "out/images/z_0003.tif").values);
-    EXPECT_NE(pixels, surface::read_image(folder / "out/images/z_0002.tif").values);
+    const auto pixels = images::read_image(folder / "one.tif").values;
+    EXPECT_EQ(pixels, images::read_image(folder / "out/images/z_0003.tif").values);
+    EXPECT_NE(pixels, images::read_image(folder / "out/images/z_0002.tif").values);
     EXPECT_GT(*std::max_element(pixels.begin(), pixels.end()), 0);
 }
 

@@ -1,4 +1,4 @@
-#include "app/ray_table.hpp"
+#include "measurement/ray_table.hpp"
 
 #include "app/program.hpp"
 #include "core/error.hpp"

@@ -1,6 +1,6 @@
 // The same bits, however a stack came about; and the same image by either traversal.
 #include "app/program.hpp"
-#include "surface/image_file.hpp"
+#include "images/image_file.hpp"
 
 #include <gtest/gtest.h>
 
@@ -145,7 +145,7 @@ TEST(Reproducibility, TheDemoIsTheSameByEveryTraversal) {
         arguments.insert(arguments.end(), further.begin(), further.end());
         const auto result = run_program(arguments, folder);
         EXPECT_EQ(result.exit_code, 0) << result.standard_error;
-        return surface::read_image(folder / name).values;
+        return images::read_image(folder / name).values;
     };
     const auto quadtree = image("quadtree.tif", {"--traversal", "quadtree"});
     const auto ray_query = image("ray_query.tif", {"--traversal", "ray-query"});

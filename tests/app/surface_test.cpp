@@ -1,9 +1,9 @@
 // vkfv --surface through the real program.
 #include "app/program.hpp"
 #include "core/units.hpp"
+#include "images/image_file.hpp"
 #include "support/surface_files.hpp"
-#include "surface/image_file.hpp"
-#include "surface/surface_file.hpp"
+#include "surface_files/surface_file.hpp"
 
 #include <OpenImageIO/imageio.h>
 #include <gmock/gmock.h>

@@ -1,6 +1,6 @@
 // vkfv --sweep: every combination, once, with the noise that its rays make.
 #include "app/program.hpp"
-#include "surface/image_file.hpp"
+#include "images/image_file.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -115,9 +115,8 @@ TEST(Sweep, ImagesAtSeveralHeightsAreThoseImages) {
     ASSERT_EQ(sweep.exit_code, 0) << sweep.standard_error;
     const auto image = run_program({"--image", "c.toml", "--z", "1.5", "--out", "one.tif", "--rays", "2e4"}, folder);
     ASSERT_EQ(image.exit_code, 0) << image.standard_error;
-    EXPECT_EQ(surface::read_image(folder / "out/z=1.5/image.tif").values,
-              surface::read_image(folder / "one.tif").values);
-    EXPECT_NE(surface::read_image(folder / "out/z=0/image.tif").values, surface::read_image(folder / "one.tif").values);
+    EXPECT_EQ(images::read_image(folder / "out/z=1.5/image.tif").values, images::read_image(folder / "one.tif").values);
+    EXPECT_NE(images::read_image(folder / "out/z=0/image.tif").values, images::read_image(folder / "one.tif").values);
 }
 
 TEST(Sweep, StacksTellTheNoiseOfHeights) {

@@ -1,8 +1,8 @@
 // --topography of stacks that vkfv did not make.
-#include "app/image_order.hpp"
 #include "app/program.hpp"
+#include "images/image_file.hpp"
+#include "scan/image_order.hpp"
 #include "support/surface_files.hpp"
-#include "surface/image_file.hpp"
 
 #include <OpenImageIO/imageio.h>
 #include <fmt/format.h>
@@ -101,7 +101,7 @@ TEST(Topography, ATiffOfPagesAndAFolderInNaturalOrderGiveTheSameHeights) {
         for (const int row : {5, 18})
             EXPECT_NEAR(map.height(column, row), height_at(column) * 0.5e-3, 5e-6) << column << " " << row;
     // Each pixel is from the image nearest its height: the fourth on the left, the seventh on the right.
-    const auto focused = surface::read_image(folder / "of_images/all_in_focus.tif");
+    const auto focused = images::read_image(folder / "of_images/all_in_focus.tif");
     for (const int row : {5, 18}) {
         const auto in_file = static_cast<std::size_t>((side - 1 - row) * side);
         EXPECT_EQ(focused(5, row), stack[4][in_file + 5]);
@@ -133,7 +133,7 @@ TEST(Topography, DepthOfPixelsAndColourDoNotChangeHeights) {
                         1e-8); // the curve's float32 over the peak's curvature of some 0.2, in 0.5 um
         }
     }
-    EXPECT_EQ(surface::read_channels(folder / "colour/all_in_focus.tif").size(), 3u);
+    EXPECT_EQ(images::read_channels(folder / "colour/all_in_focus.tif").size(), 3u);
 }
 
 TEST(Topography, ADescendingStackHasItsHeightsTheOtherWay) {
@@ -318,7 +318,7 @@ TEST(Topography, WhatIsMissingIsNamed) {
 }
 
 TEST(NaturalOrder, CountsNumbers) {
-    using app::naturally_before;
+    using scan::naturally_before;
     EXPECT_TRUE(naturally_before("image_9.tif", "image_10.tif"));
     EXPECT_FALSE(naturally_before("image_10.tif", "image_9.tif"));
     EXPECT_TRUE(naturally_before("a2b10", "a2b11"));
@@ -344,7 +344,7 @@ TEST(ImageOrder, IsThatOfTheNumberInWhichNamesDiffer) {
     std::mt19937 random(1);
     const auto ordered = [&](std::vector<std::string> names) {
         std::ranges::shuffle(names, random);
-        const auto found = app::order_of_names(names);
+        const auto found = scan::order_of_names(names);
         std::vector<std::string> result;
         for (const std::size_t place : found.order)
             result.push_back(names[place]);

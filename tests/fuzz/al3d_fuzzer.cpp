@@ -1,6 +1,6 @@
 // Any bytes are a surface or an InputError.
 #include "core/error.hpp"
-#include "surface/al3d.hpp"
+#include "surface_files/al3d.hpp"
 
 #include <cstddef>
 #include <cstdint>

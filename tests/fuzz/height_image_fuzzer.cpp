@@ -1,6 +1,6 @@
 // Any bytes are a height map or an InputError, as TIFF or OpenEXR, with and without a scale given.
 #include "core/error.hpp"
-#include "surface/height_image.hpp"
+#include "surface_files/height_image.hpp"
 
 #include <cstddef>
 #include <cstdint>

@@ -1,8 +1,8 @@
 // Any bytes are an image or an InputError: as a specimen, and as a file of a stack, of which RunError may say that the
 // library cannot read such a kind at all.
 #include "core/error.hpp"
+#include "images/image_file.hpp"
 #include "specimen/files.hpp"
-#include "surface/image_file.hpp"
 
 #include <unistd.h>
 
@@ -43,7 +43,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     const auto file = file_for(bytes);
     std::ofstream(file, std::ios::binary).write(bytes.data(), static_cast<std::streamsize>(bytes.size())).flush();
     try {
-        (void)surface::read_channels(file);
+        (void)images::read_channels(file);
     } catch (const InputError&) {
     } catch (const RunError&) {
     }

@@ -1,4 +1,4 @@
-#include "surface/sdf.hpp"
+#include "surface_files/sdf.hpp"
 
 #include "surface_fuzzing.hpp"
 

@@ -1,4 +1,4 @@
-#include "surface/sur.hpp"
+#include "surface_files/sur.hpp"
 
 #include "surface_fuzzing.hpp"
 

@@ -2,7 +2,7 @@
 // truncated and with headers that lie.
 #include "support/surface_files.hpp"
 #include "surface/exr_bytes.hpp"
-#include "surface/surface_file.hpp"
+#include "surface_files/surface_file.hpp"
 
 #include <cmath>
 #include <cstdio>

@@ -2,7 +2,7 @@
 #pragma once
 
 #include "core/error.hpp"
-#include "surface/surface_file.hpp"
+#include "surface_files/surface_file.hpp"
 
 #include <spdlog/spdlog.h>
 

@@ -1,6 +1,6 @@
 // Any text is a prescription or an InputError, and every prescription is written so that it reads back and is
 // written the same again. The same of configurations of an instrument and their canonical texts.
-#include "app/configuration.hpp"
+#include "configuration/configuration.hpp"
 #include "core/error.hpp"
 #include "optics/prescription_writer.hpp"
 
@@ -29,7 +29,7 @@ void read_as_prescription(std::string_view given) {
 
 void read_as_configuration(std::string_view given) {
     const auto canonical = [](std::string_view text) {
-        return app::read_configuration(TomlTable::parse(text, "fuzzed.toml"), app::Needs::instrument).canonical;
+        return read_configuration(TomlTable::parse(text, "fuzzed.toml"), Needs::instrument).canonical;
     };
     std::string text;
     try {

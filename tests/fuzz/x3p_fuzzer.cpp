@@ -1,6 +1,6 @@
 // Bytes that are no archive become one: main.xml up to the first NUL, the points after it, stored and with right
 // checksums of ZIP, so that mutations get past the archive's own checks.
-#include "surface/x3p.hpp"
+#include "surface_files/x3p.hpp"
 
 #include "surface_fuzzing.hpp"
 

@@ -5,7 +5,7 @@
 #include "surface/filter.hpp"
 #include "surface/height_parameters.hpp"
 #include "surface/hybrid_parameters.hpp"
-#include "surface/surface_file.hpp"
+#include "surface_files/surface_file.hpp"
 
 #include <libprocess/stats.h>
 

@@ -1,7 +1,7 @@
 // Every file that vkfv writes, as Gwyddion's own import modules see it.
 #include "gwyddion/gwyddion.hpp"
 #include "support/surface_files.hpp"
-#include "surface/surface_file.hpp"
+#include "surface_files/surface_file.hpp"
 
 #include <gtest/gtest.h>
 

@@ -2,8 +2,8 @@
 #include "specimen/description.hpp"
 #include "specimen/files.hpp"
 
+#include "images/image_file.hpp"
 #include "support/surface_files.hpp"
-#include "surface/image_file.hpp"
 #include "temporary_files.hpp"
 
 #include <gmock/gmock.h>

@@ -3,7 +3,7 @@
 #include "core/fourier.hpp"
 #include "core/units.hpp"
 #include "support/surface_files.hpp"
-#include "surface/surface_file.hpp"
+#include "surface_files/surface_file.hpp"
 
 #include <gtest/gtest.h>
 

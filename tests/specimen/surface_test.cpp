@@ -1,9 +1,9 @@
 // A surface file as specimen: where its points come to stand, levelled, cropped and filled.
+#include "images/image_file.hpp"
 #include "specimen/analytic.hpp"
 #include "specimen/description.hpp"
 #include "support/surface_files.hpp"
-#include "surface/image_file.hpp"
-#include "surface/surface_file.hpp"
+#include "surface_files/surface_file.hpp"
 
 #include <gtest/gtest.h>
 

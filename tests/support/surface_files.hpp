@@ -2,8 +2,9 @@
 #pragma once
 
 #include "core/file.hpp"
-#include "surface/image_file.hpp"
-#include "surface/surface_file.hpp"
+#include "images/image_file.hpp"
+#include "surface_files/height_image.hpp"
+#include "surface_files/surface_file.hpp"
 
 namespace vkfv::surface {
 
@@ -15,9 +16,13 @@ inline void write_height_map(const std::filesystem::path& path, const HeightMap&
     write_file(path, height_map_bytes(map));
 }
 
+inline HeightMap read_height_map(const std::filesystem::path& path) {
+    return read_surface(path).map;
+}
+
 template <class Image>
-void write_tiff(const std::filesystem::path& path, const Image& image, const ImageTags& tags = {}) {
-    write_file(path, tiff_bytes(image, tags));
+void write_tiff(const std::filesystem::path& path, const Image& image, const images::ImageTags& tags = {}) {
+    write_file(path, images::tiff_bytes(image, tags));
 }
 
 } // namespace vkfv::surface

@@ -4,7 +4,7 @@
 
 #include "app/commands.hpp"
 #include "core/units.hpp"
-#include "surface/image_file.hpp"
+#include "images/image_file.hpp"
 #include "trace/host_tracer.hpp"
 
 #include <CLI/CLI.hpp>

@@ -1,0 +1,55 @@
+// What --bench measures, part by part, as one JSON document:
+//   program, commit, date (UTC), device, driver, device_type, configuration, traversal
+//   aimed_share       of the source's flux that launched rays stand for; runs, rays_per_run
+//   validation[]      what, rays, total_z, chi_square, degrees, p, agrees
+//   stages            of one batch: seconds_per_1e9_rays and its shares source, illumination, specimen, imaging,
+//                     detection
+//   whole             a timing: rays, seconds, spread ((max - min) / median), wall_seconds, processor_seconds,
+//                     seconds_per_1e9_rays, rays_per_second, surfaces_per_ray, ray_surfaces_per_second, detected_share
+//   forms[]           g, max_bounces, geometry ("as configured", "mesh": the height field's triangles), and a timing
+//   traversals[]      name and a timing
+//   hits[]            traversal, order, numerical_aperture, hits_per_second, spread, share_met
+//   estimators[]      name, a timing, seeds, variance (W^2, summed over the pixels), relative_efficiency (forward: 1)
+//   scaling           rays[], triangles[], surfaces[], pixels[]: the quantity and a timing
+//   peer              rays, seconds, rays_per_second, processor_seconds, ratio (our rate over its), processor_ratio
+// All seconds are medians over the runs; `seconds` are the device's own. What was not measured is absent.
+#pragma once
+
+#include "core/toml_document.hpp"
+
+#include <nlohmann/json.hpp>
+
+#include <filesystem>
+#include <functional>
+#include <string>
+#include <vector>
+
+namespace vkfv::bench {
+
+using Json = nlohmann::ordered_json;
+
+// The parts, in the order in which they are measured.
+extern const std::vector<std::string> bench_parts;
+
+struct BenchOptions {
+    std::filesystem::path file; // configuration
+    std::vector<TomlOverride> overrides;
+    int runs = 5;                   // whose median counts
+    std::vector<std::string> parts; // of bench_parts
+    bool quick = false;             // shorter runs and fewer sizes
+    std::filesystem::path peer;     // the program vkfv_bench_peer; empty: none
+    std::string commit;             // what the report says was measured
+};
+
+// Throws RunError if the validation fails: then nothing is timed. after_part: gets the report as far as it is, so that
+// nothing is lost if a later part fails.
+Json measure_bench(const BenchOptions& options, const std::function<void(const Json&)>& after_part);
+
+// The peer's own report (--json of vkfv_bench_peer) on a configuration with overrides. Throws RunError.
+Json run_peer(const std::filesystem::path& program, const std::filesystem::path& configuration,
+              const std::vector<TomlOverride>& overrides, const std::vector<std::string>& arguments);
+
+// All that was measured as one SVG.
+std::string bench_picture(const Json& report);
+
+} // namespace vkfv::bench

@@ -1,0 +1,90 @@
+// What the user asks for: a TOML file (DESIGN.md 10) and the command line's overrides, checked and in the
+// units of the inside.
+#pragma once
+
+#include "core/toml_reader.hpp"
+#include "optics/instrument.hpp"
+#include "scan/plan.hpp"
+#include "specimen/description.hpp"
+#include "topography/compare.hpp"
+#include "topography/topography.hpp"
+#include "trace/tracer.hpp"
+
+#include <filesystem>
+#include <map>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace vkfv {
+
+// Which tables a command cannot do without: [specimen] for an exposure, [scan] besides for a stack.
+enum class Needs { instrument, exposure, stack };
+
+// How images are blurred after the trace, if at all. Belongs to no traced image.
+struct DiffractionOptions {
+    bool airy = false;
+    std::filesystem::path file; // else a measured point spread function
+    double pitch = 0;           // of the file's pixels, mm in the object plane
+
+    bool any() const { return airy || !file.empty(); }
+};
+
+// What `vkfv --sweep` varies: every combination of the values, the first parameter slowest.
+struct Sweep {
+    struct Parameter {
+        std::string key;                 // dotted: "trace.rays"
+        std::string label;               // on axes and in folders' names
+        std::vector<std::string> values; // TOML texts
+    };
+    bool stacks = false;     // else single images
+    double focal_height = 0; // of the images, mm
+    int repeats = 1;         // of each combination, with seeds that follow trace.seed
+    std::vector<Parameter> parameters;
+};
+
+struct Configuration {
+    std::filesystem::path file;
+    optics::GlassCatalog glasses = optics::GlassCatalog::builtin(); // with the file's glass_catalogs
+    optics::InstrumentDescription instrument;
+    std::optional<specimen::Description> specimen;
+    std::optional<scan::ScanPlan> scan;
+    trace::TraceOptions trace;
+    DiffractionOptions diffraction;
+    topography::TopographyOptions topography;
+    std::string evaluate_on = "auto";    // or "host", "device"
+    std::filesystem::path flatness_file; // a flat measured by the same instrument; empty: no correction
+    topography::Band band;               // of the second comparison with the truth; unlimited: there is none
+    std::filesystem::path output_directory;
+    std::vector<std::string> topography_files; // names under which the topography is written
+    std::optional<Sweep> sweep;                // belongs to no image: neither in `canonical` nor in `identity`
+
+    // Where each key and table stands that was read, by dotted key; defaults have the place of their table.
+    std::map<std::string, SourceLocation> places;
+
+    // Every key with its value, defaults included, in a fixed order and in the file's own units, so that it
+    // reads back to the same bits: TOML that load_configuration() takes. Paths are absolute.
+    std::string canonical;
+
+    // What the images depend on, a line a key, for telling one stack from another. Of the keys of `canonical`
+    // it leaves out, with the reason:
+    //   diffraction.*, topography.*, output.directory   blur, evaluate or place the images
+    //   trace.batch                      the same bits for any batch size
+    //   trace.device, trace.traversal    requests; what they resolve to is in the tracer's description
+    //   file paths                       the content counts, and stands in its place as a digest
+    // The program's version is in it: another version may trace other bits.
+    std::string identity;
+};
+
+// Throws InputError.
+Configuration load_configuration(const std::filesystem::path& file, const std::vector<TomlOverride>& overrides = {},
+                                 Needs needs = Needs::stack);
+
+// The same of a document; relative paths start at its file.
+Configuration read_configuration(const TomlTable& root, Needs needs = Needs::stack);
+
+// [topography] alone, with these overrides of its keys: for a stack without a configuration; all else has its default.
+// Throws InputError.
+Configuration topography_configuration(const std::vector<TomlOverride>& overrides);
+
+} // namespace vkfv

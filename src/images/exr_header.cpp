@@ -1,0 +1,53 @@
+#include "images/exr_header.hpp"
+
+#include "core/byte_reader.hpp"
+
+#include <fmt/format.h>
+
+namespace vkfv::images {
+namespace {
+
+constexpr std::string_view magic = "\x76\x2f\x31\x01";
+constexpr std::uint64_t first_attribute = 8;    // behind the magic number and the version
+constexpr std::uint32_t several_parts = 0x1000; // of the version's flags
+
+} // namespace
+
+bool looks_like_exr(std::string_view bytes) {
+    return bytes.starts_with(magic);
+}
+
+// "OpenEXR File Layout": attributes of name, type, both ended by a zero, length and value; a zero ends a header, and in
+// a file of several parts another one ends the headers.
+void check_exr_attributes(std::string_view bytes, const std::filesystem::path& path) {
+    const ByteReader file(bytes, path);
+    const bool parts = (file.at<std::uint32_t>(magic.size(), "version") & several_parts) != 0;
+    std::uint64_t place = first_attribute;
+    const auto text = [&] {
+        const auto end = bytes.find('\0', place);
+        if (end == std::string_view::npos)
+            file.fail(place, "header", "no end", "attributes and a zero behind them");
+        const auto found = bytes.substr(place, end - place);
+        place = end + 1;
+        return found;
+    };
+    for (bool after_header = false;;) {
+        const std::string_view name = text();
+        if (name.empty()) {
+            if (!parts || after_header)
+                return;
+            after_header = true;
+            continue;
+        }
+        after_header = false;
+        text(); // type
+        const auto length = file.at<std::int32_t>(place, "length of an attribute");
+        place += sizeof length;
+        if (length < 0 || static_cast<std::uint64_t>(length) > bytes.size() - place)
+            file.fail(place - sizeof length, "length of an attribute", fmt::format("{}", length),
+                      fmt::format("at most the {} bytes that are left", bytes.size() - place));
+        place += static_cast<std::uint64_t>(length);
+    }
+}
+
+} // namespace vkfv::images

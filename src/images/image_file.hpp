@@ -1,0 +1,66 @@
+// Images as files, through OpenImageIO.
+//
+// Row order: in memory row 0 has the lowest y; in a file the first row has the highest y, so that every
+// viewer shows the specimen as seen from +z, x to the right and y up. Writers flip the rows, readers flip
+// them back.
+//
+// Images are encoded in memory, for core/file.hpp to write; the bytes depend on the arguments alone: no compression, no
+// clock, no version. Readers throw InputError where the file is at fault, also where it could not be read whole.
+#pragma once
+
+#include "core/grid.hpp"
+
+#include <cstdint>
+#include <filesystem>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace vkfv::images {
+
+// What a TIFF says of its pixels beside their values.
+struct ImageTags {
+    double pitch_x = 0;      // mm in the object plane; 0 leaves out the resolution tags. Written in pixels per cm,
+    double pitch_y = 0;      // which Fiji turns into micrometres for pitches below 10 um
+    std::string description; // ImageDescription: ASCII
+};
+
+// A TIFF file: float32, one page.
+std::string tiff_bytes(const Grid<float>& image, const ImageTags& tags = {});
+// The same with several channels a pixel, as many as there are images; all of one size.
+std::string tiff_bytes(const std::vector<Grid<float>>& channels, const ImageTags& tags = {});
+// uint16, one page.
+std::string tiff_bytes(const Grid<std::uint16_t>& image, const ImageTags& tags = {});
+
+// Number of pages (TIFF directories) of an image file.
+int page_count(const std::filesystem::path& path);
+
+// One page of a single-channel image in any format that OpenImageIO reads; integers keep their stored value
+// (they are not scaled to 0..1). `page` counts from 0.
+Grid<float> read_image(const std::filesystem::path& path, int page = 0);
+
+// The same of grey or colour, a grid a channel; an alpha channel is left out.
+std::vector<Grid<float>> read_channels(const std::filesystem::path& path, int page = 0);
+
+// The first page's ImageDescription; empty without one.
+std::string image_description(const std::filesystem::path& path);
+
+struct StoredImage {
+    Grid<float> values;      // as stored
+    std::string description; // ImageDescription; empty without one
+};
+
+// The first page of a whole single-channel TIFF file in memory; `path` names it in messages.
+StoredImage parse_tiff(std::string_view bytes, const std::filesystem::path& path);
+
+enum class ImageFormat { tiff, openexr };
+
+struct DescribedImage {
+    Grid<double> values;     // as stored
+    std::string description; // ImageDescription; empty without one
+};
+
+// The first page of a whole single-channel file in memory; `path` names it in messages.
+DescribedImage parse_image(std::string_view bytes, ImageFormat format, const std::filesystem::path& path);
+
+} // namespace vkfv::images

@@ -1,0 +1,123 @@
+#include "measurement/assembly.hpp"
+
+#include "configuration/configuration_section.hpp"
+#include "core/units.hpp"
+#include "images/image_file.hpp"
+#include "measurement/specimen_view.hpp"
+#include "trace/device_tracer.hpp"
+#include "trace/host_tracer.hpp"
+
+#include <fmt/format.h>
+#include <spdlog/spdlog.h>
+
+#include <algorithm>
+#include <cmath>
+#include <stdexcept>
+#include <vector>
+
+namespace vkfv::measurement {
+
+namespace {
+
+optics::Instrument assemble_at_its_place(const Configuration& configuration,
+                                         const optics::InstrumentDescription& description) {
+    optics::Instrument instrument;
+    // The optics know keys, the configuration knows where they stand.
+    at_its_place(configuration, {.file = configuration.file}, [&] { instrument = optics::assemble(description); });
+    return instrument;
+}
+
+} // namespace
+
+optics::Instrument assemble_instrument(const Configuration& configuration) {
+    return assemble_at_its_place(configuration, configuration.instrument);
+}
+
+optics::Instrument assemble_instrument(const Configuration& configuration, const specimen::Specimen& specimen,
+                                       std::span<const double> focal_heights) {
+    auto description = configuration.instrument;
+    const auto record = specimen::record(specimen, configuration.trace.max_bounces);
+    description.greatest_defocus = 0;
+    for (const double focal_height : focal_heights) {
+        for (const double height : {record.top, record.bottom}) {
+            description.greatest_defocus = std::max(description.greatest_defocus, std::abs(height - focal_height));
+        }
+    }
+    if (description.ring) {
+        description.ring->lit_radius =
+            std::hypot(std::max(-record.x_min, record.x_max), std::max(-record.y_min, record.y_max));
+    }
+    auto instrument = assemble_at_its_place(configuration, description);
+    for (const auto& warning : instrument.warnings) {
+        spdlog::warn(warning);
+    }
+    const int pixels = configuration.instrument.detector_pixels;
+    const auto relief = relief_of(specimen, instrument.first_order.pixel_pitch * pixels, pixels);
+    for (const auto& warning : warning_of_sparse_field(configuration, specimen, relief)) {
+        spdlog::warn(warning);
+    }
+    return instrument;
+}
+
+optics::Instrument instrument_for(const Configuration& configuration, const specimen::Specimen& specimen,
+                                  double focal_height) {
+    auto heights = configuration.scan ? configuration.scan->positions() : std::vector<double>();
+    heights.push_back(focal_height);
+    return assemble_instrument(configuration, specimen, heights);
+}
+
+specimen::Specimen make_specimen(const Configuration& configuration) {
+    const auto& description = configuration.specimen.value();
+    specimen::Specimen specimen;
+    at_its_place(configuration, description.where, [&] { specimen = specimen::make(description); });
+    return specimen;
+}
+
+std::unique_ptr<trace::Tracer> make_tracer(const optics::Instrument& instrument, const specimen::Specimen& specimen,
+                                           const trace::TraceOptions& options) {
+    auto tracer = options.device == "host" ? trace::make_host_tracer(instrument, specimen, options)
+                                           : trace::make_device_tracer(instrument, specimen, options);
+    spdlog::info("{}", tracer->description());
+    return tracer;
+}
+
+std::string image_identity(const Configuration& configuration, const std::string& surface_digest,
+                           const trace::TracerIdentity& tracer) {
+    return configuration.identity +
+           fmt::format("\n[made]\nspecimen_digest = \"{}\"\n{}", surface_digest, tracer.toml());
+}
+
+std::optional<optics::Diffraction> make_diffraction(const Configuration& configuration,
+                                                    const optics::Instrument& instrument) {
+    const auto& options = configuration.diffraction;
+    const int pixels = configuration.instrument.detector_pixels;
+    const double pitch = instrument.first_order.pixel_pitch;
+    if (options.airy) {
+        return optics::Diffraction(
+            optics::AiryPattern(instrument.first_order.numerical_aperture, configuration.instrument.spectrum), pixels,
+            pixels, pitch);
+    }
+    if (options.file.empty()) {
+        return std::nullopt;
+    }
+    const Grid<float> point_spread = images::read_image(options.file);
+    try {
+        return optics::Diffraction(point_spread, options.pitch, pixels, pixels, pitch);
+    } catch (const std::invalid_argument& error) {
+        throw InputError({configuration.places.at("diffraction.file"), "diffraction.file",
+                          fmt::format("{} of {} x {} pixels of {} um", options.file.string(), point_spread.columns,
+                                      point_spread.rows, options.pitch * um_per_mm),
+                          fmt::format("light whose sum is positive, on pixels of at most {:.4g} um", pitch * um_per_mm),
+                          "Correct the file, or the pitch of its pixels in the object plane."});
+    }
+}
+
+surface::HeightMap truth_on_pixels(const optics::Instrument& instrument, const Configuration& configuration,
+                                   const specimen::Specimen& specimen) {
+    const int pixels = configuration.instrument.detector_pixels;
+    const double pitch = instrument.first_order.pixel_pitch;
+    const double first = -0.5 * (pixels - 1) * pitch; // the axis meets the detector's centre
+    return specimen::truth(specimen, pixels, pixels, first, first, pitch, pitch);
+}
+
+} // namespace vkfv::measurement

@@ -1,0 +1,52 @@
+// The parts of a measurement as the configuration asks for them.
+#pragma once
+
+#include "configuration/configuration.hpp"
+#include "optics/diffraction.hpp"
+#include "optics/instrument.hpp"
+#include "specimen/specimen.hpp"
+#include "surface/height_map.hpp"
+#include "trace/tracer.hpp"
+#include "trace/tracer_identity.hpp"
+
+#include <memory>
+#include <optional>
+#include <span>
+#include <string>
+
+namespace vkfv::measurement {
+
+// The configured instrument. Throws InputError at the place of the key that does not fit.
+optics::Instrument assemble_instrument(const Configuration& configuration);
+// The same for exposures of a specimen at these heights of the focal plane (mm), with its warnings in the
+// log.
+optics::Instrument assemble_instrument(const Configuration& configuration, const specimen::Specimen& specimen,
+                                       std::span<const double> focal_heights);
+
+// The configured specimen. Throws InputError at the place of the key that does not fit.
+specimen::Specimen make_specimen(const Configuration& configuration);
+
+// On the device that the options ask for; the selector "host" means the reference in double on the host's
+// cores.
+std::unique_ptr<trace::Tracer> make_tracer(const optics::Instrument& instrument, const specimen::Specimen& specimen,
+                                           const trace::TraceOptions& options);
+
+// All that decides the bits of an image but its height: the configuration's part, the surface as made, instrument,
+// program and device, for another device rounds otherwise. TOML lines.
+std::string image_identity(const Configuration& configuration, const std::string& surface_digest,
+                           const trace::TracerIdentity& tracer);
+
+// The instrument of the configuration's stack, also where the focal height is none of its scan's.
+optics::Instrument instrument_for(const Configuration& configuration, const specimen::Specimen& specimen,
+                                  double focal_height);
+
+// The blur that the configuration asks for, on its detector; none if it asks for none. InputError where the file of a
+// point spread function is at fault.
+std::optional<optics::Diffraction> make_diffraction(const Configuration& configuration,
+                                                   const optics::Instrument& instrument);
+
+// The true surface on the detector's pixels, in the object plane.
+surface::HeightMap truth_on_pixels(const optics::Instrument& instrument, const Configuration& configuration,
+                                   const specimen::Specimen& specimen);
+
+} // namespace vkfv::measurement

@@ -1,0 +1,112 @@
+// From the images of a stack to topography, deviation from truth and the files that hold them.
+#pragma once
+
+#include "configuration/configuration.hpp"
+#include "core/result_folder.hpp"
+#include "optics/diffraction.hpp"
+#include "surface_files/provenance.hpp"
+#include "topography/compare.hpp"
+#include "topography/topography.hpp"
+
+#include <nlohmann/json_fwd.hpp>
+
+#include <filesystem>
+#include <memory>
+#include <optional>
+
+namespace vkfv::measurement {
+
+// A flat that the same instrument measured (topography/flatness.hpp).
+struct Flat {
+    std::filesystem::path file;
+    surface::HeightMap heights;
+};
+
+// That the configuration names, for stacks of this grid (pitch in mm); none if it names none. Throws InputError where
+// its grid is another, since it must have been measured by the same instrument, or where too little of it was measured.
+std::optional<Flat> read_flat(const Configuration& configuration, int columns, int rows, double pitch);
+
+// What it took off.
+struct Flatness {
+    std::filesystem::path file;
+    double deviation = 0; // mm, peak to valley
+};
+
+struct Evaluation {
+    topography::TopographyOptions options; // that the heights were found by
+    topography::Topography topography;
+    std::optional<Flatness> flatness;               // of `diffracted` too, by the same flat; none: no correction
+    std::optional<surface::HeightMap> truth;        // none of a stack that another instrument took; nor deviations
+    std::optional<topography::Deviation> deviation; // levelled
+    std::optional<topography::Deviation> filtered_deviation; // and filtered; none if the band has no limit
+    topography::Band band;
+    double seconds = 0;                     // wall clock
+    std::shared_ptr<Evaluation> diffracted; // the same of the images after diffraction; none without [diffraction]
+};
+
+// Where a stack is evaluated by this choice of [topography] evaluate_on while a device traces it (selector: of the
+// device, or "host"): "auto" means the device if it has cores of its own; on the host's own cores the host's code takes
+// a third of lavapipe's time at 1000 x 1000 pixels. Throws DeviceError.
+topography::FocusPlanesMaker focus_planes_for(const std::string& evaluate_on, const std::string& device_selector);
+
+// Takes a stack's images in their order, as they come, and keeps the time that this takes.
+class StackEvaluation {
+  public:
+    // make_planes: where the work is done. With diffraction the images are evaluated twice, without and with it; they
+    // have its size and one channel then.
+    StackEvaluation(const topography::TopographyOptions& options, topography::FocusPlanesMaker make_planes,
+                    std::optional<optics::Diffraction> diffraction = {});
+
+    // z: mm.
+    void add(topography::Channels image, double z);
+    // On the truth's grid, with the deviation from it. Flat: topography/flatness.hpp; none: no correction.
+    Evaluation finish(surface::HeightMap truth, const topography::Band& band, const std::optional<Flat>& flat = {});
+    // Without a truth; the grid's middle is the origin, pitch in mm.
+    Evaluation finish(double pitch, const std::optional<Flat>& flat = {});
+
+  private:
+    void reconstruct(double x0, double y0, double pitch, const std::optional<Flat>& flat);
+
+    topography::StackEvaluator evaluator_;
+    std::optional<optics::Diffraction> diffraction_;
+    std::unique_ptr<StackEvaluation> diffracted_;
+    int columns_ = 0;
+    int rows_ = 0;
+    Evaluation evaluation_;
+};
+
+// What the topography is written to and what its files say of it, nothing that differs from run to run.
+struct TopographyFiles {
+    std::vector<std::string> names = {"topography.tif", "topography.x3p"};
+    surface::Provenance provenance = {.creator = "vkfv " VKFV_VERSION,
+                                      .manufacturer = "vkfv",
+                                      .model = "virtual focus-variation microscope",
+                                      .version = VKFV_VERSION};
+};
+
+// Those of [output] surfaces, with the configuration's digest.
+TopographyFiles topography_files(const Configuration& configuration);
+
+// What the report shows of a stack beside its evaluation.
+struct StackSource {
+    std::string layout;        // the instrument as SVG; empty: not known
+    std::string configuration; // TOML; empty: none
+};
+
+// Of a stack of vkfv's own.
+StackSource stack_source(const Configuration& configuration, const optics::Instrument& instrument);
+
+// Writes into the folder, checksums last, the first row of each with the highest y: the topography's files, quality.tif
+// (contrast), fit_residual.tif, mask.tif (uint16: topography::PointState), all_in_focus.tif; with a truth also
+// truth.tif and deviation.tif (float32 um); topography.svg, a picture of them, levelled; results.json, which `more`
+// joins; and report.html, all of it on a page. What diffraction changes stands in a folder `diffracted` in it.
+void write_evaluation(ResultFolder& folder, const Evaluation& evaluation, const nlohmann::ordered_json& more,
+                      const StackSource& source = {}, const TopographyFiles& files = {});
+
+// What the results in a stack's folder say of the trace: device, digest, seed and counts; none if there are no results.
+nlohmann::ordered_json run_of(const std::filesystem::path& folder);
+
+// The figures as a text of a few lines.
+std::string summary(const Evaluation& evaluation);
+
+} // namespace vkfv::measurement

@@ -1,0 +1,79 @@
+#include "measurement/exposure.hpp"
+
+#include "core/units.hpp"
+#include "images/image_file.hpp"
+#include "measurement/assembly.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+namespace vkfv::measurement {
+
+namespace {
+
+// The random numbers of an exposure are keyed by its index: at a position of the scan, that image of the
+// stack is what comes out, bit by bit; anywhere else the index counts on after the scan's.
+std::uint32_t image_index(const Configuration& configuration, double focal_height) {
+    if (!configuration.scan) {
+        return 0;
+    }
+    const auto positions = configuration.scan->positions();
+    for (std::size_t i = 0; i < positions.size(); ++i) {
+        if (std::abs(positions[i] - focal_height) < 1e-6 * configuration.scan->z_step) {
+            return static_cast<std::uint32_t>(i);
+        }
+    }
+    return static_cast<std::uint32_t>(positions.size());
+}
+
+Grid<float> in_float(const Grid<double>& image) {
+    Grid<float> result(image.columns, image.rows);
+    std::copy(image.values.begin(), image.values.end(), result.values.begin());
+    return result;
+}
+
+} // namespace
+
+Exposure expose(const Configuration& configuration, const optics::Instrument& instrument,
+                const specimen::Specimen& specimen, double focal_height) {
+    const auto tracer = make_tracer(instrument, specimen, configuration.trace);
+    const double pitch = instrument.first_order.pixel_pitch;
+    Exposure exposure{tracer->expose(focal_height, image_index(configuration, focal_height)),
+                      -0.5 * (configuration.instrument.detector_pixels - 1) * pitch,
+                      pitch,
+                      tracer->identity(),
+                      {}};
+    if (const auto diffraction = make_diffraction(configuration, instrument)) {
+        exposure.diffracted = diffraction->apply(in_float(exposure.image.flux));
+    }
+    return exposure;
+}
+
+std::vector<std::pair<std::filesystem::path, std::string>> image_files(const std::filesystem::path& name,
+                                                                       const Exposure& exposure, double focal_height) {
+    const images::ImageTags tags{.pitch_x = exposure.pitch,
+                                  .pitch_y = exposure.pitch,
+                                  .description =
+                                      fmt::format("radiant flux in W at z = {} um", focal_height * um_per_mm)};
+    std::vector<std::pair<std::filesystem::path, std::string>> files;
+    files.emplace_back(name, images::tiff_bytes(in_float(exposure.image.flux), tags));
+    if (exposure.diffracted) {
+        auto beside = name;
+        beside.replace_filename(name.stem().string() + "_diffracted" + name.extension().string());
+        files.emplace_back(beside, images::tiff_bytes(*exposure.diffracted, tags));
+    }
+    return files;
+}
+
+double signal_to_noise(const trace::Image& image) {
+    double flux = 0, variance = 0;
+    for (std::size_t k = 0; k < image.flux.values.size(); ++k) {
+        flux += image.flux.values[k];
+        variance += image.standard_error.values[k] * image.standard_error.values[k];
+    }
+    return flux / std::sqrt(variance * static_cast<double>(image.flux.values.size()));
+}
+
+} // namespace vkfv::measurement

@@ -1,0 +1,37 @@
+// A single exposure.
+#pragma once
+
+#include "configuration/configuration.hpp"
+#include "core/grid.hpp"
+#include "optics/instrument.hpp"
+#include "specimen/specimen.hpp"
+#include "trace/tracer.hpp"
+#include "trace/tracer_identity.hpp"
+
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+namespace vkfv::measurement {
+
+// One exposure at a height of the focal plane (mm), as an image of the configuration's stack if its scan has that
+// height.
+struct Exposure {
+    trace::Image image;
+    double first = 0; // of the pixels in the object plane, mm: x and y of pixel (0, 0)
+    double pitch = 0;
+    trace::TracerIdentity tracer;
+    std::optional<Grid<float>> diffracted; // its light after diffraction, if the configuration has one
+};
+Exposure expose(const Configuration& configuration, const optics::Instrument& instrument,
+                const specimen::Specimen& specimen, double focal_height);
+// The pixels' mean over the root mean square of their standard errors.
+double signal_to_noise(const trace::Image& image);
+// The files of an exposure by their names, beside each other: NAME, float32 W per pixel, and the diffracted image as
+// NAME_diffracted.
+std::vector<std::pair<std::filesystem::path, std::string>> image_files(const std::filesystem::path& name,
+                                                                       const Exposure& exposure, double focal_height);
+
+} // namespace vkfv::measurement

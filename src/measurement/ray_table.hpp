@@ -1,0 +1,22 @@
+// Rays as CSV: what --trace-rays reads and writes.
+#pragma once
+
+#include "trace/ray_trace.hpp"
+
+#include <filesystem>
+#include <span>
+#include <string>
+#include <vector>
+
+namespace vkfv::measurement {
+
+// First line `x_mm,y_mm,z_mm,l,m,n`, then a ray a line; empty lines are passed over. Directions are
+// normalised. Throws InputError with line and column for anything else, also for numbers that are not finite
+// and directions whose length is not 1 to a millionth.
+std::vector<trace::RayInput> read_ray_table(const std::filesystem::path& file);
+
+// `x_mm,y_mm,l,m,n,opl_mm,status` and a ray a line with 17 significant digits, so that every double reads
+// back.
+std::string ray_table_text(std::span<const trace::TracedRay> rays);
+
+} // namespace vkfv::measurement

@@ -1,0 +1,96 @@
+#include "measurement/specimen_view.hpp"
+
+#include "core/units.hpp"
+#include "specimen/description.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <numeric>
+
+namespace vkfv::measurement {
+
+namespace {
+
+constexpr int most_relief_points = 128; // a side; a look at the specimen, in a moment for any detector
+constexpr double least_seen_share = 0.5;
+// Illumination is wider than most specimens; beside a specimen that is where it should be, this much never falls.
+constexpr double most_light_beside = 0.98;
+
+constexpr const char* beside_the_specimen = "beside the specimen"; // of the ledger
+constexpr const char* likely_causes =
+    "A length may be in another unit than its key says (source.radius_mm, specimen.size_mm, specimen.unit), or the "
+    "specimen "
+    "off the axis; --layout draws the instrument, --check tells what the detector sees";
+
+std::string percent(double share) {
+    return fmt::format("{:.3g} %", 100 * share);
+}
+
+} // namespace
+
+Relief relief_of(const specimen::Specimen& specimen, double field, int pixels) {
+    const int points = std::min(pixels, most_relief_points);
+    const double pitch = field / points;
+    const double first = -0.5 * (points - 1) * pitch;
+    const auto truth = specimen::truth(specimen, points, points, first, first, pitch, pitch);
+    Relief relief;
+    std::size_t seen = 0;
+    for (const double height : truth.height.values) {
+        if (std::isfinite(height)) {
+            relief.lowest = std::min(relief.lowest, height);
+            relief.highest = std::max(relief.highest, height);
+            ++seen;
+        }
+    }
+    relief.seen_share = static_cast<double>(seen) / static_cast<double>(truth.height.values.size());
+    return relief;
+}
+
+std::vector<std::string> warning_of_sparse_field(const Configuration& configuration, const specimen::Specimen& specimen,
+                                                 const Relief& relief) {
+    if (relief.seen_share >= least_seen_share) {
+        return {};
+    }
+    const auto record = specimen::record(specimen, 1);
+    const auto kind = configuration.specimen->kind;
+    const bool of_mesh = kind == specimen::Kind::stl || kind == specimen::Kind::gltf;
+    const char* remedy = of_mesh ? "Correct specimen.unit, set centre = true, or look for a vertex far off in the file"
+                                 : "Correct the lengths of [specimen] or [detector]";
+    return {fmt::format("{}: it is {:.4g} x {:.4g} um across, from x = {:.4g} and y = {:.4g} um on. {}.",
+                        relief.seen_share > 0
+                            ? fmt::format("The specimen fills {} of the field of view", percent(relief.seen_share))
+                            : std::string("The detector does not see the specimen"),
+                        (record.x_max - record.x_min) * um_per_mm, (record.y_max - record.y_min) * um_per_mm,
+                        record.x_min * um_per_mm, record.y_min * um_per_mm, remedy)};
+}
+
+std::vector<std::string> warning_of_lost_light(const trace::Image& image) {
+    const auto& ledger = image.ledger;
+    const double detected = std::accumulate(image.flux.values.begin(), image.flux.values.end(), 0.0);
+    if (!(detected > 0)) {
+        const auto most = std::ranges::max_element(ledger.entries, {}, [](const auto& entry) {
+            return entry.name == "not aimed at" ? 0.0 : entry.power; // outside the cone that can pass at all
+        });
+        const std::string where = most == ledger.entries.end() || !(most->power > 0)
+                                      ? ""
+                                      : fmt::format(" Most of it ends as \"{}\" ({} of what is emitted).", most->name,
+                                                    percent(most->power / ledger.emitted));
+        return {fmt::format("No light reaches the detector.{} {}; or launch more rays.", where, likely_causes)};
+    }
+    double beside = 0, met = 0;
+    for (const auto& entry : ledger.entries) {
+        beside += entry.name == beside_the_specimen ? entry.power : 0;
+        met += entry.name == "detected" || entry.name == "escaped outside the pupil" || entry.name == "bounce limit" ||
+                       entry.name == "beside the detector" || entry.name == "absorbed by the specimen"
+                   ? entry.power
+                   : 0;
+    }
+    if (beside > most_light_beside * (beside + met)) {
+        return {fmt::format("{} of the light that comes as far falls beside the specimen. {}.",
+                            percent(beside / (beside + met)), likely_causes)};
+    }
+    return {};
+}
+
+} // namespace vkfv::measurement

@@ -1,0 +1,32 @@
+// What of the specimen the detector sees, and what is likely wrong where that is little.
+#pragma once
+
+#include "configuration/configuration.hpp"
+#include "specimen/specimen.hpp"
+#include "trace/tracer.hpp"
+
+#include <cmath>
+#include <string>
+#include <vector>
+
+namespace vkfv::measurement {
+
+// Lowest and highest point of the specimen in the field of view (mm), and the share of the field that it fills.
+struct Relief {
+    double lowest = INFINITY;
+    double highest = -INFINITY;
+    double seen_share = 0;
+};
+
+// field: the side of the square that the detector of so many pixels a side sees around the axis, mm.
+Relief relief_of(const specimen::Specimen& specimen, double field, int pixels);
+
+// A sentence where the specimen fills less than half of the field.
+std::vector<std::string> warning_of_sparse_field(const Configuration& configuration, const specimen::Specimen& specimen,
+                                                 const Relief& relief);
+
+// A sentence where no light was detected, or nearly all that came as far fell beside the specimen: where it went, and
+// what that may come from.
+std::vector<std::string> warning_of_lost_light(const trace::Image& image);
+
+} // namespace vkfv::measurement

@@ -1,0 +1,70 @@
+#include "report/parameter_table.hpp"
+
+#include "core/units.hpp"
+
+#include <fmt/format.h>
+
+#include <cmath>
+
+namespace vkfv::report {
+
+std::string ParameterRow::key() const {
+    return unit.empty() ? name : name + "_" + unit;
+}
+
+std::vector<ParameterRow> parameter_rows(const surface::ArealParameters& parameters) {
+    using enum surface::ParameterUnit;
+    std::vector<ParameterRow> rows;
+    for (const auto& named : surface::named_parameters(parameters)) {
+        const double factor = named.unit == length || named.unit == volume_per_area ? um_per_mm
+                              : named.unit == angle                                 ? 1 / radians_per_degree
+                              : named.unit == share                                 ? 100
+                                                                                    : 1;
+        const char* unit = named.unit == length            ? "um"
+                           : named.unit == volume_per_area ? "um3_per_um2"
+                           : named.unit == angle           ? "deg"
+                           : named.unit == share           ? "percent"
+                                                           : "";
+        rows.push_back({std::string(named.name), unit, named.value * factor});
+    }
+    return rows;
+}
+
+std::vector<ParameterRow> parameter_rows(const surface::ProfileParameters& parameters) {
+    return {{"Ra", "um", parameters.ra * um_per_mm},
+            {"Rq", "um", parameters.rq * um_per_mm},
+            {"Rz", "um", parameters.rz * um_per_mm}};
+}
+
+nlohmann::ordered_json json_of(const std::vector<ParameterRow>& rows) {
+    auto object = nlohmann::ordered_json::object();
+    for (const auto& row : rows) {
+        object[row.key()] = row.value;
+    }
+    return object;
+}
+
+std::string number_text(double value) {
+    return std::isnan(value) ? "-" : fmt::format("{:.6g}", value);
+}
+
+nlohmann::ordered_json treatment_json(const surface::Band& band) {
+    return {{"form", surface::form_name(band.form)},
+            {"s_filter_um", band.s_filter * um_per_mm},
+            {"l_filter_um", band.l_filter * um_per_mm},
+            {"filter", band.spline ? "spline" : "gaussian"}};
+}
+
+std::string treatment_text(const surface::Band& band) {
+    std::string text = "form " + surface::form_name(band.form);
+    const char* filter = band.spline ? "spline" : "Gaussian";
+    if (band.s_filter > 0) {
+        text += fmt::format(", S-filter {:g} um ({})", band.s_filter * um_per_mm, filter);
+    }
+    if (band.l_filter > 0) {
+        text += fmt::format(", L-filter {:g} um ({})", band.l_filter * um_per_mm, filter);
+    }
+    return text;
+}
+
+} // namespace vkfv::report

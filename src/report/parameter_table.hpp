@@ -1,0 +1,38 @@
+// Parameters of surfaces and profiles, and what was done to the surface before, as reports show them.
+#pragma once
+
+#include "surface/areal_parameters.hpp"
+#include "surface/band.hpp"
+#include "surface/profile.hpp"
+
+#include <nlohmann/json.hpp>
+
+#include <string>
+#include <vector>
+
+namespace vkfv::report {
+
+struct ParameterRow {
+    std::string name; // "Sa"
+    std::string unit; // of `value`: "um", "um3_per_um2", "deg", "percent" or none
+    double value = 0; // NaN: undefined
+
+    std::string key() const; // "Sa_um"
+};
+
+// Those that ISO 25178-2 names, in its order.
+std::vector<ParameterRow> parameter_rows(const surface::ArealParameters& parameters);
+// Ra, Rq and Rz.
+std::vector<ParameterRow> parameter_rows(const surface::ProfileParameters& parameters);
+
+// A row's value under its key; NaN becomes null.
+nlohmann::ordered_json json_of(const std::vector<ParameterRow>& rows);
+
+// Six digits; "-" for NaN.
+std::string number_text(double value);
+
+nlohmann::ordered_json treatment_json(const surface::Band& band);
+// "form plane, S-filter 5 um (Gaussian)"
+std::string treatment_text(const surface::Band& band);
+
+} // namespace vkfv::report

@@ -1,0 +1,15 @@
+// PLY, the polygon file of viewers of meshes; written only.
+#pragma once
+
+#include "surface_files/surface_file.hpp"
+
+#include <string>
+
+namespace vkfv::surface {
+
+// Binary, little-endian: the measured points as vertices (x, y, z in mm, float32), row by row from the lowest y, and
+// two triangles a cell, counter-clockwise seen from +z, split from (i, j) to (i+1, j+1) like a specimen's facets;
+// those with a not-measured corner are left out. RunError for more points than the format's indices count.
+std::string ply_bytes(const HeightMap& map, const Provenance& provenance);
+
+} // namespace vkfv::surface

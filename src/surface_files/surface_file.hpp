@@ -1,0 +1,43 @@
+// Surfaces in the files of other programs and instruments.
+//
+// Row order: in memory row 0 has the lowest y. In every format here the first row in the file has the highest y, as
+// Gwyddion and MountainsMap show it: what is seen from +z has x to the right and y up. Positions in files are those
+// of the point with the lowest x and y.
+#pragma once
+
+#include "surface/height_map.hpp"
+#include "surface_files/provenance.hpp"
+
+#include <filesystem>
+#include <optional>
+
+namespace vkfv::surface {
+
+struct SurfaceFile {
+    HeightMap map; // NaN: not measured
+    Provenance provenance;
+};
+
+// What a plain image does not say of itself.
+struct ImageScale {
+    std::optional<double> pitch; // mm between pixels
+    std::optional<double> unit;  // mm per unit of a pixel's value
+};
+
+// X3P, SUR, SDF, AL3D, or a TIFF or OpenEXR image of heights, known by its first bytes. `scale` is for images that
+// vkfv did not write, which need both of its parts; where the file has a scale of its own, a second one is an error.
+// Throws InputError for anything that is not a whole and sound file; what it costs in memory is bounded by the file's
+// size and, for packed files, by the number of points its header names.
+SurfaceFile read_surface(const std::filesystem::path& path, const ImageScale& scale = {});
+
+// A surface file in memory, for core/file.hpp to write. By the name's ending: .x3p .sur .sdf (.asc.sdf: as text) .tif
+// .tiff .ply; another is an InputError. The same map and provenance give the same bytes, also after they were read
+// back. RunError where the format cannot hold the map.
+//   .x3p  float64 metres
+//   .sur  32-bit integers, steps of at most 2^-29 of the largest height; pitches and position as float32
+//   .sdf  float64 metres; without position, and of the provenance only manufacturer and date; .asc.sdf keeps all
+//   .tif  float32 micrometres; pitches and position exact
+//   .ply  float32 mm, two triangles a cell, for viewers of meshes; not read back
+std::string surface_bytes(const std::filesystem::path& path, const HeightMap& map, const Provenance& provenance = {});
+
+} // namespace vkfv::surface

@@ -1,0 +1,399 @@
+#include "surface_files/x3p.hpp"
+
+#include "core/byte_reader.hpp"
+#include "surface/metres.hpp"
+
+#include <openssl/evp.h>
+#include <pugixml.hpp>
+#include <spdlog/spdlog.h>
+#include <zip.h>
+
+#include <algorithm>
+#include <array>
+#include <limits>
+#include <memory>
+#include <sstream>
+
+namespace vkfv::surface {
+namespace {
+
+constexpr const char* xml_name = "main.xml";
+constexpr const char* points_name = "bindata/data.bin";
+constexpr const char* valid_name = "bindata/valid.bin";
+constexpr const char* checksum_name = "md5checksum.hex";
+constexpr std::uint64_t largest_xml = std::uint64_t{1} << 24;
+constexpr std::uint64_t largest_checksum_file = 4096;
+constexpr std::size_t md5_digits = 32;
+
+// 32 lower-case digits.
+std::string md5_of(std::string_view bytes) {
+    std::array<unsigned char, EVP_MAX_MD_SIZE> digest{};
+    unsigned int length = 0;
+    if (EVP_Digest(bytes.data(), bytes.size(), digest.data(), &length, EVP_md5(), nullptr) != 1)
+        throw RunError("OpenSSL offers no MD5, which X3P files need. Use a configuration of OpenSSL that has it.");
+    std::string text;
+    for (unsigned int k = 0; k < length; ++k)
+        text += fmt::format("{:02x}", digest[k]);
+    return text;
+}
+
+struct Discard {
+    void operator()(zip_t* archive) const { zip_discard(archive); }
+    void operator()(zip_file_t* entry) const { zip_fclose(entry); }
+};
+
+class Archive {
+  public:
+    explicit Archive(const ByteReader& file) : file_(file) {
+        zip_error_t error;
+        zip_error_init(&error);
+        zip_source_t* source = zip_source_buffer_create(file.bytes(0, file.size(), "").data(), file.size(), 0, &error);
+        if (source)
+            archive_.reset(zip_open_from_source(source, ZIP_RDONLY, &error));
+        const std::string reason = zip_error_strerror(&error);
+        zip_error_fini(&error);
+        if (!archive_) {
+            zip_source_free(source);
+            file.fail({}, "X3P", reason, "a ZIP archive");
+        }
+    }
+
+    // Nothing without such an entry. Memory grows as the data come, up to the limit, which an entry that states to be
+    // longer does not come near.
+    std::optional<std::string> read(std::string name, std::uint64_t largest) const {
+        if (name.starts_with("./"))
+            name.erase(0, 2);
+        const zip_int64_t index = zip_name_locate(archive_.get(), name.c_str(), 0);
+        if (index < 0)
+            return std::nullopt;
+        const auto entry = static_cast<zip_uint64_t>(index);
+        zip_stat_t stat;
+        if (zip_stat_index(archive_.get(), entry, 0, &stat) != 0 || !(stat.valid & ZIP_STAT_COMP_METHOD) ||
+            (stat.comp_method != ZIP_CM_STORE && stat.comp_method != ZIP_CM_DEFLATE))
+            file_.fail({}, name, "packed by another method", "an entry stored or deflated");
+        const auto too_long = [&](std::uint64_t bytes) {
+            if (bytes > largest)
+                file_.fail({}, name, fmt::format("more than {} bytes", largest), "an entry no longer than that");
+        };
+        std::string bytes;
+        if (stat.valid & ZIP_STAT_SIZE) {
+            too_long(stat.size);
+            bytes.reserve(stat.size);
+        }
+        const std::unique_ptr<zip_file_t, Discard> stream(zip_fopen_index(archive_.get(), entry, 0));
+        if (!stream)
+            file_.fail({}, name, zip_strerror(archive_.get()), "an entry that can be read");
+        std::array<char, 1 << 16> part;
+        for (zip_int64_t count; (count = zip_fread(stream.get(), part.data(), part.size())) != 0;) {
+            if (count < 0)
+                file_.fail({}, name, zip_file_strerror(stream.get()), "an entry without damage");
+            bytes.append(part.data(), static_cast<std::size_t>(count));
+            too_long(bytes.size());
+        }
+        return bytes;
+    }
+
+  private:
+    const ByteReader& file_;
+    std::unique_ptr<zip_t, Discard> archive_;
+};
+
+// Prefixes of namespaces are the writer's choice.
+pugi::xml_node child(const pugi::xml_node& parent, std::string_view name) {
+    for (const pugi::xml_node node : parent.children()) {
+        const std::string_view full = node.name();
+        if (full.substr(full.find(':') + 1) == name)
+            return node;
+    }
+    return {};
+}
+
+std::string text_of(const pugi::xml_node& parent, std::string_view name) {
+    return plain_line(child(parent, name).text().get());
+}
+
+class Document {
+  public:
+    Document(const ByteReader& file, const std::string& xml) : file_(file) {
+        const auto result = document_.load_buffer(xml.data(), xml.size());
+        if (!result)
+            file.fail({}, xml_name, fmt::format("{} at byte {}", result.description(), result.offset), "XML");
+        root_ = child(document_, "ISO5436_2");
+        if (!root_)
+            file.fail({}, xml_name, "another root element", "the element ISO5436_2");
+    }
+
+    pugi::xml_node root() const { return root_; }
+
+    template <class Value>
+    Value number(const pugi::xml_node& parent, const char* name, std::optional<Value> fallback = {}) const {
+        const std::string text = text_of(parent, name);
+        if (text.empty() && fallback)
+            return *fallback;
+        const auto value = number_in<Value>(text);
+        if (!value)
+            file_.fail({}, fmt::format("{}: {}.{}", xml_name, parent.name(), name), text.empty() ? "nothing" : text,
+                       "a number");
+        return *value;
+    }
+
+    void require(const pugi::xml_node& parent, const char* name, const std::string& expected) const {
+        if (const std::string text = text_of(parent, name); text != expected)
+            file_.fail({}, fmt::format("{}: {}.{}", xml_name, parent.name(), name), text.empty() ? "nothing" : text,
+                       expected, "Export the file as a surface on a regular grid.");
+    }
+
+  private:
+    const ByteReader& file_;
+    pugi::xml_document document_;
+    pugi::xml_node root_;
+};
+
+void check_md5(const ByteReader& file, const std::string& what, const std::string& bytes, const std::string& stated) {
+    if (stated.empty()) {
+        spdlog::warn("{}: {} has no MD5 checksum", file.file().string(), what);
+        return;
+    }
+    std::string digits = stated;
+    std::ranges::transform(digits, digits.begin(), [](unsigned char c) { return std::tolower(c); });
+    if (const std::string md5 = md5_of(bytes); md5 != digits)
+        file.fail({}, fmt::format("MD5 of {}", what), md5, fmt::format("the checksum {} that the file states", digits),
+                  "The file is damaged or was changed by hand: export or copy it anew.");
+}
+
+template <class Stored>
+void read_heights(std::string_view points, std::string_view valid, double offset, double increment,
+                  Grid<double>& heights) {
+    std::size_t index = 0;
+    for (int row = heights.rows - 1; row >= 0; --row)
+        for (int column = 0; column < heights.columns; ++column, ++index) {
+            const bool measured =
+                valid.empty() || (static_cast<unsigned char>(valid[index / 8]) >> (index % 8) & 1) != 0;
+            const double metres = offset + increment * static_cast<double>(element<Stored>(points, index));
+            heights(column, row) = measured ? height_from_metres(metres) : std::numeric_limits<double>::quiet_NaN();
+        }
+}
+
+Provenance read_provenance(const pugi::xml_node& record) {
+    const auto instrument = child(record, "Instrument");
+    return {.creator = text_of(record, "Creator"),
+            .manufacturer = text_of(instrument, "Manufacturer"),
+            .model = text_of(instrument, "Model"),
+            .serial = text_of(instrument, "Serial"),
+            .version = text_of(instrument, "Version"),
+            .date = known_date(text_of(record, "Date")),
+            .comment = plain_lines(child(record, "Comment").text().get())};
+}
+
+std::string main_xml(const HeightMap& map, const Provenance& provenance, const std::string& points_md5,
+                     const std::string& valid_md5) {
+    pugi::xml_document document;
+    auto declaration = document.append_child(pugi::node_declaration);
+    declaration.append_attribute("version") = "1.0";
+    declaration.append_attribute("encoding") = "UTF-8";
+    auto root = document.append_child("p:ISO5436_2");
+    root.append_attribute("xmlns:p") = "http://www.opengps.eu/2008/ISO5436_2";
+    root.append_attribute("xmlns:xsi") = "http://www.w3.org/2001/XMLSchema-instance";
+    root.append_attribute("xsi:schemaLocation") =
+        "http://www.opengps.eu/2008/ISO5436_2 http://www.opengps.eu/2008/ISO5436_2/ISO5436_2.xsd";
+    const auto add = [](pugi::xml_node parent, const char* name, const std::string& text) {
+        parent.append_child(name).append_child(pugi::node_pcdata).set_value(text.c_str());
+    };
+    auto record1 = root.append_child("Record1");
+    add(record1, "Revision", "ISO5436 - 2000");
+    add(record1, "FeatureType", "SUR");
+    auto axes = record1.append_child("Axes");
+    const auto add_axis = [&](const char* name, const char* type, double increment, double offset) {
+        auto axis = axes.append_child(name);
+        add(axis, "AxisType", type);
+        add(axis, "DataType", "D");
+        add(axis, "Increment", fmt::format("{}", increment));
+        add(axis, "Offset", fmt::format("{}", offset));
+    };
+    add_axis("CX", "I", metres_from_mm(map.pitch_x), metres_from_mm(map.x0));
+    add_axis("CY", "I", metres_from_mm(map.pitch_y), metres_from_mm(map.y0));
+    add_axis("CZ", "A", 1, 0);
+
+    auto record2 = root.append_child("Record2");
+    const std::string date = date_time(provenance.date).text();
+    add(record2, "Date", date);
+    if (const std::string creator = plain_line(provenance.creator); !creator.empty())
+        add(record2, "Creator", creator);
+    auto instrument = record2.append_child("Instrument");
+    add(instrument, "Manufacturer", plain_line(provenance.manufacturer));
+    add(instrument, "Model", plain_line(provenance.model));
+    add(instrument, "Serial", plain_line(provenance.serial));
+    add(instrument, "Version", plain_line(provenance.version));
+    add(record2, "CalibrationDate", date);
+    auto probing = record2.append_child("ProbingSystem");
+    add(probing, "Type", "Software");
+    add(probing, "Identification", plain_line(provenance.model));
+    if (const std::string comment = plain_lines(provenance.comment); !comment.empty())
+        add(record2, "Comment", comment);
+
+    auto record3 = root.append_child("Record3");
+    auto matrix = record3.append_child("MatrixDimension");
+    add(matrix, "SizeX", fmt::format("{}", map.columns()));
+    add(matrix, "SizeY", fmt::format("{}", map.rows()));
+    add(matrix, "SizeZ", "1");
+    auto link = record3.append_child("DataLink");
+    add(link, "PointDataLink", points_name);
+    add(link, "MD5ChecksumPointData", points_md5);
+    if (!valid_md5.empty()) {
+        add(link, "ValidPointsLink", valid_name);
+        add(link, "MD5ChecksumValidPoints", valid_md5);
+    }
+    add(root.append_child("Record4"), "ChecksumFile", checksum_name);
+    std::ostringstream text;
+    document.save(text, "  ");
+    return text.str();
+}
+
+// The archive's bytes; the same entries give the same.
+std::string zip_of(const std::vector<std::pair<const char*, std::string_view>>& entries) {
+    constexpr std::uint16_t first_day = 1 << 5 | 1; // 1980-01-01 in MS-DOS's way
+    zip_error_t error;
+    zip_error_init(&error);
+    zip_source_t* source = zip_source_buffer_create(nullptr, 0, 0, &error);
+    zip_t* archive = source ? zip_open_from_source(source, ZIP_TRUNCATE, &error) : nullptr;
+    zip_error_fini(&error);
+    std::string bytes;
+    bool good = archive != nullptr;
+    if (good) {
+        zip_source_keep(source);
+        for (const auto& [name, content] : entries) {
+            zip_source_t* data = zip_source_buffer(archive, content.data(), content.size(), 0);
+            const zip_int64_t index = data ? zip_file_add(archive, name, data, ZIP_FL_ENC_UTF_8) : -1;
+            good = good && index >= 0 &&
+                   zip_set_file_compression(archive, static_cast<zip_uint64_t>(index), ZIP_CM_DEFLATE, 0) == 0 &&
+                   zip_file_set_dostime(archive, static_cast<zip_uint64_t>(index), 0, first_day, 0) == 0;
+        }
+        good = good && zip_close(archive) == 0;
+        zip_stat_t stat;
+        good = good && zip_source_open(source) == 0 && zip_source_stat(source, &stat) == 0;
+        if (good) {
+            bytes.resize(stat.size);
+            good = zip_source_read(source, bytes.data(), bytes.size()) == static_cast<zip_int64_t>(bytes.size());
+            zip_source_close(source);
+        }
+    }
+    zip_source_free(source);
+    if (!good)
+        throw RunError("an X3P archive could not be packed in memory. Free memory and run the same command again.");
+    return bytes;
+}
+
+} // namespace
+
+bool looks_like_x3p(std::string_view bytes) {
+    return bytes.starts_with("PK\x03\x04");
+}
+
+SurfaceFile parse_x3p(std::string_view bytes, const std::filesystem::path& path) {
+    const ByteReader file(bytes, path);
+    const Archive archive(file);
+    const auto xml = archive.read(xml_name, largest_xml);
+    if (!xml)
+        file.fail({}, xml_name, "no such entry", "an X3P archive with one at its root");
+    const Document document(file, *xml);
+
+    const auto record1 = child(document.root(), "Record1");
+    document.require(record1, "FeatureType", "SUR");
+    const auto axes = child(record1, "Axes");
+    if (child(axes, "Rotation"))
+        file.fail({}, fmt::format("{}: Rotation", xml_name), "a rotation of the points", "none",
+                  "Export the surface in the frame of its grid.");
+    const auto x = child(axes, "CX"), y = child(axes, "CY"), z = child(axes, "CZ");
+    document.require(x, "AxisType", "I");
+    document.require(y, "AxisType", "I");
+    SurfaceFile result;
+    const auto pitch = [&](const pugi::xml_node& axis) {
+        const double mm = mm_from_metres(document.number<double>(axis, "Increment"));
+        file.check_spacing(mm, axis.name());
+        return mm;
+    };
+    const auto position = [&](const pugi::xml_node& axis) {
+        const double mm = mm_from_metres(document.number<double>(axis, "Offset", 0.0));
+        if (!std::isfinite(mm))
+            file.fail({}, fmt::format("{}: {}.Offset", xml_name, axis.name()), fmt::format("{} mm", mm), "a length");
+        return mm;
+    };
+    result.map.pitch_x = pitch(x);
+    result.map.pitch_y = pitch(y);
+    result.map.x0 = position(x);
+    result.map.y0 = position(y);
+    const double offset = document.number<double>(z, "Offset", 0.0);
+    const double increment = document.number<double>(z, "Increment", 1.0);
+    const std::string type = text_of(z, "DataType");
+    if (type != "I" && type != "L" && type != "F" && type != "D")
+        file.fail({}, fmt::format("{}: CZ.DataType", xml_name), type.empty() ? "nothing" : type, "I, L, F or D");
+    if (increment == 0)
+        file.fail({}, fmt::format("{}: CZ.Increment", xml_name), "0", "another number");
+
+    const auto record3 = child(document.root(), "Record3");
+    const auto matrix = child(record3, "MatrixDimension");
+    const auto columns = document.number<std::uint64_t>(matrix, "SizeX");
+    const auto rows = document.number<std::uint64_t>(matrix, "SizeY");
+    file.check_size(columns, rows);
+    document.require(matrix, "SizeZ", "1");
+    const auto link = child(record3, "DataLink");
+    const std::string link_name = text_of(link, "PointDataLink");
+    if (link_name.empty())
+        file.fail({}, fmt::format("{}: Record3.DataLink", xml_name), "nothing", "the name of a binary file of points",
+                  "Export the heights in binary form.");
+
+    const auto checksum = archive.read(checksum_name, largest_checksum_file);
+    check_md5(file, xml_name, *xml, checksum ? checksum->substr(0, md5_digits) : "");
+    const std::uint64_t count = columns * rows;
+    const std::uint64_t point_bytes = type == "I" ? 2 : type == "D" ? 8 : 4;
+    file.check_packing(count * sizeof(double), link_name);
+    const auto points = archive.read(link_name, count * point_bytes);
+    if (!points || points->size() != count * point_bytes)
+        file.fail({}, link_name, points ? fmt::format("{} bytes", points->size()) : "no such entry",
+                  fmt::format("{} bytes for {} x {} points of type {}", count * point_bytes, columns, rows, type));
+    check_md5(file, link_name, *points, text_of(link, "MD5ChecksumPointData"));
+    std::string valid;
+    if (const std::string valid_link = text_of(link, "ValidPointsLink"); !valid_link.empty()) {
+        const std::uint64_t valid_bytes = (count + 7) / 8;
+        const auto content = archive.read(valid_link, valid_bytes);
+        if (!content || content->size() != valid_bytes)
+            file.fail({}, valid_link, content ? fmt::format("{} bytes", content->size()) : "no such entry",
+                      fmt::format("{} bytes, a bit a point", valid_bytes));
+        check_md5(file, valid_link, *content, text_of(link, "MD5ChecksumValidPoints"));
+        valid = *content;
+    }
+
+    result.map.height = Grid<double>(static_cast<int>(columns), static_cast<int>(rows));
+    (type == "I"   ? read_heights<std::int16_t>
+     : type == "L" ? read_heights<std::int32_t>
+     : type == "F" ? read_heights<float>
+                   : read_heights<double>)(*points, valid, offset, increment, result.map.height);
+    result.provenance = read_provenance(child(document.root(), "Record2"));
+    return result;
+}
+
+std::string x3p_bytes(const HeightMap& map, const Provenance& provenance) {
+    const std::size_t count = map.height.values.size();
+    std::string points, valid((count + 7) / 8, '\0');
+    points.reserve(count * sizeof(double));
+    bool all_measured = true;
+    std::size_t index = 0;
+    for (int row = map.rows() - 1; row >= 0; --row)
+        for (int column = 0; column < map.columns(); ++column, ++index) {
+            const double mm = map.height(column, row);
+            const bool measured = std::isfinite(mm);
+            append(points, measured ? metres_from_mm(mm) : std::numeric_limits<double>::quiet_NaN());
+            all_measured = all_measured && measured;
+            if (measured)
+                valid[index / 8] = static_cast<char>(valid[index / 8] | 1 << (index % 8));
+        }
+    const std::string xml = main_xml(map, provenance, md5_of(points), all_measured ? "" : md5_of(valid));
+    const std::string checksum = fmt::format("{} *{}\n", md5_of(xml), xml_name);
+    std::vector<std::pair<const char*, std::string_view>> entries = {
+        {xml_name, xml}, {checksum_name, checksum}, {points_name, points}};
+    if (!all_measured)
+        entries.emplace_back(valid_name, valid);
+    return zip_of(entries);
+}
+
+} // namespace vkfv::surface

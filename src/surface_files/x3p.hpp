@@ -1,0 +1,21 @@
+// X3P, the exchange format of ISO 5436-2 and ISO 25178-72: a ZIP of main.xml (metres), raw heights and checksums.
+#pragma once
+
+#include "surface_files/surface_file.hpp"
+
+#include <string>
+#include <string_view>
+
+namespace vkfv::surface {
+
+bool looks_like_x3p(std::string_view bytes);
+
+// Surfaces on a regular grid: FeatureType SUR, CX and CY incremental, heights as I, L, F or D in a binary file; points
+// that valid.bin leaves out and every height that is not finite are not measured. A wrong MD5 sum is an error, a
+// missing one a warning in the log. Throws InputError.
+SurfaceFile parse_x3p(std::string_view bytes, const std::filesystem::path& file);
+
+// Heights as D; not-measured points are NaN and left out by valid.bin. Valid by the published schema of 2008.
+std::string x3p_bytes(const HeightMap& map, const Provenance& provenance);
+
+} // namespace vkfv::surface

@@ -1,0 +1,117 @@
+// The evaluation of stacks on a device, against the host's in double.
+#include "topography/device_focus_planes.hpp"
+#include "topography/topography.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <random>
+
+namespace vkfv::topography {
+namespace {
+
+using topography::Channels;
+
+constexpr int columns = 37, rows = 29, images = 24;
+constexpr double step = 0.001;
+
+// Texture whose contrast is a Gaussian along z about a height that varies over the image, with noise.
+std::vector<Channels> stack(int channels) {
+    std::mt19937 random(4);
+    std::normal_distribution<double> normal;
+    Channels texture(static_cast<std::size_t>(channels), Grid<float>(columns, rows));
+    for (auto& channel : texture)
+        for (float& value : channel.values)
+            value = static_cast<float>(0.2 * normal(random));
+    std::vector<Channels> result;
+    for (int k = 0; k < images; ++k) {
+        Channels& image = result.emplace_back(texture);
+        for (auto& channel : image)
+            for (int row = 0; row < rows; ++row)
+                for (int column = 0; column < columns; ++column) {
+                    const double height = 11 + 4 * std::sin(0.2 * column) * std::cos(0.15 * row);
+                    float& value = channel(column, row);
+                    value = static_cast<float>(
+                        1e-9 * (1 + value * std::exp(-0.5 * std::pow((k - height) / 3, 2)) + 0.002 * normal(random)));
+                }
+    }
+    return result;
+}
+
+topography::Topography evaluated(const std::vector<Channels>& stack, const topography::TopographyOptions& options,
+                                 const topography::FocusPlanesMaker& maker) {
+    topography::StackEvaluator evaluator(options, maker);
+    for (int k = 0; k < images; ++k)
+        evaluator.add(stack[static_cast<std::size_t>(k)], k * step);
+    return evaluator.finish(0, 0, 0.002);
+}
+
+// u = 2^-24. A value of a curve is a chain of at most 150 float operations without cancellation (means of at most 7
+// images and curves, masks of 25 pixels, two windows of 7 and their squares) on positive numbers, except that masks
+// subtract pixels of 1 that differ by 0.02 or more over a window: their differences have u / 0.02 = 50 u each, at
+// random. So a curve's values are right to 200 u = 1.2e-5. Around the maximum the curve bends by 1 / 3^2 a step^2, or
+// less where the averages widen it, some 1 / 15: a position, difference of values over twice the bend, is right
+// to 1.2e-5 * 15 = 2e-4 steps.
+constexpr double value_bound = 1.2e-5, position_bound = 2e-4;
+
+void expect_same(const topography::Topography& host, const topography::Topography& device, const std::string& which) {
+    int compared = 0, other_image = 0;
+    for (std::size_t k = 0; k < host.state.values.size(); ++k) {
+        const double a = host.height.height.values[k], b = device.height.height.values[k];
+        // Two values of the curve may be so near each other that rounding decides which is the largest: a three-point
+        // fit is continuous there, fits over a range are not; few points are on such an edge.
+        if (host.state.values[k] != device.state.values[k] || std::abs(a - b) > 0.2 * step) {
+            ++other_image;
+            continue;
+        }
+        EXPECT_NEAR(device.contrast.values[k] / host.contrast.values[k], 1, 10 * value_bound) << which;
+        if (std::isnan(a))
+            continue;
+        ++compared;
+        EXPECT_NEAR(b / step, a / step, position_bound) << which;
+        EXPECT_NEAR(device.fit_residual.values[k], host.fit_residual.values[k], 2 * value_bound) << which;
+        const double nearest_edge = std::abs(a / step - std::floor(a / step) - 0.5);
+        for (std::size_t channel = 0; channel < host.all_in_focus.size(); ++channel)
+            if (nearest_edge > position_bound) {
+                EXPECT_EQ(device.all_in_focus[channel].values[k], host.all_in_focus[channel].values[k]) << which;
+            }
+    }
+    EXPECT_GT(compared, columns * rows * 9 / 10) << which;
+    EXPECT_LE(other_image, 2) << which; // of 1073
+}
+
+TEST(DeviceFocusPlanes, GiveTheHostsHeightsByEveryMeasureAndPeakMethod) {
+    const auto grey = stack(1);
+    for (const auto& measure : topography::focus_measure_names())
+        for (const auto& peak : topography::peak_method_names()) {
+            const topography::TopographyOptions options{
+                .focus_measure = measure, .peak = peak, .peak_range_steps = 3, .smoothing_steps = 0.9};
+            expect_same(evaluated(grey, options, topography::make_host_focus_planes),
+                        evaluated(grey, options, device_focus_planes("")), measure + " " + peak);
+        }
+}
+
+TEST(DeviceFocusPlanes, GiveTheHostsHeightsOfColourAndWithAGaussianWindow) {
+    const auto colour = stack(3);
+    for (const char* measure : {"standard-deviation", "tenengrad"}) {
+        const topography::TopographyOptions options{
+            .focus_measure = measure, .window_px = 7, .window_shape = "gaussian", .smoothing_steps = 0};
+        expect_same(evaluated(colour, options, topography::make_host_focus_planes),
+                    evaluated(colour, options, device_focus_planes("")), measure);
+    }
+}
+
+// The wrong twin: another method is told apart.
+TEST(DeviceFocusPlanes, TheBoundTellsMethodsApart) {
+    const auto grey = stack(1);
+    const auto a = evaluated(grey, {.peak = "gaussian", .smoothing_steps = 0.9}, topography::make_host_focus_planes);
+    const auto b = evaluated(grey, {.peak = "parabola", .smoothing_steps = 0.9}, topography::make_host_focus_planes);
+    int apart = 0;
+    for (std::size_t k = 0; k < a.height.height.values.size(); ++k)
+        apart += std::abs(a.height.height.values[k] - b.height.height.values[k]) > position_bound * step;
+    EXPECT_GT(apart, columns * rows / 2);
+}
+
+} // namespace
+} // namespace vkfv::topography
