@@ -131,6 +131,9 @@ class TomlTable {
     std::shared_ptr<State> state_;
 };
 
+// The shortest TOML float that reads back to the same bits.
+std::string shortest_toml(double value);
+
 // `text` as a TOML basic string, with its quotes.
 std::string toml_quoted(std::string_view text);
 

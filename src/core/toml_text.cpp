@@ -25,6 +25,11 @@ std::string NumberRange::to_string() const {
     return below ? fmt::format("{} {}", maximum_included ? "<=" : "<", maximum) : "";
 }
 
+std::string shortest_toml(double value) {
+    std::string text = fmt::format("{}", value);
+    return text.find_first_of(".e") == std::string::npos ? text + ".0" : text;
+}
+
 std::optional<std::string> remedy_for_length_um(double value, const NumberRange& range) {
     constexpr double um_per_nm = 1e-3;
     if (!(value > range.maximum && range.contains(value * um_per_nm))) {

@@ -11,8 +11,6 @@
 namespace vkfv::test {
 namespace {
 
-using Needs;
-
 std::vector<std::string> lines_of(const std::filesystem::path& file) {
     std::istringstream stream(read_file(file));
     std::vector<std::string> lines;

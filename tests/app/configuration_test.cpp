@@ -1,14 +1,17 @@
 // Configurations in process: values, units, canonical text and identity.
-#include "app/commands.hpp"
 #include "app/program.hpp"
 #include "configuration/configuration.hpp"
+#include "measurement/assembly.hpp"
+#include "specimen/geometry_digest.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <cmath>
 
-namespace vkfv::app {
+namespace vkfv::measurement {
+
+using specimen::geometry_digest;
 namespace {
 
 using test::fresh_folder;
@@ -477,4 +480,4 @@ TEST(Configuration, GeometryDigestSeesOneBitOfOneHeight) {
 }
 
 } // namespace
-} // namespace vkfv::app
+} // namespace vkfv::measurement

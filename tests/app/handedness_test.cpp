@@ -1,6 +1,7 @@
 // What is seen from +z with x to the right has y up, in every file.
 #include "app/program.hpp"
 #include "images/image_file.hpp"
+#include "support/surface_files.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,6 +1,7 @@
 // The heights that a traced stack gives are the specimen's: sign, place and size.
 #include "app/program.hpp"
 #include "images/image_file.hpp"
+#include "support/surface_files.hpp"
 
 #include <gtest/gtest.h>
 

@@ -7,7 +7,7 @@
 
 #include <cmath>
 
-namespace vkfv::app {
+namespace vkfv::measurement {
 namespace {
 
 std::vector<trace::RayInput> read(const std::string& text) {
@@ -41,4 +41,4 @@ TEST(RayTable, WritesEnoughDigitsToReadBack) {
 }
 
 } // namespace
-} // namespace vkfv::app
+} // namespace vkfv::measurement
