@@ -45,7 +45,8 @@ std::vector<int> order_of_images(std::size_t count, const std::optional<std::uin
 
 // Images from a disk come slower than the host evaluates them: a device only when asked for.
 topography::FocusPlanesMaker planes_for(const Configuration& configuration) {
-    return measurement::focus_planes_for(configuration.evaluate_on == "device" ? "device" : "host",
+    return measurement::focus_planes_for(configuration.evaluate_on == EvaluateOn::device ? EvaluateOn::device
+                                                                                         : EvaluateOn::host,
                                          configuration.trace.device);
 }
 
