@@ -380,8 +380,8 @@ void read_topography(const TomlTable& root, Configuration& configuration, Needs 
     const TomlTable table = root.table_or_empty("topography");
     const Section section(table, configuration);
     auto& options = configuration.topography;
-    options.focus_measure =
-        section.choice("focus_measure", topography::focus_measure_names(), options.focus_measure, Influence::nothing);
+    options.focus_measure = topography::focus_measure_from_name(section.choice(
+        "focus_measure", topography::focus_measure_names(), name_of(options.focus_measure), Influence::nothing));
     options.window_px = static_cast<int>(section.integer("window_px", 3, 255, options.window_px, Influence::nothing));
     if (options.window_px % 2 == 0) {
         table.fail("window_px", "an odd integer, so that the window has a central pixel",
@@ -393,13 +393,14 @@ void read_topography(const TomlTable& root, Configuration& configuration, Needs 
                    fmt::format("an integer <= detector.pixels = {}", configuration.instrument.detector_pixels),
                    "Choose a smaller window or more pixels.");
     }
-    options.window_shape =
-        section.choice("window_shape", {"box", "gaussian"}, options.window_shape, Influence::nothing);
+    options.window_shape = topography::window_shape_from_name(section.choice(
+        "window_shape", topography::window_shape_names(), name_of(options.window_shape), Influence::nothing));
     options.smoothing_steps = section.number("smoothing_steps", NumberRange::within(0, most_smoothing_steps),
                                              options.smoothing_steps, Influence::nothing);
     options.false_peak_rate =
         section.number("false_peak_rate", NumberRange::between(0, 1), options.false_peak_rate, Influence::nothing);
-    options.peak = section.choice("peak", topography::peak_method_names(), options.peak, Influence::nothing);
+    options.peak = topography::peak_method_from_name(
+        section.choice("peak", topography::peak_method_names(), name_of(options.peak), Influence::nothing));
     options.peak_range_steps = static_cast<int>(
         section.integer("peak_range_steps", 1, most_peak_range_steps, options.peak_range_steps, Influence::nothing));
     options.least_contrast =
