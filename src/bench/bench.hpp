@@ -49,7 +49,10 @@ Json measure_bench(const BenchOptions& options, const std::function<void(const J
 Json run_peer(const std::filesystem::path& program, const std::filesystem::path& configuration,
               const std::vector<TomlOverride>& overrides, const std::vector<std::string>& arguments);
 
-// All that was measured as one SVG.
+// All that was measured as lines for a person.
+std::string bench_text(const Json& report);
+
+// The same as one SVG.
 std::string bench_picture(const Json& report);
 
 } // namespace vkfv::bench

@@ -1,10 +1,13 @@
-#include "bench/bench.hpp"
+#include "bench/bench_parts.hpp"
 
 #include <fmt/format.h>
+#include <spdlog/spdlog.h>
 
+#include <algorithm>
 #include <array>
 #include <cerrno>
 #include <cstring>
+#include <ctime>
 
 #include <spawn.h>
 #include <sys/wait.h>
@@ -71,6 +74,38 @@ Json run_peer(const std::filesystem::path& program, const std::filesystem::path&
         throw RunError(fmt::format("{} gives no JSON", program.string()));
     }
     return report;
+}
+
+Json beside_peer(const BenchScene& scene) {
+    const std::uint64_t rays = std::min(scene.rays(), std::uint64_t{10'000'000});
+    const auto tracer = scene.tracer_of(scene.configuration().trace, scene.rays());
+    scene.warm_up(*tracer);
+    std::vector<double> seconds, processor, ratio, processor_ratio;
+    Json told;
+    for (int run = 0; run < scene.options().runs; ++run) {
+        spdlog::info("peer, run {} of {}", run + 1, scene.options().runs);
+        told = run_peer(scene.options().peer, scene.options().file, scene.options().overrides,
+                        {"--rays", fmt::format("{}", rays), "--seed", fmt::format("{}", run + 1)});
+        seconds.push_back(told["seconds"][0].get<double>());
+        processor.push_back(told["processor_seconds"][0].get<double>());
+        const auto start = std::clock();
+        const auto image = tracer->expose(in_focus, static_cast<std::uint32_t>(run));
+        const double ours_per_its = static_cast<double>(image.rays) / static_cast<double>(rays);
+        processor_ratio.push_back(ours_per_its * processor.back() /
+                                  (static_cast<double>(std::clock() - start) / CLOCKS_PER_SEC));
+        ratio.push_back(ours_per_its * seconds.back() / image.seconds);
+    }
+    return {{"threads", told["threads"]},
+            {"packet", told["packet"]},
+            {"block", told["block"]},
+            {"rays", rays},
+            {"seconds", median(seconds)},
+            {"spread", spread(seconds)},
+            {"rays_per_second", static_cast<double>(rays) / median(seconds)},
+            {"processor_seconds", median(processor)},
+            {"ratio", median(ratio)},
+            {"ratio_spread", spread(ratio)},
+            {"processor_ratio", median(processor_ratio)}};
 }
 
 } // namespace vkfv::bench

@@ -15,28 +15,32 @@ constexpr std::int64_t most_peak_range_steps = 100;
 
 const topography::TopographyOptions defaults;
 
-// One word each, as the evaluation knows them.
-ChoiceKey<std::string> words(std::string name, const std::vector<std::string>& choices, const std::string& fallback,
-                             std::string meaning) {
-    std::vector<ChoiceKey<std::string>::Option> options;
-    for (const auto& choice : choices) {
-        options.push_back({choice, choice});
+// The names that the evaluation has for the values of an enumeration.
+template <class Value>
+ChoiceKey<Value> named(std::string name, const std::vector<std::string>& names, Value (*value_of)(std::string_view),
+                       Value fallback, std::string meaning) {
+    std::vector<typename ChoiceKey<Value>::Option> options;
+    for (const auto& each : names) {
+        options.push_back({value_of(each), each});
     }
-    return without_influence(ChoiceKey<std::string>(std::move(name), options, fallback, std::move(meaning)));
+    return without_influence(ChoiceKey<Value>(std::move(name), options, fallback, std::move(meaning)));
 }
 
 const auto focus_measure =
-    words("focus_measure", topography::focus_measure_names(), defaults.focus_measure, "What focus is measured by.");
+    named("focus_measure", topography::focus_measure_names(), topography::focus_measure_from_name,
+          defaults.focus_measure, "What focus is measured by.");
 const IntegerKey window = without_influence(
     IntegerKey("window_px", 3, 255, defaults.window_px, "Side of the window around a pixel, an odd number."));
-const auto window_shape = words("window_shape", {"box", "gaussian"}, defaults.window_shape, "Weights in the window.");
+const auto window_shape = named("window_shape", topography::window_shape_names(), topography::window_shape_from_name,
+                                defaults.window_shape, "Weights in the window.");
 const NumberKey smoothing = without_influence(
     NumberKey("smoothing_steps", NumberRange::within(0, most_smoothing_steps), defaults.smoothing_steps,
               "Standard deviation of the Gaussian average along z, in steps of the scan; 0: none."));
 const NumberKey false_peak_rate =
     without_influence(NumberKey("false_peak_rate", NumberRange::between(0, 1), defaults.false_peak_rate,
                                 "Probability that a pixel without texture gets a height from noise alone, at most."));
-const auto peak = words("peak", topography::peak_method_names(), defaults.peak, "How the maximum of focus is found.");
+const auto peak = named("peak", topography::peak_method_names(), topography::peak_method_from_name, defaults.peak,
+                        "How the maximum of focus is found.");
 const IntegerKey peak_range =
     without_influence(IntegerKey("peak_range_steps", 1, most_peak_range_steps, defaults.peak_range_steps,
                                  "Images on either side of the maximum that its fit takes."));

@@ -1,14 +1,10 @@
-// From the images of a stack to topography, deviation from truth and the files that hold them.
+// From the images of a stack to topography and deviation from truth.
 #pragma once
 
 #include "configuration/configuration.hpp"
-#include "core/result_folder.hpp"
 #include "optics/diffraction.hpp"
-#include "surface_files/provenance.hpp"
 #include "topography/compare.hpp"
 #include "topography/topography.hpp"
-
-#include <nlohmann/json_fwd.hpp>
 
 #include <filesystem>
 #include <memory>
@@ -74,37 +70,6 @@ class StackEvaluation {
     int rows_ = 0;
     Evaluation evaluation_;
 };
-
-// What the topography is written to and what its files say of it, nothing that differs from run to run.
-struct TopographyFiles {
-    std::vector<std::string> names = {"topography.tif", "topography.x3p"};
-    surface::Provenance provenance = {.creator = "vkfv " VKFV_VERSION,
-                                      .manufacturer = "vkfv",
-                                      .model = "virtual focus-variation microscope",
-                                      .version = VKFV_VERSION};
-};
-
-// Those of [output] surfaces, with the configuration's digest.
-TopographyFiles topography_files(const Configuration& configuration);
-
-// What the report shows of a stack beside its evaluation.
-struct StackSource {
-    std::string layout;        // the instrument as SVG; empty: not known
-    std::string configuration; // TOML; empty: none
-};
-
-// Of a stack of vkfv's own.
-StackSource stack_source(const Configuration& configuration, const optics::Instrument& instrument);
-
-// Writes into the folder, checksums last, the first row of each with the highest y: the topography's files, quality.tif
-// (contrast), fit_residual.tif, mask.tif (uint16: topography::PointState), all_in_focus.tif; with a truth also
-// truth.tif and deviation.tif (float32 um); topography.svg, a picture of them, levelled; results.json, which `more`
-// joins; and report.html, all of it on a page. What diffraction changes stands in a folder `diffracted` in it.
-void write_evaluation(ResultFolder& folder, const Evaluation& evaluation, const nlohmann::ordered_json& more,
-                      const StackSource& source = {}, const TopographyFiles& files = {});
-
-// What the results in a stack's folder say of the trace: device, digest, seed and counts; none if there are no results.
-nlohmann::ordered_json run_of(const std::filesystem::path& folder);
 
 // The figures as a text of a few lines.
 std::string summary(const Evaluation& evaluation);

@@ -1,10 +1,7 @@
 #include "topography/focus_measure.hpp"
 
-#include "core/error.hpp"
+#include "topography/names.hpp"
 #include "topography/parallel_rows.hpp"
-
-#include <fmt/format.h>
-#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <cmath>
@@ -87,16 +84,27 @@ const std::vector<std::string>& focus_measure_names() {
     return names;
 }
 
+const std::string& name_of(FocusMeasure measure) {
+    return focus_measure_names()[static_cast<std::size_t>(measure)];
+}
+
 FocusMeasure focus_measure_from_name(std::string_view name) {
-    const auto& names = focus_measure_names();
-    const auto found = std::ranges::find(names, name);
-    if (found == names.end())
-        throw InputError({.where = {},
-                          .key = "topography.focus_measure",
-                          .found = std::string(name),
-                          .expected = fmt::format("\"{}\"", fmt::join(names, "\", \"")),
-                          .remedy = "Name one of the focus measures."});
-    return static_cast<FocusMeasure>(found - names.begin());
+    return static_cast<FocusMeasure>(
+        place_of_name(name, focus_measure_names(), "topography.focus_measure", "Name one of the focus measures."));
+}
+
+const std::vector<std::string>& window_shape_names() {
+    static const std::vector<std::string> names = {"box", "gaussian"};
+    return names;
+}
+
+const std::string& name_of(WindowShape shape) {
+    return window_shape_names()[static_cast<std::size_t>(shape)];
+}
+
+WindowShape window_shape_from_name(std::string_view name) {
+    return static_cast<WindowShape>(
+        place_of_name(name, window_shape_names(), "topography.window_shape", "Name one of the shapes."));
 }
 
 FocusWindow::FocusWindow(int width_px, WindowShape shape) {

@@ -23,12 +23,19 @@ enum class FocusMeasure {
     wavelet = focus::f64::FOCUS_WAVELET,                       // root mean square of the detail bands
 };
 
-// "standard-deviation", "tenengrad", "modified-laplacian", "brenner", "wavelet".
+// "standard-deviation", "tenengrad", "modified-laplacian", "brenner", "wavelet", in the order of FocusMeasure.
 const std::vector<std::string>& focus_measure_names();
-// InputError for any other.
+const std::string& name_of(FocusMeasure measure);
+// InputError for any other name.
 FocusMeasure focus_measure_from_name(std::string_view name);
 
 enum class WindowShape { box, gaussian };
+
+// "box", "gaussian".
+const std::vector<std::string>& window_shape_names();
+const std::string& name_of(WindowShape shape);
+// InputError for any other name.
+WindowShape window_shape_from_name(std::string_view name);
 
 // What a focus measure is gathered over, around every pixel; cut off at the border of the image.
 class FocusWindow {

@@ -1,12 +1,6 @@
 #include "topography/peak_method.hpp"
 
-#include "core/error.hpp"
-#include "focus/focus.hpp"
-
-#include <fmt/format.h>
-#include <fmt/ranges.h>
-
-#include <algorithm>
+#include "topography/names.hpp"
 
 namespace vkfv::topography {
 
@@ -16,16 +10,13 @@ const std::vector<std::string>& peak_method_names() {
     return names;
 }
 
-int peak_method_from_name(std::string_view name) {
-    const auto& names = peak_method_names();
-    const auto found = std::ranges::find(names, name);
-    if (found == names.end())
-        throw InputError({.where = {},
-                          .key = "topography.peak",
-                          .found = std::string(name),
-                          .expected = fmt::format("\"{}\"", fmt::join(names, "\", \"")),
-                          .remedy = "Name one of the peak methods."});
-    return static_cast<int>(found - names.begin());
+const std::string& name_of(PeakMethod method) {
+    return peak_method_names()[static_cast<std::size_t>(method)];
+}
+
+PeakMethod peak_method_from_name(std::string_view name) {
+    return static_cast<PeakMethod>(
+        place_of_name(name, peak_method_names(), "topography.peak", "Name one of the peak methods."));
 }
 
 } // namespace vkfv::topography

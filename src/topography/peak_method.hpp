@@ -1,18 +1,27 @@
 // How the maximum of a focus curve is found (shaders/focus/peak.glsl).
 #pragma once
 
+#include "focus/focus.hpp"
+
 #include <string>
 #include <string_view>
 #include <vector>
 
 namespace vkfv::topography {
 
-// "gaussian" and "parabola": through the three values around the maximum. "gaussian-fit" and "polynomial-fit" (of
-// degree 2: a higher one follows the noise): least squares over the range. "centre-of-gravity": over the range. In the
-// order of the constants PEAK_*.
-const std::vector<std::string>& peak_method_names();
+// In the order of the constants PEAK_*.
+enum class PeakMethod {
+    gaussian = focus::f64::PEAK_GAUSSIAN,                   // through the three values around the maximum
+    parabola = focus::f64::PEAK_PARABOLA,                   // likewise
+    gaussian_fit = focus::f64::PEAK_GAUSSIAN_FIT,           // least squares over the range
+    polynomial_fit = focus::f64::PEAK_POLYNOMIAL_FIT,       // likewise, of degree 2: a higher one follows the noise
+    centre_of_gravity = focus::f64::PEAK_CENTRE_OF_GRAVITY, // over the range
+};
 
-// Its PEAK_*; InputError otherwise.
-int peak_method_from_name(std::string_view name);
+// "gaussian", "parabola", "gaussian-fit", "polynomial-fit", "centre-of-gravity", in the order of PeakMethod.
+const std::vector<std::string>& peak_method_names();
+const std::string& name_of(PeakMethod method);
+// InputError for any other name.
+PeakMethod peak_method_from_name(std::string_view name);
 
 } // namespace vkfv::topography

@@ -25,13 +25,9 @@ void require(bool good, std::string key, std::string found, std::string expected
 
 // The options' ranges are checked before anything is built from them.
 const TopographyOptions& checked(const TopographyOptions& options) {
-    focus_measure_from_name(options.focus_measure);
-    peak_method_from_name(options.peak);
     require(options.window_px >= 3 && options.window_px % 2 == 1, "topography.window_px",
             fmt::format("{}", options.window_px), "an odd number of at least 3",
             "Give the width of the focus window in pixels.");
-    require(options.window_shape == "box" || options.window_shape == "gaussian", "topography.window_shape",
-            options.window_shape, "\"box\" or \"gaussian\"", "Name one of the shapes.");
     require(options.peak_range_steps >= 1 && options.peak_range_steps <= most_peak_range_steps,
             "topography.peak_range_steps", fmt::format("{}", options.peak_range_steps),
             fmt::format("an integer in [1, {}]", most_peak_range_steps),
@@ -72,8 +68,7 @@ double contrast_threshold(int images, double false_peak_rate) {
 }
 
 StackEvaluator::StackEvaluator(const TopographyOptions& options, FocusPlanesMaker make_planes)
-    : options_(checked(options)), measure_(focus_measure_from_name(options.focus_measure)),
-      window_(options.window_px, options.window_shape == "gaussian" ? WindowShape::gaussian : WindowShape::box),
+    : options_(checked(options)), measure_(options.focus_measure), window_(options.window_px, options.window_shape),
       axial_weights_(axial_weights(options.smoothing_steps)), make_planes_(std::move(make_planes)) {}
 
 void StackEvaluator::check(const Channels& image, double z) const {
@@ -117,7 +112,7 @@ void StackEvaluator::begin(const Channels& first) {
     plan.channels = static_cast<int>(channels_);
     plan.measure = static_cast<int>(measure_);
     plan.window_radius = window_.radius();
-    plan.peak = peak_method_from_name(options_.peak);
+    plan.peak = static_cast<int>(options_.peak);
     plan.peak_range = options_.peak_range_steps;
     // An image is judged once the curve's average has passed it by the range: its own neighbours are asked for then.
     planes_ = make_planes_({.plan = plan,

@@ -31,16 +31,15 @@
 
 #include <cstdint>
 #include <span>
-#include <string>
 #include <vector>
 
 namespace vkfv::topography {
 
 struct TopographyOptions {
-    std::string focus_measure = "wavelet"; // one of focus_measure_names(); the least noise in tools/focus_table
-    int window_px = 7;                     // odd, at least 3
-    std::string window_shape = "box";      // or "gaussian"; see FocusWindow
-    std::string peak = "gaussian";         // one of peak_method_names()
+    FocusMeasure focus_measure = FocusMeasure::wavelet; // the least noise in tools/focus_table
+    int window_px = 7;                                  // odd, at least 3
+    WindowShape window_shape = WindowShape::box;        // see FocusWindow
+    PeakMethod peak = PeakMethod::gaussian;
     // Half width of the range around the maximum that fits, fit_residual and the number of peaks are of, in steps.
     int peak_range_steps = 3;
     // Standard deviation, in steps of the scan, of the Gaussian average along z; 0 switches it off. Best at

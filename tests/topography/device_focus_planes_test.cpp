@@ -85,8 +85,10 @@ TEST(DeviceFocusPlanes, GiveTheHostsHeightsByEveryMeasureAndPeakMethod) {
     const auto grey = stack(1);
     for (const auto& measure : topography::focus_measure_names())
         for (const auto& peak : topography::peak_method_names()) {
-            const topography::TopographyOptions options{
-                .focus_measure = measure, .peak = peak, .peak_range_steps = 3, .smoothing_steps = 0.9};
+            const topography::TopographyOptions options{.focus_measure = focus_measure_from_name(measure),
+                                                        .peak = peak_method_from_name(peak),
+                                                        .peak_range_steps = 3,
+                                                        .smoothing_steps = 0.9};
             expect_same(evaluated(grey, options, topography::make_host_focus_planes),
                         evaluated(grey, options, device_focus_planes("")), measure + " " + peak);
         }
@@ -94,19 +96,21 @@ TEST(DeviceFocusPlanes, GiveTheHostsHeightsByEveryMeasureAndPeakMethod) {
 
 TEST(DeviceFocusPlanes, GiveTheHostsHeightsOfColourAndWithAGaussianWindow) {
     const auto colour = stack(3);
-    for (const char* measure : {"standard-deviation", "tenengrad"}) {
+    for (const auto measure : {FocusMeasure::standard_deviation, FocusMeasure::tenengrad}) {
         const topography::TopographyOptions options{
-            .focus_measure = measure, .window_px = 7, .window_shape = "gaussian", .smoothing_steps = 0};
+            .focus_measure = measure, .window_px = 7, .window_shape = WindowShape::gaussian, .smoothing_steps = 0};
         expect_same(evaluated(colour, options, topography::make_host_focus_planes),
-                    evaluated(colour, options, device_focus_planes("")), measure);
+                    evaluated(colour, options, device_focus_planes("")), name_of(measure));
     }
 }
 
 // The wrong twin: another method is told apart.
 TEST(DeviceFocusPlanes, TheBoundTellsMethodsApart) {
     const auto grey = stack(1);
-    const auto a = evaluated(grey, {.peak = "gaussian", .smoothing_steps = 0.9}, topography::make_host_focus_planes);
-    const auto b = evaluated(grey, {.peak = "parabola", .smoothing_steps = 0.9}, topography::make_host_focus_planes);
+    const auto a =
+        evaluated(grey, {.peak = PeakMethod::gaussian, .smoothing_steps = 0.9}, topography::make_host_focus_planes);
+    const auto b =
+        evaluated(grey, {.peak = PeakMethod::parabola, .smoothing_steps = 0.9}, topography::make_host_focus_planes);
     int apart = 0;
     for (std::size_t k = 0; k < a.height.height.values.size(); ++k)
         apart += std::abs(a.height.height.values[k] - b.height.height.values[k]) > position_bound * step;

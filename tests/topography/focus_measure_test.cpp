@@ -216,9 +216,12 @@ TEST(FocusMeasure, NoiseGainIsThatOfNoise) {
 
 TEST(FocusMeasure, IsKnownByName) {
     for (const auto measure : all_measures)
-        EXPECT_EQ(focus_measure_from_name(focus_measure_names()[static_cast<std::size_t>(measure)]), measure);
+        EXPECT_EQ(focus_measure_from_name(name_of(measure)), measure);
     EXPECT_EQ(focus_measure_from_name("wavelet"), FocusMeasure::wavelet);
     EXPECT_THROW(focus_measure_from_name("sharpness"), InputError);
+    EXPECT_EQ(window_shape_from_name(name_of(WindowShape::gaussian)), WindowShape::gaussian);
+    EXPECT_EQ(window_shape_from_name("box"), WindowShape::box);
+    EXPECT_THROW(window_shape_from_name("round"), InputError);
 }
 
 } // namespace

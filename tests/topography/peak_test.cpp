@@ -203,8 +203,9 @@ TEST(FocusCurve, TheResidualTellsASinglePeakFromOthers) {
 }
 
 TEST(PeakMethod, IsKnownByName) {
-    EXPECT_EQ(peak_method_from_name("gaussian"), PEAK_GAUSSIAN);
-    EXPECT_EQ(peak_method_from_name("centre-of-gravity"), PEAK_CENTRE_OF_GRAVITY);
+    EXPECT_EQ(peak_method_from_name("gaussian"), PeakMethod::gaussian);
+    EXPECT_EQ(peak_method_from_name("centre-of-gravity"), PeakMethod::centre_of_gravity);
+    EXPECT_EQ(name_of(PeakMethod::polynomial_fit), "polynomial-fit");
     EXPECT_EQ(peak_method_names().size(), static_cast<std::size_t>(PEAK_METHOD_COUNT));
     EXPECT_THROW(peak_method_from_name("highest"), InputError);
 }

@@ -83,7 +83,7 @@ Topography evaluate(const SyntheticStack& stack, const TopographyOptions& option
 TEST(Reconstruct, FindsTheHeightsOfASyntheticStack) {
     const SyntheticStack stack = make_stack(300, 1);
     for (const std::string& measure : focus_measure_names()) {
-        const Topography topography = evaluate(stack, {.focus_measure = measure});
+        const Topography topography = evaluate(stack, {.focus_measure = focus_measure_from_name(measure)});
         EXPECT_EQ(topography.height.x0, stack.truth.x0);
         EXPECT_EQ(topography.height.pitch_y, pitch);
         const Deviation deviation = compare(topography.height, stack.truth);
@@ -144,7 +144,7 @@ TEST(Reconstruct, NoiseWithoutTextureIsNotMeasured) {
     for (auto& image : stack.images)
         for (float& value : image.values)
             value = static_cast<float>(poisson(random));
-    const auto measured = [&](const std::string& measure, double smoothing_steps, double rate) {
+    const auto measured = [&](FocusMeasure measure, double smoothing_steps, double rate) {
         const auto topography =
             evaluate(stack, {.focus_measure = measure, .smoothing_steps = smoothing_steps, .false_peak_rate = rate});
         return std::count_if(topography.height.height.values.begin(), topography.height.height.values.end(),
@@ -154,9 +154,10 @@ TEST(Reconstruct, NoiseWithoutTextureIsNotMeasured) {
     // come in groups of some ten: 1 % is two groups.
     for (const std::string& measure : focus_measure_names())
         for (const double smoothing_steps : {0.0, 3.0})
-            EXPECT_LE(measured(measure, smoothing_steps, 1e-3), pixels * pixels / 100) << measure;
+            EXPECT_LE(measured(focus_measure_from_name(measure), smoothing_steps, 1e-3), pixels * pixels / 100)
+                << measure;
     // The wrong twin: with hardly any test for significance many of the same pixels get a height.
-    EXPECT_GT(measured("modified-laplacian", 0, 0.99), pixels * pixels / 10);
+    EXPECT_GT(measured(FocusMeasure::modified_laplacian, 0, 0.99), pixels * pixels / 10);
 }
 
 TEST(Reconstruct, PeaksBeyondTheScanAreNotMeasured) {
@@ -216,17 +217,17 @@ MeanHeight mean_height(const Topography& topography) {
 
 // The averages have more noise at the ends of the scan, whose energy must not outweigh texture in its middle.
 TEST(Reconstruct, TextureWeakerThanTheNoiseIsMeasuredInTheMiddleOfALongScan) {
-    for (const char* measure : {"modified-laplacian", "wavelet"}) {
+    for (const auto measure : {FocusMeasure::modified_laplacian, FocusMeasure::wavelet}) {
         const auto found = mean_height(evaluate(level_stack(61, 30.4, 6, 0.8), {.focus_measure = measure}));
-        EXPECT_GT(found.measured_share, 0.9) << measure;
-        EXPECT_NEAR(found.mean, 30.4, 0.3) << measure;
+        EXPECT_GT(found.measured_share, 0.9) << name_of(measure);
+        EXPECT_NEAR(found.mean, 30.4, 0.3) << name_of(measure);
     }
 }
 
 // The means at the ends stand for places further inside: taken for the ends' own, they shift heights by 1.7 and 0.25
 // images in the first two. What is left is the curve's, which is blunted less there.
 TEST(Reconstruct, HeightsNearAnEndAreThoseOfTheMiddle) {
-    const TopographyOptions options{.focus_measure = "modified-laplacian", .smoothing_steps = 3};
+    const TopographyOptions options{.focus_measure = FocusMeasure::modified_laplacian, .smoothing_steps = 3};
     const std::vector<std::pair<double, double>> most = {{6, 0.9}, {9, 0.2}, {12, 0.05}, {18, 0.02}};
     for (const auto& [from_end, bias] : most) {
         const auto above = mean_height(evaluate(level_stack(41, 40 - from_end, 5, 10), options));
@@ -256,11 +257,8 @@ TEST(Reconstruct, FollowsTheScanAndNotTheUnitOfLight) {
 
 TEST(Reconstruct, RejectsWhatItCannotEvaluate) {
     const auto rejects = [](const TopographyOptions& options) { EXPECT_THROW(StackEvaluator{options}, InputError); };
-    rejects({.focus_measure = "entropy"});
     rejects({.window_px = 4});
     rejects({.window_px = 1});
-    rejects({.window_shape = "round"});
-    rejects({.peak = "highest"});
     rejects({.peak_range_steps = 0});
     rejects({.smoothing_steps = -1});
     rejects({.smoothing_steps = not_measured});
@@ -360,8 +358,10 @@ TEST(Reconstruct, HoldsFewImagesHoweverLongTheStack) {
 TEST(Reconstruct, AnImageAtATimeGivesWhatTheWholeStackGives) {
     // The definition, with all curves in memory and no ring: a wrong index anywhere would show.
     const SyntheticStack stack = make_stack(300, 7);
-    const TopographyOptions options{
-        .focus_measure = "standard-deviation", .peak = "gaussian-fit", .peak_range_steps = 2, .smoothing_steps = 0.6};
+    const TopographyOptions options{.focus_measure = FocusMeasure::standard_deviation,
+                                    .peak = PeakMethod::gaussian_fit,
+                                    .peak_range_steps = 2,
+                                    .smoothing_steps = 0.6};
     const Topography streamed = evaluate(stack, options);
     const int images = static_cast<int>(stack.images.size());
     const auto weights = axial_weights(options.smoothing_steps);

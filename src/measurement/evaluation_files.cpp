@@ -1,0 +1,180 @@
+#include "measurement/evaluation_files.hpp"
+
+#include "core/digest.hpp"
+#include "core/file.hpp"
+#include "core/json_depth.hpp"
+#include "core/units.hpp"
+#include "images/image_file.hpp"
+#include "measurement/evaluation_figures.hpp"
+#include "measurement/stack_page.hpp"
+#include "report/layout.hpp"
+#include "report/topography_picture.hpp"
+#include "scan/store.hpp"
+#include "surface_files/height_image.hpp"
+#include "surface_files/surface_file.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+namespace vkfv::measurement {
+
+namespace {
+
+// How many points are in each state.
+nlohmann::ordered_json point_counts(const Grid<topography::PointState>& state) {
+    using topography::PointState;
+    const auto count = [&](PointState wanted) { return std::ranges::count(state.values, wanted); };
+    return {{"measured", count(PointState::measured)},         {"no_peak", count(PointState::no_peak)},
+            {"low_contrast", count(PointState::low_contrast)}, {"poor_fit", count(PointState::poor_fit)},
+            {"many_peaks", count(PointState::many_peaks)},     {"repaired", count(PointState::repaired)}};
+}
+
+template <class To, class From>
+Grid<To> converted(const Grid<From>& grid) {
+    Grid<To> result(grid.columns, grid.rows);
+    std::ranges::transform(grid.values, result.values.begin(), [](From value) { return static_cast<To>(value); });
+    return result;
+}
+
+// Levelled, with the filtered ones within.
+nlohmann::ordered_json json_of(const std::vector<Figures>& figures) {
+    auto json = json_of(figures.front());
+    if (figures.size() > 1) {
+        json["filtered"] = json_of(figures[1]);
+    }
+    return json;
+}
+
+nlohmann::ordered_json json_of(const topography::TopographyOptions& options) {
+    return {{"focus_measure", name_of(options.focus_measure)},
+            {"window_px", options.window_px},
+            {"window_shape", name_of(options.window_shape)},
+            {"smoothing_steps", options.smoothing_steps},
+            {"peak", name_of(options.peak)},
+            {"peak_range_steps", options.peak_range_steps},
+            {"false_peak_rate", options.false_peak_rate},
+            {"least_contrast", options.least_contrast},
+            {"most_fit_residual", options.most_fit_residual},
+            {"most_peaks", options.most_peaks},
+            {"repair_outliers", options.repair_outliers}};
+}
+
+// Mean of the channels.
+Grid<float> grey(const topography::Channels& channels) {
+    Grid<float> result(channels.front().columns, channels.front().rows);
+    for (const auto& channel : channels) {
+        for (std::size_t k = 0; k < result.values.size(); ++k) {
+            result.values[k] += channel.values[k] / static_cast<float>(channels.size());
+        }
+    }
+    return result;
+}
+
+// A folder's own name, also of "out/" and ".".
+std::string name_of(const std::filesystem::path& folder) {
+    const auto whole = std::filesystem::absolute(folder).lexically_normal();
+    return (whole.has_filename() ? whole : whole.parent_path()).filename().string();
+}
+
+std::string picture_of(const std::filesystem::path& folder, const Evaluation& evaluation) {
+    const auto level = [](const surface::HeightMap& map) {
+        return surface::remove_plane(map, surface::least_squares_plane(map));
+    };
+    report::TopographyPicture picture;
+    picture.title = name_of(folder);
+    picture.measured = level(evaluation.topography.height);
+    if (evaluation.truth) {
+        picture.truth = level(*evaluation.truth);
+        picture.deviation = topography::deviation_map(evaluation.topography.height, *evaluation.truth);
+    }
+    picture.all_in_focus = grey(evaluation.topography.all_in_focus);
+    return report::topography_picture(picture);
+}
+
+// Into this folder in the results' own. Returns the picture.
+std::string write_maps(ResultFolder& results, const std::filesystem::path& folder, const Evaluation& evaluation,
+                       const TopographyFiles& files) {
+    const auto& topography = evaluation.topography;
+    for (const std::string& file : files.names) {
+        results.write(folder / file, surface::surface_bytes(file, topography.height, files.provenance));
+    }
+    const images::ImageTags pitch{
+        .pitch_x = topography.height.pitch_x, .pitch_y = topography.height.pitch_y, .description = {}};
+    const auto write = [&](const char* name, const auto& map) {
+        results.write(folder / name, images::tiff_bytes(map, pitch));
+    };
+    write("quality.tif", converted<float>(topography.contrast));
+    write("fit_residual.tif", converted<float>(topography.fit_residual));
+    write("mask.tif", converted<std::uint16_t>(topography.state));
+    write("all_in_focus.tif", topography.all_in_focus);
+    if (evaluation.truth) {
+        results.write(folder / "truth.tif", surface::height_map_bytes(*evaluation.truth));
+        results.write(folder / "deviation.tif", surface::height_map_bytes(topography::deviation_map(
+                                                    topography.height, *evaluation.truth, evaluation.band)));
+    }
+    const std::string picture = picture_of(results.path() / folder, evaluation);
+    results.write(folder / "topography.svg", picture);
+    return picture;
+}
+
+} // namespace
+
+TopographyFiles topography_files(const Configuration& configuration) {
+    TopographyFiles files{.names = configuration.topography_files};
+    files.provenance.comment = fmt::format("configuration digest {}", Digest().add(configuration.identity).text());
+    return files;
+}
+
+StackSource stack_source(const Configuration& configuration, const optics::Instrument& instrument) {
+    return {.layout = report::layout_svg(instrument, name_of(configuration.output_directory)),
+            .configuration = configuration.canonical};
+}
+
+void write_results(ResultFolder& folder, const EvaluatedStack& stack) {
+    const auto& evaluation = stack.evaluation;
+    StackPage page{.title = name_of(folder.path()),
+                   .plain = {.figures = figures_of(evaluation), .svg = write_maps(folder, "", evaluation, stack.files)},
+                   .diffracted = {},
+                   .results = {},
+                   .layout = stack.source.layout,
+                   .configuration = stack.source.configuration};
+    auto results = json_of(page.plain.figures);
+    if (evaluation.diffracted) {
+        page.diffracted = {.figures = figures_of(*evaluation.diffracted),
+                           .svg = write_maps(folder, "diffracted", *evaluation.diffracted, stack.files)};
+        results["diffracted"] = json_of(page.diffracted->figures);
+    }
+    results["topography"] = json_of(evaluation.options);
+    if (evaluation.flatness) {
+        results["flatness"] = {{"file", evaluation.flatness->file.string()},
+                               {"deviation_um", evaluation.flatness->deviation * um_per_mm}};
+    }
+    results["points"] = point_counts(evaluation.topography.state);
+    results["evaluated_by"] = fmt::format("vkfv {}", VKFV_VERSION);
+    results.update(stack.origin);
+    folder.write("results.json", results.dump(2) + "\n");
+    page.results = std::move(results);
+    folder.write("report.html", stack_page(page));
+    scan::append_timing(folder.path(), "evaluation", evaluation.seconds);
+    folder.write_checksums();
+}
+
+nlohmann::ordered_json run_of(const std::filesystem::path& folder) {
+    auto run = nlohmann::ordered_json::object();
+    std::error_code none;
+    if (!std::filesystem::exists(folder / "results.json", none)) {
+        return run;
+    }
+    const std::string text = read_file(folder / "results.json");
+    check_json_depth(text, folder / "results.json");
+    const auto results = nlohmann::ordered_json::parse(text, nullptr, false);
+    for (const char* key : {"device", "stack_digest", "seed", "images", "rays_per_image"}) {
+        if (results.is_object() && results.contains(key)) {
+            run[key] = results.at(key);
+        }
+    }
+    return run;
+}
+
+} // namespace vkfv::measurement

@@ -1,0 +1,139 @@
+#include "measurement/existing_stack.hpp"
+
+#include "core/units.hpp"
+#include "measurement/assembly.hpp"
+#include "scan/store.hpp"
+
+#include <spdlog/spdlog.h>
+
+#include <algorithm>
+#include <numeric>
+#include <random>
+#include <sstream>
+#include <string>
+
+namespace vkfv::measurement {
+
+namespace {
+
+// The images' numbers, in their order or in a random one: Fisher and Yates's shuffle, by the bits of the
+// generator alone, so that a seed means the same order everywhere.
+std::vector<int> order_of_images(std::size_t count, const Shuffle& shuffle) {
+    std::vector<int> order(count);
+    std::iota(order.begin(), order.end(), 0);
+    if (shuffle) {
+        std::mt19937_64 random(*shuffle);
+        for (std::size_t last = count; last > 1; --last) {
+            std::swap(order[last - 1], order[random() % last]);
+        }
+    }
+    return order;
+}
+
+// Images from a disk come slower than the host evaluates them: a device only when asked for.
+topography::FocusPlanesMaker planes_for(const Configuration& configuration) {
+    return focus_planes_for(configuration.evaluate_on == EvaluateOn::device ? EvaluateOn::device : EvaluateOn::host,
+                            configuration.trace.device);
+}
+
+// The first line of what the images depend on that overrides change: "key = value", as it is then.
+std::optional<std::string> changed_line(const Configuration& configuration, const Configuration& overridden) {
+    if (configuration.identity == overridden.identity) {
+        return std::nullopt;
+    }
+    std::istringstream before(configuration.identity), after(overridden.identity);
+    std::string line, other;
+    while (std::getline(after, other) && std::getline(before, line) && line == other) {
+    }
+    return other;
+}
+
+// The stack's configuration with overrides that leave its images as they are.
+Configuration configuration_of(const OwnStack& stack) {
+    const auto file = stack.folder / "stack.toml";
+    auto configuration = load_configuration(file, stack.overrides, Needs::stack);
+    if (const auto line = changed_line(load_configuration(file, {}, Needs::stack), configuration)) {
+        throw InputError(
+            {.where = {.file = "command line", .line = 0, .column = 0, .byte_offset = {}},
+             .key = "",
+             .found = *line,
+             .expected = "the value that the images were traced with, in " + file.string(),
+             .remedy = "Set keys of [topography], [diffraction] and [output] alone; --stack traces other images."});
+    }
+    return configuration;
+}
+
+bool any_negative(const topography::Channels& image) {
+    return std::ranges::any_of(image, [](const Grid<float>& channel) {
+        return std::ranges::any_of(channel.values, [](float value) { return value < 0; });
+    });
+}
+
+} // namespace
+
+EvaluatedStack evaluate_own_stack(const OwnStack& stack) {
+    const auto configuration = configuration_of(stack);
+    const auto positions = configuration.scan->positions();
+    const auto specimen = make_specimen(configuration);
+    const auto instrument = assemble_instrument(configuration, specimen, positions);
+    const int pixels = configuration.instrument.detector_pixels;
+    const auto flat = read_flat(configuration, pixels, pixels, instrument.first_order.pixel_pitch);
+    const auto order = order_of_images(positions.size(), stack.shuffle);
+    StackEvaluation evaluation(configuration.topography, planes_for(configuration),
+                               make_diffraction(configuration, instrument));
+    for (std::size_t place = 0; place < positions.size(); ++place) {
+        const int image = order[place];
+        evaluation.add({scan::read_frame(stack.folder, image, positions[static_cast<std::size_t>(image)])},
+                       positions[place]);
+    }
+    auto origin = run_of(stack.folder);
+    std::error_code none; // a folder to be made is another
+    if (!std::filesystem::equivalent(stack.destination, stack.folder, none)) {
+        origin = {{"stack", stack.folder.string()},
+                  {"images", positions.size()},
+                  {"rays_per_image", trace::launched_rays(configuration.trace, pixels)},
+                  {"seed", configuration.trace.seed}};
+    }
+    return {.evaluation =
+                evaluation.finish(truth_on_pixels(instrument, configuration, specimen), configuration.band, flat),
+            .origin = std::move(origin),
+            .source = stack_source(configuration, instrument),
+            .files = topography_files(configuration)};
+}
+
+EvaluatedStack evaluate_images(const scan::ImageSeries& series, const ForeignStack& stack) {
+    const auto configuration = topography_configuration(stack.overrides);
+    StackEvaluation evaluation(configuration.topography, planes_for(configuration));
+    const auto order = order_of_images(static_cast<std::size_t>(series.size()), stack.shuffle);
+    spdlog::info("{} images, {} to {}", series.size(), series.name(0), series.name(series.size() - 1));
+    std::optional<Flat> flat;
+    bool negative = false;
+    for (int place = 0; place < series.size(); ++place) {
+        // Heights ascend, whichever way the instrument went.
+        const int image = stack.z_step > 0 ? place : series.size() - 1 - place;
+        auto channels = series.read(order[static_cast<std::size_t>(image)]);
+        if (place == 0) {
+            flat = read_flat(configuration, channels.front().columns, channels.front().rows, stack.pitch);
+        }
+        negative = negative || any_negative(channels);
+        evaluation.add(std::move(channels), stack.z_start + image * stack.z_step);
+    }
+    if (negative) {
+        spdlog::warn(
+            "{}: there are pixels below zero. Focus is contrast relative to brightness: give the images without "
+            "any background subtracted.",
+            stack.images.string());
+    }
+    return {.evaluation = evaluation.finish(stack.pitch, flat),
+            .origin = {{"stack", stack.images.string()},
+                       {"images", series.size()},
+                       {"first_image", series.name(0)},
+                       {"last_image", series.name(series.size() - 1)},
+                       {"z_start_um", stack.z_start * um_per_mm},
+                       {"z_step_um", stack.z_step * um_per_mm},
+                       {"pitch_um", stack.pitch * um_per_mm}},
+            .source = {},
+            .files = {}};
+}
+
+} // namespace vkfv::measurement

@@ -1,0 +1,73 @@
+#include "measurement/stack.hpp"
+
+#include "core/digest.hpp"
+#include "measurement/assembly.hpp"
+#include "measurement/evaluation_files.hpp"
+#include "specimen/geometry_digest.hpp"
+
+#include <fmt/format.h>
+#include <spdlog/spdlog.h>
+
+#include <algorithm>
+
+namespace vkfv::measurement {
+
+StackResult measure_stack(const Configuration& configuration, Progress& progress) {
+    const auto positions = configuration.scan->positions();
+    const auto specimen = make_specimen(configuration);
+    const auto instrument = assemble_instrument(configuration, specimen, positions);
+    const int pixels = configuration.instrument.detector_pixels;
+    const auto flat = read_flat(configuration, pixels, pixels, instrument.first_order.pixel_pitch);
+    const auto tracer = make_tracer(instrument, specimen, configuration.trace);
+    const std::string identity = image_identity(configuration, specimen::geometry_digest(specimen), tracer->identity());
+
+    scan::ImageStore store(configuration.output_directory, {.configuration = configuration.canonical,
+                                                            .identity = identity,
+                                                            .digest = Digest().add(identity).text(),
+                                                            .positions = positions,
+                                                            .columns = pixels,
+                                                            .rows = pixels,
+                                                            .pitch = instrument.first_order.pixel_pitch});
+    // Evaluated as they are traced: no second pass over the disk.
+    StackEvaluation stack_evaluation(configuration.topography,
+                                     focus_planes_for(configuration.evaluate_on, configuration.trace.device),
+                                     make_diffraction(configuration, instrument));
+    bool any_light = false;
+    const auto traced = scan::run_stack(*tracer, store, progress, {}, [&](int image, Grid<float> flux) {
+        any_light = any_light || std::ranges::any_of(flux.values, [](float value) { return value > 0; });
+        stack_evaluation.add({std::move(flux)}, positions[static_cast<std::size_t>(image)]);
+    });
+    spdlog::info("{} images traced, {} kept from before", traced.traced, traced.kept);
+    if (!any_light) {
+        spdlog::warn("No light reaches the detector in any image. vkfv --image of one position tells where it goes");
+    }
+
+    const std::uint64_t rays_per_image = trace::launched_rays(configuration.trace, pixels);
+    EvaluatedStack stack{.evaluation = stack_evaluation.finish(truth_on_pixels(instrument, configuration, specimen),
+                                                               configuration.band, flat),
+                         .origin = {{"device", tracer->identity().text()},
+                                    {"stack_digest", store.description().digest},
+                                    {"seed", configuration.trace.seed},
+                                    {"images", positions.size()},
+                                    {"rays_per_image", rays_per_image}},
+                         .source = stack_source(configuration, instrument),
+                         .files = topography_files(configuration)};
+    write_results(store.results(), stack);
+    return {.evaluation = std::move(stack.evaluation),
+            .traced = traced,
+            .rays_per_image = rays_per_image,
+            .folder = store.folder()};
+}
+
+std::string summary(const StackResult& stack) {
+    const auto& traced = stack.traced;
+    std::string text = summary(stack.evaluation);
+    if (traced.traced > 0) {
+        text += fmt::format(
+            "traced {} images in {:.3g} s ({}), evaluated in {:.2g} s\n", traced.traced, traced.trace_seconds,
+            ray_rate_text(static_cast<double>(traced.rays) / traced.trace_seconds), stack.evaluation.seconds);
+    }
+    return text + fmt::format("results in {}\n", stack.folder.string());
+}
+
+} // namespace vkfv::measurement

@@ -1,0 +1,15 @@
+// Names of the values of an enumeration, in its order.
+#pragma once
+
+#include <cstddef>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace vkfv::topography {
+
+// Where the name stands among the names. InputError with this key and remedy if it is none of them.
+std::size_t place_of_name(std::string_view name, const std::vector<std::string>& names, const char* key,
+                          const char* remedy);
+
+} // namespace vkfv::topography
