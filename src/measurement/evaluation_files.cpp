@@ -10,6 +10,7 @@
 #include "report/layout.hpp"
 #include "report/topography_picture.hpp"
 #include "scan/store.hpp"
+#include "surface/filter.hpp"
 #include "surface_files/height_image.hpp"
 #include "surface_files/surface_file.hpp"
 
