@@ -16,6 +16,16 @@
 
 namespace vkfv::app {
 
+Command stack_command() {
+    return {.name = "stack",
+            .summary =
+                "Trace a focus stack, reconstruct it and compare it with the truth; continues an interrupted one",
+            .operands = {{"C.toml", "Configuration", &CommandOptions::file}},
+            .options = together({configuration_options(), {out_option("Output folder")}}),
+            .run = run_stack,
+            .example = "vkfv stack assets/stacks/demo.toml --out demo"};
+}
+
 void run_stack(const CommandOptions& options) {
     const auto configuration = load_configuration(options.file, options.overrides, Needs::stack);
     const auto positions = configuration.scan->positions();
