@@ -250,11 +250,11 @@ class CommandLine {
 
 const std::vector<Command>& all_commands() {
     static const auto commands = [] {
-        std::vector<Command> list = {stack_command(),      image_command(),   sweep_command(),   topography_command(),
-                                     compare_command(),    surface_command(), verify_command(),  check_command(),
-                                     trace_rays_command(), layout_command(),  devices_command(), bench_command(),
-                                     import_command(),     list_command(),    help_command(),    completion_command(),
-                                     man_command()};
+        std::vector<Command> list = {
+            stack_command(),   image_command(),    sweep_command(),  topography_command(), compare_command(),
+            surface_command(), verify_command(),   check_command(),  trace_rays_command(), layout_command(),
+            devices_command(), bench_command(),    import_command(), list_command(),       keys_command(),
+            explain_command(), template_command(), help_command(),   completion_command(), man_command()};
         for (auto& command : list) {
             command.options.push_back({.name = "--quiet",
                                        .value = "",

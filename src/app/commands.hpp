@@ -27,6 +27,7 @@ struct CommandOptions {
     bool json = false;
     std::string topic; // of the commands that tell of vkfv itself
     bool markdown = false;
+    bool schema = false;
     double focal_height = 0;                           // image
     std::filesystem::path rays_file;                   // trace-rays
     std::filesystem::path picture_file;                // layout
@@ -123,6 +124,9 @@ Command layout_command();
 Command devices_command();
 Command bench_command();
 Command import_command();
+Command keys_command();
+Command explain_command();
+Command template_command();
 Command list_command();
 Command help_command();
 Command completion_command();
