@@ -56,7 +56,7 @@ std::string remedy_for_prescription(const std::string& name, const std::string& 
                        meant ? fmt::format("Did you mean \"{}\"? ", *meant) : "");
 }
 
-optics::Prescription read_prescription(const Section& section, const Configuration& configuration,
+optics::Prescription read_prescription(const OldSection& section, const Configuration& configuration,
                                        const std::string& folder, const std::optional<std::string>& fallback = {}) {
     const std::string key = "prescription";
     const TomlTable& table = section.table();
@@ -91,7 +91,7 @@ optics::Prescription read_prescription(const Section& section, const Configurati
     return prescription;
 }
 
-optics::Medium read_glass(const Section& section, const Configuration& configuration, const std::string& key,
+optics::Medium read_glass(const OldSection& section, const Configuration& configuration, const std::string& key,
                           const std::string& fallback) {
     const TomlTable& table = section.table();
     const std::string name = table.optional_string(key).value_or(fallback);
@@ -109,7 +109,7 @@ optics::Medium read_glass(const Section& section, const Configuration& configura
     return *glass;
 }
 
-optics::Placement read_placement(const Section& section) {
+optics::Placement read_placement(const OldSection& section) {
     const auto offset = [&](const char* key) { return section.number(key, offset_range, 0.0); };
     const auto tilt = [&](const char* key) { return section.number(key, tilt_range_deg, 0.0) * radians_per_degree; };
     optics::Placement placement;
@@ -145,7 +145,7 @@ std::vector<std::string> kinds_of(const KeysOfKinds& keys_of_kinds) {
     return kinds;
 }
 
-optics::Spectrum read_spectrum_file(const Section& section) {
+optics::Spectrum read_spectrum_file(const OldSection& section) {
     const TomlTable& table = section.table();
     const auto file = looked_for(table.file_path("file"));
     Digest digest;
@@ -172,7 +172,7 @@ optics::Spectrum read_spectrum_file(const Section& section) {
     return optics::Spectrum::table(wavelengths, densities);
 }
 
-optics::Spectrum read_spectrum_table(const Section& section) {
+optics::Spectrum read_spectrum_table(const OldSection& section) {
     const TomlTable& table = section.table();
     const std::string kind = section.kind("kind", kinds_of(spectrum_keys));
     reject_keys_of_other_kinds(table, spectrum_keys, kind, "a spectrum");
@@ -204,7 +204,7 @@ optics::Spectrum read_spectrum_table(const Section& section) {
 }
 
 // Gives the key that the wavelengths stand at.
-std::string read_spectrum(const Section& source, Configuration& configuration) {
+std::string read_spectrum(const OldSection& source, Configuration& configuration) {
     const std::string wavelength = "wavelength_um";
     auto& spectrum = configuration.instrument.spectrum;
     const auto table = source.table().optional_table("spectrum");
@@ -215,14 +215,14 @@ std::string read_spectrum(const Section& source, Configuration& configuration) {
     if (source.table().has(wavelength)) {
         source.table().note(wavelength, "a wavelength or [source.spectrum], not both", "Remove one of the two.");
     }
-    const Section section(*table, configuration);
+    const OldSection section(*table, configuration);
     source.table().attempt("spectrum", [&] {
         at_its_place(configuration, table->where(), [&] { spectrum = read_spectrum_table(section); });
     });
     return table->path();
 }
 
-optics::RingLightDescription read_ring(const Section& source) {
+optics::RingLightDescription read_ring(const OldSection& source) {
     optics::RingLightDescription ring;
     ring.distance = source.number("distance_mm", NumberRange::positive());
     ring.elevation = source.number("elevation_deg", NumberRange::between(0, 90)) * radians_per_degree;
@@ -244,7 +244,7 @@ std::string read_source(const TomlTable& root, Configuration& configuration) {
     static const KeysOfKinds keys = {{"disc", {"radius_mm"}},
                                      {"ring", {"elevation_deg", "width_mm", "segments", "fill", "on"}}};
     auto& instrument = configuration.instrument;
-    const Section source(root.table("source"), configuration);
+    const OldSection source(root.table("source"), configuration);
     const std::string kind = source.kind("kind", kinds_of(keys), "disc");
     reject_keys_of_other_kinds(source.table(), keys, kind, "a source");
     instrument.flux = source.number("flux_W", NumberRange::within(least_flux, largest_flux), 1.0);
@@ -267,7 +267,7 @@ void read_illumination(const TomlTable& root, Configuration& configuration) {
         }
         return;
     }
-    const Section illumination(root.table_or_empty("illumination"), configuration);
+    const OldSection illumination(root.table_or_empty("illumination"), configuration);
     instrument.illumination = read_prescription(illumination, configuration, "illuminators", "koehler");
     instrument.field_stop_radius = illumination.number_if_given("field_stop_radius_mm", NumberRange::positive());
     instrument.illumination_aperture_radius =
@@ -282,7 +282,7 @@ void read_beam_splitter(const TomlTable& root, Configuration& configuration) {
                                      {"plate", {"glass", "thickness_mm", "semi_diameter_mm"}},
                                      {"cube", {"glass", "edge_mm", "semi_diameter_mm"}}};
     auto& splitter = configuration.instrument.splitter;
-    const Section section(root.table_or_empty("beam_splitter"), configuration);
+    const OldSection section(root.table_or_empty("beam_splitter"), configuration);
     const std::string kind = section.kind("kind", kinds_of(keys), "ideal");
     reject_keys_of_other_kinds(section.table(), keys, kind, "a beam splitter");
     splitter.kind = kind == "plate" ? Kind::plate : kind == "cube" ? Kind::cube : Kind::ideal;
@@ -308,7 +308,7 @@ void read_beam_splitter(const TomlTable& root, Configuration& configuration) {
 void read_fold_mirrors(const TomlTable& root, Configuration& configuration) {
     using Path = optics::FoldMirror::Path;
     for (const auto& table : root.optional_tables("fold_mirror")) {
-        const Section section(table, configuration);
+        const OldSection section(table, configuration);
         optics::FoldMirror mirror;
         mirror.path =
             section.choice("path", {"imaging", "illumination"}) == "imaging" ? Path::imaging : Path::illumination;
@@ -329,7 +329,7 @@ void read_interfaces(const TomlTable& root, Configuration& configuration) {
     static const KeysOfKinds keys = {
         {"ideal", {}}, {"fresnel", {}}, {"quarter-wave", {"layer", "design_wavelength_um"}}};
     auto& interfaces = configuration.instrument.interfaces;
-    const Section section(root.table_or_empty("interfaces"), configuration);
+    const OldSection section(root.table_or_empty("interfaces"), configuration);
     const std::string model = section.kind("model", kinds_of(keys), "ideal");
     reject_keys_of_other_kinds(section.table(), keys, model, "interfaces");
     interfaces.model = model == "fresnel"        ? Model::fresnel
@@ -346,7 +346,7 @@ void read_objective(const TomlTable& root, Configuration& configuration) {
     static const KeysOfKinds keys = {{"prescription", {"prescription", "aperture_stop_radius_mm"}},
                                      {"ideal", {"focal_length_mm", "numerical_aperture"}}};
     auto& instrument = configuration.instrument;
-    const Section section(root.table("objective"), configuration);
+    const OldSection section(root.table("objective"), configuration);
     const std::string kind = section.kind("kind", kinds_of(keys), "prescription");
     reject_keys_of_other_kinds(section.table(), keys, kind, "an objective");
     if (section.table().has("immersion")) {
@@ -366,7 +366,7 @@ void read_objective(const TomlTable& root, Configuration& configuration) {
 void read_tube_lens(const TomlTable& root, Configuration& configuration) {
     static const KeysOfKinds keys = {{"prescription", {"prescription"}}, {"ideal", {"focal_length_mm"}}};
     auto& instrument = configuration.instrument;
-    const Section section(root.table("tube_lens"), configuration);
+    const OldSection section(root.table("tube_lens"), configuration);
     const std::string kind = section.kind("kind", kinds_of(keys), "prescription");
     reject_keys_of_other_kinds(section.table(), keys, kind, "a tube lens");
     instrument.tube_lens = kind == "ideal"
@@ -382,7 +382,7 @@ void read_cover_glass(const TomlTable& root, Configuration& configuration) {
     if (!table) {
         return;
     }
-    const Section section(*table, configuration);
+    const OldSection section(*table, configuration);
     optics::CoverGlass glass;
     glass.thickness = section.number("thickness_mm", NumberRange::positive());
     glass.glass = read_glass(section, configuration, "glass", "N-BK7");
@@ -392,7 +392,7 @@ void read_cover_glass(const TomlTable& root, Configuration& configuration) {
 
 void read_detector(const TomlTable& root, Configuration& configuration) {
     auto& instrument = configuration.instrument;
-    const Section detector(root.table("detector"), configuration);
+    const OldSection detector(root.table("detector"), configuration);
     instrument.detector_size = detector.number("size_mm", NumberRange::positive());
     instrument.detector_pixels = static_cast<int>(detector.integer("pixels", 1, most_pixels));
     instrument.detector_placement = read_placement(detector);

@@ -12,30 +12,6 @@ std::string shortest_text(double value) {
     return text.find_first_of(".e") == std::string::npos ? text + ".0" : text;
 }
 
-std::filesystem::path absolute_path(const std::filesystem::path& path) {
-    return std::filesystem::absolute(path).lexically_normal();
-}
-
-std::filesystem::path looked_for(const std::filesystem::path& path) {
-    std::error_code code;
-    return std::filesystem::exists(path, code) ? path : absolute_path(path);
-}
-
-void as_named(const TomlTable& table, const std::string& key, const std::filesystem::path& file,
-              const std::function<void()>& work) {
-    try {
-        work();
-    } catch (const InputError& error) {
-        std::error_code code;
-        if (std::filesystem::exists(file, code)) {
-            throw;
-        }
-        throw error.with_each([&](InputProblem& problem) {
-            problem.remedy += fmt::format(" It is named at {}.", table.where(key).to_string());
-        });
-    }
-}
-
 void at_its_place(const Configuration& configuration, const SourceLocation& otherwise,
                   const std::function<void()>& work) {
     try {
@@ -69,7 +45,8 @@ void reject_keys_of_other_kinds(const TomlTable& table, const KeysOfKinds& keys_
     }
 }
 
-Section::Section(const TomlTable& table, Configuration& configuration) : table_(table), configuration_(configuration) {
+OldSection::OldSection(const TomlTable& table, Configuration& configuration)
+    : table_(table), configuration_(configuration) {
     const auto& path = table.path();
     // "a.b[2]" is a table of the array a.b.
     const std::string header = path.ends_with(']') ? fmt::format("\n[[{}]]\n", path.substr(0, path.rfind('[')))
@@ -79,13 +56,13 @@ Section::Section(const TomlTable& table, Configuration& configuration) : table_(
     configuration_.places[path] = table.where();
 }
 
-double Section::number(const std::string& key, const NumberRange& range, std::optional<double> fallback,
-                       Influence influence) const {
+double OldSection::number(const std::string& key, const NumberRange& range, std::optional<double> fallback,
+                          Influence influence) const {
     const double value = fallback ? table_.optional_number(key, range).value_or(*fallback) : table_.number(key, range);
     return record(key, shortest_text(value), influence), value;
 }
 
-std::optional<double> Section::number_if_given(const std::string& key, const NumberRange& range) const {
+std::optional<double> OldSection::number_if_given(const std::string& key, const NumberRange& range) const {
     const auto value = table_.optional_number(key, range);
     if (value) {
         record(key, shortest_text(*value), Influence::images);
@@ -93,26 +70,26 @@ std::optional<double> Section::number_if_given(const std::string& key, const Num
     return value;
 }
 
-std::vector<double> Section::numbers(const std::string& key, const NumberRange& range) const {
+std::vector<double> OldSection::numbers(const std::string& key, const NumberRange& range) const {
     const auto values = table_.numbers(key, range);
     std::vector<std::string> texts;
     std::ranges::transform(values, std::back_inserter(texts), shortest_text);
     return record(key, fmt::format("[{}]", fmt::join(texts, ", ")), Influence::images), values;
 }
 
-std::int64_t Section::integer(const std::string& key, std::int64_t minimum, std::int64_t maximum,
-                              std::optional<std::int64_t> fallback, Influence influence) const {
+std::int64_t OldSection::integer(const std::string& key, std::int64_t minimum, std::int64_t maximum,
+                                 std::optional<std::int64_t> fallback, Influence influence) const {
     const std::int64_t value = fallback ? table_.optional_integer(key, minimum, maximum).value_or(*fallback)
                                         : table_.integer(key, minimum, maximum);
     return record(key, fmt::format("{}", value), influence), value;
 }
 
-bool Section::boolean(const std::string& key, bool fallback, Influence influence) const {
+bool OldSection::boolean(const std::string& key, bool fallback, Influence influence) const {
     const bool value = table_.optional_boolean(key).value_or(fallback);
     return record(key, value ? "true" : "false", influence), value;
 }
 
-std::vector<bool> Section::booleans(const std::string& key, const std::vector<bool>& fallback) const {
+std::vector<bool> OldSection::booleans(const std::string& key, const std::vector<bool>& fallback) const {
     const auto values = table_.optional_booleans(key).value_or(fallback);
     std::string text;
     for (const bool value : values) {
@@ -121,26 +98,26 @@ std::vector<bool> Section::booleans(const std::string& key, const std::vector<bo
     return record(key, "[" + text + "]", Influence::images), values;
 }
 
-std::string Section::string(const std::string& key, std::optional<std::string> fallback) const {
+std::string OldSection::string(const std::string& key, std::optional<std::string> fallback) const {
     const std::string value = fallback ? table_.optional_string(key).value_or(*fallback) : table_.string(key);
     return record(key, toml_quoted(value), Influence::images), value;
 }
 
-std::string Section::choice(const std::string& key, const std::vector<std::string>& choices,
-                            std::optional<std::string> fallback, Influence influence) const {
+std::string OldSection::choice(const std::string& key, const std::vector<std::string>& choices,
+                               std::optional<std::string> fallback, Influence influence) const {
     const std::string value =
         fallback ? table_.optional_choice(key, choices).value_or(*fallback) : table_.choice(key, choices);
     return record(key, toml_quoted(value), influence), value;
 }
 
-std::string Section::kind(const std::string& key, const std::vector<std::string>& kinds,
-                          std::optional<std::string> fallback, Influence influence) const {
+std::string OldSection::kind(const std::string& key, const std::vector<std::string>& kinds,
+                             std::optional<std::string> fallback, Influence influence) const {
     const std::string value = choice(key, kinds, std::move(fallback), influence);
     table_.require(key);
     return value;
 }
 
-void Section::record(const std::string& key, const std::string& value, Influence influence) const {
+void OldSection::record(const std::string& key, const std::string& value, Influence influence) const {
     const std::string line = fmt::format("{} = {}\n", key, value);
     note_place(key);
     configuration_.canonical += line;
@@ -149,7 +126,7 @@ void Section::record(const std::string& key, const std::string& value, Influence
     }
 }
 
-void Section::record_reference(const std::string& key, const std::string& value, const std::string& digest) const {
+void OldSection::record_reference(const std::string& key, const std::string& value, const std::string& digest) const {
     note_place(key);
     configuration_.canonical += fmt::format("{} = {}\n", key, toml_quoted(value));
     if (!digest.empty()) {
@@ -157,7 +134,7 @@ void Section::record_reference(const std::string& key, const std::string& value,
     }
 }
 
-void Section::note_place(const std::string& key) const {
+void OldSection::note_place(const std::string& key) const {
     configuration_.places[table_.path() + "." + key] = table_.where(key);
 }
 

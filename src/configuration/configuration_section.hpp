@@ -2,6 +2,7 @@
 #pragma once
 
 #include "configuration/configuration.hpp"
+#include "core/section.hpp"
 
 #include <functional>
 #include <map>
@@ -13,15 +14,6 @@ namespace vkfv {
 
 // The shortest TOML float that reads back to the same bits.
 std::string shortest_text(double value);
-
-std::filesystem::path absolute_path(const std::filesystem::path& path);
-
-// The path; of a file that does not exist the absolute one, so that messages tell where it was looked for.
-std::filesystem::path looked_for(const std::filesystem::path& path);
-
-// Runs `work`, which reads a file that the key names, and says where that was named if there is no such file.
-void as_named(const TomlTable& table, const std::string& key, const std::filesystem::path& file,
-              const std::function<void()>& work);
 
 // Runs `work`, and gives each problem of its InputError the place of the problem's key; without one, if it has none,
 // that of the key's table, else `otherwise`.
@@ -35,13 +27,11 @@ using KeysOfKinds = std::map<std::string, std::vector<std::string>>;
 void reject_keys_of_other_kinds(const TomlTable& table, const KeysOfKinds& keys_of_kinds, const std::string& kind,
                                 const std::string& subject);
 
-enum class Influence { images, nothing };
-
 // A table of the configuration that writes down what is read from it, with defaults, for the canonical text
 // and the identity.
-class Section {
+class OldSection {
   public:
-    Section(const TomlTable& table, Configuration& configuration);
+    OldSection(const TomlTable& table, Configuration& configuration);
 
     const TomlTable& table() const { return table_; }
 
