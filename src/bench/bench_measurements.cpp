@@ -8,6 +8,7 @@
 #include "bench/stage_times.hpp"
 #include "core/units.hpp"
 #include "images/image_file.hpp"
+#include "specimen/kinds.hpp"
 #include "trace/device_tracer.hpp"
 #include "vulkan/device.hpp"
 
@@ -495,7 +496,8 @@ class Bench {
     // The same surface by other numbers of triangles.
     Json over_triangles() const {
         Json result = Json::array();
-        if (!std::holds_alternative<specimen::HeightField>(specimen_.geometry) || configuration_.specimen->size == 0) {
+        const double size = specimen::size_of(configuration_.specimen->shape);
+        if (!std::holds_alternative<specimen::HeightField>(specimen_.geometry) || size == 0) {
             return result;
         }
         std::vector<double> numbers = {1e3, 1e4, 1e5, 1e6};
@@ -505,7 +507,7 @@ class Bench {
         for (const double number : numbers) {
             auto description = *configuration_.specimen;
             const double cells = std::round(std::sqrt(number / 2));
-            description.pitch = description.size / cells;
+            description.shape = specimen::with_pitch(std::move(description.shape), size / cells);
             const auto specimen = specimen::make(description);
             for (const auto& way : traversals()) {
                 if (way.name == "bvh" && software() && number > 1e6) {
