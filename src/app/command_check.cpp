@@ -173,7 +173,7 @@ void run_check(const CommandOptions& options) {
         const auto specimen = measurement::make_specimen(configuration);
         const int pixels = configuration.instrument.detector_pixels;
         const auto relief = measurement::relief_of(specimen, instrument.first_order.pixel_pitch * pixels, pixels);
-        const auto sparse = measurement::warning_of_sparse_field(configuration, specimen, relief);
+        const auto sparse = measurement::warning_of_sparse_field(specimen, relief);
         warnings.insert(warnings.end(), sparse.begin(), sparse.end());
         report["specimen_seen_share"] = relief.seen_share;
         const auto record = specimen::record(specimen, configuration.trace.max_bounces);

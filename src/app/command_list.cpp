@@ -2,6 +2,7 @@
 
 #include "optics/prescription.hpp"
 #include "physics/scatter_registry.hpp"
+#include "specimen/kinds.hpp"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -42,20 +43,11 @@ std::vector<Listed> glasses() {
 }
 
 std::vector<Listed> specimens() {
-    return {{"plane", "A plane, level or tilted"},
-            {"step", "Two levels and the flank between them"},
-            {"sphere", "A spherical cap or dimple in a plane"},
-            {"sinusoid", "A wave of one period along x"},
-            {"chirp", "A wave whose period changes along x"},
-            {"rough", "A Gaussian random surface"},
-            {"plateaus", "Levels in the shape of a text or a mask"},
-            {"air", "Type AIR: a random surface of a stated power spectrum"},
-            {"star", "A Siemens star: petals at two heights"},
-            {"groove", "A groove with flanks"},
-            {"image", "An image whose values are heights"},
-            {"surface", "A measured surface: X3P, SUR, SDF, AL3D, TIFF or EXR"},
-            {"stl", "An STL mesh"},
-            {"gltf", "A glTF mesh"}};
+    std::vector<Listed> list;
+    for (const auto& kind : specimen::kinds()) {
+        list.push_back({kind.name, kind.meaning});
+    }
+    return list;
 }
 
 std::vector<Listed> scatter_models() {

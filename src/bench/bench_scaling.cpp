@@ -1,5 +1,6 @@
 #include "bench/bench_parts.hpp"
 #include "measurement/assembly.hpp"
+#include "specimen/kinds.hpp"
 #include "trace/device_tracer.hpp"
 
 #include <fmt/format.h>
@@ -32,7 +33,7 @@ Json over_rays(const BenchScene& scene) {
 Json over_triangles(const BenchScene& scene) {
     Json result = Json::array();
     if (!std::holds_alternative<specimen::HeightField>(scene.specimen().geometry) ||
-        scene.configuration().specimen->size == 0) {
+        specimen::size_of(scene.configuration().specimen->shape) == 0) {
         return result;
     }
     std::vector<double> numbers = {1e3, 1e4, 1e5, 1e6};
@@ -42,7 +43,7 @@ Json over_triangles(const BenchScene& scene) {
     for (const double number : numbers) {
         auto description = *scene.configuration().specimen;
         const double cells = std::round(std::sqrt(number / 2));
-        description.pitch = description.size / cells;
+        description.shape = specimen::with_pitch(description.shape, specimen::size_of(description.shape) / cells);
         const auto specimen = specimen::make(description);
         for (const auto& way : scene.traversals()) {
             if (way.name == "bvh" && scene.software() && number > 1e6) {

@@ -1,6 +1,6 @@
 // [illumination], [beam_splitter], [[fold_mirror]] and [interfaces].
-#include "configuration/lengths.hpp"
 #include "configuration/optical_parts.hpp"
+#include "configuration/ranges.hpp"
 #include "configuration/tables.hpp"
 
 #include <fmt/format.h>

@@ -1,6 +1,6 @@
 // [objective], [cover_glass], [tube_lens] and [detector].
-#include "configuration/lengths.hpp"
 #include "configuration/optical_parts.hpp"
+#include "configuration/ranges.hpp"
 #include "configuration/tables.hpp"
 #include "optics/ideal_lens.hpp"
 

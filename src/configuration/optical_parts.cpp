@@ -1,6 +1,6 @@
 #include "configuration/optical_parts.hpp"
 
-#include "configuration/lengths.hpp"
+#include "configuration/ranges.hpp"
 #include "configuration/tables.hpp"
 #include "core/digest.hpp"
 

@@ -1,5 +1,5 @@
 // [output], and [sweep] with its parameters.
-#include "configuration/lengths.hpp"
+#include "configuration/ranges.hpp"
 #include "configuration/tables.hpp"
 
 #include <fmt/format.h>

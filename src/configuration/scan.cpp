@@ -1,5 +1,5 @@
 // [scan].
-#include "configuration/lengths.hpp"
+#include "configuration/ranges.hpp"
 #include "configuration/tables.hpp"
 
 #include <fmt/format.h>

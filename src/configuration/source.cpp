@@ -1,5 +1,5 @@
 // [source] and [source.spectrum].
-#include "configuration/lengths.hpp"
+#include "configuration/ranges.hpp"
 #include "configuration/tables.hpp"
 #include "core/digest.hpp"
 #include "core/number_table.hpp"

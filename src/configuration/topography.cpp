@@ -1,5 +1,5 @@
 // [topography] and [diffraction].
-#include "configuration/lengths.hpp"
+#include "configuration/ranges.hpp"
 #include "configuration/tables.hpp"
 #include "topography/focus_measure.hpp"
 #include "topography/peak_method.hpp"

@@ -1,5 +1,5 @@
 // [trace].
-#include "configuration/lengths.hpp"
+#include "configuration/ranges.hpp"
 #include "configuration/tables.hpp"
 
 namespace vkfv {

@@ -53,7 +53,7 @@ optics::Instrument assemble_instrument(const Configuration& configuration, const
     }
     const int pixels = configuration.instrument.detector_pixels;
     const auto relief = relief_of(specimen, instrument.first_order.pixel_pitch * pixels, pixels);
-    for (const auto& warning : warning_of_sparse_field(configuration, specimen, relief)) {
+    for (const auto& warning : warning_of_sparse_field(specimen, relief)) {
         spdlog::warn(warning);
     }
     return instrument;

@@ -47,14 +47,12 @@ Relief relief_of(const specimen::Specimen& specimen, double field, int pixels) {
     return relief;
 }
 
-std::vector<std::string> warning_of_sparse_field(const Configuration& configuration, const specimen::Specimen& specimen,
-                                                 const Relief& relief) {
+std::vector<std::string> warning_of_sparse_field(const specimen::Specimen& specimen, const Relief& relief) {
     if (relief.seen_share >= least_seen_share) {
         return {};
     }
     const auto record = specimen::record(specimen, 1);
-    const auto kind = configuration.specimen->kind;
-    const bool of_mesh = kind == specimen::Kind::stl || kind == specimen::Kind::gltf;
+    const bool of_mesh = std::holds_alternative<specimen::Mesh>(specimen.geometry);
     const char* remedy = of_mesh ? "Correct specimen.unit, set centre = true, or look for a vertex far off in the file"
                                  : "Correct the lengths of [specimen] or [detector]";
     return {fmt::format("{}: it is {:.4g} x {:.4g} um across, from x = {:.4g} and y = {:.4g} um on. {}.",

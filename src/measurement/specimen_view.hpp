@@ -22,8 +22,7 @@ struct Relief {
 Relief relief_of(const specimen::Specimen& specimen, double field, int pixels);
 
 // A sentence where the specimen fills less than half of the field.
-std::vector<std::string> warning_of_sparse_field(const Configuration& configuration, const specimen::Specimen& specimen,
-                                                 const Relief& relief);
+std::vector<std::string> warning_of_sparse_field(const specimen::Specimen& specimen, const Relief& relief);
 
 // A sentence where no light was detected, or nearly all that came as far fell beside the specimen: where it went, and
 // what that may come from.

@@ -46,18 +46,6 @@ FileMesh parse_stl(std::string_view bytes, const std::filesystem::path& file);
 FileMesh parse_gltf(std::string bytes, const std::filesystem::path& file);
 Grid<float> parse_image(std::string_view bytes, const std::filesystem::path& file);
 
-struct HeightField;
-struct Mesh;
-struct Description;
-
-// In mm and in float, centred if the description asks for it; triangles without area are dropped, and the log says how
-// many. Throws InputError where a vertex lies too far off for the others to be told apart.
-Mesh placed_mesh(FileMesh source, const Description& description);
-
-// The surface in any file that surface::read_surface() knows, cropped around its centre, which comes to x = y = 0, and
-// levelled. Not-measured points cannot be traced: they are interpolated, and the log says how many.
-HeightField read_surface_field(const Description& description);
-
 // More points than this are a mistake in the file or the configuration (1 GiB of heights).
 inline constexpr std::uint64_t largest_point_count = std::uint64_t{1} << 28;
 

@@ -1,211 +1,18 @@
-#include "specimen/analytic.hpp"
-#include "specimen/files.hpp"
-
-#include "core/units.hpp"
+#include "specimen/description.hpp"
+#include "specimen/generated.hpp"
+#include "specimen/kinds.hpp"
+#include "specimen/refined.hpp"
 
 #include <fmt/format.h>
-#include <spdlog/spdlog.h>
 
 #include <algorithm>
-#include <array>
 #include <cmath>
-#include <limits>
 
 namespace vkfv::specimen {
 namespace {
 
 using physics::f64::SpecimenRecord;
-
-struct Bounds {
-    double lower = std::numeric_limits<double>::infinity();
-    double upper = -std::numeric_limits<double>::infinity();
-    void include(double value) {
-        lower = std::min(lower, value);
-        upper = std::max(upper, value);
-    }
-};
-
-HeightField field_from_image(const Description& d) {
-    const auto require = [&](bool condition, const std::string& key, double mm, const std::string& expected) {
-        if (!condition) {
-            throw InputError({d.where, "specimen." + key, fmt::format("{}", mm * um_per_mm), expected,
-                              "Correct the value in the configuration."});
-        }
-    };
-    require(d.pitch >= smallest_length && d.pitch <= largest_length, "pitch_um", d.pitch,
-            fmt::format("a length from {} to {} um", smallest_length * um_per_mm, largest_length * um_per_mm));
-    require(std::isfinite(d.height), "height_um", d.height, "a finite length");
-    HeightField field;
-    field.heights = read_image(d.file, d.where);
-    for (float& height : field.heights.values) {
-        height = static_cast<float>(d.height * static_cast<double>(height));
-    }
-    field.pitch_x = field.pitch_y = d.pitch;
-    field.x_min = -0.5 * (field.heights.columns - 1) * d.pitch;
-    field.y_min = -0.5 * (field.heights.rows - 1) * d.pitch;
-    return field;
-}
-
-// Bounds of the bicubic interpolation of surface_function.glsl, rigorous cell by cell: in one direction the
-// weights have the sum 1 and the sum of their sizes is at most 5/4 (in the middle of an interval), and the
-// largest slope of a cubic over an interval is at an end or where its second derivative is zero.
-struct LatticeBounds {
-    Bounds height;
-    double slope = 0;
-};
-
-constexpr double largest_weight_sum = 1.25;
-
-double largest_cubic_slope(const std::array<double, 4>& h) {
-    const double at_start = 0.5 * (h[2] - h[0]);
-    const double at_end = 0.5 * (h[3] - h[1]);
-    const double second = h[0] - 2.5 * h[1] + 2 * h[2] - 0.5 * h[3]; // coefficient of u^2
-    const double third = 0.5 * (h[3] - h[0]) + 1.5 * (h[1] - h[2]);  // coefficient of u^3
-    double largest = std::max(std::abs(at_start), std::abs(at_end));
-    const double u = -second / (3 * third);
-    if (u > 0 && u < 1) {
-        largest = std::max(largest, std::abs(at_start + u * (2 * second + u * 3 * third)));
-    }
-    return largest;
-}
-
-LatticeBounds bounds_of(const HeightField& lattice) {
-    LatticeBounds result;
-    const Grid<float>& heights = lattice.heights;
-    for (int row = 0; row + 1 < heights.rows; ++row) {
-        for (int column = 0; column + 1 < heights.columns; ++column) {
-            std::array<std::array<double, 4>, 4> along_x;
-            std::array<std::array<double, 4>, 4> along_y;
-            Bounds cell;
-            for (std::size_t j = 0; j < 4; ++j) {
-                for (std::size_t i = 0; i < 4; ++i) {
-                    const double height = static_cast<double>(
-                        heights(std::clamp(column + static_cast<int>(i) - 1, 0, heights.columns - 1),
-                                std::clamp(row + static_cast<int>(j) - 1, 0, heights.rows - 1)));
-                    along_x[j][i] = height;
-                    along_y[i][j] = height;
-                    cell.include(height);
-                }
-            }
-            const double middle = 0.5 * (cell.lower + cell.upper);
-            const double reach = largest_weight_sum * largest_weight_sum * (cell.upper - middle);
-            result.height.include(middle - reach);
-            result.height.include(middle + reach);
-            double slope_x = 0;
-            double slope_y = 0;
-            for (std::size_t j = 0; j < 4; ++j) {
-                slope_x = std::max(slope_x, largest_cubic_slope(along_x[j]));
-                slope_y = std::max(slope_y, largest_cubic_slope(along_y[j]));
-            }
-            result.slope = std::max(result.slope, largest_weight_sum *
-                                                      std::hypot(slope_x / lattice.pitch_x, slope_y / lattice.pitch_y));
-        }
-    }
-    return result;
-}
-
-struct ShapeBounds {
-    Bounds height;
-    double slope = 0;
-};
-
-ShapeBounds bounds_of_shape(const Analytic& a) {
-    ShapeBounds result;
-    const double* p = a.parameters;
-    const double far_x = std::max(std::abs(a.x_min), std::abs(a.x_max));
-    const double far_y = std::max(std::abs(a.y_min), std::abs(a.y_max));
-    switch (a.shape) {
-    case physics::f64::SHAPE_PLANE:
-        for (const double x : {a.x_min, a.x_max}) {
-            for (const double y : {a.y_min, a.y_max}) {
-                result.height.include(p[0] * x + p[1] * y);
-            }
-        }
-        result.slope = std::hypot(p[0], p[1]);
-        break;
-    case physics::f64::SHAPE_STEP:
-        result.height.include(-0.5 * p[0]);
-        result.height.include(0.5 * p[0]);
-        result.slope = std::abs(p[0]) / p[1];
-        break;
-    case physics::f64::SHAPE_SPHERE: {
-        const double cap = std::abs(p[1]);
-        result.height.include(0);
-        result.height.include(p[1]);
-        // Steepest at the cap's rim or, if that is outside, at the footprint's corner.
-        const double r_squared = std::min(cap * (2 * p[0] - cap), far_x * far_x + far_y * far_y);
-        result.slope = std::sqrt(r_squared / (p[0] * p[0] - r_squared));
-        break;
-    }
-    default: // sinusoid, chirp
-        result.height.include(-std::abs(p[0]));
-        result.height.include(std::abs(p[0]));
-        result.slope = std::abs(p[0]) * 2 * pi / (a.shape == physics::f64::SHAPE_CHIRP ? std::min(p[1], p[2]) : p[1]);
-        break;
-    }
-    return result;
-}
-
-struct Recorder {
-    SpecimenRecord& record;
-
-    void grid(const HeightField& field) const {
-        record.x_min = field.x_min;
-        record.y_min = field.y_min;
-        record.x_max = field.x_max();
-        record.y_max = field.y_max();
-        record.pitch_x = field.pitch_x;
-        record.pitch_y = field.pitch_y;
-        record.columns = field.heights.columns;
-        record.rows = field.heights.rows;
-    }
-    void operator()(const HeightField& field) const {
-        record.kind = physics::f64::SPECIMEN_FACETS;
-        grid(field);
-        const auto [lowest, highest] = std::minmax_element(field.heights.values.begin(), field.heights.values.end());
-        record.bottom = static_cast<double>(*lowest);
-        record.top = static_cast<double>(*highest);
-    }
-    void operator()(const Mesh& mesh) const {
-        record.kind = physics::f64::SPECIMEN_MESH;
-        Bounds x, y, z;
-        for (const glm::vec3& vertex : mesh.vertices) {
-            x.include(static_cast<double>(vertex.x));
-            y.include(static_cast<double>(vertex.y));
-            z.include(static_cast<double>(vertex.z));
-        }
-        record.x_min = x.lower;
-        record.x_max = x.upper;
-        record.y_min = y.lower;
-        record.y_max = y.upper;
-        record.bottom = z.lower;
-        record.top = z.upper;
-    }
-    void operator()(const Analytic& analytic) const {
-        record.kind = physics::f64::SPECIMEN_ANALYTIC;
-        const ShapeBounds shape = bounds_of_shape(analytic);
-        record.bottom = shape.height.lower;
-        record.top = shape.height.upper;
-        record.lipschitz = shape.slope;
-        if (analytic.lattice) {
-            grid(*analytic.lattice);
-            const LatticeBounds lattice = bounds_of(*analytic.lattice);
-            record.bottom += lattice.height.lower;
-            record.top += lattice.height.upper;
-            record.lipschitz += lattice.slope;
-        }
-        record.lipschitz *= 1 + std::numeric_limits<float>::epsilon(); // stays a bound when rounded to float
-        record.x_min = analytic.x_min;
-        record.y_min = analytic.y_min;
-        record.x_max = analytic.x_max;
-        record.y_max = analytic.y_max;
-        record.shape = analytic.shape;
-        record.shape_parameter_0 = analytic.parameters[0];
-        record.shape_parameter_1 = analytic.parameters[1];
-        record.shape_parameter_2 = analytic.parameters[2];
-        record.shape_parameter_3 = analytic.parameters[3];
-    }
-};
+using Geometry = decltype(Specimen::geometry);
 
 // A surface that floats can hold, on the device too.
 void check_extent(const Specimen& specimen, const SourceLocation& where) {
@@ -223,58 +30,58 @@ void check_extent(const Specimen& specimen, const SourceLocation& where) {
     }
 }
 
+template <class OneKind>
+Geometry generated(const OneKind& kind, const Description& d) {
+    static_assert(FunctionKind<OneKind> != RaisedKind<OneKind>, "specimen/kinds.hpp says what a kind has");
+    Recipe recipe{.square = kind};
+    if constexpr (FunctionKind<OneKind>) {
+        recipe.representation = kind.representation;
+        recipe.function = [&] { return kind.function(d.where); };
+    } else {
+        recipe.raise = [&](HeightField& field, double asked_pitch) { kind.raise(field, asked_pitch, d.where); };
+    }
+    if constexpr (requires { kind.random_heights(); }) {
+        recipe.random = kind.random_heights();
+    }
+    return generate(recipe, d.roughness, d.where);
+}
+
+HeightField with_roughness(HeightField field, const Description& d) {
+    if (d.roughness) {
+        check_roughness(field.x_max() - field.x_min, field.y_max() - field.y_min, *d.roughness, d.where);
+        // Roughness finer than the points of the file needs points in between.
+        if (d.roughness->pitch > 0 && d.roughness->pitch < std::max(field.pitch_x, field.pitch_y) * (1 - 1e-9)) {
+            field = refined(field, d.roughness->pitch, d.where);
+        }
+        add_roughness(field, *d.roughness, d.where);
+    }
+    return field;
+}
+
+template <class OneKind>
+Geometry geometry_of(const OneKind& kind, const Description& d) {
+    if constexpr (MeshKind<OneKind>) {
+        return kind.mesh(d.where);
+    } else if constexpr (HeightsKind<OneKind>) {
+        return with_roughness(kind.heights(d.where), d);
+    } else {
+        return generated(kind, d);
+    }
+}
+
 } // namespace
 
 Specimen make(const Description& d) {
     (void)material_record(d.material, d.where);
-    if (d.roughness && (d.kind == Kind::stl || d.kind == Kind::gltf)) {
+    if (d.roughness && !kinds()[d.shape.index()].takes_roughness) {
         throw InputError({d.where, "specimen.roughness", "roughness on a mesh", "a height field or a generated kind",
                           "Remove [specimen.roughness], or put the roughness into the mesh."});
     }
     Specimen specimen;
     specimen.material = d.material;
-    switch (d.kind) {
-    case Kind::stl:
-        specimen.geometry = placed_mesh(read_stl(d.file, d.where), d);
-        break;
-    case Kind::gltf:
-        specimen.geometry = placed_mesh(read_gltf(d.file, d.where), d);
-        break;
-    case Kind::image:
-    case Kind::surface: {
-        HeightField field = d.kind == Kind::image ? field_from_image(d) : read_surface_field(d);
-        if (d.roughness) {
-            check_roughness(field.x_max() - field.x_min, field.y_max() - field.y_min, *d.roughness, d.where);
-            // Roughness finer than the points of the file needs points in between.
-            if (d.roughness->pitch > 0 && d.roughness->pitch < std::max(field.pitch_x, field.pitch_y) * (1 - 1e-9)) {
-                field = refined(field, d.roughness->pitch, d.where);
-            }
-            add_roughness(field, *d.roughness, d.where);
-        }
-        specimen.geometry = std::move(field);
-        break;
-    }
-    default:
-        specimen.geometry = generate(d);
-        break;
-    }
+    specimen.geometry = std::visit([&](const auto& kind) { return geometry_of(kind, d); }, d.shape);
     check_extent(specimen, d.where);
     return specimen;
-}
-
-SpecimenRecord record(const Specimen& specimen, int max_bounces) {
-    SpecimenRecord result{};
-    std::visit(Recorder{result}, specimen.geometry);
-    result.material = material_record(specimen.material);
-    result.max_bounces = max_bounces;
-    // Rays start on the plane z = top and must find the surface ahead of them, also where it is level and
-    // after rounding to float: 128 steps of a float of the largest coordinate.
-    const double largest = std::max({std::abs(result.x_min), std::abs(result.x_max), std::abs(result.y_min),
-                                     std::abs(result.y_max), std::abs(result.bottom), std::abs(result.top)});
-    const double margin = 128 * static_cast<double>(std::numeric_limits<float>::epsilon()) * largest;
-    result.bottom -= margin;
-    result.top += margin;
-    return result;
 }
 
 } // namespace vkfv::specimen

@@ -1,5 +1,6 @@
+#include "specimen/mesh_file.hpp"
+
 #include "specimen/description.hpp"
-#include "specimen/files.hpp"
 
 #include <fmt/format.h>
 #include <spdlog/spdlog.h>
@@ -86,7 +87,8 @@ double area_of(const glm::dvec3& a, const glm::dvec3& b, const glm::dvec3& c) {
 
 class Placing {
   public:
-    Placing(FileMesh source, const Description& description) : source_(std::move(source)), description_(description) {}
+    Placing(FileMesh source, const MeshFile& description, const SourceLocation& mention)
+        : source_(std::move(source)), description_(description), mention_(mention) {}
 
     Mesh mesh() {
         scale();
@@ -112,7 +114,7 @@ class Placing {
   private:
     [[noreturn]] void fail(const std::string& key, const std::string& found, const std::string& expected,
                            const std::string& remedy) const {
-        throw InputError({description_.where, "specimen." + key, found, expected, remedy});
+        throw InputError({mention_, "specimen." + key, found, expected, remedy});
     }
 
     template <class... Values>
@@ -221,7 +223,8 @@ class Placing {
     }
 
     FileMesh source_;
-    const Description& description_;
+    const MeshFile& description_;
+    const SourceLocation& mention_;
     Mesh mesh_;
     std::size_t flat_ = 0; // in the file
     std::size_t lost_ = 0; // by rounding to float
@@ -229,8 +232,8 @@ class Placing {
 
 } // namespace
 
-Mesh placed_mesh(FileMesh source, const Description& description) {
-    return Placing(std::move(source), description).mesh();
+Mesh placed_mesh(FileMesh source, const MeshFile& description, const SourceLocation& mention) {
+    return Placing(std::move(source), description, mention).mesh();
 }
 
 } // namespace vkfv::specimen

@@ -1,4 +1,5 @@
-#include "specimen/analytic.hpp"
+#include "specimen/refined.hpp"
+
 #include "specimen/files.hpp"
 
 #include "core/units.hpp"

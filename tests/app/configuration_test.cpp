@@ -32,7 +32,7 @@ TEST(Configuration, ConvertsUnitsOnceAtTheBorder) {
     EXPECT_EQ(configuration.instrument.source_radius, 0.96);
     EXPECT_EQ(configuration.instrument.spectrum.reference_um, 0.5876);
     EXPECT_EQ(configuration.instrument.detector_pixels, 8);
-    EXPECT_EQ(configuration.specimen->height, 0.002);
+    EXPECT_EQ(std::get<specimen::Step>(configuration.specimen->shape).height, 0.002);
     EXPECT_EQ(configuration.specimen->roughness->noise, 0.0001);
     EXPECT_EQ(configuration.specimen->material.lobes[0].parameters[0], 0.8);
     EXPECT_EQ(configuration.scan->z_start, -0.002);
@@ -42,7 +42,8 @@ TEST(Configuration, ConvertsUnitsOnceAtTheBorder) {
     EXPECT_EQ(configuration.trace.directed_scatter, false);
     const auto tilted = load(
         "tilt", replaced(replaced(small_configuration, "\"step\"", "\"plane\""), "height_um = 2.0", "tilt_x_deg = 45"));
-    EXPECT_NEAR(std::tan(tilted.specimen->tilt_x), 1.0, 1e-15); // one rounding of the angle
+    EXPECT_NEAR(std::tan(std::get<specimen::Plane>(tilted.specimen->shape).tilt_x), 1.0,
+                1e-15); // one rounding of the angle
 }
 
 TEST(Configuration, PathsAreRelativeToTheFile) {

@@ -1,8 +1,8 @@
 // Any bytes are a mesh, every index of which is one of a vertex, and which can be placed or is refused, or an
 // InputError.
 #include "core/error.hpp"
-#include "specimen/description.hpp"
 #include "specimen/files.hpp"
+#include "specimen/mesh_file.hpp"
 
 #include <spdlog/spdlog.h>
 
@@ -20,10 +20,8 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
             for (int corner = 0; corner < 3; ++corner)
                 if (triangle[corner] >= mesh.vertices.size())
                     std::abort();
-        specimen::Description description;
-        description.kind = specimen::Kind::stl;
-        description.centre = false; // which takes seconds under the fuzzer, and mathematics alone
-        (void)specimen::placed_mesh(std::move(mesh), description);
+        // Centring takes seconds under the fuzzer, and mathematics alone.
+        (void)specimen::placed_mesh(std::move(mesh), {.centre = false}, {});
     } catch (const InputError&) {
     }
     return 0;

@@ -1,6 +1,8 @@
 // Specimens from files: what is written is read, a letter reads as the letter, and damage is named.
 #include "specimen/description.hpp"
 #include "specimen/files.hpp"
+#include "specimen/kinds.hpp"
+#include "specimen/shapes.hpp"
 
 #include "images/image_file.hpp"
 #include "support/surface_files.hpp"
@@ -142,25 +144,22 @@ void expect_letter(const Specimen& specimen, double low, double high) {
 
 TEST(ExampleSpecimens, ReadAsTheLetterF) {
     const std::filesystem::path folder = std::filesystem::path(VKFV_SOURCE_DIR) / "assets" / "specimens";
-    Description d;
-    d.kind = Kind::image;
-    d.file = folder / "letter_F.png";
-    d.pitch = 0.002;
-    d.height = 0.005;
-    expect_letter(make(d), 0, 0.005);
-    d.kind = Kind::stl;
-    d.file = folder / "letter_F.stl";
-    d.centre = false;
-    expect_letter(make(d), 0, 0.005);
-    d.kind = Kind::gltf;
-    d.file = folder / "letter_F.glb";
-    d.unit = 1000;
-    expect_letter(make(d), 0, 0.005);
+    const Image image{.file = folder / "letter_F.png", .pitch = 0.002, .height = 0.005};
+    expect_letter(make({.shape = image}), 0, 0.005);
+    specimen::Stl stl;
+    stl.file = folder / "letter_F.stl";
+    stl.centre = false;
+    expect_letter(make({.shape = stl}), 0, 0.005);
+    specimen::Gltf gltf;
+    gltf.file = folder / "letter_F.glb";
+    gltf.unit = 1000;
+    gltf.centre = false;
+    expect_letter(make({.shape = gltf}), 0, 0.005);
     // Centred: the mean of the uppermost surface is at 0. The letter covers (22 x 120 + 58 x 22 + 38 x 22)
     // um^2 of 200 x 200; of the 1280 lines of points that measure it each edge may be one off.
-    d.centre = true;
+    gltf.centre = true;
     const double share = (22.0 * 120 + 58 * 22 + 38 * 22) / 40000;
-    const auto centred = truth(make(d), 1, 1, -0.03, 0, 0.002, 0.002);
+    const auto centred = truth(make({.shape = gltf}), 1, 1, -0.03, 0, 0.002, 0.002);
     EXPECT_NEAR(centred.height(0, 0), 0.005 * (1 - share), 0.005 * 0.002);
 }
 
@@ -175,12 +174,8 @@ TEST_F(Files, ImageRowsStartAtTheTopAndValuesScale) {
     EXPECT_FLOAT_EQ(grid(2, 1), 1.0f);
     EXPECT_FLOAT_EQ(grid(0, 0), 0.4f);
     EXPECT_FLOAT_EQ(grid(2, 0), 0.8f);
-    Description d;
-    d.kind = Kind::image;
-    d.file = file;
-    d.pitch = 0.01;
-    d.height = -0.1;
-    const HeightField field = std::get<HeightField>(make(d).geometry);
+    const Image image{.file = file, .pitch = 0.01, .height = -0.1};
+    const HeightField field = std::get<HeightField>(make({.shape = image}).geometry);
     EXPECT_FLOAT_EQ(field.heights(1, 1), -0.02f);
     EXPECT_DOUBLE_EQ(field.x_min, -0.01);
     EXPECT_DOUBLE_EQ(field.y_max(), 0.005);
@@ -195,10 +190,9 @@ TEST_F(Files, TrianglesWithoutAreaAreDropped) {
     std::string text = ascii_stl();
     text.insert(text.find(" facet"), " facet normal 0 0 1\n outer loop\n vertex 0 0 0\n vertex 1 1 1\n vertex 2 2 2\n"
                                      " endloop\n endfacet\n");
-    Description d;
-    d.kind = Kind::stl;
-    d.file = write("line.stl", text);
-    EXPECT_EQ(std::get<Mesh>(make(d).geometry).triangles.size(), faces.size());
+    specimen::Stl stl;
+    stl.file = write("line.stl", text);
+    EXPECT_EQ(std::get<Mesh>(make({.shape = stl}).geometry).triangles.size(), faces.size());
 }
 
 std::string message_of(const Description& description) {
@@ -274,13 +268,10 @@ TEST_F(Files, DamageIsNamedWithItsPlace) {
         {"colour.ppm", "P6 2 2 255\nabcabcabcabc", {"colour.ppm", "colour in pixel (0, 0)"}},
     };
     for (const BadFile& bad : cases) {
-        Description d;
-        d.file = write(bad.file, bad.bytes);
-        const std::string extension = d.file.extension().string();
-        d.kind = extension == ".stl" ? Kind::stl : extension.starts_with(".gl") ? Kind::gltf : Kind::image;
-        d.pitch = 0.001;
-        d.height = 0.001;
-        const std::string message = message_of(d);
+        const auto file = write(bad.file, bad.bytes);
+        const std::string extension = file.extension().string();
+        const std::string kind = extension == ".stl" ? "stl" : extension.starts_with(".gl") ? "gltf" : "image";
+        const std::string message = message_of({.shape = test::shape_of(file, kind)});
         for (const std::string& part : bad.message) {
             EXPECT_THAT(message, HasSubstr(part)) << bad.file;
         }
@@ -289,81 +280,102 @@ TEST_F(Files, DamageIsNamedWithItsPlace) {
     Grid<float> holes(2, 2, 1.0f);
     holes(1, 0) = nan;
     surface::write_tiff(folder_ / "nan.tif", holes);
-    Description d;
-    d.kind = Kind::image;
-    d.file = folder_ / "nan.tif";
-    d.pitch = d.height = 1;
-    EXPECT_THAT(message_of(d), HasSubstr("nan in pixel (1, 1) from the top left"));
-    for (const Kind kind : {Kind::stl, Kind::gltf, Kind::image}) {
-        d.kind = kind;
-        d.file = folder_ / "missing";
+    EXPECT_THAT(message_of({.shape = test::shape_of(folder_ / "nan.tif", "image")}),
+                HasSubstr("nan in pixel (1, 1) from the top left"));
+    for (const char* kind : {"stl", "gltf", "image"}) {
+        Description d{.shape = test::shape_of(folder_ / "missing", kind)};
         d.where.file = "c.toml";
         d.where.line = 5;
         EXPECT_THAT(message_of(d), HasSubstr("c.toml:5: specimen.file = "));
-        d.file = folder_;
+        d.shape = test::shape_of(folder_, kind);
         EXPECT_THAT(message_of(d), HasSubstr("specimen.file"));
     }
 }
 
-TEST(Descriptions, ImpossibleValuesAreRefused) {
-    Description good;
-    good.size = 0.1;
-    good.pitch = 0.001;
-    good.radius = 0.1;
-    good.height = 0.01;
-    good.amplitude = 0.001;
-    good.period = good.period_stop = 0.01;
-    good.sq = 0.001;
-    good.correlation_length = 0.005;
+template <class OneKind>
+OneKind good() {
+    return test::over<OneKind>(0.1, 0.001);
+}
+template <>
+Step good() {
+    auto step = test::over<Step>(0.1, 0.001);
+    step.height = 0.01;
+    return step;
+}
+template <>
+Sphere good() {
+    auto sphere = test::over<Sphere>(0.1, 0.001);
+    sphere.radius = 0.1;
+    sphere.height = 0.01;
+    return sphere;
+}
+template <>
+Sinusoid good() {
+    auto wave = test::over<Sinusoid>(0.1, 0.001);
+    wave.amplitude = 0.001;
+    wave.period = 0.01;
+    return wave;
+}
+template <>
+Chirp good() {
+    auto chirp = test::over<Chirp>(0.1, 0.001);
+    chirp.amplitude = 0.001;
+    chirp.period = chirp.period_stop = 0.01;
+    return chirp;
+}
+template <>
+Rough good() {
+    auto rough = test::over<Rough>(0.1, 0.001);
+    rough.random = {.sq = 0.001, .correlation_length = 0.005};
+    return rough;
+}
+
+template <class OneKind>
+void expect_refused(const std::function<void(OneKind&)>& change, const char* key) {
+    auto kind = good<OneKind>();
+    EXPECT_EQ(message_of({.shape = kind}), "no error");
+    change(kind);
+    EXPECT_THAT(message_of({.shape = kind}), HasSubstr(key));
+}
+
+TEST(Descriptions, ImpossibleShapesAreRefused) {
     const double nan = std::numeric_limits<double>::quiet_NaN();
+    expect_refused<Plane>([](Plane& d) { d.size = 0; }, "specimen.size");
+    expect_refused<Plane>([&](Plane& d) { d.size = nan; }, "specimen.size");
+    expect_refused<Plane>([](Plane& d) { d.pitch = 0; }, "specimen.pitch");
+    expect_refused<Plane>([](Plane& d) { d.pitch = 1; }, "specimen.pitch");
+    expect_refused<Plane>([](Plane& d) { d.pitch = 1e-6; }, "specimen.pitch");
+    expect_refused<Plane>([](Plane& d) { d.tilt_x = 1.6; }, "specimen.tilt");
+    expect_refused<Step>([](Step& d) { d.wall = -1; }, "specimen.wall");
+    expect_refused<Sphere>([](Sphere& d) { d.radius = -0.1; }, "specimen.radius");
+    expect_refused<Sphere>([](Sphere& d) { d.height = -0.1; }, "specimen.height");
+    expect_refused<Sinusoid>([](Sinusoid& d) { d.period = 0; }, "specimen.period");
+    expect_refused<Chirp>([](Chirp& d) { d.period_stop = -1; }, "specimen.period_stop");
+    expect_refused<Rough>([](Rough& d) { d.random.sq = -1; }, "specimen.sq");
+    expect_refused<Rough>([](Rough& d) { d.random.correlation_length = 0; }, "specimen.correlation_length");
+}
+
+TEST(Descriptions, ImpossibleMaterialsAndRoughnessAreRefused) {
+    const Description plane{.shape = good<Plane>()};
+    Description d = plane;
+    d.material = Material::henyey_greenstein(1.5);
+    EXPECT_THAT(message_of(d), HasSubstr("specimen.material.g"));
     struct Bad {
-        Kind kind;
-        std::function<void(Description&)> change;
+        Roughness roughness;
         const char* key;
     };
-    const std::vector<Bad> cases = {
-        {Kind::plane, [](Description& d) { d.size = 0; }, "specimen.size"},
-        {Kind::plane, [&](Description& d) { d.size = nan; }, "specimen.size"},
-        {Kind::plane, [](Description& d) { d.pitch = 0; }, "specimen.pitch"},
-        {Kind::plane, [](Description& d) { d.pitch = 1; }, "specimen.pitch"},
-        {Kind::plane, [](Description& d) { d.pitch = 1e-6; }, "specimen.pitch"},
-        {Kind::plane, [](Description& d) { d.tilt_x = 1.6; }, "specimen.tilt"},
-        {Kind::step, [](Description& d) { d.wall = -1; }, "specimen.wall"},
-        {Kind::sphere, [](Description& d) { d.radius = -0.1; }, "specimen.radius"},
-        {Kind::sphere, [](Description& d) { d.height = -0.1; }, "specimen.height"},
-        {Kind::sinusoid, [](Description& d) { d.period = 0; }, "specimen.period"},
-        {Kind::chirp, [](Description& d) { d.period_stop = -1; }, "specimen.period_stop"},
-        {Kind::rough, [](Description& d) { d.sq = -1; }, "specimen.sq"},
-        {Kind::rough, [](Description& d) { d.correlation_length = 0; }, "specimen.correlation_length"},
-        {Kind::plane, [](Description& d) { d.material = Material::henyey_greenstein(1.5); }, "specimen.material.g"},
-        {Kind::plane,
-         [](Description& d) {
-             d.roughness = Roughness{-1, 0.002, 0.001, 1};
-         },
-         "specimen.roughness.noise"},
-        {Kind::plane,
-         [](Description& d) {
-             d.roughness = Roughness{1, 1e9, 0.001, 1};
-         },
-         "specimen.roughness.kernel"},
-        {Kind::plane,
-         [](Description& d) {
-             d.roughness = Roughness{1, 0.002, 0, 1};
-         },
-         "specimen.roughness.pitch"},
-        {Kind::stl,
-         [](Description& d) {
-             d.roughness = Roughness{1, 0.002, 0.001, 1};
-         },
-         "specimen.roughness"},
-    };
-    for (const Bad& bad : cases) {
-        Description d = good;
-        d.kind = bad.kind;
-        EXPECT_THAT(message_of(d), HasSubstr(bad.kind == Kind::stl ? "specimen.file" : "no error"));
-        bad.change(d);
+    for (const Bad& bad :
+         {Bad{{-1, 0.002, 0.001, 1}, "specimen.roughness.noise"}, Bad{{1, 1e9, 0.001, 1}, "specimen.roughness.kernel"},
+          Bad{{1, 0.002, 0, 1}, "specimen.roughness.pitch"}}) {
+        d = plane;
+        d.roughness = bad.roughness;
         EXPECT_THAT(message_of(d), HasSubstr(bad.key));
     }
+    d.shape = specimen::Stl();
+    d.roughness = std::nullopt;
+    EXPECT_THAT(message_of(d), HasSubstr("specimen.file"));
+    d.roughness = Roughness{1, 0.002, 0.001, 1};
+    EXPECT_THAT(message_of(d), HasSubstr("specimen.roughness"));
 }
 
 } // namespace

@@ -1,7 +1,9 @@
 // Generated specimens: statistics of the irregular ones, and facets against the continuous function.
 #include "specimen/analytic.hpp"
 #include "specimen/intersector.hpp"
+#include "specimen/kinds.hpp"
 #include "specimen/rays.hpp"
+#include "specimen/shapes.hpp"
 
 #include <gtest/gtest.h>
 
@@ -10,7 +12,9 @@
 namespace vkfv::specimen {
 namespace {
 
+using test::over;
 using test::RandomRays;
+using test::represented;
 
 constexpr double pi = 3.14159265358979323846;
 
@@ -58,14 +62,9 @@ double autocorrelation(const Grid<float>& grid, int lag) {
 TEST(Rough, HasTheHeightAndTheCorrelationItIsAskedFor) {
     std::vector<double> at_length;
     for (std::uint32_t seed = 1; seed <= 16; ++seed) {
-        Description d;
-        d.kind = Kind::rough;
-        d.size = 0.2;
-        d.pitch = 0.001;
-        d.sq = 0.0007;
-        d.correlation_length = 0.005;
-        d.seed = seed;
-        const HeightField field = std::get<HeightField>(make(d).geometry);
+        auto rough = over<Rough>(0.2, 0.001);
+        rough.random = {.sq = 0.0007, .correlation_length = 0.005, .seed = seed};
+        const HeightField field = std::get<HeightField>(make({.shape = rough}).geometry);
         ASSERT_EQ(field.heights.columns, 201);
         EXPECT_NEAR(rms(field.heights), 0.0007, 1e-9); // exact but for the rounding of heights to float
         EXPECT_NEAR(mean(field.heights), 0, 1e-9);
@@ -81,12 +80,8 @@ TEST(Rough, HasTheHeightAndTheCorrelationItIsAskedFor) {
 TEST(Roughness, LeavesWhatTheFilterLeavesOfTheNoise) {
     std::vector<double> remaining;
     for (std::uint32_t seed = 1; seed <= 12; ++seed) {
-        Description d;
-        d.kind = Kind::plane;
-        d.size = 0.1;
-        d.pitch = 0.0005;
-        d.roughness = Roughness{0.0002, 0.001, 0.0005, seed};
-        const Specimen specimen = make(d);
+        const Specimen specimen =
+            make({.shape = over<Plane>(0.1, 0.0005), .roughness = Roughness{0.0002, 0.001, 0.0005, seed}});
         remaining.push_back(std::pow(rms(std::get<HeightField>(specimen.geometry).heights), 2));
     }
     // In squares, which are unbiased; 4.44 is the level 1e-3 for 11 degrees of freedom. The twin: a kernel 5
@@ -97,90 +92,75 @@ TEST(Roughness, LeavesWhatTheFilterLeavesOfTheNoise) {
 }
 
 TEST(Roughness, IsInterpolatedToFinerFacetsAndRefinesCoarserOnes) {
-    Description d;
-    d.kind = Kind::plane;
-    d.size = 0.05;
-    d.pitch = 0.0005;
-    d.roughness = Roughness{0.0002, 0.002, 0.001, 5};
-    const HeightField fine = std::get<HeightField>(make(d).geometry);
+    auto plane = over<Plane>(0.05, 0.0005);
+    const auto made = [&] { return make({.shape = plane, .roughness = Roughness{0.0002, 0.002, 0.001, 5}}).geometry; };
+    const HeightField fine = std::get<HeightField>(made());
     EXPECT_EQ(fine.heights.columns, 101);
-    d.pitch = 0.001;
-    const HeightField same = std::get<HeightField>(make(d).geometry);
+    plane.pitch = 0.001;
+    const HeightField same = std::get<HeightField>(made());
     EXPECT_EQ(same.heights.columns, 51);
     for (int i = 0; i < 51; ++i) {
         EXPECT_NEAR(fine.heights(2 * i, 2 * (50 - i)), same.heights(i, 50 - i), 1e-10f);
     }
-    d.pitch = 0.01;
-    EXPECT_EQ(std::get<HeightField>(make(d).geometry).heights.columns, 51);
+    plane.pitch = 0.01;
+    EXPECT_EQ(std::get<HeightField>(made()).heights.columns, 51);
     // The lattice of the analytic representation has the same points.
-    d.representation = Representation::analytic;
-    const Specimen specimen = make(d);
-    EXPECT_EQ(std::get<Analytic>(specimen.geometry).lattice->heights.values, same.heights.values);
+    plane.representation = Representation::analytic;
+    EXPECT_EQ(std::get<Analytic>(made()).lattice->heights.values, same.heights.values);
 }
 
 TEST(Generated, SeedsMakeTheSameOrOtherFields) {
-    Description d;
-    d.kind = Kind::rough;
-    d.size = 0.05;
-    d.pitch = 0.001;
-    d.sq = 0.001;
-    d.correlation_length = 0.005;
-    d.seed = 1;
-    const auto heights = [&] { return std::get<HeightField>(make(d).geometry).heights.values; };
+    auto rough = over<Rough>(0.05, 0.001);
+    rough.random = {.sq = 0.001, .correlation_length = 0.005, .seed = 1};
+    const auto heights = [&] { return std::get<HeightField>(make({.shape = rough}).geometry).heights.values; };
     const auto first = heights();
     EXPECT_EQ(first, heights());
-    d.seed = 2;
+    rough.random.seed = 2;
     EXPECT_NE(first, heights());
 }
 
 struct Pair {
     const char* name;
-    Description description;
+    Shape shape;
     double second_derivative; // largest of the shape, along a cell's edges or its diagonal, 1/mm
 };
 
 TEST(Generated, FacetsAndFunctionAreMetAtTheSamePlaces) {
     std::vector<Pair> pairs;
-    Description d;
-    d.size = 0.1;
-    d.pitch = 0.0005;
-    d.kind = Kind::plane;
-    pairs.push_back({"plane", d, 0});
-    d.tilt_x = 0.3;
-    d.tilt_y = -0.1;
-    pairs.push_back({"tilted plane", d, 0});
-    d.kind = Kind::step;
-    d.height = 0.002;
-    d.wall = 0.002; // its kinks lie on lines of the grid
-    pairs.push_back({"step", d, 0});
-    d.kind = Kind::sphere;
-    d.radius = 0.1;
-    d.height = 0.05; // the rim at 0.087 is outside the footprint's corner at 0.071
+    constexpr double size = 0.1, pitch = 0.0005;
+    auto plane = over<Plane>(size, pitch);
+    pairs.push_back({"plane", plane, 0});
+    plane.tilt_x = 0.3;
+    plane.tilt_y = -0.1;
+    pairs.push_back({"tilted plane", plane, 0});
+    auto step = over<Step>(size, pitch);
+    step.height = 0.002;
+    step.wall = 0.002; // its kinks lie on lines of the grid
+    pairs.push_back({"step", step, 0});
+    auto sphere = over<Sphere>(size, pitch);
+    sphere.radius = 0.1;
+    sphere.height = 0.05; // the rim at 0.087 is outside the footprint's corner at 0.071
     // R^2 / (R^2 - r^2)^(3/2) along the meridian.
-    pairs.push_back({"sphere", d, 0.01 / std::pow(0.01 - 0.005, 1.5)});
-    d.kind = Kind::sinusoid;
-    d.amplitude = 0.001;
-    d.period = 0.02;
-    pairs.push_back({"sinusoid", d, 0.001 * std::pow(2 * pi / 0.02, 2)});
-    d.kind = Kind::chirp;
-    d.period = 0.04;
-    d.period_stop = 0.015;
+    pairs.push_back({"sphere", sphere, 0.01 / std::pow(0.01 - 0.005, 1.5)});
+    auto sinusoid = over<Sinusoid>(size, pitch);
+    sinusoid.amplitude = 0.001;
+    sinusoid.period = 0.02;
+    pairs.push_back({"sinusoid", sinusoid, 0.001 * std::pow(2 * pi / 0.02, 2)});
+    auto chirp = over<Chirp>(size, pitch);
+    chirp.amplitude = 0.001;
+    chirp.period = 0.04;
+    chirp.period_stop = 0.015;
     // A (w^2 + w'), the frequency rising by (1/0.015 - 1/0.04) over 0.1 mm.
-    pairs.push_back({"chirp", d, 0.001 * (std::pow(2 * pi / 0.015, 2) + 2 * pi * (1 / 0.015 - 1 / 0.04) / 0.1)});
+    pairs.push_back({"chirp", chirp, 0.001 * (std::pow(2 * pi / 0.015, 2) + 2 * pi * (1 / 0.015 - 1 / 0.04) / 0.1)});
     RandomRays random(7);
     for (const Pair& pair : pairs) {
-        Description facets = pair.description;
-        facets.representation = Representation::facets;
-        Description function = pair.description;
-        function.representation = Representation::analytic;
-        const Intersector on_facets(make(facets));
-        const Specimen continuous = make(function);
+        const Intersector on_facets(make({.shape = represented(pair.shape, Representation::facets)}));
+        const Specimen continuous = make({.shape = represented(pair.shape, Representation::analytic)});
         const Intersector on_function(continuous);
         const auto r = record(continuous, 1);
         // Linear interpolation in a triangle: h'' / 8 of the square of its longest edge (the diagonal; for
         // shapes along x its extent in x is the pitch, which is less). And heights rounded to float.
-        const double between =
-            pair.second_derivative * 2 * facets.pitch * facets.pitch / 8 + 6e-8 * std::max(-r.bottom, r.top);
+        const double between = pair.second_derivative * 2 * pitch * pitch / 8 + 6e-8 * std::max(-r.bottom, r.top);
         int compared = 0;
         for (int i = 0; i < 3000; ++i) {
             const glm::dvec3 direction = -random.direction(0, 0.5);
@@ -206,16 +186,11 @@ TEST(Generated, FacetsAndFunctionAreMetAtTheSamePlaces) {
 }
 
 TEST(Generated, FacetsAndLatticeOfARoughSurfaceDifferByTheirInterpolation) {
-    Description d;
-    d.kind = Kind::rough;
-    d.size = 0.1;
-    d.pitch = 0.0005;
-    d.sq = 0.0005;
-    d.correlation_length = 0.01;
-    d.seed = 11;
-    const Intersector on_facets(make(d));
-    d.representation = Representation::analytic;
-    const Intersector on_function(make(d));
+    auto rough = over<Rough>(0.1, 0.0005);
+    rough.random = {.sq = 0.0005, .correlation_length = 0.01, .seed = 11};
+    const Intersector on_facets(make({.shape = rough}));
+    rough.representation = Representation::analytic;
+    const Intersector on_function(make({.shape = rough}));
     RandomRays random(8);
     double squares = 0;
     int count = 0;

@@ -1,6 +1,7 @@
 // STL and images that others made, on purpose or not: read, or refused for what is wrong with them.
 #include "specimen/description.hpp"
 #include "specimen/files.hpp"
+#include "specimen/shapes.hpp"
 
 #include "temporary_files.hpp"
 
@@ -116,16 +117,15 @@ TEST_F(Hostile, StlThatIsNoneIsToldApart) {
     EXPECT_THAT(stl_message(cut.substr(0, 300)), HasSubstr("12 triangles in 300 bytes"));
 }
 
-Description mesh_of(const std::filesystem::path& file) {
-    Description d;
-    d.kind = Kind::stl;
-    d.file = file;
-    return d;
+Stl mesh_of(const std::filesystem::path& file) {
+    Stl mesh;
+    mesh.file = file;
+    return mesh;
 }
 
 TEST_F(Hostile, VertexFarOffIsNamed) {
     const auto message = [&](float x) {
-        return message_of([&] { (void)make(mesh_of(write("far.stl", binary(cube({x, 0, 0}))))); });
+        return message_of([&] { (void)make({.shape = mesh_of(write("far.stl", binary(cube({x, 0, 0}))))}); });
     };
     EXPECT_THAT(message(1e30f), AllOf(HasSubstr("specimen.file"), HasSubstr("with a vertex at (1e+30, 0, 0) mm"),
                                       HasSubstr("expected coordinates up to 1000000 mm"), HasSubstr("specimen.unit")));
@@ -143,22 +143,20 @@ TEST_F(Hostile, FacetsThatVanishAmongLargeCoordinatesAreRefusedOrWarnedOf) {
         }
     }
     far.push_back({glm::vec3(900000, 0, 0), glm::vec3(900000, 1, 0), glm::vec3(900000, 0, 1)});
-    const std::string message = message_of([&] { (void)make(mesh_of(write("far.stl", binary(far)))); });
+    const std::string message = message_of([&] { (void)make({.shape = mesh_of(write("far.stl", binary(far)))}); });
     EXPECT_THAT(message, AllOf(HasSubstr("of 13 triangles 8 lose their area"), HasSubstr("(900000, 0, 0) mm")));
 }
 
 TEST_F(Hostile, ForeignUnitsAreRefusedWhereNoDeviceHoldsThem) {
-    Description d = mesh_of(write("cube.stl", binary(cube())));
+    Stl d = mesh_of(write("cube.stl", binary(cube())));
     d.unit = 1e7;
-    EXPECT_THAT(message_of([&] { (void)make(d); }), HasSubstr("coordinates up to 1000000 mm"));
+    EXPECT_THAT(message_of([&] { (void)make({.shape = d}); }), HasSubstr("coordinates up to 1000000 mm"));
     d.unit = 1e-12;
-    EXPECT_THAT(message_of([&] { (void)make(d); }), HasSubstr("a footprint in x and y"));
-    Description step;
-    step.kind = Kind::step;
-    step.size = 0.1;
-    step.pitch = 0.001;
+    EXPECT_THAT(message_of([&] { (void)make({.shape = d}); }), HasSubstr("a footprint in x and y"));
+    auto step = test::over<Step>(0.1, 0.001);
     step.height = 1e30;
-    EXPECT_THAT(message_of([&] { (void)make(step); }), AllOf(HasSubstr("mm high"), HasSubstr("Correct the lengths")));
+    EXPECT_THAT(message_of([&] { (void)make({.shape = step}); }),
+                AllOf(HasSubstr("mm high"), HasSubstr("Correct the lengths")));
 }
 
 // Grey ramps of 300 x 200 pixels, as every format in use writes them.
@@ -228,24 +226,20 @@ TEST_F(Hostile, ImagesMadeToFillTheMemoryAreRefused) {
 TEST_F(Hostile, EveryFileIsARegularOne) {
     ASSERT_EQ(mkfifo((folder_ / "pipe").c_str(), 0600), 0);
     std::filesystem::create_symlink("/dev/zero", folder_ / "zero");
-    for (const Kind kind : {Kind::stl, Kind::gltf, Kind::image}) {
+    for (const char* kind : {"stl", "gltf", "image"}) {
         for (const auto& [name, found] : {std::pair{"pipe", "a named pipe"}, std::pair{"zero", "a device"}}) {
-            Description d;
-            d.kind = kind;
-            d.file = folder_ / name;
-            d.pitch = d.height = 1;
-            EXPECT_THAT(message_of([&] { (void)make(d); }), AllOf(HasSubstr("specimen.file = "), HasSubstr(found)));
+            const Shape shape = test::shape_of(folder_ / name, kind);
+            EXPECT_THAT(message_of([&] { (void)make({.shape = shape}); }),
+                        AllOf(HasSubstr("specimen.file = "), HasSubstr(found)));
         }
     }
-    Description letters;
-    letters.kind = Kind::plateaus;
-    letters.size = 0.1;
-    letters.pitch = 0.001;
+    auto letters = test::over<Plateaus>(0.1, 0.001);
     letters.text = "F";
     letters.text_width = 0.05;
     letters.heights = {0.001};
     letters.font = (folder_ / "pipe").string();
-    EXPECT_THAT(message_of([&] { (void)make(letters); }), AllOf(HasSubstr("specimen.font"), HasSubstr("a named pipe")));
+    EXPECT_THAT(message_of([&] { (void)make({.shape = letters}); }),
+                AllOf(HasSubstr("specimen.font"), HasSubstr("a named pipe")));
 }
 
 } // namespace

@@ -3,6 +3,7 @@
 #include "specimen/description.hpp"
 #include "specimen/intersector.hpp"
 #include "specimen/rays.hpp"
+#include "specimen/shapes.hpp"
 
 #include <gtest/gtest.h>
 
@@ -197,13 +198,11 @@ TEST(Truth, OfAMeshIsThatOfTheFieldItCameFrom) {
 }
 
 TEST(Truth, OfAPlaneIsThePlaneAndOfAnOverhangTheUppermost) {
-    Description d;
-    d.size = 0.1;
-    d.pitch = 0.0037;
-    d.tilt_x = 0.2;
+    auto plane = test::over<Plane>(0.1, 0.0037);
+    plane.tilt_x = 0.2;
     for (const Representation representation : {Representation::facets, Representation::analytic}) {
-        d.representation = representation;
-        const auto map = truth(make(d), 30, 30, -0.058, -0.058, 0.004, 0.004);
+        plane.representation = representation;
+        const auto map = truth(make({.shape = plane}), 30, 30, -0.058, -0.058, 0.004, 0.004);
         for (int i = 0; i < 30; ++i) {
             const bool inside = std::abs(map.x(i)) + 0.4 * 0.004 <= 0.05;
             EXPECT_EQ(!inside, std::isnan(map.height(i, 15))) << i;

@@ -1,7 +1,8 @@
-#include "specimen/standards.hpp"
+#include "specimen/description.hpp"
 
 #include "core/fourier.hpp"
 #include "core/units.hpp"
+#include "specimen/shapes.hpp"
 #include "support/surface_files.hpp"
 #include "surface_files/surface_file.hpp"
 
@@ -15,16 +16,9 @@
 
 using namespace vkfv;
 using namespace vkfv::specimen;
+using vkfv::test::over;
 
 namespace {
-
-Description of(Kind kind, double size, double pitch) {
-    Description d;
-    d.kind = kind;
-    d.size = size;
-    d.pitch = pitch;
-    return d;
-}
 
 const HeightField& field_of(const Specimen& specimen) {
     return std::get<HeightField>(specimen.geometry);
@@ -35,8 +29,8 @@ double at(const HeightField& field, double x, double y) {
                                              static_cast<int>(std::lround((y - field.y_min) / field.pitch_y))));
 }
 
-Description letters(const std::string& text, std::vector<double> heights) {
-    Description d = of(Kind::plateaus, 0.4, 0.001);
+Plateaus letters(const std::string& text, std::vector<double> heights) {
+    auto d = over<Plateaus>(0.4, 0.001);
     d.text = text;
     d.font = "DejaVuSans-Bold";
     d.text_width = 0.32;
@@ -45,7 +39,7 @@ Description letters(const std::string& text, std::vector<double> heights) {
 }
 
 TEST(Plateaus, letters_have_their_heights_from_left_to_right) {
-    const Specimen made = make(letters("vk f", {0.002, 0.004, 0.006}));
+    const Specimen made = make({.shape = letters("vk f", {0.002, 0.004, 0.006})});
     const HeightField& field = field_of(made);
     std::map<float, std::pair<int, int>> columns; // of each height: first and last
     for (int row = 0; row < field.heights.rows; ++row)
@@ -64,7 +58,7 @@ TEST(Plateaus, letters_have_their_heights_from_left_to_right) {
 
 TEST(Plateaus, a_letter_reads_correctly_from_above) {
     // An L has its stem at the left and its bar below.
-    const Specimen made = make(letters("L", {0.003}));
+    const Specimen made = make({.shape = letters("L", {0.003})});
     const HeightField& field = field_of(made);
     double left = 0, right = 0, lower = 0, upper = 0;
     for (int row = 0; row < field.heights.rows; ++row)
@@ -78,31 +72,31 @@ TEST(Plateaus, a_letter_reads_correctly_from_above) {
 }
 
 TEST(Plateaus, mask_of_an_image_with_a_height_a_grey_value) {
-    Description d = of(Kind::plateaus, 0.2, 0.001);
+    auto d = over<Plateaus>(0.2, 0.001);
     d.file = std::filesystem::path(VKFV_SOURCE_DIR) / "assets/specimens/letter_F.png";
     d.heights = {0.005};
-    const Specimen made = make(d);
+    const Specimen made = make({.shape = d});
     const HeightField& field = field_of(made);
     // The F of tools/make_specimens.py: its stem, the plate right of it, its upper bar.
     EXPECT_FLOAT_EQ(static_cast<float>(at(field, -0.03, -0.03)), 0.005f);
     EXPECT_EQ(at(field, 0.03, -0.03), 0);
     EXPECT_FLOAT_EQ(static_cast<float>(at(field, 0.03, 0.05)), 0.005f);
     d.heights = {0.005, 0.006};
-    EXPECT_THROW(make(d), InputError);
+    EXPECT_THROW(make({.shape = d}), InputError);
 }
 
 TEST(Plateaus, unknown_fonts_and_missing_heights_are_refused) {
-    Description d = letters("vkfv", {0.001, 0.002});
-    EXPECT_THROW(make(d), InputError);
+    auto d = letters("vkfv", {0.001, 0.002});
+    EXPECT_THROW(make({.shape = d}), InputError);
     d = letters("vkfv", {0.001});
     d.font = "no such font";
-    EXPECT_THROW(make(d), InputError);
+    EXPECT_THROW(make({.shape = d}), InputError);
     d = letters("  ", {0.001});
-    EXPECT_THROW(make(d), InputError);
+    EXPECT_THROW(make({.shape = d}), InputError);
 }
 
-Description air() {
-    Description d = of(Kind::air, 0.4, 0.001);
+Air air() {
+    auto d = over<Air>(0.4, 0.001);
     d.tiles = 2;
     d.sq = 0.0015;
     d.roll_off = 0.05;
@@ -133,7 +127,7 @@ std::vector<double> rings(const HeightField& field, int tile_column, int points)
 }
 
 TEST(SubSurfaces, have_the_power_spectrum_that_is_stated) {
-    const Specimen made = make(air());
+    const Specimen made = make({.shape = air()});
     const HeightField& field = field_of(made);
     ASSERT_EQ(field.heights.columns, 401);
     const std::vector<double> power = rings(field, 0, 200);
@@ -156,7 +150,7 @@ TEST(SubSurfaces, have_the_power_spectrum_that_is_stated) {
 }
 
 TEST(SubSurfaces, have_their_sq_and_meet_at_seams) {
-    const Specimen made = make(air());
+    const Specimen made = make({.shape = air()});
     const HeightField& field = field_of(made);
     const auto sq = [&](int tile_column, int tile_row) {
         double sum = 0, square = 0;
@@ -193,10 +187,10 @@ TEST(SubSurfaces, of_a_measured_surface_repeat_its_middle) {
                 0.001 * std::sin(2 * pi * (column - 30) / 20.0) * std::cos(2 * pi * (row - 25) / 25.0);
     map.height(30, 25) = std::numeric_limits<double>::quiet_NaN();
     surface::write_surface(file, map);
-    Description d = of(Kind::air, 0.16, 0.001);
+    auto d = over<Air>(0.16, 0.001);
     d.tiles = 2;
     d.file = file;
-    const Specimen made = make(d);
+    const Specimen made = make({.shape = d});
     const HeightField& field = field_of(made);
     ASSERT_EQ(field.heights.columns, 161);
     // A tile's middle lies between its points 39 and 40, at the file's point (30, 25). Levelling a wave of whole
@@ -210,15 +204,15 @@ TEST(SubSurfaces, of_a_measured_surface_repeat_its_middle) {
         gaps += gap;
     EXPECT_EQ(gaps, 4u * 4u); // two by two points of each of four tiles
     d.size = 0.3;
-    EXPECT_THROW(make(d), InputError); // tiles of 0.15 mm of a surface of 0.12 x 0.1 mm
+    EXPECT_THROW(make({.shape = d}), InputError); // tiles of 0.15 mm of a surface of 0.12 x 0.1 mm
     std::filesystem::remove(file);
 }
 
 TEST(SubSurfaces, other_seeds_make_other_surfaces) {
-    Description d = air();
-    const Specimen first = make(d);
+    Air d = air();
+    const Specimen first = make({.shape = d});
     d.seed = 4;
-    const Specimen second = make(d);
+    const Specimen second = make({.shape = d});
     double product = 0;
     for (std::size_t k = 0; k < field_of(first).heights.values.size(); ++k)
         product += static_cast<double>(field_of(first).heights.values[k] * field_of(second).heights.values[k]);
@@ -227,11 +221,11 @@ TEST(SubSurfaces, other_seeds_make_other_surfaces) {
 }
 
 TEST(Star, sectors_alternate_and_end_at_the_radius) {
-    Description d = of(Kind::star, 0.2, 0.001);
+    auto d = over<Star>(0.2, 0.001);
     d.petals = 8;
     d.radius = 0.08;
     d.height = 0.004;
-    const Specimen made = make(d);
+    const Specimen made = make({.shape = d});
     const HeightField& field = field_of(made);
     for (int half = 0; half < 16; ++half) {
         const double azimuth = (half + 0.5) * pi / 8;
@@ -242,17 +236,17 @@ TEST(Star, sectors_alternate_and_end_at_the_radius) {
 }
 
 TEST(Groove, has_its_width_and_depth) {
-    Description d = of(Kind::groove, 0.2, 0.001);
+    auto d = over<Groove>(0.2, 0.001);
     d.width = 0.05;
     d.depth = 0.003;
     d.wall = 0.004;
-    const Specimen made = make(d);
+    const Specimen made = make({.shape = d});
     const HeightField& field = field_of(made);
     EXPECT_FLOAT_EQ(static_cast<float>(at(field, 0.022, 0.05)), -0.003f);
     EXPECT_FLOAT_EQ(static_cast<float>(at(field, -0.025, 0)), -0.0015f); // the middle of the flank
     EXPECT_EQ(at(field, 0.028, 0), 0);
     d.width = 0.3;
-    EXPECT_THROW(make(d), InputError);
+    EXPECT_THROW(make({.shape = d}), InputError);
 }
 
 } // namespace

@@ -1,7 +1,9 @@
 // The analytic height function and the march, against closed forms and a plain search.
 #include "specimen/analytic.hpp"
 #include "specimen/intersector.hpp"
+#include "specimen/kinds.hpp"
 #include "specimen/rays.hpp"
+#include "specimen/shapes.hpp"
 
 #include <gtest/gtest.h>
 
@@ -43,43 +45,39 @@ struct FloatLattice {
     float lattice_at(int column, int row) const { return lattice->heights(column, row); }
 };
 
-Description analytic(Kind kind, double size = 0.2) {
-    Description d;
-    d.kind = kind;
-    d.representation = Representation::analytic;
-    d.size = size;
-    d.pitch = 0.0005;
-    return d;
+template <class OneKind>
+OneKind analytic(double size = 0.2) {
+    auto kind = test::over<OneKind>(size, 0.0005);
+    kind.representation = Representation::analytic;
+    return kind;
 }
 
-Description sphere_cap() {
-    Description d = analytic(Kind::sphere);
+Sphere sphere_cap() {
+    auto d = analytic<Sphere>();
     d.radius = 0.1;
     d.height = 0.03;
     return d;
 }
 
-Description rough_surface() {
-    Description d = analytic(Kind::rough, 0.05);
-    d.sq = 0.001;
-    d.correlation_length = 0.004;
-    d.seed = 3;
+Rough rough_surface() {
+    auto d = analytic<Rough>(0.05);
+    d.random = {.sq = 0.001, .correlation_length = 0.004, .seed = 3};
     return d;
 }
 
-struct Shape {
+struct Expected {
     const char* name;
-    Description description;
+    Shape shape;
     double (*height)(double x, double y);
 };
 
-std::vector<Shape> shapes() {
-    std::vector<Shape> list;
-    Description plane = analytic(Kind::plane);
+std::vector<Expected> shapes() {
+    std::vector<Expected> list;
+    auto plane = analytic<Plane>();
     plane.tilt_x = 0.1;
     plane.tilt_y = -0.2;
     list.push_back({"plane", plane, [](double x, double y) { return x * std::tan(0.1) - y * std::tan(0.2); }});
-    Description step = analytic(Kind::step);
+    auto step = analytic<Step>();
     step.height = 0.004;
     step.wall = 0.002;
     list.push_back({"step", step, [](double x, double) {
@@ -89,17 +87,17 @@ std::vector<Shape> shapes() {
                         const double r2 = x * x + y * y;
                         return r2 < 0.01 ? std::max(std::sqrt(0.01 - r2) - 0.07, 0.0) : 0.0;
                     }});
-    Description dimple = sphere_cap();
+    Sphere dimple = sphere_cap();
     dimple.height = -0.02;
     list.push_back({"dimple", dimple, [](double x, double y) {
                         const double r2 = x * x + y * y;
                         return r2 < 0.01 ? std::min(0.08 - std::sqrt(0.01 - r2), 0.0) : 0.0;
                     }});
-    Description sinusoid = analytic(Kind::sinusoid);
+    auto sinusoid = analytic<Sinusoid>();
     sinusoid.amplitude = 0.001;
     sinusoid.period = 0.013;
     list.push_back({"sinusoid", sinusoid, [](double x, double) { return 0.001 * std::sin(2 * pi * x / 0.013); }});
-    Description chirp = analytic(Kind::chirp);
+    auto chirp = analytic<Chirp>();
     chirp.amplitude = 0.001;
     chirp.period = 0.04;
     chirp.period_stop = 0.01;
@@ -113,41 +111,41 @@ std::vector<Shape> shapes() {
 
 TEST(SurfaceFunction, HeightsOfEveryShapeAreTheClosedForms) {
     RandomRays random(1);
-    for (const Shape& shape : shapes()) {
-        const Specimen specimen = make(shape.description);
+    for (const Expected& one : shapes()) {
+        const Specimen specimen = make({.shape = one.shape});
         const auto r = record(specimen, 1);
         const auto f = to_float(r);
         for (int i = 0; i < 2000; ++i) {
             const double x = random.uniform(-0.1, 0.1);
             const double y = random.uniform(-0.1, 0.1);
-            const double expected = shape.height(x, y);
+            const double expected = one.height(x, y);
             const auto found = physics::f64::shape_height(r, x, y);
             // Heights up to 0.04 mm of terms up to 0.1 mm: some roundings of 2^-53 of 0.1, and a sine of up
             // to 12 turns.
-            EXPECT_NEAR(found.height, expected, 1e-16) << shape.name << " at " << x << ", " << y;
+            EXPECT_NEAR(found.height, expected, 1e-16) << one.name << " at " << x << ", " << y;
             EXPECT_LE(std::hypot(found.slope_x, found.slope_y), r.lipschitz);
             EXPECT_GE(found.height, r.bottom);
             EXPECT_LE(found.height, r.top);
             // Float: x is wrong by 2^-24 of 0.1, which the slope passes on, and the sum by some more.
             const double tolerance = 6e-8 * (0.1 + 4 * 0.2 * r.lipschitz);
             const auto in_float = physics::f32::shape_height(f, static_cast<float>(x), static_cast<float>(y));
-            EXPECT_NEAR(static_cast<double>(in_float.height), expected, tolerance) << shape.name;
+            EXPECT_NEAR(static_cast<double>(in_float.height), expected, tolerance) << one.name;
         }
     }
 }
 
 TEST(SurfaceFunction, SlopesAreTheDerivatives) {
     RandomRays random(2);
-    std::vector<Description> descriptions{rough_surface()};
-    for (const Shape& shape : shapes()) {
-        descriptions.push_back(shape.description);
+    std::vector<Shape> all{rough_surface()};
+    for (const Expected& one : shapes()) {
+        all.push_back(one.shape);
     }
-    for (const Description& description : descriptions) {
-        const Specimen specimen = make(description);
+    for (const Shape& shape : all) {
+        const Specimen specimen = make({.shape = shape});
         const auto r = record(specimen, 1);
         const Analytic& geometry = std::get<Analytic>(specimen.geometry);
         const LatticeScene scene{geometry.lattice ? &*geometry.lattice : nullptr};
-        const double half = 0.499 * description.size;
+        const double half = 0.499 * size_of(shape);
         const double h = 1e-7;
         int kinks = 0;
         for (int i = 0; i < 1000; ++i) {
@@ -168,11 +166,11 @@ TEST(SurfaceFunction, SlopesAreTheDerivatives) {
 }
 
 TEST(SurfaceFunction, ChirpHasTheNumberOfPeriodsOfALinearSweep) {
-    Description d = analytic(Kind::chirp);
+    auto d = analytic<Chirp>();
     d.amplitude = 0.001;
     d.period = 0.04;
     d.period_stop = 0.01;
-    const auto r = record(make(d), 1);
+    const auto r = record(make({.shape = d}), 1);
     int crossings = 0;
     double before = physics::f64::shape_height(r, -0.1 + 1e-6, 0).height;
     for (double x = -0.1 + 2e-6; x < 0.1 - 1e-6; x += 1e-6) {
@@ -186,7 +184,7 @@ TEST(SurfaceFunction, ChirpHasTheNumberOfPeriodsOfALinearSweep) {
 }
 
 TEST(SurfaceFunction, LatticeIsInterpolatedWithContinuousSlopeWithinItsBounds) {
-    const Specimen specimen = make(rough_surface());
+    const Specimen specimen = make({.shape = rough_surface()});
     const auto r = record(specimen, 1);
     const HeightField& lattice = *std::get<Analytic>(specimen.geometry).lattice;
     const LatticeScene scene{&lattice};
@@ -228,7 +226,7 @@ TEST(SurfaceFunction, LatticeIsInterpolatedWithContinuousSlopeWithinItsBounds) {
 }
 
 TEST(March, MeetsASphereWhereTheClosedFormDoes) {
-    const Specimen specimen = make(sphere_cap());
+    const Specimen specimen = make({.shape = sphere_cap()});
     const auto r = record(specimen, 1);
     const auto f = to_float(r);
     const Intersector intersector(specimen);
@@ -283,7 +281,7 @@ TEST(March, MeetsASphereWhereTheClosedFormDoes) {
 }
 
 TEST(March, FindsTheFirstCrossingOfARoughSurface) {
-    const Specimen specimen = make(rough_surface());
+    const Specimen specimen = make({.shape = rough_surface()});
     const auto r = record(specimen, 1);
     const auto f = to_float(r);
     const Intersector intersector(specimen);
@@ -373,7 +371,7 @@ int meetings_after_leaving(const Record& r, March march, double offset) {
 }
 
 TEST(March, LetsGoOfAConvexSurface) {
-    const auto r = record(make(sphere_cap()), 1);
+    const auto r = record(make({.shape = sphere_cap()}), 1);
     const auto f = to_float(r);
     // The offset of scatter_origin in path.glsl: 2^-20 of the largest coordinate.
     EXPECT_EQ(0, meetings_after_leaving<float>(
@@ -400,10 +398,10 @@ TEST(March, LetsGoOfAConvexSurface) {
 }
 
 TEST(March, StartBelowIsMetAtOnceAndEntryBelowFromBelow) {
-    Description d = analytic(Kind::sinusoid);
+    auto d = analytic<Sinusoid>();
     d.amplitude = 0.002;
     d.period = 0.05;
-    const auto r = record(make(d), 1);
+    const auto r = record(make({.shape = d}), 1);
     const auto march = [&](glm::dvec3 origin, glm::dvec3 direction) {
         return physics::f64::march_surface(LatticeScene{}, r, origin, glm::normalize(direction), 0.0, infinity);
     };
@@ -423,8 +421,8 @@ TEST(March, StartBelowIsMetAtOnceAndEntryBelowFromBelow) {
 }
 
 TEST(March, MeetsALevelPlaneFromItsTopAndAStepOnItsFlank) {
-    Description level = analytic(Kind::plane);
-    const auto plane = record(make(level), 1);
+    auto level = analytic<Plane>();
+    const auto plane = record(make({.shape = level}), 1);
     const auto on_plane = physics::f64::march_surface(LatticeScene{}, plane, glm::dvec3(0.01, 0, plane.top),
                                                       glm::dvec3(0, 0, -1), 0.0, infinity);
     EXPECT_EQ(on_plane.found, 1u);
@@ -434,10 +432,10 @@ TEST(March, MeetsALevelPlaneFromItsTopAndAStepOnItsFlank) {
                                     glm::vec3(0, 0, -1), 0.0f, 1e30f);
     EXPECT_EQ(in_float.found, 1u);
 
-    Description d = analytic(Kind::step);
+    auto d = analytic<Step>();
     d.height = 0.004;
     d.wall = 0.001;
-    const auto step = record(make(d), 1);
+    const auto step = record(make({.shape = d}), 1);
     EXPECT_NEAR(step.lipschitz, 4, 1e-5);
     // Level rays from the low side meet the flank z = 4 x at their own height.
     for (const double z : {-0.0015, 0.0, 0.001, 0.0019}) {

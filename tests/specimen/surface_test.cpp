@@ -1,7 +1,7 @@
 // A surface file as specimen: where its points come to stand, levelled, cropped and filled.
 #include "images/image_file.hpp"
-#include "specimen/analytic.hpp"
 #include "specimen/description.hpp"
+#include "specimen/refined.hpp"
 #include "support/surface_files.hpp"
 #include "surface_files/surface_file.hpp"
 
@@ -17,14 +17,6 @@
 namespace vkfv::specimen {
 namespace {
 
-Description described(const std::filesystem::path& file) {
-    Description description;
-    description.kind = Kind::surface;
-    description.file = file;
-    description.unit = 0;
-    return description;
-}
-
 class SurfaceSpecimen : public testing::Test {
   protected:
     SurfaceSpecimen()
@@ -32,11 +24,11 @@ class SurfaceSpecimen : public testing::Test {
                 ("vkfv_surface_specimen_" + std::to_string(::getpid()) + ".x3p")) {}
     ~SurfaceSpecimen() override { std::filesystem::remove(file_); }
 
-    HeightField field(const surface::HeightMap& map, const std::function<void(Description&)>& change) const {
+    HeightField field(const surface::HeightMap& map, const std::function<void(SurfaceFile&)>& change) const {
         surface::write_surface(file_, map);
-        Description description = described(file_);
-        change(description);
-        return std::get<HeightField>(make(description).geometry);
+        SurfaceFile shape{.file = file_};
+        change(shape);
+        return std::get<HeightField>(make({.shape = shape}).geometry);
     }
     std::filesystem::path file_;
 };
@@ -57,7 +49,7 @@ surface::HeightMap bump() {
 
 TEST_F(SurfaceSpecimen, StandsCentredAndAsItIs) {
     const auto map = bump();
-    const HeightField whole = field(map, [](Description& d) { d.level = false; });
+    const HeightField whole = field(map, [](SurfaceFile& d) { d.level = false; });
     EXPECT_EQ(whole.heights.columns, 21);
     EXPECT_NEAR(whole.x_min, -0.02, 1e-12);
     EXPECT_NEAR(whole.x_max(), 0.02, 1e-12);
@@ -68,7 +60,7 @@ TEST_F(SurfaceSpecimen, StandsCentredAndAsItIs) {
 }
 
 TEST_F(SurfaceSpecimen, IsLevelledByLeastSquares) {
-    const HeightField levelled = field(bump(), [](Description&) {});
+    const HeightField levelled = field(bump(), [](SurfaceFile&) {});
     double sum = 0, moment_x = 0, moment_y = 0;
     for (int row = 0; row < 11; ++row)
         for (int column = 0; column < 21; ++column) {
@@ -87,7 +79,7 @@ TEST_F(SurfaceSpecimen, IsLevelledByLeastSquares) {
 
 TEST_F(SurfaceSpecimen, IsCroppedAroundItsCentre) {
     const auto map = bump();
-    const HeightField part = field(map, [](Description& d) {
+    const HeightField part = field(map, [](SurfaceFile& d) {
         d.size = 0.012;
         d.level = false;
     });
@@ -97,7 +89,7 @@ TEST_F(SurfaceSpecimen, IsCroppedAroundItsCentre) {
     EXPECT_NEAR(part.y_min, -0.006, 1e-12);
     EXPECT_EQ(part.heights(0, 0), static_cast<float>(map.height(7, 3)));
     EXPECT_EQ(part.heights(1, 0), static_cast<float>(map.height(8, 3))) << "the bump";
-    EXPECT_THROW(field(map, [](Description& d) { d.size = 0.031; }), InputError);
+    EXPECT_THROW(field(map, [](SurfaceFile& d) { d.size = 0.031; }), InputError);
 }
 
 // A gap is filled for the trace, and unknown to the truth wherever a facet has one of its corners.
@@ -106,7 +98,7 @@ TEST_F(SurfaceSpecimen, GapsAreTracedButNotTrue) {
     map.height(8, 3) = 2.0065;
     const auto whole = map;
     map.height(12, 6) = std::numeric_limits<double>::quiet_NaN();
-    const HeightField filled = field(map, [](Description& d) { d.level = false; });
+    const HeightField filled = field(map, [](SurfaceFile& d) { d.level = false; });
     // The slope continues through the gap: it solves Laplace's equation; float32 of 2 mm.
     EXPECT_NEAR(filled.heights(12, 6), whole.height(12, 6), 2.5e-7);
     const surface::HeightMap true_heights = truth({filled, {}}, 40, 20, -0.0195, -0.0095, 0.001, 0.001);
@@ -130,12 +122,12 @@ TEST_F(SurfaceSpecimen, ImagesOfHeightsTakePitchAndUnit) {
     Grid<float> values(3, 2);
     values.values = {0, 1, 2, 3, 4, 5};
     surface::write_tiff(file, values);
-    Description description = described(file);
-    EXPECT_THROW((void)make(description), InputError);
-    description.pitch = 0.5;
-    description.unit = 1e-3;
-    description.level = false;
-    const auto field = std::get<HeightField>(make(description).geometry);
+    SurfaceFile shape{.file = file};
+    EXPECT_THROW((void)make({.shape = shape}), InputError);
+    shape.pitch = 0.5;
+    shape.unit = 1e-3;
+    shape.level = false;
+    const auto field = std::get<HeightField>(make({.shape = shape}).geometry);
     EXPECT_EQ(field.pitch_x, 0.5);
     EXPECT_EQ(field.heights(2, 1), 5e-3f);
     std::filesystem::remove(file);
@@ -145,7 +137,7 @@ TEST_F(SurfaceSpecimen, NothingMeasuredIsRefused) {
     auto map = bump();
     for (double& z : map.height.values)
         z = std::numeric_limits<double>::quiet_NaN();
-    EXPECT_THROW(field(map, [](Description&) {}), InputError);
+    EXPECT_THROW(field(map, [](SurfaceFile&) {}), InputError);
 }
 
 // A file's points may lie further apart than the roughness needs them.

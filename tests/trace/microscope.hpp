@@ -29,15 +29,11 @@ inline optics::Instrument microscope() {
 // Rough enough that light meets it more than once. Only slopes above 3.5 turn back light that is within the pupil,
 // which steep_specimen() has.
 inline specimen::Specimen rough_specimen(double g = 0.65, double sq = 0.003, double correlation_length = 0.012) {
-    specimen::Description description;
-    description.kind = specimen::Kind::rough;
-    description.size = 0.3;
-    description.pitch = 0.001;
-    description.sq = sq;
-    description.correlation_length = correlation_length;
-    description.seed = 5;
-    description.material = specimen::Material::henyey_greenstein(g);
-    return specimen::make(description);
+    specimen::Rough rough;
+    rough.size = 0.3;
+    rough.pitch = 0.001;
+    rough.random = {.sq = sq, .correlation_length = correlation_length, .seed = 5};
+    return specimen::make({.shape = rough, .material = specimen::Material::henyey_greenstein(g)});
 }
 
 inline specimen::Specimen steep_specimen(double g) {
@@ -45,12 +41,10 @@ inline specimen::Specimen steep_specimen(double g) {
 }
 
 inline specimen::Specimen plane_specimen(double g) {
-    specimen::Description description;
-    description.kind = specimen::Kind::plane;
-    description.size = 0.4;
-    description.pitch = 0.01;
-    description.material = specimen::Material::henyey_greenstein(g);
-    return specimen::make(description);
+    specimen::Plane plane;
+    plane.size = 0.4;
+    plane.pitch = 0.01;
+    return specimen::make({.shape = plane, .material = specimen::Material::henyey_greenstein(g)});
 }
 
 } // namespace vkfv::test

@@ -1,7 +1,8 @@
-#include "specimen/files.hpp"
-#include "specimen/standards.hpp"
+#include "specimen/kinds/plateaus.hpp"
 
 #include "core/file.hpp"
+#include "core/section.hpp"
+#include "specimen/files.hpp"
 
 #include <OpenImageIO/imagebuf.h>
 #include <OpenImageIO/imagebufalgo.h>
@@ -15,12 +16,26 @@
 namespace vkfv::specimen {
 namespace {
 
-[[noreturn]] void fail(const Description& d, const std::string& key, const std::string& found,
+const NumberKey sq_key("sq_um", NumberRange::at_least(0), 0.0,
+                       "Root mean square of random heights over plateaus and ground.");
+const NumbersKey heights_key = for_example(
+    "[2.0]", NumbersKey("heights_um", NumberRange::finite(), Default::none(),
+                        "Of the plateaus over the ground: one for each, from left to right or from dark to bright, or "
+                        "one for all."));
+const TextKey text_key("text", Default::in_words("none: the plateaus are those of file"), "Letters, each a plateau.");
+const TextKey font_key("font", Default::of(std::string("DejaVuSans-Bold")),
+                       "Of the letters: a name that OpenImageIO finds, or a file.");
+const NumberKey text_width_key("text_width_mm", NumberRange::positive(), Default::in_words("0.8 of the size"),
+                               "From the first letter's left to the last one's right.");
+const FileKey file_key("file", Default::in_words("none: the plateaus are letters"),
+                       "An image whose grey values other than black are plateaus, from dark to bright.");
+
+[[noreturn]] void fail(const SourceLocation& where, const std::string& key, const std::string& found,
                        const std::string& expected, const std::string& remedy) {
-    throw InputError({d.where, "specimen." + key, found, expected, remedy});
+    throw InputError({where, "specimen." + key, found, expected, remedy});
 }
 
-double height_of(const Description& d, std::size_t plateau) {
+double height_of(const Plateaus& d, std::size_t plateau) {
     return d.heights[d.heights.size() == 1 ? 0 : plateau];
 }
 
@@ -33,7 +48,7 @@ struct Letter {
     OIIO::ROI ink; // of the letter alone, its origin on the baseline
 };
 
-std::vector<Letter> letters_of(const Description& d, int font_size) {
+std::vector<Letter> letters_of(const Plateaus& d, int font_size, const SourceLocation& where) {
     std::vector<Letter> letters;
     for (const char character : d.text) {
         Letter letter{std::string(1, character), {}};
@@ -41,7 +56,7 @@ std::vector<Letter> letters_of(const Description& d, int font_size) {
             letter.ink = OIIO::ImageBufAlgo::text_size(letter.character, font_size, d.font);
             if (!letter.ink.defined() || letter.ink.width() < 1) {
                 const std::string reason = OIIO::geterror();
-                fail(d, "font", fmt::format("{}: no letter '{}' ({})", d.font, letter.character, reason),
+                fail(where, "font", fmt::format("{}: no letter '{}' ({})", d.font, letter.character, reason),
                      "a font that has the letters of specimen.text; looked for in $OPENIMAGEIO_FONTS, and in fonts and "
                      "share/fonts of the home folder, /usr and /usr/local, with the folders in them",
                      "Install the font (tools/setup brings \"DejaVuSans-Bold\"), give the file of one, or draw the "
@@ -60,40 +75,40 @@ double width_of(const std::vector<Letter>& letters, int font_size) {
     return width;
 }
 
-void set_text(HeightField& field, const Description& d) {
+void set_text(HeightField& field, const Plateaus& d, const SourceLocation& where) {
     const auto count = static_cast<std::size_t>(
         std::count_if(d.text.begin(), d.text.end(), [](char character) { return character != ' '; }));
     if (count == 0)
-        fail(d, "text", '"' + d.text + '"', "at least one letter", "Write what the plateaus are to read.");
+        fail(where, "text", '"' + d.text + '"', "at least one letter", "Write what the plateaus are to read.");
     if (d.heights.size() != 1 && d.heights.size() != count)
-        fail(d, "heights_um", fmt::format("{} heights", d.heights.size()),
+        fail(where, "heights_um", fmt::format("{} heights", d.heights.size()),
              fmt::format("one, or one for each of the {} letters", count), "Give each letter its height.");
     if (!(d.text_width > 0 && d.text_width <= d.size))
-        fail(d, "text_width_mm", fmt::format("{}", d.text_width),
+        fail(where, "text_width_mm", fmt::format("{}", d.text_width),
              fmt::format("a positive length, at most the specimen's {}", d.size),
              "Choose narrower text or a larger specimen.");
     // Each letter is drawn over the whole grid.
     constexpr double most_drawn_points = 0x1p31; // some tens of seconds
     const double points = static_cast<double>(field.heights.values.size());
     if (static_cast<double>(count) * points > most_drawn_points)
-        fail(d, "text",
+        fail(where, "text",
              fmt::format("{} letters on a grid of {} x {} points", count, field.heights.columns, field.heights.rows),
              fmt::format("at most {:.0f} letters on so fine a grid", most_drawn_points / points),
              "Choose a coarser pitch_um or less text, or draw the letters as an image and name it in specimen.file.");
     // Widths follow the font's size; it is found from those at a large one.
     constexpr int trial = 1000;
     const double wanted = d.text_width / field.pitch_x;
-    const int font_size = static_cast<int>(std::floor(trial * wanted / width_of(letters_of(d, trial), trial)));
+    const int font_size = static_cast<int>(std::floor(trial * wanted / width_of(letters_of(d, trial, where), trial)));
     if (font_size < 8)
-        fail(d, "text_width_mm", fmt::format("{}", d.text_width), "letters of at least 8 points of the grid",
+        fail(where, "text_width_mm", fmt::format("{}", d.text_width), "letters of at least 8 points of the grid",
              "Choose wider text, less of it, or a finer pitch.");
     // A thin letter as wide as the specimen would be far higher.
     constexpr int highest = 8;
     if (font_size > highest * field.heights.rows)
-        fail(d, "text_width_mm", fmt::format("{}", d.text_width),
+        fail(where, "text_width_mm", fmt::format("{}", d.text_width),
              fmt::format("letters at most {} times as high as the specimen", highest),
              "Choose narrower text, or more of it.");
-    const std::vector<Letter> letters = letters_of(d, font_size);
+    const std::vector<Letter> letters = letters_of(d, font_size, where);
     // The text's bounding box has its middle on the axis.
     int top = 0, bottom = 0;
     bool first = true;
@@ -114,7 +129,7 @@ void set_text(HeightField& field, const Description& d) {
             const float white = 1;
             if (!OIIO::ImageBufAlgo::render_text(mask, static_cast<int>(std::lround(x)) - letter.ink.xbegin, baseline,
                                                  letter.character, font_size, d.font, OIIO::cspan<float>(&white, 1)))
-                fail(d, "text", letter.character, "a letter that OpenImageIO can draw: " + mask.geterror(),
+                fail(where, "text", letter.character, "a letter that OpenImageIO can draw: " + mask.geterror(),
                      "Draw the letters as an image and name it in specimen.file.");
             // The image's first row is the highest.
             for (int row = 0; row < rows; ++row)
@@ -127,12 +142,12 @@ void set_text(HeightField& field, const Description& d) {
     }
 }
 
-void set_mask(HeightField& field, const Description& d) {
-    const Grid<float> mask = read_image(d.file, d.where);
+void set_mask(HeightField& field, const Plateaus& d, const SourceLocation& where) {
+    const Grid<float> mask = read_image(d.file, where);
     std::set<float> levels(mask.values.begin(), mask.values.end());
     levels.erase(0.0f);
     if (levels.empty() || (d.heights.size() != 1 && d.heights.size() != levels.size()))
-        fail(d, "heights_um", fmt::format("{} heights", d.heights.size()),
+        fail(where, "heights_um", fmt::format("{} heights", d.heights.size()),
              fmt::format("one, or one for each of the {} grey values other than black in {}", levels.size(),
                          d.file.string()),
              "Give each plateau its height; smoothed edges are grey values too, so save the mask without them.");
@@ -152,17 +167,48 @@ void set_mask(HeightField& field, const Description& d) {
 
 } // namespace
 
-HeightField plateaus(const Description& d, double pitch) {
-    HeightField field = level_field(d, pitch);
-    if (d.file.empty()) {
-        // A font's file is opened by a library that would wait for a pipe.
-        std::error_code none;
-        if (std::filesystem::exists(d.font, none))
-            (void)InputFile(d.font, {.key = "specimen.font", .expected = "the file of a font"});
-        set_text(field, d);
-    } else
-        set_mask(field, d);
-    return field;
+std::vector<const Key*> Plateaus::keys() {
+    auto keys = square_keys(random_heights_keys(sq_key));
+    keys.insert(keys.end(), {&heights_key, &text_key, &font_key, &text_width_key, &file_key});
+    return keys;
+}
+
+Plateaus Plateaus::read(const Section& section) {
+    Plateaus plateaus;
+    read_square(section, plateaus);
+    const double sq = from_um(section.number(sq_key));
+    plateaus.random = read_random_heights(section, sq, plateaus.pitch);
+    for (const double height : section.numbers(heights_key)) {
+        plateaus.heights.push_back(from_um(height));
+    }
+    if (section.has(text_key) == section.has(file_key)) {
+        section.fail(section.has(text_key) ? static_cast<const Key&>(file_key) : text_key, "either text or file",
+                     "Give the letters as text, or a mask of the plateaus as file.");
+    }
+    if (section.has(text_key)) {
+        plateaus.text = section.text(text_key);
+        plateaus.font = section.text(font_key);
+        plateaus.text_width = section.number(text_width_key, 0.8 * plateaus.size);
+    }
+    plateaus.file = section.file_if_given(file_key).value_or(std::filesystem::path());
+    return plateaus;
+}
+
+void Plateaus::raise(HeightField& field, double, const SourceLocation& where) const {
+    if (!file.empty()) {
+        set_mask(field, *this, where);
+        return;
+    }
+    // A font's file is opened by a library that would wait for a pipe.
+    std::error_code none;
+    if (std::filesystem::exists(font, none)) {
+        (void)InputFile(font, {.key = "specimen.font", .expected = "the file of a font"});
+    }
+    set_text(field, *this, where);
+}
+
+std::optional<RandomHeights> Plateaus::random_heights() const {
+    return random.sq > 0 ? std::optional(random) : std::nullopt;
 }
 
 } // namespace vkfv::specimen

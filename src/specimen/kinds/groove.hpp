@@ -1,0 +1,22 @@
+// place: 10
+#pragma once
+
+#include "specimen/square.hpp"
+
+namespace vkfv::specimen {
+
+// Along y, below the level.
+struct Groove : Square {
+    double width = 0; // between the middles of its flanks, mm
+    double depth = 0; // mm
+    double wall = 0;  // width of a flank, mm; 0: one pitch
+
+    static constexpr const char* name = "groove";
+    static constexpr const char* meaning = "A groove along y.";
+    static std::vector<const Key*> keys();
+    static Groove read(const Section& section);
+    void raise(HeightField& field, double asked_pitch, const SourceLocation& where) const;
+    bool operator==(const Groove&) const = default;
+};
+
+} // namespace vkfv::specimen

@@ -1,0 +1,20 @@
+// place: 1
+#pragma once
+
+#include "specimen/square.hpp"
+
+namespace vkfv::specimen {
+
+// Level, or tilted.
+struct Plane : Continuous {
+    double tilt_x = 0, tilt_y = 0; // slope angles along x and y, rad
+
+    static constexpr const char* name = "plane";
+    static constexpr const char* meaning = "A plane, level or tilted.";
+    static std::vector<const Key*> keys();
+    static Plane read(const Section& section);
+    Analytic function(const SourceLocation& where) const;
+    bool operator==(const Plane&) const = default;
+};
+
+} // namespace vkfv::specimen

@@ -1,0 +1,21 @@
+// place: 3
+#pragma once
+
+#include "specimen/square.hpp"
+
+namespace vkfv::specimen {
+
+// A cap on a plane, or a dimple in it.
+struct Sphere : Continuous {
+    double radius = 0; // of the sphere, mm
+    double height = 0; // of the cap over the plane, mm; negative: a dimple
+
+    static constexpr const char* name = "sphere";
+    static constexpr const char* meaning = "The cap of a sphere on a plane, or a dimple in it.";
+    static std::vector<const Key*> keys();
+    static Sphere read(const Section& section);
+    Analytic function(const SourceLocation& where) const;
+    bool operator==(const Sphere&) const = default;
+};
+
+} // namespace vkfv::specimen

@@ -1,0 +1,21 @@
+// place: 2
+#pragma once
+
+#include "specimen/square.hpp"
+
+namespace vkfv::specimen {
+
+// Between two levels, with a straight flank along y.
+struct Step : Continuous {
+    double height = 0; // of the upper level, at x > 0, over the lower one; mm
+    double wall = 0;   // width of the flank, mm; 0: one pitch
+
+    static constexpr const char* name = "step";
+    static constexpr const char* meaning = "A step between two levels, along y through the middle.";
+    static std::vector<const Key*> keys();
+    static Step read(const Section& section);
+    Analytic function(const SourceLocation& where) const;
+    bool operator==(const Step&) const = default;
+};
+
+} // namespace vkfv::specimen

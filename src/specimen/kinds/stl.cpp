@@ -1,0 +1,27 @@
+#include "specimen/kinds/stl.hpp"
+
+#include "specimen/file_keys.hpp"
+
+namespace vkfv::specimen {
+namespace {
+
+// STL has no unit, and millimetres are its custom.
+const ChoiceKey<double> mesh_unit_key = unit_key(1.0, "Of the file, which does not say it.");
+
+} // namespace
+
+std::vector<const Key*> Stl::keys() {
+    return mesh_file_keys(mesh_unit_key);
+}
+
+Stl Stl::read(const Section& section) {
+    Stl mesh;
+    read_mesh_file(section, mesh_unit_key, mesh);
+    return mesh;
+}
+
+Mesh Stl::mesh(const SourceLocation& mention) const {
+    return placed_mesh(read_stl(file, mention), *this, mention);
+}
+
+} // namespace vkfv::specimen

@@ -1,0 +1,160 @@
+#include "specimen/random_heights.hpp"
+
+#include "core/section.hpp"
+
+#include <fmt/format.h>
+
+#include <cmath>
+#include <numeric>
+#include <random>
+
+namespace vkfv::specimen {
+namespace {
+
+constexpr std::int64_t largest_seed = 0xffffffffll; // seeds are 32-bit words
+
+const NumberKey correlation_length_key =
+    for_example("5.0", NumberKey("correlation_length_um", NumberRange::positive(),
+                                 Default::in_words("none: it is needed where sq_um is not 0"),
+                                 "Distance over which the autocorrelation of the random heights falls to 1/e."));
+
+const IntegerKey random_seed_key("seed", 0, largest_seed, 1, "Of the random numbers that the surface is made of.");
+
+void subtract_mean(Grid<double>& grid) {
+    const double mean =
+        std::reduce(grid.values.begin(), grid.values.end(), 0.0) / static_cast<double>(grid.values.size());
+    for (double& value : grid.values) {
+        value -= mean;
+    }
+}
+
+// One direction of the separable filter: `rows` lines of `columns` points each, periodic.
+void filter_lines(Grid<double>& grid, const std::vector<double>& weights) {
+    const int radius = static_cast<int>(weights.size()) - 1; // weights[k] at distance k
+    const int columns = grid.columns;
+    std::vector<double> padded(static_cast<std::size_t>(columns + 2 * radius));
+    for (int row = 0; row < grid.rows; ++row) {
+        for (int i = 0; i < columns + 2 * radius; ++i) {
+            const int column = ((i - radius) % columns + columns) % columns;
+            padded[static_cast<std::size_t>(i)] = grid(column, row);
+        }
+        for (int column = 0; column < columns; ++column) {
+            const double* centre = padded.data() + column + radius;
+            double sum = weights[0] * centre[0];
+            for (int k = 1; k <= radius; ++k) {
+                sum += weights[static_cast<std::size_t>(k)] * (centre[k] + centre[-k]);
+            }
+            grid(column, row) = sum;
+        }
+    }
+}
+
+Grid<double> transposed(const Grid<double>& grid) {
+    Grid<double> result(grid.rows, grid.columns);
+    for (int row = 0; row < grid.rows; ++row) {
+        for (int column = 0; column < grid.columns; ++column) {
+            result(row, column) = grid(column, row);
+        }
+    }
+    return result;
+}
+
+} // namespace
+
+double root_mean_square(const Grid<double>& grid) {
+    const double sum = std::inner_product(grid.values.begin(), grid.values.end(), grid.values.begin(), 0.0);
+    return std::sqrt(sum / static_cast<double>(grid.values.size()));
+}
+
+void add_random_heights(HeightField& field, const RandomHeights& random, double size, const SourceLocation& where) {
+    require_um(std::isfinite(random.sq) && random.sq >= 0, where, "sq_um", random.sq, "a length, 0 or more");
+    require_um(positive(random.correlation_length) && random.correlation_length <= size, where, "correlation_length_um",
+               random.correlation_length, "a positive length, at most the size");
+    Grid<double> noise = filtered_noise(field.heights.columns, field.heights.rows,
+                                        0.5 * random.correlation_length / field.pitch_x, random.seed);
+    subtract_mean(noise);
+    const double scale = random.sq / root_mean_square(noise);
+    for (std::size_t i = 0; i < noise.values.size(); ++i) {
+        field.heights.values[i] += static_cast<float>(scale * noise.values[i]);
+    }
+}
+
+std::vector<const Key*> random_heights_keys(const NumberKey& sq) {
+    return {&sq, &correlation_length_key, &random_seed_key};
+}
+
+RandomHeights read_random_heights(const Section& section, double sq, double pitch) {
+    RandomHeights random{.sq = sq, .correlation_length = pitch}; // of heights that are all zero
+    if (sq > 0 || section.has(correlation_length_key)) {
+        random.correlation_length = from_um(section.number(correlation_length_key));
+    }
+    random.seed = read_seed(section);
+    return random;
+}
+
+const Key& seed_key() {
+    return random_seed_key;
+}
+
+std::uint32_t read_seed(const Section& section) {
+    return static_cast<std::uint32_t>(section.integer(random_seed_key));
+}
+
+Grid<double> filtered_noise(int columns, int rows, double kernel, std::uint32_t seed) {
+    Grid<double> noise(columns, rows);
+    std::mt19937_64 generator(seed);
+    // 53 bits to the middle of a cell of (0, 1); the distributions of the standard library differ between
+    // libraries.
+    const auto uniform = [&] { return (static_cast<double>(generator() >> 11) + 0.5) * 0x1p-53; };
+    for (std::size_t i = 0; i < noise.values.size(); i += 2) {
+        // G. E. P. Box, M. E. Muller, "A note on the generation of random normal deviates" (1958).
+        const double r = std::sqrt(-2 * std::log(uniform()));
+        const double phi = 2 * pi * uniform();
+        noise.values[i] = r * std::cos(phi);
+        if (i + 1 < noise.values.size()) {
+            noise.values[i + 1] = r * std::sin(phi);
+        }
+    }
+    if (kernel > 0) {
+        // Beyond six standard deviations a weight is below 2e-8 of the first.
+        std::vector<double> weights(static_cast<std::size_t>(std::ceil(6 * kernel)) + 1);
+        double sum = 0;
+        for (std::size_t k = 0; k < weights.size(); ++k) {
+            const double z = static_cast<double>(k) / kernel;
+            weights[k] = std::exp(-0.5 * z * z);
+            sum += (k == 0 ? 1 : 2) * weights[k];
+        }
+        for (double& weight : weights) {
+            weight /= sum;
+        }
+        filter_lines(noise, weights);
+        noise = transposed(noise);
+        filter_lines(noise, weights);
+        noise = transposed(noise);
+    }
+    return noise;
+}
+
+// The filter takes 12 standard deviations of points for every point, in both directions, beside the drawing of its
+// random numbers.
+void check_work_of_noise(double width, double height, double pitch, double deviation, const SourceLocation& where,
+                         const std::string& key) {
+    constexpr double most_steps = 0x1p34;    // half a minute of one processor core
+    constexpr double steps_of_drawing = 256; // and of the memory, 1.6 GB for the 2^26 points that this leaves at most
+    const double columns = std::ceil(width / pitch) + 1, rows = std::ceil(height / pitch) + 1;
+    const double points = columns * rows, taps = 12 * deviation / pitch;
+    if (!(points * (steps_of_drawing + taps) > most_steps)) {
+        return;
+    }
+    // Coarse enough for either part to take half of them.
+    const double area = width * height;
+    const double least = std::max(std::cbrt(2 * 12 * deviation * area / most_steps),
+                                  std::sqrt(2 * steps_of_drawing * area / most_steps));
+    throw InputError(
+        {where, "specimen." + key, fmt::format("{:.6g}", pitch * um_per_mm),
+         fmt::format("a pitch that makes fewer points than {:.6g} x {:.6g}, each a mean over {:.3g} others", columns,
+                     rows, 2 * taps),
+         fmt::format("Choose {} >= {:.3g}, or a smaller specimen.", key, least * um_per_mm)});
+}
+
+} // namespace vkfv::specimen

@@ -1,0 +1,47 @@
+// What the kinds of specimens share that are made by a rule over a square footprint, centred on the axis.
+#pragma once
+
+#include "specimen/lengths.hpp"
+#include "specimen/specimen.hpp"
+
+#include <array>
+#include <vector>
+
+namespace vkfv {
+class Key;
+class Section;
+} // namespace vkfv
+
+namespace vkfv::specimen {
+
+struct Square {
+    double size = 0;  // side, mm
+    double pitch = 0; // of the facets' grid, mm; adjusted to divide the size
+
+    bool operator==(const Square&) const = default;
+};
+
+enum class Representation { facets, analytic };
+
+// Of kinds whose surface is a continuous function too.
+struct Continuous : Square {
+    Representation representation = Representation::facets;
+
+    // The function `shape` of physics/surface_function.glsl (SHAPE_STEP) over the footprint.
+    Analytic function_of(std::uint32_t shape, const std::array<double, 4>& parameters = {}) const;
+
+    bool operator==(const Continuous&) const = default;
+};
+
+// The keys of the bases, followed by those of a kind.
+std::vector<const Key*> square_keys(const std::vector<const Key*>& of_the_kind);
+std::vector<const Key*> continuous_keys(const std::vector<const Key*>& of_the_kind);
+
+void read_square(const Section& section, Square& square);
+void read_continuous(const Section& section, Continuous& continuous);
+
+// The pitch alone, of a kind whose size follows from other keys.
+const Key& square_pitch_key();
+double read_square_pitch(const Section& section);
+
+} // namespace vkfv::specimen
