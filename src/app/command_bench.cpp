@@ -22,13 +22,13 @@ void run_bench(const CommandOptions& options) {
         }
     };
     const bench::Json report = bench::measure_bench({.file = options.file,
-                                              .overrides = options.overrides,
-                                              .runs = options.runs,
-                                              .parts = options.bench_parts,
-                                              .quick = options.quick,
-                                              .peer = options.peer,
-                                              .commit = options.commit},
-                                             write_files);
+                                                     .overrides = options.overrides,
+                                                     .runs = options.runs,
+                                                     .parts = options.bench_parts,
+                                                     .quick = options.quick,
+                                                     .peer = options.peer,
+                                                     .commit = options.commit},
+                                                    write_files);
     write_files(report);
     fmt::print("{}", options.json ? report.dump(2) + "\n" : bench::bench_text(report));
 }

@@ -27,8 +27,8 @@ std::string text(const Json& of, const char* key) {
 
 std::string timing_text(const std::string& what, const Json& timing) {
     return fmt::format("  {:<34} {:>8} rays/s, {:>10.4g} s per 1e9 rays, {:>8} ray-surfaces/s, spread {:.1f} %\n", what,
-               with_prefix(number(timing, "rays_per_second")), number(timing, "seconds_per_1e9_rays"),
-               with_prefix(number(timing, "ray_surfaces_per_second")), 100 * number(timing, "spread"));
+                       with_prefix(number(timing, "rays_per_second")), number(timing, "seconds_per_1e9_rays"),
+                       with_prefix(number(timing, "ray_surfaces_per_second")), 100 * number(timing, "spread"));
 }
 
 std::string stages_text(const Json& stages) {
@@ -112,9 +112,9 @@ std::string scaling_text(const Json& scaling) {
                      }) +
            list_text(scaling, "triangles",
                      [](const Json& entry) {
-                         return timing_text(fmt::format("{:.3g} triangles, {}", number(entry, "triangles"),
-                                                        text(entry, "traversal")),
-                                            entry);
+                         return timing_text(
+                             fmt::format("{:.3g} triangles, {}", number(entry, "triangles"), text(entry, "traversal")),
+                             entry);
                      }) +
            list_text(scaling, "surfaces",
                      [](const Json& entry) {
@@ -147,8 +147,8 @@ std::string bench_text(const Json& report) {
         result += whole_text(report);
     }
     result += list_text(report, "forms", form_text);
-    result += list_text(report, "traversals",
-                        [](const Json& entry) { return timing_text(text(entry, "name"), entry); });
+    result +=
+        list_text(report, "traversals", [](const Json& entry) { return timing_text(text(entry, "name"), entry); });
     result += list_text(report, "hits", hits_text);
     result += list_text(report, "estimators", estimator_text);
     if (report.contains("scaling")) {

@@ -43,7 +43,7 @@ optics::Instrument instrument_for(const Configuration& configuration, const spec
 // The blur that the configuration asks for, on its detector; none if it asks for none. InputError where the file of a
 // point spread function is at fault.
 std::optional<optics::Diffraction> make_diffraction(const Configuration& configuration,
-                                                   const optics::Instrument& instrument);
+                                                    const optics::Instrument& instrument);
 
 // The true surface on the detector's pixels, in the object plane.
 surface::HeightMap truth_on_pixels(const optics::Instrument& instrument, const Configuration& configuration,

@@ -10,6 +10,7 @@
 #include "report/layout.hpp"
 #include "report/topography_picture.hpp"
 #include "scan/store.hpp"
+#include "surface/filter.hpp"
 #include "surface_files/height_image.hpp"
 #include "surface_files/surface_file.hpp"
 
@@ -48,16 +49,16 @@ nlohmann::ordered_json json_of(const std::vector<Figures>& figures) {
 
 nlohmann::ordered_json json_of(const topography::TopographyOptions& options) {
     return {{"focus_measure", name_of(options.focus_measure)},
-                             {"window_px", options.window_px},
-                             {"window_shape", name_of(options.window_shape)},
-                             {"smoothing_steps", options.smoothing_steps},
-                             {"peak", name_of(options.peak)},
-                             {"peak_range_steps", options.peak_range_steps},
-                             {"false_peak_rate", options.false_peak_rate},
-                             {"least_contrast", options.least_contrast},
-                             {"most_fit_residual", options.most_fit_residual},
-                             {"most_peaks", options.most_peaks},
-                             {"repair_outliers", options.repair_outliers}};
+            {"window_px", options.window_px},
+            {"window_shape", name_of(options.window_shape)},
+            {"smoothing_steps", options.smoothing_steps},
+            {"peak", name_of(options.peak)},
+            {"peak_range_steps", options.peak_range_steps},
+            {"false_peak_rate", options.false_peak_rate},
+            {"least_contrast", options.least_contrast},
+            {"most_fit_residual", options.most_fit_residual},
+            {"most_peaks", options.most_peaks},
+            {"repair_outliers", options.repair_outliers}};
 }
 
 // Mean of the channels.

@@ -54,9 +54,9 @@ Exposure expose(const Configuration& configuration, const optics::Instrument& in
 std::vector<std::pair<std::filesystem::path, std::string>> image_files(const std::filesystem::path& name,
                                                                        const Exposure& exposure, double focal_height) {
     const images::ImageTags tags{.pitch_x = exposure.pitch,
-                                  .pitch_y = exposure.pitch,
-                                  .description =
-                                      fmt::format("radiant flux in W at z = {} um", focal_height * um_per_mm)};
+                                 .pitch_y = exposure.pitch,
+                                 .description =
+                                     fmt::format("radiant flux in W at z = {} um", focal_height * um_per_mm)};
     std::vector<std::pair<std::filesystem::path, std::string>> files;
     files.emplace_back(name, images::tiff_bytes(in_float(exposure.image.flux), tags));
     if (exposure.diffracted) {

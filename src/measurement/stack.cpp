@@ -19,8 +19,7 @@ StackResult measure_stack(const Configuration& configuration, Progress& progress
     const int pixels = configuration.instrument.detector_pixels;
     const auto flat = read_flat(configuration, pixels, pixels, instrument.first_order.pixel_pitch);
     const auto tracer = make_tracer(instrument, specimen, configuration.trace);
-    const std::string identity =
-        image_identity(configuration, specimen::geometry_digest(specimen), tracer->identity());
+    const std::string identity = image_identity(configuration, specimen::geometry_digest(specimen), tracer->identity());
 
     scan::ImageStore store(configuration.output_directory, {.configuration = configuration.canonical,
                                                             .identity = identity,
@@ -44,16 +43,15 @@ StackResult measure_stack(const Configuration& configuration, Progress& progress
     }
 
     const std::uint64_t rays_per_image = trace::launched_rays(configuration.trace, pixels);
-    EvaluatedStack stack{
-        .evaluation = stack_evaluation.finish(truth_on_pixels(instrument, configuration, specimen), configuration.band,
-                                              flat),
-        .origin = {{"device", tracer->identity().text()},
-                   {"stack_digest", store.description().digest},
-                   {"seed", configuration.trace.seed},
-                   {"images", positions.size()},
-                   {"rays_per_image", rays_per_image}},
-        .source = stack_source(configuration, instrument),
-        .files = topography_files(configuration)};
+    EvaluatedStack stack{.evaluation = stack_evaluation.finish(truth_on_pixels(instrument, configuration, specimen),
+                                                               configuration.band, flat),
+                         .origin = {{"device", tracer->identity().text()},
+                                    {"stack_digest", store.description().digest},
+                                    {"seed", configuration.trace.seed},
+                                    {"images", positions.size()},
+                                    {"rays_per_image", rays_per_image}},
+                         .source = stack_source(configuration, instrument),
+                         .files = topography_files(configuration)};
     write_results(store.results(), stack);
     return {.evaluation = std::move(stack.evaluation),
             .traced = traced,
@@ -65,10 +63,9 @@ std::string summary(const StackResult& stack) {
     const auto& traced = stack.traced;
     std::string text = summary(stack.evaluation);
     if (traced.traced > 0) {
-        text += fmt::format("traced {} images in {:.3g} s ({}), evaluated in {:.2g} s\n", traced.traced,
-                            traced.trace_seconds,
-                            ray_rate_text(static_cast<double>(traced.rays) / traced.trace_seconds),
-                            stack.evaluation.seconds);
+        text += fmt::format(
+            "traced {} images in {:.3g} s ({}), evaluated in {:.2g} s\n", traced.traced, traced.trace_seconds,
+            ray_rate_text(static_cast<double>(traced.rays) / traced.trace_seconds), stack.evaluation.seconds);
     }
     return text + fmt::format("results in {}\n", stack.folder.string());
 }
