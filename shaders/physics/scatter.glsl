@@ -1,7 +1,7 @@
 // Scatter at the specimen: its material is a weighted sum of lobes, each of one model of scatter/.
 //
 // Densities are not symmetric: theta_i is always the angle on the source's side, also for a path that is traced
-// backward (DESIGN.md 4), so a backward path gives scatter_density() its own direction reversed as `outgoing`.
+// backward, so a backward path gives scatter_density() its own direction reversed as `outgoing`.
 
 // By one number, uniform in (0, 1): a lobe with the probability of its weight, else SCATTER_NONE. Lobes that a material
 // has not weigh nothing.

@@ -4,10 +4,55 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cstdio>
 #include <optional>
 
 namespace vkfv::app {
+
+Command bench_command() {
+    auto parts = bench::bench_parts;
+    parts.emplace_back("all");
+    const auto take_parts = [](CommandOptions& options, const std::vector<std::string>& names) {
+        options.bench_parts = std::ranges::find(names, "all") != names.end() ? bench::bench_parts : names;
+    };
+    const std::vector<Option> of_bench = {
+        {.name = "--runs",
+         .value = "N",
+         .description = "Runs whose median counts",
+         .target = &CommandOptions::runs,
+         .fallback = "5",
+         .range = {1, 1000}},
+        {.name = "--bench-parts",
+         .value = "LIST",
+         .description = "What to measure, parted by commas",
+         .target = Take<std::vector<std::string>>(take_parts),
+         .fallback = "stages",
+         .choices = parts,
+         .list = true},
+        {.name = "--quick",
+         .value = "",
+         .description = "Shorter runs and fewer sizes",
+         .target = &CommandOptions::quick},
+        {.name = "--peer",
+         .value = "PROGRAM",
+         .description = "The program vkfv_bench_peer, to compare with",
+         .target = Take<std::string>([](CommandOptions& options, const std::string& path) { options.peer = path; }),
+         .file = true},
+        {.name = "--commit",
+         .value = "TEXT",
+         .description = "What the report says was measured",
+         .target = Take<std::string>([](CommandOptions& options, const std::string& text) { options.commit = text; })}};
+    return {.name = "bench",
+            .summary = "Measure rays/s of a configuration's chain",
+            .operands = {{"C.toml", "Configuration", &CommandOptions::file}},
+            .options = together(
+                {configuration_options(), {out_option("Folder of bench.json and bench.svg"), json_option()}, of_bench}),
+            .run = run_bench,
+            .example = "vkfv bench assets/stacks/demo.toml"};
+}
+
+using bench::Json;
 
 void run_bench(const CommandOptions& options) {
     std::optional<ResultFolder> results;

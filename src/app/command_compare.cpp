@@ -7,6 +7,21 @@
 
 namespace vkfv::app {
 
+Command compare_command() {
+    const Option align = {.name = "--align",
+                          .value = "",
+                          .description = "Remove the lateral shift that was found",
+                          .target = &CommandOptions::align};
+    return {.name = "compare",
+            .summary = "Height maps (any format that vkfv reads) against the truth: shift, deviation, transfer, ISO "
+                       "25178-2 parameters; several measurements of one field also give systematic and random part",
+            .operands = {{"MEASURED... TRUTH", "Height maps, the last of them true", &CommandOptions::compared_files}},
+            .options = together(
+                {{out_option("Folder for tables, maps and pictures"), json_option()}, band_options(), {align}}),
+            .run = run_compare,
+            .example = "vkfv compare measured.x3p truth.tif --out compared"};
+}
+
 void run_compare(const CommandOptions& options) {
     const auto& files = options.compared_files;
     const measurement::ComparisonRequest request{.measurements = {files.begin(), files.end() - 1},

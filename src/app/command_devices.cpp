@@ -10,6 +10,14 @@
 
 namespace vkfv::app {
 
+Command devices_command() {
+    return {.name = "devices",
+            .summary = "List devices, what each lacks and which would be used",
+            .options = {json_option()},
+            .run = run_devices,
+            .example = "vkfv devices"};
+}
+
 namespace {
 
 constexpr double bytes_per_gib = 1024.0 * 1024.0 * 1024.0;

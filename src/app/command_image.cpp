@@ -9,6 +9,21 @@
 
 namespace vkfv::app {
 
+Command image_command() {
+    const Option z = {
+        .name = "--z",
+        .value = "UM",
+        .description = "Height of the focal plane over best focus, um",
+        .target = Take<double>([](CommandOptions& options, double um) { options.focal_height = um / um_per_mm; }),
+        .needed = "the height of the focal plane over best focus"};
+    return {.name = "image",
+            .summary = "Trace one exposure, at --z",
+            .operands = {{"C.toml", "Configuration", &CommandOptions::file}},
+            .options = together({configuration_options(), {out_option("Output folder, or a .tif file"), z}}),
+            .run = run_image,
+            .example = "vkfv image assets/stacks/demo.toml --z -3.2 --rays 1e8"};
+}
+
 namespace {
 
 std::filesystem::path image_path(const CommandOptions& options, const Configuration& configuration) {

@@ -15,6 +15,25 @@
 
 namespace vkfv::app {
 
+Command import_command() {
+    const auto take_catalogs = [](CommandOptions& options, const std::vector<std::string>& files) {
+        options.glass_catalogs.assign(files.begin(), files.end());
+    };
+    const Option catalogs = {.name = "--glass-catalog",
+                             .value = "FILE.agf",
+                             .description = "Glasses besides the built-in ones; may be repeated",
+                             .target = Take<std::vector<std::string>>(take_catalogs),
+                             .file = true};
+    return {.name = "import",
+            .summary =
+                "Write a Zemax lens as a prescription, to --out or standard output, and its focal lengths to the "
+                "log. Objectives must run from the specimen to the back: turn others round in Zemax",
+            .operands = {{"LENS.zmx", "Lens of Zemax, sequential", &CommandOptions::file}},
+            .options = {out_option("The prescription"), json_option(), catalogs},
+            .run = run_import,
+            .example = "vkfv import lens.zmx --out lens.toml"};
+}
+
 namespace {
 
 // Both in mm, as designers state them: the focal length in air, and the distance from the last vertex to the

@@ -8,6 +8,16 @@
 
 namespace vkfv::app {
 
+Command sweep_command() {
+    return {.name = "sweep",
+            .summary = "Images or stacks for every combination of the parameters in [sweep]; continues an interrupted "
+                       "one",
+            .operands = {{"C.toml", "Configuration", &CommandOptions::file}},
+            .options = together({configuration_options(), {out_option("Output folder")}}),
+            .run = run_sweep,
+            .example = "vkfv sweep assets/stacks/paper_logo_small.toml"};
+}
+
 void run_sweep(const CommandOptions& options) {
     auto progress = Progress::on_standard_error(options.quiet);
     const auto result =

@@ -8,6 +8,30 @@
 
 namespace vkfv::app {
 
+Command topography_command() {
+    const std::vector<Option> of_images = {
+        {.name = "--z_step_um,--z-step-um",
+         .value = "UM",
+         .description = "Step from image to image of a stack without stack.toml; negative: they descend",
+         .target = in_mm(&CommandOptions::z_step)},
+        {.name = "--z_start_um,--z-start-um",
+         .value = "UM",
+         .description = "Height of the first image of a stack without stack.toml",
+         .target = in_mm(&CommandOptions::z_start),
+         .fallback = "0"},
+        pitch_option(),
+        {.name = "--shuffle",
+         .value = "SEED",
+         .description = "Take the images in a random order: a control, which must find nothing",
+         .target = &CommandOptions::shuffle}};
+    return {.name = "topography",
+            .summary = "Evaluate an existing stack: of vkfv, or images in a folder or a TIFF file",
+            .operands = {{"STACK", "Folder of a stack or of images, or a TIFF file of several", &CommandOptions::file}},
+            .options = together({configuration_options(), {out_option("Output folder")}, of_images}),
+            .run = run_topography,
+            .example = "vkfv topography images.tif --z_step_um 0.5 --pitch_um 0.9 --out measured"};
+}
+
 namespace {
 
 [[noreturn]] void refuse(std::string found, std::string expected, std::string remedy) {

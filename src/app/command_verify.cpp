@@ -10,6 +10,15 @@
 
 namespace vkfv::app {
 
+Command verify_command() {
+    return {.name = "verify",
+            .summary =
+                "Check that the files of a stack, a sweep or other results are whole and those that were written",
+            .operands = {{"FOLDER", "Folder of results", &CommandOptions::file}},
+            .run = run_verify,
+            .example = "vkfv verify demo"};
+}
+
 namespace {
 
 namespace fs = std::filesystem;

@@ -1,51 +1,136 @@
-// The program's commands, one file each. Data goes to standard output, everything else to standard error.
-// All throw InputError, DeviceError or RunError.
+// The program's commands, one file each: what it is called, what may be given to it and what it does. The parser, help,
+// the manual page and completion all read these declarations. Data goes to standard output, everything else to standard
+// error. All throw InputError, DeviceError or RunError.
 #pragma once
 
 #include "configuration/configuration.hpp"
-#include "optics/diffraction.hpp"
 #include "surface/band.hpp"
 #include "surface/roughness_profile.hpp"
 
 #include <cstdint>
 #include <filesystem>
-#include <memory>
+#include <functional>
 #include <optional>
-#include <span>
 #include <string>
+#include <utility>
+#include <variant>
 #include <vector>
 
 namespace vkfv::app {
 
-// What the command line says, as far as it does not override the configuration.
+// What the command line says, as far as it does not override the configuration. Lengths in mm.
 struct CommandOptions {
-    std::filesystem::path file; // configuration; for --topography the stack, for --surface the surface
+    std::filesystem::path file; // configuration; for `topography` the stack, for `surface` the surface
     std::vector<TomlOverride> overrides;
     std::optional<std::filesystem::path> out;
     bool quiet = false;
     bool json = false;
-    double focal_height = 0;                           // --image; mm
-    std::filesystem::path rays_file;                   // --trace-rays
-    std::filesystem::path picture_file;                // --layout
-    std::vector<std::filesystem::path> compared_files; // --compare: measurements, then the truth
-    bool align = false;                                // --compare: the lateral shift is removed
-    surface::Band band;                                // --compare, --surface: form and filters
-    std::optional<surface::ProfileLine> profile_line;  // --surface; none: the middle row
-    bool float_precision = false;                      // --trace-rays: on the device
-    bool apertures = true;                             // --trace-rays
-    int runs = 5;                                      // --bench
-    std::vector<std::string> bench_parts;              // --bench: what to measure (bench.hpp)
-    bool quick = false;                                // --bench
-    std::filesystem::path peer;                        // --bench: the program vkfv_bench_peer
-    std::string commit;                                // --bench: for the report
-    std::vector<std::filesystem::path> glass_catalogs; // --import
-    std::optional<std::uint64_t> shuffle;              // --topography: seed of the order in which the images are taken
-    // --topography of a stack that vkfv did not make: mm
+    std::string topic; // of the commands that tell of vkfv itself
+    bool markdown = false;
+    bool schema = false;
+    double focal_height = 0;                           // image
+    std::filesystem::path rays_file;                   // trace-rays
+    std::filesystem::path picture_file;                // layout
+    std::vector<std::filesystem::path> compared_files; // compare: measurements, then the truth
+    bool align = false;                                // compare: the lateral shift is removed
+    surface::Band band;                                // compare, surface: form and filters
+    std::optional<surface::ProfileLine> profile_line;  // surface; none: the middle row
+    bool float_precision = false;                      // trace-rays: on the device
+    bool apertures = true;                             // trace-rays
+    int runs = 5;                                      // bench
+    std::vector<std::string> bench_parts = {"stages"}; // bench: what to measure (bench.hpp)
+    bool quick = false;                                // bench
+    std::filesystem::path peer;                        // bench: the program vkfv_bench_peer
+    std::string commit;                                // bench: for the report
+    std::vector<std::filesystem::path> glass_catalogs; // import
+    std::optional<std::uint64_t> shuffle;              // topography: seed of the order in which images are taken
+    // topography of a stack that vkfv did not make
     std::optional<double> z_step;  // negative: the images descend
-    std::optional<double> pitch;   // --surface too, of an image
-    std::optional<double> unit;    // --surface: mm per unit of an image's value
+    std::optional<double> pitch;   // surface too, of an image
+    std::optional<double> unit;    // surface: mm per unit of an image's value
     std::optional<double> z_start; // of the first image; none: 0
 };
+
+// Puts the value of an option where it belongs.
+template <class Value>
+using Take = std::function<void(CommandOptions&, const Value&)>;
+
+struct Option {
+    std::string name;        // "--out"; "--z_step_um,--z-step-um": two spellings
+    std::string value;       // what stands for the value in help; empty: a switch
+    std::string description; // a sentence without its stop
+    std::variant<bool CommandOptions::*, int CommandOptions::*, std::optional<std::uint64_t> CommandOptions::*,
+                 Take<bool>, Take<double>, Take<std::string>, Take<std::vector<std::string>>>
+        target;
+    std::string fallback{};             // what holds if it is not given
+    std::vector<std::string> choices{}; // Take<bool>: of true, of false
+    bool choices_checked = true;        // else the configuration refuses others, with its own words
+    std::pair<int, int> range{};        // of an integer, ends included
+    bool list = false;                  // values are parted by commas; else several stand each behind the option
+    bool file = false;                  // for completion
+    std::string needed{};               // not empty: the command cannot do without, and this says what it is
+    std::string foremost{};             // the command that is named first of those that take it
+};
+
+struct Operand {
+    std::string name; // "C.toml"; "MEASURED... TRUTH": two or more
+    std::string description;
+    std::variant<std::filesystem::path CommandOptions::*, std::string CommandOptions::*,
+                 std::vector<std::filesystem::path> CommandOptions::*>
+        target;
+    std::vector<std::string> choices{}; // empty: it is a file
+    bool needed = true;
+};
+
+struct Command {
+    std::string name;
+    std::string summary; // sentences without the last stop
+    std::vector<Operand> operands{};
+    std::vector<Option> options{};
+    void (*run)(const CommandOptions&) = nullptr;
+    std::string example{};
+    bool about_vkfv = false; // tells of vkfv itself instead of measuring
+    bool also_option = true; // `vkfv --stack C.toml` is `vkfv stack C.toml`
+};
+
+// In the order in which help lists them.
+const std::vector<Command>& all_commands();
+// Throws InputError, with the nearest name, if there is none of this name.
+const Command& command_named(const std::string& name);
+// Throws InputError of the command line.
+[[noreturn]] void refuse_argument(std::string found, std::string expected, std::string remedy);
+
+// Options that several commands take.
+std::vector<Option> configuration_options(); // instead of the configuration's values
+Option out_option(std::string description);
+Option json_option();
+Option pitch_option();
+std::vector<Option> band_options(); // form and filters
+// A length in um.
+Take<double> in_mm(std::optional<double> CommandOptions::*length);
+// One list after the other.
+std::vector<Option> together(std::vector<std::vector<Option>> lists);
+
+Command stack_command();
+Command image_command();
+Command sweep_command();
+Command topography_command();
+Command compare_command();
+Command surface_command();
+Command verify_command();
+Command check_command();
+Command trace_rays_command();
+Command layout_command();
+Command devices_command();
+Command bench_command();
+Command import_command();
+Command keys_command();
+Command explain_command();
+Command template_command();
+Command list_command();
+Command help_command();
+Command completion_command();
+Command man_command();
 
 // A whole stack with its topography and deviation from truth; continues one that was interrupted.
 void run_stack(const CommandOptions& options);
@@ -68,19 +153,15 @@ void run_bench(const CommandOptions& options);
 // Evaluates an existing stack: one of vkfv anew, by its stack.toml, or the images of another instrument in a folder or
 // a file of several pages. With `shuffle` in a random order of its images, a control that must find nothing.
 void run_topography(const CommandOptions& options);
-
 // A surface file: form removed and filtered, its ISO 25178-2 parameters and a profile's; with `out`, written in the
 // format that the name's ending tells.
 void run_surface(const CommandOptions& options);
-
 // Measured against true heights: lateral shift, deviation, its systematic and random part, ISO 25178-2 parameters; with
 // `out`, also deviation by spatial frequency (transfer.csv) and by slope (slope.csv), maps and compare.json there.
 void run_compare(const CommandOptions& options);
-
 // Whether the files of a stack, a sweep or other results are still those that were written; RunError names those that
 // are not.
 void run_verify(const CommandOptions& options);
-
 // A Zemax lens as a prescription: in the file `out`, else on standard output.
 void run_import(const CommandOptions& options);
 

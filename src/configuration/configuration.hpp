@@ -1,8 +1,7 @@
-// What the user asks for: a TOML file (DESIGN.md 10) and the command line's overrides, checked and in the
-// units of the inside.
+// What the user asks for: a TOML file and the command line's overrides, checked and in the units of the inside.
 #pragma once
 
-#include "core/toml_reader.hpp"
+#include "core/section.hpp"
 #include "optics/instrument.hpp"
 #include "scan/plan.hpp"
 #include "specimen/description.hpp"
@@ -43,7 +42,18 @@ struct Sweep {
     std::vector<Parameter> parameters;
 };
 
-struct Configuration {
+// Where a stack is evaluated. Automatic: on the device that traces, if it has cores of its own.
+enum class EvaluateOn { automatic, host, device };
+
+// Of the texts in ReadKeys, `canonical` is TOML that load_configuration() takes, and `identity` is what the images
+// depend on, a line a key, for telling one stack from another. Of the keys of `canonical` the identity leaves out, with
+// the reason:
+//   diffraction.*, topography.*, output.directory   blur, evaluate or place the images
+//   trace.batch                      the same bits for any batch size
+//   trace.device, trace.traversal    requests; what they resolve to is in the tracer's description
+//   file paths                       the content counts, and stands in its place as a digest
+// The program's version is in it: another version may trace other bits.
+struct Configuration : ReadKeys {
     std::filesystem::path file;
     optics::GlassCatalog glasses = optics::GlassCatalog::builtin(); // with the file's glass_catalogs
     optics::InstrumentDescription instrument;
@@ -52,28 +62,12 @@ struct Configuration {
     trace::TraceOptions trace;
     DiffractionOptions diffraction;
     topography::TopographyOptions topography;
-    std::string evaluate_on = "auto";    // or "host", "device"
+    EvaluateOn evaluate_on = EvaluateOn::automatic;
     std::filesystem::path flatness_file; // a flat measured by the same instrument; empty: no correction
     topography::Band band;               // of the second comparison with the truth; unlimited: there is none
     std::filesystem::path output_directory;
     std::vector<std::string> topography_files; // names under which the topography is written
     std::optional<Sweep> sweep;                // belongs to no image: neither in `canonical` nor in `identity`
-
-    // Where each key and table stands that was read, by dotted key; defaults have the place of their table.
-    std::map<std::string, SourceLocation> places;
-
-    // Every key with its value, defaults included, in a fixed order and in the file's own units, so that it
-    // reads back to the same bits: TOML that load_configuration() takes. Paths are absolute.
-    std::string canonical;
-
-    // What the images depend on, a line a key, for telling one stack from another. Of the keys of `canonical`
-    // it leaves out, with the reason:
-    //   diffraction.*, topography.*, output.directory   blur, evaluate or place the images
-    //   trace.batch                      the same bits for any batch size
-    //   trace.device, trace.traversal    requests; what they resolve to is in the tracer's description
-    //   file paths                       the content counts, and stands in its place as a digest
-    // The program's version is in it: another version may trace other bits.
-    std::string identity;
 };
 
 // Throws InputError.

@@ -42,6 +42,11 @@ std::vector<std::string> Key::choice_names() const {
     return names;
 }
 
+std::string Key::fallback_text() const {
+    const auto& toml = fallback.toml; // a quoted word without escapes
+    return toml.size() < 2 ? std::string() : toml.substr(1, toml.size() - 2);
+}
+
 std::string Key::allowed() const {
     if (!choices.empty()) {
         std::string text;

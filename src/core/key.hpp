@@ -28,6 +28,9 @@ struct Default {
     static Default in_words(std::string text) { return {.toml = {}, .text = std::move(text), .needed = false}; }
 };
 
+// In place of a default: the key must be given.
+inline constexpr std::nullopt_t needed = std::nullopt;
+
 // Common to keys of all types. The name ends in the unit where there is one: "radius_mm".
 class Key {
   public:
@@ -52,6 +55,8 @@ class Key {
     // "> 0", "1 to 64", "\"disc\" or \"ring\""; empty: every value of the type.
     std::string allowed() const;
     std::vector<std::string> choice_names() const;
+    // Of a text or a choice: the default without its quotes; empty: there is none.
+    std::string fallback_text() const;
 };
 
 // A number; `fallback` empty: the key must be given.
@@ -169,9 +174,10 @@ struct KeyTable {
     std::string path;                                   // dotted: "source.spectrum"; empty: the root
     Presence presence = Presence::needed;
     std::string meaning; // a sentence or two
-    std::string subject; // in messages: "a source"
+    std::string subject; // in messages, with `kind`: "a source"; empty: the key is named instead
     std::string kind;    // name of the key that decides what other keys there are; empty: none does
     std::vector<const Key*> keys;
+    bool shown = false; // in a template, although it may be absent
 
     // The kinds in the order of their key's choices.
     std::vector<std::string> kinds() const;

@@ -72,15 +72,8 @@ std::vector<bool> Section::booleans(const BooleansKey& key, const std::vector<bo
 }
 
 std::string Section::text(const TextKey& key) const {
-    std::string value;
-    if (key.fallback.needed) {
-        value = table_.string(key.name);
-    } else {
-        // A default is a quoted word without escapes.
-        const auto& toml = key.fallback.toml;
-        value = table_.optional_string(key.name).value_or(toml.size() < 2 ? std::string()
-                                                                          : toml.substr(1, toml.size() - 2));
-    }
+    const std::string value =
+        key.fallback.needed ? table_.string(key.name) : table_.optional_string(key.name).value_or(key.fallback_text());
     return record(key, toml_quoted(value)), value;
 }
 
@@ -104,13 +97,8 @@ std::optional<std::filesystem::path> Section::file_if_given(const FileKey& key) 
 
 std::string Section::choice_name(const Key& key, bool has_default) const {
     const auto names = key.choice_names();
-    std::string value;
-    if (has_default) {
-        const auto& toml = key.fallback.toml;
-        value = table_.optional_choice(key.name, names).value_or(toml.substr(1, toml.size() - 2));
-    } else {
-        value = table_.choice(key.name, names);
-    }
+    const std::string value = has_default ? table_.optional_choice(key.name, names).value_or(key.fallback_text())
+                                          : table_.choice(key.name, names);
     return record(key, toml_quoted(value)), value;
 }
 
@@ -149,8 +137,12 @@ void Section::reject_keys_of_other_kinds(const std::string& kind) const {
     for (auto& [name, kinds] : kinds_with) {
         if (std::ranges::find(kinds, kind) == kinds.end() && table_.has(name)) {
             std::ranges::sort(kinds);
-            table_.note(name, fmt::format("no such key for {} of kind \"{}\"", keys_->subject, kind),
-                        fmt::format("Remove it; it belongs to kind \"{}\".", fmt::join(kinds, "\" or \"")));
+            const auto& deciding = keys_->kind;
+            const std::string owner = keys_->subject.empty() ? fmt::format("{} = ", deciding) : "kind ";
+            table_.note(name,
+                        keys_->subject.empty() ? fmt::format("no such key with {}\"{}\"", owner, kind)
+                                               : fmt::format("no such key for {} of kind \"{}\"", keys_->subject, kind),
+                        fmt::format("Remove it; it belongs to {}\"{}\".", owner, fmt::join(kinds, "\" or \"")));
         }
     }
 }

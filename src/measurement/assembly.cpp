@@ -1,6 +1,6 @@
 #include "measurement/assembly.hpp"
 
-#include "configuration/configuration_section.hpp"
+#include "core/section.hpp"
 #include "core/units.hpp"
 #include "images/image_file.hpp"
 #include "measurement/specimen_view.hpp"

@@ -50,9 +50,10 @@ std::string band_text(const topography::Band& band) {
 
 } // namespace
 
-topography::FocusPlanesMaker focus_planes_for(const std::string& evaluate_on, const std::string& device_selector) {
+topography::FocusPlanesMaker focus_planes_for(EvaluateOn evaluate_on, const std::string& device_selector) {
     const bool traced_on_host = device_selector == "host";
-    if (evaluate_on == "host" || (evaluate_on == "auto" && (traced_on_host || !vulkan::is_hardware(device_selector)))) {
+    if (evaluate_on == EvaluateOn::host ||
+        (evaluate_on == EvaluateOn::automatic && (traced_on_host || !vulkan::is_hardware(device_selector)))) {
         return topography::make_host_focus_planes;
     }
     return topography::device_focus_planes(traced_on_host ? std::string() : device_selector);

@@ -43,7 +43,7 @@ struct Evaluation {
 // Where a stack is evaluated by this choice of [topography] evaluate_on while a device traces it (selector: of the
 // device, or "host"): "auto" means the device if it has cores of its own; on the host's own cores the host's code takes
 // a third of lavapipe's time at 1000 x 1000 pixels. Throws DeviceError.
-topography::FocusPlanesMaker focus_planes_for(const std::string& evaluate_on, const std::string& device_selector);
+topography::FocusPlanesMaker focus_planes_for(EvaluateOn evaluate_on, const std::string& device_selector);
 
 // Takes a stack's images in their order, as they come, and keeps the time that this takes.
 class StackEvaluation {

@@ -32,7 +32,8 @@ std::vector<int> order_of_images(std::size_t count, const Shuffle& shuffle) {
 
 // Images from a disk come slower than the host evaluates them: a device only when asked for.
 topography::FocusPlanesMaker planes_for(const Configuration& configuration) {
-    return focus_planes_for(configuration.evaluate_on == "device" ? "device" : "host", configuration.trace.device);
+    return focus_planes_for(configuration.evaluate_on == EvaluateOn::device ? EvaluateOn::device : EvaluateOn::host,
+                            configuration.trace.device);
 }
 
 // The first line of what the images depend on that overrides change: "key = value", as it is then.

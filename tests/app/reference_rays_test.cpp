@@ -77,7 +77,7 @@ Differences compare_with_reference(const Scope& scope, const std::vector<std::st
 
 class ReferenceRays : public testing::TestWithParam<Scope> {};
 
-// The bounds of issue 2: what two double programs that order their sums differently may differ by after some
+// What two double programs that order their sums differently may differ by after some
 // 350 mm of path and thirty surfaces, with a margin of a thousand.
 TEST_P(ReferenceRays, AgreeInDouble) {
     const auto found = compare_with_reference(GetParam(), {});

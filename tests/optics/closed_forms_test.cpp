@@ -129,7 +129,7 @@ TEST(CoverPlate, MovesTheMarginalFocus) {
         const double expected = 0.17 * (1 - std::tan(std::asin(na / n)) / std::tan(std::asin(na)));
         EXPECT_NEAR(shift(na), expected, 1e-13);
     }
-    EXPECT_NEAR(shift(0.4), 63.5e-3, 5e-5);                     // issue 3's figure
+    EXPECT_NEAR(shift(0.4), 63.5e-3, 5e-5);                     // its value, by hand
     EXPECT_GT(std::abs(shift(0.4) - 0.17 * (1 - 1 / n)), 4e-3); // wrong twin: paraxial
 }
 

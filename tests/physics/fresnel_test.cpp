@@ -45,7 +45,7 @@ TEST(Fresnel, normal_incidence) {
     const double expected = square((glass - 1) / (glass + 1));
     EXPECT_NEAR(f64::fresnel_reflectance(1, glass, 1), expected, 1e-15);
     EXPECT_NEAR(f64::fresnel_reflectance(glass, 1, 1), expected, 1e-15);
-    EXPECT_NEAR(expected, 0.04216, 5e-6); // issue 3's figure
+    EXPECT_NEAR(expected, 0.04216, 5e-6); // its value, by hand
 }
 
 // The same from either side along one path, and against the matrix without a layer.

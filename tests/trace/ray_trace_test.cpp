@@ -73,7 +73,7 @@ TEST_P(RayTrace, InFloatAgreesWithDouble) {
     RecordProperty("worst_nm", static_cast<int>(1e6 * worst));
     EXPECT_GT(arrived, 700);
     EXPECT_LT(arrived, 1000); // edges are met
-    EXPECT_LT(worst, 0.5e-3); // issue 3: 0.5 um at the detector
+    EXPECT_LT(worst, 0.5e-3); // 0.5 um at the detector
     EXPECT_GT(worst, 1e-7);   // it was not double on both
     EXPECT_LE(differing, 1);  // one ray of 1000 may pass within float's 1e-6 mm of an edge
     // Wrong twin: an object 1 um of the image to the side is seen.

@@ -1,4 +1,4 @@
-// Henyey-Greenstein scatter adapted to a surface (DESIGN.md 4). With alpha the angle between the outgoing direction and
+// Henyey-Greenstein scatter adapted to a surface. With alpha the angle between the outgoing direction and
 // the mirror direction, the outgoing direction has the density
 //   p(alpha; g) cos(theta_o) / N(theta_i, g)   over the hemisphere above the surface,
 // p the function of L. G. Henyey and J. L. Greenstein, Astrophys. J. 93 (1941) 70, eq. 2, and N its integral. g = 0 is

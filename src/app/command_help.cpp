@@ -1,0 +1,49 @@
+#include "app/commands.hpp"
+#include "app/reference.hpp"
+
+#include <fmt/format.h>
+
+#include <cstdio>
+
+namespace vkfv::app {
+
+namespace {
+
+void run_help(const CommandOptions& options) {
+    if (options.markdown) {
+        fmt::print("{}", reference_markdown());
+        return;
+    }
+    fmt::print("{}", help_text(options.topic.empty() ? nullptr : &command_named(options.topic)));
+}
+
+void run_man(const CommandOptions&) {
+    fmt::print("{}", reference_manual());
+}
+
+} // namespace
+
+Command help_command() {
+    return {.name = "help",
+            .summary = "What the program does, or what a command takes",
+            .operands = {{"COMMAND", "Its name", &CommandOptions::topic, {}, false}},
+            .options = {{.name = "--markdown",
+                         .value = "",
+                         .description = "All of it, as docs/commands.md",
+                         .target = &CommandOptions::markdown}},
+            .run = run_help,
+            .example = "vkfv help stack",
+            .about_vkfv = true,
+            .also_option = false};
+}
+
+Command man_command() {
+    return {.name = "man",
+            .summary = "Print the manual page, in roff",
+            .run = run_man,
+            .example = "vkfv man | man -l -",
+            .about_vkfv = true,
+            .also_option = false};
+}
+
+} // namespace vkfv::app

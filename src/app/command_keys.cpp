@@ -1,0 +1,63 @@
+#include "app/commands.hpp"
+#include "configuration/key_documents.hpp"
+
+#include <fmt/format.h>
+
+#include <cstdio>
+
+namespace vkfv::app {
+
+namespace {
+
+void run_keys(const CommandOptions& options) {
+    fmt::print("{}", options.json       ? keys_json()
+                     : options.markdown ? keys_markdown()
+                     : options.schema   ? configuration_schema()
+                                        : keys_text());
+}
+
+void run_explain(const CommandOptions& options) {
+    fmt::print("{}", explained(options.topic));
+}
+
+void run_template(const CommandOptions&) {
+    fmt::print("{}", configuration_template());
+}
+
+} // namespace
+
+Command keys_command() {
+    return {.name = "keys",
+            .summary = "List every key of a configuration with its default and what it means",
+            .options = {json_option(),
+                        {.name = "--markdown",
+                         .value = "",
+                         .description = "All of it, as a page",
+                         .target = &CommandOptions::markdown},
+                        {.name = "--schema",
+                         .value = "",
+                         .description = "A JSON Schema, for the completion of editors",
+                         .target = &CommandOptions::schema}},
+            .run = run_keys,
+            .example = "vkfv keys --schema > vkfv.schema.json",
+            .about_vkfv = true};
+}
+
+Command explain_command() {
+    return {.name = "explain",
+            .summary = "Tell of one key of a configuration, or of one of its tables",
+            .operands = {{"KEY", "\"trace.rays\", \"rays\" or \"trace\"", &CommandOptions::topic}},
+            .run = run_explain,
+            .example = "vkfv explain trace.estimator",
+            .about_vkfv = true};
+}
+
+Command template_command() {
+    return {.name = "template",
+            .summary = "Print a configuration with every key, its default and what it means",
+            .run = run_template,
+            .example = "vkfv template > my.toml",
+            .about_vkfv = true};
+}
+
+} // namespace vkfv::app

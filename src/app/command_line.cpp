@@ -1,0 +1,300 @@
+#include "app/command_line.hpp"
+
+#include "app/commands.hpp"
+#include "app/reference.hpp"
+
+#include <CLI/CLI.hpp>
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+#include <spdlog/sinks/stdout_color_sinks.h>
+#include <spdlog/spdlog.h>
+
+#include <algorithm>
+#include <cstdio>
+#include <functional>
+#include <iterator>
+#include <map>
+
+namespace vkfv::app {
+
+namespace {
+
+// The arguments by the declarations of all commands: of one that was named first (`vkfv stack C.toml`), or of one that
+// is itself written as an option (`vkfv --stack C.toml`).
+class CommandLine {
+  public:
+    explicit CommandLine(const Command* named) : named_(named), app_("", "vkfv") {
+        app_.set_version_flag("-v,--version", std::string("vkfv ") + VKFV_VERSION);
+        app_.allow_extras(); // what is left over is refused below, with a suggestion
+        operands_.resize(all_commands().size());
+        for (std::size_t k = 0; k < all_commands().size(); ++k) {
+            if (named_ == nullptr && all_commands()[k].also_option) {
+                declare_as_option(all_commands()[k], operands_[k]);
+            } else if (named_ == &all_commands()[k]) {
+                declare_operands(*named_, operands_[k]);
+            }
+        }
+        for (const auto& [option, owners] : all_options()) {
+            declare(*option);
+        }
+    }
+
+    void parse(int count, char** words) { app_.parse(count, words); }
+
+    void run() {
+        refuse_leftovers();
+        for (const auto& take : taken_) {
+            take();
+        }
+        const Command& command = named_ != nullptr ? *named_ : chosen();
+        for (const auto& option : all_options()) {
+            check_needed(option, command);
+        }
+        for (const auto& option : all_options()) {
+            refuse_stray(option, command);
+        }
+        place_operands(command);
+        spdlog::set_level(options_.quiet ? spdlog::level::warn : spdlog::level::info);
+        command.run(options_);
+    }
+
+  private:
+    void declare_as_option(const Command& command, std::vector<std::string>& operands) {
+        const std::string name = "--" + command.name;
+        std::vector<std::string> names;
+        for (const auto& operand : command.operands) {
+            names.push_back(operand.name);
+        }
+        const bool several = !names.empty() && takes_several(command.operands.front());
+        if (names.empty()) {
+            app_.add_flag(name, flag_);
+        } else if (names.size() == 1 && !several) {
+            app_.add_option_function<std::string>(name, [&](const std::string& one) { operands = {one}; })
+                ->type_name(names.front());
+        } else {
+            app_.add_option(name, operands)
+                ->expected(2, several ? CLI::detail::expected_max_vector_size : static_cast<int>(names.size()));
+        }
+    }
+
+    void declare_operands(const Command& command, std::vector<std::string>& operands) {
+        for (const auto& operand : command.operands) {
+            const std::string name = operand.name.substr(0, operand.name.find(' '));
+            if (takes_several(operand)) {
+                app_.add_option(name, operands)->expected(2, CLI::detail::expected_max_vector_size)->required();
+            } else {
+                app_.add_option_function<std::string>(name, [&](const std::string& one) { operands.push_back(one); })
+                    ->required(operand.needed);
+            }
+        }
+    }
+
+    static bool takes_several(const Operand& operand) {
+        return std::holds_alternative<std::vector<std::filesystem::path> CommandOptions::*>(operand.target);
+    }
+
+    void declare(const Option& option) {
+        std::visit([&](const auto& target) { declare(option, target); }, option.target);
+    }
+    template <class Value>
+    void declare(const Option& option, Value CommandOptions::*const& member) {
+        if constexpr (std::is_same_v<Value, bool>) {
+            app_.add_flag(option.name, options_.*member);
+        } else {
+            auto* declared = app_.add_option(option.name, options_.*member);
+            if (option.range.second > 0) {
+                declared->check(CLI::Range(option.range.first, option.range.second));
+            } else {
+                declared->type_name(option.value);
+            }
+        }
+    }
+    template <class Value>
+    void declare(const Option& option, const Take<Value>& take) {
+        // Once all is parsed: an option that does not exist is told of first.
+        auto* declared = app_.add_option_function<Value>(option.name, [this, take](const Value& value) {
+            taken_.push_back([this, take, value] { take(options_, value); });
+        });
+        if constexpr (std::is_same_v<Value, bool>) {
+            declared->transform(CLI::CheckedTransformer(
+                std::map<std::string, bool>{{option.choices.front(), true}, {option.choices.back(), false}}));
+            return;
+        }
+        if constexpr (std::is_same_v<Value, std::vector<std::string>>) {
+            if (option.list) {
+                declared->delimiter(',');
+                if (named_ != nullptr) {
+                    declared->allow_extra_args(false); // it would take the operand
+                }
+            } else {
+                declared->expected(1)->take_all();
+            }
+        }
+        if (!option.choices.empty() && option.choices_checked) {
+            declared->check(CLI::IsMember(option.choices));
+        } else {
+            declared->type_name(option.value);
+        }
+    }
+
+    // As it was written: "--stack", or "stack" where it was named first.
+    std::string spelled(const std::string& command) const { return (named_ == nullptr ? "--" : "") + command; }
+    std::size_t count(const Option& option) const { return app_.count(first_name(option)); }
+
+    // What CLI11 left over: an unknown option most likely meant the nearest known one.
+    void refuse_leftovers() const {
+        const auto leftovers = app_.remaining();
+        if (leftovers.empty()) {
+            return;
+        }
+        std::vector<std::string> known;
+        for (const auto* option : app_.get_options()) {
+            if (option->nonpositional()) {
+                known.push_back(option->get_name());
+            }
+        }
+        const auto meant = nearest_word(leftovers.front(), known);
+        refuse_argument(leftovers.front(), "a known option",
+                        meant ? fmt::format("Did you mean {}? vkfv --help lists all.", *meant)
+                              : "vkfv --help lists all.");
+    }
+
+    // The only one that was given as an option.
+    const Command& chosen() const {
+        const Command* chosen = nullptr;
+        std::vector<std::string> measuring;
+        for (const auto& command : all_commands()) {
+            if (!command.about_vkfv) {
+                measuring.push_back("--" + command.name);
+            }
+            if (!command.also_option || app_.count("--" + command.name) == 0) {
+                continue;
+            }
+            if (chosen != nullptr) {
+                refuse_argument(fmt::format("--{} and --{}", chosen->name, command.name), "one command",
+                                "Run one after the other.");
+            }
+            chosen = &command;
+        }
+        if (chosen == nullptr) {
+            refuse_argument("no command", fmt::format("one of {}", fmt::join(measuring, ", ")),
+                            "vkfv --help tells what they do.");
+        }
+        return *chosen;
+    }
+
+    void check_needed(const OwnedOption& owned, const Command& command) const {
+        const auto& [option, owners] = owned;
+        const bool given = count(*option) > 0;
+        if (option->needed.empty() || given == takes(owned, command)) {
+            return;
+        }
+        const std::string owner = spelled(owners.front()->name);
+        refuse_argument(given ? option->name : fmt::format("{} without {}", owner, option->name),
+                        fmt::format("{} with {}, and only with it", option->name, owner),
+                        fmt::format("Give {} {}, {}, to {}.", option->name, option->value, option->needed, owner));
+    }
+
+    // What would be without effect, or mean another thing than was meant.
+    void refuse_stray(const OwnedOption& owned, const Command& command) const {
+        if (count(*owned.option) == 0 || takes(owned, command)) {
+            return;
+        }
+        std::vector<std::string> owners;
+        for (const auto* owner : owned.owners) {
+            owners.push_back(spelled(owner->name));
+        }
+        const std::string name = first_name(*owned.option);
+        refuse_argument(fmt::format("{} with {}", name, spelled(command.name)),
+                        fmt::format("{}", fmt::join(owners, " or ")), fmt::format("Leave {} out.", name));
+    }
+
+    static bool takes(const OwnedOption& owned, const Command& command) {
+        return std::ranges::find(owned.owners, &command) != owned.owners.end();
+    }
+
+    void place_operands(const Command& command) {
+        const auto& given = operands_[static_cast<std::size_t>(&command - all_commands().data())];
+        for (std::size_t k = 0; k < std::min(given.size(), command.operands.size()); ++k) {
+            const Operand& operand = command.operands[k];
+            if (const auto* files =
+                    std::get_if<std::vector<std::filesystem::path> CommandOptions::*>(&operand.target)) {
+                (options_.**files).assign(given.begin(), given.end());
+            } else if (const auto* file = std::get_if<std::filesystem::path CommandOptions::*>(&operand.target)) {
+                options_.** file = given[k];
+            } else {
+                require_choice(given[k], operand);
+                options_.*std::get<std::string CommandOptions::*>(operand.target) = given[k];
+            }
+        }
+    }
+
+    static void require_choice(const std::string& given, const Operand& operand) {
+        if (operand.choices.empty() || std::ranges::find(operand.choices, given) != operand.choices.end()) {
+            return;
+        }
+        const auto meant = nearest_word(given, operand.choices);
+        refuse_argument(given, fmt::format("{}", fmt::join(operand.choices, ", ")),
+                        meant ? fmt::format("Did you mean {}?", *meant) : "Name one of these.");
+    }
+
+    const Command* named_; // none: commands are options
+    CLI::App app_;
+    CommandOptions options_;
+    bool flag_ = false; // of commands without operands; which of them were given, CLI11 counts
+    std::vector<std::vector<std::string>> operands_; // of each command
+    std::vector<std::function<void()>> taken_;       // values of options that were given, in the order of declaration
+};
+
+} // namespace
+
+const std::vector<Command>& all_commands() {
+    static const auto commands = [] {
+        std::vector<Command> list = {
+            stack_command(),   image_command(),    sweep_command(),  topography_command(), compare_command(),
+            surface_command(), verify_command(),   check_command(),  trace_rays_command(), layout_command(),
+            devices_command(), bench_command(),    import_command(), list_command(),       keys_command(),
+            explain_command(), template_command(), help_command(),   completion_command(), man_command()};
+        for (auto& command : list) {
+            command.options.push_back({.name = "--quiet",
+                                       .value = "",
+                                       .description = "Only warnings and errors, no progress",
+                                       .target = &CommandOptions::quiet});
+        }
+        return list;
+    }();
+    return commands;
+}
+
+const Command& command_named(const std::string& name) {
+    const auto found = std::ranges::find(all_commands(), name, &Command::name);
+    if (found == all_commands().end()) {
+        std::vector<std::string> names;
+        std::ranges::transform(all_commands(), std::back_inserter(names), &Command::name);
+        const auto meant = nearest_word(name, names);
+        refuse_argument(name, "a command",
+                        fmt::format("{}vkfv --help lists all.", meant ? fmt::format("Did you mean {}? ", *meant) : ""));
+    }
+    return *found;
+}
+
+void run_command_line(int argument_count, char** argument_values) {
+    const std::string first = argument_count > 1 ? argument_values[1] : "";
+    const bool is_name = !first.empty() && !first.starts_with('-');
+    const Command* named = is_name ? &command_named(first) : nullptr;
+    CommandLine line(named);
+    try {
+        line.parse(argument_count - (is_name ? 1 : 0), argument_values + (is_name ? 1 : 0));
+    } catch (const CLI::CallForHelp&) {
+        fmt::print("{}", help_text(named));
+        return;
+    } catch (const CLI::CallForVersion& version) {
+        fmt::print("{}\n", version.what());
+        return;
+    }
+    spdlog::set_default_logger(spdlog::stderr_color_mt("vkfv"));
+    spdlog::set_pattern("%^%l%$: %v");
+    line.run();
+}
+
+} // namespace vkfv::app

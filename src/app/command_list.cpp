@@ -1,0 +1,123 @@
+#include "app/commands.hpp"
+
+#include "optics/prescription.hpp"
+#include "physics/scatter_registry.hpp"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+#include <nlohmann/json.hpp>
+
+#include <algorithm>
+#include <cstdio>
+#include <functional>
+
+namespace vkfv::app {
+
+namespace {
+
+struct Listed {
+    std::string name, description;
+};
+
+std::vector<Listed> prescriptions(const char* folder) {
+    const auto here = std::filesystem::current_path();
+    std::vector<Listed> list;
+    for (const auto& name : optics::prescription_names(folder, here)) {
+        list.push_back({name, optics::load_prescription(name, folder, here).title});
+    }
+    return list;
+}
+
+std::vector<Listed> glasses() {
+    constexpr double d_line_um = 0.5875618;
+    const auto catalog = optics::GlassCatalog::builtin();
+    std::vector<Listed> list;
+    for (const auto& name : catalog.names()) {
+        const auto glass = catalog.get(name);
+        const auto range = glass.valid_range();
+        const bool has_index = !range || (range->minimum_um <= d_line_um && d_line_um <= range->maximum_um);
+        list.push_back({name, (has_index ? fmt::format("nd = {:.6f}; ", glass.index(d_line_um)) : "") + glass.source});
+    }
+    return list;
+}
+
+std::vector<Listed> specimens() {
+    return {{"plane", "A plane, level or tilted"},
+            {"step", "Two levels and the flank between them"},
+            {"sphere", "A spherical cap or dimple in a plane"},
+            {"sinusoid", "A wave of one period along x"},
+            {"chirp", "A wave whose period changes along x"},
+            {"rough", "A Gaussian random surface"},
+            {"plateaus", "Levels in the shape of a text or a mask"},
+            {"air", "Type AIR: a random surface of a stated power spectrum"},
+            {"star", "A Siemens star: petals at two heights"},
+            {"groove", "A groove with flanks"},
+            {"image", "An image whose values are heights"},
+            {"surface", "A measured surface: X3P, SUR, SDF, AL3D, TIFF or EXR"},
+            {"stl", "An STL mesh"},
+            {"gltf", "A glTF mesh"}};
+}
+
+std::vector<Listed> scatter_models() {
+    std::vector<Listed> list;
+    for (const auto& model : physics::scatter_registry) {
+        std::vector<std::string> parameters;
+        for (const auto& parameter : model.parameters) {
+            parameters.push_back(fmt::format("{} from {} to {}, {} unless given ({})", parameter.name,
+                                             parameter.minimum, parameter.maximum, parameter.fallback,
+                                             parameter.meaning));
+        }
+        list.push_back({std::string(model.name),
+                        parameters.empty() ? "no parameters" : fmt::format("{}", fmt::join(parameters, "; "))});
+    }
+    return list;
+}
+
+using Lister = std::function<std::vector<Listed>()>;
+const std::vector<std::pair<std::string, Lister>>& listers() {
+    static const std::vector<std::pair<std::string, Lister>> all = {
+        {"objectives", [] { return prescriptions("objectives"); }},
+        {"tube-lenses", [] { return prescriptions("tube_lenses"); }},
+        {"illuminators", [] { return prescriptions("illuminators"); }},
+        {"glasses", glasses},
+        {"specimens", specimens},
+        {"scatter", scatter_models}};
+    return all;
+}
+
+void run_list(const CommandOptions& options) {
+    const auto list = std::ranges::find(listers(), options.topic, [](const auto& one) { return one.first; })->second();
+    if (options.json) {
+        auto report = nlohmann::ordered_json::array();
+        for (const auto& [name, description] : list) {
+            report.push_back({{"name", name}, {"description", description}});
+        }
+        fmt::print("{}\n", report.dump(2));
+        return;
+    }
+    std::size_t widest = 0;
+    for (const auto& [name, description] : list) {
+        widest = std::max(widest, name.size());
+    }
+    for (const auto& [name, description] : list) {
+        fmt::print("{:<{}}  {}\n", name, widest, description);
+    }
+}
+
+} // namespace
+
+Command list_command() {
+    std::vector<std::string> topics;
+    for (const auto& [topic, lister] : listers()) {
+        topics.push_back(topic);
+    }
+    return {.name = "list",
+            .summary = "What a configuration can name, one a line",
+            .operands = {{"WHAT", "Which names", &CommandOptions::topic, topics}},
+            .options = {json_option()},
+            .run = run_list,
+            .example = "vkfv list glasses",
+            .about_vkfv = true};
+}
+
+} // namespace vkfv::app

@@ -1,0 +1,209 @@
+// [source] and [source.spectrum].
+#include "configuration/lengths.hpp"
+#include "configuration/tables.hpp"
+#include "core/digest.hpp"
+#include "core/number_table.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <span>
+
+namespace vkfv {
+
+namespace {
+
+enum class SourceKind { disc, ring };
+enum class SpectrumKind { monochromatic, lines, gaussian, table };
+
+constexpr double least_flux = 1e-15, largest_flux = 1e15; // W; what falls on a pixel stays a float32
+
+const ChoiceKey<SourceKind> kind("kind",
+                                 {{SourceKind::disc, "disc", "a Lambertian disc behind an illuminator"},
+                                  {SourceKind::ring, "ring", "a ring light around the objective"}},
+                                 SourceKind::disc, "What shines.");
+const NumberKey flux("flux_W", NumberRange::within(least_flux, largest_flux), 1.0,
+                     "Radiant flux that the source sends into its half space.");
+const NumberKey radius = of_kinds(
+    {"disc"}, for_example("5.0", NumberKey("radius_mm", NumberRange::positive(), needed, "Radius of the disc.")));
+const NumberKey disc_distance =
+    of_kinds({"disc"}, NumberKey("distance_mm", NumberRange::positive(), Default::in_words("the prescription's"),
+                                 "From the disc to the illuminator's first vertex."));
+const NumberKey ring_distance =
+    of_kinds({"ring"}, for_example("30.0", NumberKey("distance_mm", NumberRange::positive(), needed,
+                                                     "From the ring's middle line to the focus on the axis.")));
+const NumberKey elevation =
+    of_kinds({"ring"}, for_example("45.0", NumberKey("elevation_deg", NumberRange::between(0, 90), needed,
+                                                     "Height of the light over the horizon, seen from the focus.")));
+const NumberKey width =
+    of_kinds({"ring"},
+             for_example("5.0", NumberKey("width_mm", NumberRange::positive(), needed, "Width of the luminous band.")));
+const IntegerKey segments = of_kinds(
+    {"ring"}, IntegerKey("segments", 1, physics::f64::RING_CAPACITY, 1, "Parts of equal angle, from +x towards +y."));
+const NumberKey fill =
+    of_kinds({"ring"}, NumberKey("fill", share_range, 1.0, "Share of a segment's angle that shines."));
+const BooleansKey on =
+    of_kinds({"ring"}, BooleansKey("on", Default::in_words("all"), "Which segments shine, one truth value each."));
+const NumberKey wavelength("wavelength_um", wavelength_range_um, 0.5876,
+                           "Wavelength in vacuum of monochromatic light; else see [source.spectrum].");
+
+const ChoiceKey<SpectrumKind>
+    spectrum_kind("kind",
+                  {{SpectrumKind::gaussian, "gaussian", "a bell, cut off at three standard deviations"},
+                   {SpectrumKind::lines, "lines", "several lines"},
+                   {SpectrumKind::monochromatic, "monochromatic", "one line"},
+                   {SpectrumKind::table, "table", "a density by points, linear between them"}},
+                  {}, "The spectrum's form.");
+const NumberKey line =
+    of_kinds({"monochromatic"}, NumberKey("wavelength_um", wavelength_range_um, needed, "Wavelength in vacuum."));
+const NumbersKey wavelengths =
+    of_kinds({"lines", "table"}, NumbersKey("wavelengths_um", wavelength_range_um, Default::none(),
+                                            "Wavelengths in vacuum, ascending in a table."));
+const NumbersKey weights = of_kinds({"lines"}, NumbersKey("weights", NumberRange::at_least(0), Default::none(),
+                                                          "Flux of each line relative to the others."));
+const NumberKey centre =
+    of_kinds({"gaussian"}, NumberKey("centre_um", wavelength_range_um, needed, "Wavelength of the bell's maximum."));
+const NumberKey full_width =
+    of_kinds({"gaussian"}, NumberKey("full_width_um", NumberRange::positive(), needed,
+                                     "Full width at half maximum, below the centre's wavelength."));
+const NumbersKey densities =
+    of_kinds({"table"}, NumbersKey("densities", NumberRange::at_least(0), Default::none(),
+                                   "Flux per wavelength at each wavelength, relative to the others."));
+const FileKey spectrum_file =
+    of_kinds({"table"}, FileKey("file", Default::in_words("the table in the configuration"),
+                                "CSV file of wavelength_um,density, instead of a table in the configuration."));
+
+optics::Spectrum read_spectrum_file(const Section& section) {
+    const TomlTable& table = section.table();
+    const auto file = looked_for(table.file_path(spectrum_file.name));
+    Digest digest;
+    std::vector<double> points;
+    std::vector<double> values;
+    as_named(table, spectrum_file.name, file, [&] {
+        for (const auto& point :
+             read_number_table(file, {"wavelength_um", "density"}, table.path() + ".file", "point")) {
+            digest.add_values(std::span<const double>(point.values));
+            points.push_back(point.values[0]);
+            values.push_back(point.values[1]);
+            if (!wavelength_range_um.contains(point.values[0])) {
+                throw InputError(
+                    {.where = {.file = file, .line = point.line, .column = 1},
+                     .key = "wavelength_um",
+                     .found = fmt::format("{}", point.values[0]),
+                     .expected = "a wavelength " + wavelength_range_um.to_string() + " um",
+                     .remedy =
+                         remedy_for_length_um(point.values[0], wavelength_range_um).value_or("Correct this field.")});
+            }
+        }
+    });
+    section.record_reference(spectrum_file, absolute_path(file).string(), digest.text());
+    return optics::Spectrum::table(points, values);
+}
+
+optics::Spectrum read_spectrum_table(const Section& section) {
+    const TomlTable& table = section.table();
+    switch (section.kind(spectrum_kind)) {
+    case SpectrumKind::monochromatic:
+        return optics::Spectrum::line(section.number(line));
+    case SpectrumKind::lines: {
+        const auto places = section.numbers(wavelengths);
+        return optics::Spectrum::lines(places, section.numbers(weights));
+    }
+    case SpectrumKind::gaussian: {
+        const double middle = section.number(centre);
+        // A wider one is no spectrum about the centre, and tells nanometres from micrometres.
+        const NumberRange widths = {.minimum = 0, .maximum = middle, .minimum_included = false};
+        return optics::Spectrum::gaussian(
+            middle,
+            section.number_in(full_width, table.sound(table.path() + ".centre_um") ? widths : full_width.range));
+    }
+    case SpectrumKind::table:
+        break;
+    }
+    if (section.has(spectrum_file)) {
+        for (const NumbersKey* key : {&wavelengths, &densities}) {
+            if (section.has(*key)) {
+                section.note(*key, "the spectrum in a file or in the configuration, not both",
+                             "Remove one of the two.");
+            }
+        }
+        return read_spectrum_file(section);
+    }
+    const auto places = section.numbers(wavelengths);
+    return optics::Spectrum::table(places, section.numbers(densities));
+}
+
+// Gives the key that the wavelengths stand at.
+std::string read_spectrum(const Section& source, Configuration& configuration) {
+    auto& spectrum = configuration.instrument.spectrum;
+    const auto table = source.table().optional_table("spectrum");
+    if (!table) {
+        spectrum = optics::Spectrum::line(source.number(wavelength));
+        return "source." + wavelength.name;
+    }
+    if (source.has(wavelength)) {
+        source.note(wavelength, "a wavelength or [source.spectrum], not both", "Remove one of the two.");
+    }
+    const Section section(*table, spectrum_keys(), configuration);
+    source.table().attempt("spectrum", [&] {
+        at_its_place(configuration, table->where(), [&] { spectrum = read_spectrum_table(section); });
+    });
+    return table->path();
+}
+
+optics::RingLightDescription read_ring(const Section& source) {
+    optics::RingLightDescription ring;
+    ring.distance = source.number(ring_distance);
+    ring.elevation = source.number(elevation) * radians_per_degree;
+    ring.width = source.number(width);
+    ring.segments = static_cast<int>(source.integer(segments));
+    ring.fill = source.number(fill);
+    ring.on = source.booleans(on, std::vector<bool>(static_cast<std::size_t>(ring.segments), true));
+    if (ring.on.size() != static_cast<std::size_t>(ring.segments) ||
+        std::ranges::find(ring.on, true) == ring.on.end()) {
+        source.fail(
+            on, fmt::format("{} of true and false, one a segment from +x towards +y, at least one true", ring.segments),
+            "Give each segment its state, and switch one on.");
+    }
+    return ring;
+}
+
+} // namespace
+
+const KeyTable& source_keys() {
+    static const KeyTable table{.path = "source",
+                                .presence = KeyTable::Presence::needed,
+                                .meaning = "The light.",
+                                .subject = "a source",
+                                .kind = "kind",
+                                .keys = {&kind, &flux, &radius, &disc_distance, &ring_distance, &elevation, &width,
+                                         &segments, &fill, &on, &wavelength}};
+    return table;
+}
+
+const KeyTable& spectrum_keys() {
+    static const KeyTable table{
+        .path = "source.spectrum",
+        .presence = KeyTable::Presence::optional,
+        .meaning = "The light's wavelengths, instead of source.wavelength_um.",
+        .subject = "a spectrum",
+        .kind = "kind",
+        .keys = {&spectrum_kind, &line, &wavelengths, &weights, &centre, &full_width, &densities, &spectrum_file}};
+    return table;
+}
+
+std::string read_source(const TomlTable& root, Configuration& configuration) {
+    auto& instrument = configuration.instrument;
+    const Section source(root.table("source"), source_keys(), configuration);
+    const SourceKind what = source.kind(kind);
+    instrument.flux = source.number(flux);
+    if (what == SourceKind::ring) {
+        instrument.ring = read_ring(source);
+    } else {
+        instrument.source_radius = source.number(radius);
+        instrument.source_distance = source.number_if_given(disc_distance);
+    }
+    return read_spectrum(source, configuration);
+}
+
+} // namespace vkfv

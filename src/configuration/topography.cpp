@@ -1,0 +1,161 @@
+// [topography] and [diffraction].
+#include "configuration/lengths.hpp"
+#include "configuration/tables.hpp"
+#include "topography/focus_measure.hpp"
+#include "topography/peak_method.hpp"
+
+#include <fmt/format.h>
+
+namespace vkfv {
+
+namespace {
+
+constexpr double most_smoothing_steps = 100; // 1202 images in memory
+constexpr std::int64_t most_peak_range_steps = 100;
+
+const topography::TopographyOptions defaults;
+
+// The names that the evaluation has for the values of an enumeration.
+template <class Value>
+ChoiceKey<Value> named(std::string name, const std::vector<std::string>& names, Value (*value_of)(std::string_view),
+                       Value fallback, std::string meaning) {
+    std::vector<typename ChoiceKey<Value>::Option> options;
+    for (const auto& each : names) {
+        options.push_back({value_of(each), each});
+    }
+    return without_influence(ChoiceKey<Value>(std::move(name), options, fallback, std::move(meaning)));
+}
+
+const auto focus_measure =
+    named("focus_measure", topography::focus_measure_names(), topography::focus_measure_from_name,
+          defaults.focus_measure, "What focus is measured by.");
+const IntegerKey window = without_influence(
+    IntegerKey("window_px", 3, 255, defaults.window_px, "Side of the window around a pixel, an odd number."));
+const auto window_shape = named("window_shape", topography::window_shape_names(), topography::window_shape_from_name,
+                                defaults.window_shape, "Weights in the window.");
+const NumberKey smoothing = without_influence(
+    NumberKey("smoothing_steps", NumberRange::within(0, most_smoothing_steps), defaults.smoothing_steps,
+              "Standard deviation of the Gaussian average along z, in steps of the scan; 0: none."));
+const NumberKey false_peak_rate =
+    without_influence(NumberKey("false_peak_rate", NumberRange::between(0, 1), defaults.false_peak_rate,
+                                "Probability that a pixel without texture gets a height from noise alone, at most."));
+const auto peak = named("peak", topography::peak_method_names(), topography::peak_method_from_name, defaults.peak,
+                        "How the maximum of focus is found.");
+const IntegerKey peak_range =
+    without_influence(IntegerKey("peak_range_steps", 1, most_peak_range_steps, defaults.peak_range_steps,
+                                 "Images on either side of the maximum that its fit takes."));
+const NumberKey least_contrast = without_influence(
+    NumberKey("least_contrast", NumberRange::at_least(0), defaults.least_contrast,
+              "Contrast of the focus curve, in deviations of its noise, that a measured point has at least."));
+const NumberKey most_fit_residual = without_influence(
+    NumberKey("most_fit_residual", NumberRange::positive(), defaults.most_fit_residual,
+              "Distance of the focus curve from a Gaussian, in units of its maximum, that a measured point has at "
+              "most."));
+const IntegerKey most_peaks = without_influence(IntegerKey(
+    "most_peaks", 1, 4, defaults.most_peaks, "Maxima of the focus curve that a measured point has at most; 4: any."));
+const BooleanKey repair_outliers = without_influence(
+    BooleanKey("repair_outliers", defaults.repair_outliers, "Whether outliers become the median of their neighbours."));
+const ChoiceKey<EvaluateOn> evaluate_on =
+    without_influence(ChoiceKey<EvaluateOn>("evaluate_on",
+                                            {{EvaluateOn::automatic, "auto", "on a device that has cores of its own"},
+                                             {EvaluateOn::host, "host", "on the processor"},
+                                             {EvaluateOn::device, "device", "on the device that traces"}},
+                                            EvaluateOn::automatic, "Where the stack is evaluated."));
+const FileKey flatness_file = without_influence(
+    FileKey("flatness_file", Default::in_words("\"none\""),
+            "Heights of a flat measured by the same instrument, whose field curvature is taken off."));
+const ChoiceKey<bool> filter =
+    without_influence(ChoiceKey<bool>("filter", {{false, "gaussian", "ISO 16610-61"}, {true, "spline", "ISO 16610-62"}},
+                                      false, "Which S-filter and L-filter."));
+const NumberKey s_filter =
+    without_influence(NumberKey("s_filter_um", NumberRange::at_least(0), 0.0,
+                                "Nesting index of the S-filter of a second comparison with the truth; 0: none."));
+const NumberKey l_filter =
+    without_influence(NumberKey("l_filter_um", NumberRange::at_least(0), 0.0,
+                                "Nesting index of the L-filter of a second comparison with the truth; 0: none."));
+
+enum class PointSpread { none, airy, file };
+
+const ChoiceKey<PointSpread> point_spread =
+    without_influence(ChoiceKey<PointSpread>("point_spread",
+                                             {{PointSpread::none, "none", "geometrical images"},
+                                              {PointSpread::airy, "airy", "the Airy pattern of the instrument"},
+                                              {PointSpread::file, "file", "a measured point spread function"}},
+                                             PointSpread::none, "What images are blurred by after the trace."));
+const FileKey point_spread_file = of_kinds(
+    {"file"}, without_influence(FileKey("file", Default::none(), "Image of a measured point spread function.")));
+const NumberKey point_spread_pitch =
+    of_kinds({"file"}, without_influence(NumberKey("pitch_um", NumberRange::positive(), needed,
+                                                   "Distance of that image's pixels in the object.")));
+
+} // namespace
+
+const KeyTable& topography_keys() {
+    static const KeyTable table{.path = "topography",
+                                .presence = KeyTable::Presence::optional,
+                                .meaning = "How heights are found in the images.",
+                                .subject = "a topography",
+                                .kind = "",
+                                .keys = {&focus_measure, &window, &window_shape, &smoothing, &false_peak_rate, &peak,
+                                         &peak_range, &least_contrast, &most_fit_residual, &most_peaks,
+                                         &repair_outliers, &evaluate_on, &flatness_file, &filter, &s_filter,
+                                         &l_filter}};
+    return table;
+}
+
+const KeyTable& diffraction_keys() {
+    static const KeyTable table{.path = "diffraction",
+                                .presence = KeyTable::Presence::optional,
+                                .meaning = "Diffraction, after the trace.",
+                                .subject = "",
+                                .kind = "point_spread",
+                                .keys = {&point_spread, &point_spread_file, &point_spread_pitch}};
+    return table;
+}
+
+void read_topography(const TomlTable& root, Configuration& configuration, Needs needs) {
+    const TomlTable table = root.table_or_empty("topography");
+    const Section section(table, topography_keys(), configuration);
+    auto& options = configuration.topography;
+    options.focus_measure = section.choice(focus_measure);
+    options.window_px = static_cast<int>(section.integer(window));
+    if (options.window_px % 2 == 0) {
+        section.fail(window, "an odd integer, so that the window has a central pixel",
+                     fmt::format("Choose {} or {}.", options.window_px - 1, options.window_px + 1));
+    }
+    if (needs == Needs::stack && table.sound("detector") &&
+        options.window_px > configuration.instrument.detector_pixels) {
+        section.fail(window,
+                     fmt::format("an integer <= detector.pixels = {}", configuration.instrument.detector_pixels),
+                     "Choose a smaller window or more pixels.");
+    }
+    options.window_shape = section.choice(window_shape);
+    options.smoothing_steps = section.number(smoothing);
+    options.false_peak_rate = section.number(false_peak_rate);
+    options.peak = section.choice(peak);
+    options.peak_range_steps = static_cast<int>(section.integer(peak_range));
+    options.least_contrast = section.number(least_contrast);
+    options.most_fit_residual = section.number(most_fit_residual);
+    options.most_peaks = static_cast<int>(section.integer(most_peaks));
+    options.repair_outliers = section.boolean(repair_outliers);
+    configuration.evaluate_on = section.choice(evaluate_on);
+    // "none", so that --set can take it back.
+    if (const auto name = table.optional_string(flatness_file.name); name && *name != "none") {
+        configuration.flatness_file = section.file(flatness_file);
+    }
+    configuration.band.spline = section.choice(filter);
+    configuration.band.s_filter = from_um(section.number(s_filter));
+    configuration.band.l_filter = from_um(section.number(l_filter));
+}
+
+void read_diffraction(const TomlTable& root, Configuration& configuration) {
+    const Section section(root.table_or_empty("diffraction"), diffraction_keys(), configuration);
+    const PointSpread what = section.kind(point_spread);
+    configuration.diffraction.airy = what == PointSpread::airy;
+    if (what == PointSpread::file) {
+        configuration.diffraction.file = section.file(point_spread_file);
+        configuration.diffraction.pitch = from_um(section.number(point_spread_pitch));
+    }
+}
+
+} // namespace vkfv

@@ -1,0 +1,97 @@
+// [trace].
+#include "configuration/lengths.hpp"
+#include "configuration/tables.hpp"
+
+namespace vkfv {
+
+namespace {
+
+using trace::Estimator;
+using trace::Traversal;
+
+constexpr std::int64_t most_rays = 1'000'000'000'000; // 1e12: an hour a picture on the fastest device
+constexpr std::int64_t most_bounces = 64;             // a Lambertian pit loses all but 1e-3 of its light in ten
+
+const IntegerKey rays("rays", 1, most_rays, 10'000'000, "Rays launched per image; 1e9 is an integer too.");
+const IntegerKey seed("seed", 0, largest_seed, 1, "Seed of all random numbers of the trace.");
+const IntegerKey max_bounces("max_bounces", 1, most_bounces, 2, "Most meetings of a path with the specimen.");
+const ChoiceKey<bool> mode("mode",
+                           {{false, "sequential", "light meets the surfaces in their order"},
+                            {true, "nonsequential", "light finds its own way, and interfaces split it: ghosts"}},
+                           false, "How light goes through the instrument.");
+const ChoiceKey<Estimator>
+    estimator("estimator",
+              {{Estimator::forward, "forward", "from the source to the detector"},
+               {Estimator::backward, "backward", "from the detector to the source: less noise for the same rays"}},
+              Estimator::forward, "Which end paths start from.");
+const ChoiceKey<bool> emission("emission",
+                               {{true, "directed", "only into the cone that can pass the illuminator"},
+                                {false, "analog", "into the half space"}},
+                               true, "Where the source sends rays; what is not aimed at is in the ledger.");
+const ChoiceKey<bool> scattering("scattering",
+                                 {{false, "analog", "by the material's lobe alone"},
+                                  {true, "directed", "every bounce also aims at the pupil, with weights"}},
+                                 false, "Where the specimen sends rays.");
+const ChoiceKey<Traversal> traversal =
+    without_influence(ChoiceKey<Traversal>("traversal",
+                                           {{Traversal::automatic, "auto", "the fastest that the device has"},
+                                            {Traversal::ray_query, "ray-query", "VK_KHR_ray_query"},
+                                            {Traversal::quadtree, "quadtree", "a pyramid of a height field"},
+                                            {Traversal::bvh, "bvh", "a bounding volume hierarchy"}},
+                                           Traversal::automatic, "How rays find the specimen."));
+const IntegerKey batch =
+    without_influence(IntegerKey("batch", 0, most_rays, 0, "Rays in flight at once; 0: what suits the device."));
+const TextKey device =
+    without_influence(TextKey("device", Default::in_words("the best"),
+                              "Index or part of the name of a Vulkan device; \"host\": the reference in double."));
+
+} // namespace
+
+const KeyTable& trace_keys() {
+    static const KeyTable table{
+        .path = "trace",
+        .presence = KeyTable::Presence::optional,
+        .meaning = "How light is traced.",
+        .subject = "a trace",
+        .kind = "",
+        .keys = {&rays, &seed, &max_bounces, &mode, &estimator, &emission, &scattering, &traversal, &batch, &device}};
+    return table;
+}
+
+void read_trace(const TomlTable& root, Configuration& configuration) {
+    const Section section(root.table_or_empty("trace"), trace_keys(), configuration);
+    auto& trace = configuration.trace;
+    trace.rays = static_cast<std::uint64_t>(section.integer(rays));
+    trace.seed = static_cast<std::uint32_t>(section.integer(seed));
+    trace.max_bounces = static_cast<int>(section.integer(max_bounces));
+    trace.nonsequential = section.choice(mode);
+    trace.estimator = section.choice(estimator);
+    if (trace.estimator == Estimator::backward) {
+        configuration.instrument.turned = true;
+        if (trace.nonsequential) {
+            section.fail(estimator, "\"forward\" with mode = \"nonsequential\"",
+                         "Choose estimator = \"forward\", or mode = \"sequential\".");
+        }
+    }
+    configuration.instrument.directed_emission = section.choice(emission);
+    trace.directed_scatter = section.choice(scattering);
+    if (trace.directed_scatter && trace.nonsequential) {
+        section.fail(scattering, "\"analog\" with mode = \"nonsequential\", whose light finds the pupil by itself",
+                     "Choose scattering = \"analog\", or mode = \"sequential\".");
+    }
+    if (trace.directed_scatter && trace.estimator == Estimator::backward) {
+        section.fail(scattering, "\"analog\" with estimator = \"backward\", which starts from the pupil",
+                     "Choose scattering = \"analog\", or estimator = \"forward\".");
+    }
+    trace.traversal = section.choice(traversal);
+    if (trace.nonsequential && trace.traversal == Traversal::quadtree) {
+        section.fail(traversal, "a traversal that knows the instrument's elements too",
+                     "Use \"auto\", \"bvh\" or \"ray-query\" with mode = \"nonsequential\".");
+    }
+    trace.batch = static_cast<std::uint64_t>(section.integer(batch));
+    if (const auto selector = section.text_if_given(device)) {
+        trace.device = *selector;
+    }
+}
+
+} // namespace vkfv
