@@ -1,12 +1,11 @@
 #include "app/commands.hpp"
-#include "report/parameter_table.hpp"
+#include "measurement/surface_report.hpp"
 
 #include "core/file.hpp"
 #include "core/units.hpp"
 #include "surface_files/surface_file.hpp"
 
 #include <fmt/format.h>
-#include <nlohmann/json.hpp>
 
 #include <algorithm>
 #include <array>
@@ -62,7 +61,6 @@ Command surface_command() {
 
 namespace {
 
-using Json = nlohmann::ordered_json;
 using surface::HeightMap;
 
 [[noreturn]] void refuse(const CommandOptions& options, std::string key, std::string found, std::string expected,
@@ -94,16 +92,12 @@ surface::SurfaceFile read_file(const CommandOptions& options) {
     }
 }
 
-std::ptrdiff_t measured_points(const HeightMap& map) {
-    return std::ranges::count_if(map.height.values, [](double z) { return std::isfinite(z); });
-}
-
 HeightMap treated(const CommandOptions& options, const HeightMap& map) {
-    if (measured_points(map) == 0) {
+    if (!measurement::any_height(map)) {
         refuse(options, "", "no measured point", "a surface with heights", "Measure again.");
     }
     HeightMap result = surface::scale_limited(map, options.band);
-    if (measured_points(result) == 0) {
+    if (!measurement::any_height(result)) {
         refuse(options, "--form", surface::form_name(options.band.form), "a form that the measured points settle",
                "Choose --form plane or --form polynomial-2.");
     }
@@ -135,69 +129,6 @@ surface::ProfileLine line_of(const CommandOptions& options, const HeightMap& map
     return line;
 }
 
-// All that is said of the surface.
-struct Figures {
-    std::ptrdiff_t not_measured = 0; // beyond a sphere too
-    std::vector<report::ParameterRow> parameters;
-    surface::ProfileLine line;
-    double section_length = 0; // mm
-    std::vector<report::ParameterRow> profile;
-};
-
-Figures figures_of(const HeightMap& map, const surface::ProfileLine& line) {
-    const auto profile = surface::roughness_profile(map, line);
-    return {.not_measured = std::ssize(map.height.values) - measured_points(map),
-            .parameters = report::parameter_rows(surface::areal_parameters(map)),
-            .line = line,
-            .section_length = profile.section_length,
-            .profile = report::parameter_rows(profile.parameters)};
-}
-
-std::string json_text(const CommandOptions& options, const HeightMap& map, const Figures& figures) {
-    Json report;
-    report["file"] = options.file.string();
-    report["columns"] = map.columns();
-    report["rows"] = map.rows();
-    report["pitch_um"] = {map.pitch_x * um_per_mm, map.pitch_y * um_per_mm};
-    report["first_point_um"] = {map.x0 * um_per_mm, map.y0 * um_per_mm};
-    report["not_measured_points"] = figures.not_measured;
-    report["treatment"] = report::treatment_json(options.band);
-    report["parameters"] = json_of(figures.parameters);
-    const auto& line = figures.line;
-    report["profile"] = {{"start_um", {line.x_start * um_per_mm, line.y_start * um_per_mm}},
-                         {"end_um", {line.x_end * um_per_mm, line.y_end * um_per_mm}},
-                         {"section_length_um", figures.section_length * um_per_mm}};
-    report["profile"].update(json_of(figures.profile));
-    report["evaluated_by"] = fmt::format("vkfv {}", VKFV_VERSION);
-    return report.dump(2) + "\n";
-}
-
-std::string text_of(const CommandOptions& options, const HeightMap& map, const Figures& figures) {
-    const auto size = [](int points, double pitch) { return points * pitch * um_per_mm; };
-    std::string text = fmt::format("{:<14} {} x {} points, {:.6g} x {:.6g} um\n", "size", map.columns(), map.rows(),
-                                   size(map.columns(), map.pitch_x), size(map.rows(), map.pitch_y));
-    text += fmt::format("{:<14} {:.6g} x {:.6g} um, from x = {:.6g} um, y = {:.6g} um\n", "pitch",
-                        map.pitch_x * um_per_mm, map.pitch_y * um_per_mm, map.x0 * um_per_mm, map.y0 * um_per_mm);
-    text +=
-        fmt::format("{:<14} {} points ({:.3g} %)\n", "not measured", figures.not_measured,
-                    100.0 * static_cast<double>(figures.not_measured) / static_cast<double>(map.height.values.size()));
-    text += fmt::format("{:<14} {}\n", "treatment", report::treatment_text(options.band));
-    const auto table = [&text](const std::vector<report::ParameterRow>& rows) {
-        for (const auto& row : rows) {
-            text += fmt::format("{:<5} {:<12} {:>12}\n", row.name, row.unit, report::number_text(row.value));
-        }
-    };
-    text += "\nISO 25178-2\n";
-    table(figures.parameters);
-    const auto& line = figures.line;
-    text += fmt::format(
-        "\nISO 21920-2, profile from ({:.6g}, {:.6g}) um to ({:.6g}, {:.6g}) um, section length {:.4g} um\n",
-        line.x_start * um_per_mm, line.y_start * um_per_mm, line.x_end * um_per_mm, line.y_end * um_per_mm,
-        figures.section_length * um_per_mm);
-    table(figures.profile);
-    return text;
-}
-
 } // namespace
 
 void run_surface(const CommandOptions& options) {
@@ -214,8 +145,9 @@ void run_surface(const CommandOptions& options) {
                                           report::treatment_text(options.band));
         write_file(*options.out, surface::surface_bytes(*options.out, map, provenance));
     }
-    const Figures figures = figures_of(map, line);
-    fmt::print("{}", options.json ? json_text(options, map, figures) : text_of(options, map, figures));
+    const auto figures = measurement::surface_figures(map, line, options.band);
+    fmt::print("{}", options.json ? measurement::surface_json(figures, options.file).dump(2) + "\n"
+                                  : measurement::surface_text(figures));
 }
 
 } // namespace vkfv::app

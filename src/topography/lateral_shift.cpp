@@ -37,42 +37,27 @@ struct Starts {
     double significant_correlation = 1; // of the best of unrelated surfaces hardly any reaches it
 };
 
-// Pearson's correlation over the points that overlap, at every lag: sums over pairs by Fourier transform,
-// after D. Padfield, "Masked object registration in the Fourier domain", 2012. Without points a lag has none.
-Starts starting_shifts(const LevelledPair& pair) {
-    constexpr std::size_t most = 3;
-    constexpr double worth_a_try = 0.5;    // of the best one's evidence
-    constexpr double least_overlap = 0.25; // of the points at lag zero
-    const int columns = pair.measured.columns(), rows = pair.measured.rows();
-    const int reach_x = columns / 4, reach_y = rows / 4;
-    const double sq_measured = surface::height_parameters(pair.measured).sq;
-    const double sq_true = surface::height_parameters(pair.truth).sq;
-    if (!(sq_measured > 0 && sq_true > 0))
-        return {};
-    // Zeros as wide as the reach keep the ends apart. Two real grids go through one transform: presence and
-    // a; b and a^2; b^2.
-    Grid<Complex> first(convenient_length(columns + reach_x + 1), convenient_length(rows + reach_y + 1));
-    Grid<Complex> second = first, third = first;
-    double points = 0;
-    for (int row = 0; row < rows; ++row)
-        for (int column = 0; column < columns; ++column)
-            if (const double z = pair.measured.height(column, row); std::isfinite(z)) {
-                const double a = z / sq_measured, b = pair.truth.height(column, row) / sq_true;
-                first(column, row) = {1, a};
-                second(column, row) = {b, a * a};
-                third(column, row) = {b * b, 0};
-                points += 1;
-            }
-    fourier_transform(first);
-    fourier_transform(second);
-    fourier_transform(third);
-    // Likewise back: pairs and products; a and b where the other is present; their squares there.
-    double powers_a = 0, powers_b = 0, powers_both = 0;
-    for (int row = 0; row < first.rows; ++row)
-        for (int column = 0; column < first.columns; ++column) {
-            const int opposite_column = column == 0 ? 0 : first.columns - column;
-            const int opposite_row = row == 0 ? 0 : first.rows - row;
-            const std::size_t here = first.index(column, row), there = first.index(opposite_column, opposite_row);
+// The farthest lags that are looked at, in points to either side.
+struct Reach {
+    int x = 0;
+    int y = 0;
+};
+
+// Sums over pairs of points by lag, from measured heights a and true ones b in units of their Sq: of presence and of
+// a b; of a and of b where the other is present; of their squares there.
+struct Correlations {
+    Grid<Complex> first, second, third;
+    double points = 0;                                  // at lag zero
+    double powers_a = 0, powers_b = 0, powers_both = 0; // sums over frequencies
+};
+
+// From the transforms of presence and a; b and a^2; b^2 to those of the sums.
+void correlate(Correlations& of) {
+    for (int row = 0; row < of.first.rows; ++row)
+        for (int column = 0; column < of.first.columns; ++column) {
+            const int opposite_column = column == 0 ? 0 : of.first.columns - column;
+            const int opposite_row = row == 0 ? 0 : of.first.rows - row;
+            const std::size_t here = of.first.index(column, row), there = of.first.index(opposite_column, opposite_row);
             if (there < here)
                 continue;
             // The transform of a + i b, a and b real, is A + i B; at the opposite frequency conj(A) + i
@@ -86,37 +71,70 @@ Starts starting_shifts(const LevelledPair& pair) {
                 grid.values[there] = std::conj(real) + i * std::conj(imaginary);
                 grid.values[here] = real + i * imaginary;
             };
-            const auto [present, a] = parts(first);
-            const auto [b, a_squared] = parts(second);
-            const Complex b_squared = parts(third).first;
-            join(first, present * std::conj(present), a * std::conj(b));
-            join(second, a * std::conj(present), present * std::conj(b));
-            join(third, a_squared * std::conj(present), present * std::conj(b_squared));
+            const auto [present, a] = parts(of.first);
+            const auto [b, a_squared] = parts(of.second);
+            const Complex b_squared = parts(of.third).first;
+            join(of.first, present * std::conj(present), a * std::conj(b));
+            join(of.second, a * std::conj(present), present * std::conj(b));
+            join(of.third, a_squared * std::conj(present), present * std::conj(b_squared));
             const double times = here == there ? 1 : 2;
-            powers_a += times * std::norm(a);
-            powers_b += times * std::norm(b);
-            powers_both += times * std::norm(a) * std::norm(b);
+            of.powers_a += times * std::norm(a);
+            of.powers_b += times * std::norm(b);
+            of.powers_both += times * std::norm(a) * std::norm(b);
         }
-    inverse_fourier_transform(first);
-    inverse_fourier_transform(second);
-    inverse_fourier_transform(third);
+}
 
-    Grid<double> evidences(2 * reach_x + 1, 2 * reach_y + 1);
-    for (int j = -reach_y; j <= reach_y; ++j)
-        for (int i = -reach_x; i <= reach_x; ++i) {
-            const std::size_t lag = first.index(i < 0 ? i + first.columns : i, j < 0 ? j + first.rows : j);
-            const double n = std::round(first.values[lag].real());
-            if (!(n >= least_overlap * points))
+// By Fourier transform, after D. Padfield, "Masked object registration in the Fourier domain", 2012.
+Correlations correlations(const LevelledPair& pair, double sq_measured, double sq_true, const Reach& reach) {
+    const int columns = pair.measured.columns(), rows = pair.measured.rows();
+    // Zeros as wide as the reach keep the ends apart. Two real grids go through one transform: presence and
+    // a; b and a^2; b^2.
+    Correlations of;
+    of.first = of.second = of.third =
+        Grid<Complex>(convenient_length(columns + reach.x + 1), convenient_length(rows + reach.y + 1));
+    for (int row = 0; row < rows; ++row)
+        for (int column = 0; column < columns; ++column)
+            if (const double z = pair.measured.height(column, row); std::isfinite(z)) {
+                const double a = z / sq_measured, b = pair.truth.height(column, row) / sq_true;
+                of.first(column, row) = {1, a};
+                of.second(column, row) = {b, a * a};
+                of.third(column, row) = {b * b, 0};
+                of.points += 1;
+            }
+    for (Grid<Complex>* grid : {&of.first, &of.second, &of.third})
+        fourier_transform(*grid);
+    correlate(of);
+    for (Grid<Complex>* grid : {&of.first, &of.second, &of.third})
+        inverse_fourier_transform(*grid);
+    return of;
+}
+
+// Of Pearson's correlation over the points that overlap, at every lag. Without enough points a lag has none.
+Grid<double> evidence_by_lag(const Correlations& of, const Reach& reach) {
+    constexpr double least_overlap = 0.25; // of the points at lag zero
+    Grid<double> evidences(2 * reach.x + 1, 2 * reach.y + 1);
+    for (int j = -reach.y; j <= reach.y; ++j)
+        for (int i = -reach.x; i <= reach.x; ++i) {
+            const std::size_t lag = of.first.index(i < 0 ? i + of.first.columns : i, j < 0 ? j + of.first.rows : j);
+            const double n = std::round(of.first.values[lag].real());
+            if (!(n >= least_overlap * of.points))
                 continue;
-            const double mean_a = second.values[lag].real() / n, mean_b = second.values[lag].imag() / n;
-            const double variance_a = third.values[lag].real() / n - mean_a * mean_a;
-            const double variance_b = third.values[lag].imag() / n - mean_b * mean_b;
+            const double mean_a = of.second.values[lag].real() / n, mean_b = of.second.values[lag].imag() / n;
+            const double variance_a = of.third.values[lag].real() / n - mean_a * mean_a;
+            const double variance_b = of.third.values[lag].imag() / n - mean_b * mean_b;
             // Of 1 at lag zero: what is left of less is rounding.
             if (variance_a > 1e-9 && variance_b > 1e-9)
-                evidences(i + reach_x, j + reach_y) =
-                    evidence(n, (first.values[lag].imag() / n - mean_a * mean_b) / std::sqrt(variance_a * variance_b));
+                evidences(i + reach.x, j + reach.y) = evidence(n, (of.first.values[lag].imag() / n - mean_a * mean_b) /
+                                                                      std::sqrt(variance_a * variance_b));
         }
+    return evidences;
+}
 
+// The lags of the highest peaks, the best first.
+std::vector<LateralShift> shifts_of_peaks(const Grid<double>& evidences, const Reach& reach, double pitch_x,
+                                          double pitch_y) {
+    constexpr std::size_t most = 3;
+    constexpr double worth_a_try = 0.5; // of the best one's evidence
     struct Peak {
         double evidence;
         LateralShift shift;
@@ -130,25 +148,36 @@ Starts starting_shifts(const LevelledPair& pair) {
                 for (int i = std::max(column - 1, 0); i <= std::min(column + 1, evidences.columns - 1); ++i)
                     highest = highest && evidences(i, j) <= here;
             if (highest)
-                peaks.push_back(
-                    {here,
-                     {.x = (column - reach_x) * pair.measured.pitch_x, .y = (row - reach_y) * pair.measured.pitch_y}});
+                peaks.push_back({here, {.x = (column - reach.x) * pitch_x, .y = (row - reach.y) * pitch_y}});
         }
     std::ranges::stable_sort(peaks, std::greater{}, &Peak::evidence);
-    Starts starts;
+    std::vector<LateralShift> shifts;
     for (const Peak& peak : peaks)
-        if (starts.shifts.size() < most && peak.evidence >= worth_a_try * peaks.front().evidence)
-            starts.shifts.push_back(peak.shift);
+        if (shifts.size() < most && peak.evidence >= worth_a_try * peaks.front().evidence)
+            shifts.push_back(peak.shift);
+    return shifts;
+}
 
-    // The correlation of unrelated surfaces has the variance 1 / n, n the number of independent points: all
-    // of them over the summed product of both autocorrelations (M. S. Bartlett 1935), which by Parseval's
-    // theorem is a sum over frequencies. The best of m independent lags exceeds the sqrt(2 ln m)-fold of
-    // Fisher's z by little.
-    const double patch = powers_both / (powers_a * powers_b) * static_cast<double>(first.values.size());
-    const double independent = points / patch;
-    const double lags = std::max(1.0, static_cast<double>(evidences.values.size()) / patch);
-    starts.significant_correlation = std::tanh((3 + std::sqrt(2 * std::log(lags))) / std::sqrt(independent));
-    return starts;
+// The correlation of unrelated surfaces has the variance 1 / n, n the number of independent points: all of them over
+// the summed product of both autocorrelations (M. S. Bartlett 1935), which by Parseval's theorem is a sum over
+// frequencies. The best of m independent lags exceeds the sqrt(2 ln m)-fold of Fisher's z by little.
+double significant_correlation(const Correlations& of, std::size_t looked_at) {
+    const double patch = of.powers_both / (of.powers_a * of.powers_b) * static_cast<double>(of.first.values.size());
+    const double independent = of.points / patch;
+    const double lags = std::max(1.0, static_cast<double>(looked_at) / patch);
+    return std::tanh((3 + std::sqrt(2 * std::log(lags))) / std::sqrt(independent));
+}
+
+Starts starting_shifts(const LevelledPair& pair) {
+    const double sq_measured = surface::height_parameters(pair.measured).sq;
+    const double sq_true = surface::height_parameters(pair.truth).sq;
+    if (!(sq_measured > 0 && sq_true > 0))
+        return {};
+    const Reach reach{pair.measured.columns() / 4, pair.measured.rows() / 4};
+    const Correlations of = correlations(pair, sq_measured, sq_true, reach);
+    const Grid<double> evidences = evidence_by_lag(of, reach);
+    return {.shifts = shifts_of_peaks(evidences, reach, pair.measured.pitch_x, pair.measured.pitch_y),
+            .significant_correlation = significant_correlation(of, evidences.values.size())};
 }
 
 struct Step {

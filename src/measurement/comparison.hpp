@@ -1,0 +1,35 @@
+// Measured against true surfaces, each from its file.
+#pragma once
+
+#include "surface/band.hpp"
+#include "surface/roughness_profile.hpp"
+#include "topography/comparison.hpp"
+
+#include <filesystem>
+#include <vector>
+
+namespace vkfv::measurement {
+
+struct ComparisonRequest {
+    std::vector<std::filesystem::path> measurements; // at least one; repeated ones stand on one grid
+    std::filesystem::path truth;
+    bool align = false; // the lateral shift is removed
+    surface::Band band;
+};
+
+// Along the middle row, of the first measurement and of the truth under it, treated.
+struct ComparedProfile {
+    surface::ProfileLine line;
+    surface::RoughnessProfile measured, truth;
+};
+
+struct ComparisonResult {
+    topography::Comparison comparison;
+    topography::LevelledPair pair; // the first measurement and the truth under it, treated
+    ComparedProfile profile;
+};
+
+// Throws InputError for files that cannot be read, or of surfaces that cannot be compared.
+ComparisonResult compare_files(const ComparisonRequest& request);
+
+} // namespace vkfv::measurement

@@ -1,0 +1,73 @@
+#include "measurement/image.hpp"
+
+#include "core/file.hpp"
+#include "core/units.hpp"
+#include "measurement/assembly.hpp"
+#include "measurement/specimen_view.hpp"
+#include "report/topography_picture.hpp"
+
+#include <fmt/format.h>
+#include <spdlog/spdlog.h>
+
+namespace vkfv::measurement {
+
+namespace {
+
+constexpr double least_signal_to_noise = 10; // of 100 detected rays a pixel
+
+std::string text_of(const trace::Ledger& ledger) {
+    std::string text = fmt::format("{:<52} {:>14} {:>9}\n", "energy ledger", "W", "share");
+    for (const auto& entry : ledger.entries) {
+        if (entry.rays == 0 && entry.power == 0) {
+            continue; // ledger.csv of a stack lists them all
+        }
+        text +=
+            fmt::format("{:<52} {:>14.6e} {:>8.4f} %\n", entry.name, entry.power, 100 * entry.power / ledger.emitted);
+    }
+    text += fmt::format("{:<52} {:>14.6e}\n", "emitted", ledger.emitted);
+    text += fmt::format("{:<52} {:>14.6e}\n", "residual", ledger.residual());
+    if (ledger.residual_error > 0) {
+        text += fmt::format("{:<52} {:>14.6e}\n", "standard error of the residual", ledger.residual_error);
+    }
+    return text;
+}
+
+} // namespace
+
+ImageResult measure_image(const Configuration& configuration, double focal_height, const std::filesystem::path& file) {
+    const auto specimen = make_specimen(configuration);
+    ImageResult result{.exposure = expose(configuration, instrument_for(configuration, specimen, focal_height),
+                                          specimen, focal_height),
+                       .file = file,
+                       .picture = file};
+    result.picture.replace_extension(".svg");
+    const auto& exposure = result.exposure;
+    auto files = image_files(file, exposure, focal_height);
+    files.emplace_back(result.picture,
+                       report::image_picture(
+                           fmt::format("{}, z = {:g} um", configuration.file.stem().string(), focal_height * um_per_mm),
+                           exposure.image.flux, exposure.first, exposure.first, exposure.pitch));
+    make_folder(file.parent_path());
+    for (const auto& [name, bytes] : files) {
+        write_file(name, bytes);
+    }
+    for (const auto& warning : warning_of_lost_light(exposure.image)) {
+        spdlog::warn(warning);
+    }
+    if (const double ratio = signal_to_noise(exposure.image); ratio < least_signal_to_noise) {
+        spdlog::warn(
+            "noise is {:.0f} % of a pixel's mean light. Launch more rays with --rays, close the field stop to the "
+            "field of view, or take --estimator backward",
+            100 / ratio);
+    }
+    return result;
+}
+
+std::string summary(const ImageResult& result) {
+    const auto& image = result.exposure.image;
+    return text_of(image.ledger) + fmt::format("{} rays, {} detected, {:.3g} rays/s, {:.3g} s\n{}\n{}\n", image.rays,
+                                               image.detected, static_cast<double>(image.rays) / image.seconds,
+                                               image.seconds, result.file.string(), result.picture.string());
+}
+
+} // namespace vkfv::measurement

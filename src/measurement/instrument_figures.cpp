@@ -1,0 +1,184 @@
+#include "measurement/instrument_figures.hpp"
+
+#include "core/units.hpp"
+#include "measurement/assembly.hpp"
+#include "optics/image_quality.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+namespace vkfv::measurement {
+
+namespace {
+
+// Lenses, pupils, illumination, image, resolution.
+std::vector<FigureGroup> groups_of(const Configuration& configuration, const optics::Instrument& instrument,
+                                   const optics::ImageQuality& quality) {
+    const optics::FirstOrder& first_order = instrument.first_order;
+    const bool ring = configuration.instrument.ring.has_value();
+    const auto of_disc = [&](double value) { return ring ? NAN : value; };
+    return {
+        {"Lenses",
+         {{"efl_objective_mm", first_order.efl_objective, "focal length of the objective"},
+          {"objective_front_principal_plane_mm", quality.objective.front_principal_plane, "behind its front vertex"},
+          {"objective_back_principal_plane_mm", quality.objective.back_principal_plane,
+           "behind its back vertex; negative: inside"},
+          {"efl_tube_lens_mm", first_order.efl_tube_lens, "focal length of the tube lens"},
+          {"tube_lens_front_principal_plane_mm", quality.tube_lens.front_principal_plane, "behind its first vertex"},
+          {"tube_lens_back_principal_plane_mm", quality.tube_lens.back_principal_plane, "behind its last vertex"},
+          {"working_distance_mm", first_order.working_distance, "paraxial object plane to the front vertex"},
+          {"free_distance_mm", instrument.front_vertex_height, "plane of best focus to the front vertex"},
+          {"best_focus_offset_um", first_order.best_focus_offset * um_per_mm,
+           "on-axis RMS best focus over the paraxial plane: z = 0"}}},
+        {"Pupils",
+         {{"numerical_aperture", first_order.numerical_aperture, "object side, on the axis, through all apertures"},
+          {"entrance_pupil_height_mm", quality.entrance_pupil_height, "over the object plane; -: telecentric"},
+          {"entrance_pupil_radius_mm", quality.entrance_pupil_radius, "as the specimen sees the aperture stop"},
+          {"back_pupil_distance_mm", quality.back_pupil_distance, "behind the objective's back vertex"},
+          {"back_pupil_radius_mm", quality.back_pupil_radius, "paraxially; what the source's image must fill"},
+          {"beam_radius_mm", quality.beam_radius, "of the axial cone behind the objective, traced"},
+          {"exit_pupil_distance_mm", quality.exit_pupil_distance, "in front of the detector"},
+          {"exit_pupil_radius_mm", quality.exit_pupil_radius, "as the detector sees the aperture stop"}}},
+        {"Illumination",
+         {{"source_radius_mm", of_disc(configuration.instrument.source_radius), "as configured; -: a ring light"},
+          {"pupil_radius_in_source_mm", of_disc(first_order.pupil_radius_in_source),
+           "of the source that fills the objective's pupil"},
+          {"illumination_to_objective_mm", of_disc(first_order.illumination_to_objective),
+           "last vertex of the illumination to the objective's back"}}},
+        {"Image",
+         {{"magnification", first_order.magnification, "paraxial, at the detector; negative: inverted"},
+          {"real_magnification", quality.magnification, "of the light from near the axis, at best focus"},
+          {"detector_numerical_aperture", quality.image_aperture, "of the cone that falls on the detector"},
+          {"f_number", quality.f_number, "1 / (2 NA) of that cone"},
+          {"field_of_view_um", quality.field_side * um_per_mm, "side of the square that the detector sees"},
+          {"field_diagonal_um", quality.field_diagonal * um_per_mm, "its diagonal"},
+          {"pixel_pitch_um", first_order.pixel_pitch * um_per_mm, "in the object plane"}}},
+        {"Resolution",
+         {{"wavelength_um", quality.wavelength_um, "of first-order data; the mean of a spectrum"},
+          {"airy_radius_um", quality.airy_radius * um_per_mm, "0.61 lambda / NA, in the object"},
+          {"detector_airy_radius_um", quality.detector_airy_radius * um_per_mm, "the same at the detector"},
+          {"pixels_per_airy_radius", quality.airy_radius / first_order.pixel_pitch,
+           "2 sample all that the optics resolve"},
+          {"depth_of_field_um", first_order.depth_of_field * um_per_mm, "n lambda / NA^2"},
+          {"detector_depth_of_field_um", quality.detector_depth_of_field * um_per_mm,
+           "n pitch / NA, what a pixel adds to it"}}},
+    };
+}
+
+FigureGroup aberrations(const optics::FirstOrder& first_order, const optics::ImageQuality& quality) {
+    const double absolute_magnification = std::abs(first_order.magnification);
+    const auto in_object_um = [&](double on_detector) { return on_detector / absolute_magnification * um_per_mm; };
+    constexpr double percent = 100;
+    return {"Aberrations on the axis, at the edge and in the corner of the field, in the plane z = 0",
+            {{"field_edge_um", first_order.field_edge * um_per_mm, "height of the edge in the field"},
+             {"rms_spot_axis_um", in_object_um(quality.axis.rms_spot), "RMS radius about the centroid, in the object"},
+             {"rms_spot_edge_um", in_object_um(quality.edge.rms_spot), "the same at the edge"},
+             {"rms_spot_corner_um", in_object_um(quality.corner.rms_spot), "the same in the corner"},
+             {"detector_rms_spot_axis_um", quality.axis.rms_spot * um_per_mm, "RMS radius at the detector"},
+             {"detector_rms_spot_edge_um", quality.edge.rms_spot * um_per_mm, "the same at the edge"},
+             {"detector_rms_spot_corner_um", quality.corner.rms_spot * um_per_mm, "the same in the corner"},
+             {"wavefront_rms_axis_waves", quality.axis.wavefront_rms, "RMS, defocus included, tilt removed"},
+             {"wavefront_rms_edge_waves", quality.edge.wavefront_rms, "the same at the edge"},
+             {"wavefront_rms_corner_waves", quality.corner.wavefront_rms, "the same in the corner"},
+             {"strehl_axis", quality.axis.strehl, "Strehl ratio of that wavefront; 1: no aberrations"},
+             {"strehl_edge", quality.edge.strehl, "the same at the edge"},
+             {"strehl_corner", quality.corner.strehl, "the same in the corner"},
+             {"field_curvature_um", first_order.field_curvature * um_per_mm,
+              "best focus at the edge over that on the axis"},
+             {"field_curvature_corner_um", first_order.field_curvature_corner * um_per_mm, "the same in the corner"},
+             {"distortion_edge_percent", quality.edge_distortion * percent, "against the paraxial magnification"},
+             {"distortion_corner_percent", quality.corner_distortion * percent, "positive: pincushion"},
+             {"relative_light_edge_percent", quality.edge.relative_light * percent, "its cone over that on the axis"},
+             {"relative_light_corner_percent", quality.corner.relative_light * percent, "the same in the corner"},
+             {"axial_colour_um", quality.axial_colour * um_per_mm, "best focus, 95 % above 5 % point of the spectrum"},
+             {"lateral_colour_um", quality.lateral_colour * um_per_mm, "image height at the edge, likewise"}}};
+}
+
+ScanFigures figures_of_scan(const Configuration& configuration) {
+    const auto positions = configuration.scan->positions();
+    return {.images = positions.size(),
+            .rays_per_image = trace::launched_rays(configuration.trace, configuration.instrument.detector_pixels),
+            .first = positions.front(),
+            .last = positions.back()};
+}
+
+SpecimenFigures figures_of_specimen(const Configuration& configuration, const optics::Instrument& instrument,
+                                    std::vector<std::string>& warnings) {
+    const auto specimen = make_specimen(configuration);
+    const int pixels = configuration.instrument.detector_pixels;
+    const auto relief = relief_of(specimen, instrument.first_order.pixel_pitch * pixels, pixels);
+    const auto sparse = warning_of_sparse_field(specimen, relief);
+    warnings.insert(warnings.end(), sparse.begin(), sparse.end());
+    const auto record = specimen::record(specimen, configuration.trace.max_bounces);
+    return {.side = std::max<double>(record.x_max - record.x_min, record.y_max - record.y_min), .relief = relief};
+}
+
+void warn_of_step(const Configuration& configuration, const ScanFigures& scan, const optics::FirstOrder& first_order,
+                  std::vector<std::string>& warnings) {
+    const double coarsest = 0.5 * first_order.depth_of_field;
+    // Its own rounding does not count.
+    if (scan.images > 1 && configuration.scan->z_step > coarsest * (1 + 1e-9)) {
+        warnings.push_back(fmt::format("The scan's step, {:.4g} um, is coarser than half the depth of field, {:.4g} "
+                                       "um: peaks of focus fall between images.",
+                                       configuration.scan->z_step * um_per_mm, coarsest * um_per_mm));
+    }
+}
+
+void warn_of_size(const SpecimenFigures& specimen, const optics::FirstOrder& first_order,
+                  const optics::ImageQuality& quality, std::vector<std::string>& warnings) {
+    // A pixel more is its border, not its form.
+    if (specimen.side > quality.field_side + first_order.pixel_pitch) {
+        warnings.push_back(fmt::format("The specimen, {:.4g} um across, is larger than the field of view, {:.4g} um: "
+                                       "what lies outside is not measured.",
+                                       specimen.side * um_per_mm, quality.field_side * um_per_mm));
+    }
+}
+
+void warn_of_range(const Relief& relief, const ScanFigures& scan, const optics::FirstOrder& first_order,
+                   std::vector<std::string>& warnings) {
+    const auto beyond_scan = [&](double lowest, double highest) {
+        return relief.seen_share > 0 && (lowest < scan.first || highest > scan.last);
+    };
+    const auto [lower, higher] = std::minmax({0.0, -first_order.field_curvature, -first_order.field_curvature_corner});
+    if (beyond_scan(relief.lowest, relief.highest)) {
+        warnings.push_back(fmt::format("the specimen reaches from {:.3g} to {:.3g} um, beyond the scan: what lies "
+                                       "outside will not be measured",
+                                       relief.lowest * um_per_mm, relief.highest * um_per_mm));
+    } else if (beyond_scan(relief.lowest + lower, relief.highest + higher)) {
+        warnings.push_back(
+            fmt::format("The field is curved: the specimen comes into focus between {:.3g} and {:.3g} um "
+                        "there, beyond the scan.",
+                        (relief.lowest + lower) * um_per_mm, (relief.highest + higher) * um_per_mm));
+    }
+}
+
+} // namespace
+
+InstrumentFigures instrument_figures(const Configuration& configuration) {
+    const auto instrument = assemble_instrument(configuration);
+    const auto& first_order = instrument.first_order;
+    const auto quality = optics::image_quality(configuration.instrument, instrument);
+    InstrumentFigures figures{.groups = groups_of(configuration, instrument, quality),
+                              .scan = {},
+                              .specimen = {},
+                              .warnings = instrument.warnings};
+    figures.groups.push_back(aberrations(first_order, quality));
+    auto& warnings = figures.warnings;
+    warnings.insert(warnings.end(), quality.warnings.begin(), quality.warnings.end());
+    if (configuration.scan) {
+        figures.scan = figures_of_scan(configuration);
+        warn_of_step(configuration, *figures.scan, first_order, warnings);
+    }
+    if (configuration.specimen) {
+        figures.specimen = figures_of_specimen(configuration, instrument, warnings);
+        warn_of_size(*figures.specimen, first_order, quality, warnings);
+        if (figures.scan) {
+            warn_of_range(figures.specimen->relief, *figures.scan, first_order, warnings);
+        }
+    }
+    return figures;
+}
+
+} // namespace vkfv::measurement

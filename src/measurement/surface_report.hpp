@@ -1,0 +1,43 @@
+// What is said of one surface: its parameters and a profile's.
+#pragma once
+
+#include "report/parameter_table.hpp"
+#include "surface/height_map.hpp"
+#include "surface/roughness_profile.hpp"
+
+#include <nlohmann/json.hpp>
+
+#include <cstddef>
+#include <filesystem>
+#include <string>
+#include <vector>
+
+namespace vkfv::measurement {
+
+// Whether any point was measured.
+bool any_height(const surface::HeightMap& map);
+
+struct SurfaceFigures {
+    int columns = 0;
+    int rows = 0;
+    double x0 = 0, y0 = 0; // mm, of the first point
+    double pitch_x = 0, pitch_y = 0;
+    surface::Band band;                           // what was done to the surface before
+    std::ptrdiff_t not_measured = 0;              // points; beyond a sphere too
+    std::vector<report::ParameterRow> parameters; // ISO 25178-2
+    surface::ProfileLine line;
+    double section_length = 0;                 // mm
+    std::vector<report::ParameterRow> profile; // ISO 21920-2
+};
+
+// Of a surface that was treated by `band`, and of the profile along the line.
+SurfaceFigures surface_figures(const surface::HeightMap& map, const surface::ProfileLine& line,
+                               const surface::Band& band);
+
+// file: where the surface was read. NaN (undefined) becomes null.
+nlohmann::ordered_json surface_json(const SurfaceFigures& figures, const std::filesystem::path& file);
+
+// Tables for a person.
+std::string surface_text(const SurfaceFigures& figures);
+
+} // namespace vkfv::measurement

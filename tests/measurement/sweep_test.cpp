@@ -1,0 +1,95 @@
+// Sweeps of stacks as values: what they say is what the files of their stacks hold.
+#include "core/file.hpp"
+#include "core/units.hpp"
+#include "measurement/sweep.hpp"
+#include "surface_files/surface_file.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <filesystem>
+#include <iostream>
+#include <string>
+
+#include <unistd.h>
+
+namespace vkfv::measurement {
+namespace {
+
+namespace fs = std::filesystem;
+
+class SweepOfStacks : public testing::Test {
+  protected:
+    void SetUp() override {
+        fs::create_directories(folder_);
+        const auto whole = read_file(fs::path(VKFV_SOURCE_DIR) / "assets/stacks/noise_of_heights.toml");
+        write_file(folder_ / "c.toml", whole.substr(0, whole.find("[[sweep.parameter]]")) +
+                                           "[[sweep.parameter]]\nkey = \"trace.estimator\"\nvalues = [\"backward\"]\n");
+    }
+    void TearDown() override { fs::remove_all(folder_); }
+
+    // Two small stacks; `traced` counts the images that were traced for them.
+    SweepResult run(const std::string& surfaces, int& traced) const {
+        Progress progress(std::cerr, Progress::Style::quiet);
+        traced = 0;
+        return run_sweep(folder_ / "c.toml",
+                         {{"trace.rays", "1e5", ""},
+                          {"detector.pixels", "16", ""},
+                          {"specimen.size_mm", "0.14", ""},
+                          {"scan.z_step_um", "2.7", ""},
+                          {"topography.smoothing_steps", "0.7", ""},
+                          {"sweep.repeats", "2", ""},
+                          {"output.directory", toml_quoted((folder_ / "out").string()), ""},
+                          {"output.surfaces", surfaces, ""}},
+                         progress, [&](const StackResult& stack) { traced += stack.traced.traced; });
+    }
+
+    fs::path folder_ = fs::temp_directory_path() / ("vkfv-sweep-of-stacks-" + std::to_string(getpid()));
+};
+
+TEST_F(SweepOfStacks, FiguresAreThoseOfItsFiles) {
+    int traced = 0;
+    const auto result = run("[\"tiff\"]", traced);
+    EXPECT_EQ(traced, 2 * 11);
+    ASSERT_EQ(result.rows.size(), 1u);
+    const auto& figures = result.rows.front().figures;
+    const auto stack = [&](int repeat) {
+        return result.folder / ("estimator=backward/repeat_00" + std::to_string(repeat));
+    };
+    double rms = 0;
+    for (const int repeat : {0, 1}) {
+        const auto results = nlohmann::json::parse(read_file(stack(repeat) / "results.json"));
+        rms += results.at("rms_deviation_um").get<double>();
+    }
+    EXPECT_EQ(figures.at("rms deviation / um").get<double>(), rms / 2);
+
+    // Of two values the variance is half the square of their difference.
+    const auto a = surface::read_surface(stack(0) / "topography.tif").map.height.values;
+    const auto b = surface::read_surface(stack(1) / "topography.tif").map.height.values;
+    double variance = 0, points = 0;
+    for (std::size_t k = 0; k < a.size(); ++k) {
+        if (std::isfinite(a[k]) && std::isfinite(b[k])) {
+            variance += 0.5 * (a[k] - b[k]) * (a[k] - b[k]);
+            points += 1;
+        }
+    }
+    ASSERT_GT(points, 100);
+    const double noise = figures.at("height noise / um").get<double>();
+    EXPECT_GT(noise, 0);
+    // Sums of squares of heights of 5 um lose 2e-16 * 25 um^2 of a variance of at least 1e-4 um^2.
+    EXPECT_NEAR(noise / (std::sqrt(variance / points) * um_per_mm), 1, 1e-9);
+}
+
+TEST_F(SweepOfStacks, IsTheSameOfImagesThatWereThereAndOfFilesThatCannotBeReadBack) {
+    int traced = 0;
+    const auto first = run("[\"tiff\"]", traced);
+    const auto table = read_file(first.folder / "sweep.csv");
+    const auto again = run("[\"ply\"]", traced); // a mesh is for viewers alone
+    EXPECT_EQ(traced, 0);
+    EXPECT_EQ(again.rows.front().figures, first.rows.front().figures);
+    EXPECT_EQ(again.rows.front().picture.values, first.rows.front().picture.values);
+    EXPECT_EQ(read_file(first.folder / "sweep.csv"), table);
+}
+
+} // namespace
+} // namespace vkfv::measurement
