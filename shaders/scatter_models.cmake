@@ -36,7 +36,6 @@ function(vkfv_scatter_models folder)
     set(bsdf_arguments "${arguments}")
     if(table)
       string(APPEND bsdf_arguments "lobe.table, ")
-      string(APPEND VKFV_SCATTER_TABLES "    if (lobe.model == ${index}) {\n        lobe = ${stem}_tabulated(lobe);\n    }\n")
     endif()
     # All that there is needs no question in the innermost loop.
     set(chosen "scatter_models == 1u << ${index} || ((scatter_models & (1u << ${index})) != 0u && lobe.model == ${index})")

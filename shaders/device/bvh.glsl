@@ -11,7 +11,7 @@
 const int BVH_STACK = 32; // hierarchy_depth of src/trace/bounding_volume_hierarchy.hpp: a level leaves one entry
 
 // HierarchyNode of the same file, five a node.
-layout(set = 0, binding = 12, scalar) readonly buffer Nodes { uvec4 bvh_nodes[]; };
+layout(set = 0, binding = BINDING_STRUCTURE, scalar) readonly buffer Nodes { uvec4 bvh_nodes[]; };
 
 struct BvhWalk {
     real3 origin;

@@ -1,49 +1,22 @@
 // The instrument at hand as constants of the kernel: planes, spheres, missing aspheric terms and apertures fold away,
 // and the rest are immediate operands. What few instruments have (placement, dispersion, layers) stays in the uniform
 // block. DeviceScene::specialised_constants gives the values, KNOWN_SURFACES surfaces at most.
-layout(constant_id = 88) const int known_first = 0; // the surfaces that follow are known_first ...
-layout(constant_id = 89) const int known_count = 0; // ... known_first + known_count - 1
-layout(constant_id = 90) const int known_illumination_first = 0;
-layout(constant_id = 91) const int known_illumination_count = 0;
-layout(constant_id = 92) const int known_imaging_first = 0;
-layout(constant_id = 93) const int known_imaging_count = 0;
-layout(constant_id = 94) const int known_max_bounces = 1;
-layout(constant_id = 95) const float known_parameter_0 = 0.0; // of the material's first lobe
-layout(constant_id = 96) const float known_parameter_1 = 0.0;
-layout(constant_id = 97) const float known_parameter_2 = 0.0;
-layout(constant_id = 98) const float known_parameter_3 = 0.0;
+layout(constant_id = CONSTANT_KNOWN_FIRST) const int known_first = 0; // the surfaces that follow are known_first ...
+layout(constant_id = CONSTANT_KNOWN_COUNT) const int known_count = 0; // ... known_first + known_count - 1
 
-#define VKFV_DECLARE_SURFACE(k) \
-    layout(constant_id = 100 + 16 * k) const float curvature_##k = 0.0; \
-    layout(constant_id = 101 + 16 * k) const float conic_##k = 0.0; \
-    layout(constant_id = 102 + 16 * k) const float semi_diameter_squared_##k = 0.0; \
-    layout(constant_id = 103 + 16 * k) const float distance_##k = 0.0; \
-    layout(constant_id = 104 + 16 * k) const float index_after_##k = 1.0; \
-    layout(constant_id = 105 + 16 * k) const float a4_##k = 0.0; \
-    layout(constant_id = 106 + 16 * k) const float a6_##k = 0.0; \
-    layout(constant_id = 107 + 16 * k) const float a8_##k = 0.0; \
-    layout(constant_id = 108 + 16 * k) const float a10_##k = 0.0; \
-    layout(constant_id = 109 + 16 * k) const float a12_##k = 0.0; \
-    layout(constant_id = 110 + 16 * k) const float a14_##k = 0.0; \
-    layout(constant_id = 111 + 16 * k) const float a16_##k = 0.0; \
-    layout(constant_id = 112 + 16 * k) const uint flags_##k = 0u; \
-    layout(constant_id = 113 + 16 * k) const float bend_residual_##k = 0.0;
+#define VKFV_DECLARE_CONSTANT(id, type, name) layout(constant_id = id) const type known_##name = type(0);
+#define VKFV_KNOW(id, type, name) known.name = known_##name;
+#define VKFV_KNOW_OF_LOBE(id, type, name) known.material.lobe_0.name = known_##name;
+VKFV_KNOWN_OF_INSTRUMENT(VKFV_DECLARE_CONSTANT)
+VKFV_KNOWN_OF_SPECIMEN(VKFV_DECLARE_CONSTANT)
+VKFV_KNOWN_OF_LOBE(VKFV_DECLARE_CONSTANT)
 
-#define VKFV_KNOW_SURFACE(k) \
-    surface.curvature = curvature_##k; \
-    surface.conic = conic_##k; \
-    surface.semi_diameter_squared = semi_diameter_squared_##k; \
-    surface.distance = distance_##k; \
-    surface.index_after = index_after_##k; \
-    surface.a4 = a4_##k; \
-    surface.a6 = a6_##k; \
-    surface.a8 = a8_##k; \
-    surface.a10 = a10_##k; \
-    surface.a12 = a12_##k; \
-    surface.a14 = a14_##k; \
-    surface.a16 = a16_##k; \
-    surface.flags = flags_##k; \
-    surface.bend_residual = bend_residual_##k;
+#define VKFV_LEAVE(type, name)
+#define VKFV_DECLARE_OF_SURFACE(k, place, type, name) \
+    layout(constant_id = CONSTANT_KNOWN_SURFACES + KNOWN_FIELD_CAPACITY * k + place) const type name##_##k = type(0);
+#define VKFV_KNOW_OF_SURFACE(k, place, type, name) surface.name = name##_##k;
+#define VKFV_DECLARE_SURFACE(k) VKFV_SURFACE_FIELDS(VKFV_LEAVE, VKFV_DECLARE_OF_SURFACE, k)
+#define VKFV_KNOW_SURFACE(k) VKFV_SURFACE_FIELDS(VKFV_LEAVE, VKFV_KNOW_OF_SURFACE, k)
 
 // clang-format off
 #define VKFV_EACH_KNOWN_SURFACE(M) \

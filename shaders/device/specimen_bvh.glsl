@@ -4,7 +4,7 @@
 
 // TrianglePair of src/trace/triangle_pairs.hpp, in the order of the tree: twelve numbers, so that three loads fetch
 // them.
-layout(set = 0, binding = 10, scalar) readonly buffer Pairs { vec4 pair_parts[]; };
+layout(set = 0, binding = BINDING_VERTICES, scalar) readonly buffer Pairs { vec4 pair_parts[]; };
 
 // The rounding of a box's distance is below this many of specimen_rounding(): some ten steps of the coordinates.
 const real BVH_MARGIN = real(4.0);

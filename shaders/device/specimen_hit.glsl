@@ -1,16 +1,14 @@
 // The one function behind which the traversals stand: Hit specimen_hit(origin, direction), the nearest meeting of a
 // ray with the specimen (specimen frame, mm, unit direction). The kernel's defines choose the traversal, and the
-// constant 0 the kind of specimen, so that a pipeline holds one way only.
+// constant specimen_kind the kind of specimen, so that a pipeline holds one way only.
 //
 // A height field separates above from below. A ray that starts over the footprint, or comes through its top, is above
 // and is met where it first gets below; one that starts below by rounding is met at once only where it does not come
 // out within its first facet. A ray that comes in through a side of the footprint may be below, and is then met from
 // below. Nothing of this holds for meshes, which are met from any side.
-//
-// Bindings 8 to 13 are DeviceSpecimen's.
-layout(constant_id = 0) const uint specimen_kind = SPECIMEN_FACETS;
+layout(constant_id = CONSTANT_SPECIMEN_KIND) const uint specimen_kind = SPECIMEN_FACETS;
 
-layout(set = 0, binding = 8, scalar) readonly buffer Heights { real heights[]; }; // row 0 at the lowest y
+layout(set = 0, binding = BINDING_HEIGHTS, scalar) readonly buffer Heights { real heights[]; }; // row 0 at the lowest y
 
 real lattice_at(int column, int row) { return heights[row * specimen.columns + column]; }
 

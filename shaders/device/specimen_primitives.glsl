@@ -8,7 +8,7 @@ struct SurfaceTile {
     real3 lower; // its box, mm, as the tree's builder had it
     real3 upper;
 };
-layout(set = 0, binding = 13, scalar) readonly buffer Tiles { SurfaceTile tiles[]; };
+layout(set = 0, binding = BINDING_TILES, scalar) readonly buffer Tiles { SurfaceTile tiles[]; };
 
 // A ray aimed at an edge may slip between its triangles: it is tried again beside itself by this many roundings.
 const int PRIMITIVE_TRIES = 4;

@@ -7,23 +7,13 @@
 // surface that the ray was on is known, and a meeting is a change of side: no rounding at the border of two facets can
 // lose it.
 
-// CeilingsHeader and ceilings of src/trace/pyramid.hpp.
-layout(set = 0, binding = 9, scalar) readonly buffer Ceilings {
-    int ceilings_cells_x; // cells with a surface
-    int ceilings_cells_y;
-    real ceilings_per_x; // cells/mm
-    real ceilings_per_y;
-    real ceilings_steepest;  // the surface's slope is nowhere larger
-    int ceilings_fine_level; // its blocks come first, row-major
-    int ceilings_fine_columns;
-    int ceilings_coarse_level;
-    int ceilings_coarse_columns;
-    int ceilings_coarse_first;
+layout(set = 0, binding = BINDING_CEILINGS, scalar) readonly buffer Ceilings {
+    CeilingsHeader ceilings_header;
     real ceilings[]; // mm
 };
 
 // Of a height field two points of a column a step, so that a cell takes two neighbouring loads: (i, j) and (i, j+1).
-layout(set = 0, binding = 8, scalar) readonly buffer Columns { real2 column_steps[]; };
+layout(set = 0, binding = BINDING_HEIGHTS, scalar) readonly buffer Columns { real2 column_steps[]; };
 
 // Cells walked before jumps are tried again.
 const int CELLS_AHEAD = 16;
@@ -45,17 +35,40 @@ real facet_height(vec4 corners, real2 fraction, bool lower_right) {
 
 // A ray over the grid of cells, by its distance t in mm.
 struct GridRay {
-    real2 place; // cells
-    real2 speed; // cells/mm
-    real height; // mm
-    real rise;   // mm/mm
+    ivec2 cells;         // of the grid
+    real2 per_mm;        // cells
+    real2 place;         // cells
+    real2 speed;         // cells/mm
+    real2 slowness;      // mm/cell, finite
+    real to_next_cell;   // mm, at least, to be one cell further along x or y
+    real drift_slowness; // mm, to be one cell further across the diagonals
+    ivec2 forward;       // 1: towards larger columns, larger rows
+    real height;         // mm
+    real rise;           // mm/mm
     real inverse_rise;
-    real to_next_cell; // mm, at least, to be one cell further along x or y
 };
 
-ivec2 cell_at(GridRay ray, real t) {
-    return clamp(ivec2(ray.place + t * ray.speed), ivec2(0, 0), ivec2(ceilings_cells_x, ceilings_cells_y) - 1);
+GridRay grid_ray(real3 start, real3 direction, real inverse_rise) {
+    GridRay ray;
+    ray.cells = ivec2(ceilings_header.cells_x, ceilings_header.cells_y);
+    ray.per_mm = real2(ceilings_header.per_x, ceilings_header.per_y);
+    ray.place = real2(start.x - specimen.x_min, start.y - specimen.y_min) * ray.per_mm;
+    ray.speed = direction.xy * ray.per_mm;
+    // Slower than this is less than a cell in 1e9 mm, and its inverse is finite.
+    bvec2 moves = greaterThan(abs(ray.speed), real2(1e-9, 1e-9));
+    ray.slowness = real2(moves.x ? real(1.0) / ray.speed.x : real(1e9), moves.y ? real(1.0) / ray.speed.y : real(1e9));
+    ray.forward = ivec2(ray.slowness.x >= real(0.0) ? 1 : 0, ray.slowness.y >= real(0.0) ? 1 : 0);
+    real drift = ray.speed.x - ray.speed.y;
+    ray.drift_slowness = real(1.0) / (abs(drift) > real(1e-9) ? drift : real(1e-9));
+    ray.height = start.z;
+    ray.rise = direction.z;
+    ray.inverse_rise = inverse_rise;
+    // Short of a cell by far more than a place is rounded by.
+    ray.to_next_cell = real(0.98) * min(abs(ray.slowness.x), abs(ray.slowness.y));
+    return ray;
 }
+
+ivec2 cell_at(GridRay ray, real t) { return clamp(ivec2(ray.place + t * ray.speed), ivec2(0, 0), ray.cells - 1); }
 
 struct Jump {
     real t;    // the ray is free until there
@@ -75,123 +88,132 @@ Jump jump_over(GridRay ray, real t, int level, int columns, int first) {
     return jump;
 }
 
+// Where a ray is on its way from cell to cell.
+struct CellWalk {
+    real t;
+    real side;      // of the surface: above, below (-1), not yet known (0)
+    bool under_way; // else the facet is found or the ray has left
+    bool found;
+    ivec2 cell; // with the facet, once found
+    real from;  // within that facet
+    real to;
+};
+
+// Along the facets of at most CELLS_AHEAD cells.
+void walk_cells(inout CellWalk walk, GridRay ray, real stop) {
+    for (int k = 0; k < CELLS_AHEAD && walk.under_way; ++k) {
+        vec4 corners = cell_corners(walk.cell);
+        real2 local = ray.place - real2(walk.cell);
+        if (walk.side == real(0.0)) {
+            real2 at = local + walk.t * ray.speed;
+            bool above = ray.height + walk.t * ray.rise > facet_height(corners, at, at.x >= at.y);
+            walk.side = above ? real(1.0) : real(-1.0);
+        }
+        real2 to_border = (real2(ray.forward) - local) * ray.slowness;
+        bool cross_x = to_border.x <= to_border.y;
+        real leave = clamp(min(to_border.x, to_border.y), walk.t, stop);
+        // On the diagonal, where both facets have the same height.
+        real middle = (local.y - local.x) * ray.drift_slowness;
+        bool crosses = middle > walk.t && middle < leave;
+        real along = clamp(local.x + middle * ray.speed.x, real(0.0), real(1.0));
+        real gap_middle = ray.height + middle * ray.rise - (corners.x + along * (corners.w - corners.x));
+        // On the border, which the next cell sees alike. A ray that stops short of it does so above or below all.
+        real2 ends =
+            cross_x ? (ray.forward.x == 1 ? corners.yw : corners.xz) : (ray.forward.y == 1 ? corners.zw : corners.xy);
+        along = clamp(cross_x ? local.y + leave * ray.speed.y : local.x + leave * ray.speed.x, real(0.0), real(1.0));
+        real gap_leave = ray.height + leave * ray.rise - (ends.x + along * (ends.y - ends.x));
+        bool in_first = crosses && walk.side * gap_middle <= real(0.0);
+        walk.found = in_first || walk.side * gap_leave <= real(0.0);
+        walk.from = in_first || !crosses ? walk.t : middle;
+        walk.to = in_first ? middle : leave;
+        ivec2 step = cross_x ? ivec2(2 * ray.forward.x - 1, 0) : ivec2(0, 2 * ray.forward.y - 1);
+        walk.cell = walk.found ? walk.cell : walk.cell + step;
+        bool inside = uint(walk.cell.x) < uint(ray.cells.x) && uint(walk.cell.y) < uint(ray.cells.y);
+        walk.under_way = !walk.found && inside && leave < stop;
+        walk.t = leave;
+    }
+}
+
+// On the facet that the walk has found.
+Hit facet_hit(CellWalk walk, GridRay ray, real3 start, real3 direction) {
+    Hit hit;
+    vec4 corners = cell_corners(walk.cell);
+    real2 local = ray.place - real2(walk.cell);
+    real2 centre = local + real(0.5) * (walk.from + walk.to) * ray.speed;
+    bool lower_right = centre.x >= centre.y;
+    real gap_from = walk.side * (ray.height + walk.from * ray.rise -
+                                 facet_height(corners, local + walk.from * ray.speed, lower_right));
+    real gap_to =
+        walk.side * (ray.height + walk.to * ray.rise - facet_height(corners, local + walk.to * ray.speed, lower_right));
+    gap_from = max(gap_from, real(0.0));
+    real total = gap_from + max(-gap_to, real(0.0));
+    real meeting = total > real(0.0) ? walk.from + (walk.to - walk.from) * (gap_from / total) : walk.from;
+    hit.found = 1u;
+    hit.position = real3(start.x + meeting * direction.x, start.y + meeting * direction.y,
+                         facet_height(corners, local + meeting * ray.speed, lower_right));
+    real2 rise = lower_right ? real2(corners.y - corners.x, corners.w - corners.y)
+                             : real2(corners.w - corners.z, corners.z - corners.x);
+    hit.normal = normalize(real3(-rise * ray.per_mm, real(1.0)));
+    hit.distance = meeting;
+    return hit;
+}
+
 Hit specimen_hit(real3 origin, real3 direction) {
     real rounding = specimen_rounding();
     real upper = specimen.top + rounding;
     real lower = specimen.bottom - rounding;
     bool down = direction.z < real(0.0);
-
-    GridRay ray;
-    ray.rise = direction.z;
-    ray.inverse_rise = real(1.0) / (abs(direction.z) > real(1e-12) ? direction.z : real(1e-12));
     // Re-based, as cut_to_specimen() does.
+    real inverse_rise = real(1.0) / (abs(direction.z) > real(1e-12) ? direction.z : real(1e-12));
     bool from_top = down && origin.z >= specimen.top;
-    real advance = from_top ? (upper - origin.z) * ray.inverse_rise : real(0.0);
+    real advance = from_top ? (upper - origin.z) * inverse_rise : real(0.0);
     real3 start =
         real3(origin.x + advance * direction.x, origin.y + advance * direction.y, from_top ? upper : origin.z);
-    real2 per_mm = real2(ceilings_per_x, ceilings_per_y);
-    ray.place = real2(start.x - specimen.x_min, start.y - specimen.y_min) * per_mm;
-    ray.speed = direction.xy * per_mm;
-    ray.height = start.z;
-    // Slower than this is less than a cell in 1e9 mm, and its inverse is finite.
-    bvec2 moves = greaterThan(abs(ray.speed), real2(1e-9, 1e-9));
-    real2 slowness =
-        real2(moves.x ? real(1.0) / ray.speed.x : real(1e9), moves.y ? real(1.0) / ray.speed.y : real(1e9));
-    // Short of a cell by far more than a place is rounded by.
-    ray.to_next_cell = real(0.98) * min(abs(slowness.x), abs(slowness.y));
-    ivec2 cells = ivec2(ceilings_cells_x, ceilings_cells_y);
-    real2 to_first = -ray.place * slowness;
-    real2 to_last = (real2(cells) - ray.place) * slowness;
+    GridRay ray = grid_ray(start, direction, inverse_rise);
+    real2 to_first = -ray.place * ray.slowness;
+    real2 to_last = (real2(ray.cells) - ray.place) * ray.slowness;
     real2 enters = min(to_first, to_last);
     real2 leaves = max(to_first, to_last);
-    real t = max(real(0.0), max(enters.x, enters.y));
     real stop = min(((down ? lower : upper) - start.z) * ray.inverse_rise, min(leaves.x, leaves.y));
-    bool beside = t > real(0.0);
-    real side = beside ? real(0.0) : real(1.0); // of the surface: above, below (-1), not yet known
-    ivec2 forward = ivec2(slowness.x >= real(0.0) ? 1 : 0, slowness.y >= real(0.0) ? 1 : 0);
-    real drift = ray.speed.x - ray.speed.y; // across the cells' diagonals
-    real drift_slowness = real(1.0) / (abs(drift) > real(1e-9) ? drift : real(1e-9));
-
+    CellWalk walk;
+    walk.t = max(real(0.0), max(enters.x, enters.y));
+    bool beside = walk.t > real(0.0);
+    walk.side = beside ? real(0.0) : real(1.0);
     // What rises faster than the surface anywhere leaves it.
-    bool escapes = !beside && direction.z > ceilings_steepest * length(direction.xy);
-    bool under_way = t <= stop && !escapes && specimen_kind != SPECIMEN_MESH;
-    bool found = false;
-    real from = t; // within the one facet where it is found
-    real to = t;
-    ivec2 cell = ivec2(0, 0);
+    bool escapes = !beside && direction.z > ceilings_header.steepest * length(direction.xy);
+    walk.under_way = walk.t <= stop && !escapes && specimen_kind != SPECIMEN_MESH;
+    walk.found = false;
+    walk.cell = ivec2(0, 0);
+    walk.from = walk.t;
+    walk.to = walk.t;
     Hit hit = no_hit();
     // Each round walks at least one cell.
-    for (int rounds = cells.x + cells.y + 8; under_way && rounds > 0; --rounds) {
-        bool free = side >= real(0.0);
+    for (int rounds = ray.cells.x + ray.cells.y + 8; walk.under_way && rounds > 0; --rounds) {
+        bool free = walk.side >= real(0.0);
         while (free) {
-            Jump coarse = jump_over(ray, t, ceilings_coarse_level, ceilings_coarse_columns, ceilings_coarse_first);
-            Jump fine = jump_over(ray, coarse.t, ceilings_fine_level, ceilings_fine_columns, 0);
-            t = fine.t;
-            side = fine.over ? real(1.0) : side;
-            free = fine.open && t < stop;
+            Jump coarse = jump_over(ray, walk.t, ceilings_header.coarse_level, ceilings_header.coarse_columns,
+                                    ceilings_header.coarse_first);
+            Jump fine = jump_over(ray, coarse.t, ceilings_header.fine_level, ceilings_header.fine_columns, 0);
+            walk.t = fine.t;
+            walk.side = fine.over ? real(1.0) : walk.side;
+            free = fine.open && walk.t < stop;
         }
-        under_way = t <= stop;
-        if (specimen_kind == SPECIMEN_ANALYTIC && under_way) {
+        walk.under_way = walk.t <= stop;
+        if (specimen_kind == SPECIMEN_ANALYTIC && walk.under_way) {
             // A ray from beside may be below: the march over all of it knows from where it comes.
-            real ahead = beside ? stop : min(stop, t + ray.to_next_cell * real(CELLS_AHEAD));
-            hit = march_surface(specimen, start, direction, beside ? real(0.0) : t, ahead);
-            found = hit.found == 1u;
-            under_way = !found && ahead < stop;
-            t = ahead;
+            real ahead = beside ? stop : min(stop, walk.t + ray.to_next_cell * real(CELLS_AHEAD));
+            hit = march_surface(specimen, start, direction, beside ? real(0.0) : walk.t, ahead);
+            walk.found = hit.found == 1u;
+            walk.under_way = !walk.found && ahead < stop;
+            walk.t = ahead;
         }
-        cell = cell_at(ray, t);
-        for (int k = 0; k < CELLS_AHEAD && under_way && specimen_kind == SPECIMEN_FACETS; ++k) {
-            vec4 corners = cell_corners(cell);
-            real2 local = ray.place - real2(cell);
-            if (side == real(0.0)) {
-                real2 at = local + t * ray.speed;
-                bool above = ray.height + t * ray.rise > facet_height(corners, at, at.x >= at.y);
-                side = above ? real(1.0) : real(-1.0);
-            }
-            real2 to_border = (real2(forward) - local) * slowness;
-            bool cross_x = to_border.x <= to_border.y;
-            real leave = clamp(min(to_border.x, to_border.y), t, stop);
-            // On the diagonal, where both facets have the same height.
-            real middle = (local.y - local.x) * drift_slowness;
-            bool crosses = middle > t && middle < leave;
-            real along = clamp(local.x + middle * ray.speed.x, real(0.0), real(1.0));
-            real gap_middle = ray.height + middle * ray.rise - (corners.x + along * (corners.w - corners.x));
-            // On the border, which the next cell sees alike. A ray that stops short of it does so above or below all.
-            real2 ends =
-                cross_x ? (forward.x == 1 ? corners.yw : corners.xz) : (forward.y == 1 ? corners.zw : corners.xy);
-            along =
-                clamp(cross_x ? local.y + leave * ray.speed.y : local.x + leave * ray.speed.x, real(0.0), real(1.0));
-            real gap_leave = ray.height + leave * ray.rise - (ends.x + along * (ends.y - ends.x));
-            bool in_first = crosses && side * gap_middle <= real(0.0);
-            found = in_first || side * gap_leave <= real(0.0);
-            from = in_first || !crosses ? t : middle;
-            to = in_first ? middle : leave;
-            ivec2 step = cross_x ? ivec2(2 * forward.x - 1, 0) : ivec2(0, 2 * forward.y - 1);
-            cell = found ? cell : cell + step;
-            bool inside = uint(cell.x) < uint(cells.x) && uint(cell.y) < uint(cells.y);
-            under_way = !found && inside && leave < stop;
-            t = leave;
+        if (specimen_kind == SPECIMEN_FACETS) {
+            walk.cell = cell_at(ray, walk.t);
+            walk_cells(walk, ray, stop);
         }
     }
-
-    if (specimen_kind == SPECIMEN_FACETS && found) {
-        vec4 corners = cell_corners(cell);
-        real2 local = ray.place - real2(cell);
-        real2 centre = local + real(0.5) * (from + to) * ray.speed;
-        bool lower_right = centre.x >= centre.y;
-        real gap_from =
-            side * (ray.height + from * ray.rise - facet_height(corners, local + from * ray.speed, lower_right));
-        real gap_to = side * (ray.height + to * ray.rise - facet_height(corners, local + to * ray.speed, lower_right));
-        gap_from = max(gap_from, real(0.0));
-        real total = gap_from + max(-gap_to, real(0.0));
-        real meeting = total > real(0.0) ? from + (to - from) * (gap_from / total) : from;
-        hit.found = 1u;
-        hit.position = real3(start.x + meeting * direction.x, start.y + meeting * direction.y,
-                             facet_height(corners, local + meeting * ray.speed, lower_right));
-        real2 rise = lower_right ? real2(corners.y - corners.x, corners.w - corners.y)
-                                 : real2(corners.w - corners.z, corners.z - corners.x);
-        hit.normal = normalize(real3(-rise * per_mm, real(1.0)));
-        hit.distance = meeting;
+    if (specimen_kind == SPECIMEN_FACETS && walk.found) {
+        hit = facet_hit(walk, ray, start, direction);
     }
     hit.distance = max(hit.distance + advance, real(0.0));
     return hit;

@@ -1,10 +1,12 @@
 // Triangles, and analytic surfaces as procedural boxes, through VK_KHR_ray_query.
 #include "device/specimen_primitives.glsl"
 
-layout(set = 0, binding = 12) uniform accelerationStructureEXT specimen_structure;
+layout(set = 0, binding = BINDING_STRUCTURE) uniform accelerationStructureEXT specimen_structure;
 
-layout(set = 0, binding = 10, scalar) readonly buffer Vertices { real vertices[]; };   // three a vertex, mm
-layout(set = 0, binding = 11, scalar) readonly buffer Triangles { uint triangles[]; }; // three a triangle
+layout(set = 0, binding = BINDING_VERTICES, scalar) readonly buffer Vertices { real vertices[]; }; // three a vertex, mm
+layout(set = 0, binding = BINDING_TRIANGLES, scalar) readonly buffer Triangles {
+    uint triangles[];
+}; // three a triangle
 
 real3 triangle_vertex(uint triangle, uint corner) {
     uint first = 3u * triangles[3u * triangle + corner];

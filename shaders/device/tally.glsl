@@ -1,6 +1,6 @@
 // The ledger's counts, gathered in shared memory and added to the buffer once a workgroup.
-layout(constant_id = 1) const uint ledger_slots = 1;
-layout(set = 0, binding = 4, scalar) buffer LedgerCounts { uint64_t ledger_counts[]; };
+layout(constant_id = CONSTANT_LEDGER_SLOTS) const uint ledger_slots = 1;
+layout(set = 0, binding = BINDING_LEDGER, scalar) buffer LedgerCounts { uint64_t ledger_counts[]; };
 
 // With directed scatter the sums of the weights, and the squares' sum of what each path adds to them (weight_square),
 // follow the counts; in shared memory as pairs of words.

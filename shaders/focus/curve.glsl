@@ -57,7 +57,7 @@ VKFV_SCENE_FUNCTION CurveStep follow_curve(VKFV_SCENE_PARAMETER FocusPlan plan, 
         step.curve.largest = value;
         step.curve.at = at;
         step.curve.offset = fit.offset;
-        step.curve.found = fit.found;
+        step.curve.found = fit.found ? 1 : 0;
         step.curve.residual = gaussian_residual(VKFV_SCENE at, range);
         step.sharpest = at + int(floor(fit.offset + real(0.5)));
     }

@@ -17,6 +17,7 @@
 #define VKFV_SCENE_FUNCTION template <class Scene>
 #define VKFV_SCENE_PARAMETER const Scene &scene,
 #define VKFV_SCENE scene,
+#define VKFV_DECLARE(type, name) type name;
 #define VKFV_FOCUS_LANGUAGE \
     using glm::abs; \
     using glm::exp; \
@@ -34,12 +35,16 @@ VKFV_FOCUS_LANGUAGE
 
 namespace vkfv::focus::f32 {
 using real = float;
+using uint = std::uint32_t;
 VKFV_FOCUS_LANGUAGE
 #include "focus/all.glsl"
+
+#include "focus/interface.glsl"
 } // namespace vkfv::focus::f32
 
 #undef VKFV_FUNCTION
 #undef VKFV_SCENE_FUNCTION
 #undef VKFV_SCENE_PARAMETER
 #undef VKFV_SCENE
+#undef VKFV_DECLARE
 #undef VKFV_FOCUS_LANGUAGE

@@ -2,7 +2,7 @@
 
 struct PeakFit {
     real offset;
-    int found; // 1: there is a maximum, within the range
+    bool found; // there is a maximum, within the range
 };
 
 #ifdef __cplusplus
@@ -29,7 +29,7 @@ VKFV_FUNCTION real log_ratio(real a, real b) {
 VKFV_FUNCTION PeakFit no_peak() {
     PeakFit fit;
     fit.offset = real(0.0);
-    fit.found = 0;
+    fit.found = false;
     return fit;
 }
 
@@ -44,7 +44,7 @@ VKFV_FUNCTION PeakFit gaussian_peak(real before, real at, real after) {
         real c = log_ratio(after, at);
         if (a + c < real(0.0)) {
             fit.offset = (a - c) / (real(2.0) * (a + c));
-            fit.found = 1;
+            fit.found = true;
         }
     }
     return fit;
@@ -56,7 +56,7 @@ VKFV_FUNCTION PeakFit parabola_peak(real before, real at, real after) {
     real curvature = (before - at) + (after - at);
     if (at >= before && at >= after && curvature < real(0.0)) {
         fit.offset = (before - after) / (real(2.0) * curvature);
-        fit.found = 1;
+        fit.found = true;
     }
     return fit;
 }
@@ -77,19 +77,19 @@ struct ParabolaFit {
 // Of the values themselves with equal weights; logarithmic: of their logarithms over the largest's, each weighted by
 // the square of the value (H. Guo, "A simple algorithm for fitting a Gaussian function", 2011), since the logarithm's
 // noise is that of the value over the value.
-VKFV_SCENE_FUNCTION real fit_weight(VKFV_SCENE_PARAMETER int at, int step, int logarithmic) {
+VKFV_SCENE_FUNCTION real fit_weight(VKFV_SCENE_PARAMETER int at, int step, bool logarithmic) {
     real ratio = curve_value(VKFV_SCENE at + step) / curve_value(VKFV_SCENE at);
-    return logarithmic == 0 ? real(1.0) : (ratio > real(0.0) ? ratio * ratio : real(0.0));
+    return logarithmic ? (ratio > real(0.0) ? ratio * ratio : real(0.0)) : real(1.0);
 }
 
-VKFV_SCENE_FUNCTION real fit_value(VKFV_SCENE_PARAMETER int at, int step, int logarithmic) {
+VKFV_SCENE_FUNCTION real fit_value(VKFV_SCENE_PARAMETER int at, int step, bool logarithmic) {
     real value = curve_value(VKFV_SCENE at + step);
     real largest = curve_value(VKFV_SCENE at);
-    return logarithmic == 0 ? (value - largest) / largest
-                            : (value > real(0.0) ? log_ratio(value, largest) : real(0.0)); // of weight 0
+    return logarithmic ? (value > real(0.0) ? log_ratio(value, largest) : real(0.0)) // of weight 0
+                       : (value - largest) / largest;
 }
 
-VKFV_SCENE_FUNCTION ParabolaFit fit_parabola(VKFV_SCENE_PARAMETER int at, int range, int logarithmic) {
+VKFV_SCENE_FUNCTION ParabolaFit fit_parabola(VKFV_SCENE_PARAMETER int at, int range, bool logarithmic) {
     real total = real(0.0);
     real first = real(0.0);
     real level = real(0.0);
@@ -135,7 +135,7 @@ VKFV_FUNCTION PeakFit fitted_peak(ParabolaFit parabola, int range) {
             (parabola.middle_1 + parabola.middle_2) / real(2.0) - parabola.slope / (real(2.0) * parabola.bend);
         if (abs(offset) <= real(range)) {
             fit.offset = offset;
-            fit.found = 1;
+            fit.found = true;
         }
     }
     return fit;
@@ -158,7 +158,7 @@ VKFV_SCENE_FUNCTION PeakFit centre_of_gravity(VKFV_SCENE_PARAMETER int at, int r
     PeakFit fit = no_peak();
     if (total > real(0.0)) {
         fit.offset = first / total;
-        fit.found = 1;
+        fit.found = true;
     }
     return fit;
 }
@@ -180,7 +180,7 @@ VKFV_SCENE_FUNCTION PeakFit locate_peak(VKFV_SCENE_PARAMETER FocusPlan plan, int
     } else if (plan.peak == PEAK_CENTRE_OF_GRAVITY) {
         fit = centre_of_gravity(VKFV_SCENE at, range);
     } else if (before > real(0.0) && after > real(0.0)) {
-        fit = fitted_peak(fit_parabola(VKFV_SCENE at, range, plan.peak == PEAK_GAUSSIAN_FIT ? 1 : 0), range);
+        fit = fitted_peak(fit_parabola(VKFV_SCENE at, range, plan.peak == PEAK_GAUSSIAN_FIT), range);
     }
     return fit;
 }
@@ -192,7 +192,7 @@ VKFV_SCENE_FUNCTION real gaussian_residual(VKFV_SCENE_PARAMETER int at, int rang
     if (range < 1 || !(curve_value(VKFV_SCENE at - 1) > real(0.0)) || !(curve_value(VKFV_SCENE at + 1) > real(0.0))) {
         return real(1.0);
     }
-    ParabolaFit fit = fit_parabola(VKFV_SCENE at, range, 1);
+    ParabolaFit fit = fit_parabola(VKFV_SCENE at, range, true);
     real sum = real(0.0);
     for (int x = -range; x <= range; ++x) {
         real p1 = real(x) - fit.middle_1;

@@ -16,26 +16,33 @@ const int PEAK_METHOD_COUNT = 5;
 
 const int NO_IMAGE = -1;
 
+// clang-format off
+#define VKFV_FOCUS_PLAN_FIELDS(FIELD) \
+    FIELD(int, columns) \
+    FIELD(int, rows) \
+    FIELD(int, channels) \
+    FIELD(int, measure)       /* FOCUS_* */ \
+    FIELD(int, window_radius) /* pixels */ \
+    FIELD(int, peak)          /* PEAK_* */ \
+    FIELD(int, peak_range)    /* steps on either side of the maximum, at least 1 */
 struct FocusPlan {
-    int columns;
-    int rows;
-    int channels;
-    int measure;       // FOCUS_*
-    int window_radius; // pixels
-    int peak;          // PEAK_*
-    int peak_range;    // steps on either side of the maximum, at least 1
+    VKFV_FOCUS_PLAN_FIELDS(VKFV_DECLARE)
 };
 
 // What is left of a pixel's focus curve once it has passed by. Values of the curve are dimensionless.
+#define VKFV_CURVE_RECORD_FIELDS(FIELD) \
+    FIELD(real, largest) \
+    FIELD(real, sum)      /* of all values */ \
+    FIELD(real, offset)   /* of the maximum, in steps from the image `at` */ \
+    /* RMS distance from a Gaussian over the range, in units of the largest value */ \
+    FIELD(real, residual) \
+    FIELD(int, at)        /* image of the largest value; the first of equals */ \
+    FIELD(int, found)     /* 1: the method finds a maximum there */ \
+    FIELD(real, peak_1)   /* the largest local maxima (is_local_maximum()) in descending order */ \
+    FIELD(real, peak_2) \
+    FIELD(real, peak_3) \
+    FIELD(real, peak_4)
 struct CurveRecord {
-    real largest;
-    real sum;      // of all values
-    real offset;   // of the maximum, in steps from the image `at`
-    real residual; // RMS distance from a Gaussian over the range, in units of the largest value
-    int at;        // image of the largest value; the first of equals
-    int found;     // 1: the method finds a maximum there
-    real peak_1;   // the largest local maxima (is_local_maximum()) in descending order
-    real peak_2;
-    real peak_3;
-    real peak_4;
+    VKFV_CURVE_RECORD_FIELDS(VKFV_DECLARE)
 };
+// clang-format on

@@ -7,26 +7,21 @@ layout(local_size_x = 128) in;
 
 #include "device/kernel.glsl"
 
-layout(set = 0, binding = 3, scalar) buffer Pixels { uint64_t pixels[]; }; // in units of 2^-BACKWARD_FRACTION_BITS
-layout(set = 0, binding = 17, scalar) uniform Backward {
-    BackwardOptics backward;
-    Lattice lattice;
-};
+layout(set = 0, binding = BINDING_PIXELS, scalar) buffer Pixels {
+    uint64_t pixels[];
+}; // in units of 2^-BACKWARD_FRACTION_BITS
+layout(set = 0, binding = BINDING_BACKWARD, scalar) uniform Backward { BackwardBlock backward; };
 
-layout(push_constant, scalar) uniform Batch {
-    uint first_chunk; // of each pixel's lattice
-    uint chunks;      // of this batch, for each pixel
-    uint chunk_points;
-    uint randomisation;
-};
+layout(push_constant, scalar) uniform Push { BackwardBatch batch; };
 
 // Of BackwardOptics: loops of known length.
-layout(constant_id = 5) const uint cone_candidates = 1u;
-layout(constant_id = 6) const uint lobe_candidates = 0u;
+layout(constant_id = CONSTANT_CONE_CANDIDATES) const uint cone_candidates = 1u;
+layout(constant_id = CONSTANT_LOBE_CANDIDATES) const uint lobe_candidates = 0u;
 
 // What only tracing can tell is kept until a lane has no room for more, or no more to come: few directions lie at the
 // rim of the source's cone, and lanes that wait for each one's neighbour would trace for all.
-layout(constant_id = 7) const uint query_capacity = 12u; // more than a path asks: once at each bounce, and at its end
+layout(constant_id = CONSTANT_QUERY_CAPACITY) const uint query_capacity =
+    12u; // more than a path asks: once at each bounce, and at its end
 SourceQuery queries[query_capacity];
 uint query_count = 0u;
 
@@ -41,22 +36,22 @@ void main() {
     // Workgroups stand in rows: a large detector has more than one row may hold.
     uint group = gl_WorkGroupID.y * gl_NumWorkGroups.x + gl_WorkGroupID.x;
     uint index = group * gl_WorkGroupSize.x + gl_LocalInvocationIndex;
-    if (index < pixel_count * chunks) {
+    if (index < pixel_count * batch.chunks) {
         uint pixel = index % pixel_count;
-        uint chunk = first_chunk + index / pixel_count;
-        LatticeShift shift = lattice_shift(exposure.seed, exposure.image, pixel, randomisation);
+        uint chunk = batch.first_chunk + index / pixel_count;
+        LatticeShift shift = lattice_shift(exposure.seed, exposure.image, pixel, batch.randomisation);
         int row = int(pixel) / instrument.detector_pixels;
         int column = int(pixel) - row * instrument.detector_pixels;
-        BackwardOptics known = backward;
+        BackwardOptics known = backward.optics;
         known.cone_candidates = cone_candidates;
         known.lobe_candidates = lobe_candidates;
         uint most_queries = query_capacity - uint(specimen.max_bounces) - 1u;
         real sum = real(0.0);
-        for (uint point = 0u; point < chunk_points;) {
+        for (uint point = 0u; point < batch.chunk_points;) {
             for (bool room = true; room; ++point) {
-                sum += trace_backward(known_instrument(), known, known_specimen(), exposure, column, row, randomisation,
-                                      lattice, shift, chunk * chunk_points + point);
-                room = query_count <= most_queries && point + 1u < chunk_points;
+                sum += trace_backward(known_instrument(), known, known_specimen(), exposure, column, row,
+                                      batch.randomisation, backward.lattice, shift, chunk * batch.chunk_points + point);
+                room = query_count <= most_queries && point + 1u < batch.chunk_points;
             }
             for (uint k = 0u; k < query_count; ++k) {
                 sum += trace_to_source(known_instrument(), known_specimen(), exposure, queries[k]);

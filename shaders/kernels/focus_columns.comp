@@ -5,11 +5,11 @@ layout(local_size_x = 128) in;
 
 #include "focus/device.glsl"
 
-layout(set = 0, binding = 0, scalar) readonly buffer Rows { WindowSums row_sums[]; };
-layout(set = 0, binding = 1, scalar) readonly buffer Weights { float weights[]; };
-layout(set = 0, binding = 2, scalar) writeonly buffer Curve { float curve[]; };
+layout(set = 0, binding = BINDING_ROW_SUMS, scalar) readonly buffer Rows { WindowSums row_sums[]; };
+layout(set = 0, binding = BINDING_WEIGHTS, scalar) readonly buffer Weights { float weights[]; };
+layout(set = 0, binding = BINDING_CURVE, scalar) writeonly buffer Curve { float curve[]; };
 
-layout(push_constant, scalar) uniform Plan { FocusPlan plan; };
+layout(push_constant, scalar) uniform Push { FocusPlan plan; };
 
 real window_weight(int distance) { return weights[distance]; }
 

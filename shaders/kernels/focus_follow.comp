@@ -5,29 +5,24 @@ layout(local_size_x = 128) in;
 
 #include "focus/device.glsl"
 
-layout(set = 0, binding = 0, scalar) readonly buffer Curves { float curves[]; }; // the last `kept` images in turn
-layout(set = 0, binding = 1, scalar) buffer Records { CurveRecord records[]; };
-layout(set = 0, binding = 2, scalar) writeonly buffer Sharpest { int sharpest[]; };
+layout(set = 0, binding = BINDING_CURVES, scalar) readonly buffer Curves { float curves[]; };
+layout(set = 0, binding = BINDING_RECORDS, scalar) buffer Records { CurveRecord records[]; };
+layout(set = 0, binding = BINDING_SHARPEST, scalar) writeonly buffer Sharpest { int sharpest[]; };
 
-layout(push_constant, scalar) uniform Step {
-    FocusPlan plan;
-    int at;
-    int images;
-    int kept;
-};
+layout(push_constant, scalar) uniform Push { FollowedImage image; };
 
-int pixels() { return plan.columns * plan.rows; }
+int pixels() { return image.plan.columns * image.plan.rows; }
 
-real curve_value(int image) { return curves[(image % kept) * pixels() + int(invocation())]; }
+real curve_value(int at) { return curves[(at % image.kept) * pixels() + int(invocation())]; }
 
 void main() {
     int k = int(invocation());
     if (k < pixels()) {
         CurveRecord before = empty_curve();
-        if (at > 0) {
+        if (image.at > 0) {
             before = records[k];
         }
-        CurveStep followed = follow_curve(plan, before, at, images);
+        CurveStep followed = follow_curve(image.plan, before, image.at, image.images);
         records[k] = followed.curve;
         sharpest[k] = followed.sharpest;
     }

@@ -5,10 +5,10 @@ layout(local_size_x = 128) in;
 
 #include "focus/device.glsl"
 
-layout(set = 0, binding = 0, scalar) readonly buffer Image { float image[]; };
-layout(set = 0, binding = 1, scalar) writeonly buffer Responses { WindowSums responses[]; };
+layout(set = 0, binding = BINDING_IMAGE, scalar) readonly buffer Image { float image[]; };
+layout(set = 0, binding = BINDING_RESPONSES, scalar) writeonly buffer Responses { WindowSums responses[]; };
 
-layout(push_constant, scalar) uniform Plan { FocusPlan plan; };
+layout(push_constant, scalar) uniform Push { FocusPlan plan; };
 
 real image_value(int channel, int column, int row) {
     return image[(channel * plan.rows + row) * plan.columns + column];

@@ -5,12 +5,12 @@ layout(local_size_x = 128) in;
 
 #include "focus/device.glsl"
 
-layout(set = 0, binding = 0, scalar) readonly buffer Image { float image[]; };
-layout(set = 0, binding = 1, scalar) readonly buffer Responses { WindowSums responses[]; };
-layout(set = 0, binding = 2, scalar) readonly buffer Weights { float weights[]; };
-layout(set = 0, binding = 3, scalar) writeonly buffer Rows { WindowSums row_sums[]; };
+layout(set = 0, binding = BINDING_IMAGE, scalar) readonly buffer Image { float image[]; };
+layout(set = 0, binding = BINDING_RESPONSES, scalar) readonly buffer Responses { WindowSums responses[]; };
+layout(set = 0, binding = BINDING_WEIGHTS, scalar) readonly buffer Weights { float weights[]; };
+layout(set = 0, binding = BINDING_ROW_SUMS, scalar) writeonly buffer Rows { WindowSums row_sums[]; };
 
-layout(push_constant, scalar) uniform Plan { FocusPlan plan; };
+layout(push_constant, scalar) uniform Push { FocusPlan plan; };
 
 real window_weight(int distance) { return weights[distance]; }
 

@@ -5,21 +5,17 @@ layout(local_size_x = 128) in;
 
 #include "focus/device.glsl"
 
-layout(set = 0, binding = 0, scalar) readonly buffer Image { float image[]; };
-layout(set = 0, binding = 1, scalar) readonly buffer Sharpest { int sharpest[]; };
-layout(set = 0, binding = 2, scalar) buffer AllInFocus { float all_in_focus[]; };
+layout(set = 0, binding = BINDING_IMAGE, scalar) readonly buffer Image { float image[]; };
+layout(set = 0, binding = BINDING_SHARPEST, scalar) readonly buffer Sharpest { int sharpest[]; };
+layout(set = 0, binding = BINDING_ALL_IN_FOCUS, scalar) buffer AllInFocus { float all_in_focus[]; };
 
-layout(push_constant, scalar) uniform Choice {
-    uint pixels;
-    uint channels;
-    int wanted;
-};
+layout(push_constant, scalar) uniform Push { SelectedImage selected; };
 
 void main() {
     uint k = invocation();
-    if (k < pixels && sharpest[k] == wanted) {
-        for (uint channel = 0u; channel < channels; ++channel) {
-            all_in_focus[channel * pixels + k] = image[channel * pixels + k];
+    if (k < selected.pixels && sharpest[k] == selected.wanted) {
+        for (uint channel = 0u; channel < selected.channels; ++channel) {
+            all_in_focus[channel * selected.pixels + k] = image[channel * selected.pixels + k];
         }
     }
 }

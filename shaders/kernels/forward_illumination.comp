@@ -8,9 +8,8 @@ layout(local_size_x = 128) in;
 #include "device/tally.glsl"
 #include "device/survivors.glsl"
 
-// For timing alone, the path may end early: 0 the whole half, 1 after the illumination train, 2 after the specimen,
-// 3 after the source (nothing is appended).
-layout(constant_id = 2) const uint stop_after = 0u;
+// Where the path ends early nothing is appended.
+layout(constant_id = CONSTANT_STOP_AFTER) const uint stop_after = STOP_NOWHERE;
 
 // Survivors are gathered in shared memory and appended a workgroup at a time: one counter in the buffer would be the
 // busiest place of the trace. What does not fit is appended singly.
@@ -40,10 +39,7 @@ void append_kept() {
     }
 }
 
-layout(push_constant, scalar) uniform Batch {
-    uvec2 first_path; // low and high word
-    uint count;       // paths of this batch
-};
+layout(push_constant, scalar) uniform Push { Batch batch; };
 
 void main() {
     if (gl_LocalInvocationIndex == 0u) {
@@ -51,32 +47,32 @@ void main() {
     }
     tally_clear(); // with a barrier
     uint stride = gl_NumWorkGroups.x * gl_WorkGroupSize.x;
-    uint rounds = (count + stride - 1u) / stride;
+    uint rounds = (batch.count + stride - 1u) / stride;
     for (uint round = 0u; round < rounds; ++round) {
         uint index = round * stride + gl_GlobalInvocationID.x;
         bool survives = false;
         Departure departure;
-        if (index < count) {
+        if (index < batch.count) {
             uint carry;
-            uint low = uaddCarry(first_path.x, index, carry);
-            uvec2 path = uvec2(low, first_path.y + carry);
-            if (stop_after == 3u) {
+            uint low = uaddCarry(batch.first_path.x, index, carry);
+            uvec2 path = uvec2(low, batch.first_path.y + carry);
+            if (stop_after == STOP_AFTER_SOURCE) {
                 Emission emission = emit(known_instrument(), draw(exposure.seed, exposure.image, path, 0u));
                 departure.fate = make_fate(PATH_ALIVE, -1);
                 // As below.
                 survives = emission.ray.position.x + emission.ray.position.y + emission.ray.direction.x +
                                emission.ray.direction.y + emission.ray.direction.z >
                            real(1e30);
-            } else if (stop_after == 1u) {
+            } else if (stop_after == STOP_AFTER_TRAIN) {
                 Arrival arrival = illuminate(known_instrument(), known_specimen(), exposure, path);
                 departure.fate = arrival.fate;
-                departure.survives = 0u;
+                departure.survives = false;
                 // Never so far off; keeps the compiler from dropping what is timed.
                 survives = arrival.position.x + arrival.position.y + arrival.direction.z > real(1e30);
             } else {
                 departure = trace_to_departure(known_instrument(), known_specimen(), exposure, path);
-                survives = departure.survives == 1u;
-                if (stop_after == 2u) {
+                survives = departure.survives;
+                if (stop_after == STOP_AFTER_SPECIMEN) {
                     survives = departure.survivor.position.z + departure.survivor.direction_x +
                                    departure.survivor.direction_y >
                                real(1e30);

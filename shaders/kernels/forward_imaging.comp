@@ -8,22 +8,22 @@ layout(local_size_x = 128) in;
 #include "device/tally.glsl"
 #include "device/survivors.glsl"
 
-layout(set = 0, binding = 3, scalar) buffer Pixels { uint64_t pixels[]; };
+layout(set = 0, binding = BINDING_PIXELS, scalar) buffer Pixels { uint64_t pixels[]; };
 
-// For timing alone: 0 the whole half, 1 nothing is counted on the detector, 2 only the occlusion is tested.
-layout(constant_id = 2) const uint stop_after = 0u;
+layout(constant_id = CONSTANT_STOP_AFTER) const uint stop_after = STOP_NOWHERE;
 
 void main() {
     tally_clear();
     uint stride = gl_NumWorkGroups.x * gl_WorkGroupSize.x;
     for (uint index = gl_GlobalInvocationID.x; index < survivor_count; index += stride) {
         Detection detection;
-        if (stop_after == 2u) {
+        if (stop_after == STOP_AFTER_SPECIMEN) {
             detection.fate = make_fate(survivor_occluded(survivors[index]) ? PATH_BOUNCE_LIMIT : PATH_OFF_DETECTOR, -1);
         } else {
             detection = image_survivor(known_instrument(), known_specimen(), exposure, survivors[index]);
         }
-        bool counted = detection.fate.status == PATH_DETECTED && (stop_after == 0u || detection.x > real(1e30));
+        bool counted =
+            detection.fate.status == PATH_DETECTED && (stop_after == STOP_NOWHERE || detection.x > real(1e30));
         int pixel = detection.row * instrument.detector_pixels + detection.column;
         uint weight = survivor_weight(survivors[index]);
         if (counted && weighted) {

@@ -5,15 +5,10 @@
 
 layout(local_size_x = 64) in;
 
-struct ProbeRay {
-    real3 origin;
-    real3 direction;
-};
+layout(set = 0, binding = BINDING_GIVEN, scalar) readonly buffer Rays { ProbeRay rays[]; };
+layout(set = 0, binding = BINDING_FOUND, scalar) writeonly buffer Hits { Hit hits[]; };
 
-layout(set = 0, binding = 6, scalar) readonly buffer Rays { ProbeRay rays[]; };
-layout(set = 0, binding = 7, scalar) writeonly buffer Hits { Hit hits[]; };
-
-layout(push_constant, scalar) uniform Batch { uint count; };
+layout(push_constant, scalar) uniform Push { uint count; };
 
 void main() {
     uint index = gl_GlobalInvocationID.x;

@@ -5,32 +5,24 @@
 
 layout(local_size_x = 64) in;
 
-struct PathEnd {
-    uint status;
-    int surface;
-    real x; // mm, as Detection, for light that left the specimen through the gate (of meaning if it arrived), else 0
-    real y;
-    real weight; // of the light at x and y
-};
+layout(set = 0, binding = BINDING_FOUND, scalar) writeonly buffer PathEnds { PathEnd path_ends[]; };
 
-layout(set = 0, binding = 6, scalar) writeonly buffer PathEnds { PathEnd path_ends[]; };
-
-#ifndef VKFV_NONSEQUENTIAL
-layout(push_constant, scalar) uniform Batch {
-    uvec2 first_path;
-    uint count;
-};
+#ifdef VKFV_NONSEQUENTIAL
+Batch paths() { return batch.paths; }
+#else
+layout(push_constant, scalar) uniform Push { Batch batch; };
+Batch paths() { return batch; }
 #endif
 
 void main() {
     uint index = gl_GlobalInvocationID.x;
-    if (index < count) {
+    if (index < paths().count) {
         uint carry;
-        uint low = uaddCarry(first_path.x, index, carry);
-        uvec2 path = uvec2(low, first_path.y + carry);
+        uint low = uaddCarry(paths().first_path.x, index, carry);
+        uvec2 path = uvec2(low, paths().first_path.y + carry);
         PathEnd end;
 #ifdef VKFV_NONSEQUENTIAL
-        Detection detection = trace_nonsequential(instrument, specimen, exposure, source_frame, path);
+        Detection detection = trace_nonsequential(instrument, specimen, exposure, batch.source_frame, path);
         end.status = detection.fate.status;
         end.surface = detection.fate.surface;
         end.x = detection.x;
@@ -43,7 +35,7 @@ void main() {
         end.x = real(0.0);
         end.y = real(0.0);
         end.weight = real(1.0);
-        if (departure.survives == 1u) {
+        if (departure.survives) {
             Detection detection = image_survivor(instrument, specimen, exposure, departure.survivor);
             end.status = detection.fate.status;
             end.surface = detection.fate.surface;

@@ -1,30 +1,16 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
-// Rays made on the device, met with the specimen and counted: what trace/hit_times.hpp times.
+// Rays made on the device, met with the specimen and counted: what bench/hit_times.hpp times.
 layout(local_size_x = 128) in;
 
 #include "device/kernel.glsl"
 
-const uint HITS_ARRIVE = 0u; // from the top plane down
-const uint HITS_RECORD = 1u; // the same, and where they met is kept
-const uint HITS_LEAVE = 2u;  // from there, over the hemisphere of the normal as a Lambertian scatterer sends light
+layout(constant_id = CONSTANT_HITS_WAY) const uint way = HITS_ARRIVE;
 
-layout(constant_id = 1) const uint way = HITS_ARRIVE;
+layout(set = 0, binding = BINDING_FOUND, scalar) buffer Count { uint64_t met; };
+layout(set = 0, binding = BINDING_GIVEN, scalar) buffer Starts { TimedStart starts[]; };
 
-struct Start {
-    real3 position;
-    real3 normal;
-};
-
-layout(set = 0, binding = 6, scalar) buffer Count { uint64_t met; };
-layout(set = 0, binding = 7, scalar) buffer Starts { Start starts[]; };
-
-layout(push_constant, scalar) uniform Batch {
-    uint count;
-    uint seed;
-    real aperture;    // sine of the cone's half-angle
-    uint strata_bits; // points lie in 2^strata_bits strata a side, in Morton order; 0: anywhere
-};
+layout(push_constant, scalar) uniform Push { TimedHits timed; };
 
 uint even_bits(uint word) {
     uint bits = word & 0x55555555u;
@@ -43,25 +29,25 @@ void main() {
     barrier();
     uint stride = gl_NumWorkGroups.x * gl_WorkGroupSize.x;
     uint own = 0u;
-    for (uint index = gl_GlobalInvocationID.x; index < count; index += stride) {
-        Draws draws = draw(seed, 0u, uvec2(index, 0u), way);
+    for (uint index = gl_GlobalInvocationID.x; index < timed.count; index += stride) {
+        Draws draws = draw(timed.seed, 0u, uvec2(index, 0u), way);
         real3 origin;
         real3 direction;
         real angle = real(6.283185307179586) * draws.u1;
         if (way == HITS_LEAVE) {
-            Start start = starts[index % uint(starts.length())];
+            TimedStart start = starts[index % uint(starts.length())];
             real z = real(2.0) * draws.u0 - real(1.0);
             real across = sqrt(real(1.0) - z * z);
             // Just short of the sphere about the normal, so that none has no direction.
             direction = normalize(start.normal + real(0.999) * real3(across * cos(angle), across * sin(angle), z));
             origin = start.position;
         } else {
-            real sine = aperture * sqrt(draws.u0);
+            real sine = timed.aperture * sqrt(draws.u0);
             direction = real3(sine * cos(angle), sine * sin(angle), -sqrt(real(1.0) - sine * sine));
             // A stratum's 32 rays are a subgroup's.
             uint stratum = index >> 5;
-            uint mask = (1u << strata_bits) - 1u;
-            real side = real(1u << strata_bits);
+            uint mask = (1u << timed.strata_bits) - 1u;
+            real side = real(1u << timed.strata_bits);
             real u = (real(even_bits(stratum) & mask) + draws.u2) / side;
             real v = (real(even_bits(stratum >> 1) & mask) + draws.u3) / side;
             origin = real3(specimen.x_min + u * (specimen.x_max - specimen.x_min),

@@ -1,5 +1,8 @@
 // Every file of the physics, in the order of their dependence.
 #include "physics/records.glsl"
+#ifdef VKFV_SPECIALISED
+#include "device/prescription.glsl"
+#endif
 #include "physics/random.glsl"
 #include "physics/spectrum.glsl"
 #include "physics/source.glsl"

@@ -1,7 +1,7 @@
 // The even asphere of ISO 10110-12: a conic and a polynomial in r^2.
 
 struct Sag {
-    uint defined;      // 0: r lies outside the conic
+    bool defined;      // else r lies outside the conic
     real sag;          // mm
     real slope_over_r; // (1/r) d sag / d r, 1/mm
 };
@@ -10,7 +10,7 @@ VKFV_FUNCTION Sag asphere_sag(Surface surface, real r_squared) {
     real c = surface.curvature;
     real under_root = real(1.0) - (real(1.0) + surface.conic) * c * c * r_squared;
     Sag result;
-    result.defined = under_root > real(0.0) ? 1u : 0u;
+    result.defined = under_root > real(0.0);
     real root = sqrt(max(under_root, real(1e-30)));
     real q = r_squared;
     real polynomial =
@@ -53,8 +53,8 @@ VKFV_FUNCTION SurfacePoint meet_surface(real3 position, real3 direction, real le
         slope_over_r = sag.slope_over_r;
         normal_z = real(1.0);
         real approach = direction.z - slope_over_r * (direction.x * result.point.x + direction.y * result.point.y);
-        result.found = sag.defined == 1u && approach > real(0.0) ? result.found : 0u;
-        result.parameter = result.parameter - (result.found == 1u ? (result.point.z - sag.sag) / approach : real(0.0));
+        result.found = sag.defined && approach > real(0.0) && result.found;
+        result.parameter = result.parameter - (result.found ? (result.point.z - sag.sag) / approach : real(0.0));
         result.point = real3(position.x + result.parameter * direction.x, position.y + result.parameter * direction.y,
                              (result.parameter - to_plane) * direction.z);
     }

@@ -9,18 +9,26 @@
 //
 // The Instrument is turned round: its illumination train leads from the detector to the specimen, its imaging train
 // from the specimen to the source, where the last surface is the source itself as a stop: optics::turned_round().
+// What may come from where is told by linear bounds: of a ray through the plane of the detector,
+//   |pupil_position * (x, y) + (dx/dz, dy/dz)| <= pupil_radius
+// in the reversed frame holds for all light from the specimen, and of one through the plane of the paraxial object
+//   |source_position * (x, y) + (dx/dz, dy/dz)| <= source_outer
+// for all light from the source. What is within source_inner, from points within inner_field, is from it for sure.
+// clang-format off
+#define VKFV_BACKWARD_OPTICS_FIELDS(FIELD) \
+    FIELD(real, pupil_position) \
+    FIELD(real, pupil_radius) \
+    FIELD(real, source_position) \
+    FIELD(real, source_outer) \
+    FIELD(real, source_inner)    /* 0: nothing is sure */ \
+    FIELD(real, inner_field)     /* mm */ \
+    FIELD(real, object_distance) /* mm, from the objective's front vertex or cover glass to the paraxial object */ \
+    FIELD(uint, cone_candidates) /* directions towards the source that each scatter event weighs against each other */ \
+    FIELD(uint, lobe_candidates) /* directions of the lobe besides, 0 or 1 */
 struct BackwardOptics {
-    real pupil_position;  // at the detector, in the reversed frame: light from the specimen is within
-    real pupil_radius;    //   |pupil_position * (x, y) + (dx/dz, dy/dz)| <= pupil_radius
-    real source_position; // likewise on the plane of the paraxial object: light from the source is within
-    real source_outer;    //   |source_position * (x, y) + (dx/dz, dy/dz)| <= source_outer
-    real
-        source_inner; // and what is within source_inner, from points within inner_field, is from it; 0: nothing is sure
-    real inner_field; // mm
-    real object_distance; // mm, from the objective's front vertex (or cover glass) to the paraxial object plane
-    uint cone_candidates; // directions towards the source that are weighed against each other at each scatter event,
-    uint lobe_candidates; //   and directions of the lobe, 0 or 1, besides
+    VKFV_BACKWARD_OPTICS_FIELDS(VKFV_DECLARE)
 };
+// clang-format on
 
 // Dimensions of the lattice: pixel 0 and 1, pupil 2 and 3, direction to the source 4 and 5, choice among candidates 6,
 // wavelength 7. What comes after the first scatter event is drawn from Philox.
@@ -49,8 +57,8 @@ VKFV_SCENE_FUNCTION VKFV_FUNCTION BackwardArrival look_from_detector(VKFV_SCENE_
     ray.direction = real3(slope.x * axial, slope.y * axial, axial);
     ray.path_length = real(0.0);
     real specimen_index = specimen_medium_index(instrument, light);
-    TrainResult train =
-        trace_train(VKFV_SCENE instrument.illumination_first, instrument.illumination_count, ray, real(1.0), 1u, light);
+    TrainResult train = trace_train(VKFV_SCENE instrument.illumination_first, instrument.illumination_count, ray,
+                                    real(1.0), true, light);
     Ray down = fly_to_top(train.ray, exposure, specimen_index);
     real scale = real(1.0) / specimen_index;
     BackwardArrival arrival;
@@ -100,8 +108,8 @@ VKFV_SCENE_FUNCTION VKFV_FUNCTION real trace_to_source(VKFV_SCENE_PARAMETER Inst
                          -exposure.top_distance);
     ray.direction = query.direction * index;
     ray.path_length = real(0.0);
-    TrainResult train =
-        trace_train_by_loop(VKFV_SCENE instrument.imaging_first, instrument.imaging_count, ray, index, 1u, query.light);
+    TrainResult train = trace_train_by_loop(VKFV_SCENE instrument.imaging_first, instrument.imaging_count, ray, index,
+                                            true, query.light);
     return train.status == PATH_ALIVE ? query.weight * train.transmitted : real(0.0);
 }
 
@@ -150,7 +158,7 @@ VKFV_FUNCTION Connection connect(Material material, BackwardOptics backward, rea
     real u = choice;
     for (uint k = 0u; k < backward.cone_candidates + backward.lobe_candidates; ++k) {
         real3 direction = of_lobe.direction;
-        bool usable = of_lobe.accepted == 1u;
+        bool usable = of_lobe.accepted;
         if (k < backward.cone_candidates) {
             // Rings of equal area, each turned by the golden angle against the one before.
             real rho = radius * sqrt((real(k) + u0) / real(backward.cone_candidates));
@@ -266,13 +274,13 @@ VKFV_SCENE_FUNCTION VKFV_FUNCTION real trace_backward(VKFV_SCENE_PARAMETER Instr
         bool absorbed = lobe.model == SCATTER_NONE;
         under_way = !absorbed && (delta || !last);
         Scattered scattered;
-        scattered.accepted = 0u;
+        scattered.accepted = false;
         scattered.direction = outgoing;
         if (under_way || (backward.lobe_candidates != 0u && !absorbed)) {
             scattered = scatter(alone, direction, hit.normal, exposure.seed, exposure.image, path, block + 1u);
         }
-        under_way = under_way && scattered.accepted == 1u;
-        scattered.accepted = delta ? 0u : scattered.accepted;
+        under_way = under_way && scattered.accepted;
+        scattered.accepted = scattered.accepted && !delta;
         Connection connection =
             connect(specimen.material, backward, plane, hit, outgoing, draws.u0, draws.u1, draws.u2, scattered);
         if (connection.weight > real(0.0)) {

@@ -11,7 +11,7 @@ const bool SURFACE_IS_KNOWN = false;
 
 // Where a ray meets a surface of revolution, in its vertex frame.
 struct SurfacePoint {
-    uint found;     // 1: the ray meets the surface near its vertex
+    bool found;     // the ray meets the surface near its vertex
     real parameter; // position + parameter * direction is the point
     real3 point;    // mm
     real curvature; // 1/mm: the unit normal towards +z is (-curvature x, -curvature y, normal_z)
@@ -47,7 +47,7 @@ VKFV_FUNCTION SurfacePoint meet_conic(real3 position, real3 direction, real leng
         meets = true;
     }
     SurfacePoint result;
-    result.found = meets ? 1u : 0u;
+    result.found = meets;
     result.parameter = to_plane + further;
     result.point = real3(position.x + result.parameter * direction.x, position.y + result.parameter * direction.y,
                          further * direction.z);

@@ -2,8 +2,7 @@
 // Unpolarised light: the mean of both polarisations at each interface. Cosines are of the angles to the normal, > 0.
 
 VKFV_FUNCTION real fresnel_reflectance(real index_before, real index_after, real cosine) {
-    real sine_ratio = index_before / index_after;
-    real cosine_after_squared = real(1.0) - sine_ratio * sine_ratio * (real(1.0) - cosine * cosine);
+    real cosine_after_squared = real(1.0) - refracted_sine_squared(index_before, index_after, cosine);
     real cosine_after = sqrt(max(cosine_after_squared, real(0.0)));
     real s =
         (index_before * cosine - index_after * cosine_after) / (index_before * cosine + index_after * cosine_after);

@@ -3,7 +3,7 @@
 // power, p' = -power x: linear and canonical, so it keeps etendue at any angle (as a thin lens of tangents does not).
 
 struct IdealLens {
-    uint passes;      // 0: no direction has these cosines
+    bool passes;      // else no direction has these cosines
     real3 position;   // on the back focal plane, in the frame of the lens (principal planes at z = 0)
     real3 direction;  // of length index
     real path_length; // mm: what the way from the given point to the back focal plane adds
@@ -20,7 +20,7 @@ VKFV_FUNCTION IdealLens pass_ideal_lens(real3 position, real3 direction, real po
     real q = -power * y;
     real axial = index_after * index_after - p * p - q * q;
     IdealLens lens;
-    lens.passes = axial > real(0.0) ? 1u : 0u;
+    lens.passes = axial > real(0.0);
     lens.position = real3(focal_length * direction.x, focal_length * direction.y, index_after * focal_length);
     lens.direction = real3(p, q, sqrt(max(axial, real(1e-30))));
     // The point characteristic between the focal planes is f (n^2 + n'^2) - x x' / f.

@@ -1,17 +1,21 @@
 // Points of a randomly shifted rank-1 lattice (J. Dick, F. Y. Kuo, I. H. Sloan, "High-dimensional integration: the
 // quasi-Monte Carlo way", Acta Numerica 22 (2013), section 5): point i of n stands at the fractions of i z_d / n +
 // shift_d.
+// clang-format off
+#define VKFV_LATTICE_FIELDS(FIELD) \
+    FIELD(uint, size_bits) /* n = 2^size_bits */ \
+    FIELD(uint, z_0) \
+    FIELD(uint, z_1) \
+    FIELD(uint, z_2) \
+    FIELD(uint, z_3) \
+    FIELD(uint, z_4) \
+    FIELD(uint, z_5) \
+    FIELD(uint, z_6) \
+    FIELD(uint, z_7)
 struct Lattice {
-    uint size_bits; // n = 2^size_bits
-    uint z_0;
-    uint z_1;
-    uint z_2;
-    uint z_3;
-    uint z_4;
-    uint z_5;
-    uint z_6;
-    uint z_7;
+    VKFV_LATTICE_FIELDS(VKFV_DECLARE)
 };
+// clang-format on
 
 // In units of 2^-32.
 struct LatticeShift {

@@ -28,8 +28,8 @@ VKFV_FUNCTION real3 out_of_element(Element element, real3 v) {
 
 // Where a ray meets one element, in the element's frame turned so that the ray travels towards +z.
 struct ElementMeeting {
-    uint found;    // 1: met
-    uint clear;    // 1: within the free aperture
+    bool found;
+    bool clear;    // within the free aperture
     real distance; // mm
     real3 point;
     real3 direction; // the ray's
@@ -67,9 +67,9 @@ VKFV_FUNCTION ElementMeeting meet_barrel(ElementMeeting meeting, Element element
     real far_z = start.z + far * d.z;
     bool near_met = near > least && near_z >= low && near_z <= high;
     bool far_met = far > least && far_z >= low && far_z <= high;
-    meeting.found = discriminant > real(0.0) && a > real(1e-20) && (near_met || far_met) ? 1u : 0u;
+    meeting.found = discriminant > real(0.0) && a > real(1e-20) && (near_met || far_met);
     meeting.distance = near_met ? near : far;
-    meeting.clear = 0u;
+    meeting.clear = false;
     return meeting;
 }
 
@@ -84,8 +84,8 @@ VKFV_FUNCTION ElementMeeting meet_element(Element element, real3 origin, real3 d
     real3 start = real3(local.x, local.y, meeting.side * local.z);
     meeting.direction = real3(d.x, d.y, meeting.side * d.z);
     meeting.normal = real3(real(0.0), real(0.0), real(1.0));
-    meeting.found = 0u;
-    meeting.clear = 0u;
+    meeting.found = false;
+    meeting.clear = false;
     meeting.distance = real(0.0);
     if (element.kind == ELEMENT_BARREL) {
         meeting = meet_barrel(meeting, element, start, least);
@@ -94,7 +94,7 @@ VKFV_FUNCTION ElementMeeting meet_element(Element element, real3 origin, real3 d
         SurfacePoint on = meet_surface(start, meeting.direction, real(1.0), surface);
         meeting.distance = on.parameter;
         meeting.normal = normal_at(on);
-        meeting.found = on.found == 1u && on.parameter > least && !comes_from_it ? 1u : 0u;
+        meeting.found = on.found && on.parameter > least && !comes_from_it;
         if (comes_from_it && surface.curvature != real(0.0) && (surface.flags & SURFACE_ASPHERIC) == 0u) {
             // On the conic the quadratic's constant term is zero: one root is the start, and this the other.
             real c = surface.curvature;
@@ -104,25 +104,25 @@ VKFV_FUNCTION ElementMeeting meet_element(Element element, real3 origin, real3 d
             real b = c * (start.x * e.x + start.y * e.y + q * start.z * e.z) - e.z;
             real other = real(-2.0) * b / a;
             meeting.distance = other;
-            meeting.found = other > least ? 1u : 0u;
+            meeting.found = other > least;
             meeting.normal = conic_normal(start + other * e, c, surface.conic);
         }
         real3 point = start + meeting.distance * meeting.direction;
         real r_squared = point.x * point.x + point.y * point.y;
-        meeting.clear = r_squared <= surface.semi_diameter_squared ? 1u : 0u;
+        meeting.clear = r_squared <= surface.semi_diameter_squared;
         // Not on the conic's far half: rays across the axis meet that too.
         bool near_half = (surface.flags & SURFACE_ASPHERIC) != 0u ||
                          surface.curvature * (real(1.0) + surface.conic) * point.z < real(1.0);
         // The mount: the same surface beyond the free aperture, and where that ends, the plane of its rim.
-        bool on_surface = meeting.found == 1u && near_half && r_squared <= element.rim_radius * element.rim_radius;
+        bool on_surface = meeting.found && near_half && r_squared <= element.rim_radius * element.rim_radius;
         real to_rim = (meeting.side * element.rim_height - start.z) / max(meeting.direction.z, real(1e-20));
         real3 rim_point = start + to_rim * meeting.direction;
         real rim_squared = rim_point.x * rim_point.x + rim_point.y * rim_point.y;
         bool on_rim = to_rim > least && rim_squared > element.rim_radius * element.rim_radius &&
                       rim_squared <= element.outer_radius * element.outer_radius &&
                       (!on_surface || to_rim < meeting.distance);
-        meeting.found = on_surface || on_rim ? 1u : 0u;
-        meeting.clear = on_rim ? 0u : meeting.clear;
+        meeting.found = on_surface || on_rim;
+        meeting.clear = meeting.clear && !on_rim;
         meeting.distance = on_rim ? to_rim : meeting.distance;
     }
     meeting.point = start + meeting.distance * meeting.direction;
@@ -142,10 +142,6 @@ struct Passage {
     real3 direction; // unit
 };
 
-VKFV_FUNCTION real3 mirrored(real3 direction, real3 unit_normal) {
-    return direction - unit_normal * (real(2.0) * dot(direction, unit_normal));
-}
-
 // u uniform in (0, 1): which of the possible rays.
 VKFV_FUNCTION Passage pass_element(Element element, int index, ElementMeeting meeting, Light light, real u) {
     Surface surface = element.surface;
@@ -159,16 +155,14 @@ VKFV_FUNCTION Passage pass_element(Element element, int index, ElementMeeting me
     real3 point = meeting.point;
     real3 direction = meeting.direction;
     uint status = PATH_ALIVE;
-    if (meeting.clear == 0u || element.kind == ELEMENT_DETECTOR) {
+    if (!meeting.clear || element.kind == ELEMENT_DETECTOR) {
         status = PATH_VIGNETTED; // by the mount, or the detector's back
     } else if (element.kind == ELEMENT_INTERFACE) {
-        real sine_squared = (before / after) * (before / after) * (real(1.0) - cosine * cosine);
         real reflectance = interface_reflectance(surface, before, after, cosine, light.wave_number);
-        if (sine_squared >= real(1.0) || u < reflectance) {
+        if (refracted_sine_squared(before, after, cosine) >= real(1.0) || u < reflectance) {
             direction = mirrored(direction, normal);
         } else {
-            real ratio = before / after;
-            direction = direction * ratio + normal * (sqrt(real(1.0) - sine_squared) - ratio * cosine);
+            direction = refract_unit(direction, normal, before, after, cosine);
         }
     } else if (element.kind == ELEMENT_MIRROR) {
         direction = mirrored(direction, normal);
@@ -178,13 +172,11 @@ VKFV_FUNCTION Passage pass_element(Element element, int index, ElementMeeting me
             direction = mirrored(direction, normal);
         } else {
             status = u < surface.reflectance + element.transmittance ? PATH_ALIVE : PATH_INTERFACE_LOSS;
-            real ratio = before / after; // a plate's coated face refracts
-            real sine_squared = ratio * ratio * (real(1.0) - cosine * cosine);
-            direction = direction * ratio + normal * (sqrt(max(real(1.0) - sine_squared, real(0.0))) - ratio * cosine);
+            direction = refract_unit(direction, normal, before, after, cosine); // a plate's coated face refracts
         }
     } else if (element.kind == ELEMENT_IDEAL_LENS) {
         IdealLens lens = pass_ideal_lens(point, direction * before, surface.power, before, after);
-        status = lens.passes == 1u ? PATH_ALIVE : PATH_TOTAL_REFLECTION;
+        status = lens.passes ? PATH_ALIVE : PATH_TOTAL_REFLECTION;
         direction = lens.direction * (real(1.0) / after);
         // On from the lens' own plane: something may stand between it and its focal plane.
         point = lens.position - lens.direction * (lens.position.z / lens.direction.z);
@@ -235,9 +227,9 @@ VKFV_SCENE_FUNCTION VKFV_FUNCTION Detection trace_nonsequential(VKFV_SCENE_PARAM
                                               path, SCATTER_FIRST_BLOCK + uint(bounces) * SCATTER_BLOCKS);
                 direction = scattered.direction;
                 origin = scatter_origin(hit) - to_specimen;
-                detection.fate = make_fate(scattered.absorbed == 1u   ? PATH_ABSORBED
-                                           : scattered.accepted == 1u ? PATH_ALIVE
-                                                                      : PATH_NUMERICAL,
+                detection.fate = make_fate(scattered.absorbed   ? PATH_ABSORBED
+                                           : scattered.accepted ? PATH_ALIVE
+                                                                : PATH_NUMERICAL,
                                            -1);
                 bounces += 1;
                 left = -1;
@@ -248,7 +240,7 @@ VKFV_SCENE_FUNCTION VKFV_FUNCTION Detection trace_nonsequential(VKFV_SCENE_PARAM
             Element element = element_at(VKFV_SCENE met.index);
             ElementMeeting meeting =
                 meet_element(element, origin, direction, met.index == left, least_distance(origin));
-            if (element.kind == ELEMENT_DETECTOR && meeting.clear == 1u && meeting.side > real(0.0)) {
+            if (element.kind == ELEMENT_DETECTOR && meeting.clear && meeting.side > real(0.0)) {
                 detection = detect(instrument, meeting.point.x, meeting.point.y);
             } else {
                 Draws turn = draw(exposure.seed, exposure.image, path, 1u + uint(k));

@@ -104,7 +104,7 @@ VKFV_SCENE_FUNCTION VKFV_FUNCTION Arrival illuminate(VKFV_SCENE_PARAMETER Instru
     real index = is_ring ? specimen_index : real(1.0);
     ray.direction = ray.direction * index;
     TrainResult train = trace_train(VKFV_SCENE instrument.illumination_first, instrument.illumination_count, ray, index,
-                                    1u, arrival.light);
+                                    true, arrival.light);
     Ray down = fly_to_top(train.ray, exposure, specimen_index);
     arrival.fate = make_fate(train.status, train.surface);
     // The specimen frame is the illumination's turned half a turn about x.
@@ -117,7 +117,7 @@ VKFV_SCENE_FUNCTION VKFV_FUNCTION Arrival illuminate(VKFV_SCENE_PARAMETER Instru
 // The first half of a path.
 struct Departure {
     Fate fate; // of its own light; PATH_ALIVE: the survivor stands for it
-    uint survives;
+    bool survives;
     Survivor survivor;
 };
 
@@ -215,8 +215,8 @@ VKFV_SCENE_FUNCTION VKFV_FUNCTION Departure scatter_at_specimen(VKFV_SCENE_PARAM
             scatter(specimen.material, direction, hit.normal, exposure.seed, exposure.image, path, first_block);
         direction = scattered.direction;
         origin = scatter_origin(hit);
-        under_way = scattered.accepted == 1u;
-        status = under_way ? PATH_ALIVE : scattered.absorbed == 1u ? PATH_ABSORBED : PATH_NUMERICAL;
+        under_way = scattered.accepted;
+        status = under_way ? PATH_ALIVE : scattered.absorbed ? PATH_ABSORBED : PATH_NUMERICAL;
         if (directed && under_way) {
             Draws draws = draw(exposure.seed, exposure.image, path, first_block + SCATTER_BLOCKS - 1u);
             GateDisc disc = gate_disc(instrument, specimen.top, origin);
@@ -241,7 +241,7 @@ VKFV_SCENE_FUNCTION VKFV_FUNCTION Departure scatter_at_specimen(VKFV_SCENE_PARAM
     }
     Departure departure;
     departure.fate = make_fate(status, -1);
-    departure.survives = status == PATH_ALIVE ? 1u : 0u;
+    departure.survives = status == PATH_ALIVE;
     departure.survivor.position = origin;
     departure.survivor.direction_x = direction.x;
     departure.survivor.direction_y = direction.y;
@@ -251,7 +251,7 @@ VKFV_SCENE_FUNCTION VKFV_FUNCTION Departure scatter_at_specimen(VKFV_SCENE_PARAM
             selection = offer(selection, own_share, origin, direction, mark, own_choice);
         }
         uint weight = uint(selection.weight * real(WEIGHT_ONE) + real(0.5));
-        departure.survives = weight > 0u ? 1u : 0u;
+        departure.survives = weight > 0u;
         departure.survivor = selection.survivor;
         departure.survivor.mark =
             selection.survivor.mark | (weight << SURVIVOR_WEIGHT_BIT) | (status == PATH_ALIVE ? 0u : SURVIVOR_BESIDE);
@@ -266,7 +266,7 @@ VKFV_SCENE_FUNCTION VKFV_FUNCTION Departure trace_to_departure(VKFV_SCENE_PARAME
     Arrival arrival = illuminate(VKFV_SCENE instrument, specimen, exposure, path);
     Departure departure;
     departure.fate = arrival.fate;
-    departure.survives = 0u;
+    departure.survives = false;
     if (arrival.fate.status == PATH_ALIVE) {
         departure =
             scatter_at_specimen(VKFV_SCENE instrument, specimen, exposure, path, arrival.position, arrival.direction);
@@ -338,7 +338,7 @@ VKFV_SCENE_FUNCTION VKFV_FUNCTION Detection image_survivor(VKFV_SCENE_PARAMETER 
     ray.direction = direction * index;
     ray.path_length = real(0.0);
     TrainResult train =
-        trace_train(VKFV_SCENE instrument.imaging_first, instrument.imaging_count, ray, index, 1u, light);
+        trace_train(VKFV_SCENE instrument.imaging_first, instrument.imaging_count, ray, index, true, light);
     Ray arrived = fly_to_plane(train.ray, instrument.detector_distance, train.index);
     Detection detection = detect(instrument, arrived.position.x, arrived.position.y);
     bool twin = (survivor.mark & SURVIVOR_TWIN) != 0u;

@@ -11,12 +11,10 @@
 //   real lattice_at(int column, int row) const;      only for analytic specimens with a lattice
 #pragma once
 
-#include "physics/rational_fit.hpp"
-
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
-#include <vector>
+#include <limits>
 
 #include <glm/glm.hpp>
 #include <glm/integer.hpp>
@@ -26,6 +24,9 @@
 #define VKFV_SCENE_PARAMETER const Scene &scene,
 #define VKFV_SCENE scene,
 #define VKFV_SCENE_ALONE scene
+#define VKFV_DECLARE(type, name) type name;
+#define VKFV_DECLARE_ARRAY(type, name, size) type name[size];
+#define VKFV_DECLARE_KNOWN(k, place, type, name) type name;
 
 #define VKFV_PHYSICS_LANGUAGE \
     using glm::abs; \
@@ -70,4 +71,7 @@ VKFV_PHYSICS_LANGUAGE
 #undef VKFV_SCENE_PARAMETER
 #undef VKFV_SCENE
 #undef VKFV_SCENE_ALONE
+#undef VKFV_DECLARE
+#undef VKFV_DECLARE_ARRAY
+#undef VKFV_DECLARE_KNOWN
 #undef VKFV_PHYSICS_LANGUAGE

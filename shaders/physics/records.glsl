@@ -1,5 +1,7 @@
-// Records that host and device share, in scalar layout: physics.hpp compiles them in float for the buffers, and
-// tests/trace asserts sizes and has a probe kernel echo every field.
+// Records that host and device share, in scalar layout: physics.hpp compiles them in float for the buffers.
+// A record is a list of its fields, and all that goes through the fields one by one is made of that list: the struct,
+// its rounding from double to float (src/trace/device_records.cpp), what kernels know as constants
+// (device/prescription.glsl), and the probe of the layout (tests/trace/records_test.cpp).
 // Units: mm, W; directions are unit vectors scaled by the refractive index of the medium they travel in.
 
 // What became of a path. Every path ends with exactly one of these, and the ledger counts each.
@@ -39,53 +41,61 @@ const int KNOWN_SURFACES = 64;     // of them, that a kernel can have as constan
 const int SPECTRUM_CAPACITY = 256; // bins of a spectrum, likewise
 const int RING_CAPACITY = 32;      // segments of a ring light: bits of a mask
 
+// clang-format off
+
 // index(x) - index(0) = c1 x + ... + c6 x^6 with the spectral coordinate x of Light.
+#define VKFV_DISPERSION_FIELDS(FIELD) \
+    FIELD(real, c1) \
+    FIELD(real, c2) \
+    FIELD(real, c3) \
+    FIELD(real, c4) \
+    FIELD(real, c5) \
+    FIELD(real, c6)
 struct Dispersion {
-    real c1;
-    real c2;
-    real c3;
-    real c4;
-    real c5;
-    real c6;
+    VKFV_DISPERSION_FIELDS(VKFV_DECLARE)
 };
 
 // One refracting surface, mirror, ideal lens or stop, in the frame of its own vertex; light travels towards +z.
 // Sag: z = c r^2 / (1 + sqrt(1 - (1 + k) c^2 r^2)) + a4 r^4 + ... + a16 r^16 (ISO 10110-12, eq. 5).
 // From the frame of the previous vertex: p' = rotation (p - (decentre_x, decentre_y, distance)).
+// KNOWN: a kernel can have the field of its k-th surface as a constant, the one of the given place in the order of
+// their numbers (device/prescription.glsl).
+#define VKFV_SURFACE_FIELDS(FIELD, KNOWN, k) \
+    KNOWN(k, 0, real, curvature)             /* 1/mm, positive: centre of curvature towards +z */ \
+    KNOWN(k, 1, real, conic)                 /* conic constant k; 0 is a sphere */ \
+    KNOWN(k, 2, real, semi_diameter_squared) /* mm^2 */ \
+    KNOWN(k, 3, real, distance)              /* mm, from the previous vertex along its z; a train's first: 0 */ \
+    FIELD(real, index_before)                /* at x = 0 */ \
+    KNOWN(k, 4, real, index_after) \
+    KNOWN(k, 5, real, a4)                    /* mm^-3 and so on */ \
+    KNOWN(k, 6, real, a6) \
+    KNOWN(k, 7, real, a8) \
+    KNOWN(k, 8, real, a10) \
+    KNOWN(k, 9, real, a12) \
+    KNOWN(k, 10, real, a14) \
+    KNOWN(k, 11, real, a16) \
+    FIELD(real, decentre_x)                  /* mm */ \
+    FIELD(real, decentre_y) \
+    FIELD(real, rotation_xx)                 /* new x from old x, and so on */ \
+    FIELD(real, rotation_xy) \
+    FIELD(real, rotation_xz) \
+    FIELD(real, rotation_yx) \
+    FIELD(real, rotation_yy) \
+    FIELD(real, rotation_yz) \
+    FIELD(real, rotation_zx) \
+    FIELD(real, rotation_zy) \
+    FIELD(real, rotation_zz) \
+    FIELD(real, power)                       /* 1/mm, of an ideal lens */ \
+    FIELD(real, reflectance)                 /* of a mirror */ \
+    FIELD(real, layer_index)                 /* of the thin layer */ \
+    FIELD(real, layer_thickness)             /* um */ \
+    /* 1/mm: what curvature * (index_after - index_before), of the rounded numbers, falls short of; 0 in double. */ \
+    KNOWN(k, 13, real, bend_residual) \
+    FIELD(Dispersion, dispersion_before) \
+    FIELD(Dispersion, dispersion_after) \
+    KNOWN(k, 12, uint, flags)                /* SURFACE_* */
 struct Surface {
-    real curvature;             // 1/mm, positive: centre of curvature towards +z
-    real conic;                 // conic constant k; 0 is a sphere
-    real semi_diameter_squared; // mm^2
-    real distance;              // mm, from the previous vertex along its z to this one; a train's first: 0
-    real index_before;          // at x = 0
-    real index_after;
-    real a4; // mm^-3 and so on
-    real a6;
-    real a8;
-    real a10;
-    real a12;
-    real a14;
-    real a16;
-    real decentre_x; // mm
-    real decentre_y;
-    real rotation_xx; // new x from old x, and so on
-    real rotation_xy;
-    real rotation_xz;
-    real rotation_yx;
-    real rotation_yy;
-    real rotation_yz;
-    real rotation_zx;
-    real rotation_zy;
-    real rotation_zz;
-    real power;           // 1/mm, of an ideal lens
-    real reflectance;     // of a mirror
-    real layer_index;     // of the thin layer
-    real layer_thickness; // um
-    // 1/mm: what curvature * (index_after - index_before), of the rounded numbers, falls short of; 0 in double.
-    real bend_residual;
-    Dispersion dispersion_before;
-    Dispersion dispersion_after;
-    uint flags; // SURFACE_*
+    VKFV_SURFACE_FIELDS(VKFV_DECLARE, VKFV_DECLARE_KNOWN, 0)
 };
 
 // A ray in some frame; which one the function says.
@@ -103,23 +113,29 @@ struct Light {
 };
 
 // A stretch of a spectrum whose density changes linearly from (1 - tilt) to (1 + tilt) times its mean.
+#define VKFV_SPECTRAL_BIN_FIELDS(FIELD) \
+    FIELD(real, cumulative) /* share of the flux in this bin and those before it */ \
+    FIELD(real, start)      /* um */ \
+    FIELD(real, stop)       /* um; as start: a line */ \
+    FIELD(real, tilt)
 struct SpectralBin {
-    real cumulative; // share of the flux in this bin and those before it
-    real start;      // um
-    real stop;       // um; as start: a line
-    real tilt;
+    VKFV_SPECTRAL_BIN_FIELDS(VKFV_DECLARE)
 };
 
 // A ring of Lambertian segments that face the axis' meeting with the plane of best focus: a band of a cone.
+#define VKFV_RING_LIGHT_FIELDS(FIELD) \
+    /* mm, from the illumination train's first vertex to that meeting along the axis */ \
+    FIELD(real, aim_distance) \
+    FIELD(real, distance)         /* mm, from there to the middle of the band */ \
+    /* of the direction to the middle of the band, over the specimen's plane */ \
+    FIELD(real, elevation_sine) \
+    FIELD(real, elevation_cosine) \
+    FIELD(real, half_width)       /* mm, of the band, at right angles to that direction */ \
+    FIELD(real, fill)             /* share of its sector that a segment takes */ \
+    FIELD(int, segments) \
+    FIELD(uint, switched_on)      /* bit k: segment k, counted from +x towards +y of the specimen frame */
 struct RingLight {
-    real aim_distance;   // mm, from the illumination train's first vertex to that meeting along the axis
-    real distance;       // mm, from there to the middle of the band
-    real elevation_sine; // of the direction to the middle of the band, over the specimen's plane
-    real elevation_cosine;
-    real half_width; // mm, of the band, at right angles to that direction
-    real fill;       // share of its sector that a segment takes
-    int segments;
-    uint switched_on; // bit k: segment k, counted from +x towards +y of the specimen frame
+    VKFV_RING_LIGHT_FIELDS(VKFV_DECLARE)
 };
 
 const uint ELEMENT_INTERFACE = 0u;
@@ -132,18 +148,20 @@ const uint ELEMENT_BARREL = 6u; // an absorbing tube about z
 
 // An element as it stands in the room, for non-sequential tracing. Each is absorbing around its free aperture (the
 // surface's semi-diameter): its mount is the same surface out to rim_radius, and from there the plane z = rim_height.
+#define VKFV_ELEMENT_FIELDS(FIELD) \
+    FIELD(Surface, surface)    /* in its own frame; its transfer from another is not used */ \
+    FIELD(real3, origin)       /* of that frame, mm */ \
+    FIELD(real3, axis_x)       /* unit vectors */ \
+    FIELD(real3, axis_y) \
+    FIELD(real3, axis_z) \
+    FIELD(real, rim_radius)    /* mm */ \
+    FIELD(real, rim_height) \
+    FIELD(real, outer_radius)  /* of the mount, or of a barrel */ \
+    FIELD(real, barrel_length) /* along z */ \
+    FIELD(real, transmittance) /* of a splitter; its reflectance is the surface's */ \
+    FIELD(uint, kind)          /* ELEMENT_* */
 struct Element {
-    Surface surface; // in its own frame; its transfer from another is not used
-    real3 origin;    // of that frame, mm
-    real3 axis_x;    // unit vectors
-    real3 axis_y;
-    real3 axis_z;
-    real rim_radius; // mm
-    real rim_height;
-    real outer_radius;  // of the mount, or of a barrel
-    real barrel_length; // along z
-    real transmittance; // of a splitter; its reflectance is the surface's
-    uint kind;          // ELEMENT_*
+    VKFV_ELEMENT_FIELDS(VKFV_DECLARE)
 };
 
 // The nearest element on a ray's way.
@@ -153,35 +171,41 @@ struct ElementHit {
 };
 
 // Where the source stands in the room.
+#define VKFV_SOURCE_FRAME_FIELDS(FIELD) \
+    FIELD(real3, origin) \
+    FIELD(real3, axis_x) \
+    FIELD(real3, axis_y) \
+    FIELD(real3, axis_z)
 struct SourceFrame {
-    real3 origin;
-    real3 axis_x;
-    real3 axis_y;
-    real3 axis_z;
+    VKFV_SOURCE_FRAME_FIELDS(VKFV_DECLARE)
 };
 
-// The chain that light goes through, but for the specimen and the scan's position.
+// The chain that light goes through, but for the specimen and the scan's position. Its gate is the pupil's outline, made
+// linear and wide enough that no ray outside it reaches the detector:
+//   |gate_position * (x, y) + gate_slope * (dx/dz, dy/dz)| <= gate_radius,  x, y in mm on the specimen's top plane.
+#define VKFV_INSTRUMENT_FIELDS(FIELD) \
+    FIELD(real, source_radius)       /* mm, a flat Lambertian disc */ \
+    FIELD(real, source_distance)     /* mm, from the source to the first vertex of the illumination train */ \
+    FIELD(real, emission_sine)       /* sine of the half-angle of the cone aimed into; 1 is the whole hemisphere */ \
+    FIELD(real, magnification)       /* lateral, signed: detector over object */ \
+    FIELD(real, detector_distance)   /* mm, from the last vertex of the imaging train to the detector */ \
+    FIELD(real, detector_half_size)  /* mm */ \
+    FIELD(real, gate_position) \
+    FIELD(real, gate_slope) \
+    FIELD(real, gate_radius) \
+    FIELD(real, spectrum_centre)     /* 1/um^2, of 1/lambda^2: x = 0 */ \
+    FIELD(real, spectrum_half_width) /* 1/um^2; x = 1 is this far from it */ \
+    FIELD(real, specimen_index)      /* of the medium over the specimen, at x = 0 */ \
+    FIELD(Dispersion, specimen_dispersion) \
+    FIELD(RingLight, ring) \
+    FIELD(int, spectral_bins) \
+    FIELD(int, illumination_first)   /* indices into the surfaces */ \
+    FIELD(int, illumination_count) \
+    FIELD(int, imaging_first) \
+    FIELD(int, imaging_count) \
+    FIELD(int, detector_pixels)      /* along one side */
 struct Instrument {
-    real source_radius;       // mm, a flat Lambertian disc
-    real source_distance;     // mm, from the source to the first vertex of the illumination train
-    real emission_sine;       // sine of the half-angle of the cone aimed into; 1 is the whole hemisphere
-    real magnification;       // lateral, signed: detector over object
-    real detector_distance;   // mm, from the last vertex of the imaging train to the detector
-    real detector_half_size;  // mm
-    real gate_position;       // gate: |gate_position * (x, y) + gate_slope * (dx/dz, dy/dz)| <= gate_radius,
-    real gate_slope;          //   with x, y in mm on the specimen's top plane: the pupil's outline made
-    real gate_radius;         //   linear and wide enough that no ray outside it reaches the detector
-    real spectrum_centre;     // 1/um^2, of 1/lambda^2: x = 0
-    real spectrum_half_width; // 1/um^2; x = 1 is this far from it
-    real specimen_index;      // of the medium over the specimen, at x = 0
-    Dispersion specimen_dispersion;
-    RingLight ring;
-    int spectral_bins;
-    int illumination_first; // indices into the surfaces
-    int illumination_count;
-    int imaging_first;
-    int imaging_count;
-    int detector_pixels; // along one side
+    VKFV_INSTRUMENT_FIELDS(VKFV_DECLARE)
 };
 
 const uint SPECIMEN_FACETS = 0u;   // a height field of triangles: each cell split from (i, j) to (i+1, j+1)
@@ -197,54 +221,64 @@ const uint SHAPE_CHIRP = 4u;
 const int LOBE_TABLE_SIZE = 13;
 
 // One way in which a material scatters; shaders/physics/scatter/ has the models.
+#define VKFV_LOBE_FIELDS(FIELD, ARRAY) \
+    FIELD(uint, model)                  /* SCATTER_* */ \
+    FIELD(real, weight)                 /* share of the incident light */ \
+    FIELD(real, parameter_0) \
+    FIELD(real, parameter_1) \
+    FIELD(real, parameter_2) \
+    FIELD(real, parameter_3) \
+    /* what the host works out of the parameters, where the model says so */ \
+    ARRAY(real, table, LOBE_TABLE_SIZE)
 struct Lobe {
-    uint model;  // SCATTER_*
-    real weight; // share of the incident light
-    real parameter_0;
-    real parameter_1;
-    real parameter_2;
-    real parameter_3;
-    real table[LOBE_TABLE_SIZE]; // what the host works out of the parameters, where the model says so
+    VKFV_LOBE_FIELDS(VKFV_DECLARE, VKFV_DECLARE_ARRAY)
 };
 
 // The weights' sum is the reflectance, at most 1; the rest is absorbed. Lobes that there are not weigh nothing.
+#define VKFV_MATERIAL_FIELDS(FIELD) \
+    FIELD(Lobe, lobe_0) \
+    FIELD(Lobe, lobe_1) \
+    FIELD(Lobe, lobe_2) \
+    FIELD(Lobe, lobe_3)
 struct Material {
-    Lobe lobe_0;
-    Lobe lobe_1;
-    Lobe lobe_2;
-    Lobe lobe_3;
+    VKFV_MATERIAL_FIELDS(VKFV_DECLARE)
 };
 
 // The specimen in its own frame: x and y across, +z towards the objective, mm.
+#define VKFV_SPECIMEN_RECORD_FIELDS(FIELD) \
+    FIELD(real, x_min)             /* footprint */ \
+    FIELD(real, y_min) \
+    FIELD(real, x_max) \
+    FIELD(real, y_max) \
+    FIELD(real, bottom)            /* lowest height */ \
+    FIELD(real, top)               /* highest height; rays enter through the plane z = top */ \
+    FIELD(real, pitch_x)           /* of the height field or lattice; column i stands at x_min + i * pitch_x */ \
+    FIELD(real, pitch_y) \
+    /* of the analytic function: surface_function.glsl says what each shape means */ \
+    FIELD(real, shape_parameter_0) \
+    FIELD(real, shape_parameter_1) \
+    FIELD(real, shape_parameter_2) \
+    FIELD(real, shape_parameter_3) \
+    FIELD(real, lipschitz)         /* bound of the analytic function's slope */ \
+    FIELD(Material, material) \
+    FIELD(int, columns)            /* points of the height field or lattice; 0 x 0: none */ \
+    FIELD(int, rows) \
+    FIELD(int, max_bounces)        /* scatter events permitted */ \
+    FIELD(uint, kind)              /* SPECIMEN_* */ \
+    FIELD(uint, shape)             /* SHAPE_* */
 struct SpecimenRecord {
-    real x_min; // footprint
-    real y_min;
-    real x_max;
-    real y_max;
-    real bottom;  // lowest height
-    real top;     // highest height; rays enter through the plane z = top
-    real pitch_x; // of the height field or lattice; column i stands at x_min + i * pitch_x
-    real pitch_y;
-    real shape_parameter_0; // of the analytic function: surface_function.glsl says what each shape means
-    real shape_parameter_1;
-    real shape_parameter_2;
-    real shape_parameter_3;
-    real lipschitz; // bound of the analytic function's slope
-    Material material;
-    int columns; // points of the height field or lattice; 0 x 0: none
-    int rows;
-    int max_bounces; // scatter events permitted
-    uint kind;       // SPECIMEN_*
-    uint shape;      // SHAPE_*
+    VKFV_SPECIMEN_RECORD_FIELDS(VKFV_DECLARE)
 };
 
 // What changes from image to image.
+#define VKFV_EXPOSURE_FIELDS(FIELD) \
+    FIELD(real, top_distance)          /* mm, along the axis from the objective's front vertex to the top plane */ \
+    FIELD(uint, seed) \
+    FIELD(uint, image) \
+    FIELD(real, focal_height)          /* mm, of the focal plane in the specimen frame: z of the image */ \
+    FIELD(real, top_distance_residual) /* mm, what rounding took from top_distance; 0 in double */
 struct Exposure {
-    real top_distance; // mm, along the axis from the objective's front vertex to the specimen's top plane
-    uint seed;
-    uint image;
-    real focal_height;          // mm, of the focal plane in the specimen frame: z of the image
-    real top_distance_residual; // mm, what rounding took from top_distance; 0 in double
+    VKFV_EXPOSURE_FIELDS(VKFV_DECLARE)
 };
 
 // Where a ray meets the specimen (specimen frame).
@@ -262,14 +296,19 @@ const int SURVIVOR_WEIGHT_BIT = 3;
 const uint WEIGHT_ONE = 0x400000u; // weights are multiples of 2^-22, so that their sums do not depend on the order
 
 // Light that leaves the specimen towards the objective, between the two passes.
+#define VKFV_SURVIVOR_FIELDS(FIELD) \
+    FIELD(real3, position)   /* specimen frame, on the specimen */ \
+    FIELD(real, direction_x) /* unit; z is recomputed, positive */ \
+    FIELD(real, direction_y) \
+    FIELD(real, spectral)    /* its Light in the imaging train */ \
+    FIELD(real, survival) \
+    /* SURVIVOR_*, and with directed scatter its weight / 2^-22 from SURVIVOR_WEIGHT_BIT on */ \
+    FIELD(uint, mark)
 struct Survivor {
-    real3 position;   // specimen frame, on the specimen
-    real direction_x; // unit; z is recomputed, positive
-    real direction_y;
-    real spectral; // its Light in the imaging train
-    real survival;
-    uint mark; // SURVIVOR_*, and with directed scatter its weight / 2^-22 from SURVIVOR_WEIGHT_BIT on
+    VKFV_SURVIVOR_FIELDS(VKFV_DECLARE)
 };
+
+// clang-format on
 
 // How a path ended, and where the ledger counts it.
 struct Fate {

@@ -1,10 +1,25 @@
-// Snell's law in vector form, for directions scaled by the index: the tangential part of n s is continuous.
+// Snell's law: n sin I is the same on both sides of an interface.
 
 struct Refraction {
-    uint transmitted; // 0: total internal reflection
+    bool transmitted; // else totally reflected
     real3 direction;  // of length index_after
 };
 
+// Snell's law for the angle alone: sin^2 behind the interface, 1 or more where the light is totally reflected.
+VKFV_FUNCTION real refracted_sine_squared(real index_before, real index_after, real cosine) {
+    real ratio = index_before / index_after;
+    return ratio * ratio * (real(1.0) - cosine * cosine);
+}
+
+// In vector form for a unit direction whose angle with the unit normal ahead has the given cosine, as if it were
+// transmitted.
+VKFV_FUNCTION real3 refract_unit(real3 direction, real3 normal, real index_before, real index_after, real cosine) {
+    real ratio = index_before / index_after;
+    real sine_squared = refracted_sine_squared(index_before, index_after, cosine);
+    return direction * ratio + normal * (sqrt(max(real(1.0) - sine_squared, real(0.0))) - ratio * cosine);
+}
+
+// In vector form for directions scaled by the index, of which the tangential part of n s is continuous.
 // direction of length index_before, direction.z > 0, at a meeting with a surface.
 // n's' = n s + gamma N with gamma = n' cos I' - n cos I, and sqrt(n'^2 - n^2 + (n cos I)^2) = n' cos I'. Of gamma = n'
 // - n + h the greater part is a constant of the interface. h is small, and made of the small sine of incidence S = n
@@ -18,7 +33,7 @@ VKFV_FUNCTION Refraction refract_scaled(real3 direction, SurfacePoint meeting, r
     real p = meeting.cosine;
     real under_root = p * p + step * (index_after + index_before);
     Refraction result;
-    result.transmitted = under_root >= real(0.0) ? 1u : 0u;
+    result.transmitted = under_root >= real(0.0);
     real p_after = sqrt(max(under_root, real(0.0)));
     real h = meeting.sine_squared * (step + (p_after - p)) / ((index_before + p) * (index_after + p_after));
     real paraxial = meeting.curvature * step;
@@ -31,7 +46,7 @@ VKFV_FUNCTION Refraction refract_scaled(real3 direction, SurfacePoint meeting, r
     }
     real axial = index_after * index_after - (x * x + y * y);
     // A ray that would travel at right angles to the axis or backward has left the sequential model.
-    result.transmitted = axial > real(0.0) ? result.transmitted : 0u;
+    result.transmitted = axial > real(0.0) && result.transmitted;
     result.direction = real3(x, y, sqrt(max(axial, real(1e-30))));
     return result;
 }

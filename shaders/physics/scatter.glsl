@@ -55,8 +55,8 @@ VKFV_FUNCTION real scatter_density(Material material, real3 incoming, real3 norm
 const uint SCATTER_BLOCKS = 2048u; // blocks of random numbers a scatter event owns; a try each, and directed scatter's
 
 struct Scattered {
-    uint accepted; // 0: absorbed or tries exhausted
-    uint absorbed;
+    bool accepted; // else absorbed, or tries exhausted
+    bool absorbed;
     real3 direction;
     Lobe lobe; // that was chosen
 };
@@ -67,16 +67,16 @@ VKFV_FUNCTION Scattered scatter(Material material, real3 incoming, real3 normal,
     Incidence incidence = make_incidence(incoming, normal);
     Lobe lobe = material.lobe_0;
     Scattered result;
-    result.accepted = 0u;
-    result.absorbed = 0u;
+    result.accepted = false;
+    result.absorbed = false;
     result.direction = incidence.mirror;
     // Light from behind the surface is a rounding fault (it slipped between facets): not scattered, but counted.
     uint blocks = dot(incoming, normal) < real(0.0) ? SCATTER_BLOCKS - 1u : 0u;
-    for (uint block = 0u; block < blocks && result.accepted + result.absorbed == 0u; ++block) {
+    for (uint block = 0u; block < blocks && !result.accepted && !result.absorbed; ++block) {
         Draws draws = draw(seed, image, path, first_block + block);
         if ((scatter_models & SCATTER_CHOICE) != 0u && block == 0u) {
             lobe = choose_lobe(material, draws.u5);
-            result.absorbed = lobe.model == SCATTER_NONE ? 1u : 0u;
+            result.absorbed = lobe.model == SCATTER_NONE;
         }
         ScatterTry attempt = lobe_try(lobe, incidence, draws.u0, draws.u1, draws.u2);
         result.accepted = attempt.accepted;

@@ -8,8 +8,7 @@
 //     asked for above the surface alone, 1/sr: the density per sr of the outgoing direction divided by its cosine, so
 //     that the integral of bsdf * cosine over the hemisphere is 1; a delta has 0
 // With the line `// table`, NAME_bsdf takes `real table[LOBE_TABLE_SIZE]` after the parameters, and the host fills it:
-//   Lobe NAME_tabulated(Lobe lobe)
-//     the lobe with its table, between #ifdef __cplusplus and #endif
+// src/specimen/scatter_tables.cpp.
 
 // The models that the specimen's material has, bit k for model k, and SCATTER_CHOICE unless it is one lobe that
 // reflects everything: what it has not is compiled out of a kernel.
@@ -18,7 +17,7 @@ const uint SCATTER_DELTA = 0x40000000u; // set where a lobe is a delta
 #ifdef __cplusplus
 const uint scatter_models = 0xFFFFFFFFu;
 #else
-layout(constant_id = 4) const uint scatter_models = 0xFFFFFFFFu;
+layout(constant_id = CONSTANT_SCATTER_MODELS) const uint scatter_models = 0xFFFFFFFFu;
 #endif
 
 // Light on its way from the source to the surface, all unit vectors.
@@ -29,15 +28,19 @@ struct Incidence {
 };
 
 struct ScatterTry {
-    uint accepted;
+    bool accepted;
     real3 direction; // unit
 };
+
+VKFV_FUNCTION real3 mirrored(real3 direction, real3 unit_normal) {
+    return direction - unit_normal * (real(2.0) * dot(direction, unit_normal));
+}
 
 VKFV_FUNCTION Incidence make_incidence(real3 incoming, real3 normal) {
     Incidence incidence;
     incidence.incoming = incoming;
     incidence.normal = normal;
-    incidence.mirror = incoming - normal * (real(2.0) * dot(incoming, normal));
+    incidence.mirror = mirrored(incoming, normal);
     return incidence;
 }
 

@@ -35,7 +35,7 @@ VKFV_FUNCTION real surface_transmittance(Surface surface, real cosine, real inde
 // One surface: transfer, intersection, edge, refraction. `before` is in the frame of the previous vertex. A plane
 // mirror leaves the light's way as it was: all that follows it stands in the space that the mirror shows. Light that
 // has ended keeps its status, and its ray goes on without meaning: to hold it would cost every ray.
-VKFV_FUNCTION TrainResult trace_surface(Surface surface, int index, TrainResult before, uint apertures, Light light,
+VKFV_FUNCTION TrainResult trace_surface(Surface surface, int index, TrainResult before, bool apertures, Light light,
                                         uint present) {
     real3 start = real3(before.ray.position.x, before.ray.position.y, before.ray.position.z - surface.distance);
     real3 direction = before.ray.direction;
@@ -53,7 +53,7 @@ VKFV_FUNCTION TrainResult trace_surface(Surface surface, int index, TrainResult 
     SurfacePoint meeting = meet_surface(start, direction, index_before * index_before, surface);
     real3 point = meeting.point;
     Refraction refraction = refract_scaled(direction, meeting, index_before, index_after, surface.bend_residual);
-    bool clipped = apertures != 0u && (surface.flags & SURFACE_CLIPPED) != 0u &&
+    bool clipped = apertures && (surface.flags & SURFACE_CLIPPED) != 0u &&
                    point.x * point.x + point.y * point.y > surface.semi_diameter_squared;
     TrainResult result = before;
     result.ray.position = point;
@@ -61,8 +61,8 @@ VKFV_FUNCTION TrainResult trace_surface(Surface surface, int index, TrainResult 
     // The direction has length n, so the geometric way is parameter * n and the optical path parameter * n^2.
     result.ray.path_length = before.ray.path_length + meeting.parameter * index_before * index_before;
     result.index = index_after;
-    bool found = direction.z > real(0.0) && meeting.found == 1u;
-    bool passes = refraction.transmitted == 1u;
+    bool found = direction.z > real(0.0) && meeting.found;
+    bool passes = refraction.transmitted;
     if (SURFACE_IS_KNOWN && (present & FEATURE_SPECTRUM) == 0u && index_before == index_after) { // a stop
         result.ray.direction = direction;
         passes = true;
@@ -72,7 +72,7 @@ VKFV_FUNCTION TrainResult trace_surface(Surface surface, int index, TrainResult 
         result.ray.position = lens.position;
         result.ray.direction = lens.direction;
         result.ray.path_length = before.ray.path_length + lens.path_length;
-        passes = lens.passes == 1u;
+        passes = lens.passes;
     }
     bool lost = false;
     if ((present & FEATURE_LOSSES) != 0u) {
@@ -105,7 +105,7 @@ VKFV_FUNCTION TrainResult enter_train(Ray ray, real index) {
 
 // By a loop, also where the kernel has the instrument as constants: for what few rays need, as its code is short.
 VKFV_SCENE_FUNCTION VKFV_FUNCTION TrainResult trace_train_by_loop(VKFV_SCENE_PARAMETER int first, int count, Ray ray,
-                                                                  real index, uint apertures, Light light) {
+                                                                  real index, bool apertures, Light light) {
     TrainResult result = enter_train(ray, index);
     for (int i = first; i < first + count; ++i) {
         result = trace_surface(surface_at(VKFV_SCENE i), i, result, apertures, light, features(VKFV_SCENE_ALONE));
@@ -114,7 +114,7 @@ VKFV_SCENE_FUNCTION VKFV_FUNCTION TrainResult trace_train_by_loop(VKFV_SCENE_PAR
 }
 
 VKFV_SCENE_FUNCTION VKFV_FUNCTION TrainResult trace_train(VKFV_SCENE_PARAMETER int first, int count, Ray ray,
-                                                          real index, uint apertures, Light light) {
+                                                          real index, bool apertures, Light light) {
 #ifdef VKFV_SPECIALISED
     TrainResult result = enter_train(ray, index);
     // Written out, as constants fold only where each surface has a place of its own (device/prescription.glsl). The

@@ -24,62 +24,49 @@ constexpr std::uint32_t rays_per_invocation = 16;
 constexpr std::uint32_t kept_starts = 1u << 18;
 constexpr double warm_up_seconds = 0.5; // a GPU's idle clocks rise in this time
 
-// Of the kernel time_hits.
-constexpr std::uint32_t arrive = 0;
-constexpr std::uint32_t record = 1;
-constexpr std::uint32_t leave = 2;
-
-struct Batch {
-    std::uint32_t count;
-    std::uint32_t seed;
-    float aperture;
-    std::uint32_t strata_bits;
-};
-
 } // namespace
 
 HitTimes time_hits(const specimen::Specimen& specimen, const trace::TraceOptions& options, double numerical_aperture,
                    HitOrder order, int runs) {
     const vulkan::Device device(vulkan::DeviceOptions{options.device});
-    std::string reason;
-    const trace::Traversal traversal = trace::choose_traversal(device.report(), specimen, options.traversal, reason);
+    const auto [traversal, reason] = trace::choose_traversal(device.report(), specimen, options.traversal);
     const trace::DeviceSpecimen on_device(device, specimen, traversal);
-    trace::Parameters parameters{};
+    kernels::Parameters parameters{};
     parameters.specimen = on_device.record(1);
     vulkan::Buffer uniform(device, sizeof parameters, vulkan::Buffer::Memory::host);
-    uniform.write_values(std::span<const trace::Parameters>(&parameters, 1));
+    uniform.write_values(std::span<const kernels::Parameters>(&parameters, 1));
     const vulkan::Buffer met(device, sizeof(std::uint64_t));
-    const vulkan::Buffer starts(device, std::size_t{kept_starts} * 6 * sizeof(float));
+    const vulkan::Buffer starts(device, std::size_t{kept_starts} * sizeof(kernels::TimedStart));
 
     auto declarations = on_device.declarations();
-    declarations.push_back({1, vulkan::BindingKind::uniform_buffer});
-    declarations.push_back({6, vulkan::BindingKind::storage_buffer});
-    declarations.push_back({7, vulkan::BindingKind::storage_buffer});
+    declarations.push_back({kernels::BINDING_PARAMETERS, vulkan::BindingKind::uniform_buffer});
+    declarations.push_back({kernels::BINDING_FOUND, vulkan::BindingKind::storage_buffer});
+    declarations.push_back({kernels::BINDING_GIVEN, vulkan::BindingKind::storage_buffer});
     auto bindings = on_device.bindings();
-    bindings.push_back({1, &uniform});
-    bindings.push_back({6, &met});
-    bindings.push_back({7, &starts});
+    bindings.push_back({kernels::BINDING_PARAMETERS, &uniform});
+    bindings.push_back({kernels::BINDING_FOUND, &met});
+    bindings.push_back({kernels::BINDING_GIVEN, &starts});
     const std::span<const std::uint32_t> spirv =
         traversal == trace::Traversal::ray_query ? std::span<const std::uint32_t>(time_hits_ray_query)
         : traversal == trace::Traversal::bvh     ? std::span<const std::uint32_t>(time_hits_bvh)
                                                  : std::span<const std::uint32_t>(time_hits_quadtree);
     const auto kernel_for = [&](std::uint32_t way) {
         auto constants = on_device.constants();
-        constants.push_back({1, way});
-        return vulkan::Kernel(device, "time_hits", spirv, declarations, sizeof(Batch), constants);
+        constants.push_back({kernels::CONSTANT_HITS_WAY, way});
+        return vulkan::Kernel(device, "time_hits", spirv, declarations, sizeof(kernels::TimedHits), constants);
     };
-    const vulkan::Kernel kernel = kernel_for(order == HitOrder::leaving ? leave : arrive);
+    const vulkan::Kernel kernel = kernel_for(order == HitOrder::leaving ? kernels::HITS_LEAVE : kernels::HITS_ARRIVE);
 
     const bool software = device.report().type == "CPU";
-    Batch batch{};
+    kernels::TimedHits batch{};
     batch.count = options.batch > 0 ? static_cast<std::uint32_t>(options.batch) : software ? 1u << 20 : 1u << 28;
     batch.seed = options.seed;
     batch.aperture = static_cast<float>(numerical_aperture);
     // Strata of 32 rays, as many as the rays fill once.
     batch.strata_bits = order == HitOrder::morton ? (std::bit_width(std::max(batch.count / 32, 1u)) - 1) / 2 : 0;
     if (order == HitOrder::leaving) {
-        const vulkan::Kernel recording = kernel_for(record);
-        Batch first = batch;
+        const vulkan::Kernel recording = kernel_for(kernels::HITS_RECORD);
+        kernels::TimedHits first = batch;
         first.count = kept_starts;
         vulkan::Commands commands(device);
         commands.dispatch(recording, bindings, first, kept_starts / group_size);

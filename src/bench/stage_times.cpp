@@ -23,18 +23,18 @@ constexpr std::chrono::milliseconds warm_up{500}; // clocks of an idle GPU take 
 
 StageTimes time_stages(const optics::Instrument& instrument, const specimen::Specimen& specimen,
                        const trace::TraceOptions& options, double focal_height, int runs) {
-    trace::DeviceScene scene(instrument, specimen, options);
+    trace::DeviceScene scene = trace::make_device_scene(instrument, specimen, options);
     scene.set_exposure(focal_height, 0);
     const std::uint32_t batch = trace::suitable_batch(scene, options.batch, options.rays);
     const trace::ForwardTrace whole(scene, batch);
-    const trace::ForwardTrace emission(scene, batch, 3);
-    const trace::ForwardTrace to_specimen(scene, batch, 1);
-    const trace::ForwardTrace occlusion(scene, batch, 0, 2);
-    const trace::ForwardTrace uncounted(scene, batch, 0, 1);
+    const trace::ForwardTrace emission(scene, batch, kernels::STOP_AFTER_SOURCE);
+    const trace::ForwardTrace to_specimen(scene, batch, kernels::STOP_AFTER_TRAIN);
+    const trace::ForwardTrace occlusion(scene, batch, kernels::STOP_NOWHERE, kernels::STOP_AFTER_SPECIMEN);
+    const trace::ForwardTrace uncounted(scene, batch, kernels::STOP_NOWHERE, kernels::STOP_AFTER_TRAIN);
 
     // Both halves of one form of the trace, s.
     const auto time = [&](const trace::ForwardTrace& trace) {
-        vulkan::Commands commands(scene.device, 3);
+        vulkan::Commands commands(*scene.device, 3);
         trace.clear(commands);
         trace.record(commands, 0, batch, true);
         commands.submit_and_wait();
@@ -60,7 +60,7 @@ StageTimes time_stages(const optics::Instrument& instrument, const specimen::Spe
         imaged.push_back(time(uncounted)[1]);
     }
     StageTimes result;
-    result.description = fmt::format("{}; traversal {}", scene.device.choice(), scene.reason);
+    result.description = fmt::format("{}; traversal {}", scene.device->choice(), scene.traversal.reason);
     result.rays = batch;
     result.runs = runs;
     const double whole_seconds = median(total);
@@ -74,7 +74,7 @@ StageTimes time_stages(const optics::Instrument& instrument, const specimen::Spe
     result.imaging = share(median(imaged) - median(hidden));
     result.detection = share(median(second) - median(imaged));
 
-    vulkan::Commands commands(scene.device);
+    vulkan::Commands commands(*scene.device);
     whole.clear(commands);
     whole.record(commands, 0, batch);
     commands.submit_and_wait();

@@ -1,6 +1,7 @@
 #include "specimen/specimen.hpp"
 
 #include "physics/scatter_registry.hpp"
+#include "specimen/scatter_tables.hpp"
 
 #include <fmt/format.h>
 
@@ -43,7 +44,7 @@ physics::f64::Lobe lobe_record(const Lobe& lobe, const SourceLocation& where) {
     result.parameter_1 = parameters[1];
     result.parameter_2 = parameters[2];
     result.parameter_3 = parameters[3];
-    return physics::f64::tabulated(result);
+    return tabulated(result);
 }
 
 } // namespace

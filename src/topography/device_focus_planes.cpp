@@ -16,50 +16,31 @@ namespace vkfv::topography {
 
 namespace {
 
-using focus::f32::CurveRecord;
-using focus::f32::FocusPlan;
-using focus::f32::WindowSums;
-
 constexpr std::uint32_t workgroup = 128;
 constexpr std::uint32_t most_groups_in_a_row = 65535; // Vulkan's promise
 
-// Push constants of the kernels.
-struct Term {
-    std::uint32_t count;
-    std::uint32_t first_to;
-    float weight;
-    std::uint32_t first;
-};
-struct NoiseSizes {
-    std::uint32_t pixels;
-    std::uint32_t channels;
-    std::uint32_t differences;
-};
-struct CurveStep {
-    FocusPlan plan;
-    std::int32_t at;
-    std::int32_t images;
-    std::int32_t kept;
-};
-struct Choice {
-    std::uint32_t pixels;
-    std::uint32_t channels;
-    std::int32_t wanted;
-};
-static_assert(sizeof(FocusPlan) == 7 * 4 && sizeof(CurveRecord) == 10 * 4 && sizeof(WindowSums) == 2 * 4);
+using namespace focus::f32; // bindings and push constants: shaders/focus/interface.glsl
 
-FocusPlan on_device(const focus::f64::FocusPlan& plan) {
-    return {plan.columns, plan.rows, plan.channels, plan.measure, plan.window_radius, plan.peak, plan.peak_range};
+static_assert(alignof(FollowedImage) == 4 && alignof(CurveRecord) == 4 &&
+              alignof(WindowSums) == 4); // nothing is padded
+
+#define VKFV_CONVERT(type, name) result.name = record.name;
+
+focus::f32::FocusPlan on_device(const focus::f64::FocusPlan& record) {
+    focus::f32::FocusPlan result{};
+    VKFV_FOCUS_PLAN_FIELDS(VKFV_CONVERT)
+    return result;
 }
 
-focus::f64::CurveRecord in_double(const CurveRecord& curve) {
-    return {curve.largest, curve.sum,    curve.offset, curve.residual, curve.at,
-            curve.found,   curve.peak_1, curve.peak_2, curve.peak_3,   curve.peak_4};
+focus::f64::CurveRecord in_double(const focus::f32::CurveRecord& record) {
+    focus::f64::CurveRecord result{};
+    VKFV_CURVE_RECORD_FIELDS(VKFV_CONVERT)
+    return result;
 }
 
-std::vector<vulkan::BindingDeclaration> storage_buffers(std::uint32_t count) {
+std::vector<vulkan::BindingDeclaration> storage_buffers(std::initializer_list<std::uint32_t> slots) {
     std::vector<vulkan::BindingDeclaration> all;
-    for (std::uint32_t slot = 0; slot < count; ++slot) {
+    for (const std::uint32_t slot : slots) {
         all.push_back({slot, vulkan::BindingKind::storage_buffer});
     }
     return all;
@@ -71,15 +52,24 @@ class DeviceFocusPlanes final : public FocusPlanes {
         : plan_(on_device(stack.plan)), averaged_curves_(stack.averaged_curves_kept),
           pixels_(static_cast<std::size_t>(plan_.columns) * static_cast<std::size_t>(plan_.rows)),
           channels_(static_cast<std::size_t>(plan_.channels)), device_(vulkan::DeviceOptions{selector}),
-          mean_(device_, "focus_mean", focus_mean, storage_buffers(2), sizeof(Term)),
-          noise_(device_, "focus_noise", focus_noise, storage_buffers(5), sizeof(NoiseSizes)),
-          response_(device_, "focus_response", focus_response, storage_buffers(2), sizeof(FocusPlan)),
-          rows_(device_, "focus_rows", focus_rows, storage_buffers(4), sizeof(FocusPlan)),
-          columns_(device_, "focus_columns", focus_columns, storage_buffers(3), sizeof(FocusPlan)),
-          follow_(device_, "focus_follow", focus_follow, storage_buffers(3), sizeof(CurveStep)),
-          select_(device_, "focus_select", focus_select, storage_buffers(3), sizeof(Choice)),
+          mean_(device_, "focus_mean", ::focus_mean, storage_buffers({BINDING_FROM, BINDING_TO}), sizeof(MeanTerm)),
+          noise_(device_, "focus_noise", ::focus_noise,
+                 storage_buffers(
+                     {BINDING_IMAGE, BINDING_BEFORE, BINDING_EARLIER, BINDING_BRIGHTNESS, BINDING_SQUARED_DIFFERENCES}),
+                 sizeof(NoiseSizes)),
+          response_(device_, "focus_response", ::focus_response, storage_buffers({BINDING_IMAGE, BINDING_RESPONSES}),
+                    sizeof(FocusPlan)),
+          rows_(device_, "focus_rows", ::focus_rows,
+                storage_buffers({BINDING_IMAGE, BINDING_RESPONSES, BINDING_WEIGHTS, BINDING_ROW_SUMS}),
+                sizeof(FocusPlan)),
+          columns_(device_, "focus_columns", ::focus_columns,
+                   storage_buffers({BINDING_ROW_SUMS, BINDING_WEIGHTS, BINDING_CURVE}), sizeof(FocusPlan)),
+          follow_(device_, "focus_follow", ::focus_follow,
+                  storage_buffers({BINDING_CURVES, BINDING_RECORDS, BINDING_SHARPEST}), sizeof(FollowedImage)),
+          select_(device_, "focus_select", ::focus_select,
+                  storage_buffers({BINDING_IMAGE, BINDING_SHARPEST, BINDING_ALL_IN_FOCUS}), sizeof(SelectedImage)),
           mean_image_(device_, channels_ * pixels_ * sizeof(float)), responses_(device_, pixels_ * sizeof(WindowSums)),
-          row_sums_(device_, static_cast<std::size_t>(focus::f32::focus_fields(plan_)) * pixels_ * sizeof(WindowSums)),
+          row_sums_(device_, static_cast<std::size_t>(focus_fields(plan_)) * pixels_ * sizeof(WindowSums)),
           weights_(device_, stack.window.weights().size() * sizeof(float)),
           averaged_(device_, static_cast<std::size_t>(averaged_curves_) * pixels_ * sizeof(float)),
           records_(device_, pixels_ * sizeof(CurveRecord)), sharpest_(device_, pixels_ * sizeof(std::int32_t)),
@@ -105,8 +95,11 @@ class DeviceFocusPlanes final : public FocusPlanes {
         }
         const bool differences = image >= 2;
         dispatch(noise_,
-                 {&image_at(image), &image_at(differences ? image - 1 : image),
-                  &image_at(differences ? image - 2 : image), &brightness_, &squared_differences_},
+                 {{BINDING_IMAGE, &image_at(image)},
+                  {BINDING_BEFORE, &image_at(differences ? image - 1 : image)},
+                  {BINDING_EARLIER, &image_at(differences ? image - 2 : image)},
+                  {BINDING_BRIGHTNESS, &brightness_},
+                  {BINDING_SQUARED_DIFFERENCES, &squared_differences_}},
                  NoiseSizes{static_cast<std::uint32_t>(pixels_), static_cast<std::uint32_t>(channels_),
                             differences ? 1u : 0u},
                  pixels_);
@@ -121,11 +114,18 @@ class DeviceFocusPlanes final : public FocusPlanes {
                 shares, [&](int k) -> const vulkan::Buffer& { return image_at(k); }, mean_image_, 0,
                 channels_* pixels_);
         }
-        if (plan_.measure != focus::f32::FOCUS_STANDARD_DEVIATION) {
-            dispatch(response_, {measured, &responses_}, plan_, pixels_);
+        if (plan_.measure != FOCUS_STANDARD_DEVIATION) {
+            dispatch(response_, {{BINDING_IMAGE, measured}, {BINDING_RESPONSES, &responses_}}, plan_, pixels_);
         }
-        dispatch(rows_, {measured, &responses_, &weights_, &row_sums_}, plan_, pixels_);
-        dispatch(columns_, {&row_sums_, &weights_, &curve_at(image)}, plan_, pixels_);
+        dispatch(rows_,
+                 {{BINDING_IMAGE, measured},
+                  {BINDING_RESPONSES, &responses_},
+                  {BINDING_WEIGHTS, &weights_},
+                  {BINDING_ROW_SUMS, &row_sums_}},
+                 plan_, pixels_);
+        dispatch(columns_,
+                 {{BINDING_ROW_SUMS, &row_sums_}, {BINDING_WEIGHTS, &weights_}, {BINDING_CURVE, &curve_at(image)}},
+                 plan_, pixels_);
     }
 
     void average(int image, std::span<const Share> shares) override {
@@ -135,13 +135,15 @@ class DeviceFocusPlanes final : public FocusPlanes {
     }
 
     void follow(int image, int images) override {
-        dispatch(follow_, {&averaged_, &records_, &sharpest_}, CurveStep{plan_, image, images, averaged_curves_},
-                 pixels_);
+        dispatch(follow_, {{BINDING_CURVES, &averaged_}, {BINDING_RECORDS, &records_}, {BINDING_SHARPEST, &sharpest_}},
+                 FollowedImage{plan_, image, images, averaged_curves_}, pixels_);
         const int first = std::max(0, image - plan_.peak_range);
         const int last = std::min(images - 1, image + plan_.peak_range);
         for (int k = first; k <= last; ++k) {
-            dispatch(select_, {&image_at(k), &sharpest_, &all_in_focus_},
-                     Choice{static_cast<std::uint32_t>(pixels_), static_cast<std::uint32_t>(channels_), k}, pixels_);
+            dispatch(
+                select_,
+                {{BINDING_IMAGE, &image_at(k)}, {BINDING_SHARPEST, &sharpest_}, {BINDING_ALL_IN_FOCUS, &all_in_focus_}},
+                SelectedImage{static_cast<std::uint32_t>(pixels_), static_cast<std::uint32_t>(channels_), k}, pixels_);
         }
     }
 
@@ -168,12 +170,8 @@ class DeviceFocusPlanes final : public FocusPlanes {
     vulkan::Buffer& curve_at(int k) { return curves_[static_cast<std::size_t>(k) % curves_.size()]; }
 
     template <class Push>
-    void dispatch(const vulkan::Kernel& kernel, const std::vector<const vulkan::Buffer*>& buffers, const Push& push,
+    void dispatch(const vulkan::Kernel& kernel, const std::vector<vulkan::Binding>& bindings, const Push& push,
                   std::size_t invocations) {
-        std::vector<vulkan::Binding> bindings;
-        for (const vulkan::Buffer* buffer : buffers) {
-            bindings.push_back({static_cast<std::uint32_t>(bindings.size()), buffer});
-        }
         if (!commands_) {
             commands_.emplace(device_);
         }
@@ -188,9 +186,9 @@ class DeviceFocusPlanes final : public FocusPlanes {
     void weighted_mean(std::span<const Share> shares, const Plane& plane, const vulkan::Buffer& to,
                        std::size_t first_to, std::size_t count) {
         for (std::size_t k = 0; k < shares.size(); ++k) {
-            dispatch(mean_, {&plane(shares[k].image), &to},
-                     Term{static_cast<std::uint32_t>(count), static_cast<std::uint32_t>(first_to), shares[k].weight,
-                          k == 0 ? 1u : 0u},
+            dispatch(mean_, {{BINDING_FROM, &plane(shares[k].image)}, {BINDING_TO, &to}},
+                     MeanTerm{static_cast<std::uint32_t>(count), static_cast<std::uint32_t>(first_to), shares[k].weight,
+                              k == 0 ? 1u : 0u},
                      count);
         }
     }

@@ -21,22 +21,14 @@ constexpr std::uint32_t most_points_per_chunk = 32;
 constexpr std::uint32_t workgroup = 128;
 constexpr std::uint32_t most_groups_in_a_row = 65535; // Vulkan's promise
 
-// Push constants of the kernel.
-struct Chunks {
-    std::uint32_t first;
-    std::uint32_t count;
-    std::uint32_t points;
-    std::uint32_t randomisation;
-};
-
 std::uint32_t pixel_count(const DeviceScene& scene) {
     const auto side = static_cast<std::uint32_t>(scene.instrument.constants.detector_pixels);
     return side * side;
 }
 
 std::vector<vulkan::BindingDeclaration> declarations(const DeviceScene& scene) {
-    auto all = scene.declarations({3});
-    all.push_back({17, vulkan::BindingKind::uniform_buffer});
+    auto all = scene.declarations({kernels::BINDING_PIXELS});
+    all.push_back({kernels::BINDING_BACKWARD, vulkan::BindingKind::uniform_buffer});
     return all;
 }
 
@@ -45,12 +37,13 @@ std::vector<vulkan::SpecializationConstant> constants(const DeviceScene& scene,
     // The way to the source is traced by a loop.
     const auto& trains = scene.instrument.constants;
     auto all = scene.is_specialised()
-                   ? scene.specialised_constants(0, trains.illumination_first, trains.illumination_count)
-                   : scene.kernel_constants(0);
-    all.push_back({5, optics.cone_candidates});
-    all.push_back({6, optics.lobe_candidates});
+                   ? scene.specialised_constants(trains.illumination_first, trains.illumination_count)
+                   : scene.kernel_constants();
+    all.push_back({kernels::CONSTANT_CONE_CANDIDATES, optics.cone_candidates});
+    all.push_back({kernels::CONSTANT_LOBE_CANDIDATES, optics.lobe_candidates});
     constexpr std::uint32_t queries_at_hand = 11;
-    all.push_back({7, queries_at_hand + static_cast<std::uint32_t>(scene.constants.specimen.max_bounces)});
+    all.push_back({kernels::CONSTANT_QUERY_CAPACITY,
+                   queries_at_hand + static_cast<std::uint32_t>(scene.constants.specimen.max_bounces)});
     return all;
 }
 
@@ -60,37 +53,17 @@ std::span<const std::uint32_t> variant(const DeviceScene& scene) {
                : scene.variant(backward_quadtree, backward_ray_query, backward_bvh);
 }
 
-// The kernel's uniform block.
-struct BackwardBlock {
-    physics::f32::BackwardOptics optics;
-    physics::f32::Lattice lattice;
-};
-static_assert(sizeof(BackwardBlock) == (9 + 9) * 4);
-
-physics::f32::BackwardOptics to_float(const physics::f64::BackwardOptics& optics) {
-    return {static_cast<float>(optics.pupil_position),
-            static_cast<float>(optics.pupil_radius),
-            static_cast<float>(optics.source_position),
-            static_cast<float>(optics.source_outer),
-            static_cast<float>(optics.source_inner),
-            static_cast<float>(optics.inner_field),
-            static_cast<float>(optics.object_distance),
-            optics.cone_candidates,
-            optics.lobe_candidates};
-}
-
 } // namespace
 
 BackwardTrace::BackwardTrace(const DeviceScene& scene, const physics::f64::BackwardOptics& optics,
                              const BackwardPlan& plan, std::uint64_t asked_batch)
     : scene_(scene), pixels_(pixel_count(scene)), points_per_chunk_(std::min(plan.points, most_points_per_chunk)),
-      sums_(scene.device, std::size_t{pixels_} * sizeof(std::uint64_t)), optics_(scene.device, sizeof(BackwardBlock)),
-      kernel_(scene.device, "backward", variant(scene), declarations(scene), sizeof(Chunks), constants(scene, optics)) {
-    BackwardBlock block{to_float(optics), {}};
-    const auto lattice = plan.lattice();
-    block.lattice = {lattice.size_bits, lattice.z_0, lattice.z_1, lattice.z_2, lattice.z_3,
-                     lattice.z_4,       lattice.z_5, lattice.z_6, lattice.z_7};
-    optics_.write_values(std::span<const BackwardBlock>(&block, 1));
+      sums_(*scene.device, std::size_t{pixels_} * sizeof(std::uint64_t)),
+      optics_(*scene.device, sizeof(kernels::BackwardBlock)),
+      kernel_(*scene.device, "backward", variant(scene), declarations(scene), sizeof(kernels::BackwardBatch),
+              constants(scene, optics)) {
+    const kernels::BackwardBlock block{to_float(optics), to_float(plan.lattice())};
+    optics_.write_values(std::span<const kernels::BackwardBlock>(&block, 1));
     const std::uint64_t wanted = asked_batch > 0    ? asked_batch
                                  : scene.software() ? std::uint64_t{1} << 19
                                                     : std::uint64_t{1} << 27;
@@ -107,12 +80,13 @@ void BackwardTrace::clear(vulkan::Commands& commands) const {
 
 void BackwardTrace::record(vulkan::Commands& commands, std::uint32_t randomisation, std::uint32_t first,
                            std::uint32_t count) const {
-    auto bindings = scene_.bindings({{3, &sums_}, {17, &optics_}});
-    const Chunks chunks{first / points_per_chunk_, count / points_per_chunk_, points_per_chunk_, randomisation};
-    const std::uint64_t invocations = std::uint64_t{chunks.count} * pixels_;
+    auto bindings = scene_.bindings({{kernels::BINDING_PIXELS, &sums_}, {kernels::BINDING_BACKWARD, &optics_}});
+    const kernels::BackwardBatch batch{first / points_per_chunk_, count / points_per_chunk_, points_per_chunk_,
+                                       randomisation};
+    const std::uint64_t invocations = std::uint64_t{batch.chunks} * pixels_;
     const auto groups = static_cast<std::uint32_t>((invocations + workgroup - 1) / workgroup);
     const std::uint32_t rows = (groups + most_groups_in_a_row - 1) / most_groups_in_a_row;
-    commands.dispatch(kernel_, bindings, chunks, (groups + rows - 1) / rows, rows);
+    commands.dispatch(kernel_, bindings, batch, (groups + rows - 1) / rows, rows);
     commands.barrier();
 }
 
@@ -127,7 +101,8 @@ class BackwardTracer final : public Tracer {
     BackwardTracer(const optics::Instrument& instrument, const specimen::Specimen& specimen,
                    const TraceOptions& options)
         : instrument_(instrument), turned_(optics::turned_round(instrument)),
-          plan_(backward_plan(options.rays, instrument.constants.detector_pixels)), scene_(turned_, specimen, options),
+          plan_(backward_plan(options.rays, instrument.constants.detector_pixels)),
+          scene_(make_device_scene(turned_, specimen, options)),
           trace_(scene_, backward_optics(instrument_, scene_.host_record.material), plan_, options.batch) {}
 
     Image expose(double focal_height, std::uint32_t image) const override {
@@ -138,7 +113,7 @@ class BackwardTracer final : public Tracer {
         double device_seconds = 0;
         for (std::uint32_t randomisation = 0; randomisation < plan_.randomisations; ++randomisation) {
             for (std::uint32_t first = 0; first < plan_.points; first += trace_.points_per_batch()) {
-                vulkan::Commands commands(scene_.device, 2);
+                vulkan::Commands commands(*scene_.device, 2);
                 commands.timestamp();
                 if (first == 0) {
                     trace_.clear(commands);
@@ -160,7 +135,7 @@ class BackwardTracer final : public Tracer {
     }
 
     std::string description() const override {
-        return fmt::format("{}; traversal {}; backward", scene_.device.choice(), scene_.reason);
+        return fmt::format("{}; traversal {}; backward", scene_.device->choice(), scene_.traversal.reason);
     }
 
     TracerIdentity identity() const override { return scene_.identity(); }

@@ -1,6 +1,7 @@
 // The shared records, rounded from the host's double to the device's float.
 #pragma once
 
+#include "device/interface.hpp"
 #include "optics/instrument.hpp"
 #include "physics/physics.hpp"
 
@@ -8,23 +9,20 @@
 
 namespace vkfv::trace {
 
-// The uniform block of shaders/device/bindings.glsl.
-struct Parameters {
-    physics::f32::Instrument instrument;
-    physics::f32::SpecimenRecord specimen;
-    physics::f32::Exposure exposure;
-};
-
-// The other one: every surface, padded to the block's capacity. Throws InputError when there are more.
+// The uniform block of all surfaces, padded to its capacity. Throws InputError when there are more.
 std::vector<physics::f32::Surface> surface_block(const optics::Instrument& instrument);
 
-// The spectrum's, padded likewise.
+// The spectrum's, likewise.
 std::vector<physics::f32::SpectralBin> spectrum_block(const optics::Instrument& instrument);
 
-physics::f32::Surface to_float(const physics::f64::Surface& surface);
-physics::f32::Element to_float(const physics::f64::Element& element);
-physics::f32::SourceFrame to_float(const physics::f64::SourceFrame& frame);
-physics::f32::Instrument to_float(const physics::f64::Instrument& instrument);
-physics::f32::Exposure to_float(const physics::f64::Exposure& exposure);
+physics::f32::Surface to_float(const physics::f64::Surface& record); // with its bend_residual
+physics::f32::Element to_float(const physics::f64::Element& record);
+physics::f32::SourceFrame to_float(const physics::f64::SourceFrame& record);
+physics::f32::Instrument to_float(const physics::f64::Instrument& record);
+physics::f32::BackwardOptics to_float(const physics::f64::BackwardOptics& record);
+physics::f32::Lattice to_float(const physics::f64::Lattice& record);
+// Bottom, top and slope still bound the surface.
+physics::f32::SpecimenRecord to_float(const physics::f64::SpecimenRecord& record);
+physics::f32::Exposure to_float(const physics::f64::Exposure& record); // with its top_distance_residual
 
 } // namespace vkfv::trace

@@ -3,8 +3,30 @@
 #include <bit>
 #include <cmath>
 #include <limits>
+#include <utility>
 
 namespace vkfv::trace {
+
+namespace {
+
+template <class Value>
+vulkan::Buffer buffer_of(const vulkan::Device& device, const std::vector<Value>& values) {
+    vulkan::Buffer buffer(device, values.size() * sizeof(Value));
+    buffer.write_values(std::span<const Value>(values));
+    return buffer;
+}
+
+ElementBuffers element_buffers(const vulkan::Device& device, const optics::Room& room,
+                               const std::vector<std::uint32_t>& order) {
+    std::vector<physics::f32::Element> elements;
+    elements.reserve(room.elements.size());
+    for (const auto& element : room.elements) {
+        elements.push_back(to_float(element));
+    }
+    return {buffer_of(device, elements), buffer_of(device, order)};
+}
+
+} // namespace
 
 std::vector<vulkan::Box> boxes_of(const optics::Room& room) {
     constexpr float infinity = std::numeric_limits<float>::infinity();
@@ -22,8 +44,87 @@ std::vector<vulkan::Box> boxes_of(const optics::Room& room) {
     return boxes;
 }
 
-TracerIdentity DeviceScene::identity() const {
-    return device_identity(device.report(), traversal_name(traversal), instrument);
+DeviceScene make_device_scene(const optics::Instrument& instrument, const specimen::Specimen& specimen,
+                              const TraceOptions& options) {
+    auto device = std::make_unique<const vulkan::Device>(vulkan::DeviceOptions{options.device});
+    optics::Room room = options.nonsequential ? optics::furnish(instrument) : optics::Room{};
+    Accounts accounts =
+        options.nonsequential ? Accounts(instrument, room.names) : Accounts(instrument, options.directed_scatter);
+    ChosenTraversal traversal = choose_traversal(device->report(), specimen, options.traversal, options.nonsequential);
+    DeviceSpecimen device_specimen(*device, specimen, traversal.traversal, boxes_of(room));
+
+    kernels::Parameters constants{};
+    constants.instrument = to_float(instrument.constants);
+    constants.specimen = device_specimen.record(options.max_bounces);
+    physics::f64::SpecimenRecord host_record = specimen::record(specimen, options.max_bounces);
+    host_record.top = constants.specimen.top;
+
+    std::optional<ElementBuffers> elements;
+    if (!room.elements.empty()) {
+        elements.emplace(element_buffers(*device, room, device_specimen.element_order()));
+    }
+    vulkan::Buffer surfaces = buffer_of(*device, surface_block(instrument));
+    vulkan::Buffer parameters(*device, sizeof(kernels::Parameters), vulkan::Buffer::Memory::host);
+    vulkan::Buffer spectrum = buffer_of(*device, spectrum_block(instrument));
+    return {.device = std::move(device),
+            .instrument = instrument,
+            .seed = options.seed,
+            .rays = options.rays,
+            .instrument_in_constants = options.instrument_in_constants,
+            .room = std::move(room),
+            .accounts = std::move(accounts),
+            .features = instrument.features | (options.directed_scatter ? physics::f32::FEATURE_DIRECTED_SCATTER : 0u),
+            .traversal = std::move(traversal),
+            .device_specimen = std::move(device_specimen),
+            .constants = constants,
+            .host_record = host_record,
+            .surfaces = std::move(surfaces),
+            .parameters = std::move(parameters),
+            .spectrum = std::move(spectrum),
+            .elements = std::move(elements)};
+}
+
+void DeviceScene::set_exposure(double focal_height, std::uint32_t image) {
+    constants.exposure = to_float(make_exposure(instrument, host_record, focal_height, seed, image));
+    parameters.write_values(std::span<const kernels::Parameters>(&constants, 1));
+}
+
+std::vector<vulkan::Binding> DeviceScene::bindings(std::initializer_list<vulkan::Binding> further) const {
+    std::vector<vulkan::Binding> all = {{kernels::BINDING_SURFACES, &surfaces},
+                                        {kernels::BINDING_PARAMETERS, &parameters},
+                                        {kernels::BINDING_SPECTRUM, &spectrum}};
+    const auto of_specimen = device_specimen.bindings();
+    all.insert(all.end(), of_specimen.begin(), of_specimen.end());
+    if (elements) {
+        all.push_back({kernels::BINDING_ELEMENTS, &elements->elements});
+        all.push_back({kernels::BINDING_ELEMENT_ORDER, &elements->order});
+    }
+    all.insert(all.end(), further.begin(), further.end());
+    return all;
+}
+
+std::vector<vulkan::BindingDeclaration> DeviceScene::declarations(std::initializer_list<std::uint32_t> further) const {
+    using enum vulkan::BindingKind;
+    std::vector<vulkan::BindingDeclaration> all = {{kernels::BINDING_SURFACES, uniform_buffer},
+                                                   {kernels::BINDING_PARAMETERS, uniform_buffer},
+                                                   {kernels::BINDING_SPECTRUM, uniform_buffer}};
+    const auto of_specimen = device_specimen.declarations();
+    all.insert(all.end(), of_specimen.begin(), of_specimen.end());
+    if (elements) {
+        all.push_back({kernels::BINDING_ELEMENTS, storage_buffer});
+        all.push_back({kernels::BINDING_ELEMENT_ORDER, storage_buffer});
+    }
+    for (const std::uint32_t slot : further) {
+        all.push_back({slot, storage_buffer});
+    }
+    return all;
+}
+
+std::vector<vulkan::SpecializationConstant> DeviceScene::kernel_constants() const {
+    auto all = device_specimen.constants();
+    all.push_back({kernels::CONSTANT_LEDGER_SLOTS, static_cast<std::uint32_t>(accounts.slots())});
+    all.push_back({kernels::CONSTANT_FEATURES, features});
+    return all;
 }
 
 bool DeviceScene::is_specialised() const {
@@ -35,43 +136,39 @@ bool DeviceScene::is_specialised() const {
            instrument_in_constants.value_or(pays);
 }
 
-std::vector<vulkan::SpecializationConstant> DeviceScene::specialised_constants(std::uint32_t stop_after, int first,
-                                                                               int count) const {
-    auto all = kernel_constants(stop_after);
+std::vector<vulkan::SpecializationConstant> DeviceScene::specialised_constants(int first, int count) const {
+    auto all = kernel_constants();
     const auto add = [&](std::uint32_t id, auto value) { all.push_back({id, std::bit_cast<std::uint32_t>(value)}); };
-    add(88, first);
-    add(89, count);
-    add(90, constants.instrument.illumination_first);
-    add(91, constants.instrument.illumination_count);
-    add(92, constants.instrument.imaging_first);
-    add(93, constants.instrument.imaging_count);
-    add(94, constants.specimen.max_bounces);
-    const auto& lobe = constants.specimen.material.lobe_0;
-    add(95, lobe.parameter_0);
-    add(96, lobe.parameter_1);
-    add(97, lobe.parameter_2);
-    add(98, lobe.parameter_3);
-    std::uint32_t id = 100;
+    add(kernels::CONSTANT_KNOWN_FIRST, first);
+    add(kernels::CONSTANT_KNOWN_COUNT, count);
+#define VKFV_ADD_OF_INSTRUMENT(id, type, name) add(id, constants.instrument.name);
+#define VKFV_ADD_OF_SPECIMEN(id, type, name) add(id, constants.specimen.name);
+#define VKFV_ADD_OF_LOBE(id, type, name) add(id, constants.specimen.material.lobe_0.name);
+    VKFV_KNOWN_OF_INSTRUMENT(VKFV_ADD_OF_INSTRUMENT)
+    VKFV_KNOWN_OF_SPECIMEN(VKFV_ADD_OF_SPECIMEN)
+    VKFV_KNOWN_OF_LOBE(VKFV_ADD_OF_LOBE)
     const auto block = surface_block(instrument);
     for (int k = 0; k < count; ++k) {
         const auto& surface = block[static_cast<std::size_t>(first + k)];
-        add(id, surface.curvature);
-        add(id + 1, surface.conic);
-        add(id + 2, surface.semi_diameter_squared);
-        add(id + 3, surface.distance);
-        add(id + 4, surface.index_after);
-        add(id + 5, surface.a4);
-        add(id + 6, surface.a6);
-        add(id + 7, surface.a8);
-        add(id + 8, surface.a10);
-        add(id + 9, surface.a12);
-        add(id + 10, surface.a14);
-        add(id + 11, surface.a16);
-        add(id + 12, surface.flags);
-        add(id + 13, surface.bend_residual);
-        id += 16;
+        const std::uint32_t id =
+            kernels::CONSTANT_KNOWN_SURFACES + kernels::KNOWN_FIELD_CAPACITY * static_cast<std::uint32_t>(k);
+#define VKFV_LEAVE(type, name)
+#define VKFV_ADD_OF_SURFACE(id, place, type, name) add(id + place, surface.name);
+        VKFV_SURFACE_FIELDS(VKFV_LEAVE, VKFV_ADD_OF_SURFACE, id)
     }
     return all;
+}
+
+std::span<const std::uint32_t> DeviceScene::variant(std::span<const std::uint32_t> by_quadtree,
+                                                    std::span<const std::uint32_t> by_ray_query,
+                                                    std::span<const std::uint32_t> by_bvh) const {
+    return traversal.traversal == Traversal::ray_query ? by_ray_query
+           : traversal.traversal == Traversal::bvh     ? by_bvh
+                                                       : by_quadtree;
+}
+
+TracerIdentity DeviceScene::identity() const {
+    return device_identity(device->report(), traversal_name(traversal.traversal), instrument);
 }
 
 } // namespace vkfv::trace

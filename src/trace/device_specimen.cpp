@@ -3,6 +3,7 @@
 #include "core/error.hpp"
 #include "specimen/description.hpp"
 #include "trace/bounding_volume_hierarchy.hpp"
+#include "trace/device_records.hpp"
 #include "trace/pyramid.hpp"
 #include "trace/triangle_pairs.hpp"
 
@@ -20,60 +21,11 @@ namespace vkfv::trace {
 
 namespace {
 
-constexpr std::uint32_t heights_slot = 8;
-constexpr std::uint32_t ceilings_slot = 9;
-constexpr std::uint32_t vertices_slot = 10; // or pairs of triangles for our own hierarchy
-constexpr std::uint32_t triangles_slot = 11;
-constexpr std::uint32_t structure_slot = 12; // or the nodes of our own hierarchy
-constexpr std::uint32_t tiles_slot = 13;
-
 // A slot that the chosen kind of specimen leaves unread must be bound all the same.
 constexpr std::size_t unread_bytes = 64;
 
 // Boxes along a side of an analytic surface: with many more the tree costs more than the march it saves.
 constexpr int boxes_along_side = 64;
-
-physics::f32::Lobe to_float(const physics::f64::Lobe& lobe) {
-    physics::f32::Lobe result{};
-    result.model = lobe.model;
-    result.weight = static_cast<float>(lobe.weight);
-    result.parameter_0 = static_cast<float>(lobe.parameter_0);
-    result.parameter_1 = static_cast<float>(lobe.parameter_1);
-    result.parameter_2 = static_cast<float>(lobe.parameter_2);
-    result.parameter_3 = static_cast<float>(lobe.parameter_3);
-    std::ranges::transform(lobe.table, result.table, [](double value) { return static_cast<float>(value); });
-    return result;
-}
-
-physics::f32::SpecimenRecord to_float(const physics::f64::SpecimenRecord& record) {
-    constexpr float infinity = std::numeric_limits<float>::infinity();
-    physics::f32::SpecimenRecord result{};
-    result.x_min = static_cast<float>(record.x_min);
-    result.y_min = static_cast<float>(record.y_min);
-    result.x_max = static_cast<float>(record.x_max);
-    result.y_max = static_cast<float>(record.y_max);
-    result.bottom = static_cast<float>(record.bottom);
-    result.top = static_cast<float>(record.top);
-    result.bottom = result.bottom > record.bottom ? std::nextafter(result.bottom, -infinity) : result.bottom;
-    result.top = result.top < record.top ? std::nextafter(result.top, infinity) : result.top;
-    result.pitch_x = static_cast<float>(record.pitch_x);
-    result.pitch_y = static_cast<float>(record.pitch_y);
-    result.shape_parameter_0 = static_cast<float>(record.shape_parameter_0);
-    result.shape_parameter_1 = static_cast<float>(record.shape_parameter_1);
-    result.shape_parameter_2 = static_cast<float>(record.shape_parameter_2);
-    result.shape_parameter_3 = static_cast<float>(record.shape_parameter_3);
-    result.lipschitz = std::nextafter(static_cast<float>(record.lipschitz), infinity);
-    result.material.lobe_0 = to_float(record.material.lobe_0);
-    result.material.lobe_1 = to_float(record.material.lobe_1);
-    result.material.lobe_2 = to_float(record.material.lobe_2);
-    result.material.lobe_3 = to_float(record.material.lobe_3);
-    result.columns = record.columns;
-    result.rows = record.rows;
-    result.max_bounces = record.max_bounces;
-    result.kind = record.kind;
-    result.shape = record.shape;
-    return result;
-}
 
 struct Triangulation {
     std::vector<glm::vec3> vertices;
@@ -166,6 +118,8 @@ class Uploader {
     Uploader(const vulkan::Device& device, std::map<std::uint32_t, vulkan::Buffer>& buffers)
         : device_(&device), buffers_(&buffers) {}
 
+    const vulkan::Device& device() const { return *device_; }
+
     void expect(const char* what, std::size_t bytes) const {
         const std::uint64_t limit = device_->report().max_storage_buffer_bytes;
         if (bytes > limit) {
@@ -186,8 +140,8 @@ class Uploader {
     }
 
     void put_ceilings(const Ceilings& ceilings) {
-        vulkan::Buffer& buffer =
-            reserve(ceilings_slot, "ceilings", sizeof ceilings.header + ceilings.heights.size() * sizeof(float));
+        vulkan::Buffer& buffer = reserve(kernels::BINDING_CEILINGS, "ceilings",
+                                         sizeof ceilings.header + ceilings.heights.size() * sizeof(float));
         buffer.write(std::as_bytes(std::span(&ceilings.header, 1)));
         buffer.write(std::as_bytes(std::span(ceilings.heights)), sizeof ceilings.header);
     }
@@ -214,8 +168,8 @@ std::vector<glm::uvec3> upload_triangles(Uploader& uploader, const std::vector<g
     uploader.expect("vertices", vertices.size() * sizeof(glm::vec3));
     uploader.expect("triangles", triangles.size() * sizeof(glm::uvec3));
     std::vector<glm::uvec3> ordered = in_median_order(vertices, triangles);
-    uploader.put(vertices_slot, "vertices", vertices);
-    uploader.put(triangles_slot, "triangles", ordered);
+    uploader.put(kernels::BINDING_VERTICES, "vertices", vertices);
+    uploader.put(kernels::BINDING_TRIANGLES, "triangles", ordered);
     return ordered;
 }
 
@@ -231,8 +185,69 @@ std::vector<HierarchyNode> upload_in_hierarchy(Uploader& uploader, const std::ve
     }
     // More to a slot would save few nodes, as most are not full, and cost more pairs met in vain.
     BoundingVolumeHierarchy hierarchy = build_hierarchy(boxes, 1);
-    uploader.put(vertices_slot, "triangles", in_order(pairs, hierarchy.order));
+    uploader.put(kernels::BINDING_VERTICES, "triangles", in_order(pairs, hierarchy.order));
     return std::move(hierarchy.nodes);
+}
+
+// Over the parts of a specimen: the device's own of ray queries, or the nodes of ours. The quadtree has neither.
+struct Hierarchy {
+    std::unique_ptr<vulkan::AccelerationStructure> structure;
+    std::vector<HierarchyNode> nodes;
+};
+
+Hierarchy over_triangles(Uploader& uploader, const std::vector<glm::vec3>& vertices,
+                         const std::vector<glm::uvec3>& triangles, Traversal traversal) {
+    if (traversal == Traversal::bvh) {
+        return {nullptr, upload_in_hierarchy(uploader, vertices, triangles)};
+    }
+    const auto ordered = upload_triangles(uploader, vertices, triangles);
+    return {std::make_unique<vulkan::AccelerationStructure>(
+                vulkan::AccelerationStructure::of_triangles(uploader.device(), vertices, ordered)),
+            {}};
+}
+
+Hierarchy upload(Uploader& uploader, const specimen::Specimen&, const specimen::HeightField& field, Traversal traversal,
+                 double) {
+    if (traversal == Traversal::quadtree) {
+        uploader.expect("heights", field.heights.values.size() * sizeof(glm::vec2));
+        uploader.put(kernels::BINDING_HEIGHTS, "heights", column_steps(field.heights));
+        uploader.put_ceilings(make_ceilings(field));
+        return {};
+    }
+    const Triangulation surface = triangulate(field);
+    return over_triangles(uploader, surface.vertices, surface.triangles, traversal);
+}
+
+// relief: highest less lowest height, mm.
+Hierarchy upload(Uploader& uploader, const specimen::Specimen& specimen, const specimen::Analytic& surface,
+                 Traversal traversal, double relief) {
+    if (surface.lattice) {
+        uploader.put(kernels::BINDING_HEIGHTS, "heights", surface.lattice->heights.values);
+    }
+    const Pyramid pyramid = pyramid_of(specimen, surface);
+    if (traversal == Traversal::quadtree) {
+        uploader.put_ceilings(make_ceilings(pyramid, relief));
+        return {};
+    }
+    const std::vector<vulkan::Box> boxes = boxes_of(pyramid, surface);
+    if (traversal == Traversal::bvh) {
+        // A march costs far more than a box.
+        BoundingVolumeHierarchy hierarchy = build_hierarchy(boxes, 1);
+        uploader.put(kernels::BINDING_TILES, "tiles", in_order(boxes, hierarchy.order));
+        return {nullptr, std::move(hierarchy.nodes)};
+    }
+    uploader.put(kernels::BINDING_TILES, "tiles", boxes);
+    return {std::make_unique<vulkan::AccelerationStructure>(
+                vulkan::AccelerationStructure::of_boxes(uploader.device(), boxes)),
+            {}};
+}
+
+Hierarchy upload(Uploader& uploader, const specimen::Specimen&, const specimen::Mesh& mesh, Traversal traversal,
+                 double) {
+    if (traversal == Traversal::quadtree) {
+        throw std::logic_error("a mesh is not traced by the quadtree");
+    }
+    return over_triangles(uploader, mesh.vertices, mesh.triangles, traversal);
 }
 
 // A tree behind another in one buffer; gives the index of its root there.
@@ -251,8 +266,8 @@ const char* traversal_name(Traversal traversal) {
     return traversal == Traversal::ray_query ? "ray-query" : traversal == Traversal::bvh ? "bvh" : "quadtree";
 }
 
-Traversal choose_traversal(const vulkan::DeviceReport& device, const specimen::Specimen& specimen, Traversal asked,
-                           std::string& reason, bool nonsequential) {
+ChosenTraversal choose_traversal(const vulkan::DeviceReport& device, const specimen::Specimen& specimen,
+                                 Traversal asked, bool nonsequential) {
     const bool mesh = std::holds_alternative<specimen::Mesh>(specimen.geometry);
     if (nonsequential && asked == Traversal::quadtree) {
         throw std::logic_error("elements are traced by ray query or bvh");
@@ -271,20 +286,16 @@ Traversal choose_traversal(const vulkan::DeviceReport& device, const specimen::S
                                       device.name, mesh || nonsequential ? "bvh" : "quadtree"));
     }
     if (asked != Traversal::automatic) {
-        reason = fmt::format("{} (as asked)", traversal_name(asked));
-        return asked;
+        return {asked, fmt::format("{} (as asked)", traversal_name(asked))};
     }
     const Traversal own = mesh || nonsequential ? Traversal::bvh : Traversal::quadtree;
     if (!device.ray_query) {
-        reason = fmt::format("{} (the device has no ray query)", traversal_name(own));
-        return own;
+        return {own, fmt::format("{} (the device has no ray query)", traversal_name(own))};
     }
     if (device.type == "CPU") {
-        reason = fmt::format("{} (faster than ray query on a CPU)", traversal_name(own));
-        return own;
+        return {own, fmt::format("{} (faster than ray query on a CPU)", traversal_name(own))};
     }
-    reason = "ray-query (the device has it)";
-    return Traversal::ray_query;
+    return {Traversal::ray_query, "ray-query (the device has it)"};
 }
 
 DeviceSpecimen::DeviceSpecimen(const vulkan::Device& device, const specimen::Specimen& specimen, Traversal traversal,
@@ -293,81 +304,37 @@ DeviceSpecimen::DeviceSpecimen(const vulkan::Device& device, const specimen::Spe
     if (traversal == Traversal::automatic) {
         throw std::logic_error("DeviceSpecimen takes a traversal that has been chosen");
     }
-    const bool ray_query = traversal == Traversal::ray_query;
-    const bool bvh = traversal == Traversal::bvh;
-    if (!elements.empty() && !ray_query && !bvh) {
+    if (!elements.empty() && traversal == Traversal::quadtree) {
         throw std::logic_error("elements are traced by ray query or bvh");
     }
-    std::vector<HierarchyNode> nodes; // bvh
     Uploader uploader(device, buffers_);
-    if (const auto* field = std::get_if<specimen::HeightField>(&specimen.geometry)) {
-        if (ray_query) {
-            const Triangulation surface = triangulate(*field);
-            const auto triangles = upload_triangles(uploader, surface.vertices, surface.triangles);
-            structure_ = std::make_unique<vulkan::AccelerationStructure>(
-                vulkan::AccelerationStructure::of_triangles(device, surface.vertices, triangles));
-        } else if (bvh) {
-            const Triangulation surface = triangulate(*field);
-            nodes = upload_in_hierarchy(uploader, surface.vertices, surface.triangles);
-        } else {
-            const Grid<float>& heights = field->heights;
-            uploader.expect("heights", heights.values.size() * sizeof(glm::vec2));
-            uploader.put(heights_slot, "heights", column_steps(heights));
-            uploader.put_ceilings(make_ceilings(*field));
-        }
-    } else if (const auto* surface = std::get_if<specimen::Analytic>(&specimen.geometry)) {
-        if (surface->lattice) {
-            uploader.put(heights_slot, "heights", surface->lattice->heights.values);
-        }
-        const Pyramid pyramid = pyramid_of(specimen, *surface);
-        if (ray_query) {
-            const std::vector<vulkan::Box> boxes = boxes_of(pyramid, *surface);
-            uploader.put(tiles_slot, "tiles", boxes);
-            structure_ =
-                std::make_unique<vulkan::AccelerationStructure>(vulkan::AccelerationStructure::of_boxes(device, boxes));
-        } else if (bvh) {
-            const std::vector<vulkan::Box> boxes = boxes_of(pyramid, *surface);
-            // A march costs far more than a box.
-            BoundingVolumeHierarchy hierarchy = build_hierarchy(boxes, 1);
-            uploader.put(tiles_slot, "tiles", in_order(boxes, hierarchy.order));
-            nodes = std::move(hierarchy.nodes);
-        } else {
-            uploader.put_ceilings(make_ceilings(pyramid, record_.top - record_.bottom));
-        }
-    } else {
-        const auto& mesh = std::get<specimen::Mesh>(specimen.geometry);
-        if (traversal == Traversal::quadtree) {
-            throw std::logic_error("a mesh is not traced by the quadtree");
-        }
-        if (bvh) {
-            nodes = upload_in_hierarchy(uploader, mesh.vertices, mesh.triangles);
-        } else {
-            const auto triangles = upload_triangles(uploader, mesh.vertices, mesh.triangles);
-            structure_ = std::make_unique<vulkan::AccelerationStructure>(
-                vulkan::AccelerationStructure::of_triangles(device, mesh.vertices, triangles));
-        }
-    }
-    if (!elements.empty() && ray_query) {
+    Hierarchy hierarchy = std::visit(
+        [&](const auto& geometry) {
+            return upload(uploader, specimen, geometry, traversal, record_.top - record_.bottom);
+        },
+        specimen.geometry);
+    if (!elements.empty() && traversal == Traversal::ray_query) {
         std::vector<vulkan::AccelerationStructure> parts;
-        parts.push_back(std::move(*structure_));
+        parts.push_back(std::move(*hierarchy.structure));
         parts.push_back(vulkan::AccelerationStructure::of_boxes(device, elements));
-        *structure_ = vulkan::AccelerationStructure::join(device, std::move(parts));
+        *hierarchy.structure = vulkan::AccelerationStructure::join(device, std::move(parts));
         element_order_.resize(elements.size());
         std::iota(element_order_.begin(), element_order_.end(), 0u);
     } else if (!elements.empty()) {
         // Meeting an element costs far more than a box.
-        BoundingVolumeHierarchy hierarchy = build_hierarchy(elements, 1);
-        elements_root_ = append_tree(nodes, hierarchy.nodes);
-        element_order_ = std::move(hierarchy.order);
+        BoundingVolumeHierarchy of_elements = build_hierarchy(elements, 1);
+        elements_root_ = append_tree(hierarchy.nodes, of_elements.nodes);
+        element_order_ = std::move(of_elements.order);
     }
-    if (bvh) {
-        uploader.put(structure_slot, "hierarchy of boxes", nodes);
+    if (traversal == Traversal::bvh) {
+        uploader.put(kernels::BINDING_STRUCTURE, "hierarchy of boxes", hierarchy.nodes);
     }
-    uploader.leave_unread(heights_slot);
-    if (ray_query || bvh) {
-        uploader.leave_unread(vertices_slot);
-        uploader.leave_unread(triangles_slot);
-        uploader.leave_unread(tiles_slot);
+    structure_ = std::move(hierarchy.structure);
+    uploader.leave_unread(kernels::BINDING_HEIGHTS);
+    if (traversal != Traversal::quadtree) {
+        uploader.leave_unread(kernels::BINDING_VERTICES);
+        uploader.leave_unread(kernels::BINDING_TRIANGLES);
+        uploader.leave_unread(kernels::BINDING_TILES);
     }
 }
 
@@ -377,7 +344,7 @@ std::vector<vulkan::Binding> DeviceSpecimen::bindings() const {
         result.push_back({slot, &buffer});
     }
     if (structure_) {
-        result.push_back({structure_slot, structure_.get()});
+        result.push_back({kernels::BINDING_STRUCTURE, structure_.get()});
     }
     return result;
 }
@@ -388,7 +355,7 @@ std::vector<vulkan::BindingDeclaration> DeviceSpecimen::declarations() const {
         result.push_back({slot, vulkan::BindingKind::storage_buffer});
     }
     if (structure_) {
-        result.push_back({structure_slot, vulkan::BindingKind::acceleration_structure});
+        result.push_back({kernels::BINDING_STRUCTURE, vulkan::BindingKind::acceleration_structure});
     }
     return result;
 }
@@ -401,7 +368,7 @@ std::vector<vulkan::SpecializationConstant> DeviceSpecimen::constants() const {
         models |= lobe.weight > 0 ? 1u << lobe.model : 0u;
         models |= lobe.weight > 0 && physics::f32::lobe_is_delta(lobe) ? physics::f32::SCATTER_DELTA : 0u;
     }
-    return {{0, record_.kind}, {4, models}};
+    return {{kernels::CONSTANT_SPECIMEN_KIND, record_.kind}, {kernels::CONSTANT_SCATTER_MODELS, models}};
 }
 
 physics::f32::SpecimenRecord DeviceSpecimen::record(int max_bounces) const {

@@ -14,14 +14,19 @@
 
 namespace vkfv::trace {
 
-// The traversal for a specimen on a device: the one asked for, or the faster one if automatic. reason: a
-// sentence's part that names it and says why. Throws InputError (the quadtree needs a height field) or
-// DeviceError (ray query asked for or needed where the device has none).
 const char* traversal_name(Traversal traversal);
-Traversal choose_traversal(const vulkan::DeviceReport& device, const specimen::Specimen& specimen, Traversal asked,
-                           std::string& reason, bool nonsequential = false);
 
-// What shaders/device/specimen_hit.glsl is bound to: the slots 8 and up of set 0. The device must outlive it.
+struct ChosenTraversal {
+    Traversal traversal; // never automatic
+    std::string reason;  // a sentence's part that names it and says why
+};
+
+// The traversal for a specimen on a device: the one asked for, or the faster one if automatic. Throws InputError (the
+// quadtree needs a height field) or DeviceError (ray query asked for or needed where the device has none).
+ChosenTraversal choose_traversal(const vulkan::DeviceReport& device, const specimen::Specimen& specimen,
+                                 Traversal asked, bool nonsequential = false);
+
+// What shaders/device/specimen_hit.glsl is bound to. The device must outlive it.
 class DeviceSpecimen {
   public:
     // traversal: never automatic. Throws DeviceError with sizes when a part exceeds what a buffer may span.

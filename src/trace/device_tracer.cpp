@@ -20,23 +20,13 @@ namespace vkfv::trace {
 
 namespace {
 
-// Record of the kernel probe_paths.
-struct DevicePathEnd {
-    std::uint32_t status;
-    std::int32_t surface;
-    float x;
-    float y;
-    float weight;
-};
-static_assert(sizeof(DevicePathEnd) == 20);
-
 // Batches a submission: waiting for each costs a GPU 60 us, and a software device's dispatch is long enough.
 constexpr std::uint32_t batches_per_submission_gpu = 8;
 
 class DeviceTracer final : public Tracer {
   public:
     DeviceTracer(const optics::Instrument& instrument, const specimen::Specimen& specimen, const TraceOptions& options)
-        : instrument_(instrument), rays_(options.rays), scene_(instrument_, specimen, options),
+        : instrument_(instrument), rays_(options.rays), scene_(make_device_scene(instrument_, specimen, options)),
           trace_(make_trace(scene_, options)) {}
 
     Image expose(double focal_height, std::uint32_t image) const override {
@@ -47,7 +37,7 @@ class DeviceTracer final : public Tracer {
             std::uint64_t{trace_->batch()} * (scene_.software() ? 1 : batches_per_submission_gpu);
         double device_seconds = 0;
         for (std::uint64_t first = 0; first < rays_; first += per_submission) {
-            vulkan::Commands commands(scene_.device, 2);
+            vulkan::Commands commands(*scene_.device, 2);
             commands.timestamp();
             if (first == 0) {
                 trace_->clear(commands);
@@ -68,7 +58,7 @@ class DeviceTracer final : public Tracer {
     }
 
     std::string description() const override {
-        return fmt::format("{}; traversal {}", scene_.device.choice(), scene_.reason);
+        return fmt::format("{}; traversal {}", scene_.device->choice(), scene_.traversal.reason);
     }
 
     TracerIdentity identity() const override { return scene_.identity(); }
@@ -108,36 +98,36 @@ TracerIdentity expected_identity(const optics::Instrument& instrument, const spe
     }
     const auto reports = vulkan::list_devices();
     const auto& report = reports[vulkan::choose_device(reports, {options.device})];
-    std::string reason;
-    return device_identity(
-        report, traversal_name(choose_traversal(report, specimen, options.traversal, reason, options.nonsequential)),
-        traced);
+    const auto traversal = choose_traversal(report, specimen, options.traversal, options.nonsequential).traversal;
+    return device_identity(report, traversal_name(traversal), traced);
 }
 
 std::vector<PathEnd> device_paths(const optics::Instrument& instrument, const specimen::Specimen& specimen,
                                   const TraceOptions& options, double focal_height, std::uint32_t image,
                                   std::uint64_t first, std::uint32_t count) {
-    DeviceScene scene(instrument, specimen, options);
+    DeviceScene scene = make_device_scene(instrument, specimen, options);
     scene.set_exposure(focal_height, image);
-    const vulkan::Buffer ends(scene.device, count * sizeof(DevicePathEnd));
+    const vulkan::Buffer ends(*scene.device, count * sizeof(kernels::PathEnd));
     const bool nonsequential = options.nonsequential;
     const vulkan::Kernel kernel(
-        scene.device, "probe_paths",
+        *scene.device, "probe_paths",
         nonsequential ? scene.variant({}, probe_nonsequential_ray_query, probe_nonsequential_bvh)
                       : scene.variant(probe_paths_quadtree, probe_paths_ray_query, probe_paths_bvh),
-        scene.declarations({6}), nonsequential ? sizeof(NonsequentialBatch) : sizeof(Batch), scene.kernel_constants(0));
-    vulkan::Commands commands(scene.device);
+        scene.declarations({kernels::BINDING_FOUND}),
+        nonsequential ? sizeof(kernels::NonsequentialBatch) : sizeof(kernels::Batch), scene.kernel_constants());
+    vulkan::Commands commands(*scene.device);
     const std::uint32_t groups = (count + 63) / 64;
+    const auto bindings = scene.bindings({{kernels::BINDING_FOUND, &ends}});
     if (nonsequential) {
-        commands.dispatch(kernel, scene.bindings({{6, &ends}}), make_nonsequential_batch(scene, first, count), groups);
+        commands.dispatch(kernel, bindings, make_nonsequential_batch(scene, first, count), groups);
     } else {
-        commands.dispatch(kernel, scene.bindings({{6, &ends}}), make_batch(first, count), groups);
+        commands.dispatch(kernel, bindings, make_batch(first, count), groups);
     }
     commands.barrier();
     commands.submit_and_wait();
     std::vector<PathEnd> result;
     result.reserve(count);
-    for (const DevicePathEnd& end : ends.read_values<DevicePathEnd>(count)) {
+    for (const kernels::PathEnd& end : ends.read_values<kernels::PathEnd>(count)) {
         result.push_back({end.status, end.surface, end.x, end.y, end.weight});
     }
     return result;

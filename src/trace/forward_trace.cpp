@@ -15,12 +15,18 @@
 
 namespace vkfv::trace {
 
+using kernels::BINDING_LEDGER;
+using kernels::BINDING_PIXELS;
+using kernels::BINDING_SURVIVOR_COUNT;
+using kernels::BINDING_SURVIVORS;
+
 namespace {
 
 std::vector<vulkan::SpecializationConstant> constants_for(const DeviceScene& scene, std::uint32_t stop_after, int first,
                                                           int count) {
-    return scene.is_specialised() ? scene.specialised_constants(stop_after, first, count)
-                                  : scene.kernel_constants(stop_after);
+    auto all = scene.is_specialised() ? scene.specialised_constants(first, count) : scene.kernel_constants();
+    all.push_back({kernels::CONSTANT_STOP_AFTER, stop_after});
+    return all;
 }
 
 std::span<const std::uint32_t> illumination_variant(const DeviceScene& scene) {
@@ -41,13 +47,15 @@ std::span<const std::uint32_t> imaging_variant(const DeviceScene& scene) {
 
 ForwardTrace::ForwardTrace(const DeviceScene& scene, std::uint32_t batch, std::uint32_t stop_illumination,
                            std::uint32_t stop_imaging)
-    : PathTrace(scene, batch), survivors_(scene.device, std::size_t{batch} * sizeof(physics::f32::Survivor)),
-      survivor_count_(scene.device, sizeof(std::uint32_t)),
-      illumination_(scene.device, "forward_illumination", illumination_variant(scene), scene.declarations({2, 4, 5}),
-                    sizeof(Batch),
+    : PathTrace(scene, batch), survivors_(*scene.device, std::size_t{batch} * sizeof(physics::f32::Survivor)),
+      survivor_count_(*scene.device, sizeof(std::uint32_t)),
+      illumination_(*scene.device, "forward_illumination", illumination_variant(scene),
+                    scene.declarations({BINDING_SURVIVORS, BINDING_LEDGER, BINDING_SURVIVOR_COUNT}),
+                    sizeof(kernels::Batch),
                     constants_for(scene, stop_illumination, scene.instrument.constants.illumination_first,
                                   scene.instrument.constants.illumination_count)),
-      imaging_(scene.device, "forward_imaging", imaging_variant(scene), scene.declarations({2, 3, 4, 5}), 0,
+      imaging_(*scene.device, "forward_imaging", imaging_variant(scene),
+               scene.declarations({BINDING_SURVIVORS, BINDING_PIXELS, BINDING_LEDGER, BINDING_SURVIVOR_COUNT}), 0,
                constants_for(scene, stop_imaging, scene.instrument.constants.imaging_first,
                              scene.instrument.constants.imaging_count)) {}
 
@@ -57,15 +65,22 @@ void ForwardTrace::record(vulkan::Commands& commands, std::uint64_t first, std::
     if (timed) {
         commands.timestamp();
     }
-    commands.dispatch(illumination_, scene_.bindings({{2, &survivors_}, {4, &fates_}, {5, &survivor_count_}}),
-                      make_batch(first, count), (count + paths_per_group - 1) / paths_per_group);
+    commands.dispatch(
+        illumination_,
+        scene_.bindings(
+            {{BINDING_SURVIVORS, &survivors_}, {BINDING_LEDGER, &fates_}, {BINDING_SURVIVOR_COUNT, &survivor_count_}}),
+        make_batch(first, count), (count + paths_per_group - 1) / paths_per_group);
     commands.barrier();
     if (timed) {
         commands.timestamp();
     }
     // The number of survivors is known to the device alone: a fixed grid strides over them.
     const std::uint32_t groups = scene_.software() ? 64 : 4096;
-    commands.dispatch(imaging_, scene_.bindings({{2, &survivors_}, {3, &pixels_}, {4, &fates_}, {5, &survivor_count_}}),
+    commands.dispatch(imaging_,
+                      scene_.bindings({{BINDING_SURVIVORS, &survivors_},
+                                       {BINDING_PIXELS, &pixels_},
+                                       {BINDING_LEDGER, &fates_},
+                                       {BINDING_SURVIVOR_COUNT, &survivor_count_}}),
                       std::span<const std::byte>{}, groups);
     commands.barrier();
     if (timed) {

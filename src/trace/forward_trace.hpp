@@ -7,9 +7,9 @@ namespace vkfv::trace {
 
 class ForwardTrace final : public PathTrace {
   public:
-    // stop_illumination, stop_imaging: for timing alone, where the kernels end early; 0: nowhere.
-    ForwardTrace(const DeviceScene& scene, std::uint32_t batch, std::uint32_t stop_illumination = 0,
-                 std::uint32_t stop_imaging = 0);
+    // stop_illumination, stop_imaging: for timing alone, where the kernels end early.
+    ForwardTrace(const DeviceScene& scene, std::uint32_t batch, std::uint32_t stop_illumination = kernels::STOP_NOWHERE,
+                 std::uint32_t stop_imaging = kernels::STOP_NOWHERE);
 
     void record(vulkan::Commands& commands, std::uint64_t first, std::uint32_t count,
                 bool timed = false) const override;

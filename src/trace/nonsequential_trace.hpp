@@ -5,15 +5,8 @@
 
 namespace vkfv::trace {
 
-// Push constants of the non-sequential kernels.
-struct NonsequentialBatch {
-    Batch paths;
-    std::uint32_t elements_root;
-    physics::f32::SourceFrame source_frame;
-};
-static_assert(sizeof(NonsequentialBatch) == 16 * 4);
-
-NonsequentialBatch make_nonsequential_batch(const DeviceScene& scene, std::uint64_t first, std::uint32_t count);
+kernels::NonsequentialBatch make_nonsequential_batch(const DeviceScene& scene, std::uint64_t first,
+                                                     std::uint32_t count);
 
 class NonsequentialTrace final : public PathTrace {
   public:

@@ -11,15 +11,8 @@ namespace vkfv::trace {
 inline constexpr std::uint32_t workgroup_size = 128; // of the forward kernels
 inline constexpr std::uint32_t rays_per_invocation = 16;
 
-// Push constants of the kernels of the trace.
-struct Batch {
-    std::uint32_t first_low;
-    std::uint32_t first_high;
-    std::uint32_t count;
-};
-
-inline Batch make_batch(std::uint64_t first, std::uint32_t count) {
-    return {static_cast<std::uint32_t>(first), static_cast<std::uint32_t>(first >> 32), count};
+inline kernels::Batch make_batch(std::uint64_t first, std::uint32_t count) {
+    return {{static_cast<std::uint32_t>(first), static_cast<std::uint32_t>(first >> 32)}, count};
 }
 
 inline constexpr std::uint32_t paths_per_group = workgroup_size * rays_per_invocation;
@@ -27,8 +20,8 @@ inline constexpr std::uint32_t paths_per_group = workgroup_size * rays_per_invoc
 class PathTrace {
   public:
     PathTrace(const DeviceScene& scene, std::uint32_t batch)
-        : scene_(scene), batch_(batch), pixels_(scene.device, scene.accounts.pixel_numbers() * sizeof(std::uint64_t)),
-          fates_(scene.device, scene.accounts.ledger_numbers() * sizeof(std::uint64_t)) {}
+        : scene_(scene), batch_(batch), pixels_(*scene.device, scene.accounts.pixel_numbers() * sizeof(std::uint64_t)),
+          fates_(*scene.device, scene.accounts.ledger_numbers() * sizeof(std::uint64_t)) {}
     virtual ~PathTrace() = default;
 
     void clear(vulkan::Commands& commands) const {

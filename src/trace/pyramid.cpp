@@ -125,7 +125,7 @@ void append_ceilings(std::vector<float>& ceilings, const Grid<float>& highest) {
 // highest: of each cell, mm.
 Ceilings ceilings_over(Grid<float> highest, double cell_x, double cell_y, double steepest, double relief) {
     Ceilings result;
-    CeilingsHeader& header = result.header;
+    kernels::CeilingsHeader& header = result.header;
     header.cells_x = highest.columns;
     header.cells_y = highest.rows;
     header.per_x = static_cast<float>(1 / cell_x);

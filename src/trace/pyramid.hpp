@@ -2,7 +2,7 @@
 // shaders/device/specimen_quadtree.glsl jumps by.
 #pragma once
 
-#include "physics/physics.hpp"
+#include "device/interface.hpp"
 #include "specimen/specimen.hpp"
 
 #include <glm/glm.hpp>
@@ -41,25 +41,10 @@ Pyramid make_pyramid(const specimen::Analytic& surface, const physics::f64::Spec
 // Cells of that pyramid: (columns, rows).
 glm::ivec2 pyramid_cells(const specimen::Analytic& surface);
 
-// The head of the device's buffer, in scalar layout; the ceilings follow.
-struct CeilingsHeader {
-    std::int32_t cells_x = 0;
-    std::int32_t cells_y = 0;
-    float per_x = 0; // cells/mm
-    float per_y = 0;
-    float steepest = 0; // no slope of the surface is larger
-    std::int32_t fine_level = 0;
-    std::int32_t fine_columns = 0; // blocks
-    std::int32_t coarse_level = 0;
-    std::int32_t coarse_columns = 0;
-    std::int32_t coarse_first = 0; // index of the coarse level's first ceiling
-};
-static_assert(sizeof(CeilingsHeader) == 10 * 4);
-
 // mm: of every block of 2^level x 2^level cells the highest point of it and of the blocks around it, with what float
 // arithmetic may add to a height. Two levels, row-major, row 0 at the lowest y.
 struct Ceilings {
-    CeilingsHeader header;
+    kernels::CeilingsHeader header{};
     std::vector<float> heights;
 };
 

@@ -12,27 +12,7 @@ namespace vkfv::trace {
 
 namespace {
 
-// Record of the kernel trace_rays.
-struct DeviceTracedRay {
-    glm::vec3 position;
-    glm::vec3 direction;
-    float path_length;
-    std::uint32_t status;
-    std::int32_t surface;
-};
-static_assert(sizeof(DeviceTracedRay) == 36);
-
-// Its push constants: the train, the index in front of it and the plane behind it.
-struct Passage {
-    std::uint32_t count;
-    std::uint32_t apertures;
-    std::int32_t first_surface;
-    std::int32_t surfaces;
-    float index;
-    float plane; // mm, from the last vertex
-};
-
-// The same in double.
+// A train, the index in front of it and the plane behind it, mm from the last vertex.
 struct TrainEnds {
     int first_surface;
     int surfaces;
@@ -114,8 +94,8 @@ std::vector<TracedRay> trace_train_on_host(const optics::Instrument& instrument,
     std::vector<TracedRay> result;
     result.reserve(rays.size());
     for (const Ray& ray : rays) {
-        const TrainResult passed = trace_train(instrument.scene(), ends.first_surface, ends.surfaces, ray, ends.index,
-                                               apertures ? 1u : 0u, light);
+        const TrainResult passed =
+            trace_train(instrument.scene(), ends.first_surface, ends.surfaces, ray, ends.index, apertures, light);
         const Ray arrived = fly_to_plane(passed.ray, ends.plane, passed.index);
         result.push_back(
             traced(arrived.position, arrived.direction, arrived.path_length, passed.status, passed.surface));
@@ -136,35 +116,42 @@ std::vector<TracedRay> trace_train_on_device(const optics::Instrument& instrumen
     for (const auto& ray : rays) {
         entering_rays.push_back({glm::vec3(ray.position), glm::vec3(ray.direction), 0.0f});
     }
-    Parameters parameters{};
+    kernels::Parameters parameters{};
     parameters.instrument = to_float(instrument.constants);
 
     vulkan::Buffer surface_buffer(device, surfaces.size() * sizeof(surfaces[0]));
-    vulkan::Buffer parameter_buffer(device, sizeof(Parameters), vulkan::Buffer::Memory::host);
+    vulkan::Buffer parameter_buffer(device, sizeof(kernels::Parameters), vulkan::Buffer::Memory::host);
     const vulkan::Buffer spectrum_buffer(device, spectrum_block(instrument).size() * sizeof(physics::f32::SpectralBin));
     vulkan::Buffer ray_buffer(device, entering_rays.size() * sizeof(entering_rays[0]));
-    vulkan::Buffer traced_buffer(device, rays.size() * sizeof(DeviceTracedRay));
+    vulkan::Buffer traced_buffer(device, rays.size() * sizeof(kernels::TracedRay));
     surface_buffer.write_values(std::span<const physics::f32::Surface>(surfaces));
-    parameter_buffer.write_values(std::span<const Parameters>(&parameters, 1));
+    parameter_buffer.write_values(std::span<const kernels::Parameters>(&parameters, 1));
     ray_buffer.write_values(std::span<const physics::f32::Ray>(entering_rays));
 
     using enum vulkan::BindingKind;
     // Given rays are monochromatic and lose nothing.
     const std::array<vulkan::SpecializationConstant, 1> constants = {
-        {{3, instrument.features & (physics::f32::FEATURE_PLACEMENT | physics::f32::FEATURE_IDEAL_LENS)}}};
-    const vulkan::Kernel kernel(
-        device, "trace_rays", ::trace_rays,
-        {{0, uniform_buffer}, {1, uniform_buffer}, {2, storage_buffer}, {3, storage_buffer}, {14, uniform_buffer}},
-        sizeof(Passage), constants);
-    const std::array<vulkan::Binding, 5> bindings = {
-        {{0, &surface_buffer}, {1, &parameter_buffer}, {2, &ray_buffer}, {3, &traced_buffer}, {14, &spectrum_buffer}}};
+        {{kernels::CONSTANT_FEATURES,
+          instrument.features & (physics::f32::FEATURE_PLACEMENT | physics::f32::FEATURE_IDEAL_LENS)}}};
+    const vulkan::Kernel kernel(device, "trace_rays", ::trace_rays,
+                                {{kernels::BINDING_SURFACES, uniform_buffer},
+                                 {kernels::BINDING_PARAMETERS, uniform_buffer},
+                                 {kernels::BINDING_SPECTRUM, uniform_buffer},
+                                 {kernels::BINDING_GIVEN, storage_buffer},
+                                 {kernels::BINDING_FOUND, storage_buffer}},
+                                sizeof(kernels::TrainPassage), constants);
+    const std::array<vulkan::Binding, 5> bindings = {{{kernels::BINDING_SURFACES, &surface_buffer},
+                                                      {kernels::BINDING_PARAMETERS, &parameter_buffer},
+                                                      {kernels::BINDING_SPECTRUM, &spectrum_buffer},
+                                                      {kernels::BINDING_GIVEN, &ray_buffer},
+                                                      {kernels::BINDING_FOUND, &traced_buffer}}};
     const TrainEnds ends = ends_of(instrument, train);
-    const Passage push{.count = static_cast<std::uint32_t>(rays.size()),
-                       .apertures = apertures ? 1u : 0u,
-                       .first_surface = ends.first_surface,
-                       .surfaces = ends.surfaces,
-                       .index = static_cast<float>(ends.index),
-                       .plane = static_cast<float>(ends.plane)};
+    const kernels::TrainPassage push{.count = static_cast<std::uint32_t>(rays.size()),
+                                     .apertures = apertures ? 1u : 0u,
+                                     .first_surface = ends.first_surface,
+                                     .surfaces = ends.surfaces,
+                                     .index = static_cast<float>(ends.index),
+                                     .plane = static_cast<float>(ends.plane)};
     vulkan::Commands commands(device);
     commands.dispatch(kernel, bindings, push, (push.count + 63) / 64);
     commands.barrier();
@@ -172,7 +159,7 @@ std::vector<TracedRay> trace_train_on_device(const optics::Instrument& instrumen
 
     std::vector<TracedRay> result;
     result.reserve(rays.size());
-    for (const auto& ray : traced_buffer.read_values<DeviceTracedRay>(rays.size())) {
+    for (const auto& ray : traced_buffer.read_values<kernels::TracedRay>(rays.size())) {
         result.push_back(traced(ray.position, ray.direction, ray.path_length, ray.status, ray.surface));
     }
     return result;

@@ -1,6 +1,7 @@
 // Every model of shaders/physics/scatter, and the sums of lobes that materials are.
 #include "physics/physics.hpp"
 #include "physics/scatter_registry.hpp"
+#include "specimen/scatter_tables.hpp"
 #include "support/statistics.hpp"
 
 #include <gtest/gtest.h>
@@ -10,6 +11,7 @@
 #include <string>
 
 using namespace vkfv::physics::f64;
+using vkfv::specimen::tabulated;
 using vkfv::test::integrate;
 using vkfv::test::share_z;
 
@@ -338,58 +340,6 @@ TEST(Scatter, henyey_greenstein_has_the_stated_density_at_every_incidence) {
                 << g << " " << theta;
         }
     }
-}
-
-// N = sum over l of (2 l + 1) / 2 g^l P_l(cos(theta_i)) c_l with c_l the integral of mu P_l(mu) over [0, 1]: 1/2, 1/3,
-// then 0 for odd l and c_2 = 1/8, c_{2k+2} = -c_{2k} (2k - 1) / (2k + 4).
-TEST(Scatter, the_norm_is_that_of_the_legendre_series) {
-    const auto series = [](double g, double cosine) {
-        double sum = 0.25 + g * cosine / 2;
-        double before = cosine, legendre = (3 * cosine * cosine - 1) / 2, c = 0.125; // P_1, P_2, c_2
-        for (int k = 1; k < 4000; ++k) {
-            const int l = 2 * k;
-            sum += (2 * l + 1) / 2.0 * std::pow(g, l) * legendre * c;
-            before = ((2 * l + 1) * cosine * legendre - l * before) / (l + 1);
-            legendre = ((2 * l + 3) * cosine * before - (l + 1) * legendre) / (l + 2);
-            c *= -(2 * k - 1) / (2.0 * k + 4);
-        }
-        return sum;
-    };
-    EXPECT_NEAR(series(0.8, std::sqrt(0.5)) / series(0.8, 1), 0.725, 5e-4); // published to three digits
-    for (const double g : {-0.9, -0.5, 0.0, 0.3, 0.65, 0.8, 0.9, 0.97, 0.995}) {
-        for (const double degrees : {0.0, 20.0, 45.0, 70.0, 85.0, 89.5}) {
-            const double cosine = std::cos(degrees * M_PI / 180), expected = series(g, cosine);
-            EXPECT_NEAR(henyey_greenstein_exact_norm(g, cosine) / expected, 1, 1e-10) << g << " " << degrees;
-            EXPECT_GT(std::abs(henyey_greenstein_exact_norm(g + 1e-3, cosine) / expected - 1), 1e-5) // wrong twin
-                << g << " " << degrees;
-        }
-    }
-}
-
-// What density and kernels take, against the integral, in double and in float and between the points of the fit.
-TEST(Scatter, the_table_gives_the_norm) {
-    std::vector<double> gs = {-0.899, -0.41, -0.39, -1e-9, 1e-9, 0.39, 0.41, 0.995, 0.998, 0.999};
-    for (int k = 0; k < 95; ++k) {
-        gs.push_back(-0.9 + 0.02 * k);
-    }
-    const auto worst = [](double g, double table_g) {
-        Lobe table = lobe(SCATTER_HENYEY_GREENSTEIN, 1, table_g);
-        float single[LOBE_TABLE_SIZE];
-        std::ranges::transform(table.table, single, [](double value) { return float(value); });
-        double error = 0;
-        for (int k = 0; k <= 300; ++k) {
-            const double cosine = std::pow(k / 300.0, 4); // dense at the horizon, over which sharp lobes change
-            const double exact = henyey_greenstein_exact_norm(g, cosine);
-            error = std::max(error, std::abs(henyey_greenstein_norm(g, table.table, cosine) / exact - 1));
-            error = std::max(error, std::abs(f32::henyey_greenstein_norm(float(g), single, float(cosine)) / exact - 1));
-        }
-        return error;
-    };
-    for (const double g : gs) {
-        EXPECT_LT(worst(g, g), 1e-6) << g;
-    }
-    EXPECT_LT(worst(0.9999, 0.9999), 3e-6);
-    EXPECT_GT(worst(0.8, 0.8001), 1e-6); // wrong twin
 }
 
 TEST(Scatter, a_white_furnace_keeps_every_ray) {

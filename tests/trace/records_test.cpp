@@ -7,65 +7,120 @@
 #include <gtest/gtest.h>
 
 #include <array>
-#include <cstring>
+#include <vector>
 
 using namespace vkfv;
+using namespace vkfv::physics::f32;
 
 namespace {
 
-// A record filled with 1, 2, 3, ... in every 4-byte field, as floats where `is_integer` says no. Returns the numbers.
-template <class Record>
-std::vector<float> fill(Record& record, const std::vector<std::size_t>& integers, float first) {
-    constexpr std::size_t count = sizeof(Record) / 4;
-    std::vector<float> numbers;
-    auto* bytes = reinterpret_cast<std::byte*>(&record);
-    for (std::size_t k = 0; k < count; ++k) {
-        const float number = first + static_cast<float>(k);
-        const auto integer = static_cast<std::uint32_t>(number);
-        if (std::ranges::find(integers, k) != integers.end()) {
-            std::memcpy(bytes + 4 * k, &integer, 4);
-        } else {
-            std::memcpy(bytes + 4 * k, &number, 4);
-        }
-        numbers.push_back(number);
+// Writes 1, 2, 3, ... into the fields of records.
+class Filler {
+  public:
+    void fill(float& field) { field = next(); }
+    void fill(std::int32_t& field) { field = static_cast<std::int32_t>(next()); }
+    void fill(std::uint32_t& field) { field = static_cast<std::uint32_t>(next()); }
+    void fill(glm::vec3& field) {
+        fill(field.x);
+        fill(field.y);
+        fill(field.z);
     }
-    return numbers;
+
+#define VKFV_FILL(type, name) fill(record.name);
+#define VKFV_FILL_KNOWN(k, place, type, name) fill(record.name);
+#define VKFV_FILL_ARRAY(type, name, size)                                                                              \
+    for (type & field : record.name) {                                                                                 \
+        fill(field);                                                                                                   \
+    }
+    void fill(Dispersion& record) {
+        VKFV_DISPERSION_FIELDS(VKFV_FILL)
+    }
+    void fill(Surface& record) {
+        VKFV_SURFACE_FIELDS(VKFV_FILL, VKFV_FILL_KNOWN, 0)
+    }
+    void fill(SpectralBin& record) {
+        VKFV_SPECTRAL_BIN_FIELDS(VKFV_FILL)
+    }
+    void fill(RingLight& record) {
+        VKFV_RING_LIGHT_FIELDS(VKFV_FILL)
+    }
+    void fill(Element& record) {
+        VKFV_ELEMENT_FIELDS(VKFV_FILL)
+    }
+    void fill(Instrument& record) {
+        VKFV_INSTRUMENT_FIELDS(VKFV_FILL)
+    }
+    void fill(Lobe& record) {
+        VKFV_LOBE_FIELDS(VKFV_FILL, VKFV_FILL_ARRAY)
+    }
+    void fill(Material& record) {
+        VKFV_MATERIAL_FIELDS(VKFV_FILL)
+    }
+    void fill(SpecimenRecord& record) {
+        VKFV_SPECIMEN_RECORD_FIELDS(VKFV_FILL)
+    }
+    void fill(Exposure& record) {
+        VKFV_EXPOSURE_FIELDS(VKFV_FILL)
+    }
+    void fill(Survivor& record){VKFV_SURVIVOR_FIELDS(VKFV_FILL)}
+
+    std::vector<float> written;
+
+  private:
+    float next() {
+        written.push_back(static_cast<float>(written.size() + 1));
+        return written.back();
+    }
+};
+
+template <class Value>
+vulkan::Buffer buffer_of(const vulkan::Device& device, std::span<const Value> values) {
+    vulkan::Buffer buffer(device, values.size_bytes());
+    buffer.write_values(values);
+    return buffer;
 }
 
 } // namespace
 
 TEST(Records, the_device_sees_every_field_where_the_host_wrote_it) {
     const vulkan::Device device;
-    std::array<physics::f32::Surface, physics::f32::SURFACE_CAPACITY> surfaces{};
-    std::array<physics::f32::SpectralBin, physics::f32::SPECTRUM_CAPACITY> bins{};
-    std::array<physics::f32::Survivor, 3> survivors{};
-    trace::Parameters parameters{};
-    std::vector<float> expected;
-    const auto append = [&](const std::vector<float>& numbers) {
-        expected.insert(expected.end(), numbers.begin(), numbers.end());
-    };
-    append(fill(surfaces[2], {41}, 100));
-    append(fill(parameters.instrument, {24, 25, 26, 27, 28, 29, 30, 31}, 200));
-    append(fill(parameters.specimen, {13, 32, 51, 70, 89, 90, 91, 92, 93}, 300));
-    append(fill(parameters.exposure, {1, 2}, 400));
-    append(fill(bins[2], {}, 450));
-    append(fill(survivors[2], {7}, 500));
+    std::vector<Surface> surfaces(SURFACE_CAPACITY);
+    std::vector<SpectralBin> bins(SPECTRUM_CAPACITY);
+    std::vector<Survivor> survivors(3);
+    std::vector<Element> elements(3);
+    kernels::Parameters parameters{};
+    Filler filler; // in the order of the probe
+    filler.fill(surfaces[2]);
+    filler.fill(parameters.instrument);
+    filler.fill(parameters.specimen);
+    filler.fill(parameters.exposure);
+    filler.fill(bins[2]);
+    filler.fill(survivors[2]);
+    filler.fill(elements[2]);
+    const std::vector<float>& expected = filler.written;
+    EXPECT_EQ(expected.size() * sizeof(float),
+              sizeof(Surface) + sizeof(kernels::Parameters) + sizeof(SpectralBin) + sizeof(Survivor) + sizeof(Element));
 
-    vulkan::Buffer surface_buffer(device, sizeof(surfaces));
-    vulkan::Buffer parameter_buffer(device, sizeof(parameters), vulkan::Buffer::Memory::host);
-    vulkan::Buffer spectrum_buffer(device, sizeof(bins));
-    vulkan::Buffer survivor_buffer(device, sizeof(survivors));
-    vulkan::Buffer echo(device, expected.size() * sizeof(float));
-    surface_buffer.write_values(std::span<const physics::f32::Surface>(surfaces));
-    parameter_buffer.write_values(std::span<const trace::Parameters>(&parameters, 1));
-    spectrum_buffer.write_values(std::span<const physics::f32::SpectralBin>(bins));
-    survivor_buffer.write_values(std::span<const physics::f32::Survivor>(survivors));
+    const vulkan::Buffer surface_buffer = buffer_of<Surface>(device, surfaces);
+    const vulkan::Buffer parameter_buffer = buffer_of<kernels::Parameters>(device, std::span(&parameters, 1));
+    const vulkan::Buffer spectrum_buffer = buffer_of<SpectralBin>(device, bins);
+    const vulkan::Buffer survivor_buffer = buffer_of<Survivor>(device, survivors);
+    const vulkan::Buffer element_buffer = buffer_of<Element>(device, elements);
+    const vulkan::Buffer echo(device, expected.size() * sizeof(float));
     using enum vulkan::BindingKind;
-    const vulkan::Kernel kernel(
-        device, "probe_records", ::probe_records,
-        {{0, uniform_buffer}, {1, uniform_buffer}, {2, storage_buffer}, {3, storage_buffer}, {14, uniform_buffer}});
-    const std::array<vulkan::Binding, 5> bindings = {
-        {{0, &surface_buffer}, {1, &parameter_buffer}, {2, &survivor_buffer}, {3, &echo}, {14, &spectrum_buffer}}};
+    const vulkan::Kernel kernel(device, "probe_records", ::probe_records,
+                                {{kernels::BINDING_SURFACES, uniform_buffer},
+                                 {kernels::BINDING_PARAMETERS, uniform_buffer},
+                                 {kernels::BINDING_SPECTRUM, uniform_buffer},
+                                 {kernels::BINDING_SURVIVORS, storage_buffer},
+                                 {kernels::BINDING_ELEMENTS, storage_buffer},
+                                 {kernels::BINDING_FOUND, storage_buffer}});
+    const std::array<vulkan::Binding, 6> bindings = {{{kernels::BINDING_SURFACES, &surface_buffer},
+                                                      {kernels::BINDING_PARAMETERS, &parameter_buffer},
+                                                      {kernels::BINDING_SPECTRUM, &spectrum_buffer},
+                                                      {kernels::BINDING_SURVIVORS, &survivor_buffer},
+                                                      {kernels::BINDING_ELEMENTS, &element_buffer},
+                                                      {kernels::BINDING_FOUND, &echo}}};
     vulkan::Commands commands(device);
     commands.dispatch(kernel, bindings, std::span<const std::byte>{}, 1);
     commands.barrier();

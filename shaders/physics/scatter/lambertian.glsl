@@ -4,7 +4,7 @@
 VKFV_FUNCTION ScatterTry lambertian_try(Incidence incidence, real u0, real u1, real) {
     ScatterTry result;
     result.direction = direction_around(incidence.normal, (real(1.0) - u0) / (real(1.0) + sqrt(u0)), u1);
-    result.accepted = dot(result.direction, incidence.normal) > real(0.0) ? 1u : 0u;
+    result.accepted = dot(result.direction, incidence.normal) > real(0.0);
     return result;
 }
 

@@ -4,7 +4,7 @@
 VKFV_FUNCTION ScatterTry mirror_try(Incidence incidence, real, real, real) {
     ScatterTry result;
     result.direction = incidence.mirror;
-    result.accepted = dot(incidence.mirror, incidence.normal) > real(0.0) ? 1u : 0u;
+    result.accepted = dot(incidence.mirror, incidence.normal) > real(0.0);
     return result;
 }
 

@@ -1,23 +1,15 @@
-// A smooth function of one variable as a quotient of polynomials, for tables that a scatter model fills on the host.
-#pragma once
+#include "specimen/rational_fit.hpp"
 
 #include <algorithm>
 #include <cmath>
-#include <cstddef>
 #include <limits>
-#include <vector>
 
-namespace vkfv::physics {
+namespace vkfv::specimen {
 
-// (p0 + p1 x + ...) / (1 + q1 x + ...)
-struct RationalFit {
-    std::vector<double> numerator;   // p0, p1, ...
-    std::vector<double> denominator; // 1, q1, ...
-    double error = 0;                // the largest at the points, relative, as evaluated in float
-};
+namespace {
 
 // The x that minimises |columns x - right|, by Householder's reflections.
-inline std::vector<double> least_squares(std::vector<std::vector<double>> columns, std::vector<double> right) {
+std::vector<double> least_squares(std::vector<std::vector<double>> columns, std::vector<double> right) {
     const std::size_t n = columns.size(), rows = right.size();
     std::vector<double> scale(n), x(n);
     for (std::size_t k = 0; k < n; ++k) {
@@ -66,13 +58,10 @@ inline std::vector<double> least_squares(std::vector<std::vector<double>> column
     return x;
 }
 
-// Through the positive values f at the points x > 0, in the sense of least relative squares: linearised, and weighted
-// anew with the last denominator, C. K. Sanathanan, J. Koerner, IEEE Trans. Autom. Control 8 (1963) 56. The fit of the
-// lowest degree that evaluates in float with no more than the wanted error, or else the best up to the highest: a
-// degree more than is needed brings nearly cancelling roots, which may lie between two points. The denominator's degree
-// is one less.
-inline RationalFit fit_rational(const std::vector<double>& x, const std::vector<double>& f, std::size_t highest_degree,
-                                double wanted_error) {
+} // namespace
+
+RationalFit fit_rational(const std::vector<double>& x, const std::vector<double>& f, std::size_t highest_degree,
+                         double wanted_error) {
     const auto polynomial = [](const std::vector<double>& coefficients, float at) {
         float sum = 0;
         for (std::size_t k = coefficients.size(); k-- > 0;) {
@@ -115,4 +104,4 @@ inline RationalFit fit_rational(const std::vector<double>& x, const std::vector<
     return best;
 }
 
-} // namespace vkfv::physics
+} // namespace vkfv::specimen

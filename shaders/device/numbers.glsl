@@ -1,0 +1,62 @@
+// The numbers by which host and kernels of the trace know their buffers (set 0) and their specialisation constants.
+
+const uint BINDING_SURFACES = 0u;
+const uint BINDING_PARAMETERS = 1u;
+const uint BINDING_SURVIVORS = 2u;
+const uint BINDING_PIXELS = 3u;
+const uint BINDING_LEDGER = 4u;
+const uint BINDING_SURVIVOR_COUNT = 5u;
+const uint BINDING_GIVEN = 6u; // of kernels that are no part of the trace: what they are given
+const uint BINDING_FOUND = 7u; //   and what they find
+// Of a specimen in a device's memory: src/trace/device_specimen.cpp
+const uint BINDING_HEIGHTS = 8u;
+const uint BINDING_CEILINGS = 9u;
+const uint BINDING_VERTICES = 10u; // or pairs of triangles, for the kernels' own hierarchy of boxes
+const uint BINDING_TRIANGLES = 11u;
+const uint BINDING_STRUCTURE = 12u; // or the nodes of that hierarchy
+const uint BINDING_TILES = 13u;
+const uint BINDING_SPECTRUM = 14u;
+const uint BINDING_ELEMENTS = 15u;
+const uint BINDING_ELEMENT_ORDER = 16u;
+const uint BINDING_BACKWARD = 17u;
+
+const uint CONSTANT_SPECIMEN_KIND = 0u;
+const uint CONSTANT_LEDGER_SLOTS = 1u;
+const uint CONSTANT_STOP_AFTER = 2u;
+const uint CONSTANT_FEATURES = 3u;
+const uint CONSTANT_SCATTER_MODELS = 4u;
+const uint CONSTANT_CONE_CANDIDATES = 5u;
+const uint CONSTANT_LOBE_CANDIDATES = 6u;
+const uint CONSTANT_QUERY_CAPACITY = 7u;
+const uint CONSTANT_HITS_WAY = 8u;
+
+// Where the halves of the forward trace may end early, for timing alone.
+const uint STOP_NOWHERE = 0u;
+const uint STOP_AFTER_TRAIN = 1u; // of the illumination; of the imaging, before the detector counts
+const uint STOP_AFTER_SPECIMEN = 2u;
+const uint STOP_AFTER_SOURCE = 3u;
+
+const uint HITS_ARRIVE = 0u; // from the top plane down
+const uint HITS_RECORD = 1u; // the same, and where they met is kept
+const uint HITS_LEAVE = 2u;  // from there, over the hemisphere of the normal as a Lambertian scatterer sends light
+
+// What a kernel can know as constants (device/prescription.glsl): which surfaces, and fields of Instrument, of
+// SpecimenRecord, and of its material's first lobe.
+const uint CONSTANT_KNOWN_FIRST = 88u;
+const uint CONSTANT_KNOWN_COUNT = 89u;
+// clang-format off
+#define VKFV_KNOWN_OF_INSTRUMENT(KNOWN) \
+    KNOWN(90, int, illumination_first) \
+    KNOWN(91, int, illumination_count) \
+    KNOWN(92, int, imaging_first) \
+    KNOWN(93, int, imaging_count)
+#define VKFV_KNOWN_OF_SPECIMEN(KNOWN) \
+    KNOWN(94, int, max_bounces)
+#define VKFV_KNOWN_OF_LOBE(KNOWN) \
+    KNOWN(95, real, parameter_0) \
+    KNOWN(96, real, parameter_1) \
+    KNOWN(97, real, parameter_2) \
+    KNOWN(98, real, parameter_3)
+// clang-format on
+const uint CONSTANT_KNOWN_SURFACES = 100u; // from here on, those of each known surface:
+const uint KNOWN_FIELD_CAPACITY = 16u;     // so many numbers for each, of which a field has that of its place

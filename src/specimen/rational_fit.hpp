@@ -1,0 +1,24 @@
+// A smooth function of one variable as a quotient of polynomials.
+#pragma once
+
+#include <cstddef>
+#include <vector>
+
+namespace vkfv::specimen {
+
+// (p0 + p1 x + ...) / (1 + q1 x + ...)
+struct RationalFit {
+    std::vector<double> numerator;   // p0, p1, ...
+    std::vector<double> denominator; // 1, q1, ...
+    double error = 0;                // the largest at the points, relative, as evaluated in float
+};
+
+// Through the positive values f at the points x > 0, in the sense of least relative squares: linearised, and weighted
+// anew with the last denominator, C. K. Sanathanan, J. Koerner, IEEE Trans. Autom. Control 8 (1963) 56. The fit of the
+// lowest degree that evaluates in float with no more than the wanted error, or else the best up to the highest: a
+// degree more than is needed brings nearly cancelling roots, which may lie between two points. The denominator's degree
+// is one less.
+RationalFit fit_rational(const std::vector<double>& x, const std::vector<double>& f, std::size_t highest_degree,
+                         double wanted_error);
+
+} // namespace vkfv::specimen
