@@ -1,5 +1,6 @@
 #include "measurement/exposure.hpp"
 
+#include "core/pixel_grid.hpp"
 #include "core/units.hpp"
 #include "images/image_file.hpp"
 #include "measurement/assembly.hpp"
@@ -40,8 +41,9 @@ Exposure expose(const Configuration& configuration, const optics::Instrument& in
                 const specimen::Specimen& specimen, double focal_height) {
     const auto tracer = make_tracer(instrument, specimen, configuration.trace);
     const double pitch = instrument.first_order.pixel_pitch;
+    const int pixels = configuration.instrument.detector_pixels;
     Exposure exposure{tracer->expose(focal_height, image_index(configuration, focal_height)),
-                      -0.5 * (configuration.instrument.detector_pixels - 1) * pitch,
+                      PixelGrid::centred(pixels, pixels, pitch).x0,
                       pitch,
                       tracer->identity(),
                       {}};
@@ -54,9 +56,9 @@ Exposure expose(const Configuration& configuration, const optics::Instrument& in
 std::vector<std::pair<std::filesystem::path, std::string>> image_files(const std::filesystem::path& name,
                                                                        const Exposure& exposure, double focal_height) {
     const images::ImageTags tags{.pitch_x = exposure.pitch,
-                                  .pitch_y = exposure.pitch,
-                                  .description =
-                                      fmt::format("radiant flux in W at z = {} um", focal_height * um_per_mm)};
+                                 .pitch_y = exposure.pitch,
+                                 .description =
+                                     fmt::format("radiant flux in W at z = {} um", focal_height * um_per_mm)};
     std::vector<std::pair<std::filesystem::path, std::string>> files;
     files.emplace_back(name, images::tiff_bytes(in_float(exposure.image.flux), tags));
     if (exposure.diffracted) {

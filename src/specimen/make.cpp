@@ -1,6 +1,7 @@
 #include "specimen/analytic.hpp"
 #include "specimen/files.hpp"
 
+#include "core/pixel_grid.hpp"
 #include "core/units.hpp"
 
 #include <fmt/format.h>
@@ -40,9 +41,10 @@ HeightField field_from_image(const Description& d) {
     for (float& height : field.heights.values) {
         height = static_cast<float>(d.height * static_cast<double>(height));
     }
+    const auto grid = PixelGrid::centred(field.heights.columns, field.heights.rows, d.pitch);
     field.pitch_x = field.pitch_y = d.pitch;
-    field.x_min = -0.5 * (field.heights.columns - 1) * d.pitch;
-    field.y_min = -0.5 * (field.heights.rows - 1) * d.pitch;
+    field.x_min = grid.x0;
+    field.y_min = grid.y0;
     return field;
 }
 

@@ -1,6 +1,7 @@
 #include "specimen/description.hpp"
 #include "specimen/files.hpp"
 
+#include "core/pixel_grid.hpp"
 #include "core/units.hpp"
 #include "surface/fill.hpp"
 #include "surface/filter.hpp"
@@ -60,8 +61,9 @@ HeightField read_surface_field(const Description& d) {
     HeightField field;
     field.pitch_x = map.pitch_x;
     field.pitch_y = map.pitch_y;
-    field.x_min = -0.5 * (map.columns() - 1) * map.pitch_x;
-    field.y_min = -0.5 * (map.rows() - 1) * map.pitch_y;
+    const auto grid = PixelGrid::centred(map.columns(), map.rows(), map.pitch_x, map.pitch_y);
+    field.x_min = grid.x0;
+    field.y_min = grid.y0;
     if (gaps > 0) {
         for (const double z : map.height.values) {
             field.interpolated.push_back(!std::isfinite(z));
