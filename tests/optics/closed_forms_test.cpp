@@ -129,14 +129,14 @@ TEST(CoverPlate, MovesTheMarginalFocus) {
         const double expected = 0.17 * (1 - std::tan(std::asin(na / n)) / std::tan(std::asin(na)));
         EXPECT_NEAR(shift(na), expected, 1e-13);
     }
-    EXPECT_NEAR(shift(0.4), 63.5e-3, 5e-5);                     // issue 3's figure
+    EXPECT_NEAR(shift(0.4), 63.5e-3, 5e-5);                     // um, of this plate at NA 0.4
     EXPECT_GT(std::abs(shift(0.4) - 0.17 * (1 - 1 / n)), 4e-3); // wrong twin: paraxial
 }
 
 // The objective's height over the specimen, from the room's elements.
 double objective_height(const Instrument& instrument) {
     for (const Element& element : instrument.elements) {
-        if (element.part == "objective") {
+        if (element.part == Part::objective) {
             return element.pose.origin.z + instrument.first_order.best_focus_offset;
         }
     }
@@ -267,7 +267,7 @@ TEST(TiltedParts, MoveTheImageWithTheNodalPoint) {
     double first = 0;
     double last = 0;
     for (const Element& element : straight.elements) {
-        if (element.part == "tube lens") {
+        if (element.part == Part::tube_lens) {
             first = first == 0 ? element.pose.origin.z : first;
             last = element.pose.origin.z;
         }

@@ -88,7 +88,7 @@ TEST(Train, DecentredDoubletAgreesWithAnIndependentTracer) {
         return std::pair(position, direction);
     };
     const auto [position, direction] = worst(decentred_doublet());
-    EXPECT_LT(position, 1e-9); // issue 3
+    EXPECT_LT(position, 1e-9);
     EXPECT_LT(direction, 1e-12);
     auto twin = decentred_doublet();
     std::swap(twin.surfaces[0].breaks[0].tilt_x, twin.surfaces[0].breaks[0].tilt_y);
@@ -178,7 +178,7 @@ TEST(Train, TenUncoatedSurfacesTransmitTheirProduct) {
     };
     const double expected = std::pow(1 - std::pow(0.5168 / 2.5168, 2), 10);
     EXPECT_NEAR(trace(0).transmitted, expected, 1e-14);
-    EXPECT_NEAR(expected, 0.650, 5e-4); // issue 3's figure
+    EXPECT_NEAR(expected, 0.650, 5e-4);
     // Each uniform number stands for a ray: those that pass, and where the others end.
     constexpr int rays = 400000;
     std::mt19937_64 generator(3);
