@@ -1,5 +1,6 @@
 #include "measurement/assembly.hpp"
 
+#include "core/pixel_grid.hpp"
 #include "core/section.hpp"
 #include "core/units.hpp"
 #include "images/image_file.hpp"
@@ -115,9 +116,8 @@ std::optional<optics::Diffraction> make_diffraction(const Configuration& configu
 surface::HeightMap truth_on_pixels(const optics::Instrument& instrument, const Configuration& configuration,
                                    const specimen::Specimen& specimen) {
     const int pixels = configuration.instrument.detector_pixels;
-    const double pitch = instrument.first_order.pixel_pitch;
-    const double first = -0.5 * (pixels - 1) * pitch; // the axis meets the detector's centre
-    return specimen::truth(specimen, pixels, pixels, first, first, pitch, pitch);
+    const auto grid = PixelGrid::centred(pixels, pixels, instrument.first_order.pixel_pitch);
+    return specimen::truth(specimen, pixels, pixels, grid.x0, grid.y0, grid.pitch_x, grid.pitch_y);
 }
 
 } // namespace vkfv::measurement

@@ -1,5 +1,6 @@
 #include "measurement/evaluation.hpp"
 
+#include "core/pixel_grid.hpp"
 #include "core/units.hpp"
 #include "surface/filter.hpp"
 #include "surface/height_parameters.hpp"
@@ -140,7 +141,8 @@ Evaluation StackEvaluation::finish(surface::HeightMap truth, const topography::B
 Evaluation StackEvaluation::finish(double pitch, const std::optional<Flat>& flat) {
     {
         const Stopwatch stopwatch(evaluation_.seconds);
-        reconstruct(-0.5 * (columns_ - 1) * pitch, -0.5 * (rows_ - 1) * pitch, pitch, flat);
+        const auto grid = PixelGrid::centred(columns_, rows_, pitch);
+        reconstruct(grid.x0, grid.y0, pitch, flat);
     }
     return std::move(evaluation_);
 }

@@ -1,5 +1,6 @@
 #include "measurement/exposure.hpp"
 
+#include "core/pixel_grid.hpp"
 #include "core/units.hpp"
 #include "images/image_file.hpp"
 #include "measurement/assembly.hpp"
@@ -40,8 +41,9 @@ Exposure expose(const Configuration& configuration, const optics::Instrument& in
                 const specimen::Specimen& specimen, double focal_height) {
     const auto tracer = make_tracer(instrument, specimen, configuration.trace);
     const double pitch = instrument.first_order.pixel_pitch;
+    const int pixels = configuration.instrument.detector_pixels;
     Exposure exposure{tracer->expose(focal_height, image_index(configuration, focal_height)),
-                      -0.5 * (configuration.instrument.detector_pixels - 1) * pitch,
+                      PixelGrid::centred(pixels, pixels, pitch).x0,
                       pitch,
                       tracer->identity(),
                       {}};

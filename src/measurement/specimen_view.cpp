@@ -1,5 +1,6 @@
 #include "measurement/specimen_view.hpp"
 
+#include "core/pixel_grid.hpp"
 #include "core/units.hpp"
 #include "specimen/description.hpp"
 
@@ -12,12 +13,13 @@ namespace vkfv::measurement {
 
 namespace {
 
+using Status = trace::Ledger::Status;
+
 constexpr int most_relief_points = 128; // a side; a look at the specimen, in a moment for any detector
 constexpr double least_seen_share = 0.5;
 // Illumination is wider than most specimens; beside a specimen that is where it should be, this much never falls.
 constexpr double most_light_beside = 0.98;
 
-constexpr const char* beside_the_specimen = "beside the specimen"; // of the ledger
 constexpr const char* likely_causes =
     "A length may be in another unit than its key says (source.radius_mm, specimen.size_mm, specimen.unit), or the "
     "specimen "
@@ -31,9 +33,8 @@ std::string percent(double share) {
 
 Relief relief_of(const specimen::Specimen& specimen, double field, int pixels) {
     const int points = std::min(pixels, most_relief_points);
-    const double pitch = field / points;
-    const double first = -0.5 * (points - 1) * pitch;
-    const auto truth = specimen::truth(specimen, points, points, first, first, pitch, pitch);
+    const auto grid = PixelGrid::centred(points, points, field / points);
+    const auto truth = specimen::truth(specimen, points, points, grid.x0, grid.y0, grid.pitch_x, grid.pitch_y);
     Relief relief;
     std::size_t seen = 0;
     for (const double height : truth.height.values) {
@@ -68,7 +69,7 @@ std::vector<std::string> warning_of_lost_light(const trace::Image& image) {
     const double detected = std::accumulate(image.flux.values.begin(), image.flux.values.end(), 0.0);
     if (!(detected > 0)) {
         const auto most = std::ranges::max_element(ledger.entries, {}, [](const auto& entry) {
-            return entry.name == "not aimed at" ? 0.0 : entry.power; // outside the cone that can pass at all
+            return entry.status == Status::not_aimed_at ? 0.0 : entry.power; // outside the cone that can pass at all
         });
         const std::string where = most == ledger.entries.end() || !(most->power > 0)
                                       ? ""
@@ -78,9 +79,10 @@ std::vector<std::string> warning_of_lost_light(const trace::Image& image) {
     }
     double beside = 0, met = 0;
     for (const auto& entry : ledger.entries) {
-        beside += entry.name == beside_the_specimen ? entry.power : 0;
-        met += entry.name == "detected" || entry.name == "escaped outside the pupil" || entry.name == "bounce limit" ||
-                       entry.name == "beside the detector" || entry.name == "absorbed by the specimen"
+        beside += entry.status == Status::beside_specimen ? entry.power : 0;
+        met += entry.status == Status::detected || entry.status == Status::outside_pupil ||
+                       entry.status == Status::bounce_limit || entry.status == Status::beside_detector ||
+                       entry.status == Status::absorbed
                    ? entry.power
                    : 0;
     }

@@ -8,6 +8,8 @@
 #include "scan/store.hpp"
 #include "specimen/geometry_digest.hpp"
 
+#include "trace/ledger.hpp"
+
 #include <fmt/format.h>
 #include <spdlog/spdlog.h>
 
@@ -29,22 +31,6 @@ Json read_json(const fs::path& path) {
     return parsed.is_object() ? parsed : Json();
 }
 
-// Of the rays that left the specimen, the share that came through the pupil; none where the ledger does not tell: the
-// backward estimator reports the detected light alone, and directed scatter counts rays of unequal weight.
-std::optional<double> share_collected(const trace::Ledger& ledger, bool tells) {
-    double collected = 0, lost = 0;
-    for (const auto& entry : ledger.entries) {
-        const auto rays = static_cast<double>(entry.rays);
-        if (entry.name == "detected" || entry.name == "beside the detector" ||
-            entry.name.find(" at imaging ") != std::string::npos) {
-            collected += rays;
-        } else if (entry.name.starts_with("escaped") || entry.name.starts_with("bounce limit")) {
-            lost += rays;
-        }
-    }
-    return tells && collected + lost > 0 ? std::optional(collected / (collected + lost)) : std::nullopt;
-}
-
 Json figures_of(const trace::Image& image, bool ledger_tells) {
     double flux = 0, square = 0;
     for (const double value : image.flux.values) {
@@ -57,7 +43,7 @@ Json figures_of(const trace::Image& image, bool ledger_tells) {
     figures["signal to noise"] = ratio;
     // What is left of the spread of the pixels without the noise.
     figures["contrast"] = std::sqrt(std::max(0.0, square / pixels / (mean * mean) - 1 - 1 / (ratio * ratio)));
-    const auto share = share_collected(image.ledger, ledger_tells);
+    const auto share = ledger_tells ? trace::share_collected(image.ledger) : std::nullopt;
     figures["share collected"] = share ? Json(*share) : Json();
     figures["detected / emitted"] = flux / image.ledger.emitted;
     figures["detected rays a pixel"] = static_cast<double>(image.detected) / pixels;

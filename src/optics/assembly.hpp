@@ -1,17 +1,115 @@
-// How an instrument is put together: the parts that its description names, placed one after another, and what
-// is known of them so far. Only instrument.cpp and the stages' own files include this.
+// How an instrument is put together: stages one after another, each a function of the description and of what the
+// earlier stages found. Only instrument.cpp and the stages' own files include this. Poses are in the specimen's frame
+// with its origin in the paraxial object plane (mm), unfolded: in the straight space that mirrors show.
 #pragma once
 
 #include "optics/apertures.hpp"
 #include "optics/instrument.hpp"
 
+#include <filesystem>
 #include <optional>
 #include <string>
 #include <vector>
 
 namespace vkfv::optics {
 
-using Part = std::vector<PlacedSurface>;
+using PlacedSurfaces = std::vector<PlacedSurface>;
+
+// Where the parts stand along the axis, paraxially: the object in the front focal plane of the objective behind its
+// cover glass, the detector in the tube lens' back focal plane. Lengths in mm, heights over the paraxial object plane.
+struct AxialLayout {
+    SpectralIndex air;
+    Prescription objective_lens; // with its immersion and stop
+    SpectralIndex object_index;  // of the medium over the specimen
+    // Without placements, the first vertex at the origin.
+    PlacedSurfaces straight_objective;
+    PlacedSurfaces straight_tube_lens;
+    PlacedSurfaces cover; // glass
+    double efl_objective = 0;
+    double efl_tube_lens = 0;
+    double magnification = 0; // signed
+    double working_distance = 0;
+    double field_half_side = 0; // of the detector, in the object
+    double field_half_diagonal = 0;
+    double detector_distance = 0; // from the tube lens' last vertex
+    double objective_front = 0;   // heights of its vertices
+    double objective_back = 0;
+    Pose front; // frame in which the imaging train is entered
+};
+AxialLayout lay_out(const InstrumentDescription& description);
+
+// A fold mirror, unfolded.
+struct Fold {
+    double distance = 0; // FoldMirror::distance
+    PlacedSurface mirror;
+};
+
+struct PlacedSplitter {
+    double distance = 0; // behind the objective
+    double height = 0;
+    Pose pose;
+    double half_size = 0;    // of the cube
+    PlacedSurfaces surfaces; // in the imaging train
+};
+
+struct ImagingTrain {
+    PlacedSurfaces objective;
+    PlacedSurfaces tube_lens;
+    PlacedSplitter splitter;
+    std::vector<Fold> folds; // by distance
+    Pose detector_pose;
+    PlacedSurfaces train; // from specimen to detector
+    int surfaces_before_splitter = 0;
+    std::size_t aperture_stop = 0; // of the objective's surfaces
+    Imaging imaging;               // the train's surfaces linked
+};
+ImagingTrain place_imaging(const InstrumentDescription& description, const AxialLayout& layout);
+
+// What the imaging train does, by tracing.
+struct MeasuredImaging {
+    double numerical_aperture = 0;
+    double depth_of_field = 0;
+    double best_focus_offset = 0; // these as in FirstOrder
+    double field_curvature = 0;
+    double field_curvature_corner = 0;
+    std::vector<std::string> warnings;
+};
+MeasuredImaging measure_imaging(const InstrumentDescription& description, const AxialLayout& layout,
+                                const ImagingTrain& imaging);
+
+struct Illumination {
+    PlacedSurfaces illuminator; // with its aperture; none for a ring light
+    std::vector<Fold> folds;    // by distance
+    PlacedSurfaces train;       // from the source to the specimen
+    int surfaces_before_splitter = 0;
+    Pose source_pose;
+    double source_distance = 0;     // of the disc, to the first vertex
+    physics::f64::RingLight ring{}; // instead of the disc
+    double aimed_sine = 1;          // of the cone that the source must fill
+    double to_objective = 0;        // these as in FirstOrder
+    double source_magnification = 0;
+    double pupil_radius_in_source = 0;
+    std::vector<std::string> warnings;
+};
+Illumination place_ring(const InstrumentDescription& description, const AxialLayout& layout,
+                        const MeasuredImaging& measured);
+Illumination place_illuminator(const InstrumentDescription& description, const AxialLayout& layout,
+                               const ImagingTrain& imaging);
+
+// The light the other way. `instrument` has its trains and constants.
+TurnedInstrument turn_round(const InstrumentDescription& description, const AxialLayout& layout,
+                            const ImagingTrain& imaging, const Illumination& illumination,
+                            const Instrument& instrument);
+
+// Every element once, the light's way folded, heights over the plane of best focus.
+struct FoldedElements {
+    std::vector<Element> elements;
+    Pose source_pose;
+};
+FoldedElements fold(const InstrumentDescription& description, const AxialLayout& layout, const ImagingTrain& imaging,
+                    const MeasuredImaging& measured, const Illumination& illumination);
+
+// What stages share.
 
 [[noreturn]] void refuse(std::string key, std::string found, std::string expected, std::string remedy,
                          const std::filesystem::path& file = {});
@@ -20,88 +118,26 @@ void require_surfaces(const Prescription& prescription, const char* key);
 void require_air(double index, const Prescription& prescription, const char* key);
 
 // The prescription with another radius (mm) of the stop of this role; none: as it is.
-Prescription with_stop(Prescription prescription, PrescribedSurface::Role role, std::optional<double> radius,
-                       const char* key);
+Prescription with_stop(Prescription prescription, SurfaceRole role, std::optional<double> radius, const char* key);
 
-void append(Part& train, const Part& part);
-RayTransfer transfer_of(Part part); // from its first vertex on
+void append(PlacedSurfaces& train, const PlacedSurfaces& part);
+RayTransfer transfer_of(PlacedSurfaces part); // from its first vertex on
 physics::f64::Surface transfer_between(const Pose& from, const PlacedSurface& to);
 Pose downward(double height); // the frame of light that comes down: half a turn about x
 Pose placed_at(const Placement& placement, const Pose& nominal);
+bool has_displaced(const std::vector<physics::f64::Surface>& train);
 
-// Poses are in the specimen's frame with its origin in the paraxial object plane (mm), unfolded: in the
-// straight space that mirrors show. Each stage fills in what stands below it; `instrument` grows with all of
-// them.
-struct Assembly {
-    explicit Assembly(const InstrumentDescription& description);
+// Ends a train in this plane, unless it ends there already.
+void end_in(PlacedSurfaces& train, const PlacedSurface& plane);
 
-    void lay_out();                    // 1: focal lengths, and where the parts stand along the axis
-    void assemble_imaging();           // 2: the train from specimen to detector
-    void measure_imaging();            //    and what it does, by tracing
-    void assemble_ring();              // 3: the train from the ring light to the specimen
-    void assemble_illuminator();       //   or from the disc
-    double ring_emission_sine() const; //  and into what cone the ring shines
-    void reduce();                     // 4: the constants of the trace
-    void turn_round();                 //    and the same for light the other way
-    void furnish();                    // 5: the elements as they stand in the room, folded
+// A plate of glass between two planes; `medium` on both sides.
+PlacedSurfaces plate(const InstrumentDescription& description, const Pose& first, double thickness, const Medium& glass,
+                     const Medium& medium, std::optional<double> semi_diameter, const std::string& name);
+PlacedSurface mirror_plane(const SpectralIndex& medium, const Pose& pose, std::optional<double> semi_diameter,
+                           std::string what);
 
-    // A plate of glass between two planes; `medium` on both sides.
-    Part plate(const Pose& first, double thickness, const Medium& glass, const Medium& medium,
-               std::optional<double> semi_diameter, const std::string& name) const;
-    PlacedSurface mirror_plane(const Pose& pose, std::optional<double> semi_diameter, std::string name) const;
-
-    // What stands in the infinity space of one train, in the order of its light.
-    struct Inserted {
-        double distance = 0;
-        Part surfaces;
-    };
-    struct Fold {
-        FoldMirror::Path path;
-        double distance;
-        PlacedSurface mirror; // unfolded
-    };
-    void add_fold(const FoldMirror& fold, const Pose& axis, std::vector<Inserted>& into);
-    std::string key_of(const FoldMirror& fold) const;               // of its distance, for messages
-    std::vector<const Fold*> folds_of(FoldMirror::Path path) const; // by distance
-
-    const InstrumentDescription& description;
-    const Spectrum& spectrum;
-    const BeamSplitter& splitter;
-    SpectralIndex air;
-    Instrument instrument{};
-    FirstOrder& first_order = instrument.first_order;
-    physics::f64::Instrument& constants = instrument.constants;
-
-    // 1
-    Prescription objective_lens; // with its immersion and stop
-    SpectralIndex object_index;  // of the medium over the specimen
-    Part straight_objective;     // without placements, its first vertex at the origin
-    Part straight_tube_lens;
-    Part cover;                 // glass
-    double field_half_side = 0; // of the detector, in the object
-    double field_half_diagonal = 0;
-    double detector_distance = 0; // from the tube lens' last vertex
-    double objective_front = 0;   // heights of its vertices
-    double back = 0;
-    Pose front; // frame in which the imaging train is entered
-    // 2
-    Part objective;
-    Part tube_lens;
-    double splitter_distance = 0; // behind the objective
-    double splitter_height = 0;
-    Pose splitter_pose;
-    double half_size = 0;  // of the cube
-    Part splitter_imaging; // its surfaces in the imaging train
-    std::vector<Fold> folds;
-    Pose detector_pose;
-    Part imaging_train;
-    std::vector<physics::f64::Surface> imaging_surfaces;
-    std::optional<std::size_t> aperture_stop; // of the objective's surfaces
-    Imaging imaging;
-    // 3
-    Part illuminator;
-    Part illumination_train;
-    double aimed_sine = 1; // of the cone that the source must fill
-};
+// A fold mirror of the description on an axis whose origin is at the mirror.
+Fold place_fold(const FoldMirror& mirror, const SpectralIndex& air, const Pose& axis);
+std::string distance_key(const InstrumentDescription& description, const FoldMirror& mirror); // for messages
 
 } // namespace vkfv::optics

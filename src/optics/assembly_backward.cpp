@@ -1,7 +1,6 @@
 // The instrument with its light turned round, for paths that start at the detector.
 #include "optics/assembly.hpp"
 
-#include "core/units.hpp"
 #include "optics/first_order.hpp"
 
 #include <algorithm>
@@ -15,10 +14,10 @@ using physics::f64::Surface;
 
 namespace {
 
-constexpr double outside_margin = 1.02; // outlines are searched in finite places: see apertures.cpp
+constexpr double outside_margin = 1.02; // outlines are searched at finitely many places: see apertures.cpp
 constexpr double inside_margin = 0.99;
-constexpr double inside_share =
-    0.97; // of the gate on the axis, that the sure gate may shrink to towards the field's edge
+// Towards the field's edge the region from which all light comes may shrink to this share of its size on the axis.
+constexpr double inside_share = 0.97;
 
 // Where the light of an outline's rim lands on the detector, and its slope there.
 struct Rim {
@@ -59,84 +58,52 @@ std::pair<double, double> crossings(const Outline& outline, double curvature) {
     return {least, most};
 }
 
-} // namespace
+// The exit pupil as the detector sees it: where chief rays come from, and the widest cone about them.
+struct ExitPupil {
+    double per_position = 0; // slope of the chief ray over its position on the detector, 1/mm
+    double radius = 0;       // of slopes about it
+};
 
-void Assembly::turn_round() {
-    TurnedInstrument turned;
-    auto& optics = turned.optics;
-    constexpr double rounding = 1e-12; // mm
-    const PlacedSurface exit_plane = dummy_plane(object_index, front.half_turn(), "front vertex' plane");
-
-    // Detector to specimen.
-    Part to_specimen = reversed(imaging_train);
-    const Surface to_exit = transfer_between(to_specimen.back().pose, exit_plane);
-    if (is_displaced(to_exit) || std::abs(to_exit.distance) > rounding) {
-        to_specimen.push_back(exit_plane);
-    }
-    link(to_specimen, detector_pose.half_turn());
-
-    // Specimen to source, whose outline is the last surface.
-    Part to_source = reversed(illumination_train);
-    PlacedSurface source = dummy_plane(air, instrument.source_pose.half_turn(), "source");
-    source.surface.flags |= physics::f64::SURFACE_CLIPPED;
-    source.surface.semi_diameter_squared = description.source_radius * description.source_radius;
-    to_source.push_back(source);
-    link(to_source, front);
-
-    turned.surfaces = surfaces_of(to_specimen);
-    const std::vector<Surface> source_surfaces = surfaces_of(to_source);
-    turned.surfaces.insert(turned.surfaces.end(), source_surfaces.begin(), source_surfaces.end());
-    turned.constants = constants;
-    turned.constants.illumination_count = static_cast<int>(to_specimen.size());
-    turned.constants.imaging_first = turned.constants.illumination_count;
-    turned.constants.imaging_count = static_cast<int>(to_source.size());
-
-    // The exit pupil: where chief rays at the detector come from, and the widest cone about them.
-    const double field_radius = 1.05 * field_half_diagonal;
+ExitPupil exit_pupil(const Imaging& imaging, double field_half_side, double field_radius) {
     glm::dvec2 mean_position(0);
     glm::dvec2 mean_slope(0);
     for (const Rim& rim : rims_at_detector(imaging, outline_at(imaging, {field_half_side, 0}))) {
         mean_position += rim.position;
         mean_slope += rim.slope;
     }
-    const double per_position = glm::dot(mean_slope, mean_position) / glm::dot(mean_position, mean_position);
+    ExitPupil pupil;
+    pupil.per_position = glm::dot(mean_slope, mean_position) / glm::dot(mean_position, mean_position);
     constexpr int field_points = 12;
     for (const glm::dvec2& direction : search_directions(imaging.symmetric)) {
         for (int i = 0; i <= field_points; ++i) {
             for (const Rim& rim :
                  rims_at_detector(imaging, outline_at(imaging, direction * (field_radius * i / field_points)))) {
-                optics.pupil_radius = std::max(optics.pupil_radius,
-                                               outside_margin * glm::length(rim.slope - per_position * rim.position));
+                pupil.radius =
+                    std::max(pupil.radius, outside_margin * glm::length(rim.slope - pupil.per_position * rim.position));
             }
         }
     }
-    // Half a turn about x and light the other way turn (x, y) into (x, -y) and slopes (s, t) into (-s, t): the pupil's
-    // crossing, slope - per_position * position, changes its sign alone.
-    optics.pupil_position = per_position;
+    return pupil;
+}
 
-    // The source as the specimen sees it.
-    const RayTransfer whole = free_space(first_order.working_distance, object_index.centre)
-                                  .then(free_space(source_surfaces.front().distance))
-                                  .then(transfer_of_train(source_surfaces));
-    optics.source_position = whole.a / (whole.b * object_index.centre);
-    optics.object_distance = first_order.working_distance;
-    const bool straight =
-        std::ranges::none_of(source_surfaces, [](const Surface& surface) { return is_displaced(surface); });
-    const Imaging seen = {.train = source_surfaces,
-                          .working_distance = first_order.working_distance,
-                          .detector_distance = 0,
-                          .pupil_curvature = optics.source_position,
-                          .symmetric = straight};
-    constexpr int fine_field_points = 48;
-    const double seen_radius = field_radius + description.greatest_defocus;
-    const double on_axis = crossings(outline_at(seen, {0, 0}), optics.source_position).first;
+// The source as points of the specimen see it, as crossings of their rays.
+struct SeenSource {
+    double outer = 0;        // no light comes from outside this
+    double inner = 0;        // all light comes from inside this
+    double inner_radius = 0; // mm, of the field in which `inner` holds
+};
+
+SeenSource seen_source(const Imaging& seen, double seen_radius) {
+    constexpr int field_points = 48;
+    const double on_axis = crossings(outline_at(seen, {0, 0}), seen.pupil_curvature).first;
+    double outer = 0;
     double inner = on_axis;
-    int sure_points = fine_field_points;
-    for (const glm::dvec2& direction : search_directions(straight)) {
-        for (int i = 0; i <= fine_field_points; ++i) {
+    int sure_points = field_points;
+    for (const glm::dvec2& direction : search_directions(seen.symmetric)) {
+        for (int i = 0; i <= field_points; ++i) {
             const auto [least, most] =
-                crossings(outline_at(seen, direction * (seen_radius * i / fine_field_points)), optics.source_position);
-            optics.source_outer = std::max(optics.source_outer, outside_margin * most);
+                crossings(outline_at(seen, direction * (seen_radius * i / field_points)), seen.pupil_curvature);
+            outer = std::max(outer, outside_margin * most);
             if (least < inside_share * on_axis) {
                 sure_points = std::min(sure_points, i - 1);
             } else if (i <= sure_points) {
@@ -144,11 +111,71 @@ void Assembly::turn_round() {
             }
         }
     }
+    return {.outer = outer,
+            .inner = sure_points < 0 ? 0 : inside_margin * inner,
+            .inner_radius = inside_margin * seen_radius * std::max(sure_points, 0) / field_points};
+}
+
+PlacedSurfaces detector_to_specimen(const AxialLayout& layout, const ImagingTrain& imaging) {
+    PlacedSurfaces train = reversed(imaging.train);
+    end_in(train, dummy_plane(layout.object_index, layout.front.half_turn(), "front vertex' plane"));
+    link(train, imaging.detector_pose.half_turn());
+    return train;
+}
+
+// The source's outline is the last surface.
+PlacedSurfaces specimen_to_source(const InstrumentDescription& description, const AxialLayout& layout,
+                                  const Illumination& illumination) {
+    PlacedSurfaces train = reversed(illumination.train);
+    PlacedSurface source = dummy_plane(layout.air, illumination.source_pose.half_turn(), "source");
+    source.surface.flags |= physics::f64::SURFACE_CLIPPED;
+    source.surface.semi_diameter_squared = description.source_radius * description.source_radius;
+    train.push_back(source);
+    link(train, layout.front);
+    return train;
+}
+
+} // namespace
+
+TurnedInstrument turn_round(const InstrumentDescription& description, const AxialLayout& layout,
+                            const ImagingTrain& imaging, const Illumination& illumination,
+                            const Instrument& instrument) {
+    const std::vector<Surface> to_specimen = surfaces_of(detector_to_specimen(layout, imaging));
+    const std::vector<Surface> to_source = surfaces_of(specimen_to_source(description, layout, illumination));
+    TurnedInstrument turned;
+    turned.surfaces = to_specimen;
+    turned.surfaces.insert(turned.surfaces.end(), to_source.begin(), to_source.end());
+    turned.constants = instrument.constants;
+    turned.constants.illumination_count = static_cast<int>(to_specimen.size());
+    turned.constants.imaging_first = turned.constants.illumination_count;
+    turned.constants.imaging_count = static_cast<int>(to_source.size());
+
+    const double field_radius = 1.05 * layout.field_half_diagonal;
+    const ExitPupil pupil = exit_pupil(imaging.imaging, layout.field_half_side, field_radius);
+    auto& optics = turned.optics;
+    optics.pupil_radius = pupil.radius;
+    // Half a turn about x and light the other way turn (x, y) into (x, -y) and slopes (s, t) into (-s, t): the pupil's
+    // crossing, slope - per_position * position, changes its sign alone.
+    optics.pupil_position = pupil.per_position;
+
+    const RayTransfer whole = free_space(layout.working_distance, layout.object_index.centre)
+                                  .then(free_space(to_source.front().distance))
+                                  .then(transfer_of_train(to_source));
+    optics.source_position = whole.a / (whole.b * layout.object_index.centre);
+    optics.object_distance = layout.working_distance;
+    const SeenSource seen = seen_source({.train = to_source,
+                                         .working_distance = layout.working_distance,
+                                         .detector_distance = 0,
+                                         .pupil_curvature = optics.source_position,
+                                         .symmetric = !has_displaced(to_source)},
+                                        field_radius + description.greatest_defocus);
+    optics.source_outer = seen.outer;
     // Other wavelengths have other rims, and losses must be traced.
-    const bool nothing_sure = !spectrum.monochromatic() || (instrument.features & physics::f64::FEATURE_LOSSES) != 0;
-    optics.source_inner = nothing_sure || sure_points < 0 ? 0 : inside_margin * inner;
-    optics.inner_field = inside_margin * seen_radius * std::max(sure_points, 0) / fine_field_points;
-    instrument.turned = std::move(turned);
+    const bool nothing_sure =
+        !description.spectrum.monochromatic() || (instrument.features & physics::f64::FEATURE_LOSSES) != 0;
+    optics.source_inner = nothing_sure ? 0 : seen.inner;
+    optics.inner_field = seen.inner_radius;
+    return turned;
 }
 
 Instrument turned_round(const Instrument& instrument) {

@@ -1,24 +1,19 @@
 #include "optics/assembly.hpp"
 
-#include "core/units.hpp"
-#include "optics/first_order.hpp"
-
-#include <fmt/format.h>
-
-#include <algorithm>
-#include <cmath>
+#include <iterator>
 #include <utility>
 
 namespace vkfv::optics {
 
 namespace {
 
-Element make_element(Element::Kind kind, const PlacedSurface& placed, const char* part) {
+using Kind = Element::Kind;
+
+Element make_element(Kind kind, const PlacedSurface& placed, Part part) {
     Element result;
-    result.kind = (placed.surface.flags & physics::f64::SURFACE_IDEAL_LENS) != 0 ? Element::Kind::ideal_lens
-                  : kind == Element::Kind::surface && placed.surface.index_before == placed.surface.index_after
-                      ? Element::Kind::stop
-                      : kind;
+    result.kind = (placed.surface.flags & physics::f64::SURFACE_IDEAL_LENS) != 0 ? Kind::ideal_lens
+                  : kind == Kind::surface && placed.surface.index_before == placed.surface.index_after ? Kind::stop
+                                                                                                       : kind;
     result.surface = placed.surface;
     result.pose = placed.pose;
     result.name = placed.name;
@@ -26,75 +21,90 @@ Element make_element(Element::Kind kind, const PlacedSurface& placed, const char
     return result;
 }
 
+void add_part(std::vector<Element>& elements, const PlacedSurfaces& surfaces, Part part) {
+    for (const PlacedSurface& placed : surfaces) {
+        elements.push_back(make_element(Kind::surface, placed, part));
+    }
+}
+
+// In a mirror's space stands what lies behind it in the light's direction, for the illumination what lies
+// before.
+void fold_back(std::vector<Element>& elements, std::size_t first, const Pose& mirror) {
+    for (std::size_t i = first; i < elements.size(); ++i) {
+        elements[i].pose = elements[i].pose.mirrored_in(mirror);
+    }
+}
+
+// From the source to the splitter, folded at that too.
+FoldedElements fold_illumination(const InstrumentDescription& description, const PlacedSplitter& splitter,
+                                 const Illumination& illumination) {
+    FoldedElements folded = {.elements = {}, .source_pose = illumination.source_pose};
+    add_part(folded.elements, illumination.illuminator, Part::illuminator);
+    for (const Fold& mirror : illumination.folds) { // from the illuminator on: each shows all before it
+        fold_back(folded.elements, 0, mirror.mirror.pose);
+        folded.source_pose = folded.source_pose.mirrored_in(mirror.mirror.pose);
+        folded.elements.push_back(make_element(Kind::mirror, mirror.mirror, Part::fold_mirror));
+    }
+    if (description.splitter.kind == BeamSplitter::Kind::cube) {
+        PlacedSurface face = splitter.surfaces.front();
+        face.pose = downward(splitter.height + splitter.half_size);
+        add_part(folded.elements, {face}, Part::beam_splitter);
+    }
+    fold_back(folded.elements, 0, splitter.pose);
+    folded.source_pose = folded.source_pose.mirrored_in(splitter.pose);
+    return folded;
+}
+
+std::vector<Element> splitter_elements(const InstrumentDescription& description, const AxialLayout& layout,
+                                       const PlacedSplitter& placed) {
+    const BeamSplitter& splitter = description.splitter;
+    PlacedSurface coating = mirror_plane(layout.air, placed.pose, splitter.semi_diameter, "beam splitter's coating");
+    if (splitter.kind == BeamSplitter::Kind::plate) {
+        coating = placed.surfaces.front();
+    } else if (splitter.kind == BeamSplitter::Kind::cube) {
+        const SpectralIndex glass = spectral_index(splitter.glass, description.spectrum);
+        coating.surface.index_before = coating.surface.index_after = glass.centre;
+        coating.surface.dispersion_before = coating.surface.dispersion_after = glass.dispersion;
+    }
+    coating.surface.reflectance = splitter.reflectance;
+    std::vector<Element> elements = {make_element(Kind::splitter, coating, Part::beam_splitter)};
+    if (splitter.kind == BeamSplitter::Kind::cube) {
+        elements.insert(elements.begin(), make_element(Kind::surface, placed.surfaces.front(), Part::beam_splitter));
+    }
+    if (splitter.kind != BeamSplitter::Kind::ideal) {
+        elements.push_back(make_element(Kind::surface, placed.surfaces.back(), Part::beam_splitter));
+    }
+    return elements;
+}
+
 } // namespace
 
-// Every element once, the light's way folded, heights over the plane of best focus.
-void Assembly::furnish() {
-    auto& elements = instrument.elements;
-    const auto add_part = [&](const Part& part, Element::Kind kind, const char* name) {
-        for (const PlacedSurface& placed : part) {
-            elements.push_back(make_element(kind, placed, name));
-        }
-    };
-    // In a mirror's space stands what lies behind it in the light's direction, for the illumination what lies
-    // before.
-    const auto fold_back = [&](std::size_t from, std::size_t to, const Pose& mirror) {
-        for (std::size_t i = from; i < to; ++i) {
-            elements[i].pose = elements[i].pose.mirrored_in(mirror);
-        }
-    };
+FoldedElements fold(const InstrumentDescription& description, const AxialLayout& layout, const ImagingTrain& imaging,
+                    const MeasuredImaging& measured, const Illumination& illumination) {
+    FoldedElements folded = {.elements = {}, .source_pose = illumination.source_pose};
     if (!description.ring) {
-        add_part(illuminator, Element::Kind::surface, "illuminator");
-        for (const Fold* fold :
-             folds_of(FoldMirror::Path::illumination)) { // from the illuminator on: each shows all before it
-            fold_back(0, elements.size(), fold->mirror.pose);
-            instrument.source_pose = instrument.source_pose.mirrored_in(fold->mirror.pose);
-            add_part({fold->mirror}, Element::Kind::mirror, "fold mirror");
-        }
-        if (splitter.kind == BeamSplitter::Kind::cube) {
-            PlacedSurface face = splitter_imaging.front();
-            face.pose = downward(splitter_height + half_size);
-            add_part({face}, Element::Kind::surface, "beam splitter");
-        }
-        fold_back(0, elements.size(), splitter_pose);
-        instrument.source_pose = instrument.source_pose.mirrored_in(splitter_pose);
+        folded = fold_illumination(description, imaging.splitter, illumination);
+        folded.source_pose.origin.z -= measured.best_focus_offset;
     }
-    add_part(cover, Element::Kind::surface, "cover glass");
-    add_part(objective, Element::Kind::surface, "objective");
-    PlacedSurface splitting = mirror_plane(splitter_pose, splitter.semi_diameter, "beam splitter's coating");
-    splitting.surface.reflectance = splitter.reflectance;
+    std::vector<Element>& elements = folded.elements;
+    add_part(elements, layout.cover, Part::cover_glass);
+    add_part(elements, imaging.objective, Part::objective);
+    std::ranges::move(splitter_elements(description, layout, imaging.splitter), std::back_inserter(elements));
     std::vector<std::pair<std::size_t, Pose>> mirrors; // first element behind, unfolded plane
-    if (splitter.kind == BeamSplitter::Kind::plate) {
-        Element coated = make_element(Element::Kind::splitter, splitter_imaging.front(), "beam splitter");
-        coated.surface.reflectance = splitter.reflectance;
-        elements.push_back(coated);
-        elements.push_back(make_element(Element::Kind::surface, splitter_imaging.back(), "beam splitter"));
-    } else if (splitter.kind == BeamSplitter::Kind::cube) {
-        const SpectralIndex glass = spectral_index(splitter.glass, spectrum);
-        splitting.surface.index_before = splitting.surface.index_after = glass.centre;
-        splitting.surface.dispersion_before = splitting.surface.dispersion_after = glass.dispersion;
-        elements.push_back(make_element(Element::Kind::surface, splitter_imaging.front(), "beam splitter"));
-        elements.push_back(make_element(Element::Kind::splitter, splitting, "beam splitter"));
-        elements.push_back(make_element(Element::Kind::surface, splitter_imaging.back(), "beam splitter"));
-    } else {
-        elements.push_back(make_element(Element::Kind::splitter, splitting, "beam splitter"));
+    for (const Fold& mirror : imaging.folds) {
+        elements.push_back(make_element(Kind::mirror, mirror.mirror, Part::fold_mirror));
+        mirrors.emplace_back(elements.size(), mirror.mirror.pose);
     }
-    for (const Fold* fold : folds_of(FoldMirror::Path::imaging)) {
-        add_part({fold->mirror}, Element::Kind::mirror, "fold mirror");
-        mirrors.emplace_back(elements.size(), fold->mirror.pose);
-    }
-    add_part(tube_lens, Element::Kind::surface, "tube lens");
-    PlacedSurface detector = dummy_plane(air, detector_pose, "detector");
-    add_part({detector}, Element::Kind::detector, "detector");
+    add_part(elements, imaging.tube_lens, Part::tube_lens);
+    const PlacedSurface detector = dummy_plane(layout.air, imaging.detector_pose, name_of(Part::detector));
+    elements.push_back(make_element(Kind::detector, detector, Part::detector));
     for (auto mirror = mirrors.rbegin(); mirror != mirrors.rend(); ++mirror) { // the farthest first
-        fold_back(mirror->first, elements.size(), mirror->second);
+        fold_back(elements, mirror->first, mirror->second);
     }
     for (Element& element : elements) {
-        element.pose.origin.z -= first_order.best_focus_offset;
+        element.pose.origin.z -= measured.best_focus_offset;
     }
-    if (!description.ring) {
-        instrument.source_pose.origin.z -= first_order.best_focus_offset;
-    }
+    return folded;
 }
 
 } // namespace vkfv::optics

@@ -19,7 +19,7 @@ using physics::f64::Surface;
 // less.
 constexpr double aperture_share = 1e-5;
 constexpr double aperture_rounding = 1e-5;
-// Of products of directions, likewise.
+// The same for products of direction cosines.
 constexpr double rounding = 1e-6;
 
 struct Vector {
@@ -43,14 +43,15 @@ struct Bundle {
     Affine index;
 };
 
-// Watches numbers that must not be positive if a ray is to go on, for the one that comes nearest to ruling the box out.
+// Collects the conditions that a ray must meet to go on, each a number that must not be positive, and remembers the one
+// that comes closest to excluding the whole box.
 class Conditions {
   public:
-    // False: it is positive in the whole box.
+    // False if the number is positive in the whole box, so that none of its rays goes on.
     bool require_not_positive(const Affine& number) {
         const double radius = number.radius();
         const double nearness = radius > 0 ? number.centre / radius : -std::numeric_limits<double>::infinity();
-        // What stops the middle first decides: what lies behind is not met by it.
+        // The first condition that stops the middle ray decides: that ray does not reach what lies behind.
         if (nearness_ <= 0 && nearness > nearness_) {
             nearness_ = nearness;
             nearest_ = number;
@@ -60,20 +61,20 @@ class Conditions {
     }
     bool require_within(const Affine& x, const Affine& y, const Affine& radius) {
         note_place(x, y);
-        // Within a circle is below each of its tangents; the one that the box is beyond most.
+        // A point inside a circle lies below all of its tangents. Test the tangent that the box exceeds most.
         const double length = std::hypot(x.centre, y.centre);
         const bool central = !(length > 0);
         return require_not_positive((central ? 1.0 : x.centre / length) * x + (central ? 0.0 : y.centre / length) * y -
                                     radius);
     }
-    // Where the bundle is, in any unit.
+    // Records where the bundle is, in any unit.
     void note_place(const Affine& x, const Affine& y) {
         for (std::size_t i = 0; i < spread_.size(); ++i) {
             spread_[i] = std::abs(x.slopes[i]) + std::abs(y.slopes[i]);
         }
     }
-    // What the undecided depends on: the bundle's place if it could not be bounded, else the nearest condition, whose
-    // rest goes with the squares of what the place depends on.
+    // How much each coordinate of the box contributes to its being undecided: through the bundle's place if that could
+    // not be bounded, else through the nearest condition, whose rest grows with the square of the place's slopes.
     std::array<double, Affine::coordinates> influences(bool bounded) const {
         const auto& spread = bounded ? spread_at_nearest_ : spread_;
         double squares = 0;
@@ -206,9 +207,9 @@ ApertureBounds bounds_of(const Surface& surface, double radius) {
     return bounds;
 }
 
-// From the conic's point, where the asphere is off by its polynomial alone: by the mean value theorem the way from
-// there is that height over the rate of approach at some point between. Where Newton's method (physics/asphere.glsl)
-// has arrived.
+// Starts at the point on the conic, from which the asphere differs by its polynomial only. By the mean value theorem
+// the remaining way is that height divided by the rate of approach at some point in between. This bounds the point at
+// which Newton's method (physics/asphere.glsl) has converged.
 Met meet_asphere(const Surface& surface, const Vector& direction, Vector point, const ApertureBounds& aperture) {
     const auto& [radius, heights, far_heights] = aperture;
     const double most_q = std::max(square(point.x).high() + square(point.y).high(), radius * radius);
@@ -218,7 +219,7 @@ Met meet_asphere(const Surface& surface, const Vector& direction, Vector point, 
     // Both points lie between these heights.
     double way = (std::max(heights.high, point.z.high()) - std::min(heights.low, point.z.low())) / direction.z.low();
     Affine rate;
-    constexpr int rounds = 2; // the second with the way that the first has found
+    constexpr int rounds = 2; // the second uses the way that the first found
     for (int round = 0; round < rounds; ++round) {
         // |r'^2 - r^2| between the two points.
         const double spread = way * (2 * outward.range().magnitude() + way * across_squared);
@@ -345,8 +346,8 @@ Passage pass_lens(Bundle& bundle, double power, const Affine& index_after, Condi
     return set_axial(bundle, conditions);
 }
 
-// Whether the lines come within a radius of the axis between two heights; all is times the direction's z, which may be
-// 0.
+// Whether the lines come within a radius of the axis between two heights. Everything is multiplied by the direction's
+// z, which may be 0.
 bool may_meet_within(const Bundle& bundle, double radius, const Range& heights, Conditions& conditions) {
     const Vector& direction = bundle.direction;
     const Affine way = anything_in(heights) - bundle.position.z;
@@ -354,7 +355,7 @@ bool may_meet_within(const Bundle& bundle, double radius, const Range& heights, 
                                      bundle.position.y * direction.z + way * direction.y, radius * direction.z);
 }
 
-// On either side. What rules out the nearer one does not count where the other remains.
+// On either side of the surface. A condition that excludes the near side does not count while the far side remains.
 bool may_meet(const Bundle& bundle, const ApertureBounds& aperture, Conditions& conditions) {
     const Conditions before = conditions;
     if (may_meet_within(bundle, aperture.radius, aperture.heights, conditions)) {
@@ -368,7 +369,7 @@ bool may_meet(const Bundle& bundle, const ApertureBounds& aperture, Conditions& 
 }
 
 EmissionCoordinate best_cut(const EmissionBox& box, const Conditions& conditions, bool bounded, bool is_turned) {
-    // A tangent says nothing of so wide an angle.
+    // Over so wide an angle a linear bound says nothing: halve it first.
     for (const EmissionCoordinate angle : {azimuth, turn}) {
         if (box[angle].radius() >= 1 && (angle != turn || is_turned)) {
             return angle;
@@ -439,7 +440,7 @@ std::optional<EmissionCoordinate> BundleTracer::may_pass(const EmissionBox& box)
             return std::nullopt;
         }
         if (!deflects(surface)) {
-            continue; // on the same lines
+            continue; // the rays stay on their lines
         }
         const Affine index_after = index_of(surface.index_after, surface.dispersion_after, x);
         if (is_lens(surface)) {

@@ -1,5 +1,5 @@
-// Bundles: all rays that a box of a disc source's positions, directions and wavelengths holds, led through a train at
-// once, to prove that none of them passes. Lengths in mm, angles in rad.
+// Bundles of rays: all rays of a disc source whose positions, directions and wavelengths lie in a box, traced through a
+// train at once to prove that none of them passes. Lengths in mm, angles in rad.
 #pragma once
 
 #include "optics/affine.hpp"
@@ -12,7 +12,7 @@
 
 namespace vkfv::optics {
 
-// What a ray of a disc source is told by, as places in EmissionBox and Affine::slopes.
+// The coordinates of a ray of a disc source: indices into EmissionBox and Affine::slopes.
 enum EmissionCoordinate : std::size_t {
     from_axis,   // mm, its start
     polar_angle, // rad, its direction against the normal
@@ -23,7 +23,7 @@ enum EmissionCoordinate : std::size_t {
 
 using EmissionBox = std::array<Range, Affine::coordinates>;
 
-// In the source's frame, starting on z = 0. `at` is a place of the box, each in [-1, 1].
+// A ray in the source's frame, starting on z = 0. `at`: its place in the box, each coordinate in [-1, 1].
 struct EmittedRay {
     physics::f64::Ray ray;
     double spectral = 0;
@@ -43,16 +43,16 @@ class BundleTracer {
     // `train` as in trace_through, entered source_distance behind the source; it must outlive this.
     BundleTracer(std::span<const physics::f64::Surface> train, double source_distance);
 
-    // None: no ray of the box passes all of the train, by the rays' own equations (physics/train.glsl) with apertures,
-    // total reflection and surfaces that are missed; losses at interfaces are not looked at. Else some may, and the
-    // coordinate that the box is best halved in to know more.
+    // None: it is proved that no ray of the box passes the whole train. The proof uses the equations of the trace
+    // (physics/train.glsl) with apertures, total reflection and missed surfaces, but not losses at interfaces.
+    // Otherwise some rays may pass, and the result is the coordinate in which halving the box tells most.
     std::optional<EmissionCoordinate> may_pass(const EmissionBox& box) const;
 
   private:
     std::span<const physics::f64::Surface> train_;
     double source_distance_;
     std::vector<std::optional<ApertureBounds>> apertures_; // none: unbounded
-    std::size_t first_displaced_;                          // up to there the turn about the normal does not matter
+    std::size_t first_displaced_;                          // before it, turning a ray about the normal changes nothing
 };
 
 } // namespace vkfv::optics

@@ -19,8 +19,8 @@ using physics::f64::PATH_ALIVE;
 using physics::f64::Ray;
 using physics::f64::Surface;
 
-// The cone may be this much wider than the largest angle that is found to pass: bounding it more closely takes longer,
-// and spares 4 % of the rays at most.
+// The cone may be this much wider than the largest angle found to pass. A closer bound takes longer to prove and saves
+// at most 4 % of the rays.
 constexpr double margin = 1.02;
 
 EmissionBox all_rays(bool symmetric, const DiscSource& source) {
@@ -34,8 +34,8 @@ EmissionBox all_rays(bool symmetric, const DiscSource& source) {
     return whole;
 }
 
-// Sine of the largest angle among a few samples of a box that pass, 0: none does. Light of the largest angle often
-// starts from the source's rim, in or against its direction.
+// Sine of the largest angle among a few sampled rays of a box that pass; 0 if none does. The ray with the largest angle
+// often starts at the source's rim, towards it or away from it.
 double sampled_sine(std::span<const Surface> train, double source_distance, const EmissionBox& box) {
     std::array<double, Affine::coordinates> at{};
     for (const double polar_place : {1.0, 0.0, -1.0}) {
@@ -56,7 +56,7 @@ double sampled_sine(std::span<const Surface> train, double source_distance, cons
 
 } // namespace
 
-// From each point of the source the rim is looked for about the direction that aims at the centre of the field stop.
+// From each point of the source, searches the rim around the direction that aims at the centre of the field stop.
 double largest_sampled_sine(std::span<const Surface> train, bool symmetric, const DiscSource& source,
                             const RayTransfer& towards_stop) {
     const auto largest_from = [&](glm::dvec2 position) {
@@ -87,8 +87,8 @@ double largest_sampled_sine(std::span<const Surface> train, bool symmetric, cons
     };
     double largest = 0;
     for (const glm::dvec2& direction : search_directions(symmetric)) {
-        // The angle grows towards the rim of what the pupil sees of the source, then light stops: two finer rounds
-        // about the best point so far close in on it to 1/50 of the source.
+        // The angle grows towards the rim of what the pupil sees of the source; beyond it no light passes. Two finer
+        // rounds around the best point so far find that rim to 1/50 of the source.
         constexpr int points = 6;
         double low = 0;
         double high = source.radius;
@@ -111,9 +111,9 @@ double largest_sampled_sine(std::span<const Surface> train, bool symmetric, cons
     return largest;
 }
 
-// Branch and bound: the box with the largest angle is halved until either no ray of it passes, by bounds over all of
-// it, or its largest angle is hardly larger than that of a ray known to pass. Whatever ends the search leaves no box
-// aside: the largest angle of all that are left bounds the light.
+// Branch and bound: the box with the largest angle is halved until either bounds prove that none of its rays passes, or
+// its largest angle is hardly larger than that of a ray known to pass. However the search ends, the largest angle of
+// all remaining boxes bounds the light.
 double emission_sine(std::span<const Surface> train, bool symmetric, const DiscSource& source, double known_sine) {
     constexpr int most_boxes = 10000; // 0.1 s; a microscope's illuminator takes 2000
     constexpr double thin = 1e-3;     // of the angle: no use in halving what is still left then
@@ -129,7 +129,7 @@ double emission_sine(std::span<const Surface> train, bool symmetric, const DiscS
         EmissionBox box = left.top();
         Range& angle = box[polar_angle];
         const bool is_thin = angle.low > (1 - thin) * angle.high && std::sin(angle.low) > sufficient;
-        // What is within the cone anyway need not be excluded.
+        // Rays inside the known cone need not be excluded.
         angle.low = std::max(angle.low, std::asin(std::min(1.0, sufficient)));
         const auto cut = tracer.may_pass(box);
         if (cut && is_thin) {

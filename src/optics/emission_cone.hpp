@@ -13,16 +13,16 @@ struct DiscSource {
     bool monochromatic = true; // else light has every x of physics::Light
 };
 
-// Sine of the largest angle against the source's normal among samples of its light that pass the train, 0: none does.
-// It may miss thin cones. `symmetric`: about the axis. `towards_stop` leads, paraxially, from the source to the field
-// stop, whose centre samples are taken about.
+// Sine of the largest angle to the source's normal among sampled rays that pass the train; 0 if none does. May miss
+// thin cones. `symmetric`: about the axis. `towards_stop`: the paraxial transfer from the source to the field stop,
+// around whose centre rays are sampled.
 double largest_sampled_sine(std::span<const physics::f64::Surface> train, bool symmetric, const DiscSource& source,
                             const RayTransfer& towards_stop);
 
-// Sine of the half-angle of a cone about the source's normal that no light leaves outside of and passes the train:
-// proved by bounds (BundleTracer), not found by samples. As narrow as that allows within a bounded time, but not
-// narrower than 1.02 times `known_sine`, of light that is known to pass (0: of none), which saves time. 1, the
-// hemisphere, where nothing narrower can be proved; 0: nothing passes.
+// Sine of the half-angle of a cone about the source's normal. No ray outside it passes the train, which bounds prove
+// (BundleTracer). As narrow as can be proved within a bounded time, but, to save time, not narrower than 1.02 times
+// `known_sine`, the sine of a ray known to pass (0: none is known). 1, the hemisphere, if nothing narrower can be
+// proved; 0 if nothing passes.
 double emission_sine(std::span<const physics::f64::Surface> train, bool symmetric, const DiscSource& source,
                      double known_sine);
 

@@ -19,7 +19,6 @@ using physics::f64::PATH_ALIVE;
 using physics::f64::Ray;
 using physics::f64::real3;
 using physics::f64::Surface;
-using Role = PrescribedSurface::Role;
 
 constexpr double airy_factor = 0.6098350; // first zero of J1 over 2 pi
 
@@ -216,67 +215,80 @@ PointImage point_image(const Imaging& imaging, const Outline& outline, double he
     return image;
 }
 
-ImageQuality image_quality(const InstrumentDescription& description, const Instrument& instrument) {
+namespace {
+
+// What all figures are measured on.
+struct Setting {
+    const InstrumentDescription& description;
+    const Instrument& instrument;
+    Imaging imaging;
+    std::vector<SpectralNode> nodes;     // of the spectrum
+    std::vector<SpectralNode> reference; // the reference wavelength alone
+    std::size_t stop = 0;                // of the imaging train's surfaces
+    std::size_t objective_end = 0;       // likewise, behind the objective
+    double height = 0;                   // of the plane of best focus
+    Outline on_axis{};
+};
+
+Setting setting_of(const InstrumentDescription& description, const Instrument& instrument) {
     const auto& constants = instrument.constants;
-    const FirstOrder& first_order = instrument.first_order;
-    const auto nodes = spectral_nodes(instrument);
-    ImageQuality quality;
-    quality.wavelength_um = 1 / std::sqrt(constants.spectrum_centre);
-
-    Prescription objective = description.objective;
-    objective.medium_before = description.immersion.value_or(objective.medium_before);
-    quality.objective = cardinal_points(objective, description.spectrum);
-    quality.tube_lens = cardinal_points(description.tube_lens, description.spectrum);
-
+    Setting setting{
+        .description = description,
+        .instrument = instrument,
+        .imaging = {},
+        .nodes = spectral_nodes(instrument),
+        .reference = {{.spectral = 0, .wavelength_um = 1 / std::sqrt(constants.spectrum_centre), .weight = 1}}};
     const auto first = instrument.surfaces.begin() + constants.imaging_first;
-    Imaging imaging{.train = {first, first + constants.imaging_count},
-                    .working_distance = first_order.working_distance,
-                    .detector_distance = constants.detector_distance,
-                    .pupil_curvature = constants.gate_position};
+    Imaging& imaging = setting.imaging;
+    imaging.train = {first, first + constants.imaging_count};
+    imaging.working_distance = instrument.first_order.working_distance;
+    imaging.detector_distance = constants.detector_distance;
+    imaging.pupil_curvature = constants.gate_position;
     imaging.symmetric = std::ranges::none_of(imaging.train, is_displaced);
     imaging.detector_index = imaging.train.back().index_after;
-
-    // Pupils, paraxially: the cover glass' two surfaces stand before the objective's.
+    // The cover glass' two surfaces stand before the objective's.
+    const auto& objective = description.objective.surfaces;
     const std::size_t objective_first = description.cover_glass ? 2 : 0;
-    const auto marked = std::ranges::find(objective.surfaces, Role::aperture_stop, &PrescribedSurface::role);
-    const std::size_t stop = objective_first + static_cast<std::size_t>(marked - objective.surfaces.begin());
+    const auto marked = std::ranges::find(objective, SurfaceRole::aperture_stop, &PrescribedSurface::role);
+    setting.stop = objective_first + static_cast<std::size_t>(marked - objective.begin());
+    setting.objective_end = objective_first + objective.size();
+    setting.height = instrument.first_order.best_focus_offset;
+    setting.on_axis = outline_at(imaging, {0, 0});
+    return setting;
+}
+
+// Paraxially.
+void find_pupils(ImageQuality& quality, const Setting& setting) {
+    const Imaging& imaging = setting.imaging;
     const std::span<const Surface> train = imaging.train;
+    const std::size_t stop = setting.stop;
     const double stop_radius = std::sqrt(train[stop].semi_diameter_squared);
-    const double object_index = first_order.object_index;
+    const double object_index = setting.instrument.first_order.object_index;
     const StopImage entrance = stop_seen_from_front(
-        free_space(first_order.working_distance, object_index).then(transfer_to_surface(train, stop)), object_index);
+        free_space(imaging.working_distance, object_index).then(transfer_to_surface(train, stop)), object_index);
     quality.entrance_pupil_height = entrance.distance;
     quality.entrance_pupil_radius = stop_radius * std::abs(entrance.magnification);
-    const std::size_t objective_end = objective_first + objective.surfaces.size();
-    const StopImage back = stop_seen_from_behind(transfer_of_train(train.subspan(stop, objective_end - stop)));
+    const StopImage back = stop_seen_from_behind(transfer_of_train(train.subspan(stop, setting.objective_end - stop)));
     quality.back_pupil_distance = back.distance;
     quality.back_pupil_radius = stop_radius * std::abs(back.magnification);
     const StopImage exit = stop_seen_from_behind(transfer_of_train(train.subspan(stop)), imaging.detector_index);
     quality.exit_pupil_distance = imaging.detector_distance - exit.distance;
     quality.exit_pupil_radius = stop_radius * std::abs(exit.magnification);
+}
 
-    const double absolute_magnification = std::abs(first_order.magnification);
-    const double wavelength = quality.wavelength_um * mm_per_um;
-    quality.airy_radius = airy_factor * wavelength / first_order.numerical_aperture;
-    quality.detector_airy_radius = quality.airy_radius * absolute_magnification;
-    quality.detector_depth_of_field = object_index * first_order.pixel_pitch / first_order.numerical_aperture;
-    quality.field_side = first_order.pixel_pitch * description.detector_pixels;
-    quality.field_diagonal = std::sqrt(2.0) * quality.field_side;
-
-    // Images in the plane of best focus.
-    const double height = first_order.best_focus_offset;
-    const Outline on_axis = outline_at(imaging, {0, 0});
-    quality.axis = point_image(imaging, on_axis, height, nodes);
-    quality.axis.relative_light = 1;
+// By the rim of the cone on the axis, in the plane of best focus.
+void measure_axial_cone(ImageQuality& quality, const Setting& setting) {
+    const std::span<const Surface> train = setting.imaging.train;
+    const Outline& on_axis = setting.on_axis;
     const double rim_rays = static_cast<double>(on_axis.radii.size());
     double sine_square = 0;
     double height_square = 0;
     glm::dvec2 beam_centre(0);
     glm::dvec2 cone_centre(0); // off the normal of a tilted detector
     for (std::size_t azimuth = 0; azimuth < on_axis.radii.size(); ++azimuth) {
-        const Ray rim = ray_from(imaging, {0, 0}, 0, on_axis.cosines(azimuth, on_axis.radii[azimuth]));
+        const Ray rim = ray_from(setting.imaging, {0, 0}, 0, on_axis.cosines(azimuth, on_axis.radii[azimuth]));
         const glm::dvec3 direction = trace_through(train, rim, 0).ray.direction;
-        const glm::dvec3 behind = trace_through(train.first(objective_end), rim, 0).ray.position;
+        const glm::dvec3 behind = trace_through(train.first(setting.objective_end), rim, 0).ray.position;
         sine_square += (direction.x * direction.x + direction.y * direction.y) / rim_rays;
         height_square += (behind.x * behind.x + behind.y * behind.y) / rim_rays;
         beam_centre += glm::dvec2(behind.x, behind.y) / rim_rays;
@@ -285,16 +297,118 @@ ImageQuality image_quality(const InstrumentDescription& description, const Instr
     quality.image_aperture = std::sqrt(sine_square - glm::dot(cone_centre, cone_centre));
     quality.beam_radius = std::sqrt(height_square - glm::dot(beam_centre, beam_centre));
     quality.f_number = 0.5 / quality.image_aperture;
+}
 
-    // Signed: the share by which the image of `point` lies farther out than magnification times its distance.
-    const std::vector<SpectralNode> reference = {{.spectral = 0, .wavelength_um = quality.wavelength_um, .weight = 1}};
-    const glm::dvec2 axis_centroid = point_image(imaging, on_axis, height, reference).centroid;
-    const auto real_magnification = [&](const Imaging& at, const Outline& outline, glm::dvec2 origin) {
-        const glm::dvec2 way = point_image(at, outline, height, reference).centroid - origin;
-        return glm::dot(way, outline.position) / glm::dot(outline.position, outline.position);
+// Signed, of the centroids at the reference wavelength, against that of the axis at `origin`.
+double real_magnification(const Setting& setting, const Imaging& imaging, const Outline& outline, glm::dvec2 origin) {
+    const glm::dvec2 way = point_image(imaging, outline, setting.height, setting.reference).centroid - origin;
+    return glm::dot(way, outline.position) / glm::dot(outline.position, outline.position);
+}
+
+struct Worst {
+    PointImage image;
+    Outline outline;
+    double distortion = 0; // share by which the image lies farther out than magnification times the point's distance
+};
+
+// The point with the largest spot.
+Worst worst_of(const Setting& setting, const std::vector<glm::dvec2>& points, glm::dvec2 axis_centroid) {
+    const Imaging& imaging = setting.imaging;
+    Worst worst;
+    for (const glm::dvec2& point : points) {
+        const Outline outline = outline_at(imaging, point);
+        PointImage image = point_image(imaging, outline, setting.height, setting.nodes);
+        image.relative_light = outline.area() / setting.on_axis.area();
+        if (worst.outline.radii.empty() || image.rms_spot > worst.image.rms_spot) {
+            worst = {image, outline,
+                     real_magnification(setting, imaging, outline, axis_centroid) /
+                             setting.instrument.first_order.magnification -
+                         1};
+        }
+    }
+    return worst;
+}
+
+void measure_colour(ImageQuality& quality, const Setting& setting, const Outline& edge) {
+    const FirstOrder& first_order = setting.instrument.first_order;
+    const TrainScene scene = setting.instrument.scene();
+    struct Colour {
+        double focus;
+        double height; // of the edge's image
     };
+    const auto at_share = [&](double share) {
+        const double spectral = physics::f64::draw_light(scene, setting.instrument.constants, share).spectral;
+        const Imaging tinted = at_wavelength(setting.imaging, spectral);
+        const glm::dvec2 origin = point_image(tinted, setting.on_axis, setting.height, setting.reference).centroid;
+        return Colour{.focus = best_focus(tinted, setting.on_axis),
+                      .height = real_magnification(setting, tinted, edge, origin) * first_order.field_edge};
+    };
+    const Colour shorter = at_share(0.05);
+    const Colour longer = at_share(0.95);
+    quality.axial_colour = longer.focus - shorter.focus;
+    quality.lateral_colour = (longer.height - shorter.height) / first_order.magnification;
+}
+
+// What clips the light, and pixels that do not go with the optics.
+std::vector<std::string> warnings_of(const ImageQuality& quality, const FirstOrder& first_order) {
+    std::vector<std::string> warnings;
+    if (const std::string lenses = list_of_lenses(quality.axis_clipping); !lenses.empty()) {
+        warnings.push_back("The cone on the axis is not limited by the aperture stop alone: " + lenses + ".");
+    }
+    if (quality.corner.relative_light < least_relative_light) {
+        if (const std::string lenses = list_of_lenses(quality.corner_clipping); !lenses.empty()) {
+            warnings.push_back("The cone from the field's corner is clipped by " + lenses + ".");
+        }
+    }
+    // Where one pixel's blur, n e / NA, is above the depth of field n lambda / NA^2, the detector decides what is in
+    // focus: it is coarser than the optics. Sampling all that they resolve takes half an Airy radius, which focus
+    // variation can do without. Below a tenth of the radius pixels add noise and memory and no detail.
+    constexpr double far_finer = 0.1;
+    if (quality.detector_depth_of_field > first_order.depth_of_field) {
+        const double wavelength = quality.wavelength_um * mm_per_um;
+        warnings.push_back(
+            fmt::format("The detector's pixel, {:.3g} um in the object, is coarser than the optics: above lambda / NA "
+                        "= {:.3g} um it decides the depth of field; sampling all that they resolve takes {:.3g} um.",
+                        first_order.pixel_pitch * um_per_mm, wavelength / first_order.numerical_aperture * um_per_mm,
+                        0.5 * quality.airy_radius * um_per_mm));
+    } else if (first_order.pixel_pitch < far_finer * quality.airy_radius) {
+        warnings.push_back(fmt::format(
+            "The detector's pixel, {:.3g} um in the object, is far finer than the optics resolve, whose Airy "
+            "radius is {:.3g} um: larger pixels would see as much, with less noise.",
+            first_order.pixel_pitch * um_per_mm, quality.airy_radius * um_per_mm));
+    }
+    return warnings;
+}
+
+} // namespace
+
+ImageQuality image_quality(const InstrumentDescription& description, const Instrument& instrument) {
+    const FirstOrder& first_order = instrument.first_order;
+    const Setting setting = setting_of(description, instrument);
+    const Imaging& imaging = setting.imaging;
+    ImageQuality quality;
+    quality.wavelength_um = setting.reference.front().wavelength_um;
+
+    Prescription objective = description.objective;
+    objective.medium_before = description.immersion.value_or(objective.medium_before);
+    quality.objective = cardinal_points(objective, description.spectrum);
+    quality.tube_lens = cardinal_points(description.tube_lens, description.spectrum);
+    find_pupils(quality, setting);
+
+    const double wavelength = quality.wavelength_um * mm_per_um;
+    quality.airy_radius = airy_factor * wavelength / first_order.numerical_aperture;
+    quality.detector_airy_radius = quality.airy_radius * std::abs(first_order.magnification);
+    quality.detector_depth_of_field =
+        first_order.object_index * first_order.pixel_pitch / first_order.numerical_aperture;
+    quality.field_side = first_order.pixel_pitch * description.detector_pixels;
+    quality.field_diagonal = std::sqrt(2.0) * quality.field_side;
+
+    measure_axial_cone(quality, setting);
+    quality.axis = point_image(imaging, setting.on_axis, setting.height, setting.nodes);
+    quality.axis.relative_light = 1;
+    const glm::dvec2 axis_centroid = point_image(imaging, setting.on_axis, setting.height, setting.reference).centroid;
     const double near_axis = 0.01 * first_order.field_edge; // distortion is 1e-4 of the edge's there
-    quality.magnification = real_magnification(imaging, outline_at(imaging, {near_axis, 0}), axis_centroid);
+    quality.magnification = real_magnification(setting, imaging, outline_at(imaging, {near_axis, 0}), axis_centroid);
 
     const double side = first_order.field_edge;
     const double diagonal = std::sqrt(2.0) * side;
@@ -304,75 +418,18 @@ ImageQuality image_quality(const InstrumentDescription& description, const Instr
         edges = {{side, 0}, {0, side}, {-side, 0}, {0, -side}};
         corners = {{side, side}, {-side, side}, {-side, -side}, {side, -side}};
     }
-    struct Worst {
-        PointImage image;
-        Outline outline;
-        double distortion = 0;
-    };
-    const auto worst_of = [&](const std::vector<glm::dvec2>& points) {
-        Worst worst;
-        for (const glm::dvec2& point : points) {
-            const Outline outline = outline_at(imaging, point);
-            PointImage image = point_image(imaging, outline, height, nodes);
-            image.relative_light = outline.area() / on_axis.area();
-            if (worst.outline.radii.empty() || image.rms_spot > worst.image.rms_spot) {
-                worst = {image, outline,
-                         real_magnification(imaging, outline, axis_centroid) / first_order.magnification - 1};
-            }
-        }
-        return worst;
-    };
-    const Worst edge = worst_of(edges);
-    const Worst corner = worst_of(corners);
+    const Worst edge = worst_of(setting, edges, axis_centroid);
+    const Worst corner = worst_of(setting, corners, axis_centroid);
     quality.edge = edge.image;
     quality.edge_distortion = edge.distortion;
     quality.corner = corner.image;
     quality.corner_distortion = corner.distortion;
-
     if (!description.spectrum.monochromatic()) {
-        const TrainScene scene = instrument.scene();
-        struct Colour {
-            double focus;
-            double height; // of the edge's image
-        };
-        const auto at_share = [&](double share) {
-            const Imaging tinted = at_wavelength(imaging, physics::f64::draw_light(scene, constants, share).spectral);
-            const glm::dvec2 origin = point_image(tinted, on_axis, height, reference).centroid;
-            return Colour{.focus = best_focus(tinted, on_axis),
-                          .height = real_magnification(tinted, edge.outline, origin) * side};
-        };
-        const Colour shorter = at_share(0.05);
-        const Colour longer = at_share(0.95);
-        quality.axial_colour = longer.focus - shorter.focus;
-        quality.lateral_colour = (longer.height - shorter.height) / first_order.magnification;
+        measure_colour(quality, setting, edge.outline);
     }
-
-    quality.axis_clipping = clipping(imaging, on_axis, instrument, stop);
-    quality.corner_clipping = clipping(imaging, corner.outline, instrument, stop);
-    if (const std::string lenses = list_of_lenses(quality.axis_clipping); !lenses.empty()) {
-        quality.warnings.push_back("The cone on the axis is not limited by the aperture stop alone: " + lenses + ".");
-    }
-    if (quality.corner.relative_light < least_relative_light) {
-        if (const std::string lenses = list_of_lenses(quality.corner_clipping); !lenses.empty()) {
-            quality.warnings.push_back("The cone from the field's corner is clipped by " + lenses + ".");
-        }
-    }
-    // Where one pixel's blur, n e / NA, is above the depth of field n lambda / NA^2, the detector decides what is in
-    // focus: it is coarser than the optics. Sampling all that they resolve takes half an Airy radius, which focus
-    // variation can do without. Below a tenth of the radius pixels add noise and memory and no detail.
-    constexpr double far_finer = 0.1;
-    if (quality.detector_depth_of_field > first_order.depth_of_field) {
-        quality.warnings.push_back(
-            fmt::format("The detector's pixel, {:.3g} um in the object, is coarser than the optics: above lambda / NA "
-                        "= {:.3g} um it decides the depth of field; sampling all that they resolve takes {:.3g} um.",
-                        first_order.pixel_pitch * um_per_mm, wavelength / first_order.numerical_aperture * um_per_mm,
-                        0.5 * quality.airy_radius * um_per_mm));
-    } else if (first_order.pixel_pitch < far_finer * quality.airy_radius) {
-        quality.warnings.push_back(fmt::format(
-            "The detector's pixel, {:.3g} um in the object, is far finer than the optics resolve, whose Airy "
-            "radius is {:.3g} um: larger pixels would see as much, with less noise.",
-            first_order.pixel_pitch * um_per_mm, quality.airy_radius * um_per_mm));
-    }
+    quality.axis_clipping = clipping(imaging, setting.on_axis, instrument, setting.stop);
+    quality.corner_clipping = clipping(imaging, corner.outline, instrument, setting.stop);
+    quality.warnings = warnings_of(quality, first_order);
     return quality;
 }
 

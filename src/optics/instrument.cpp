@@ -1,12 +1,9 @@
 #include "optics/instrument.hpp"
 
-#include "core/error.hpp"
 #include "optics/assembly.hpp"
-#include "optics/first_order.hpp"
 
 #include <fmt/format.h>
 
-#include <algorithm>
 #include <cmath>
 #include <utility>
 
@@ -18,182 +15,76 @@ namespace {
 
 // "imaging 3 (10x_0.28 3, aperture stop)": the place in the train, and in the prescription as its file
 // counts.
-void name_surfaces(std::vector<std::string>& names, const char* train, const Part& surfaces) {
+void name_surfaces(std::vector<std::string>& names, const char* train, const PlacedSurfaces& surfaces) {
     for (std::size_t i = 0; i < surfaces.size(); ++i) {
-        names.push_back(fmt::format("{} {} ({})", train, i + 1, surfaces[i].name));
+        names.push_back(fmt::format("{} {} ({})", train, i + 1, surfaces[i].name.text()));
     }
 }
 
-} // namespace
-
-void refuse(std::string key, std::string found, std::string expected, std::string remedy,
-            const std::filesystem::path& file) {
-    throw InputError({.where = {.file = file},
-                      .key = std::move(key),
-                      .found = std::move(found),
-                      .expected = std::move(expected),
-                      .remedy = std::move(remedy)});
+FirstOrder first_order_of(const InstrumentDescription& description, const AxialLayout& layout,
+                          const MeasuredImaging& measured, const Illumination& illumination) {
+    return {.efl_objective = layout.efl_objective,
+            .efl_tube_lens = layout.efl_tube_lens,
+            .numerical_aperture = measured.numerical_aperture,
+            .object_index = layout.object_index.centre,
+            .working_distance = layout.working_distance,
+            .magnification = layout.magnification,
+            .depth_of_field = measured.depth_of_field,
+            .pixel_pitch = description.detector_size / description.detector_pixels / std::abs(layout.magnification),
+            .best_focus_offset = measured.best_focus_offset,
+            .field_curvature = measured.field_curvature,
+            .field_curvature_corner = measured.field_curvature_corner,
+            .field_edge = layout.field_half_side,
+            .pupil_radius_in_source = illumination.pupil_radius_in_source,
+            .illumination_to_objective = illumination.to_objective,
+            .source_magnification = illumination.source_magnification};
 }
 
-void require_positive(double value, const char* key) {
-    if (!(value > 0 && std::isfinite(value))) {
-        refuse(key, fmt::format("{}", value), "a finite number > 0", "Correct it.");
-    }
-}
-
-Pose downward(double height) {
-    return Pose{}.along_z(height).half_turn();
-}
-
-Pose placed_at(const Placement& placement, const Pose& nominal) {
-    if (placement.global) {
-        Pose corner;
-        corner.origin = *placement.global;
-        return corner.turned(placement.change);
-    }
-    return nominal.turned(placement.change);
-}
-
-Surface transfer_between(const Pose& from, const PlacedSurface& to) {
-    Part part = {to};
-    link(part, from);
-    return part.front().surface;
-}
-
-void append(Part& train, const Part& part) {
-    train.insert(train.end(), part.begin(), part.end());
-}
-
-RayTransfer transfer_of(Part part) {
-    link(part, part.front().pose);
-    return transfer_of_train(surfaces_of(part));
-}
-
-Prescription with_stop(Prescription prescription, PrescribedSurface::Role role, std::optional<double> radius,
-                       const char* key) {
-    if (!radius) {
-        return prescription;
-    }
-    require_positive(*radius, key);
-    const auto found = std::ranges::find(prescription.surfaces, role, &PrescribedSurface::role);
-    if (found == prescription.surfaces.end()) {
-        refuse(key, fmt::format("{}", *radius),
-               fmt::format("a part with such a stop, which {} has not", prescription.name),
-               "Leave the radius out, or mark a surface with its role.", prescription.file);
-    }
-    found->semi_diameter = radius;
-    return prescription;
-}
-
-void require_surfaces(const Prescription& prescription, const char* key) {
-    if (prescription.surfaces.empty()) {
-        refuse(key, prescription.name, "a prescription with surfaces", "Add a [[surface]].", prescription.file);
-    }
-}
-
-void require_air(double index, const Prescription& prescription, const char* key) {
-    if (index != 1) {
-        refuse(key, prescription.name, "a part that stands in air",
-               "Remove medium_before and the medium of the last surface.", prescription.file);
-    }
-}
-
-Part Assembly::plate(const Pose& first, double thickness, const Medium& glass, const Medium& medium,
-                     std::optional<double> semi_diameter, const std::string& name) const {
-    Prescription prescription;
-    prescription.name = name;
-    prescription.medium_before = medium;
-    PrescribedSurface surface;
-    surface.semi_diameter = semi_diameter;
-    surface.thickness = thickness;
-    surface.medium_after = glass;
-    prescription.surfaces = {surface, surface};
-    prescription.surfaces.back().medium_after = medium;
-    Pose end;
-    return place_prescription(prescription, spectrum, description.interfaces, first, end);
-}
-
-PlacedSurface Assembly::mirror_plane(const Pose& pose, std::optional<double> semi_diameter, std::string name) const {
-    PlacedSurface mirror = dummy_plane(air, pose, std::move(name));
-    mirror.surface.flags |= physics::f64::SURFACE_MIRROR;
-    mirror.surface.reflectance = 1;
-    if (semi_diameter) {
-        mirror.surface.flags |= physics::f64::SURFACE_CLIPPED;
-        mirror.surface.semi_diameter_squared = *semi_diameter * *semi_diameter;
-    }
-    return mirror;
-}
-void Assembly::add_fold(const FoldMirror& fold, const Pose& axis, std::vector<Inserted>& into) {
-    require_positive(fold.semi_diameter, "fold_mirror.semi_diameter_mm");
-    const Pose pose = axis.turned({.tilt_z = fold.azimuth}).turned({.tilt_x = fold.incidence});
-    PlacedSurface mirror = mirror_plane(pose, fold.semi_diameter, "fold mirror");
-    mirror.surface.reflectance = fold.reflectance;
-    folds.push_back({fold.path, fold.distance, mirror});
-    into.push_back({fold.distance, {mirror}});
-}
-
-std::string Assembly::key_of(const FoldMirror& fold) const {
-    return fmt::format("fold_mirror[{}].distance_mm", &fold - description.fold_mirrors.data());
-}
-
-std::vector<const Assembly::Fold*> Assembly::folds_of(FoldMirror::Path path) const {
-    std::vector<const Fold*> chosen;
-    for (const Fold& fold : folds) {
-        if (fold.path == path) {
-            chosen.push_back(&fold);
-        }
-    }
-    std::ranges::sort(chosen, {}, [](const Fold* fold) { return fold->distance; });
-    return chosen;
-}
-
-Assembly::Assembly(const InstrumentDescription& given)
-    : description(given), spectrum(given.spectrum), splitter(given.splitter),
-      air(spectral_index(Medium::air(), given.spectrum)) {
-    instrument.flux = description.flux;
-    instrument.splitter_reflectance = description.ring ? 1 : splitter.reflectance;
-    instrument.splitter_transmittance = splitter.transmittance;
-    instrument.spectral_bins = spectrum.bins;
-}
-
-void Assembly::reduce() {
-    name_surfaces(instrument.surface_names, "illumination", illumination_train);
-    name_surfaces(instrument.surface_names, "imaging", imaging_train);
-
+physics::f64::Instrument constants_of(const InstrumentDescription& description, const AxialLayout& layout,
+                                      const ImagingTrain& imaging, const MeasuredImaging& measured,
+                                      const Illumination& illumination) {
+    const Spectrum& spectrum = description.spectrum;
+    physics::f64::Instrument constants{};
     constants.source_radius = description.source_radius;
-    constants.emission_sine = description.directed_emission ? aimed_sine : 1;
-    constants.magnification = first_order.magnification;
+    constants.source_distance = illumination.source_distance;
+    constants.ring = illumination.ring;
+    constants.emission_sine = description.directed_emission ? illumination.aimed_sine : 1;
+    constants.magnification = layout.magnification;
+    constants.detector_distance = imaging.imaging.detector_distance;
     constants.detector_half_size = 0.5 * description.detector_size;
-    constants.gate_position = imaging.pupil_curvature;
+    constants.detector_pixels = description.detector_pixels;
+    constants.gate_position = imaging.imaging.pupil_curvature;
     constants.gate_slope = 1;
     // A little more than the field: aberrations let the detector see past its paraxial edge.
-    constants.gate_radius =
-        gate_radius(imaging, 1.05 * field_half_diagonal, first_order.best_focus_offset - description.greatest_defocus,
-                    first_order.best_focus_offset + description.greatest_defocus);
+    constants.gate_radius = gate_radius(imaging.imaging, 1.05 * layout.field_half_diagonal,
+                                        measured.best_focus_offset - description.greatest_defocus,
+                                        measured.best_focus_offset + description.greatest_defocus);
     constants.spectrum_centre = spectrum.centre();
     constants.spectrum_half_width = spectrum.half_width();
     constants.spectral_bins = static_cast<int>(spectrum.bins.size());
-    constants.specimen_index = object_index.centre;
-    constants.specimen_dispersion = object_index.dispersion;
+    constants.specimen_index = layout.object_index.centre;
+    constants.specimen_dispersion = layout.object_index.dispersion;
     constants.illumination_first = 0;
-    constants.illumination_count = static_cast<int>(illumination_train.size());
+    constants.illumination_count = static_cast<int>(illumination.train.size());
     constants.imaging_first = constants.illumination_count;
-    constants.imaging_count = static_cast<int>(imaging_train.size());
-    constants.detector_pixels = description.detector_pixels;
-    instrument.surfaces = surfaces_of(illumination_train);
-    instrument.surfaces.insert(instrument.surfaces.end(), imaging_surfaces.begin(), imaging_surfaces.end());
-    instrument.features |= spectrum.monochromatic() ? 0u : physics::f64::FEATURE_SPECTRUM;
-    for (const Surface& surface : instrument.surfaces) {
-        using namespace physics::f64;
-        const bool lossy_mirror = (surface.flags & SURFACE_MIRROR) != 0 && surface.reflectance < 1;
-        instrument.features |= is_displaced(surface) ? FEATURE_PLACEMENT : 0u;
-        instrument.features |= (surface.flags & SURFACE_IDEAL_LENS) != 0 ? FEATURE_IDEAL_LENS : 0u;
-        instrument.features |=
-            (surface.flags & (SURFACE_FRESNEL | SURFACE_LAYER)) != 0 || lossy_mirror ? FEATURE_LOSSES : 0u;
-    }
+    constants.imaging_count = static_cast<int>(imaging.train.size());
+    return constants;
 }
 
-Instrument assemble(const InstrumentDescription& description) {
+std::uint32_t features_of(const InstrumentDescription& description, const std::vector<Surface>& surfaces) {
+    using namespace physics::f64;
+    std::uint32_t features = description.ring ? FEATURE_RING : 0u;
+    features |= description.spectrum.monochromatic() ? 0u : FEATURE_SPECTRUM;
+    for (const Surface& surface : surfaces) {
+        const bool lossy_mirror = (surface.flags & SURFACE_MIRROR) != 0 && surface.reflectance < 1;
+        features |= is_displaced(surface) ? FEATURE_PLACEMENT : 0u;
+        features |= (surface.flags & SURFACE_IDEAL_LENS) != 0 ? FEATURE_IDEAL_LENS : 0u;
+        features |= (surface.flags & (SURFACE_FRESNEL | SURFACE_LAYER)) != 0 || lossy_mirror ? FEATURE_LOSSES : 0u;
+    }
+    return features;
+}
+
+void check(const InstrumentDescription& description) {
     if (!description.ring) {
         require_positive(description.source_radius, "source.radius_mm");
     }
@@ -203,27 +94,73 @@ Instrument assemble(const InstrumentDescription& description) {
     require_positive(description.detector_pixels, "detector.pixels");
     require_surfaces(description.objective, "objective.prescription");
     require_surfaces(description.tube_lens, "tube_lens.prescription");
+}
 
-    Assembly assembly(description);
-    assembly.lay_out();
-    assembly.assemble_imaging();
-    assembly.measure_imaging();
-    if (description.ring) {
-        assembly.assemble_ring();
-    } else {
-        assembly.assemble_illuminator();
+// The instrument as the trace takes it; without its elements in the room and its turned form.
+Instrument reduce(const InstrumentDescription& description, const AxialLayout& layout, const ImagingTrain& imaging,
+                  const MeasuredImaging& measured, const Illumination& illumination) {
+    Instrument instrument;
+    instrument.surfaces = surfaces_of(illumination.train);
+    instrument.surfaces.insert(instrument.surfaces.end(), imaging.imaging.train.begin(), imaging.imaging.train.end());
+    name_surfaces(instrument.surface_names, "illumination", illumination.train);
+    name_surfaces(instrument.surface_names, "imaging", imaging.train);
+    instrument.spectral_bins = description.spectrum.bins;
+    instrument.constants = constants_of(description, layout, imaging, measured, illumination);
+    instrument.features = features_of(description, instrument.surfaces);
+    instrument.first_order = first_order_of(description, layout, measured, illumination);
+    instrument.flux = description.flux;
+    instrument.splitter_reflectance = description.ring ? 1 : description.splitter.reflectance;
+    instrument.splitter_transmittance = description.splitter.transmittance;
+    instrument.illumination_surfaces_before_splitter = illumination.surfaces_before_splitter;
+    instrument.imaging_surfaces_before_splitter = imaging.surfaces_before_splitter;
+    instrument.front_vertex_height = layout.working_distance - measured.best_focus_offset;
+    instrument.warnings = measured.warnings;
+    instrument.warnings.insert(instrument.warnings.end(), illumination.warnings.begin(), illumination.warnings.end());
+    return instrument;
+}
+
+} // namespace
+
+const char* name_of(Part part) {
+    switch (part) {
+    case Part::illuminator:
+        return "illuminator";
+    case Part::beam_splitter:
+        return "beam splitter";
+    case Part::fold_mirror:
+        return "fold mirror";
+    case Part::cover_glass:
+        return "cover glass";
+    case Part::objective:
+        return "objective";
+    case Part::tube_lens:
+        return "tube lens";
+    case Part::detector:
+        break;
     }
-    assembly.reduce();
+    return "detector";
+}
+
+Instrument assemble(const InstrumentDescription& description) {
+    check(description);
+    const AxialLayout layout = lay_out(description);
+    const ImagingTrain imaging = place_imaging(description, layout);
+    const MeasuredImaging measured = measure_imaging(description, layout, imaging);
+    const Illumination illumination =
+        description.ring ? place_ring(description, layout, measured) : place_illuminator(description, layout, imaging);
+    Instrument instrument = reduce(description, layout, imaging, measured, illumination);
     if (description.turned) {
         if (description.ring) {
             refuse("trace.estimator", "\"backward\"",
                    "a disc source; the backward estimator does not know the ring light",
                    "Use estimator = \"forward\".");
         }
-        assembly.turn_round();
+        instrument.turned = turn_round(description, layout, imaging, illumination, instrument);
     }
-    assembly.furnish();
-    return std::move(assembly.instrument);
+    FoldedElements folded = fold(description, layout, imaging, measured, illumination);
+    instrument.elements = std::move(folded.elements);
+    instrument.source_pose = folded.source_pose;
+    return instrument;
 }
 
 } // namespace vkfv::optics

@@ -111,6 +111,10 @@ struct FirstOrder {
     double source_magnification = 0;      // paraxial, of the source's image in the objective's pupil
 };
 
+// What an element belongs to.
+enum class Part { illuminator, beam_splitter, fold_mirror, cover_glass, objective, tube_lens, detector };
+const char* name_of(Part part); // "tube lens"
+
 // An element as it stands in the room, for drawing and for non-sequential tracing. Frame: the specimen's with its
 // origin on the axis in the plane of best focus (mm), the objective at rest; the splitter and the mirrors fold the
 // light's way.
@@ -118,9 +122,8 @@ struct Element {
     enum class Kind { surface, stop, mirror, splitter, ideal_lens, detector } kind = Kind::surface;
     physics::f64::Surface surface{}; // z of its frame: in the imaging direction, for the illuminator the light's
     Pose pose;
-    std::string name;
-    std::string
-        part; // "objective", "tube lens", "illuminator", "beam splitter", "cover glass", "fold mirror", "detector"
+    SurfaceName name;
+    Part part = Part::objective;
 };
 
 // The instrument with its light turned round, for the backward estimator (shaders/physics/backward.glsl): its

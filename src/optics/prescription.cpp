@@ -14,6 +14,20 @@
 
 namespace vkfv::optics {
 
+const char* name_of(SurfaceRole role) {
+    switch (role) {
+    case SurfaceRole::aperture_stop:
+        return "aperture stop";
+    case SurfaceRole::field_stop:
+        return "field stop";
+    case SurfaceRole::illumination_aperture:
+        return "illumination aperture";
+    case SurfaceRole::refracting:
+        break;
+    }
+    return "";
+}
+
 namespace {
 
 constexpr NumberRange index_range = {.minimum = 1, .maximum = 5};
@@ -180,9 +194,9 @@ PrescribedSurface read_surface(const TomlTable& table, const Media& media) {
     }
     surface.medium_after = medium_named(media, table, "medium");
     surface.semi_diameter = table.optional_number("semi_diameter_mm", NumberRange::positive());
-    if (const auto role = table.optional_choice("role", {"aperture stop", "field stop"})) {
-        surface.role =
-            *role == "aperture stop" ? PrescribedSurface::Role::aperture_stop : PrescribedSurface::Role::field_stop;
+    const std::string aperture_stop = name_of(SurfaceRole::aperture_stop);
+    if (const auto role = table.optional_choice("role", {aperture_stop, name_of(SurfaceRole::field_stop)})) {
+        surface.role = *role == aperture_stop ? SurfaceRole::aperture_stop : SurfaceRole::field_stop;
     }
     return surface;
 }
@@ -194,8 +208,8 @@ void read_surfaces(const std::vector<TomlTable>& tables, const Media& media, Pre
         auto surface = read_surface(tables[i], media);
         surface.thickness = i + 1 < tables.size() ? tables[i].number("thickness_mm", length_range)
                                                   : tables[i].optional_number("thickness_mm", length_range).value_or(0);
-        for (const auto& [role, seen] : {std::pair{PrescribedSurface::Role::aperture_stop, &has_aperture_stop},
-                                         std::pair{PrescribedSurface::Role::field_stop, &has_field_stop}}) {
+        for (const auto& [role, seen] : {std::pair{SurfaceRole::aperture_stop, &has_aperture_stop},
+                                         std::pair{SurfaceRole::field_stop, &has_field_stop}}) {
             if (surface.role == role && std::exchange(*seen, true)) {
                 tables[i].note("role", "one surface of this role", "Mark the one that limits the light.");
             }

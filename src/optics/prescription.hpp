@@ -26,6 +26,10 @@ struct CoordinateBreak {
     double thickness = 0;
 };
 
+// What a surface is there for. The illumination aperture stands at the source and is of no prescription.
+enum class SurfaceRole { refracting, aperture_stop, field_stop, illumination_aperture };
+const char* name_of(SurfaceRole role); // "aperture stop", as prescriptions write it; refracting: ""
+
 // One surface in the direction of the prescription. Lengths in mm.
 struct PrescribedSurface {
     std::vector<CoordinateBreak> breaks; // between the previous surface's thickness and this vertex, in order
@@ -36,7 +40,8 @@ struct PrescribedSurface {
     Medium medium_after;
     std::optional<double> semi_diameter; // none: unbounded
     std::optional<double> ideal_power;   // 1/mm: an ideal lens (physics::pass_ideal_lens) instead of an interface
-    enum class Role { refracting, aperture_stop, field_stop } role = Role::refracting;
+    using Role = SurfaceRole;
+    Role role = Role::refracting;
 };
 
 struct Prescription {

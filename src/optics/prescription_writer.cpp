@@ -112,15 +112,8 @@ std::string surface_text(const PrescribedSurface& surface, bool is_last) {
     if (surface.semi_diameter) {
         text += fmt::format("semi_diameter_mm = {}\n", *surface.semi_diameter);
     }
-    switch (surface.role) {
-    case PrescribedSurface::Role::aperture_stop:
-        text += "role = \"aperture stop\"\n";
-        break;
-    case PrescribedSurface::Role::field_stop:
-        text += "role = \"field stop\"\n";
-        break;
-    case PrescribedSurface::Role::refracting:
-        break;
+    if (surface.role != SurfaceRole::refracting) {
+        text += fmt::format("role = {}\n", toml_quoted(name_of(surface.role)));
     }
     return text;
 }

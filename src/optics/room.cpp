@@ -16,7 +16,7 @@ using Kind = Element::Kind;
 
 // Free radius (mm) of what no semi-diameter limits: wide of any beam in a microscope's infinity space.
 constexpr double unlimited_radius = 25;
-// A barrel leaves its lenses this much room (share and mm).
+// A barrel is wider than its lenses by this share and this length (mm).
 constexpr double barrel_share = 1.05;
 constexpr double barrel_gap = 0.5;
 
@@ -59,8 +59,8 @@ double free_radius(const Element& element, double detector_half_size) {
     return std::min(limit, reach(element.surface));
 }
 
-bool has_barrel(const std::string& part) {
-    return part == "objective" || part == "tube lens" || part == "illuminator";
+bool has_barrel(Part part) {
+    return part == Part::objective || part == Part::tube_lens || part == Part::illuminator;
 }
 
 void stand(physics::f64::Element& element, const Pose& pose) {
@@ -77,14 +77,14 @@ Room furnish(const Instrument& instrument) {
     Room room;
     const Pose& source = instrument.source_pose;
     room.source = {source.origin, source.axes[0], source.axes[1], source.axes[2]};
-    std::map<std::string, double> widest; // free radius of each part
+    std::map<Part, double> widest; // free radius of each part
     for (const optics::Element& element : instrument.elements) {
         double& radius = widest[element.part];
         radius = std::max(radius, free_radius(element, instrument.constants.detector_half_size));
     }
     for (const optics::Element& placed : instrument.elements) {
         if (placed.kind == Kind::stop && !is_limited(placed.surface)) {
-            continue; // an open stop is nothing
+            continue; // an open stop affects no ray
         }
         physics::f64::Element element{};
         element.surface = placed.surface;
@@ -94,13 +94,13 @@ Room furnish(const Instrument& instrument) {
         stand(element, placed.pose);
         const bool mounted = is_limited(placed.surface) || has_barrel(placed.part);
         element.outer_radius = mounted ? barrel_share * widest[placed.part] + barrel_gap : radius;
-        // A polynomial may turn anywhere beyond the aperture that it was made for.
+        // Beyond the aperture that it was designed for, a polynomial may turn anywhere.
         const bool aspheric = (placed.surface.flags & SURFACE_ASPHERIC) != 0;
         element.rim_radius = aspheric ? radius : std::min(element.outer_radius, reach(placed.surface));
         element.rim_height = asphere_sag(placed.surface, element.rim_radius * element.rim_radius).sag;
         element.transmittance = placed.kind == Kind::splitter ? instrument.splitter_transmittance : 1;
         room.elements.push_back(element);
-        room.names.push_back(fmt::format("{}: {}", placed.part, placed.name));
+        room.names.push_back(fmt::format("{}: {}", name_of(placed.part), placed.name.text()));
     }
     // A barrel from each part's first vertex to its last.
     for (std::size_t first = 0; first < instrument.elements.size();) {
@@ -118,7 +118,7 @@ Room furnish(const Instrument& instrument) {
             barrel.barrel_length = length;
             stand(barrel, start.pose);
             room.elements.push_back(barrel);
-            room.names.push_back(start.part + ": barrel");
+            room.names.push_back(fmt::format("{}: barrel", name_of(start.part)));
         }
         first = last + 1;
     }
@@ -130,7 +130,7 @@ Room::Box Room::bounds(std::size_t index) const {
     double low = std::min(0.0, element.rim_height);
     double high = std::max({0.0, element.rim_height, element.barrel_length});
     if ((element.surface.flags & physics::f64::SURFACE_ASPHERIC) != 0) {
-        constexpr int samples = 64; // a polynomial of degree 16 turns seldomer
+        constexpr int samples = 64; // more than a polynomial of degree 16 can turn
         for (int i = 1; i < samples; ++i) {
             const double r = element.rim_radius * i / samples;
             const double sag = physics::f64::asphere_sag(element.surface, r * r).sag;

@@ -1,5 +1,5 @@
-// The instrument's elements as the non-sequential trace takes them: with mounts and barrels, since light that finds its
-// own way must not find one past the lenses.
+// The instrument's elements as the non-sequential trace takes them: with mounts and barrels, so that no light passes
+// beside the lenses.
 #pragma once
 
 #include "optics/instrument.hpp"
@@ -25,7 +25,7 @@ struct Room {
 
 Room furnish(const Instrument& instrument);
 
-// The scene that physics::trace_nonsequential needs of the elements, on the host: each is tried.
+// The nearest element that a ray meets, for physics::trace_nonsequential on the host. Tries every element.
 physics::f64::ElementHit nearest_element(const Room& room, glm::dvec3 origin, glm::dvec3 direction, int left);
 
 } // namespace vkfv::optics

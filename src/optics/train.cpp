@@ -11,23 +11,19 @@ namespace {
 
 using physics::f64::Surface;
 
-std::string role_suffix(PrescribedSurface::Role role) {
-    switch (role) {
-    case PrescribedSurface::Role::aperture_stop:
-        return ", aperture stop";
-    case PrescribedSurface::Role::field_stop:
-        return ", field stop";
-    case PrescribedSurface::Role::refracting:
-        break;
-    }
-    return "";
-}
-
 double index_at(double centre, const physics::f64::Dispersion& dispersion, double spectral) {
     return centre + physics::f64::disperse(dispersion, spectral);
 }
 
 } // namespace
+
+std::string SurfaceName::text() const {
+    if (number == 0) {
+        return of;
+    }
+    const char* separator = role == SurfaceRole::refracting ? "" : ", ";
+    return fmt::format("{} {}{}{}", of, number, separator, name_of(role));
+}
 
 void set_interface(Surface& surface, const Interfaces& interfaces, double layer_index) {
     using namespace physics::f64;
@@ -60,8 +56,7 @@ std::vector<PlacedSurface> place_prescription(const Prescription& prescription, 
         const SpectralIndex after = spectral_index(prescribed.medium_after, spectrum);
         PlacedSurface placed;
         placed.pose = pose;
-        placed.role = prescribed.role;
-        placed.name = fmt::format("{} {}{}", prescription.name, i + 1, role_suffix(prescribed.role));
+        placed.name = {.of = prescription.name, .number = static_cast<int>(i) + 1, .role = prescribed.role};
         Surface& surface = placed.surface;
         surface.curvature = prescribed.curvature;
         surface.conic = prescribed.conic;
@@ -112,12 +107,12 @@ std::vector<PlacedSurface> reversed(const std::vector<PlacedSurface>& part) {
     return result;
 }
 
-PlacedSurface dummy_plane(const SpectralIndex& medium, const Pose& pose, std::string name) {
+PlacedSurface dummy_plane(const SpectralIndex& medium, const Pose& pose, std::string what) {
     PlacedSurface placed;
     placed.surface.index_before = placed.surface.index_after = medium.centre;
     placed.surface.dispersion_before = placed.surface.dispersion_after = medium.dispersion;
     placed.pose = pose;
-    placed.name = std::move(name);
+    placed.name.of = std::move(what);
     return placed;
 }
 
@@ -161,8 +156,8 @@ std::vector<Surface> surfaces_of(const std::vector<PlacedSurface>& train) {
     return surfaces;
 }
 
-std::optional<std::size_t> surface_with_role(const std::vector<PlacedSurface>& part, PrescribedSurface::Role role) {
-    const auto found = std::ranges::find(part, role, &PlacedSurface::role);
+std::optional<std::size_t> surface_with_role(const std::vector<PlacedSurface>& part, SurfaceRole role) {
+    const auto found = std::ranges::find(part, role, [](const PlacedSurface& placed) { return placed.name.role; });
     return found == part.end() ? std::nullopt : std::optional(static_cast<std::size_t>(found - part.begin()));
 }
 

@@ -21,12 +21,20 @@ struct Interfaces {
     double design_wavelength_um = 0.55;
 };
 
+// What a surface is; only text() makes words of it.
+struct SurfaceName {
+    std::string of; // the prescription's name, or what stands there: "fold mirror"
+    int number = 0; // in the prescription, from 1; 0: it is of none
+    SurfaceRole role = SurfaceRole::refracting;
+    std::string text() const; // "10x_0.28 3, aperture stop"
+    bool operator==(const SurfaceName&) const = default;
+};
+
 // A surface as the trace takes it, in the direction of the light, and where it stands.
 struct PlacedSurface {
     physics::f64::Surface surface{}; // its transfer from the previous vertex is set by link()
     Pose pose;
-    std::string name; // "10x_0.28 3, aperture stop"
-    PrescribedSurface::Role role = PrescribedSurface::Role::refracting;
+    SurfaceName name;
 };
 
 // The surfaces of a prescription, with the first vertex (before its coordinate breaks) at `first`. `end` becomes the
@@ -38,7 +46,7 @@ std::vector<PlacedSurface> place_prescription(const Prescription& prescription, 
 std::vector<PlacedSurface> reversed(const std::vector<PlacedSurface>& part);
 
 // An unbounded plane without effect, between equal media: where a train begins or ends in a frame of its own.
-PlacedSurface dummy_plane(const SpectralIndex& medium, const Pose& pose, std::string name);
+PlacedSurface dummy_plane(const SpectralIndex& medium, const Pose& pose, std::string what);
 
 // Sets each surface's transfer from the one before, the first one's from `entry`.
 void link(std::vector<PlacedSurface>& train, const Pose& entry);
@@ -51,7 +59,7 @@ std::vector<physics::f64::Surface> surfaces_of(const std::vector<PlacedSurface>&
 // Marks an interface between different media with what it reflects; between equal media it clears the mark.
 void set_interface(physics::f64::Surface& surface, const Interfaces& interfaces, double layer_index);
 
-std::optional<std::size_t> surface_with_role(const std::vector<PlacedSurface>& part, PrescribedSurface::Role role);
+std::optional<std::size_t> surface_with_role(const std::vector<PlacedSurface>& part, SurfaceRole role);
 
 // The scene that physics::trace_train needs on the host: monochromatic light unless bins are given.
 struct TrainScene {

@@ -23,8 +23,9 @@ using Way = std::vector<Meeting>;
 
 // The elements up to here are the illumination's alone.
 std::size_t imaging_begin(const std::vector<Element>& elements) {
-    const auto first = std::ranges::find_if(
-        elements, [](const Element& element) { return element.part == "cover glass" || element.part == "objective"; });
+    const auto first = std::ranges::find_if(elements, [](const Element& element) {
+        return element.part == optics::Part::cover_glass || element.part == optics::Part::objective;
+    });
     return static_cast<std::size_t>(first - elements.begin());
 }
 
@@ -45,7 +46,7 @@ Way illumination_way(const std::vector<Element>& elements, bool is_ring) {
     }
     std::size_t end = begin;
     if (is_ring) {
-        while (end < elements.size() && elements[end].part == "cover glass") {
+        while (end < elements.size() && elements[end].part == optics::Part::cover_glass) {
             ++end;
         }
     } else {
@@ -68,7 +69,7 @@ class RoomTracer {
             Stand stand{.element = static_cast<int>(meeting.element),
                         .reflects = meeting.reflects,
                         .is_ideal_lens = element.kind == Element::Kind::ideal_lens,
-                        .ahead = {element.surface, element.pose, "", {}},
+                        .ahead = {element.surface, element.pose, element.name},
                         .astern = {}};
             stand.astern = optics::reversed({stand.ahead}).front();
             for (optics::PlacedSurface* placed : {&stand.ahead, &stand.astern}) {

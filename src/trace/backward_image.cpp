@@ -2,6 +2,7 @@
 
 #include "core/units.hpp"
 #include "trace/lattice_generators.hpp"
+#include "trace/ledger.hpp"
 
 #include <algorithm>
 #include <bit>
@@ -91,7 +92,8 @@ Image BackwardImage::image() const {
     image.rays = plan_.rays_per_pixel() * sum_.values.size();
     image.detected = image.rays;
     image.ledger.emitted = flux_;
-    image.ledger.entries = {{"detected", detected, image.rays}, {"not followed backward", flux_ - detected, 0}};
+    image.ledger.entries = {plain_entry(Ledger::Status::detected, detected, image.rays),
+                            plain_entry(Ledger::Status::not_followed_backward, flux_ - detected, 0)};
     return image;
 }
 

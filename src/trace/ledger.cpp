@@ -9,36 +9,73 @@ namespace vkfv::trace {
 namespace {
 
 using namespace physics::f64;
+using Status = Ledger::Status;
+using Train = Ledger::Train;
 
-// The splitter's passes that a ray has behind it which ends at a surface: 0, 1 or 2.
-std::vector<std::size_t> splitter_passes(const optics::Instrument& instrument) {
-    const auto& constants = instrument.constants;
-    std::vector<std::size_t> passes;
-    for (int surface = 0; surface < static_cast<int>(instrument.surfaces.size()); ++surface) {
-        if (surface < constants.illumination_first + constants.illumination_count) {
-            const int place = surface - constants.illumination_first;
-            passes.push_back(place < instrument.illumination_surfaces_before_splitter ? 0 : 1);
-        } else {
-            const int place = surface - constants.imaging_first;
-            passes.push_back(place < instrument.imaging_surfaces_before_splitter ? 1 : 2);
-        }
-    }
-    return passes;
-}
+static_assert(static_cast<std::uint32_t>(Status::under_way) == PATH_ALIVE &&
+              static_cast<std::uint32_t>(Status::vignetted) == PATH_VIGNETTED &&
+              static_cast<int>(Status::not_aimed_at) == PATH_STATUS_COUNT);
 
-// Surfaces that a ray has met which ends at a surface, that one included.
-std::vector<int> crossings_up_to(const optics::Instrument& instrument) {
-    const auto& constants = instrument.constants;
-    std::vector<int> crossings;
-    for (int surface = 0; surface < static_cast<int>(instrument.surfaces.size()); ++surface) {
-        crossings.push_back(surface < constants.imaging_first
-                                ? surface - constants.illumination_first + 1
-                                : constants.illumination_count + surface - constants.imaging_first + 1);
+const char* name_of(Status status) {
+    switch (status) {
+    case Status::under_way:
+        return "under way";
+    case Status::detected:
+        return "detected";
+    case Status::beside_specimen:
+        return "beside the specimen";
+    case Status::outside_pupil:
+        return "escaped outside the pupil";
+    case Status::bounce_limit:
+        return "bounce limit";
+    case Status::beside_detector:
+        return "beside the detector";
+    case Status::numerical:
+        return "numerical";
+    case Status::absorbed:
+        return "absorbed by the specimen";
+    case Status::interaction_limit:
+        return "interaction limit";
+    case Status::vignetted:
+        return "vignetted";
+    case Status::missed:
+        return "missed";
+    case Status::totally_reflected:
+        return "totally reflected";
+    case Status::lost_in_reflection:
+        return "lost in reflection";
+    case Status::not_aimed_at:
+        return "not aimed at";
+    case Status::splitter_towards_specimen:
+        return "beam splitter, towards the specimen";
+    case Status::splitter_towards_detector:
+        return "beam splitter, towards the detector";
+    case Status::not_followed_backward:
+        break;
     }
-    return crossings;
+    return "not followed backward";
 }
 
 } // namespace
+
+Ledger::Entry plain_entry(Status status, double power, std::uint64_t rays) {
+    return {.name = name_of(status), .power = power, .rays = rays, .status = status};
+}
+
+std::optional<double> share_collected(const Ledger& ledger) {
+    double collected = 0;
+    double lost = 0;
+    for (const Ledger::Entry& entry : ledger.entries) {
+        const auto rays = static_cast<double>(entry.rays);
+        if (entry.status == Status::detected || entry.status == Status::beside_detector ||
+            entry.train == Train::imaging) {
+            collected += rays;
+        } else if (entry.status == Status::outside_pupil || entry.status == Status::bounce_limit) {
+            lost += rays;
+        }
+    }
+    return collected + lost > 0 ? std::optional(collected / (collected + lost)) : std::nullopt;
+}
 
 double Ledger::residual() const {
     double sum = 0;
@@ -53,37 +90,66 @@ Accounts::Accounts(const optics::Instrument& instrument, bool directed_scatter)
       left_{1.0, instrument.splitter_reflectance, instrument.splitter_reflectance * instrument.splitter_transmittance},
       pixels_(instrument.constants.detector_pixels), weighted_(directed_scatter) {
     const auto& constants = instrument.constants;
-    add_slots(instrument.surface_names, splitter_passes(instrument), crossings_up_to(instrument),
-              constants.illumination_count, constants.illumination_count + constants.imaging_count);
+    add_slots(surfaces_of(instrument), constants.illumination_count,
+              constants.illumination_count + constants.imaging_count);
 }
 
 Accounts::Accounts(const optics::Instrument& instrument, const std::vector<std::string>& element_names)
     : flux_(instrument.flux), aimed_(instrument.constants.emission_sine * instrument.constants.emission_sine),
       pixels_(instrument.constants.detector_pixels) {
-    add_slots(element_names, std::vector<std::size_t>(element_names.size(), 0),
-              std::vector<int>(element_names.size(), 0), 0, 0);
+    std::vector<Surface> elements;
+    for (const std::string& name : element_names) {
+        elements.push_back({.name = name, .index = static_cast<int>(elements.size())});
+    }
+    add_slots(elements, 0, 0);
 }
 
-void Accounts::add_slots(const std::vector<std::string>& names, const std::vector<std::size_t>& passes,
-                         const std::vector<int>& crossings, int illumination, int both) {
-    const std::array<Slot, PATH_VIGNETTED> plain = {{
-        {"under way", 0, 0},
-        {"detected", 2, both},
-        {"beside the specimen", 1, illumination},
-        {"escaped outside the pupil", 1, illumination},
-        {"bounce limit", 1, illumination},
-        {"beside the detector", 2, both},
-        {"numerical", 1, illumination},
-        {"absorbed by the specimen", 1, illumination},
-        {"interaction limit", 1, 0},
+std::vector<Accounts::Surface> Accounts::surfaces_of(const optics::Instrument& instrument) {
+    const auto& constants = instrument.constants;
+    std::vector<Surface> surfaces;
+    for (const std::string& name : instrument.surface_names) {
+        const int surface = static_cast<int>(surfaces.size());
+        const bool illuminates = surface < constants.imaging_first;
+        const int place = surface - (illuminates ? constants.illumination_first : constants.imaging_first);
+        const bool before_splitter = place < (illuminates ? instrument.illumination_surfaces_before_splitter
+                                                          : instrument.imaging_surfaces_before_splitter);
+        const std::size_t passes = illuminates ? 0 : 1;
+        surfaces.push_back({.name = name,
+                            .train = illuminates ? Train::illumination : Train::imaging,
+                            .index = place,
+                            .splitter_passes = before_splitter ? passes : passes + 1,
+                            .crossings = illuminates ? place + 1 : constants.illumination_count + place + 1});
+    }
+    return surfaces;
+}
+
+void Accounts::add_slots(const std::vector<Surface>& surfaces, int illumination, int both) {
+    struct Plain {
+        std::size_t splitter_passes;
+        int crossings;
+    };
+    const std::array<Plain, PATH_VIGNETTED> plain = {{
+        {0, 0},            // under way
+        {2, both},         // detected
+        {1, illumination}, // beside the specimen
+        {1, illumination}, // outside the pupil
+        {1, illumination}, // bounce limit
+        {2, both},         // beside the detector
+        {1, illumination}, // numerical
+        {1, illumination}, // absorbed
+        {1, 0},            // interaction limit
     }};
-    slots_.assign(plain.begin(), plain.end());
+    for (const Plain& slot : plain) {
+        slots_.push_back({plain_entry(static_cast<Status>(slots_.size()), 0, 0), slot.splitter_passes, slot.crossings});
+    }
     slots_.resize(PATH_STATUS_COUNT); // statuses that belong to surfaces count there
-    const std::array<const char*, SURFACE_STATUS_COUNT> kinds = {"vignetted", "missed", "totally reflected",
-                                                                 "lost in reflection"};
-    for (std::size_t surface = 0; surface < names.size(); ++surface) {
-        for (const char* kind : kinds) {
-            slots_.push_back({std::string(kind) + " at " + names[surface], passes[surface], crossings[surface]});
+    for (const Surface& surface : surfaces) {
+        for (int kind = 0; kind < SURFACE_STATUS_COUNT; ++kind) {
+            Ledger::Entry entry = plain_entry(static_cast<Status>(PATH_VIGNETTED + kind), 0, 0);
+            entry.name += " at " + surface.name;
+            entry.train = surface.train;
+            entry.surface = surface.index;
+            slots_.push_back({std::move(entry), surface.splitter_passes, surface.crossings});
         }
     }
 }
@@ -99,11 +165,13 @@ Ledger Accounts::ledger(std::span<const std::uint64_t> numbers, std::uint64_t ra
     Ledger ledger;
     ledger.emitted = flux_;
     const auto add_slot = [&](std::size_t slot) {
-        ledger.entries.push_back(
-            {slots_[slot].name, per_ray * left_[slots_[slot].splitter_passes] * amount(slot), counts[slot]});
+        Ledger::Entry entry = slots_[slot].entry;
+        entry.power = per_ray * left_[slots_[slot].splitter_passes] * amount(slot);
+        entry.rays = counts[slot];
+        ledger.entries.push_back(std::move(entry));
     };
     add_slot(PATH_DETECTED);
-    ledger.entries.push_back({"not aimed at", flux_ * (1.0 - aimed_), 0});
+    ledger.entries.push_back(plain_entry(Status::not_aimed_at, flux_ * (1.0 - aimed_), 0));
     // The splitter takes its share of every ray that passes it, known from the fates beyond.
     std::array<double, 2> passed = {0, 0};
     std::array<std::uint64_t, 2> rays_passed = {0, 0};
@@ -114,9 +182,9 @@ Ledger Accounts::ledger(std::span<const std::uint64_t> numbers, std::uint64_t ra
         }
     }
     ledger.entries.push_back(
-        {"beam splitter, towards the specimen", per_ray * (left_[0] - left_[1]) * passed[0], rays_passed[0]});
+        plain_entry(Status::splitter_towards_specimen, per_ray * (left_[0] - left_[1]) * passed[0], rays_passed[0]));
     ledger.entries.push_back(
-        {"beam splitter, towards the detector", per_ray * (left_[1] - left_[2]) * passed[1], rays_passed[1]});
+        plain_entry(Status::splitter_towards_detector, per_ray * (left_[1] - left_[2]) * passed[1], rays_passed[1]));
     for (std::size_t slot = PATH_DETECTED + 1; slot < slots_.size(); ++slot) {
         if (slot < PATH_VIGNETTED || slot >= PATH_STATUS_COUNT) {
             add_slot(slot);

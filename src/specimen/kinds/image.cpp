@@ -1,5 +1,6 @@
 #include "specimen/kinds/image.hpp"
 
+#include "core/pixel_grid.hpp"
 #include "specimen/file_keys.hpp"
 #include "specimen/files.hpp"
 #include "specimen/lengths.hpp"
@@ -41,8 +42,9 @@ HeightField Image::heights(const SourceLocation& mention) const {
         value = static_cast<float>(height * static_cast<double>(value));
     }
     field.pitch_x = field.pitch_y = pitch;
-    field.x_min = -0.5 * (field.heights.columns - 1) * pitch;
-    field.y_min = -0.5 * (field.heights.rows - 1) * pitch;
+    const auto grid = PixelGrid::centred(field.heights.columns, field.heights.rows, pitch);
+    field.x_min = grid.x0;
+    field.y_min = grid.y0;
     return field;
 }
 

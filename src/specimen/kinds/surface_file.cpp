@@ -1,5 +1,6 @@
 #include "specimen/kinds/surface_file.hpp"
 
+#include "core/pixel_grid.hpp"
 #include "specimen/file_keys.hpp"
 #include "specimen/lengths.hpp"
 #include "surface/fill.hpp"
@@ -88,8 +89,9 @@ HeightField SurfaceFile::heights(const SourceLocation& mention) const {
     HeightField field;
     field.pitch_x = map.pitch_x;
     field.pitch_y = map.pitch_y;
-    field.x_min = -0.5 * (map.columns() - 1) * map.pitch_x;
-    field.y_min = -0.5 * (map.rows() - 1) * map.pitch_y;
+    const auto grid = PixelGrid::centred(map.columns(), map.rows(), map.pitch_x, map.pitch_y);
+    field.x_min = grid.x0;
+    field.y_min = grid.y0;
     if (gaps > 0) {
         for (const double z : map.height.values) {
             field.interpolated.push_back(!std::isfinite(z));

@@ -1,0 +1,27 @@
+// Points at regular distances, as pixels and heights stand.
+#pragma once
+
+namespace vkfv {
+
+// Column i and row j stand at (x0 + i * pitch_x, y0 + j * pitch_y), in mm.
+struct PixelGrid {
+    int columns = 0;
+    int rows = 0;
+    double x0 = 0;
+    double y0 = 0;
+    double pitch_x = 0;
+    double pitch_y = 0;
+
+    // With its middle at the origin, as the optical axis meets the detector.
+    static PixelGrid centred(int columns, int rows, double pitch_x, double pitch_y) {
+        return {.columns = columns,
+                .rows = rows,
+                .x0 = -0.5 * (columns - 1) * pitch_x,
+                .y0 = -0.5 * (rows - 1) * pitch_y,
+                .pitch_x = pitch_x,
+                .pitch_y = pitch_y};
+    }
+    static PixelGrid centred(int columns, int rows, double pitch) { return centred(columns, rows, pitch, pitch); }
+};
+
+} // namespace vkfv

@@ -1,0 +1,43 @@
+// The text of a .zmx file: its lines, the numbers on them, and what is wrong with them. Only the files of this import
+// include this.
+#pragma once
+
+#include "core/toml_reader.hpp"
+
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace vkfv::optics::zmx {
+
+// As UTF-8. UTF-16 with a byte-order mark, or UTF-8; else an InputError.
+std::string decode(std::string_view bytes, const std::filesystem::path& file);
+
+struct Line {
+    int number = 0;
+    bool indented = false;
+    std::string keyword{};
+    std::string rest{};               // trimmed
+    std::vector<std::string> words{}; // of the rest
+};
+Line line_of(std::string_view text, int number);
+
+std::string trimmed(std::string_view text);
+std::optional<double> as_number(std::string_view word); // finite
+
+// Where a line belongs, for messages.
+struct Place {
+    const std::filesystem::path& file;
+    std::optional<int> surface{}; // its number; none: the lens
+};
+
+// InputErrors that name file, line, surface and keyword.
+[[noreturn]] void refuse(const Place& place, const Line& line, std::string found, std::string expected,
+                         std::string remedy);
+double number_at(const Place& place, const Line& line, std::size_t word,
+                 const NumberRange& range = NumberRange::finite());
+int integer_at(const Place& place, const Line& line, std::size_t word, int minimum, int maximum);
+
+} // namespace vkfv::optics::zmx

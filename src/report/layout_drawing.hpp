@@ -1,0 +1,53 @@
+// What the picture of the instrument shows, in mm of the plane of drawing, before it is laid out on a page.
+#pragma once
+
+#include "optics/instrument.hpp"
+#include "report/element_sections.hpp"
+#include "report/layout_geometry.hpp"
+#include "report/room_rays.hpp"
+
+#include <string>
+#include <vector>
+
+namespace vkfv::report {
+
+struct Shape {
+    std::vector<glm::dvec2> points;
+    bool closed = false;
+    std::string attributes; // of SVG
+};
+
+struct Label {
+    // Beside the picture, with a leader; over the parts of a level arm; on the back of a mirror; along a bracket.
+    enum class Place { beside, over, behind, bracket } place = Place::beside;
+    std::string text;
+    Box part;
+    glm::dvec2 normal{};          // of a mirror, to its back
+    bool about_objective = false; // what the picture of the objective shows too
+};
+
+struct Drawing {
+    std::vector<RoomRay> rays;
+    std::vector<Shape> shapes; // from the back to the front
+    std::vector<Label> labels;
+    Box objective; // the specimen and all that follows up to the objective's back
+    bool is_ring = false;
+
+    Box bounds() const;
+    bool has(RoomRay::Bundle bundle) const;
+};
+
+Drawing draw_instrument(const optics::Instrument& instrument);
+
+// Where what is drawn but no element stands.
+struct DrawnBoxes {
+    Box specimen;
+    Box detector; // the camera's body
+    Box source;
+};
+
+// What is called what; empty boxes have no label.
+std::vector<Label> label_parts(const optics::Instrument& instrument, const ElementSections& sections,
+                               const DrawnBoxes& boxes);
+
+} // namespace vkfv::report
