@@ -4,8 +4,11 @@
 #include "configuration/configuration.hpp"
 #include "measurement/specimen_view.hpp"
 
+#include <nlohmann/json.hpp>
+
 #include <cstddef>
 #include <cstdint>
+#include <filesystem>
 #include <optional>
 #include <string>
 #include <vector>
@@ -45,5 +48,10 @@ struct InstrumentFigures {
 
 // Needs no device. Throws InputError.
 InstrumentFigures instrument_figures(const Configuration& configuration);
+
+// file: of the configuration. What is not finite becomes null.
+nlohmann::ordered_json instrument_json(const InstrumentFigures& figures, const std::filesystem::path& file);
+// Tables for a person.
+std::string instrument_text(const InstrumentFigures& figures, const std::filesystem::path& file);
 
 } // namespace vkfv::measurement

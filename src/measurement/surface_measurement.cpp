@@ -1,0 +1,104 @@
+#include "measurement/surface_measurement.hpp"
+
+#include "core/error.hpp"
+#include "core/file.hpp"
+#include "core/units.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <string>
+
+namespace vkfv::measurement {
+
+namespace {
+
+using surface::HeightMap;
+
+[[noreturn]] void refuse(const SurfaceRequest& request, std::string key, std::string found, std::string expected,
+                         std::string remedy) {
+    throw InputError({.where = {.file = request.file},
+                      .key = std::move(key),
+                      .found = std::move(found),
+                      .expected = std::move(expected),
+                      .remedy = std::move(remedy)});
+}
+
+surface::SurfaceFile read_file(const SurfaceRequest& request) {
+    const auto check = [&](const char* option, const std::optional<double>& length) {
+        if (length && !(std::isfinite(*length) && *length > 0)) {
+            refuse(request, option, fmt::format("{:g}", *length * um_per_mm), "a positive length",
+                   "Give the one that belongs to this image.");
+        }
+    };
+    check("--pitch_um", request.scale.pitch);
+    check("--unit_um", request.scale.unit);
+    try {
+        return surface::read_surface(request.file, request.scale);
+    } catch (const InputError& error) {
+        throw error.with_each([](InputProblem& problem) {
+            if (problem.key == "pitch" || problem.key == "unit") { // the reader does not know the command line
+                problem.key = "--" + problem.key + "_um";
+            }
+        });
+    }
+}
+
+HeightMap treated(const SurfaceRequest& request, const HeightMap& map) {
+    if (!any_height(map)) {
+        refuse(request, "", "no measured point", "a surface with heights", "Measure again.");
+    }
+    HeightMap result = surface::scale_limited(map, request.band);
+    if (!any_height(result)) {
+        refuse(request, "--form", surface::form_name(request.band.form), "a form that the measured points settle",
+               "Choose --form plane or --form polynomial-2.");
+    }
+    return result;
+}
+
+surface::ProfileLine line_of(const SurfaceRequest& request, const HeightMap& map) {
+    if (!request.line) {
+        return surface::middle_row(map);
+    }
+    const auto& line = *request.line;
+    const auto within = [](double value, double first, double last, double pitch) {
+        return value >= first - 1e-6 * pitch && value <= last + 1e-6 * pitch;
+    };
+    const double x_last = map.x(map.columns() - 1), y_last = map.y(map.rows() - 1);
+    const bool inside =
+        within(line.x_start, map.x0, x_last, map.pitch_x) && within(line.x_end, map.x0, x_last, map.pitch_x) &&
+        within(line.y_start, map.y0, y_last, map.pitch_y) && within(line.y_end, map.y0, y_last, map.pitch_y);
+    if (!inside ||
+        !(std::hypot(line.x_end - line.x_start, line.y_end - line.y_start) > std::min(map.pitch_x, map.pitch_y))) {
+        refuse(request, "--profile",
+               fmt::format("{:.6g},{:.6g},{:.6g},{:.6g}", line.x_start * um_per_mm, line.y_start * um_per_mm,
+                           line.x_end * um_per_mm, line.y_end * um_per_mm),
+               fmt::format(
+                   "a line longer than a pitch on the surface: x from {:.6g} to {:.6g} um, y from {:.6g} to {:.6g} um",
+                   map.x0 * um_per_mm, x_last * um_per_mm, map.y0 * um_per_mm, y_last * um_per_mm),
+               "Choose both ends on the surface, or leave it out for the middle row.");
+    }
+    return line;
+}
+
+} // namespace
+
+SurfaceFigures measure_surface(const SurfaceRequest& request) {
+    auto [original, provenance] = read_file(request);
+    const HeightMap map = treated(request, original);
+    const surface::ProfileLine line = line_of(request, map);
+    if (request.out) {
+        std::error_code none;
+        if (std::filesystem::equivalent(*request.out, request.file, none)) {
+            refuse(request, "--out", request.out->string(), "another file than the measurement itself",
+                   "Name a new one.");
+        }
+        provenance.comment += fmt::format("\nvkfv {}: {}, {}", VKFV_VERSION, request.file.filename().string(),
+                                          report::treatment_text(request.band));
+        write_file(*request.out, surface::surface_bytes(*request.out, map, provenance));
+    }
+    return surface_figures(map, line, request.band);
+}
+
+} // namespace vkfv::measurement
