@@ -6,7 +6,6 @@
 #include <CLI/CLI.hpp>
 #include <fmt/format.h>
 #include <fmt/ranges.h>
-#include <spdlog/sinks/stdout_color_sinks.h>
 #include <spdlog/spdlog.h>
 
 #include <algorithm>
@@ -292,8 +291,6 @@ void run_command_line(int argument_count, char** argument_values) {
         fmt::print("{}\n", version.what());
         return;
     }
-    spdlog::set_default_logger(spdlog::stderr_color_mt("vkfv"));
-    spdlog::set_pattern("%^%l%$: %v");
     line.run();
 }
 

@@ -9,6 +9,8 @@
 
 #include <CLI/Error.hpp>
 #include <fmt/format.h>
+#include <spdlog/sinks/stdout_color_sinks.h>
+#include <spdlog/spdlog.h>
 
 #include <cstdio>
 #include <iostream>
@@ -40,6 +42,8 @@ int main(int argument_count, char** argument_values) {
     vkfv::explain_interruptions();
     const vkfv::vulkan::DriverScope drivers;
     try {
+        spdlog::set_default_logger(spdlog::stderr_color_mt("vkfv"));
+        spdlog::set_pattern("%^%l%$: %v");
         vkfv::app::run_command_line(argument_count, argument_values);
         return standard_output_is_whole() ? done : report_lost_output();
     } catch (const CLI::ParseError& error) {

@@ -110,9 +110,11 @@ TEST(Program, HelpAndVersion) {
     const auto help = run_program({"--help"}, folder);
     EXPECT_EQ(help.exit_code, 0);
     EXPECT_THAT(help.standard_output, AllOf(HasSubstr("--stack"), HasSubstr("--trace-rays"), HasSubstr("Exit codes")));
-    const auto version = run_program({"--version"}, folder);
-    EXPECT_EQ(version.exit_code, 0);
-    EXPECT_THAT(version.standard_output, testing::StartsWith("vkfv "));
+    for (const char* option : {"--version", "-v"}) {
+        const auto version = run_program({option}, folder);
+        EXPECT_EQ(version.exit_code, 0);
+        EXPECT_THAT(version.standard_output, testing::StartsWith("vkfv "));
+    }
 }
 
 std::vector<std::string> lines_of(const std::string& text) {
