@@ -304,7 +304,8 @@ std::string configuration_template() {
         std::string kind; // of the keys that are not commented out
         for (const Key* key : table->keys) {
             if (key->name == table->kind) {
-                kind = key->fallback.needed ? key->example.substr(1, key->example.size() - 2) : key->fallback_text();
+                const auto& toml = key->fallback.needed ? key->example : key->fallback.toml;
+                kind = toml.size() < 2 ? key->choices.front().name : toml.substr(1, toml.size() - 2);
             }
         }
         const bool absent = table->presence != KeyTable::Presence::needed && !table->shown;

@@ -8,6 +8,7 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
+#include <cctype>
 #include <deque>
 #include <map>
 
@@ -86,6 +87,13 @@ const RoughnessKeys& roughness_keys() {
 
 using physics::scatter_registry;
 
+// "asymmetry: 0 is Lambertian" as a sentence.
+std::string sentence_of(std::string_view words) {
+    std::string sentence(words);
+    sentence.front() = static_cast<char>(std::toupper(static_cast<unsigned char>(sentence.front())));
+    return sentence + ".";
+}
+
 // The keys of a lobe: a scatter model, its parameters, and what share of the light it has.
 struct LobeKeys {
     LobeKeys(std::optional<std::size_t> default_model, NumberKey share_key, KeyTable lobe_table)
@@ -99,7 +107,7 @@ struct LobeKeys {
                 parameters.push_back(of_kinds({std::string(model.name)},
                                               NumberKey(std::string(parameter.name),
                                                         NumberRange::within(parameter.minimum, parameter.maximum),
-                                                        parameter.fallback, std::string(parameter.meaning))));
+                                                        parameter.fallback, sentence_of(parameter.meaning))));
                 table.keys.push_back(&parameters.back());
             }
         }
@@ -241,7 +249,7 @@ std::vector<const KeyTable*> specimen_key_tables() {
 
 void read_specimen(const TomlTable& root, Configuration& configuration) {
     const TomlTable table = root.table("specimen");
-    ReadKeys read;
+    ReadKeys& read = configuration;
     const Section section(table, specimen_keys().table, read);
     const specimen::Kind& kind = *section.kind(specimen_keys().kind);
     const auto roughness_table = table.optional_table("roughness");
@@ -253,9 +261,6 @@ void read_specimen(const TomlTable& root, Configuration& configuration) {
     }
     description.material = read_material(table.table_or_empty("material"), read);
     configuration.specimen = std::move(description);
-    configuration.canonical += read.canonical;
-    configuration.identity += read.identity;
-    configuration.places.merge(read.places);
 }
 
 } // namespace vkfv

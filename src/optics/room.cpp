@@ -160,7 +160,7 @@ physics::f64::ElementHit nearest_element(const Room& room, glm::dvec3 origin, gl
     for (std::size_t i = 0; i < room.elements.size(); ++i) {
         const int index = static_cast<int>(i);
         const ElementMeeting meeting = meet_element(room.elements[i], origin, direction, index == left, least);
-        if (meeting.found == 1 && meeting.distance < nearest.distance) {
+        if (meeting.found && meeting.distance < nearest.distance) {
             nearest = {index, meeting.distance};
         }
     }
