@@ -1,5 +1,5 @@
 #include "app/commands.hpp"
-#include "app/reference.hpp"
+#include "command_line/reference.hpp"
 
 #include <fmt/format.h>
 

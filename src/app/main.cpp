@@ -1,5 +1,6 @@
 // The only main(). Every failure ends here, as a message on standard error and an exit code.
-#include "app/command_line.hpp"
+#include "app/commands.hpp"
+#include "command_line/command_line.hpp"
 
 #include "core/error.hpp"
 #include "core/interruption.hpp"
@@ -44,7 +45,8 @@ int main(int argument_count, char** argument_values) {
     try {
         spdlog::set_default_logger(spdlog::stderr_color_mt("vkfv"));
         spdlog::set_pattern("%^%l%$: %v");
-        vkfv::app::run_command_line(argument_count, argument_values);
+        vkfv::command_line::declare_commands(vkfv::app::commands());
+        vkfv::command_line::run_command_line(argument_count, argument_values);
         return standard_output_is_whole() ? done : report_lost_output();
     } catch (const CLI::ParseError& error) {
         return report(fmt::format("command line: {}. vkfv --help lists all options.", error.what()), wrong_input);

@@ -1,7 +1,7 @@
-#include "app/command_line.hpp"
+#include "command_line/command_line.hpp"
 
-#include "app/commands.hpp"
-#include "app/reference.hpp"
+#include "command_line/command.hpp"
+#include "command_line/reference.hpp"
 
 #include <CLI/CLI.hpp>
 #include <fmt/format.h>
@@ -14,9 +14,15 @@
 #include <iterator>
 #include <map>
 
-namespace vkfv::app {
+namespace vkfv::command_line {
 
 namespace {
+
+// Set once, by declare_commands().
+std::vector<Command>& declared() {
+    static std::vector<Command> commands;
+    return commands;
+}
 
 // The arguments by the declarations of all commands: of one that was named first (`vkfv stack C.toml`), or of one that
 // is itself written as an option (`vkfv --stack C.toml`).
@@ -248,21 +254,7 @@ class CommandLine {
 } // namespace
 
 const std::vector<Command>& all_commands() {
-    static const auto commands = [] {
-        std::vector<Command> list = {
-            stack_command(),   image_command(),    sweep_command(),  topography_command(), compare_command(),
-            surface_command(), verify_command(),   check_command(),  trace_rays_command(), layout_command(),
-            devices_command(), bench_command(),    import_command(), list_command(),       keys_command(),
-            explain_command(), template_command(), help_command(),   completion_command(), man_command()};
-        for (auto& command : list) {
-            command.options.push_back({.name = "--quiet",
-                                       .value = "",
-                                       .description = "Only warnings and errors, no progress",
-                                       .target = &CommandOptions::quiet});
-        }
-        return list;
-    }();
-    return commands;
+    return declared();
 }
 
 const Command& command_named(const std::string& name) {
@@ -275,6 +267,16 @@ const Command& command_named(const std::string& name) {
                         fmt::format("{}vkfv --help lists all.", meant ? fmt::format("Did you mean {}? ", *meant) : ""));
     }
     return *found;
+}
+
+void declare_commands(std::vector<Command> commands) {
+    for (auto& command : commands) {
+        command.options.push_back({.name = "--quiet",
+                                   .value = "",
+                                   .description = "Only warnings and errors, no progress",
+                                   .target = &CommandOptions::quiet});
+    }
+    declared() = std::move(commands);
 }
 
 void run_command_line(int argument_count, char** argument_values) {
@@ -294,4 +296,4 @@ void run_command_line(int argument_count, char** argument_values) {
     line.run();
 }
 
-} // namespace vkfv::app
+} // namespace vkfv::command_line

@@ -1,12 +1,12 @@
 // What is told of the commands, all of it from their declarations.
 #pragma once
 
-#include "app/commands.hpp"
+#include "command_line/command.hpp"
 
 #include <string>
 #include <vector>
 
-namespace vkfv::app {
+namespace vkfv::command_line {
 
 // An option of several commands is declared by each of them, by the same means: here it is once.
 struct OwnedOption {
@@ -26,4 +26,4 @@ std::string help_text(const Command* command);
 std::string reference_markdown();
 std::string reference_manual();
 
-} // namespace vkfv::app
+} // namespace vkfv::command_line

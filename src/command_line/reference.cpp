@@ -1,4 +1,4 @@
-#include "app/reference.hpp"
+#include "command_line/reference.hpp"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -7,7 +7,7 @@
 #include <cctype>
 #include <sstream>
 
-namespace vkfv::app {
+namespace vkfv::command_line {
 
 namespace {
 
@@ -247,4 +247,4 @@ std::string reference_manual() {
     return text;
 }
 
-} // namespace vkfv::app
+} // namespace vkfv::command_line

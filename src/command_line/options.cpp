@@ -1,5 +1,5 @@
 // Options that several commands take.
-#include "app/commands.hpp"
+#include "command_line/command.hpp"
 
 #include "core/units.hpp"
 
@@ -9,7 +9,7 @@
 #include <cmath>
 #include <iterator>
 
-namespace vkfv::app {
+namespace vkfv::command_line {
 
 namespace {
 
@@ -174,4 +174,4 @@ void refuse_argument(std::string found, std::string expected, std::string remedy
                       .remedy = std::move(remedy)});
 }
 
-} // namespace vkfv::app
+} // namespace vkfv::command_line
