@@ -65,7 +65,7 @@ std::string bash_script() {
     for (const auto& [option, owners] : all_options()) {
         if (!option->choices.empty()) {
             values +=
-                fmt::format("    {}) words='{}' options= ;;\n", first_name(*option), fmt::join(option->choices, " "));
+                fmt::format("    {}) words='{}' files= ;;\n", first_name(*option), fmt::join(option->choices, " "));
         } else if (!option->value.empty()) {
             (option->file ? files : free).push_back(first_name(*option));
         }
@@ -85,7 +85,7 @@ _vkfv() {{
     case $command in
 {operands}    esac
     case $before in
-{values}    {files}) words= options= files=1 ;;
+{values}    {files}) words= files=1 ;;
     {free}) return ;;
     esac
     [[ $word == -* ]] && words=$options files=
