@@ -84,6 +84,30 @@ void read_heights(std::string_view points, std::int64_t not_measured, double ste
         }
 }
 
+// Of steps of 2^exponent mm, so that the largest height takes up 30 bits, also after rounding. RunError where heights,
+// pitches or positions are none that the format can hold.
+int exponent_of_steps(const HeightMap& map) {
+    constexpr int height_bits = 30, smallest_exponent = -120, largest_exponent = 90;
+    double largest = 0;
+    for (const double height : map.height.values)
+        if (std::isfinite(height))
+            largest = std::max(largest, std::abs(height));
+    int exponent = largest < std::ldexp(1.0, smallest_exponent)
+                       ? -height_bits // all are 0 or as good as 0
+                       : std::max(std::ilogb(largest) + 1 - height_bits, smallest_exponent);
+    if (std::nearbyint(std::ldexp(largest, -exponent)) >= std::ldexp(1.0, height_bits))
+        ++exponent;
+    if (exponent > largest_exponent)
+        throw RunError(fmt::format("heights of {} mm cannot be written as SUR. Choose another format.", largest));
+    for (const double length : {map.pitch_x, map.pitch_y, map.x0, map.y0})
+        if (!(std::abs(length) < static_cast<double>(std::numeric_limits<float>::max())))
+            throw RunError(fmt::format("a length of {} mm cannot be written as SUR. Choose another format.", length));
+    for (const double pitch : {map.pitch_x, map.pitch_y})
+        if (!(static_cast<float>(pitch) > 0))
+            throw RunError(fmt::format("a pitch of {} mm cannot be written as SUR. Choose another format.", pitch));
+    return exponent;
+}
+
 } // namespace
 
 bool looks_like_sur(std::string_view bytes) {
@@ -158,25 +182,7 @@ SurfaceFile parse_sur(std::string_view bytes, const std::filesystem::path& path)
 }
 
 std::string sur_bytes(const HeightMap& map, const Provenance& provenance) {
-    // Steps of 2^exponent mm, so that the largest height takes up 30 bits, also after rounding.
-    constexpr int height_bits = 30, smallest_exponent = -120, largest_exponent = 90;
-    double largest = 0;
-    for (const double height : map.height.values)
-        if (std::isfinite(height))
-            largest = std::max(largest, std::abs(height));
-    int exponent = largest < std::ldexp(1.0, smallest_exponent)
-                       ? -height_bits // all are 0 or as good as 0
-                       : std::max(std::ilogb(largest) + 1 - height_bits, smallest_exponent);
-    if (std::nearbyint(std::ldexp(largest, -exponent)) >= std::ldexp(1.0, height_bits))
-        ++exponent;
-    if (exponent > largest_exponent)
-        throw RunError(fmt::format("heights of {} mm cannot be written as SUR. Choose another format.", largest));
-    for (const double length : {map.pitch_x, map.pitch_y, map.x0, map.y0})
-        if (!(std::abs(length) < static_cast<double>(std::numeric_limits<float>::max())))
-            throw RunError(fmt::format("a length of {} mm cannot be written as SUR. Choose another format.", length));
-    for (const double pitch : {map.pitch_x, map.pitch_y})
-        if (!(static_cast<float>(pitch) > 0))
-            throw RunError(fmt::format("a pitch of {} mm cannot be written as SUR. Choose another format.", pitch));
+    const int exponent = exponent_of_steps(map);
     std::vector<std::int32_t> points;
     points.reserve(map.height.values.size());
     constexpr std::int32_t gap = std::numeric_limits<std::int32_t>::max(); // until the lowest point is known

@@ -283,6 +283,21 @@ std::string zip_of(const std::vector<std::pair<const char*, std::string_view>>& 
     return bytes;
 }
 
+// A bit a point, set where it was measured; empty: all were.
+std::string valid_points(const ByteReader& file, const Archive& archive, const pugi::xml_node& link,
+                         std::uint64_t count) {
+    const std::string name = text_of(link, "ValidPointsLink");
+    if (name.empty())
+        return {};
+    const std::uint64_t bytes = (count + 7) / 8;
+    const auto content = archive.read(name, bytes);
+    if (!content || content->size() != bytes)
+        file.fail({}, name, content ? fmt::format("{} bytes", content->size()) : "no such entry",
+                  fmt::format("{} bytes, a bit a point", bytes));
+    check_md5(file, name, *content, text_of(link, "MD5ChecksumValidPoints"));
+    return *content;
+}
+
 } // namespace
 
 bool looks_like_x3p(std::string_view bytes) {
@@ -352,16 +367,7 @@ SurfaceFile parse_x3p(std::string_view bytes, const std::filesystem::path& path)
         file.fail({}, link_name, points ? fmt::format("{} bytes", points->size()) : "no such entry",
                   fmt::format("{} bytes for {} x {} points of type {}", count * point_bytes, columns, rows, type));
     check_md5(file, link_name, *points, text_of(link, "MD5ChecksumPointData"));
-    std::string valid;
-    if (const std::string valid_link = text_of(link, "ValidPointsLink"); !valid_link.empty()) {
-        const std::uint64_t valid_bytes = (count + 7) / 8;
-        const auto content = archive.read(valid_link, valid_bytes);
-        if (!content || content->size() != valid_bytes)
-            file.fail({}, valid_link, content ? fmt::format("{} bytes", content->size()) : "no such entry",
-                      fmt::format("{} bytes, a bit a point", valid_bytes));
-        check_md5(file, valid_link, *content, text_of(link, "MD5ChecksumValidPoints"));
-        valid = *content;
-    }
+    const std::string valid = valid_points(file, archive, link, count);
 
     result.map.height = Grid<double>(static_cast<int>(columns), static_cast<int>(rows));
     (type == "I"   ? read_heights<std::int16_t>
