@@ -1,5 +1,5 @@
 // Every kind of specimen is read by its keys, and by no others.
-#include "configuration/specimen.hpp"
+#include "configuration/tables.hpp"
 #include "specimen/kinds.hpp"
 
 #include <fmt/format.h>
@@ -84,7 +84,7 @@ TEST(SpecimenKinds, RefuseTheKeysOfOthers) {
     for (const auto& kind : specimen::kinds()) {
         std::set<std::string> own;
         std::ranges::transform(kind.keys, std::inserter(own, own.end()), &Key::name);
-        for (const Key* key : specimen_table().keys) {
+        for (const Key* key : (*specimen_key_tables().front()).keys) {
             if (key->kinds.empty() || own.contains(key->name)) {
                 continue;
             }
@@ -106,11 +106,11 @@ TEST(SpecimenKinds, TakeRoughnessUnlessTheyAreMeshes) {
 }
 
 TEST(SpecimenKinds, SayWhatTheirKeysAreFor) {
-    for (const Key* key : specimen_table().keys) {
+    for (const Key* key : (*specimen_key_tables().front()).keys) {
         EXPECT_FALSE(key->meaning.empty()) << key->name;
         EXPECT_TRUE(key->name == "kind" || !key->kinds.empty()) << key->name;
     }
-    EXPECT_EQ(specimen_table().kinds().size(), specimen::kinds().size());
+    EXPECT_EQ((*specimen_key_tables().front()).kinds().size(), specimen::kinds().size());
 }
 
 } // namespace

@@ -136,7 +136,7 @@ TEST(CoverPlate, MovesTheMarginalFocus) {
 // The objective's height over the specimen, from the room's elements.
 double objective_height(const Instrument& instrument) {
     for (const Element& element : instrument.elements) {
-        if (element.part == "objective") {
+        if (element.part == Part::objective) {
             return element.pose.origin.z + instrument.first_order.best_focus_offset;
         }
     }
@@ -267,7 +267,7 @@ TEST(TiltedParts, MoveTheImageWithTheNodalPoint) {
     double first = 0;
     double last = 0;
     for (const Element& element : straight.elements) {
-        if (element.part == "tube lens") {
+        if (element.part == Part::tube_lens) {
             first = first == 0 ? element.pose.origin.z : first;
             last = element.pose.origin.z;
         }

@@ -50,7 +50,7 @@ TEST(ScatterTables, the_table_gives_the_norm) {
         gs.push_back(-0.9 + 0.02 * k);
     }
     const auto worst = [](double g, double table_g) {
-        const Lobe table = tabulated({SCATTER_HENYEY_GREENSTEIN, 1, table_g, 0, 0, 0, {}});
+        Lobe table = tabulated({SCATTER_HENYEY_GREENSTEIN, 1, table_g, 0, 0, 0, {}});
         float single[LOBE_TABLE_SIZE];
         std::ranges::transform(table.table, single, [](double value) { return float(value); });
         double error = 0;
