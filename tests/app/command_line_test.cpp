@@ -83,7 +83,11 @@ TEST(CommandLine, ACommandIsItsOption) {
                                       {"bench", "c.toml", "--bench-parts", "nonsense"},
                                       {"import", "lens.zmx"},
                                       {"list", "scatter"},
-                                      {"list", "glases"}};
+                                      {"list", "glases"},
+                                      {"keys", "--json"},
+                                      {"explain", "trace.rays"},
+                                      {"explain", "trace.rasy"},
+                                      {"template"}};
     std::set<std::string> seen;
     for (Words words : cases) {
         seen.insert(words.front());
