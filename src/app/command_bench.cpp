@@ -10,42 +10,53 @@
 
 namespace vkfv::app {
 
+namespace {
+
+struct BenchOptions {
+    int runs = 5;
+    std::vector<std::string> parts = {"stages"};
+    bool quick = false;
+    std::filesystem::path peer; // the program vkfv_bench_peer
+    std::string commit;
+};
+
+} // namespace
+
 Command bench_command() {
     auto parts = bench::bench_parts;
     parts.emplace_back("all");
     const auto take_parts = [](CommandOptions& options, const std::vector<std::string>& names) {
-        options.bench_parts = std::ranges::find(names, "all") != names.end() ? bench::bench_parts : names;
+        options.of<BenchOptions>().parts = std::ranges::find(names, "all") != names.end() ? bench::bench_parts : names;
     };
-    const std::vector<Option> of_bench = {
-        {.name = "--runs",
-         .value = "N",
-         .description = "Runs whose median counts",
-         .target = &CommandOptions::runs,
-         .fallback = "5",
-         .range = {1, 1000}},
-        {.name = "--bench-parts",
-         .value = "LIST",
-         .description = "What to measure, parted by commas",
-         .target = Take<std::vector<std::string>>(take_parts),
-         .fallback = "stages",
-         .choices = parts,
-         .list = true},
-        {.name = "--quick",
-         .value = "",
-         .description = "Shorter runs and fewer sizes",
-         .target = &CommandOptions::quick},
-        {.name = "--peer",
-         .value = "PROGRAM",
-         .description = "The program vkfv_bench_peer, to compare with",
-         .target = Take<std::string>([](CommandOptions& options, const std::string& path) { options.peer = path; }),
-         .file = true},
-        {.name = "--commit",
-         .value = "TEXT",
-         .description = "What the report says was measured",
-         .target = Take<std::string>([](CommandOptions& options, const std::string& text) { options.commit = text; })}};
+    const std::vector<Option> of_bench = {{.name = "--runs",
+                                           .value = "N",
+                                           .description = "Runs whose median counts",
+                                           .target = into(&BenchOptions::runs),
+                                           .fallback = "5",
+                                           .range = {1, 1000}},
+                                          {.name = "--bench-parts",
+                                           .value = "LIST",
+                                           .description = "What to measure, parted by commas",
+                                           .target = Take<std::vector<std::string>>(take_parts),
+                                           .fallback = "stages",
+                                           .choices = parts,
+                                           .list = true},
+                                          {.name = "--quick",
+                                           .value = "",
+                                           .description = "Shorter runs and fewer sizes",
+                                           .target = into(&BenchOptions::quick)},
+                                          {.name = "--peer",
+                                           .value = "PROGRAM",
+                                           .description = "The program vkfv_bench_peer, to compare with",
+                                           .target = into(&BenchOptions::peer),
+                                           .file = true},
+                                          {.name = "--commit",
+                                           .value = "TEXT",
+                                           .description = "What the report says was measured",
+                                           .target = into(&BenchOptions::commit)}};
     return {.name = "bench",
             .summary = "Measure rays/s of a configuration's chain",
-            .operands = {{"C.toml", "Configuration", &CommandOptions::file}},
+            .operands = {{"C.toml", "Configuration", into(&CommandOptions::file)}},
             .options = together(
                 {configuration_options(), {out_option("Folder of bench.json and bench.svg"), json_option()}, of_bench}),
             .run = run_bench,
@@ -55,6 +66,7 @@ Command bench_command() {
 using bench::Json;
 
 void run_bench(const CommandOptions& options) {
+    const auto own = options.of<BenchOptions>();
     std::optional<ResultFolder> results;
     if (options.out) {
         results.emplace(*options.out);
@@ -68,11 +80,11 @@ void run_bench(const CommandOptions& options) {
     };
     const bench::Json report = bench::measure_bench({.file = options.file,
                                                      .overrides = options.overrides,
-                                                     .runs = options.runs,
-                                                     .parts = options.bench_parts,
-                                                     .quick = options.quick,
-                                                     .peer = options.peer,
-                                                     .commit = options.commit},
+                                                     .runs = own.runs,
+                                                     .parts = own.parts,
+                                                     .quick = own.quick,
+                                                     .peer = own.peer,
+                                                     .commit = own.commit},
                                                     write_files);
     write_files(report);
     fmt::print("{}", options.json ? report.dump(2) + "\n" : bench::bench_text(report));

@@ -10,7 +10,7 @@ namespace vkfv::app {
 Command check_command() {
     return {.name = "check",
             .summary = "Validate and print first-order data; needs no device",
-            .operands = {{"C.toml", "Configuration", &CommandOptions::file}},
+            .operands = {{"C.toml", "Configuration", into(&CommandOptions::file)}},
             .options = together({configuration_options(), {json_option()}}),
             .run = run_check,
             .example = "vkfv check assets/stacks/demo.toml --json"};

@@ -7,15 +7,24 @@
 
 namespace vkfv::app {
 
+namespace {
+
+struct CompareOptions {
+    std::vector<std::filesystem::path> files; // measurements, then the truth
+    bool align = false;                       // the lateral shift is removed
+};
+
+} // namespace
+
 Command compare_command() {
     const Option align = {.name = "--align",
                           .value = "",
                           .description = "Remove the lateral shift that was found",
-                          .target = &CommandOptions::align};
+                          .target = into(&CompareOptions::align)};
     return {.name = "compare",
             .summary = "Height maps (any format that vkfv reads) against the truth: shift, deviation, transfer, ISO "
                        "25178-2 parameters; several measurements of one field also give systematic and random part",
-            .operands = {{"MEASURED... TRUTH", "Height maps, the last of them true", &CommandOptions::compared_files}},
+            .operands = {{"MEASURED... TRUTH", "Height maps, the last of them true", into(&CompareOptions::files)}},
             .options = together(
                 {{out_option("Folder for tables, maps and pictures"), json_option()}, band_options(), {align}}),
             .run = run_compare,
@@ -23,11 +32,12 @@ Command compare_command() {
 }
 
 void run_compare(const CommandOptions& options) {
-    const auto& files = options.compared_files;
+    const auto own = options.of<CompareOptions>();
+    const auto& files = own.files;
     const measurement::ComparisonRequest request{.measurements = {files.begin(), files.end() - 1},
                                                  .truth = files.back(),
-                                                 .align = options.align,
-                                                 .band = options.band};
+                                                 .align = own.align,
+                                                 .band = options.of<surface::Band>()};
     const auto result = measurement::compare_files(request);
     if (options.out) {
         measurement::write_comparison(*options.out, request, result);

@@ -9,8 +9,12 @@ namespace vkfv::app {
 
 namespace {
 
+struct CompletionOptions {
+    std::string shell;
+};
+
 void run_completion(const CommandOptions& options) {
-    fmt::print("{}", completion_script(options.topic));
+    fmt::print("{}", completion_script(options.of<CompletionOptions>().shell));
 }
 
 } // namespace
@@ -18,7 +22,7 @@ void run_completion(const CommandOptions& options) {
 Command completion_command() {
     return {.name = "completion",
             .summary = "Print a script that completes commands, options and their values in a shell",
-            .operands = {{"SHELL", "Which shell", &CommandOptions::topic, {"bash", "zsh", "fish"}}},
+            .operands = {{"SHELL", "Which shell", into(&CompletionOptions::shell), {"bash", "zsh", "fish"}}},
             .run = run_completion,
             .example = "source <(vkfv completion bash)",
             .about_vkfv = true,

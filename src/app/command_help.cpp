@@ -9,12 +9,18 @@ namespace vkfv::app {
 
 namespace {
 
+struct HelpOptions {
+    std::string command;
+    bool markdown = false;
+};
+
 void run_help(const CommandOptions& options) {
-    if (options.markdown) {
+    const auto own = options.of<HelpOptions>();
+    if (own.markdown) {
         fmt::print("{}", reference_markdown());
         return;
     }
-    fmt::print("{}", help_text(options.topic.empty() ? nullptr : &command_named(options.topic)));
+    fmt::print("{}", help_text(own.command.empty() ? nullptr : &command_named(own.command)));
 }
 
 void run_man(const CommandOptions&) {
@@ -26,11 +32,11 @@ void run_man(const CommandOptions&) {
 Command help_command() {
     return {.name = "help",
             .summary = "What the program does, or what a command takes",
-            .operands = {{"COMMAND", "Its name", &CommandOptions::topic, {}, false}},
+            .operands = {{"COMMAND", "Its name", into(&HelpOptions::command), {}, false}},
             .options = {{.name = "--markdown",
                          .value = "",
                          .description = "All of it, as docs/commands.md",
-                         .target = &CommandOptions::markdown}},
+                         .target = into(&HelpOptions::markdown)}},
             .run = run_help,
             .example = "vkfv help stack",
             .about_vkfv = true,

@@ -9,16 +9,23 @@
 
 namespace vkfv::app {
 
+namespace {
+
+struct ImageOptions {
+    double focal_height = 0; // over best focus, mm
+};
+
+} // namespace
+
 Command image_command() {
-    const Option z = {
-        .name = "--z",
-        .value = "UM",
-        .description = "Height of the focal plane over best focus, um",
-        .target = Take<double>([](CommandOptions& options, double um) { options.focal_height = um / um_per_mm; }),
-        .needed = "the height of the focal plane over best focus"};
+    const Option z = {.name = "--z",
+                      .value = "UM",
+                      .description = "Height of the focal plane over best focus, um",
+                      .target = in_mm(&ImageOptions::focal_height),
+                      .needed = "the height of the focal plane over best focus"};
     return {.name = "image",
             .summary = "Trace one exposure, at --z",
-            .operands = {{"C.toml", "Configuration", &CommandOptions::file}},
+            .operands = {{"C.toml", "Configuration", into(&CommandOptions::file)}},
             .options = together({configuration_options(), {out_option("Output folder, or a .tif file"), z}}),
             .run = run_image,
             .example = "vkfv image assets/stacks/demo.toml --z -3.2 --rays 1e8"};
@@ -26,19 +33,21 @@ Command image_command() {
 
 namespace {
 
-std::filesystem::path image_path(const CommandOptions& options, const Configuration& configuration) {
+std::filesystem::path image_path(const CommandOptions& options, const Configuration& configuration,
+                                 double focal_height) {
     if (options.out && (options.out->extension() == ".tif" || options.out->extension() == ".tiff")) {
         return *options.out;
     }
-    return configuration.output_directory / fmt::format("image_{:+.3f}um.tif", options.focal_height * um_per_mm);
+    return configuration.output_directory / fmt::format("image_{:+.3f}um.tif", focal_height * um_per_mm);
 }
 
 } // namespace
 
 void run_image(const CommandOptions& options) {
     const auto configuration = load_configuration(options.file, options.overrides, Needs::exposure);
-    const auto file = image_path(options, configuration);
-    fmt::print("{}", measurement::summary(measurement::measure_image(configuration, options.focal_height, file)));
+    const double focal_height = options.of<ImageOptions>().focal_height;
+    const auto file = image_path(options, configuration, focal_height);
+    fmt::print("{}", measurement::summary(measurement::measure_image(configuration, focal_height, file)));
 }
 
 } // namespace vkfv::app

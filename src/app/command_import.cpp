@@ -15,20 +15,25 @@
 
 namespace vkfv::app {
 
+namespace {
+
+struct ImportOptions {
+    std::vector<std::filesystem::path> glass_catalogs;
+};
+
+} // namespace
+
 Command import_command() {
-    const auto take_catalogs = [](CommandOptions& options, const std::vector<std::string>& files) {
-        options.glass_catalogs.assign(files.begin(), files.end());
-    };
     const Option catalogs = {.name = "--glass-catalog",
                              .value = "FILE.agf",
                              .description = "Glasses besides the built-in ones; may be repeated",
-                             .target = Take<std::vector<std::string>>(take_catalogs),
+                             .target = into(&ImportOptions::glass_catalogs),
                              .file = true};
     return {.name = "import",
             .summary =
                 "Write a Zemax lens as a prescription, to --out or standard output, and its focal lengths to the "
                 "log. Objectives must run from the specimen to the back: turn others round in Zemax",
-            .operands = {{"LENS.zmx", "Lens of Zemax, sequential", &CommandOptions::file}},
+            .operands = {{"LENS.zmx", "Lens of Zemax, sequential", into(&CommandOptions::file)}},
             .options = {out_option("The prescription"), json_option(), catalogs},
             .run = run_import,
             .example = "vkfv import lens.zmx --out lens.toml"};
@@ -65,7 +70,7 @@ FocalLengths focal_lengths(const optics::Prescription& lens, double wavelength_u
 
 void run_import(const CommandOptions& options) {
     auto glasses = optics::GlassCatalog::builtin();
-    for (const auto& catalog : options.glass_catalogs) {
+    for (const auto& catalog : options.of<ImportOptions>().glass_catalogs) {
         glasses.add(catalog);
     }
     const auto lens = optics::read_zmx(options.file, glasses);

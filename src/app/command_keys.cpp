@@ -9,15 +9,25 @@ namespace vkfv::app {
 
 namespace {
 
+struct KeysOptions {
+    bool markdown = false;
+    bool schema = false;
+};
+
+struct ExplainOptions {
+    std::string key;
+};
+
 void run_keys(const CommandOptions& options) {
-    fmt::print("{}", options.json       ? keys_json()
-                     : options.markdown ? keys_markdown()
-                     : options.schema   ? configuration_schema()
-                                        : keys_text());
+    const auto own = options.of<KeysOptions>();
+    fmt::print("{}", options.json   ? keys_json()
+                     : own.markdown ? keys_markdown()
+                     : own.schema   ? configuration_schema()
+                                    : keys_text());
 }
 
 void run_explain(const CommandOptions& options) {
-    fmt::print("{}", explained(options.topic));
+    fmt::print("{}", explained(options.of<ExplainOptions>().key));
 }
 
 void run_template(const CommandOptions&) {
@@ -33,11 +43,11 @@ Command keys_command() {
                         {.name = "--markdown",
                          .value = "",
                          .description = "All of it, as a page",
-                         .target = &CommandOptions::markdown},
+                         .target = into(&KeysOptions::markdown)},
                         {.name = "--schema",
                          .value = "",
                          .description = "A JSON Schema, for the completion of editors",
-                         .target = &CommandOptions::schema}},
+                         .target = into(&KeysOptions::schema)}},
             .run = run_keys,
             .example = "vkfv keys --schema > vkfv.schema.json",
             .about_vkfv = true};
@@ -46,7 +56,7 @@ Command keys_command() {
 Command explain_command() {
     return {.name = "explain",
             .summary = "Tell of one key of a configuration, or of one of its tables",
-            .operands = {{"KEY", "\"trace.rays\", \"rays\" or \"trace\"", &CommandOptions::topic}},
+            .operands = {{"KEY", "\"trace.rays\", \"rays\" or \"trace\"", into(&ExplainOptions::key)}},
             .run = run_explain,
             .example = "vkfv explain trace.estimator",
             .about_vkfv = true};

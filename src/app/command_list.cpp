@@ -16,6 +16,10 @@ namespace vkfv::app {
 
 namespace {
 
+struct ListOptions {
+    std::string topic;
+};
+
 struct Listed {
     std::string name, description;
 };
@@ -78,7 +82,8 @@ const std::vector<std::pair<std::string, Lister>>& listers() {
 }
 
 void run_list(const CommandOptions& options) {
-    const auto list = std::ranges::find(listers(), options.topic, [](const auto& one) { return one.first; })->second();
+    const auto topic = options.of<ListOptions>().topic;
+    const auto list = std::ranges::find(listers(), topic, [](const auto& one) { return one.first; })->second();
     if (options.json) {
         auto report = nlohmann::ordered_json::array();
         for (const auto& [name, description] : list) {
@@ -105,7 +110,7 @@ Command list_command() {
     }
     return {.name = "list",
             .summary = "What a configuration can name, one a line",
-            .operands = {{"WHAT", "Which names", &CommandOptions::topic, topics}},
+            .operands = {{"WHAT", "Which names", into(&ListOptions::topic), topics}},
             .options = {json_option()},
             .run = run_list,
             .example = "vkfv list glasses",

@@ -12,7 +12,7 @@ Command stack_command() {
     return {.name = "stack",
             .summary =
                 "Trace a focus stack, reconstruct it and compare it with the truth; continues an interrupted one",
-            .operands = {{"C.toml", "Configuration", &CommandOptions::file}},
+            .operands = {{"C.toml", "Configuration", into(&CommandOptions::file)}},
             .options = together({configuration_options(), {out_option("Output folder")}}),
             .run = run_stack,
             .example = "vkfv stack assets/stacks/demo.toml --out demo"};

@@ -14,6 +14,11 @@ namespace vkfv::app {
 
 namespace {
 
+struct SurfaceOptions {
+    std::optional<double> unit;               // mm per unit of an image's value
+    std::optional<surface::ProfileLine> line; // none: the middle row
+};
+
 void take_profile(CommandOptions& options, const std::string& text) {
     if (text.empty()) {
         return;
@@ -30,7 +35,7 @@ void take_profile(CommandOptions& options, const std::string& text) {
         ends[k] /= um_per_mm;
         at = after + 1;
     }
-    options.profile_line = surface::ProfileLine{ends[0], ends[1], ends[2], ends[3]};
+    options.of<SurfaceOptions>().line = surface::ProfileLine{ends[0], ends[1], ends[2], ends[3]};
 }
 
 } // namespace
@@ -39,7 +44,7 @@ Command surface_command() {
     const Option unit = {.name = "--unit_um,--unit-um",
                          .value = "UM",
                          .description = "Height of a pixel's value of one, of an image",
-                         .target = in_mm(&CommandOptions::unit)};
+                         .target = in_mm(&SurfaceOptions::unit)};
     const Option profile = {.name = "--profile",
                             .value = "X0,Y0,X1,Y1",
                             .description = "Ends of the profile in um",
@@ -48,7 +53,7 @@ Command surface_command() {
     return {.name = "surface",
             .summary = "A surface file (X3P, SUR, SDF, AL3D, TIFF, EXR): form removed and filtered, its ISO 25178-2 "
                        "parameters; with --out also written, in another format if so named",
-            .operands = {{"FILE", "Surface", &CommandOptions::file}},
+            .operands = {{"FILE", "Surface", into(&CommandOptions::file)}},
             .options = together({{out_option("A .x3p, .sur, .sdf, .tif or .ply file"), json_option()},
                                  band_options(),
                                  {pitch_option(), unit, profile}}),
@@ -57,11 +62,13 @@ Command surface_command() {
 }
 
 void run_surface(const CommandOptions& options) {
-    const auto figures = measurement::measure_surface({.file = options.file,
-                                                       .scale = {.pitch = options.pitch, .unit = options.unit},
-                                                       .band = options.band,
-                                                       .line = options.profile_line,
-                                                       .out = options.out});
+    const auto own = options.of<SurfaceOptions>();
+    const auto figures =
+        measurement::measure_surface({.file = options.file,
+                                      .scale = {.pitch = options.of<PixelPitch>().value, .unit = own.unit},
+                                      .band = options.of<surface::Band>(),
+                                      .line = own.line,
+                                      .out = options.out});
     fmt::print("{}", options.json ? measurement::surface_json(figures, options.file).dump(2) + "\n"
                                   : measurement::surface_text(figures));
 }

@@ -12,7 +12,7 @@ Command sweep_command() {
     return {.name = "sweep",
             .summary = "Images or stacks for every combination of the parameters in [sweep]; continues an interrupted "
                        "one",
-            .operands = {{"C.toml", "Configuration", &CommandOptions::file}},
+            .operands = {{"C.toml", "Configuration", into(&CommandOptions::file)}},
             .options = together({configuration_options(), {out_option("Output folder")}}),
             .run = run_sweep,
             .example = "vkfv sweep assets/stacks/paper_logo_small.toml"};

@@ -14,7 +14,7 @@ Command verify_command() {
     return {.name = "verify",
             .summary =
                 "Check that the files of a stack, a sweep or other results are whole and those that were written",
-            .operands = {{"FOLDER", "Folder of results", &CommandOptions::file}},
+            .operands = {{"FOLDER", "Folder of results", into(&CommandOptions::file)}},
             .run = run_verify,
             .example = "vkfv verify demo"};
 }

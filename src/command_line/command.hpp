@@ -3,66 +3,105 @@
 #pragma once
 
 #include "configuration/configuration.hpp"
-#include "surface/band.hpp"
-#include "surface/roughness_profile.hpp"
+#include "core/units.hpp"
 
+#include <any>
 #include <cstdint>
 #include <filesystem>
 #include <functional>
+#include <map>
 #include <optional>
 #include <string>
+#include <type_traits>
+#include <typeindex>
 #include <utility>
 #include <variant>
 #include <vector>
 
 namespace vkfv::command_line {
 
-// What the command line says, as far as it does not override the configuration. Lengths in mm.
+// What the command line says, as far as it does not override the configuration: what several commands take, and what a
+// command keeps for itself in a struct of its own file.
 struct CommandOptions {
     std::filesystem::path file; // configuration; for `topography` the stack, for `surface` the surface
     std::vector<TomlOverride> overrides;
     std::optional<std::filesystem::path> out;
     bool quiet = false;
     bool json = false;
-    std::string topic; // of the commands that tell of vkfv itself
-    bool markdown = false;
-    bool schema = false;
-    double focal_height = 0;                           // image
-    std::filesystem::path rays_file;                   // trace-rays
-    std::filesystem::path picture_file;                // layout
-    std::vector<std::filesystem::path> compared_files; // compare: measurements, then the truth
-    bool align = false;                                // compare: the lateral shift is removed
-    surface::Band band;                                // compare, surface: form and filters
-    std::optional<surface::ProfileLine> profile_line;  // surface; none: the middle row
-    bool float_precision = false;                      // trace-rays: on the device
-    bool apertures = true;                             // trace-rays
-    int runs = 5;                                      // bench
-    std::vector<std::string> bench_parts = {"stages"}; // bench: what to measure (bench.hpp)
-    bool quick = false;                                // bench
-    std::filesystem::path peer;                        // bench: the program vkfv_bench_peer
-    std::string commit;                                // bench: for the report
-    std::vector<std::filesystem::path> glass_catalogs; // import
-    std::optional<std::uint64_t> shuffle;              // topography: seed of the order in which images are taken
-    // topography of a stack that vkfv did not make
-    std::optional<double> z_step;  // negative: the images descend
-    std::optional<double> pitch;   // surface too, of an image
-    std::optional<double> unit;    // surface: mm per unit of an image's value
-    std::optional<double> z_start; // of the first image; none: 0
+
+    // The command's own struct, as its options have filled it.
+    template <class Own>
+    Own& of() {
+        if constexpr (std::is_same_v<Own, CommandOptions>) {
+            return *this;
+        } else {
+            return std::any_cast<Own&>(own_.try_emplace(typeid(Own), Own{}).first->second);
+        }
+    }
+    // Its defaults, if none was given.
+    template <class Own>
+    Own of() const {
+        const auto found = own_.find(typeid(Own));
+        return found == own_.end() ? Own{} : std::any_cast<const Own&>(found->second);
+    }
+
+  private:
+    std::map<std::type_index, std::any> own_;
+};
+
+// Distance of the pixels of an image on the specimen, in mm; for images whose file does not say it.
+struct PixelPitch {
+    std::optional<double> value;
 };
 
 // Puts the value of an option where it belongs.
 template <class Value>
 using Take = std::function<void(CommandOptions&, const Value&)>;
 
+// What the parser gives for a member of this type.
+template <class Member>
+struct Given {
+    using Value = Member;
+};
+template <class Member>
+struct Given<std::optional<Member>> : Given<Member> {};
+template <>
+struct Given<std::filesystem::path> {
+    using Value = std::string;
+};
+template <>
+struct Given<std::vector<std::filesystem::path>> {
+    using Value = std::vector<std::string>;
+};
+
+// Into a member of CommandOptions or of a command's own struct.
+template <class Own, class Member>
+auto into(Member Own::*member) {
+    using Value = typename Given<Member>::Value;
+    return Take<Value>([member](CommandOptions& options, const Value& value) {
+        if constexpr (std::is_same_v<Member, std::vector<std::filesystem::path>>) {
+            (options.of<Own>().*member).assign(value.begin(), value.end());
+        } else {
+            options.of<Own>().*member = value;
+        }
+    });
+}
+
+// A length that is given in um, into one in mm.
+template <class Own, class Member>
+Take<double> in_mm(Member Own::*length) {
+    return [length](CommandOptions& options, double um) { options.of<Own>().*length = um / um_per_mm; };
+}
+
 struct Option {
     std::string name;        // "--out"; "--z_step_um,--z-step-um": two spellings
     std::string value;       // what stands for the value in help; empty: a switch
     std::string description; // a sentence without its stop
-    std::variant<bool CommandOptions::*, int CommandOptions::*, std::optional<std::uint64_t> CommandOptions::*,
-                 Take<bool>, Take<double>, Take<std::string>, Take<std::vector<std::string>>>
+    std::variant<Take<bool>, Take<int>, Take<std::uint64_t>, Take<double>, Take<std::string>,
+                 Take<std::vector<std::string>>>
         target;
     std::string fallback{};             // what holds if it is not given
-    std::vector<std::string> choices{}; // Take<bool>: of true, of false
+    std::vector<std::string> choices{}; // Take<bool> that is no switch: of true, of false
     bool choices_checked = true;        // else the configuration refuses others, with its own words
     std::pair<int, int> range{};        // of an integer, ends included
     bool list = false;                  // values are parted by commas; else several stand each behind the option
@@ -74,9 +113,7 @@ struct Option {
 struct Operand {
     std::string name; // "C.toml"; "MEASURED... TRUTH": two or more
     std::string description;
-    std::variant<std::filesystem::path CommandOptions::*, std::string CommandOptions::*,
-                 std::vector<std::filesystem::path> CommandOptions::*>
-        target;
+    std::variant<Take<std::string>, Take<std::vector<std::string>>> target;
     std::vector<std::string> choices{}; // empty: it is a file
     bool needed = true;
 };
@@ -104,10 +141,8 @@ const Command& command_named(const std::string& name);
 std::vector<Option> configuration_options(); // instead of the configuration's values
 Option out_option(std::string description);
 Option json_option();
-Option pitch_option();
-std::vector<Option> band_options(); // form and filters
-// A length in um.
-Take<double> in_mm(std::optional<double> CommandOptions::*length);
+Option pitch_option();              // a PixelPitch
+std::vector<Option> band_options(); // form and filters: a surface::Band
 // One list after the other.
 std::vector<Option> together(std::vector<std::vector<Option>> lists);
 

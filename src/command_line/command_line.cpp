@@ -10,6 +10,7 @@
 
 #include <algorithm>
 #include <cstdio>
+#include <deque>
 #include <functional>
 #include <iterator>
 #include <map>
@@ -95,27 +96,26 @@ class CommandLine {
     }
 
     static bool takes_several(const Operand& operand) {
-        return std::holds_alternative<std::vector<std::filesystem::path> CommandOptions::*>(operand.target);
+        return std::holds_alternative<Take<std::vector<std::string>>>(operand.target);
     }
 
     void declare(const Option& option) {
         std::visit([&](const auto& target) { declare(option, target); }, option.target);
     }
     template <class Value>
-    void declare(const Option& option, Value CommandOptions::*const& member) {
+    void declare(const Option& option, const Take<Value>& take) {
         if constexpr (std::is_same_v<Value, bool>) {
-            app_.add_flag(option.name, options_.*member);
-        } else {
-            auto* declared = app_.add_option(option.name, options_.*member);
-            if (option.range.second > 0) {
-                declared->check(CLI::Range(option.range.first, option.range.second));
-            } else {
-                declared->type_name(option.value);
+            if (option.value.empty()) {
+                bool& given = switches_.emplace_back();
+                app_.add_flag(option.name, given);
+                taken_.push_back([this, take, &given] {
+                    if (given) {
+                        take(options_, true);
+                    }
+                });
+                return;
             }
         }
-    }
-    template <class Value>
-    void declare(const Option& option, const Take<Value>& take) {
         // Once all is parsed: an option that does not exist is told of first.
         auto* declared = app_.add_option_function<Value>(option.name, [this, take](const Value& value) {
             taken_.push_back([this, take, value] { take(options_, value); });
@@ -135,7 +135,9 @@ class CommandLine {
                 declared->expected(1)->take_all();
             }
         }
-        if (!option.choices.empty() && option.choices_checked) {
+        if (option.range.second > 0) {
+            declared->check(CLI::Range(option.range.first, option.range.second));
+        } else if (!option.choices.empty() && option.choices_checked) {
             declared->check(CLI::IsMember(option.choices));
         } else {
             declared->type_name(option.value);
@@ -222,14 +224,11 @@ class CommandLine {
         const auto& given = operands_[static_cast<std::size_t>(&command - all_commands().data())];
         for (std::size_t k = 0; k < std::min(given.size(), command.operands.size()); ++k) {
             const Operand& operand = command.operands[k];
-            if (const auto* files =
-                    std::get_if<std::vector<std::filesystem::path> CommandOptions::*>(&operand.target)) {
-                (options_.**files).assign(given.begin(), given.end());
-            } else if (const auto* file = std::get_if<std::filesystem::path CommandOptions::*>(&operand.target)) {
-                options_.** file = given[k];
+            if (const auto* take_all = std::get_if<Take<std::vector<std::string>>>(&operand.target)) {
+                (*take_all)(options_, given);
             } else {
                 require_choice(given[k], operand);
-                options_.*std::get<std::string CommandOptions::*>(operand.target) = given[k];
+                std::get<Take<std::string>>(operand.target)(options_, given[k]);
             }
         }
     }
@@ -246,6 +245,7 @@ class CommandLine {
     const Command* named_; // none: commands are options
     CLI::App app_;
     CommandOptions options_;
+    std::deque<bool> switches_;
     bool flag_ = false; // of commands without operands; which of them were given, CLI11 counts
     std::vector<std::vector<std::string>> operands_; // of each command
     std::vector<std::function<void()>> taken_;       // values of options that were given, in the order of declaration
@@ -274,7 +274,7 @@ void declare_commands(std::vector<Command> commands) {
         command.options.push_back({.name = "--quiet",
                                    .value = "",
                                    .description = "Only warnings and errors, no progress",
-                                   .target = &CommandOptions::quiet});
+                                   .target = into(&CommandOptions::quiet)});
     }
     declared() = std::move(commands);
 }

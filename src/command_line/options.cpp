@@ -1,7 +1,7 @@
 // Options that several commands take.
 #include "command_line/command.hpp"
 
-#include "core/units.hpp"
+#include "surface/band.hpp"
 
 #include <fmt/format.h>
 
@@ -52,7 +52,7 @@ void take_form(CommandOptions& options, const std::string& name) {
         refuse_argument("--form " + name, "none, plane, polynomial-1 to polynomial-20 or sphere",
                         "Name one of these, or leave it out for a plane.");
     }
-    options.band.form = *form;
+    options.of<surface::Band>().form = *form;
 }
 
 } // namespace
@@ -104,7 +104,7 @@ Option json_option() {
     return {.name = "--json",
             .value = "",
             .description = "Machine-readable output",
-            .target = &CommandOptions::json,
+            .target = into(&CommandOptions::json),
             .foremost = "check"};
 }
 
@@ -112,50 +112,48 @@ Option pitch_option() {
     return {.name = "--pitch_um,--pitch-um",
             .value = "UM",
             .description = "Distance of the pixels of an image on the specimen",
-            .target = in_mm(&CommandOptions::pitch)};
+            .target = in_mm(&PixelPitch::value)};
 }
 
 std::vector<Option> band_options() {
     const auto take_l_filter = [](CommandOptions& options, double um) {
-        options.band.l_filter = nesting_index(um);
-        if (um > 0 && options.band.l_filter <= options.band.s_filter) {
+        options.of<surface::Band>().l_filter = nesting_index(um);
+        if (um > 0 && options.of<surface::Band>().l_filter <= options.of<surface::Band>().s_filter) {
             // All the digits that were written, and no rounding of the unit's.
-            refuse_argument(
-                fmt::format("--s_filter_um {:.15g} with --l_filter_um {}", options.band.s_filter * um_per_mm, um),
-                "an L-filter longer than the S-filter", "Exchange them, or leave one out.");
+            refuse_argument(fmt::format("--s_filter_um {:.15g} with --l_filter_um {}",
+                                        options.of<surface::Band>().s_filter * um_per_mm, um),
+                            "an L-filter longer than the S-filter", "Exchange them, or leave one out.");
         }
     };
-    std::vector<Option> options = {
-        {.name = "--form",
-         .value = "NAME",
-         .description = "Removed first: none, plane, polynomial-1 to polynomial-20, sphere",
-         .target = Take<std::string>(take_form),
-         .fallback = "plane"},
-        {.name = "--s_filter_um,--s-filter-um",
-         .value = "UM",
-         .description = "Nesting index of the S-filter: shorter waves are removed",
-         .target = Take<double>([](CommandOptions& options, double um) { options.band.s_filter = nesting_index(um); }),
-         .fallback = "0, no filter"},
-        {.name = "--l_filter_um,--l-filter-um",
-         .value = "UM",
-         .description = "Nesting index of the L-filter: longer waves are removed",
-         .target = Take<double>(take_l_filter),
-         .fallback = "0, no filter"},
-        {.name = "--filter",
-         .value = "NAME",
-         .description = "Which S-filter and L-filter",
-         .target = Take<std::string>(
-             [](CommandOptions& options, const std::string& name) { options.band.spline = name == "spline"; }),
-         .fallback = "gaussian",
-         .choices = {"gaussian", "spline"}}};
+    std::vector<Option> options = {{.name = "--form",
+                                    .value = "NAME",
+                                    .description = "Removed first: none, plane, polynomial-1 to polynomial-20, sphere",
+                                    .target = Take<std::string>(take_form),
+                                    .fallback = "plane"},
+                                   {.name = "--s_filter_um,--s-filter-um",
+                                    .value = "UM",
+                                    .description = "Nesting index of the S-filter: shorter waves are removed",
+                                    .target = Take<double>([](CommandOptions& options, double um) {
+                                        options.of<surface::Band>().s_filter = nesting_index(um);
+                                    }),
+                                    .fallback = "0, no filter"},
+                                   {.name = "--l_filter_um,--l-filter-um",
+                                    .value = "UM",
+                                    .description = "Nesting index of the L-filter: longer waves are removed",
+                                    .target = Take<double>(take_l_filter),
+                                    .fallback = "0, no filter"},
+                                   {.name = "--filter",
+                                    .value = "NAME",
+                                    .description = "Which S-filter and L-filter",
+                                    .target = Take<std::string>([](CommandOptions& options, const std::string& name) {
+                                        options.of<surface::Band>().spline = name == "spline";
+                                    }),
+                                    .fallback = "gaussian",
+                                    .choices = {"gaussian", "spline"}}};
     for (auto& option : options) {
         option.foremost = "surface";
     }
     return options;
-}
-
-Take<double> in_mm(std::optional<double> CommandOptions::*length) {
-    return [length](CommandOptions& options, double um) { options.*length = um / um_per_mm; };
 }
 
 std::vector<Option> together(std::vector<std::vector<Option>> lists) {
