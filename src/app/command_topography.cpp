@@ -46,20 +46,12 @@ Command topography_command() {
 
 namespace {
 
-[[noreturn]] void refuse(std::string found, std::string expected, std::string remedy) {
-    throw InputError({.where = {.file = "command line", .line = 0, .column = 0, .byte_offset = {}},
-                      .key = "",
-                      .found = std::move(found),
-                      .expected = std::move(expected),
-                      .remedy = std::move(remedy)});
-}
-
 measurement::EvaluatedStack evaluate_own(const CommandOptions& options) {
     const auto own = options.of<TopographyOptions>();
     const auto pitch = options.of<PixelPitch>().value;
     if (own.z_step || pitch || own.z_start) {
-        refuse("--z_step_um, --pitch_um or --z_start_um with a stack that has a stack.toml", "neither of them",
-               "Leave them out: they stand in stack.toml.");
+        refuse_argument("--z_step_um, --pitch_um or --z_start_um with a stack that has a stack.toml", "neither of them",
+                        "Leave them out: they stand in stack.toml.");
     }
     return measurement::evaluate_own_stack({.folder = options.file,
                                             .overrides = options.overrides,
@@ -74,7 +66,7 @@ measurement::EvaluatedStack evaluate_foreign(const CommandOptions& options) {
     const scan::ImageSeries series(options.file);
     const bool step_good = own.z_step && std::isfinite(*own.z_step) && *own.z_step != 0;
     if (!step_good || !pitch || !std::isfinite(*pitch) || *pitch <= 0) {
-        refuse(
+        refuse_argument(
             !step_good ? "no --z_step_um, or none that steps" : "no --pitch_um, or none above 0",
             fmt::format("both, for the {} images in {}, which has no stack.toml", series.size(), options.file.string()),
             "Give --z_step_um UM, the step from image to image (negative if they descend), and --pitch_um UM > 0, "
@@ -82,17 +74,17 @@ measurement::EvaluatedStack evaluate_foreign(const CommandOptions& options) {
     }
     const double start = own.z_start.value_or(0);
     if (!std::isfinite(start)) {
-        refuse("--z_start_um " + fmt::format("{}", start), "a height",
-               "Give that of the first image, or leave it out.");
+        refuse_argument("--z_start_um " + fmt::format("{}", start), "a height",
+                        "Give that of the first image, or leave it out.");
     }
     std::error_code none;
     if (options.out && (std::filesystem::equivalent(*options.out, options.file, none) ||
                         std::filesystem::exists(*options.out / "stack.toml"))) {
-        refuse("--out " + options.out->string(), "a folder other than that of any images",
-               "Name another: results would be mixed with the stack that is there.");
+        refuse_argument("--out " + options.out->string(), "a folder other than that of any images",
+                        "Name another: results would be mixed with the stack that is there.");
     }
     if (!options.out && !own.shuffle) {
-        refuse("no --out", "a folder for the results of a stack that vkfv did not make", "Give --out FOLDER.");
+        refuse_argument("no --out", "a folder for the results of a stack that vkfv did not make", "Give --out FOLDER.");
     }
     // The keys of [topography] alone; --out is no key of it.
     auto overrides = options.overrides;

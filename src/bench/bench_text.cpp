@@ -1,4 +1,5 @@
 #include "bench/bench.hpp"
+#include "report/chart.hpp"
 
 #include <fmt/format.h>
 
@@ -6,16 +7,7 @@ namespace vkfv::bench {
 
 namespace {
 
-// Rates by their thousands: "3.12 G".
-std::string with_prefix(double value) {
-    const char* prefixes[] = {"", " k", " M", " G", " T"};
-    int thousands = 0;
-    while (value >= 1000 && thousands < 4) {
-        value /= 1000;
-        ++thousands;
-    }
-    return fmt::format("{:.3g}{}", value, prefixes[thousands]);
-}
+using report::with_prefix; // of rates
 
 double number(const Json& of, const char* key) {
     return of.at(key).get<double>();

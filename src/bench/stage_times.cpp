@@ -1,5 +1,6 @@
 #include "bench/stage_times.hpp"
 
+#include "bench/bench_scene.hpp"
 #include "trace/forward_trace.hpp"
 
 #include <fmt/format.h>
@@ -11,11 +12,6 @@
 namespace vkfv::bench {
 
 namespace {
-
-double median(std::vector<double> values) {
-    std::ranges::nth_element(values, values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2));
-    return values[values.size() / 2];
-}
 
 constexpr std::chrono::milliseconds warm_up{500}; // clocks of an idle GPU take that long to rise
 

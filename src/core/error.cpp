@@ -60,4 +60,13 @@ InputError::InputError(InputProblem problem) : InputError(std::vector{std::move(
 InputError::InputError(std::vector<InputProblem> problems)
     : std::runtime_error(describe(problems)), problems_(std::move(problems)) {}
 
+void refuse_file(const std::filesystem::path& file, std::string key, std::string found, std::string expected,
+                 std::string remedy) {
+    throw InputError({.where = {.file = file},
+                      .key = std::move(key),
+                      .found = std::move(found),
+                      .expected = std::move(expected),
+                      .remedy = std::move(remedy)});
+}
+
 } // namespace vkfv

@@ -58,6 +58,10 @@ class InputError : public std::runtime_error {
     std::vector<InputProblem> problems_;
 };
 
+// Throws InputError: what stands in a file, or the file itself, is not what was expected. `key` may be empty.
+[[noreturn]] void refuse_file(const std::filesystem::path& file, std::string key, std::string found,
+                              std::string expected, std::string remedy);
+
 // Exit code 3: no usable device. The message names what is missing and the remedy.
 class DeviceError : public std::runtime_error {
   public:

@@ -19,15 +19,6 @@ namespace {
 
 using surface::HeightMap;
 
-[[noreturn]] void refuse_file(const std::filesystem::path& file, std::string found, std::string expected,
-                              std::string remedy) {
-    throw InputError({.where = {.file = file},
-                      .key = "--compare",
-                      .found = std::move(found),
-                      .expected = std::move(expected),
-                      .remedy = std::move(remedy)});
-}
-
 std::string grid_text(const HeightMap& map) {
     return fmt::format("{} x {} points, {:.6g} x {:.6g} um apart, from x = {:.6g} um, y = {:.6g} um", map.columns(),
                        map.rows(), map.pitch_x * um_per_mm, map.pitch_y * um_per_mm, map.x0 * um_per_mm,
@@ -49,12 +40,13 @@ std::vector<HeightMap> read_measurements(const std::vector<std::filesystem::path
     for (const auto& file : files) {
         measurements.push_back(surface::read_surface(file).map);
         if (!same_grid(measurements.front(), measurements.back())) {
-            refuse_file(file, grid_text(measurements.back()),
+            refuse_file(file, "--compare", grid_text(measurements.back()),
                         fmt::format("the grid of {}: {}", files.front().string(), grid_text(measurements.front())),
                         "Compare repeated measurements of one field; other fields in runs of their own.");
         }
         if (!any_height(measurements.back())) {
-            refuse_file(file, "no measured point", "a height map with heights", "Measure again, or leave it out.");
+            refuse_file(file, "--compare", "no measured point", "a height map with heights",
+                        "Measure again, or leave it out.");
         }
     }
     return measurements;
@@ -74,7 +66,7 @@ void check_place(const ComparisonRequest& request, const HeightMap& first, const
         }
     }
     if (!any_height(surface::resampled(truth, first))) {
-        refuse_file(request.truth, grid_text(truth),
+        refuse_file(request.truth, "--compare", grid_text(truth),
                     fmt::format("heights where {} has them: {}", measured_file.string(), grid_text(first)),
                     "Give the truth of the same field, in the same frame.");
     }
@@ -96,7 +88,7 @@ ComparisonResult compare_files(const ComparisonRequest& request) {
     if (request.band.form.kind == surface::Form::Kind::sphere &&
         std::ranges::any_of(comparison.measurements,
                             [](const auto& one) { return one.deviation.measured_share == 0; })) {
-        refuse_file(request.measurements.front(), "no point on both spheres",
+        refuse_file(request.measurements.front(), "--compare", "no point on both spheres",
                     "a form that the points of both surfaces settle", "Choose --form plane or --form polynomial-2.");
     }
     auto profile = compared_profile(pair);

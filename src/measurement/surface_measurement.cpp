@@ -16,20 +16,11 @@ namespace {
 
 using surface::HeightMap;
 
-[[noreturn]] void refuse(const SurfaceRequest& request, std::string key, std::string found, std::string expected,
-                         std::string remedy) {
-    throw InputError({.where = {.file = request.file},
-                      .key = std::move(key),
-                      .found = std::move(found),
-                      .expected = std::move(expected),
-                      .remedy = std::move(remedy)});
-}
-
-surface::SurfaceFile read_file(const SurfaceRequest& request) {
+surface::SurfaceFile requested_surface(const SurfaceRequest& request) {
     const auto check = [&](const char* option, const std::optional<double>& length) {
         if (length && !(std::isfinite(*length) && *length > 0)) {
-            refuse(request, option, fmt::format("{:g}", *length * um_per_mm), "a positive length",
-                   "Give the one that belongs to this image.");
+            refuse_file(request.file, option, fmt::format("{:g}", *length * um_per_mm), "a positive length",
+                        "Give the one that belongs to this image.");
         }
     };
     check("--pitch_um", request.scale.pitch);
@@ -47,12 +38,12 @@ surface::SurfaceFile read_file(const SurfaceRequest& request) {
 
 HeightMap treated(const SurfaceRequest& request, const HeightMap& map) {
     if (!any_height(map)) {
-        refuse(request, "", "no measured point", "a surface with heights", "Measure again.");
+        refuse_file(request.file, "", "no measured point", "a surface with heights", "Measure again.");
     }
     HeightMap result = surface::scale_limited(map, request.band);
     if (!any_height(result)) {
-        refuse(request, "--form", surface::form_name(request.band.form), "a form that the measured points settle",
-               "Choose --form plane or --form polynomial-2.");
+        refuse_file(request.file, "--form", surface::form_name(request.band.form),
+                    "a form that the measured points settle", "Choose --form plane or --form polynomial-2.");
     }
     return result;
 }
@@ -71,13 +62,14 @@ surface::ProfileLine line_of(const SurfaceRequest& request, const HeightMap& map
         within(line.y_start, map.y0, y_last, map.pitch_y) && within(line.y_end, map.y0, y_last, map.pitch_y);
     if (!inside ||
         !(std::hypot(line.x_end - line.x_start, line.y_end - line.y_start) > std::min(map.pitch_x, map.pitch_y))) {
-        refuse(request, "--profile",
-               fmt::format("{:.6g},{:.6g},{:.6g},{:.6g}", line.x_start * um_per_mm, line.y_start * um_per_mm,
-                           line.x_end * um_per_mm, line.y_end * um_per_mm),
-               fmt::format(
-                   "a line longer than a pitch on the surface: x from {:.6g} to {:.6g} um, y from {:.6g} to {:.6g} um",
-                   map.x0 * um_per_mm, x_last * um_per_mm, map.y0 * um_per_mm, y_last * um_per_mm),
-               "Choose both ends on the surface, or leave it out for the middle row.");
+        refuse_file(
+            request.file, "--profile",
+            fmt::format("{:.6g},{:.6g},{:.6g},{:.6g}", line.x_start * um_per_mm, line.y_start * um_per_mm,
+                        line.x_end * um_per_mm, line.y_end * um_per_mm),
+            fmt::format(
+                "a line longer than a pitch on the surface: x from {:.6g} to {:.6g} um, y from {:.6g} to {:.6g} um",
+                map.x0 * um_per_mm, x_last * um_per_mm, map.y0 * um_per_mm, y_last * um_per_mm),
+            "Choose both ends on the surface, or leave it out for the middle row.");
     }
     return line;
 }
@@ -85,14 +77,14 @@ surface::ProfileLine line_of(const SurfaceRequest& request, const HeightMap& map
 } // namespace
 
 SurfaceFigures measure_surface(const SurfaceRequest& request) {
-    auto [original, provenance] = read_file(request);
+    auto [original, provenance] = requested_surface(request);
     const HeightMap map = treated(request, original);
     const surface::ProfileLine line = line_of(request, map);
     if (request.out) {
         std::error_code none;
         if (std::filesystem::equivalent(*request.out, request.file, none)) {
-            refuse(request, "--out", request.out->string(), "another file than the measurement itself",
-                   "Name a new one.");
+            refuse_file(request.file, "--out", request.out->string(), "another file than the measurement itself",
+                        "Name a new one.");
         }
         provenance.comment += fmt::format("\nvkfv {}: {}, {}", VKFV_VERSION, request.file.filename().string(),
                                           report::treatment_text(request.band));

@@ -25,15 +25,6 @@ bool is_image(const std::filesystem::path& file) {
     return std::ranges::find(extensions, extension) != extensions.end() && file.filename().string().front() != '.';
 }
 
-[[noreturn]] void refuse(const std::filesystem::path& path, std::string found, std::string expected,
-                         std::string remedy) {
-    throw InputError({.where = {.file = path, .line = 0, .column = 0, .byte_offset = {}},
-                      .key = "",
-                      .found = std::move(found),
-                      .expected = std::move(expected),
-                      .remedy = std::move(remedy)});
-}
-
 } // namespace
 
 ImageSeries::ImageSeries(const std::filesystem::path& path) {
@@ -55,16 +46,17 @@ ImageSeries::ImageSeries(const std::filesystem::path& path) {
             spdlog::warn("{}: the heights of the images are in doubt: {}", path.string(), doubt);
         }
         if (images_.empty()) {
-            refuse(
-                path, "no stack.toml and no image", fmt::format("stack.toml or files {}", fmt::join(extensions, ", ")),
+            refuse_file(
+                path, "", "no stack.toml and no image",
+                fmt::format("stack.toml or files {}", fmt::join(extensions, ", ")),
                 "Give the folder of a stack of vkfv, one with the images of another, or a TIFF file of several pages.");
         }
         return;
     }
     if (!std::filesystem::exists(path)) {
-        refuse(path, "no such file or folder",
-               "the folder of a stack (with its stack.toml), a folder of images, or a TIFF file of several pages",
-               "Check the path.");
+        refuse_file(path, "", "no such file or folder",
+                    "the folder of a stack (with its stack.toml), a folder of images, or a TIFF file of several pages",
+                    "Check the path.");
     }
     for (int page = 0, pages = images::page_count(path); page < pages; ++page) {
         images_.push_back({path, page});

@@ -31,14 +31,6 @@ constexpr std::string_view digest_label = " (digest ";
 constexpr std::size_t digest_digits = 16;
 constexpr double cm_per_um = 1e-4;
 
-[[noreturn]] void refuse(const fs::path& where, std::string found, std::string expected, std::string remedy) {
-    throw InputError({.where = {.file = where, .line = 0, .column = 0, .byte_offset = {}},
-                      .key = "",
-                      .found = std::move(found),
-                      .expected = std::move(expected),
-                      .remedy = std::move(remedy)});
-}
-
 std::vector<std::string> lines_of(std::string_view text) {
     std::vector<std::string> lines;
     std::istringstream stream{std::string(text)};
@@ -200,15 +192,15 @@ Frame read_whole_frame(const fs::path& folder, int image, double z) {
                                   .remedy = "Trace the stack again with the same command: it keeps the other images."}),
         .image = {}};
     if (!seal_is_whole(frame.bytes)) {
-        refuse(path, "bytes that are not those stored", "a whole image of a stack",
-               "Trace the stack again with the same command: it keeps the other images.");
+        refuse_file(path, "", "bytes that are not those stored", "a whole image of a stack",
+                    "Trace the stack again with the same command: it keeps the other images.");
     }
     frame.image = images::parse_tiff(frame.bytes, path);
     const std::string found = described(frame.image.description, "z_um");
     if (found != micrometres_text(z)) {
-        refuse(path, fmt::format("z_um = {}", found.empty() ? "none" : found),
-               fmt::format("the focal height {} um", micrometres_text(z)),
-               "Keep the images of different stacks apart, or trace the stack again.");
+        refuse_file(path, "", fmt::format("z_um = {}", found.empty() ? "none" : found),
+                    fmt::format("the focal height {} um", micrometres_text(z)),
+                    "Keep the images of different stacks apart, or trace the stack again.");
     }
     return frame;
 }
@@ -279,12 +271,12 @@ ImageStore::ImageStore(const fs::path& folder, StackDescription description)
     : description_(std::move(description)), ledger_rows_(description_.positions.size()) {
     std::error_code none;
     if (fs::exists(folder, none) && !fs::is_directory(folder, none)) {
-        refuse(folder, "a file", "a folder", "Give another --out.");
+        refuse_file(folder, "", "a file", "a folder", "Give another --out.");
     }
     if (fs::exists(folder, none) && !fs::exists(folder / configuration_name, none) &&
         !holds_nothing_but_a_beginning(folder)) {
-        refuse(folder, fmt::format("a folder with other files and without {}", configuration_name),
-               "a new folder, an empty one, or that of the same stack", "Give another --out.");
+        refuse_file(folder, "", fmt::format("a folder with other files and without {}", configuration_name),
+                    "a new folder, an empty one, or that of the same stack", "Give another --out.");
     }
     results_ = std::make_unique<ResultFolder>(folder);
     create_or_compare();
@@ -305,13 +297,13 @@ void ImageStore::create_or_compare() {
     const std::string text_there = read_file(path, {.expected = "the configuration of a stack"});
     const std::string identity_there = identity_of(text_there);
     if (identity_there.empty()) {
-        refuse(path, "a file without the identity of a stack", "the stack.toml of a stack that vkfv traced",
-               "Give another --out: the configuration belongs outside of the output folder.");
+        refuse_file(path, "", "a file without the identity of a stack", "the stack.toml of a stack that vkfv traced",
+                    "Give another --out: the configuration belongs outside of the output folder.");
     }
     const std::string difference = differences(identity_there, description_.identity);
     if (!difference.empty()) {
-        refuse(path, "a stack of another configuration", "the configuration of this run",
-               "Give another --out, or remove the folder. What differs:" + difference);
+        refuse_file(path, "", "a stack of another configuration", "the configuration of this run",
+                    "Give another --out, or remove the folder. What differs:" + difference);
     }
     // What does not touch the images, such as the evaluation, may differ.
     if (text_there != text) {

@@ -3,7 +3,12 @@
 
 #include "core/grid.hpp"
 
+#include <limits>
+
 namespace vkfv::surface {
+
+// Of a figure that needs points which are not there.
+inline constexpr double undefined = std::numeric_limits<double>::quiet_NaN();
 
 // Heights in mm over the specimen frame's x and y in mm. NaN means "not measured".
 // Point (i, j) stands at (x0 + i * pitch_x, y0 + j * pitch_y); rows ascend with y.

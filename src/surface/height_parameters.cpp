@@ -2,12 +2,10 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
 namespace vkfv::surface {
 
 HeightParameters height_parameters(const HeightMap& map) {
-    constexpr double undefined = std::numeric_limits<double>::quiet_NaN();
     double count = 0, sum = 0;
     for (const double z : map.height.values)
         if (std::isfinite(z)) {

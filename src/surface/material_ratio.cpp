@@ -3,14 +3,9 @@
 #include <algorithm>
 #include <cmath>
 #include <functional>
-#include <limits>
 
 namespace vkfv::surface {
-namespace {
-
-constexpr double undefined = std::numeric_limits<double>::quiet_NaN();
-
-} // namespace
+namespace {} // namespace
 
 MaterialRatioCurve::MaterialRatioCurve(const HeightMap& map) {
     heights_.reserve(map.height.values.size());

@@ -1,7 +1,6 @@
 #include "surface/roughness_profile.hpp"
 
 #include <algorithm>
-#include <limits>
 
 namespace vkfv::surface {
 
@@ -18,7 +17,6 @@ RoughnessProfile roughness_profile(const HeightMap& map, const ProfileLine& line
     result.profile = extract_profile(map, line.x_start, line.y_start, line.x_end, line.y_end, spacing);
     const auto points = result.profile.height.size();
     result.section_length = static_cast<double>(points - 1) * spacing / 5;
-    constexpr double undefined = std::numeric_limits<double>::quiet_NaN();
     // Of a section no longer than a spacing the filter leaves nothing.
     result.parameters = result.section_length > spacing
                             ? profile_parameters(remove_long_waves(result.profile, result.section_length))

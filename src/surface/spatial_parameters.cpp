@@ -8,15 +8,12 @@
 #include <cmath>
 #include <complex>
 #include <cstdlib>
-#include <limits>
 #include <vector>
 
 namespace vkfv::surface {
 namespace {
 
 using Complex = std::complex<double>;
-
-constexpr double undefined = std::numeric_limits<double>::quiet_NaN();
 
 // A function over whole indices that may be negative, periodic in the grid's size: what a transform is.
 template <class Function>

@@ -3,7 +3,6 @@
 #include <Eigen/Dense>
 
 #include <cmath>
-#include <limits>
 
 namespace vkfv::surface {
 namespace {
@@ -11,8 +10,6 @@ namespace {
 using Eigen::Matrix4d;
 using Eigen::Vector3d;
 using Eigen::Vector4d;
-
-constexpr double undefined = std::numeric_limits<double>::quiet_NaN();
 
 template <class Visit>
 void for_measured(const HeightMap& map, const Visit& visit) {

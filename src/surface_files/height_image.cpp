@@ -29,11 +29,6 @@ std::optional<images::ImageFormat> format_of(std::string_view bytes) {
     return std::nullopt;
 }
 
-[[noreturn]] void reject(const std::filesystem::path& path, std::string key, std::string found, std::string expected,
-                         std::string remedy) {
-    throw InputError({{path, 0, 0, {}}, std::move(key), std::move(found), std::move(expected), std::move(remedy)});
-}
-
 // The value of "key=value" on a line of its own.
 double described_number(const std::filesystem::path& path, std::string_view description, std::string_view key) {
     const std::string label = fmt::format("\n{}=", key);
@@ -46,8 +41,8 @@ double described_number(const std::filesystem::path& path, std::string_view desc
         good = error == std::errc() && std::isfinite(value);
     }
     if (!good)
-        reject(path, std::string(key), "no such number in the ImageDescription", fmt::format("{}=<number>", key),
-               "Use a height map that vkfv wrote, or give a plain image with its pitch as a specimen.");
+        refuse_file(path, std::string(key), "no such number in the ImageDescription", fmt::format("{}=<number>", key),
+                    "Use a height map that vkfv wrote, or give a plain image with its pitch as a specimen.");
     return value;
 }
 
@@ -59,8 +54,8 @@ HeightMap height_map_of(const images::DescribedImage& image, const std::filesyst
     map.pitch_x = described_number(path, image.description, "pitch_x_mm");
     map.pitch_y = described_number(path, image.description, "pitch_y_mm");
     if (map.pitch_x <= 0 || map.pitch_y <= 0)
-        reject(path, "pitch_x_mm, pitch_y_mm", fmt::format("{}, {}", map.pitch_x, map.pitch_y), "positive pitches",
-               "Use a height map that vkfv wrote.");
+        refuse_file(path, "pitch_x_mm, pitch_y_mm", fmt::format("{}, {}", map.pitch_x, map.pitch_y), "positive pitches",
+                    "Use a height map that vkfv wrote.");
     map.height = Grid<double>(image.values.columns, image.values.rows);
     std::transform(image.values.values.begin(), image.values.values.end(), map.height.values.begin(),
                    [](double height) {
@@ -92,14 +87,14 @@ bool looks_like_height_image(std::string_view bytes) {
 SurfaceFile parse_height_image(std::string_view bytes, const std::filesystem::path& path, const ImageScale& scale) {
     const std::optional<images::ImageFormat> format = format_of(bytes);
     if (!format)
-        reject(path, "", "a file of unknown kind", "a TIFF or OpenEXR file",
-               "Export the surface in one of these formats.");
+        refuse_file(path, "", "a file of unknown kind", "a TIFF or OpenEXR file",
+                    "Export the surface in one of these formats.");
     const images::DescribedImage image = images::parse_image(bytes, *format, path);
     const std::string& description = image.description;
     if (description.starts_with(own_title)) {
         if (scale.pitch || scale.unit)
-            reject(path, scale.pitch ? "pitch" : "unit", "given", "no second scale: the file states its own",
-                   "Leave it out.");
+            refuse_file(path, scale.pitch ? "pitch" : "unit", "given", "no second scale: the file states its own",
+                        "Leave it out.");
         SurfaceFile result{.map = height_map_of(image, path), .provenance = {}};
         const auto grid = description.find(last_grid_key);
         const auto rest = std::min(description.find('\n', grid), description.size());
@@ -108,12 +103,13 @@ SurfaceFile parse_height_image(std::string_view bytes, const std::filesystem::pa
     }
     const auto check = [&](const char* key, const std::optional<double>& value) {
         if (!value || !(std::isfinite(*value) && *value > 0))
-            reject(path, key, value ? fmt::format("{}", *value) : "not given",
-                   "a positive length, which an image does not state",
-                   fmt::format(
-                       "Give the {} that belongs to this image; vkfv --surface IMAGE --pitch_um P --unit_um U --out "
-                       "NAME.x3p writes a file that states its own.",
-                       key));
+            refuse_file(
+                path, key, value ? fmt::format("{}", *value) : "not given",
+                "a positive length, which an image does not state",
+                fmt::format(
+                    "Give the {} that belongs to this image; vkfv --surface IMAGE --pitch_um P --unit_um U --out "
+                    "NAME.x3p writes a file that states its own.",
+                    key));
     };
     check("pitch", scale.pitch);
     check("unit", scale.unit);

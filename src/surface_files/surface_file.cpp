@@ -16,15 +16,6 @@
 namespace vkfv::surface {
 namespace {
 
-[[noreturn]] void reject(const std::filesystem::path& path, std::string key, std::string found, std::string expected,
-                         std::string remedy) {
-    throw InputError({.where = {.file = path, .line = 0, .column = 0, .byte_offset = {}},
-                      .key = std::move(key),
-                      .found = std::move(found),
-                      .expected = std::move(expected),
-                      .remedy = std::move(remedy)});
-}
-
 // Lower case.
 std::string name_of(const std::filesystem::path& path) {
     std::string name = path.filename().string();
@@ -39,8 +30,8 @@ SurfaceFile read_surface(const std::filesystem::path& path, const ImageScale& sc
     if (looks_like_height_image(bytes))
         return parse_height_image(bytes, path, scale);
     if (scale.pitch || scale.unit)
-        reject(path, scale.pitch ? "pitch" : "unit", "given", "no second scale: the file states its own",
-               "Leave it out.");
+        refuse_file(path, scale.pitch ? "pitch" : "unit", "given", "no second scale: the file states its own",
+                    "Leave it out.");
     if (looks_like_x3p(bytes))
         return parse_x3p(bytes, path);
     if (looks_like_sur(bytes))
@@ -49,8 +40,8 @@ SurfaceFile read_surface(const std::filesystem::path& path, const ImageScale& sc
         return parse_sdf(bytes, path);
     if (looks_like_al3d(bytes))
         return parse_al3d(bytes, path);
-    reject(path, "", "a file of unknown kind", "an X3P, SUR, SDF, AL3D, TIFF or OpenEXR file",
-           "Export the surface in one of these formats.");
+    refuse_file(path, "", "a file of unknown kind", "an X3P, SUR, SDF, AL3D, TIFF or OpenEXR file",
+                "Export the surface in one of these formats.");
 }
 
 std::string surface_bytes(const std::filesystem::path& path, const HeightMap& map, const Provenance& provenance) {
@@ -67,8 +58,8 @@ std::string surface_bytes(const std::filesystem::path& path, const HeightMap& ma
         return height_map_bytes(map, provenance);
     if (name.ends_with(".ply"))
         return ply_bytes(map, provenance);
-    reject(path, "", "a name that ends otherwise", "one that ends in .x3p, .sur, .sdf, .tif or .ply",
-           "Choose one of these formats by the name's ending.");
+    refuse_file(path, "", "a name that ends otherwise", "one that ends in .x3p, .sur, .sdf, .tif or .ply",
+                "Choose one of these formats by the name's ending.");
 }
 
 } // namespace vkfv::surface

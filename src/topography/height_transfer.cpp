@@ -18,7 +18,7 @@ double hann(int k, int n) {
     return wave * wave;
 }
 
-struct Ring {
+struct Annulus {
     Complex cross;
     double measured = 0;
     double truth = 0;
@@ -44,23 +44,23 @@ std::vector<TransferBand> height_transfer(const surface::HeightMap& measured, co
 
     const double width = 1 / std::max(columns * measured.pitch_x, rows * measured.pitch_y);
     const double nyquist = 0.5 / std::max(measured.pitch_x, measured.pitch_y);
-    std::vector<Ring> rings(static_cast<std::size_t>(nyquist / width));
+    std::vector<Annulus> annuli(static_cast<std::size_t>(nyquist / width));
     for (int row = 0; row < grid.rows; ++row)
         for (int column = 0; column < grid.columns; ++column) {
             const double frequency = std::hypot(fourier_frequency(column, grid.columns) / measured.pitch_x,
                                                 fourier_frequency(row, grid.rows) / measured.pitch_y);
-            const auto ring = static_cast<std::size_t>(frequency / width);
-            if (ring >= rings.size())
+            const auto annulus = static_cast<std::size_t>(frequency / width);
+            if (annulus >= annuli.size())
                 continue;
             // The transform of a + i b, a and b real, is A + i B; at the opposite frequency conj(A) + i conj(B).
             const Complex here = grid(column, row);
             const Complex there =
                 std::conj(grid(column == 0 ? 0 : grid.columns - column, row == 0 ? 0 : grid.rows - row));
             const Complex a = (here + there) / 2.0, b = (here - there) / Complex(0, 2);
-            rings[ring].cross += a * std::conj(b);
-            rings[ring].measured += std::norm(a);
-            rings[ring].truth += std::norm(b);
-            rings[ring].frequencies += 1;
+            annuli[annulus].cross += a * std::conj(b);
+            annuli[annulus].measured += std::norm(a);
+            annuli[annulus].truth += std::norm(b);
+            annuli[annulus].frequencies += 1;
         }
 
     // Opposite frequencies say the same; zeros appended and the window, 1.5 lines wide along either axis, say nothing
@@ -69,17 +69,17 @@ std::vector<TransferBand> height_transfer(const surface::HeightMap& measured, co
     const double density = measured.pitch_x * measured.pitch_y / window_power;
     std::vector<TransferBand> bands;
     // The window spreads the mean and what tilt is left over two lines.
-    for (std::size_t k = 2; k < rings.size(); ++k) {
-        const Ring& ring = rings[k];
-        if (!(ring.measured > 0 && ring.truth > 0))
+    for (std::size_t k = 2; k < annuli.size(); ++k) {
+        const Annulus& annulus = annuli[k];
+        if (!(annulus.measured > 0 && annulus.truth > 0))
             continue;
         TransferBand band{.frequency = (static_cast<double>(k) + 0.5) * width};
-        band.transfer = ring.cross.real() / ring.truth;
-        band.coherence = std::min(1.0, std::norm(ring.cross) / (ring.measured * ring.truth));
-        band.standard_error = std::sqrt(ring.measured / ring.truth * (1 - band.coherence) /
-                                        (2 * std::max(1.0, ring.frequencies * independent)));
-        band.measured_power = ring.measured / ring.frequencies * density;
-        band.true_power = ring.truth / ring.frequencies * density;
+        band.transfer = annulus.cross.real() / annulus.truth;
+        band.coherence = std::min(1.0, std::norm(annulus.cross) / (annulus.measured * annulus.truth));
+        band.standard_error = std::sqrt(annulus.measured / annulus.truth * (1 - band.coherence) /
+                                        (2 * std::max(1.0, annulus.frequencies * independent)));
+        band.measured_power = annulus.measured / annulus.frequencies * density;
+        band.true_power = annulus.truth / annulus.frequencies * density;
         bands.push_back(band);
     }
     return bands;

@@ -1,4 +1,5 @@
 #include "trace/device_records.hpp"
+#include "trace/outward.hpp"
 
 #include "core/error.hpp"
 
@@ -17,8 +18,6 @@ static_assert(alignof(kernels::Parameters) == 4 && alignof(physics::f32::Surface
               alignof(kernels::BackwardBlock) == 4);
 
 namespace {
-
-constexpr float infinity = std::numeric_limits<float>::infinity();
 
 float to_float(double value) {
     return static_cast<float>(value);
@@ -81,9 +80,9 @@ VKFV_TO_FLOAT(Lattice, VKFV_LATTICE_FIELDS)
 physics::f32::SpecimenRecord to_float(const physics::f64::SpecimenRecord& record) {
     physics::f32::SpecimenRecord result{};
     VKFV_SPECIMEN_RECORD_FIELDS(VKFV_ROUND)
-    result.bottom = result.bottom > record.bottom ? std::nextafter(result.bottom, -infinity) : result.bottom;
-    result.top = result.top < record.top ? std::nextafter(result.top, infinity) : result.top;
-    result.lipschitz = std::nextafter(result.lipschitz, infinity);
+    result.bottom = result.bottom > record.bottom ? next_below(result.bottom) : result.bottom;
+    result.top = result.top < record.top ? next_above(result.top) : result.top;
+    result.lipschitz = next_above(result.lipschitz);
     return result;
 }
 

@@ -10,7 +10,6 @@ namespace {
 
 using namespace physics::f64;
 using Status = Ledger::Status;
-using Train = Ledger::Train;
 
 static_assert(static_cast<std::uint32_t>(Status::under_way) == PATH_ALIVE &&
               static_cast<std::uint32_t>(Status::vignetted) == PATH_VIGNETTED &&

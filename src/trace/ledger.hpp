@@ -51,7 +51,7 @@ class Accounts {
     // Where a ray may end.
     struct Surface {
         std::string name;
-        Ledger::Train train = Ledger::Train::none;
+        Train train = Train::none;
         int index = 0;                   // as Ledger::Entry::surface
         std::size_t splitter_passes = 0; // that a ray which ends here has behind it
         int crossings = 0;               // of surfaces in sequence, this one included

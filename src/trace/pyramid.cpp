@@ -1,4 +1,5 @@
 #include "trace/pyramid.hpp"
+#include "trace/outward.hpp"
 
 #include <algorithm>
 #include <bit>
@@ -51,8 +52,8 @@ Pyramid build(PyramidHeader header, double rounding, const std::function<glm::dv
             const glm::dvec2 range = cell_range(column, row);
             pyramid.ranges[static_cast<std::size_t>(row) * static_cast<std::size_t>(header.padded_x) +
                            static_cast<std::size_t>(column)] =
-                glm::vec2(std::nextafter(static_cast<float>(range.x - rounding), -infinity),
-                          std::nextafter(static_cast<float>(range.y + rounding), infinity));
+                glm::vec2(next_below(static_cast<float>(range.x - rounding)),
+                          next_above(static_cast<float>(range.y + rounding)));
         }
     }
     for (int level = 1; level <= header.top_level; ++level) {

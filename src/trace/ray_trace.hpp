@@ -3,6 +3,7 @@
 
 #include "optics/instrument.hpp"
 #include "physics/physics.hpp"
+#include "trace/tracer.hpp"
 
 #include <span>
 #include <string>
@@ -36,7 +37,6 @@ std::vector<TracedRay> trace_rays_on_device(const optics::Instrument& instrument
 
 // The same for rays in the frame of a train's first vertex, directions scaled by the index. The illumination's end on
 // the plane of best focus, in the frame of its last vertex.
-enum class Train { illumination, imaging };
 std::vector<TracedRay> trace_train_on_host(const optics::Instrument& instrument, Train train,
                                            std::span<const physics::f64::Ray> rays, bool apertures);
 std::vector<TracedRay> trace_train_on_device(const optics::Instrument& instrument, Train train,

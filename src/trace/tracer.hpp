@@ -35,6 +35,8 @@ struct TraceOptions {
 // How many rays an exposure launches: those asked for, or what each pixel's share is rounded up to backward.
 std::uint64_t launched_rays(const TraceOptions& options, int detector_pixels);
 
+enum class Train { none, illumination, imaging };
+
 // Where the emitted power of one image went; W. emitted = the sum of all others.
 struct Ledger {
     enum class Status {
@@ -58,7 +60,6 @@ struct Ledger {
         splitter_towards_detector,
         not_followed_backward
     };
-    enum class Train { none, illumination, imaging };
     struct Entry {
         std::string name; // for people: "detected", "vignetted at imaging 3 (10x_0.28 3)", ...
         double power = 0; // W

@@ -12,7 +12,7 @@ namespace {
 
 using trace::Ledger;
 using Status = Ledger::Status;
-using Train = Ledger::Train;
+using trace::Train;
 
 Ledger ledger_of(const trace::Accounts& accounts, std::uint64_t rays) {
     std::vector<std::uint64_t> numbers(accounts.ledger_numbers());

@@ -1,0 +1,16 @@
+// Bounds in float of values in double: never inside of them.
+#pragma once
+
+#include <cmath>
+#include <limits>
+
+namespace vkfv::trace {
+
+inline float next_below(float value) {
+    return std::nextafter(value, -std::numeric_limits<float>::infinity());
+}
+inline float next_above(float value) {
+    return std::nextafter(value, std::numeric_limits<float>::infinity());
+}
+
+} // namespace vkfv::trace
