@@ -21,10 +21,11 @@ VKFV_FUNCTION real two_interface_reflectance(real first, real second, real cosin
 // side or before: the medium beyond is the thinner of the two.
 VKFV_FUNCTION real layer_reflectance(real index_before, real layer_index, real index_after, real cosine,
                                      real layer_thickness, real wave_number) {
-    real tangential_squared = index_before * index_before * (real(1.0) - cosine * cosine); // (n sin(theta))^2
-    real axial_before = index_before * cosine;
-    real layer_squared = layer_index * layer_index - tangential_squared;
-    real after_squared = index_after * index_after - tangential_squared;
+    real axial_before = index_before * cosine; // n cos(theta), in each medium
+    real layer_squared =
+        layer_index * layer_index * (real(1.0) - refracted_sine_squared(index_before, layer_index, cosine));
+    real after_squared =
+        index_after * index_after * (real(1.0) - refracted_sine_squared(index_before, index_after, cosine));
     real axial_layer = sqrt(max(layer_squared, real(1e-12)));
     real axial_after = sqrt(max(after_squared, real(0.0)));
     real s_first = (axial_before - axial_layer) / (axial_before + axial_layer);
@@ -35,9 +36,8 @@ VKFV_FUNCTION real layer_reflectance(real index_before, real layer_index, real i
     real p_after = axial_after / (index_after * index_after);
     real p_first = (p_layer - p_before) / (p_layer + p_before);
     real p_second = (p_after - p_layer) / (p_after + p_layer);
-    // Twice the phase across the layer, in turns; cos is asked for in [-pi, pi] alone.
-    real turns = real(2.0) * layer_thickness * axial_layer * wave_number;
-    real cosine_phase = cos(real(6.283185307179586477) * (turns - floor(turns + real(0.5))));
+    // Twice the phase across the layer.
+    real cosine_phase = turn_of(real(2.0) * layer_thickness * axial_layer * wave_number).cosine;
     bool total = layer_squared <= real(0.0) || after_squared <= real(0.0);
     return total ? real(1.0)
                  : real(0.5) * (two_interface_reflectance(s_first, s_second, cosine_phase) +

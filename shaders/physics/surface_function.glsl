@@ -25,34 +25,6 @@ const real SURFACE_EPSILON = real(1.1920928955078125e-7);
 real lattice_at(int column, int row); // the kernel's bindings say where the lattice is kept
 #endif
 
-struct SineCosine {
-    real sine;
-    real cosine;
-};
-
-// Of an angle in turns, good to rounding: Vulkan promises no more than 2^-11 for GLSL's sin and cos. Taylor series
-// about the nearest quarter turn, so within 1/8 turn, where the first term left out is below 3e-18.
-VKFV_FUNCTION SineCosine sine_cosine_of_turns(real turns) {
-    real quarters = floor(real(4.0) * turns + real(0.5));
-    real angle = real(6.283185307179586477) * (turns - real(0.25) * quarters);
-    real q = angle * angle;
-    real sine = real(1.0);
-    real cosine = real(1.0);
-    for (int n = 16; n >= 2; n -= 2) {
-        sine = real(1.0) - sine * q / real(n * (n + 1));
-        cosine = real(1.0) - cosine * q / real(n * (n - 1));
-    }
-    sine = sine * angle;
-    real quadrant = quarters - real(4.0) * floor(real(0.25) * quarters);
-    bool odd = quadrant == real(1.0) || quadrant == real(3.0);
-    SineCosine result;
-    result.sine = odd ? cosine : sine;
-    result.cosine = odd ? sine : cosine;
-    result.sine = quadrant >= real(2.0) ? -result.sine : result.sine;
-    result.cosine = quadrant == real(1.0) || quadrant == real(2.0) ? -result.cosine : result.cosine;
-    return result;
-}
-
 VKFV_FUNCTION SurfaceHeight shape_height(SpecimenRecord specimen, real x, real y) {
     SurfaceHeight result;
     result.height = real(0.0);
@@ -93,7 +65,7 @@ VKFV_FUNCTION SurfaceHeight shape_height(SpecimenRecord specimen, real x, real y
             frequency = start + sweep * s;
             phase = (start + real(0.5) * sweep * s) * s;
         }
-        SineCosine wave = sine_cosine_of_turns(phase);
+        Turn wave = turn_of(phase);
         result.height = specimen.shape_parameter_0 * wave.sine;
         result.slope_x = specimen.shape_parameter_0 * real(6.283185307179586477) * frequency * wave.cosine;
     }
