@@ -1,12 +1,8 @@
 #include "report/png.hpp"
 
-#include "core/error.hpp"
-
-#include <OpenImageIO/filesystem.h>
-#include <OpenImageIO/imageio.h>
+#include "images/picture.hpp"
 
 #include <cstdint>
-#include <memory>
 #include <vector>
 
 namespace vkfv::report {
@@ -19,17 +15,7 @@ std::string png_bytes(const Grid<Rgb>& pixels) {
             const Rgb& pixel = pixels(column, row);
             values.insert(values.end(), {pixel.red, pixel.green, pixel.blue});
         }
-    std::vector<unsigned char> bytes;
-    OIIO::Filesystem::IOVecOutput destination(bytes);
-    const auto output = OIIO::ImageOutput::create("png");
-    OIIO::ImageSpec spec(pixels.columns, pixels.rows, 3, OIIO::TypeDesc::UINT8);
-    // Without these OpenImageIO writes its version and the time of day.
-    spec.attribute("Software", "vkfv");
-    spec.attribute("DateTime", "1970:01:01 00:00:00");
-    if (!output || !output->set_ioproxy(&destination) || !output->open("picture.png", spec) ||
-        !output->write_image(OIIO::TypeDesc::UINT8, values.data()) || !output->close())
-        throw RunError("OpenImageIO cannot write PNG: " + (output ? output->geterror() : OIIO::geterror()));
-    return {bytes.begin(), bytes.end()};
+    return images::png_bytes(pixels.columns, pixels.rows, values);
 }
 
 std::string base64(const std::string& bytes) {

@@ -2,10 +2,9 @@
 
 #include "core/file.hpp"
 #include "core/section.hpp"
+#include "images/picture.hpp"
 #include "specimen/files.hpp"
 
-#include <OpenImageIO/imagebuf.h>
-#include <OpenImageIO/imagebufalgo.h>
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -45,7 +44,7 @@ constexpr double space = 0.3;
 
 struct Letter {
     std::string character;
-    OIIO::ROI ink; // of the letter alone, its origin on the baseline
+    images::Ink ink; // of the letter alone; none of a space
 };
 
 std::vector<Letter> letters_of(const Plateaus& d, int font_size, const SourceLocation& where) {
@@ -53,10 +52,9 @@ std::vector<Letter> letters_of(const Plateaus& d, int font_size, const SourceLoc
     for (const char character : d.text) {
         Letter letter{std::string(1, character), {}};
         if (character != ' ') {
-            letter.ink = OIIO::ImageBufAlgo::text_size(letter.character, font_size, d.font);
-            if (!letter.ink.defined() || letter.ink.width() < 1) {
-                const std::string reason = OIIO::geterror();
-                fail(where, "font", fmt::format("{}: no letter '{}' ({})", d.font, letter.character, reason),
+            letter.ink = images::ink_of(letter.character, font_size, d.font);
+            if (!letter.ink.any()) {
+                fail(where, "font", fmt::format("{}: no letter '{}' ({})", d.font, letter.character, letter.ink.reason),
                      "a font that has the letters of specimen.text; looked for in $OPENIMAGEIO_FONTS, and in fonts and "
                      "share/fonts of the home folder, /usr and /usr/local, with the folders in them",
                      "Install the font (tools/setup brings \"DejaVuSans-Bold\"), give the file of one, or draw the "
@@ -71,7 +69,7 @@ std::vector<Letter> letters_of(const Plateaus& d, int font_size, const SourceLoc
 double width_of(const std::vector<Letter>& letters, int font_size) {
     double width = -gap * font_size;
     for (const Letter& letter : letters)
-        width += gap * font_size + (letter.ink.defined() ? letter.ink.width() : space * font_size);
+        width += gap * font_size + (letter.ink.any() ? letter.ink.width() : space * font_size);
     return width;
 }
 
@@ -113,9 +111,9 @@ void set_text(HeightField& field, const Plateaus& d, const SourceLocation& where
     int top = 0, bottom = 0;
     bool first = true;
     for (const Letter& letter : letters)
-        if (letter.ink.defined()) {
-            top = first ? letter.ink.ybegin : std::min(top, letter.ink.ybegin);
-            bottom = first ? letter.ink.yend : std::max(bottom, letter.ink.yend);
+        if (letter.ink.any()) {
+            top = first ? letter.ink.top : std::min(top, letter.ink.top);
+            bottom = first ? letter.ink.bottom : std::max(bottom, letter.ink.bottom);
             first = false;
         }
     const int columns = field.heights.columns, rows = field.heights.rows;
@@ -123,22 +121,21 @@ void set_text(HeightField& field, const Plateaus& d, const SourceLocation& where
     double x = 0.5 * (columns - width_of(letters, font_size));
     std::size_t plateau = 0;
     for (const Letter& letter : letters) {
-        if (letter.ink.defined()) {
-            OIIO::ImageBuf mask(OIIO::ImageSpec(columns, rows, 1, OIIO::TypeDesc::FLOAT));
-            OIIO::ImageBufAlgo::zero(mask);
-            const float white = 1;
-            if (!OIIO::ImageBufAlgo::render_text(mask, static_cast<int>(std::lround(x)) - letter.ink.xbegin, baseline,
-                                                 letter.character, font_size, d.font, OIIO::cspan<float>(&white, 1)))
-                fail(where, "text", letter.character, "a letter that OpenImageIO can draw: " + mask.geterror(),
-                     "Draw the letters as an image and name it in specimen.file.");
-            // The image's first row is the highest.
-            for (int row = 0; row < rows; ++row)
-                for (int column = 0; column < columns; ++column)
-                    if (mask.getchannel(column, rows - 1 - row, 0, 0) >= 0.5f)
-                        field.heights(column, row) = static_cast<float>(height_of(d, plateau));
+        if (letter.ink.any()) {
+            const images::DrawnLetter drawn{.letter = letter.character,
+                                            .size = font_size,
+                                            .font = d.font,
+                                            .x = static_cast<int>(std::lround(x)) - letter.ink.left,
+                                            .baseline = baseline};
+            const Grid<float> mask = images::drawn(drawn, columns, rows);
+            for (std::size_t k = 0; k < mask.values.size(); ++k) {
+                if (mask.values[k] >= 0.5f) {
+                    field.heights.values[k] = static_cast<float>(height_of(d, plateau));
+                }
+            }
             ++plateau;
         }
-        x += gap * font_size + (letter.ink.defined() ? letter.ink.width() : space * font_size);
+        x += gap * font_size + (letter.ink.any() ? letter.ink.width() : space * font_size);
     }
 }
 

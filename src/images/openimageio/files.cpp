@@ -1,4 +1,5 @@
-#include "images/image_file.hpp"
+// Images as files: what images/image_file.hpp promises.
+#include "images/openimageio/functions.hpp"
 
 #include "core/error.hpp"
 #include "core/file.hpp"
@@ -20,7 +21,7 @@
 #include <string_view>
 #include <vector>
 
-namespace vkfv::images {
+namespace vkfv::images::openimageio {
 namespace {
 
 constexpr double mm_per_cm = 10.0;
@@ -107,15 +108,6 @@ std::string single_page(std::span<const Grid<Value>> channels, const ImageTags& 
     return {bytes.begin(), bytes.end()};
 }
 
-[[noreturn]] void reject(const std::filesystem::path& path, std::string key, std::string found, std::string expected,
-                         std::string remedy) {
-    throw InputError({.where = {.file = path, .line = 0, .column = 0, .byte_offset = {}},
-                      .key = std::move(key),
-                      .found = std::move(found),
-                      .expected = std::move(expected),
-                      .remedy = std::move(remedy)});
-}
-
 struct OpenImage {
     // What the input reads, which must outlive it: an open file or its bytes.
     std::unique_ptr<InputFile> file;
@@ -138,7 +130,8 @@ OpenImage open_image(std::string_view bytes, ImageFormat format, const std::file
         throw RunError(fmt::format("OpenImageIO cannot read the kind of {}: {}", path.string(), OIIO::geterror()));
     OIIO::ImageSpec spec;
     if (!image.input->set_ioproxy(image.source.get()) || !image.input->open(path.string(), spec))
-        reject(path, "", image.input->geterror(), "a readable image", "Write the file anew, as single-channel TIFF.");
+        refuse_file(path, "", image.input->geterror(), "a readable image",
+                    "Write the file anew, as single-channel TIFF.");
     return image;
 }
 
@@ -163,7 +156,7 @@ OpenImage open_image(const std::filesystem::path& path) {
     // The ending hints at the format; of the rest of a name OpenImageIO takes what follows a '?' for options.
     auto input = OIIO::ImageInput::open("image" + path.extension().string(), &as_stored, source.get());
     if (!input)
-        reject(path, "", OIIO::geterror(), "a readable image", "Write the file anew, as single-channel TIFF.");
+        refuse_file(path, "", OIIO::geterror(), "a readable image", "Write the file anew, as single-channel TIFF.");
     const auto bytes = static_cast<double>(file->bytes());
     return {.file = std::move(file),
             .owned = nullptr,
@@ -186,12 +179,13 @@ void check_size(const OpenImage& image, const OIIO::ImageSpec& spec, const std::
     if (!(spec.width > 0 && spec.height > 0 && pixels <= largest_pixel_count &&
           bytes <= std::max(freely_given_bytes, largest_packing * image.bytes) &&
           bytes <= impossible_packing * image.bytes))
-        reject(path, "size",
-               fmt::format("{} x {} pixels, {:.0f} bytes, in a file of {:.0f} bytes", spec.width, spec.height, bytes,
-                           image.bytes),
-               fmt::format("at most {:.0f} pixels, and no more bytes than {:.0f} or {:.0f} times those of the file",
-                           largest_pixel_count, freely_given_bytes, largest_packing),
-               "The file is truncated or damaged: write or copy it anew; write a large image with less packing.");
+        refuse_file(
+            path, "size",
+            fmt::format("{} x {} pixels, {:.0f} bytes, in a file of {:.0f} bytes", spec.width, spec.height, bytes,
+                        image.bytes),
+            fmt::format("at most {:.0f} pixels, and no more bytes than {:.0f} or {:.0f} times those of the file",
+                        largest_pixel_count, freely_given_bytes, largest_packing),
+            "The file is truncated or damaged: write or copy it anew; write a large image with less packing.");
 }
 
 template <class Value, class Stored>
@@ -200,8 +194,8 @@ Grid<Value> read_values(OIIO::ImageInput& input, const OIIO::ImageSpec& spec, co
     Grid<Stored> stored(spec.width, spec.height);
     // A strip that cannot be read leaves an error and zeros, but counts as success.
     if (!input.read_image(page, 0, channel, channel + 1, type_of<Stored>(), stored.values.data()) || input.has_error())
-        reject(path, fmt::format("page {}", page), input.geterror(), "pixel values up to the end of the image",
-               "The file is truncated or damaged: write or copy it anew.");
+        refuse_file(path, fmt::format("page {}", page), input.geterror(), "pixel values up to the end of the image",
+                    "The file is truncated or damaged: write or copy it anew.");
     const std::vector<Stored> rows = flipped_rows(stored);
     Grid<Value> image(spec.width, spec.height);
     std::transform(rows.begin(), rows.end(), image.values.begin(),
@@ -234,8 +228,8 @@ Grid<Value> read_channel(OIIO::ImageInput& input, const OIIO::ImageSpec& spec, c
 
 OIIO::ImageSpec spec_of_page(OIIO::ImageInput& input, const std::filesystem::path& path, int page) {
     if (!input.seek_subimage(page, 0))
-        reject(path, fmt::format("page {}", page), "no such page", "an image with that page",
-               "Count the pages of the file; the first is page 0.");
+        refuse_file(path, fmt::format("page {}", page), "no such page", "an image with that page",
+                    "Count the pages of the file; the first is page 0.");
     return input.spec();
 }
 
@@ -243,8 +237,9 @@ template <class Value>
 Grid<Value> read_page(const OpenImage& image, const std::filesystem::path& path, int page) {
     const OIIO::ImageSpec spec = spec_of_page(*image.input, path, page);
     if (spec.nchannels != 1 || spec.depth > 1)
-        reject(path, fmt::format("page {}", page), fmt::format("{} channels, depth {}", spec.nchannels, spec.depth),
-               "one channel and two dimensions", "Convert the image to greyscale without alpha.");
+        refuse_file(path, fmt::format("page {}", page),
+                    fmt::format("{} channels, depth {}", spec.nchannels, spec.depth), "one channel and two dimensions",
+                    "Convert the image to greyscale without alpha.");
     check_size(image, spec, path);
     return read_channel<Value>(*image.input, spec, path, page, 0);
 }
@@ -255,15 +250,11 @@ std::string description_of(const OpenImage& image) {
 
 } // namespace
 
-std::string tiff_bytes(const Grid<float>& image, const ImageTags& tags) {
-    return single_page(std::span(&image, 1), tags);
+std::string tiff_of_floats(std::span<const Grid<float>> channels, const ImageTags& tags) {
+    return single_page(channels, tags);
 }
 
-std::string tiff_bytes(const std::vector<Grid<float>>& channels, const ImageTags& tags) {
-    return single_page(std::span(channels), tags);
-}
-
-std::string tiff_bytes(const Grid<std::uint16_t>& image, const ImageTags& tags) {
+std::string tiff_of_integers(const Grid<std::uint16_t>& image, const ImageTags& tags) {
     return single_page(std::span(&image, 1), tags);
 }
 
@@ -283,8 +274,8 @@ std::vector<Grid<float>> read_channels(const std::filesystem::path& path, int pa
     const OpenImage image = open_image(path);
     const OIIO::ImageSpec spec = spec_of_page(*image.input, path, page);
     if (spec.depth > 1)
-        reject(path, fmt::format("page {}", page), fmt::format("depth {}", spec.depth), "two dimensions",
-               "Write every plane as a page or file of its own.");
+        refuse_file(path, fmt::format("page {}", page), fmt::format("depth {}", spec.depth), "two dimensions",
+                    "Write every plane as a page or file of its own.");
     check_size(image, spec, path);
     std::vector<Grid<float>> channels;
     for (int channel = 0; channel < spec.nchannels; ++channel)
@@ -309,4 +300,4 @@ DescribedImage parse_image(std::string_view bytes, ImageFormat format, const std
     return {.values = read_page<double>(image, path, 0), .description = std::move(description)};
 }
 
-} // namespace vkfv::images
+} // namespace vkfv::images::openimageio

@@ -1,0 +1,54 @@
+// PNG, and letters as pixels: what images/picture.hpp promises.
+#include "core/error.hpp"
+#include "images/openimageio/functions.hpp"
+
+#include <OpenImageIO/filesystem.h>
+#include <OpenImageIO/imagebuf.h>
+#include <OpenImageIO/imagebufalgo.h>
+#include <OpenImageIO/imageio.h>
+
+#include <memory>
+
+namespace vkfv::images::openimageio {
+
+std::string png(int columns, int rows, std::span<const std::uint8_t> rgb) {
+    std::vector<unsigned char> bytes;
+    OIIO::Filesystem::IOVecOutput destination(bytes);
+    const auto output = OIIO::ImageOutput::create("png");
+    OIIO::ImageSpec spec(columns, rows, 3, OIIO::TypeDesc::UINT8);
+    // Without these OpenImageIO writes its version and the time of day.
+    spec.attribute("Software", "vkfv");
+    spec.attribute("DateTime", "1970:01:01 00:00:00");
+    if (!output || !output->set_ioproxy(&destination) || !output->open("picture.png", spec) ||
+        !output->write_image(OIIO::TypeDesc::UINT8, rgb.data()) || !output->close()) {
+        throw RunError("OpenImageIO cannot write PNG: " + (output ? output->geterror() : OIIO::geterror()));
+    }
+    return {bytes.begin(), bytes.end()};
+}
+
+Ink ink_of(const std::string& letter, int size, const std::string& font) {
+    const auto ink = OIIO::ImageBufAlgo::text_size(letter, size, font);
+    if (!ink.defined() || ink.width() < 1) {
+        return {.reason = OIIO::geterror()};
+    }
+    return {.left = ink.xbegin, .right = ink.xend, .top = ink.ybegin, .bottom = ink.yend};
+}
+
+Grid<float> drawn(const DrawnLetter& letter, int columns, int rows) {
+    OIIO::ImageBuf mask(OIIO::ImageSpec(columns, rows, 1, OIIO::TypeDesc::FLOAT));
+    OIIO::ImageBufAlgo::zero(mask);
+    const float white = 1;
+    if (!OIIO::ImageBufAlgo::render_text(mask, letter.x, letter.baseline, letter.letter, letter.size, letter.font,
+                                         OIIO::cspan<float>(&white, 1))) {
+        throw RunError(mask.geterror());
+    }
+    Grid<float> result(columns, rows);
+    for (int row = 0; row < rows; ++row) {
+        for (int column = 0; column < columns; ++column) {
+            result(column, row) = mask.getchannel(column, rows - 1 - row, 0, 0);
+        }
+    }
+    return result;
+}
+
+} // namespace vkfv::images::openimageio
