@@ -65,6 +65,10 @@ DescribedImage parse_image(std::string_view bytes, ImageFormat format, const std
     return codec().parse_image(bytes, format, path);
 }
 
+Grid<float> parse_grey(std::string_view bytes, std::uint64_t most_pixels, const std::filesystem::path& path) {
+    return codec().parse_grey(bytes, most_pixels, path);
+}
+
 std::string png_bytes(int columns, int rows, std::span<const std::uint8_t> rgb) {
     return codec().png(columns, rows, rgb);
 }

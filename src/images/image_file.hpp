@@ -63,4 +63,8 @@ struct DescribedImage {
 // The first page of a whole single-channel file in memory; `path` names it in messages.
 DescribedImage parse_image(std::string_view bytes, ImageFormat format, const std::filesystem::path& path);
 
+// Heights or a mask: one grey channel of any format, whole in memory, without its opacity. At least 2 x 2 pixels and at
+// most so many; finite values. Rows are read in bands, so that a header which lies about the size fills no memory.
+Grid<float> parse_grey(std::string_view bytes, std::uint64_t most_pixels, const std::filesystem::path& path);
+
 } // namespace vkfv::images

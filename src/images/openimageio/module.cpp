@@ -13,6 +13,7 @@ const vkfv::images::Codec vkfv_image_codec = {.tiff_of_floats = io::tiff_of_floa
                                               .image_description = io::image_description,
                                               .parse_tiff = io::parse_tiff,
                                               .parse_image = io::parse_image,
+                                              .parse_grey = io::parse_grey,
                                               .png = io::png,
                                               .ink_of = io::ink_of,
                                               .drawn = io::drawn};
