@@ -5,13 +5,29 @@
 #include <dlfcn.h>
 #include <fmt/format.h>
 
+#include <filesystem>
+#include <system_error>
+
 namespace vkfv::images {
 
 namespace {
 
+// Beside the program, or where it was installed; else wherever the loader looks. By a path of its own, since sanitizers
+// hide the program's run path from dlopen(). Never unloaded.
+void* open_module() {
+    const std::filesystem::path name = VKFV_IMAGE_MODULE;
+    std::error_code none;
+    const auto folder = std::filesystem::read_symlink("/proc/self/exe", none).parent_path();
+    for (const auto& path : {folder / name, folder.parent_path() / "lib/vkfv" / name}) {
+        if (std::filesystem::exists(path, none)) {
+            return dlopen(path.c_str(), RTLD_NOW | RTLD_LOCAL);
+        }
+    }
+    return dlopen(name.c_str(), RTLD_NOW | RTLD_LOCAL);
+}
+
 const Codec& loaded() {
-    // Looked for where the program's run path says: beside it, or where it was installed. Never unloaded.
-    void* const module = dlopen(VKFV_IMAGE_MODULE, RTLD_NOW | RTLD_LOCAL);
+    void* const module = open_module();
     const void* const found = module != nullptr ? dlsym(module, "vkfv_image_codec") : nullptr;
     if (found == nullptr) {
         throw RunError(
