@@ -8,6 +8,14 @@
 #include <filesystem>
 #include <system_error>
 
+#ifdef __SANITIZE_ADDRESS__
+// The leak sanitizer stumbles over the thread-local storage of libraries that are loaded late (g++ 12).
+extern "C" const char* __asan_default_options();
+extern "C" const char* __asan_default_options() {
+    return "intercept_tls_get_addr=0";
+}
+#endif
+
 namespace vkfv::images {
 
 namespace {
