@@ -10,8 +10,8 @@
 
 #ifdef __SANITIZE_ADDRESS__
 // The leak sanitizer stumbles over the thread-local storage of libraries that are loaded late (g++ 12).
-extern "C" const char* __asan_default_options();
-extern "C" const char* __asan_default_options() {
+extern "C" __attribute__((weak)) const char* __asan_default_options(); // a test has its own
+extern "C" __attribute__((weak)) const char* __asan_default_options() {
     return "intercept_tls_get_addr=0";
 }
 #endif
