@@ -5,9 +5,11 @@
 #include "surface/resample.hpp"
 #include "topography/compare.hpp"
 
-#include <Eigen/Dense>
+#include <Eigen/Eigenvalues>
+#include <glm/glm.hpp>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <complex>
 #include <functional>
@@ -20,8 +22,9 @@ namespace {
 
 using surface::HeightMap;
 using Complex = std::complex<double>;
-using Vector = Eigen::Matrix<double, 5, 1>;
-using Matrix = Eigen::Matrix<double, 5, 5>;
+// Of sizes known when compiled, the few lines below would take ten seconds to compile.
+using Eigen::MatrixXd;
+using Eigen::VectorXd;
 
 constexpr double undefined = std::numeric_limits<double>::quiet_NaN();
 
@@ -180,20 +183,37 @@ Starts starting_shifts(const LevelledPair& pair) {
             .significant_correlation = significant_correlation(of, evidences.values.size())};
 }
 
-struct Step {
-    Eigen::Vector2d shift;
-    Eigen::Matrix2d known; // the projector on the directions that the slopes tell
+// Of a symmetric matrix, as if it had no directions in which it is at most `least`.
+struct PseudoInverse {
+    MatrixXd inverse;
+    MatrixXd known; // the projector on the other directions
 };
 
-// The step of the shift that makes the linearised sum of squares least.
-Step gauss_newton_step(const HeightMap& measured, const HeightMap& truth) {
-    // Variation along a direction, offset and tilt aside, of the mean square slope: interpolation makes up
-    // less.
-    constexpr double telling = 1e-5;
+PseudoInverse pseudo_inverse(const MatrixXd& matrix, double least) {
+    const Eigen::SelfAdjointEigenSolver<MatrixXd> directions(matrix);
+    PseudoInverse result{.inverse = MatrixXd::Zero(matrix.rows(), matrix.rows()), .known = {}};
+    result.known = result.inverse;
+    for (int k = 0; k < matrix.rows(); ++k) {
+        if (const double curvature = directions.eigenvalues()[k]; curvature > least) {
+            const MatrixXd along = directions.eigenvectors().col(k) * directions.eigenvectors().col(k).transpose();
+            result.inverse += along / curvature;
+            result.known += along;
+        }
+    }
+    return result;
+}
+
+// Sums of the products of the residual's derivatives by shift in x and y, offset, tilt in x and y; of those and the
+// residual.
+struct NormalEquations {
+    MatrixXd matrix = MatrixXd::Zero(5, 5);
+    VectorXd right = VectorXd::Zero(5);
+};
+
+NormalEquations normal_equations(const HeightMap& measured, const HeightMap& truth) {
     const double x_middle = measured.x(measured.columns() / 2), y_middle = measured.y(measured.rows() / 2);
     const int border_x = measured.columns() > 2 ? 1 : 0, border_y = measured.rows() > 2 ? 1 : 0;
-    Matrix matrix = Matrix::Zero();
-    Vector right = Vector::Zero();
+    std::array<std::array<double, 6>, 5> sums{};
     for (int row = border_y; row + border_y < measured.rows(); ++row)
         for (int column = border_x; column + border_x < measured.columns(); ++column) {
             const double residual = measured.height(column, row) - truth.height(column, row);
@@ -204,34 +224,46 @@ Step gauss_newton_step(const HeightMap& measured, const HeightMap& truth) {
                 (truth.height(column, row + border_y) - truth.height(column, row - border_y)) / (2 * measured.pitch_y);
             if (!std::isfinite(residual + slope_x + slope_y))
                 continue;
-            Vector terms;
-            terms << -slope_x, -slope_y, 1, measured.x(column) - x_middle, measured.y(row) - y_middle;
-            matrix += terms * terms.transpose();
-            right += residual * terms;
+            const std::array<double, 6> terms{
+                -slope_x, -slope_y, 1, measured.x(column) - x_middle, measured.y(row) - y_middle, residual};
+            for (std::size_t i = 0; i < sums.size(); ++i)
+                for (std::size_t j = 0; j < terms.size(); ++j)
+                    sums[i][j] += terms[i] * terms[j];
         }
+    NormalEquations equations;
+    for (int i = 0; i < 5; ++i) {
+        for (int j = 0; j < 5; ++j)
+            equations.matrix(i, j) = sums[static_cast<std::size_t>(i)][static_cast<std::size_t>(j)];
+        equations.right[i] = sums[static_cast<std::size_t>(i)][5];
+    }
+    return equations;
+}
+
+struct Step {
+    glm::dvec2 shift;
+    glm::dmat2 known; // the projector on the directions that the slopes tell
+};
+
+// The step of the shift that makes the linearised sum of squares least.
+Step gauss_newton_step(const HeightMap& measured, const HeightMap& truth) {
+    // Variation along a direction, offset and tilt aside, of the mean square slope: interpolation makes up
+    // less.
+    constexpr double telling = 1e-5;
+    constexpr double rounding = 1e-12;
+    const auto [matrix, right] = normal_equations(measured, truth);
     // Unknowns of unlike magnitude are brought to one.
-    const Vector scale = matrix.diagonal().unaryExpr([](double value) { return value > 0 ? 1 / std::sqrt(value) : 0; });
-    const Eigen::Vector3d plane_scale = scale.tail<3>();
-    const Eigen::Matrix3d plane =
-        plane_scale.asDiagonal() * matrix.bottomRightCorner<3, 3>() * plane_scale.asDiagonal();
+    MatrixXd scale = MatrixXd::Zero(3, 3);
+    for (int k = 0; k < 3; ++k)
+        scale(k, k) = matrix(k + 2, k + 2) > 0 ? 1 / std::sqrt(matrix(k + 2, k + 2)) : 0;
+    const MatrixXd plane = scale * matrix.bottomRightCorner(3, 3) * scale;
     // Offset and tilt are eliminated first: a slope that they explain tells no shift.
-    Eigen::CompleteOrthogonalDecomposition<Eigen::Matrix3d> planes;
-    planes.setThreshold(1e-12);
-    planes.compute(plane);
-    const Eigen::Matrix<double, 3, 2> coupling = plane_scale.asDiagonal() * matrix.bottomLeftCorner<3, 2>();
-    const Eigen::Vector3d plane_right = plane_scale.asDiagonal() * right.tail<3>();
-    const Eigen::Matrix2d shifts = matrix.topLeftCorner<2, 2>() - coupling.transpose() * planes.solve(coupling);
-    const Eigen::Vector2d shift_right = right.head<2>() - coupling.transpose() * planes.solve(plane_right);
-    const Eigen::SelfAdjointEigenSolver<Eigen::Matrix2d> directions(shifts);
-    const double least = telling * matrix.topLeftCorner<2, 2>().trace();
-    Step step{.shift = Eigen::Vector2d::Zero(), .known = Eigen::Matrix2d::Zero()};
-    for (int k = 0; k < 2; ++k)
-        if (const double curvature = directions.eigenvalues()[k]; curvature > least) {
-            const Eigen::Vector2d direction = directions.eigenvectors().col(k);
-            step.shift += direction * (direction.dot(shift_right) / curvature);
-            step.known += direction * direction.transpose();
-        }
-    return step;
+    const MatrixXd explained =
+        matrix.topRightCorner(2, 3) * scale * pseudo_inverse(plane, 3 * rounding).inverse * scale;
+    const MatrixXd slopes = matrix.topLeftCorner(2, 2);
+    const auto [inverse, known] =
+        pseudo_inverse(slopes - explained * matrix.bottomLeftCorner(3, 2), telling * slopes.trace());
+    const VectorXd shift = inverse * (right.head(2) - explained * right.tail(3));
+    return {.shift = {shift[0], shift[1]}, .known = {known(0, 0), known(1, 0), known(0, 1), known(1, 1)}};
 }
 
 // NaN where the iteration finds no minimum within the searched range.
@@ -240,26 +272,29 @@ LateralShift refined_shift(const HeightMap& measured, const HeightMap& truth, co
     constexpr double settled = 1e-4; // pitches
     constexpr double beyond = 2;     // pitches over the reach of the search
     const LateralShift none{undefined, undefined, undefined};
-    const Eigen::Array2d pitch(measured.pitch_x, measured.pitch_y);
-    const Eigen::Array2d reach = Eigen::Array2d(measured.columns() / 4, measured.rows() / 4) + beyond;
-    Eigen::Array2d place(start.x, start.y), share(1, 1), before(0, 0);
+    const glm::dvec2 pitch(measured.pitch_x, measured.pitch_y);
+    const glm::dvec2 reach = glm::dvec2(measured.columns() / 4, measured.rows() / 4) + beyond;
+    glm::dvec2 place(start.x, start.y), share(1), before(0);
     for (int iteration = 0; iteration < most_iterations; ++iteration) {
-        const Step step = gauss_newton_step(measured, shifted_onto(truth, measured, {.x = place[0], .y = place[1]}));
-        if (step.known.isZero(0))
+        const Step step = gauss_newton_step(measured, shifted_onto(truth, measured, {.x = place.x, .y = place.y}));
+        if (step.known == glm::dmat2(0))
             return none;
         if (iteration == 0)
-            place = (step.known * place.matrix()).array();
+            place = step.known * place;
         // The points present change with the shift, at the border with its very sign: between two steps that
         // turn back, each for its own points, half the way is taken.
-        const Eigen::Array2d wanted = step.shift.array();
-        share = (wanted * before < 0).select(share / 2, share);
-        const Eigen::Array2d taken = share * wanted * std::min(1.0, 1 / (wanted.abs() / pitch).maxCoeff());
-        before = wanted;
+        for (int axis = 0; axis < 2; ++axis)
+            if (step.shift[axis] * before[axis] < 0)
+                share[axis] /= 2;
+        const glm::dvec2 taken =
+            share * step.shift *
+            std::min(1.0, 1 / std::max(std::abs(step.shift.x) / pitch.x, std::abs(step.shift.y) / pitch.y));
+        before = step.shift;
         place += taken;
-        if (!((place.abs() / pitch) <= reach).all())
+        if (!glm::all(glm::lessThanEqual(glm::abs(place) / pitch, reach)))
             return none;
-        if (((taken.abs() / pitch) < settled).all()) {
-            LateralShift shift{.x = place[0], .y = place[1]};
+        if (glm::all(glm::lessThan(glm::abs(taken) / pitch, glm::dvec2(settled)))) {
+            LateralShift shift{.x = place.x, .y = place.y};
             shift.correlation = compare(measured, shifted_onto(truth, measured, shift)).correlation;
             return shift;
         }

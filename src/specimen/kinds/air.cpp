@@ -21,8 +21,9 @@ constexpr int most_points_of_spectrum = 8192; // a side: 1 GiB of complex number
 const IntegerKey tiles_key("tiles", 1, 64, 4, "Sub-surfaces along each side.");
 const NumberKey tile_size_key =
     for_example("0.1", NumberKey("tile_size_mm", NumberRange::positive(), needed, "Side of a sub-surface."));
-const NumberKey sq_key = for_example("1.0", NumberKey("sq_um", NumberRange::at_least(0), needed,
-                                                      "Root mean square height of each sub-surface; not with a file."));
+const NumberKey air_sq_key =
+    for_example("1.0", NumberKey("sq_um", NumberRange::at_least(0), needed,
+                                 "Root mean square height of each sub-surface; not with a file."));
 const NumberKey roll_off_key =
     for_example("50.0", NumberKey("roll_off_wavelength_um", NumberRange::positive(), needed,
                                   "Above it the power spectrum is constant; not with a file."));
@@ -33,8 +34,8 @@ const NumberKey hurst_key =
     for_example("0.8", NumberKey("hurst_exponent", NumberRange::within(0, 1), needed,
                                  "H: between the two wavelengths the power falls with the frequency as f^(-2 (1 + H)); "
                                  "not with a file."));
-const FileKey file_key("file", Default::in_words("none: the sub-surfaces are random"),
-                       "A measured surface, whose middle each of the sub-surfaces repeats.");
+const FileKey air_file_key("file", Default::in_words("none: the sub-surfaces are random"),
+                           "A measured surface, whose middle each of the sub-surfaces repeats.");
 
 // Share of the power at a frequency over that at the frequency 0.
 double relative_power(const Air& d, double frequency) {
@@ -112,8 +113,8 @@ int points_of(const Air& d, const HeightField& field, double pitch, const Source
 } // namespace
 
 std::vector<const Key*> Air::keys() {
-    return {&tiles_key,    &tile_size_key, &square_pitch_key(), &sq_key,  &seed_key(),
-            &roll_off_key, &shortest_key,  &hurst_key,          &file_key};
+    return {&tiles_key,    &tile_size_key, &square_pitch_key(), &air_sq_key,  &seed_key(),
+            &roll_off_key, &shortest_key,  &hurst_key,          &air_file_key};
 }
 
 Air Air::read(const Section& section) {
@@ -121,18 +122,18 @@ Air Air::read(const Section& section) {
     air.tiles = static_cast<int>(section.integer(tiles_key));
     air.size = air.tiles * section.number(tile_size_key);
     air.pitch = read_square_pitch(section);
-    if (section.has(file_key)) {
+    if (section.has(air_file_key)) {
         for (const Key* key :
-             std::initializer_list<const Key*>{&sq_key, &seed_key(), &roll_off_key, &shortest_key, &hurst_key}) {
+             std::initializer_list<const Key*>{&air_sq_key, &seed_key(), &roll_off_key, &shortest_key, &hurst_key}) {
             if (section.has(*key)) {
                 section.note(*key, "no such key with a file of a measured surface",
                              "Remove it, or remove file for sub-surfaces from a power spectrum.");
             }
         }
-        air.file = section.file(file_key);
+        air.file = section.file(air_file_key);
         return air;
     }
-    air.sq = from_um(section.number(sq_key));
+    air.sq = from_um(section.number(air_sq_key));
     air.seed = read_seed(section);
     air.roll_off = from_um(section.number(roll_off_key));
     air.shortest = from_um(section.number(shortest_key));

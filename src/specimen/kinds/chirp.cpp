@@ -7,9 +7,9 @@
 namespace vkfv::specimen {
 namespace {
 
-const NumberKey amplitude_key = for_example("1.0", NumberKey("amplitude_um", NumberRange::at_least(0), needed,
-                                                             "Half the height from the valleys to the peaks."));
-const NumberKey period_key =
+const NumberKey chirp_amplitude_key = for_example("1.0", NumberKey("amplitude_um", NumberRange::at_least(0), needed,
+                                                                   "Half the height from the valleys to the peaks."));
+const NumberKey chirp_period_key =
     for_example("30.0", NumberKey("period_um", NumberRange::positive(), needed, "At the lowest x."));
 const NumberKey period_stop_key =
     for_example("10.0", NumberKey("period_stop_um", NumberRange::positive(), needed, "At the highest x."));
@@ -17,14 +17,14 @@ const NumberKey period_stop_key =
 } // namespace
 
 std::vector<const Key*> Chirp::keys() {
-    return continuous_keys({&amplitude_key, &period_key, &period_stop_key});
+    return continuous_keys({&chirp_amplitude_key, &chirp_period_key, &period_stop_key});
 }
 
 Chirp Chirp::read(const Section& section) {
     Chirp chirp;
     read_continuous(section, chirp);
-    chirp.amplitude = from_um(section.number(amplitude_key));
-    chirp.period = from_um(section.number(period_key));
+    chirp.amplitude = from_um(section.number(chirp_amplitude_key));
+    chirp.period = from_um(section.number(chirp_period_key));
     chirp.period_stop = from_um(section.number(period_stop_key));
     return chirp;
 }

@@ -6,17 +6,17 @@ namespace vkfv::specimen {
 namespace {
 
 // glTF 2.0 lengths are metres.
-const ChoiceKey<double> mesh_unit_key = unit_key(1e3, "Of the file; a glTF is to be in metres.");
+const ChoiceKey<double> gltf_unit_key = unit_key(1e3, "Of the file; a glTF is to be in metres.");
 
 } // namespace
 
 std::vector<const Key*> Gltf::keys() {
-    return mesh_file_keys(mesh_unit_key);
+    return mesh_file_keys(gltf_unit_key);
 }
 
 Gltf Gltf::read(const Section& section) {
     Gltf mesh;
-    read_mesh_file(section, mesh_unit_key, mesh);
+    read_mesh_file(section, gltf_unit_key, mesh);
     return mesh;
 }
 

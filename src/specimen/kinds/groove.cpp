@@ -10,7 +10,7 @@
 namespace vkfv::specimen {
 namespace {
 
-const NumberKey wall_key("wall_um", NumberRange::at_least(0), 0.0, "Width of a flank; 0: one pitch.");
+const NumberKey groove_wall_key("wall_um", NumberRange::at_least(0), 0.0, "Width of a flank; 0: one pitch.");
 const NumberKey width_key =
     for_example("20.0", NumberKey("width_um", NumberRange::positive(), needed, "Between the middles of the flanks."));
 const NumberKey depth_key =
@@ -19,13 +19,13 @@ const NumberKey depth_key =
 } // namespace
 
 std::vector<const Key*> Groove::keys() {
-    return square_keys({&wall_key, &width_key, &depth_key});
+    return square_keys({&groove_wall_key, &width_key, &depth_key});
 }
 
 Groove Groove::read(const Section& section) {
     Groove groove;
     read_square(section, groove);
-    groove.wall = from_um(section.number(wall_key));
+    groove.wall = from_um(section.number(groove_wall_key));
     groove.width = from_um(section.number(width_key));
     groove.depth = from_um(section.number(depth_key));
     return groove;

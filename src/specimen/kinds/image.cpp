@@ -12,23 +12,23 @@
 namespace vkfv::specimen {
 namespace {
 
-const NumberKey pitch_key =
+const NumberKey image_pitch_key =
     for_example("1.0", NumberKey("pitch_um", NumberRange::positive(), needed, "Distance of the image's pixels."));
-const NumberKey height_key = for_example(
+const NumberKey image_height_key = for_example(
     "4.0", NumberKey("height_um", NumberRange::finite(), needed, "Of white (of floats: of the value 1) over black."));
-const FileKey file_key = needed_file_key("The image.");
+const FileKey image_file_key = needed_file_key("The image.");
 
 } // namespace
 
 std::vector<const Key*> Image::keys() {
-    return {&file_key, &pitch_key, &height_key};
+    return {&image_file_key, &image_pitch_key, &image_height_key};
 }
 
 Image Image::read(const Section& section) {
     Image image;
-    image.pitch = from_um(section.number(pitch_key));
-    image.height = from_um(section.number(height_key));
-    image.file = section.file(file_key);
+    image.pitch = from_um(section.number(image_pitch_key));
+    image.height = from_um(section.number(image_height_key));
+    image.file = section.file(image_file_key);
     return image;
 }
 

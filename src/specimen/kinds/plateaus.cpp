@@ -15,8 +15,8 @@
 namespace vkfv::specimen {
 namespace {
 
-const NumberKey sq_key("sq_um", NumberRange::at_least(0), 0.0,
-                       "Root mean square of random heights over plateaus and ground.");
+const NumberKey plateaus_sq_key("sq_um", NumberRange::at_least(0), 0.0,
+                                "Root mean square of random heights over plateaus and ground.");
 const NumbersKey heights_key = for_example(
     "[2.0]", NumbersKey("heights_um", NumberRange::finite(), Default::none(),
                         "Of the plateaus over the ground: one for each, from left to right or from dark to bright, or "
@@ -26,8 +26,8 @@ const TextKey font_key("font", Default::of(std::string("DejaVuSans-Bold")),
                        "Of the letters: a name that OpenImageIO finds, or a file.");
 const NumberKey text_width_key("text_width_mm", NumberRange::positive(), Default::in_words("0.8 of the size"),
                                "From the first letter's left to the last one's right.");
-const FileKey file_key("file", Default::in_words("none: the plateaus are letters"),
-                       "An image whose grey values other than black are plateaus, from dark to bright.");
+const FileKey plateaus_file_key("file", Default::in_words("none: the plateaus are letters"),
+                                "An image whose grey values other than black are plateaus, from dark to bright.");
 
 [[noreturn]] void fail(const SourceLocation& where, const std::string& key, const std::string& found,
                        const std::string& expected, const std::string& remedy) {
@@ -165,29 +165,29 @@ void set_mask(HeightField& field, const Plateaus& d, const SourceLocation& where
 } // namespace
 
 std::vector<const Key*> Plateaus::keys() {
-    auto keys = square_keys(random_heights_keys(sq_key));
-    keys.insert(keys.end(), {&heights_key, &text_key, &font_key, &text_width_key, &file_key});
+    auto keys = square_keys(random_heights_keys(plateaus_sq_key));
+    keys.insert(keys.end(), {&heights_key, &text_key, &font_key, &text_width_key, &plateaus_file_key});
     return keys;
 }
 
 Plateaus Plateaus::read(const Section& section) {
     Plateaus plateaus;
     read_square(section, plateaus);
-    const double sq = from_um(section.number(sq_key));
+    const double sq = from_um(section.number(plateaus_sq_key));
     plateaus.random = read_random_heights(section, sq, plateaus.pitch);
     for (const double height : section.numbers(heights_key)) {
         plateaus.heights.push_back(from_um(height));
     }
-    if (section.has(text_key) == section.has(file_key)) {
-        section.fail(section.has(text_key) ? static_cast<const Key&>(file_key) : text_key, "either text or file",
-                     "Give the letters as text, or a mask of the plateaus as file.");
+    if (section.has(text_key) == section.has(plateaus_file_key)) {
+        section.fail(section.has(text_key) ? static_cast<const Key&>(plateaus_file_key) : text_key,
+                     "either text or file", "Give the letters as text, or a mask of the plateaus as file.");
     }
     if (section.has(text_key)) {
         plateaus.text = section.text(text_key);
         plateaus.font = section.text(font_key);
         plateaus.text_width = section.number(text_width_key, 0.8 * plateaus.size);
     }
-    plateaus.file = section.file_if_given(file_key).value_or(std::filesystem::path());
+    plateaus.file = section.file_if_given(plateaus_file_key).value_or(std::filesystem::path());
     return plateaus;
 }
 

@@ -5,14 +5,14 @@
 namespace vkfv::specimen {
 namespace {
 
-const NumberKey sq_key = for_example(
+const NumberKey rough_sq_key = for_example(
     "1.0", NumberKey("sq_um", NumberRange::at_least(0),
                      Default::in_words("0 with [specimen.roughness]; else it is needed"), "Root mean square height."));
 
 } // namespace
 
 std::vector<const Key*> Rough::keys() {
-    return continuous_keys(random_heights_keys(sq_key));
+    return continuous_keys(random_heights_keys(rough_sq_key));
 }
 
 Rough Rough::read(const Section& section) {
@@ -20,7 +20,7 @@ Rough Rough::read(const Section& section) {
     read_continuous(section, rough);
     // The lattice of the roughness may be all the roughness there is.
     const bool has_roughness = section.table().optional_table("roughness").has_value();
-    const double sq = has_roughness ? section.number(sq_key, 0.0) : section.number(sq_key);
+    const double sq = has_roughness ? section.number(rough_sq_key, 0.0) : section.number(rough_sq_key);
     rough.random = read_random_heights(section, from_um(sq), rough.pitch);
     return rough;
 }

@@ -7,22 +7,23 @@
 namespace vkfv::specimen {
 namespace {
 
-const NumberKey amplitude_key = for_example("1.0", NumberKey("amplitude_um", NumberRange::at_least(0), needed,
-                                                             "Half the height from the valleys to the peaks."));
-const NumberKey period_key =
+const NumberKey sinusoid_amplitude_key =
+    for_example("1.0", NumberKey("amplitude_um", NumberRange::at_least(0), needed,
+                                 "Half the height from the valleys to the peaks."));
+const NumberKey sinusoid_period_key =
     for_example("30.0", NumberKey("period_um", NumberRange::positive(), needed, "Of the wave."));
 
 } // namespace
 
 std::vector<const Key*> Sinusoid::keys() {
-    return continuous_keys({&amplitude_key, &period_key});
+    return continuous_keys({&sinusoid_amplitude_key, &sinusoid_period_key});
 }
 
 Sinusoid Sinusoid::read(const Section& section) {
     Sinusoid wave;
     read_continuous(section, wave);
-    wave.amplitude = from_um(section.number(amplitude_key));
-    wave.period = from_um(section.number(period_key));
+    wave.amplitude = from_um(section.number(sinusoid_amplitude_key));
+    wave.period = from_um(section.number(sinusoid_period_key));
     return wave;
 }
 

@@ -7,23 +7,23 @@
 namespace vkfv::specimen {
 namespace {
 
-const NumberKey radius_key =
+const NumberKey sphere_radius_key =
     for_example("100.0", NumberKey("radius_um", NumberRange::positive(), needed, "Of the sphere."));
-const NumberKey height_key =
+const NumberKey sphere_height_key =
     for_example("10.0", NumberKey("height_um", NumberRange::finite(), needed,
                                   "Of the cap over the plane, less than the radius; negative: a dimple."));
 
 } // namespace
 
 std::vector<const Key*> Sphere::keys() {
-    return continuous_keys({&radius_key, &height_key});
+    return continuous_keys({&sphere_radius_key, &sphere_height_key});
 }
 
 Sphere Sphere::read(const Section& section) {
     Sphere sphere;
     read_continuous(section, sphere);
-    sphere.radius = from_um(section.number(radius_key));
-    sphere.height = from_um(section.number(height_key));
+    sphere.radius = from_um(section.number(sphere_radius_key));
+    sphere.height = from_um(section.number(sphere_height_key));
     return sphere;
 }
 

@@ -7,23 +7,23 @@
 namespace vkfv::specimen {
 namespace {
 
-const NumberKey radius_key =
+const NumberKey star_radius_key =
     for_example("100.0", NumberKey("radius_um", NumberRange::positive(), needed, "Of the sectors' outer end."));
-const NumberKey height_key = for_example(
+const NumberKey star_height_key = for_example(
     "2.0", NumberKey("height_um", NumberRange::finite(), needed, "Of the raised sectors over those between them."));
 const IntegerKey petals_key = for_example("36", IntegerKey("petals", 1, 360, needed, "Raised sectors."));
 
 } // namespace
 
 std::vector<const Key*> Star::keys() {
-    return square_keys({&radius_key, &height_key, &petals_key});
+    return square_keys({&star_radius_key, &star_height_key, &petals_key});
 }
 
 Star Star::read(const Section& section) {
     Star star;
     read_square(section, star);
-    star.radius = from_um(section.number(radius_key));
-    star.height = from_um(section.number(height_key));
+    star.radius = from_um(section.number(star_radius_key));
+    star.height = from_um(section.number(star_height_key));
     star.petals = static_cast<int>(section.integer(petals_key));
     return star;
 }

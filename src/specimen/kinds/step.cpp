@@ -7,21 +7,21 @@
 namespace vkfv::specimen {
 namespace {
 
-const NumberKey height_key = for_example(
+const NumberKey step_height_key = for_example(
     "2.0", NumberKey("height_um", NumberRange::finite(), needed, "Of the level at x > 0 over that at x < 0."));
-const NumberKey wall_key("wall_um", NumberRange::at_least(0), 0.0, "Width of the flank; 0: one pitch.");
+const NumberKey step_wall_key("wall_um", NumberRange::at_least(0), 0.0, "Width of the flank; 0: one pitch.");
 
 } // namespace
 
 std::vector<const Key*> Step::keys() {
-    return continuous_keys({&height_key, &wall_key});
+    return continuous_keys({&step_height_key, &step_wall_key});
 }
 
 Step Step::read(const Section& section) {
     Step step;
     read_continuous(section, step);
-    step.height = from_um(section.number(height_key));
-    step.wall = from_um(section.number(wall_key));
+    step.height = from_um(section.number(step_height_key));
+    step.wall = from_um(section.number(step_wall_key));
     return step;
 }
 

@@ -6,17 +6,17 @@ namespace vkfv::specimen {
 namespace {
 
 // STL has no unit, and millimetres are its custom.
-const ChoiceKey<double> mesh_unit_key = unit_key(1.0, "Of the file, which does not say it.");
+const ChoiceKey<double> stl_unit_key = unit_key(1.0, "Of the file, which does not say it.");
 
 } // namespace
 
 std::vector<const Key*> Stl::keys() {
-    return mesh_file_keys(mesh_unit_key);
+    return mesh_file_keys(stl_unit_key);
 }
 
 Stl Stl::read(const Section& section) {
     Stl mesh;
-    read_mesh_file(section, mesh_unit_key, mesh);
+    read_mesh_file(section, stl_unit_key, mesh);
     return mesh;
 }
 

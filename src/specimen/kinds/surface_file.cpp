@@ -16,9 +16,9 @@
 namespace vkfv::specimen {
 namespace {
 
-const FileKey file_key = needed_file_key("The surface: X3P, SUR, SDF, AL3D, or a TIFF or OpenEXR image of heights.");
-const NumberKey pitch_key("pitch_um", NumberRange::positive(), Default::in_words("the file's own"),
-                          "Distance of the pixels of an image that has no scale of its own.");
+const FileKey surface_key = needed_file_key("The surface: X3P, SUR, SDF, AL3D, or a TIFF or OpenEXR image of heights.");
+const NumberKey surface_pitch_key("pitch_um", NumberRange::positive(), Default::in_words("the file's own"),
+                                  "Distance of the pixels of an image that has no scale of its own.");
 const NumberKey size_key("size_mm", NumberRange::positive(), Default::in_words("all of the file"),
                          "Side of the square around the centre that is taken.");
 const BooleanKey level_key("level", true, "Whether the least-squares plane is removed and the mean height 0.");
@@ -53,15 +53,15 @@ surface::HeightMap cropped(const surface::HeightMap& map, double size, const Sou
 } // namespace
 
 std::vector<const Key*> SurfaceFile::keys() {
-    return {&file_key, &pitch_key, &size_key, &level_key, &value_unit_key};
+    return {&surface_key, &surface_pitch_key, &size_key, &level_key, &value_unit_key};
 }
 
 SurfaceFile SurfaceFile::read(const Section& section) {
     SurfaceFile surface;
-    surface.pitch = from_um(section.number_if_given(pitch_key).value_or(0));
+    surface.pitch = from_um(section.number_if_given(surface_pitch_key).value_or(0));
     surface.size = section.number_if_given(size_key).value_or(0);
     surface.level = section.boolean(level_key);
-    surface.file = section.file(file_key);
+    surface.file = section.file(surface_key);
     if (section.has(value_unit_key)) {
         surface.unit = section.choice(value_unit_key);
     }
