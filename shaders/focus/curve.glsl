@@ -6,8 +6,15 @@ VKFV_FUNCTION CurveRecord empty_curve() {
     curve.sum = real(0.0);
     curve.offset = real(0.0);
     curve.residual = real(1.0);
+    curve.bend = real(0.0);
     curve.at = 0;
     curve.found = 0;
+    curve.first = real(0.0);
+    curve.latest = real(0.0);
+    curve.variation = real(0.0);
+    curve.highest = real(0.0);
+    curve.valley = real(0.0);
+    curve.rival = real(0.0);
     curve.peak_1 = real(0.0);
     curve.peak_2 = real(0.0);
     curve.peak_3 = real(0.0);
@@ -37,8 +44,26 @@ VKFV_SCENE_FUNCTION bool is_local_maximum(VKFV_SCENE_PARAMETER FocusPlan plan, i
 
 struct CurveStep {
     CurveRecord curve;
-    int sharpest; // the image that is sharpest now; NO_IMAGE: the one before still is
+    real place; // where the largest value stands now, in images; NO_PLACE: where it stood before
 };
+
+// What the shape of the whole curve is judged by. `highest` is the largest value so far, whether the curve turns there
+// or not, and the smallest value since then the deepest valley that a later maximum can rise from.
+VKFV_FUNCTION CurveRecord follow_shape(CurveRecord before, real value, int at) {
+    CurveRecord curve = before;
+    curve.latest = value;
+    if (at == 0) {
+        curve.first = value;
+        curve.highest = value;
+        curve.valley = value;
+    } else {
+        curve.variation = before.variation + abs(value - before.latest);
+        curve.rival = max(before.rival, min(before.highest, value) - before.valley);
+        curve.valley = value > before.highest ? value : min(before.valley, value);
+        curve.highest = max(before.highest, value);
+    }
+    return curve;
+}
 
 // The curve with the image `at` added. images: how many values are there, at least to at + peak_range, or all.
 // Fits are made only where the curve turns: the largest value of all is one of these, or stands at an end. Near the
@@ -46,20 +71,22 @@ struct CurveStep {
 VKFV_SCENE_FUNCTION CurveStep follow_curve(VKFV_SCENE_PARAMETER FocusPlan plan, CurveRecord before, int at,
                                            int images) {
     CurveStep step;
-    step.curve = before;
-    step.sharpest = NO_IMAGE;
+    step.place = NO_PLACE;
     real value = curve_value(VKFV_SCENE at);
+    step.curve = follow_shape(before, value, at);
     step.curve.sum = before.sum + value;
     bool turns = at == images - 1 || value >= curve_value(VKFV_SCENE min(at + 1, images - 1));
     if (at == 0 || (value > before.largest && turns)) {
         int range = min(plan.peak_range, min(at, images - 1 - at));
         PeakFit fit = locate_peak(VKFV_SCENE plan, at, range);
         step.curve.largest = value;
+        step.curve.bend =
+            range > 0 ? real(2.0) * value - curve_value(VKFV_SCENE at - 1) - curve_value(VKFV_SCENE at + 1) : real(0.0);
         step.curve.at = at;
         step.curve.offset = fit.offset;
         step.curve.found = fit.found ? 1 : 0;
         step.curve.residual = gaussian_residual(VKFV_SCENE at, range);
-        step.sharpest = at + int(floor(fit.offset + real(0.5)));
+        step.place = clamp(real(at) + fit.offset, real(0.0), real(images - 1));
     }
     if (is_local_maximum(VKFV_SCENE plan, at, images)) {
         real falling = value;
@@ -83,4 +110,24 @@ VKFV_FUNCTION int count_peaks(CurveRecord curve, int images) {
     real least = mean + (curve.largest - mean) / real(2.0);
     return (curve.peak_1 >= least ? 1 : 0) + (curve.peak_2 >= least ? 1 : 0) + (curve.peak_3 >= least ? 1 : 0) +
            (curve.peak_4 >= least ? 1 : 0);
+}
+
+// How much of all that a curve rises and falls its largest maximum accounts for: 1 of a curve that rises to it and
+// falls from it, whatever its form and width; of values in random order, or of noise, little.
+VKFV_FUNCTION real unimodality(CurveRecord curve) {
+    return curve.variation > real(0.0) ? (real(2.0) * curve.highest - curve.first - curve.latest) / curve.variation
+                                       : real(0.0);
+}
+
+// The same times how far the largest value stands above the mean, in units of itself. Averages along z make curves of
+// any values unimodal, but low unless the images are in order.
+VKFV_FUNCTION real relief(CurveRecord curve, int images) {
+    return curve.highest > real(0.0) ? unimodality(curve) * (real(1.0) - curve.sum / (real(images) * curve.highest))
+                                     : real(0.0);
+}
+
+// The share of an image in a pixel of the all-in-focus image: of the two images around the place, linear between them,
+// so that no seam shows where the nearest image changes.
+VKFV_FUNCTION real share_in_focus(real place, int image) {
+    return max(real(0.0), real(1.0) - abs(place - real(image)));
 }

@@ -20,6 +20,7 @@
 #define VKFV_DECLARE(type, name) type name;
 #define VKFV_FOCUS_LANGUAGE \
     using glm::abs; \
+    using glm::clamp; \
     using glm::exp; \
     using glm::floor; \
     using glm::log; \

@@ -14,7 +14,7 @@ const int PEAK_POLYNOMIAL_FIT = 3;
 const int PEAK_CENTRE_OF_GRAVITY = 4;
 const int PEAK_METHOD_COUNT = 5;
 
-const int NO_IMAGE = -1;
+const real NO_PLACE = real(-2.0);
 
 // clang-format off
 #define VKFV_FOCUS_PLAN_FIELDS(FIELD) \
@@ -36,8 +36,15 @@ struct FocusPlan {
     FIELD(real, offset)   /* of the maximum, in steps from the image `at` */ \
     /* RMS distance from a Gaussian over the range, in units of the largest value */ \
     FIELD(real, residual) \
+    FIELD(real, bend)     /* how much larger the largest value is than the mean of both its neighbours, twice */ \
     FIELD(int, at)        /* image of the largest value; the first of equals */ \
     FIELD(int, found)     /* 1: the method finds a maximum there */ \
+    FIELD(real, first)     /* value */ \
+    FIELD(real, latest)    /* value */ \
+    FIELD(real, variation) /* sum of the steps from value to value, up or down */ \
+    FIELD(real, highest)   /* value */ \
+    FIELD(real, valley)    /* the smallest value since the largest */ \
+    FIELD(real, rival)     /* how far the curve falls and rises again, at most: prominence of the second maximum */ \
     FIELD(real, peak_1)   /* the largest local maxima (is_local_maximum()) in descending order */ \
     FIELD(real, peak_2) \
     FIELD(real, peak_3) \

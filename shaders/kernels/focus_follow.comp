@@ -7,7 +7,7 @@ layout(local_size_x = 128) in;
 
 layout(set = 0, binding = BINDING_CURVES, scalar) readonly buffer Curves { float curves[]; };
 layout(set = 0, binding = BINDING_RECORDS, scalar) buffer Records { CurveRecord records[]; };
-layout(set = 0, binding = BINDING_SHARPEST, scalar) writeonly buffer Sharpest { int sharpest[]; };
+layout(set = 0, binding = BINDING_PLACES, scalar) writeonly buffer Places { float places[]; };
 
 layout(push_constant, scalar) uniform Push { FollowedImage image; };
 
@@ -24,6 +24,6 @@ void main() {
         }
         CurveStep followed = follow_curve(image.plan, before, image.at, image.images);
         records[k] = followed.curve;
-        sharpest[k] = followed.sharpest;
+        places[k] = followed.place;
     }
 }

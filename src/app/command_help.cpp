@@ -11,12 +11,11 @@ namespace {
 
 struct HelpOptions {
     std::string command;
-    bool markdown = false;
 };
 
 void run_help(const CommandOptions& options) {
     const auto own = options.of<HelpOptions>();
-    if (own.markdown) {
+    if (options.markdown) {
         fmt::print("{}", reference_markdown());
         return;
     }
@@ -33,10 +32,7 @@ Command help_command() {
     return {.name = "help",
             .summary = "What the program does, or what a command takes",
             .operands = {{"COMMAND", "Its name", into(&HelpOptions::command), {}, false}},
-            .options = {{.name = "--markdown",
-                         .value = "",
-                         .description = "All of it, as docs/commands.md",
-                         .target = into(&HelpOptions::markdown)}},
+            .options = {markdown_option()},
             .run = run_help,
             .example = "vkfv help stack",
             .about_vkfv = true,

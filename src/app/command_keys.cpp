@@ -10,7 +10,6 @@ namespace vkfv::app {
 namespace {
 
 struct KeysOptions {
-    bool markdown = false;
     bool schema = false;
 };
 
@@ -20,10 +19,10 @@ struct ExplainOptions {
 
 void run_keys(const CommandOptions& options) {
     const auto own = options.of<KeysOptions>();
-    fmt::print("{}", options.json   ? keys_json()
-                     : own.markdown ? keys_markdown()
-                     : own.schema   ? configuration_schema()
-                                    : keys_text());
+    fmt::print("{}", options.json       ? keys_json()
+                     : options.markdown ? keys_markdown()
+                     : own.schema       ? configuration_schema()
+                                        : keys_text());
 }
 
 void run_explain(const CommandOptions& options) {
@@ -40,10 +39,7 @@ Command keys_command() {
     return {.name = "keys",
             .summary = "List every key of a configuration with its default and what it means",
             .options = {json_option(),
-                        {.name = "--markdown",
-                         .value = "",
-                         .description = "All of it, as a page",
-                         .target = into(&KeysOptions::markdown)},
+                        markdown_option(),
                         {.name = "--schema",
                          .value = "",
                          .description = "A JSON Schema, for the completion of editors",

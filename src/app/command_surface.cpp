@@ -17,7 +17,38 @@ namespace {
 struct SurfaceOptions {
     std::optional<double> unit;               // mm per unit of an image's value
     std::optional<surface::ProfileLine> line; // none: the middle row
+    surface::ProfileSetting setting;
 };
+
+void take_profile_filter(CommandOptions& options, double um) {
+    auto& setting = options.of<SurfaceOptions>().setting;
+    if (!(std::isfinite(um) && um >= 0)) {
+        refuse_argument(fmt::format("--profile_filter_um {}", um), "a positive length, or 0 for no filter",
+                        "Correct it, or leave it out for a fifth of the profile.");
+    }
+    if (setting.kind != surface::ProfileSetting::Kind::fifth) {
+        refuse_argument("--profile_filter_um with --profile_setting", "one of both", "Leave one out.");
+    }
+    setting = {.kind = surface::ProfileSetting::Kind::nesting_index, .nesting_index = um / um_per_mm};
+}
+
+void take_profile_setting(CommandOptions& options, const std::string& name) {
+    auto& setting = options.of<SurfaceOptions>().setting;
+    if (name == "fifth") {
+        return;
+    }
+    if (setting.kind != surface::ProfileSetting::Kind::fifth) {
+        refuse_argument("--profile_setting with --profile_filter_um", "one of both", "Leave one out.");
+    }
+    if (name == "by-Ra") {
+        setting.kind = surface::ProfileSetting::Kind::by_ra;
+    }
+    for (std::size_t k = 0; k < surface::setting_classes.size(); ++k) {
+        if (name == surface::setting_classes[k].name) {
+            setting = {.kind = surface::ProfileSetting::Kind::by_class, .setting_class = k};
+        }
+    }
+}
 
 void take_profile(CommandOptions& options, const std::string& text) {
     if (text.empty()) {
@@ -43,20 +74,36 @@ void take_profile(CommandOptions& options, const std::string& text) {
 Command surface_command() {
     const Option unit = {.name = "--unit_um,--unit-um",
                          .value = "UM",
-                         .description = "Height of a pixel's value of one, of an image",
+                         .description = "Height of a value of one, of an image, array or table",
                          .target = in_mm(&SurfaceOptions::unit)};
     const Option profile = {.name = "--profile",
                             .value = "X0,Y0,X1,Y1",
                             .description = "Ends of the profile in um",
                             .target = Take<std::string>(take_profile),
                             .fallback = "the middle row"};
+    const Option profile_filter = {
+        .name = "--profile_filter_um,--profile-filter-um",
+        .value = "UM",
+        .description = "Nesting index of the profile's own Gaussian L-filter, after those of the surface; 0: none",
+        .target = Take<double>(take_profile_filter),
+        .fallback = "a fifth of the profile"};
+    const Option profile_setting = {
+        .name = "--profile_setting,--profile-setting",
+        .value = "NAME",
+        .description = "Filters and evaluation length of the profile by the setting classes of ISO 21920-3, nesting "
+                       "indices of 0.08, 0.25, 0.8, 2.5 and 8 mm, by-Ra or named",
+        .target = Take<std::string>(take_profile_setting),
+        .fallback = "fifth",
+        .choices = {"fifth", "by-Ra", "Sc1", "Sc2", "Sc3", "Sc4", "Sc5"}};
     return {.name = "surface",
-            .summary = "A surface file (X3P, SUR, SDF, AL3D, TIFF, EXR): form removed and filtered, its ISO 25178-2 "
+            .summary = "A surface file (X3P, SUR, SDF, AL3D, GWY, GSF, PLU, OPD, DAT, NMS, NPY, CSV, XYZ, TIFF, EXR): "
+                       "form removed and filtered, its ISO 25178-2 "
                        "parameters; with --out also written, in another format if so named",
             .operands = {{"FILE", "Surface", into(&CommandOptions::file)}},
-            .options = together({{out_option("A .x3p, .sur, .sdf, .tif or .ply file"), json_option()},
-                                 band_options(),
-                                 {pitch_option(), unit, profile}}),
+            .options =
+                together({{out_option("A .x3p, .sur, .sdf, .gwy, .gsf, .csv, .npy, .tif or .ply file"), json_option()},
+                          band_options(),
+                          {pitch_option(), unit, profile, profile_filter, profile_setting}}),
             .run = run_surface,
             .example = "vkfv surface measured.x3p --form polynomial-2 --s_filter_um 5 --out treated.sur"};
 }
@@ -68,6 +115,7 @@ void run_surface(const CommandOptions& options) {
                                       .scale = {.pitch = options.of<PixelPitch>().value, .unit = own.unit},
                                       .band = options.of<surface::Band>(),
                                       .line = own.line,
+                                      .setting = own.setting,
                                       .out = options.out});
     fmt::print("{}", options.json ? measurement::surface_json(figures, options.file).dump(2) + "\n"
                                   : measurement::surface_text(figures));

@@ -28,6 +28,7 @@ struct CommandOptions {
     std::optional<std::filesystem::path> out;
     bool quiet = false;
     bool json = false;
+    bool markdown = false;
 
     // The command's own struct, as its options have filled it.
     template <class Own>
@@ -141,6 +142,7 @@ const Command& command_named(const std::string& name);
 std::vector<Option> configuration_options(); // instead of the configuration's values
 Option out_option(std::string description);
 Option json_option();
+Option markdown_option();
 Option pitch_option();              // a PixelPitch
 std::vector<Option> band_options(); // form and filters: a surface::Band
 // One list after the other.

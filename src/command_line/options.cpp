@@ -108,6 +108,13 @@ Option json_option() {
             .foremost = "check"};
 }
 
+Option markdown_option() {
+    return {.name = "--markdown",
+            .value = "",
+            .description = "All of it, as a page",
+            .target = into(&CommandOptions::markdown)};
+}
+
 Option pitch_option() {
     return {.name = "--pitch_um,--pitch-um",
             .value = "UM",
@@ -125,31 +132,31 @@ std::vector<Option> band_options() {
                             "an L-filter longer than the S-filter", "Exchange them, or leave one out.");
         }
     };
-    std::vector<Option> options = {{.name = "--form",
-                                    .value = "NAME",
-                                    .description = "Removed first: none, plane, polynomial-1 to polynomial-20, sphere",
-                                    .target = Take<std::string>(take_form),
-                                    .fallback = "plane"},
-                                   {.name = "--s_filter_um,--s-filter-um",
-                                    .value = "UM",
-                                    .description = "Nesting index of the S-filter: shorter waves are removed",
-                                    .target = Take<double>([](CommandOptions& options, double um) {
-                                        options.of<surface::Band>().s_filter = nesting_index(um);
-                                    }),
-                                    .fallback = "0, no filter"},
-                                   {.name = "--l_filter_um,--l-filter-um",
-                                    .value = "UM",
-                                    .description = "Nesting index of the L-filter: longer waves are removed",
-                                    .target = Take<double>(take_l_filter),
-                                    .fallback = "0, no filter"},
-                                   {.name = "--filter",
-                                    .value = "NAME",
-                                    .description = "Which S-filter and L-filter",
-                                    .target = Take<std::string>([](CommandOptions& options, const std::string& name) {
-                                        options.of<surface::Band>().spline = name == "spline";
-                                    }),
-                                    .fallback = "gaussian",
-                                    .choices = {"gaussian", "spline"}}};
+    std::vector<Option> options = {
+        {.name = "--form",
+         .value = "NAME",
+         .description = "Removed first: none, plane, polynomial-1 to polynomial-20, sphere",
+         .target = Take<std::string>(take_form),
+         .fallback = "plane"},
+        {.name = "--s_filter_um,--s-filter-um",
+         .value = "UM",
+         .description = "Nesting index of the S-filter: shorter waves are removed",
+         .target = Take<double>(
+             [](CommandOptions& options, double um) { options.of<surface::Band>().s_filter = nesting_index(um); }),
+         .fallback = "0, no filter"},
+        {.name = "--l_filter_um,--l-filter-um",
+         .value = "UM",
+         .description = "Nesting index of the L-filter: longer waves are removed",
+         .target = Take<double>(take_l_filter),
+         .fallback = "0, no filter"},
+        {.name = "--filter",
+         .value = "NAME",
+         .description = "Which S-filter and L-filter; a spline's ends are natural (ISO 16610-22) or mirrored",
+         .target = Take<std::string>([](CommandOptions& options, const std::string& name) {
+             surface::take_filter(options.of<surface::Band>(), name);
+         }),
+         .fallback = "gaussian",
+         .choices = {surface::filter_names.begin(), surface::filter_names.end()}}};
     for (auto& option : options) {
         option.foremost = "surface";
     }

@@ -6,6 +6,7 @@
 #include "scan/plan.hpp"
 #include "specimen/description.hpp"
 #include "topography/compare.hpp"
+#include "topography/registration.hpp"
 #include "topography/topography.hpp"
 #include "trace/tracer.hpp"
 
@@ -63,6 +64,7 @@ struct Configuration : ReadKeys {
     DiffractionOptions diffraction;
     topography::TopographyOptions topography;
     EvaluateOn evaluate_on = EvaluateOn::automatic;
+    topography::Registration registration = topography::Registration::none; // of images of another instrument
     std::filesystem::path flatness_file; // a flat measured by the same instrument; empty: no correction
     topography::Band band;               // of the second comparison with the truth; unlimited: there is none
     std::filesystem::path output_directory;

@@ -21,7 +21,11 @@ constexpr std::array surface_formats = {SurfaceFormat{"tiff", "topography.tif", 
                                         SurfaceFormat{"x3p", "topography.x3p", "ISO 25178-72"},
                                         SurfaceFormat{"sur", "topography.sur", "Digital Surf"},
                                         SurfaceFormat{"sdf", "topography.sdf", "ISO 25178-71"},
-                                        SurfaceFormat{"ply", "topography.ply", "triangles for viewers"}};
+                                        SurfaceFormat{"ply", "topography.ply", "triangles for viewers"},
+                                        SurfaceFormat{"gwy", "topography.gwy", "Gwyddion, with all maps of the result"},
+                                        SurfaceFormat{"gsf", "topography.gsf", "Gwyddion's simple field"},
+                                        SurfaceFormat{"npy", "topography.npy", "NumPy, float64 heights in um"},
+                                        SurfaceFormat{"csv", "topography.csv", "a matrix of heights in um"}};
 
 std::vector<Key::Choice> choices_of_formats() {
     std::vector<Key::Choice> choices;

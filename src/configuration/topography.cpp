@@ -33,12 +33,18 @@ const IntegerKey window = without_influence(
     IntegerKey("window_px", 3, 255, defaults.window_px, "Side of the window around a pixel, an odd number."));
 const auto window_shape = named("window_shape", topography::window_shape_names(), topography::window_shape_from_name,
                                 defaults.window_shape, "Weights in the window.");
-const NumberKey smoothing = without_influence(
-    NumberKey("smoothing_steps", NumberRange::within(0, most_smoothing_steps), defaults.smoothing_steps,
-              "Standard deviation of the Gaussian average along z, in steps of the scan; 0: none."));
+const NumberKey smoothing =
+    without_influence(NumberKey("smoothing_steps", NumberRange::within(0, most_smoothing_steps),
+                                Default::in_words("as suits the width of the focus curves"),
+                                "Standard deviation of the Gaussian average along z, in steps of the scan; 0: none."));
 const NumberKey false_peak_rate =
-    without_influence(NumberKey("false_peak_rate", NumberRange::between(0, 1), defaults.false_peak_rate,
-                                "Probability that a pixel without texture gets a height from noise alone, at most."));
+    without_influence(NumberKey("false_peak_rate", NumberRange::share(), defaults.false_peak_rate,
+                                "Share of the points that would be measured with the images in random order; 1: no "
+                                "limit."));
+const NumberKey most_rival = without_influence(NumberKey(
+    "most_rival", NumberRange::share(), defaults.most_rival,
+    "Prominence of the second maximum, in heights of the largest above the mean, that a measured point has at "
+    "most; 1: no limit."));
 const auto peak = named("peak", topography::peak_method_names(), topography::peak_method_from_name, defaults.peak,
                         "How the maximum of focus is found.");
 const IntegerKey peak_range =
@@ -53,6 +59,12 @@ const NumberKey most_fit_residual = without_influence(
               "most."));
 const IntegerKey most_peaks = without_influence(IntegerKey(
     "most_peaks", 1, 4, defaults.most_peaks, "Maxima of the focus curve that a measured point has at most; 4: any."));
+const ChoiceKey<topography::Registration> registration = without_influence(ChoiceKey<topography::Registration>(
+    "registration",
+    {{topography::Registration::none, "none", "they are taken as they are"},
+     {topography::Registration::shift, "shift", "of a stage that drifts"},
+     {topography::Registration::shift_and_scale, "shift-and-scale", "of a lens that breathes, too"}},
+    topography::Registration::none, "How images of another instrument are laid over each other first."));
 const BooleanKey repair_outliers = without_influence(
     BooleanKey("repair_outliers", defaults.repair_outliers, "Whether outliers become the median of their neighbours."));
 const ChoiceKey<EvaluateOn> evaluate_on =
@@ -64,9 +76,12 @@ const ChoiceKey<EvaluateOn> evaluate_on =
 const FileKey flatness_file = without_influence(
     FileKey("flatness_file", Default::in_words("\"none\""),
             "Heights of a flat measured by the same instrument, whose field curvature is taken off."));
-const ChoiceKey<bool> filter =
-    without_influence(ChoiceKey<bool>("filter", {{false, "gaussian", "ISO 16610-61"}, {true, "spline", "ISO 16610-62"}},
-                                      false, "Which S-filter and L-filter."));
+const ChoiceKey<int> filter = without_influence(
+    ChoiceKey<int>("filter",
+                   {{0, surface::filter_names[0], "ISO 16610-61"},
+                    {1, surface::filter_names[1], "ISO 16610-62, with the natural ends of ISO 16610-22"},
+                    {2, surface::filter_names[2], "the same, mirrored at the edges"}},
+                   0, "Which S-filter and L-filter."));
 const NumberKey s_filter =
     without_influence(NumberKey("s_filter_um", NumberRange::at_least(0), 0.0,
                                 "Nesting index of the S-filter of a second comparison with the truth; 0: none."));
@@ -96,10 +111,10 @@ const KeyTable& topography_keys() {
                                 .meaning = "How heights are found in the images.",
                                 .subject = "a topography",
                                 .kind = "",
-                                .keys = {&focus_measure, &window, &window_shape, &smoothing, &false_peak_rate, &peak,
-                                         &peak_range, &least_contrast, &most_fit_residual, &most_peaks,
-                                         &repair_outliers, &evaluate_on, &flatness_file, &filter, &s_filter,
-                                         &l_filter}};
+                                .keys = {&focus_measure, &window, &window_shape, &smoothing, &false_peak_rate,
+                                         &most_rival, &peak, &peak_range, &least_contrast, &most_fit_residual,
+                                         &most_peaks, &registration, &repair_outliers, &evaluate_on, &flatness_file,
+                                         &filter, &s_filter, &l_filter}};
     return table;
 }
 
@@ -130,20 +145,22 @@ void read_topography(const TomlTable& root, Configuration& configuration, Needs 
                      "Choose a smaller window or more pixels.");
     }
     options.window_shape = section.choice(window_shape);
-    options.smoothing_steps = section.number(smoothing);
+    options.smoothing_steps = section.number_if_given(smoothing);
     options.false_peak_rate = section.number(false_peak_rate);
+    options.most_rival = section.number(most_rival);
     options.peak = section.choice(peak);
     options.peak_range_steps = static_cast<int>(section.integer(peak_range));
     options.least_contrast = section.number(least_contrast);
     options.most_fit_residual = section.number(most_fit_residual);
     options.most_peaks = static_cast<int>(section.integer(most_peaks));
     options.repair_outliers = section.boolean(repair_outliers);
+    configuration.registration = section.choice(registration);
     configuration.evaluate_on = section.choice(evaluate_on);
     // "none", so that --set can take it back.
     if (const auto name = table.optional_string(flatness_file.name); name && *name != "none") {
         configuration.flatness_file = section.file(flatness_file);
     }
-    configuration.band.spline = section.choice(filter);
+    surface::take_filter(configuration.band, surface::filter_names[static_cast<std::size_t>(section.choice(filter))]);
     configuration.band.s_filter = from_um(section.number(s_filter));
     configuration.band.l_filter = from_um(section.number(l_filter));
 }

@@ -33,24 +33,72 @@ void share_lines(int count, std::size_t values, const Task& task) {
     run(0, std::min(share, count));
 }
 
-// Transforms `count` lines of `length` values; value k of line n is at values[n * line_step + k * value_step].
+// Lines that are copied at once: neighbouring columns share what memory gives at a time.
+constexpr int lines_at_once = 8;
+
+// task(line, fft) on copies of `count` lines of `length` values, in buffers of `padded` with zeros behind them, whose
+// first `length` values are put back; value k of line n is at values[n * line_step + k * value_step].
+template <class Task>
+void over_lines(std::vector<Complex>& values, int count, std::size_t line_step, int length, std::size_t value_step,
+                int padded, const Task& task) {
+    share_lines(count, values.size(), [&](int first, int end, Eigen::FFT<double>& fft) {
+        const auto n = static_cast<std::size_t>(length), size = static_cast<std::size_t>(padded);
+        std::vector<Complex> lines(size * lines_at_once);
+        for (int start = first; start < end; start += lines_at_once) {
+            const auto some = static_cast<std::size_t>(std::min(lines_at_once, end - start));
+            Complex* const begin = values.data() + static_cast<std::size_t>(start) * line_step;
+            for (std::size_t k = 0; k < n; ++k)
+                for (std::size_t line = 0; line < some; ++line)
+                    lines[line * size + k] = begin[line * line_step + k * value_step];
+            for (std::size_t line = 0; line < some; ++line) {
+                std::fill_n(lines.begin() + static_cast<std::ptrdiff_t>(line * size + n), size - n, Complex());
+                task(lines.data() + line * size, fft);
+            }
+            for (std::size_t k = 0; k < n; ++k)
+                for (std::size_t line = 0; line < some; ++line)
+                    begin[line * line_step + k * value_step] = lines[line * size + k];
+        }
+    });
+}
+
+// Transforms lines as over_lines() has them.
 void transform_lines(std::vector<Complex>& values, int count, std::size_t line_step, int length, std::size_t value_step,
                      bool inverse) {
     if (length == 1)
         return; // is its own transform; Eigen's takes none so short
-    share_lines(count, values.size(), [&](int first, int end, Eigen::FFT<double>& fft) {
-        std::vector<Complex> line(static_cast<std::size_t>(length)), transformed(line.size());
-        for (int n = first; n < end; ++n) {
-            Complex* const begin = values.data() + static_cast<std::size_t>(n) * line_step;
-            for (std::size_t k = 0; k < line.size(); ++k)
-                line[k] = begin[k * value_step];
-            if (inverse)
-                fft.inv(transformed.data(), line.data(), length);
-            else
-                fft.fwd(transformed.data(), line.data(), length);
-            for (std::size_t k = 0; k < line.size(); ++k)
-                begin[k * value_step] = transformed[k];
-        }
+    over_lines(values, count, line_step, length, value_step, length, [&](Complex* line, Eigen::FFT<double>& fft) {
+        thread_local std::vector<Complex> transformed;
+        transformed.resize(static_cast<std::size_t>(length));
+        if (inverse)
+            fft.inv(transformed.data(), line, length);
+        else
+            fft.fwd(transformed.data(), line, length);
+        std::ranges::copy(transformed, line);
+    });
+}
+
+// Convolves lines as over_lines() has them with symmetric weights.
+void convolve_lines(std::vector<Complex>& values, int count, std::size_t line_step, int length, std::size_t value_step,
+                    const std::vector<double>& weights) {
+    const int reach = static_cast<int>(weights.size()) - 1;
+    const int padded = std::max(2, convenient_length(length + reach)); // what leaves one end does not come back
+    const auto size = static_cast<std::size_t>(padded);
+    std::vector<Complex> kernel(size), spectrum(size);
+    for (std::size_t k = 0; k < weights.size(); ++k)
+        kernel[k] = kernel[(size - k) % size] = weights[k];
+    Eigen::FFT<double> own;
+    own.SetFlag(Eigen::FFT<double>::Unscaled);
+    own.fwd(spectrum.data(), kernel.data(), padded);
+    std::vector<double> gain(size); // real, as the weights are symmetric
+    for (std::size_t k = 0; k < size; ++k)
+        gain[k] = spectrum[k].real() / padded;
+    over_lines(values, count, line_step, length, value_step, padded, [&](Complex* line, Eigen::FFT<double>& fft) {
+        thread_local std::vector<Complex> transformed;
+        transformed.resize(size);
+        fft.fwd(transformed.data(), line, padded);
+        for (std::size_t k = 0; k < size; ++k)
+            transformed[k] *= gain[k];
+        fft.inv(line, transformed.data(), padded);
     });
 }
 
@@ -123,6 +171,12 @@ void inverse_fourier_transform(Grid<Complex>& grid) {
     const double factor = 1.0 / static_cast<double>(grid.values.size());
     for (Complex& value : grid.values)
         value *= factor;
+}
+
+void convolve(Grid<Complex>& grid, const std::vector<double>& along_x, const std::vector<double>& along_y) {
+    const auto columns = static_cast<std::size_t>(grid.columns);
+    convolve_lines(grid.values, grid.rows, columns, grid.columns, 1, along_x);
+    convolve_lines(grid.values, grid.columns, 1, grid.rows, columns, along_y);
 }
 
 void cosine_transform(Grid<double>& grid) {

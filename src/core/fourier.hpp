@@ -4,6 +4,7 @@
 #include "core/grid.hpp"
 
 #include <complex>
+#include <vector>
 
 namespace vkfv {
 
@@ -22,6 +23,11 @@ void cosine_transform(Grid<double>& grid);
 
 // Its inverse.
 void inverse_cosine_transform(Grid<double>& grid);
+
+// In place: the sum over i, k of f[x - i, y - k] along_x[|i|] along_y[|k|], f zero beyond its borders: what a separable
+// symmetric weighting gives, of weights from the middle outwards, none further out than the grid is long. By transforms
+// of padded lines, in time that hardly depends on how many weights there are.
+void convolve(Grid<std::complex<double>>& grid, const std::vector<double>& along_x, const std::vector<double>& along_y);
 
 // The smallest number from `least` on with no prime factor above 5.
 int convenient_length(int least);

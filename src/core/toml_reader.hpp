@@ -29,6 +29,7 @@ struct NumberRange {
     static NumberRange within(double minimum, double maximum) { // ends included
         return {.minimum = minimum, .maximum = maximum};
     }
+    static NumberRange share() { return {0, 1, false, true}; }   // of a whole, and not none
     static NumberRange between(double minimum, double maximum) { // ends excluded
         return {minimum, maximum, false, false};
     }

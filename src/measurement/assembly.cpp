@@ -13,6 +13,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 #include <stdexcept>
 #include <vector>
 
@@ -111,6 +112,24 @@ std::optional<optics::Diffraction> make_diffraction(const Configuration& configu
                           fmt::format("light whose sum is positive, on pixels of at most {:.4g} um", pitch * um_per_mm),
                           "Correct the file, or the pitch of its pixels in the object plane."});
     }
+}
+
+topography::TopographyOptions evaluation_options(const Configuration& configuration,
+                                                 const optics::Instrument& instrument) {
+    auto options = configuration.topography;
+    if (!options.smoothing_steps) {
+        // A disc of light of radius r passes half the contrast of frequency f where 2 pi f r = 2.215; r = z tan(alpha).
+        constexpr double half_contrast = 2.215, waves_a_pixel = 0.25, deviations_a_half_width = 1.177;
+        const auto& first_order = instrument.first_order;
+        const double sine = std::min(0.99, first_order.numerical_aperture);
+        const double half_width = half_contrast / (2 * std::numbers::pi * waves_a_pixel) * first_order.pixel_pitch *
+                                  std::sqrt(1 - sine * sine) / sine;
+        const auto positions = configuration.scan->positions();
+        const double step = positions.size() > 1 ? positions[1] - positions[0] : half_width;
+        options.smoothing_steps = topography::suitable_smoothing(half_width / deviations_a_half_width / step,
+                                                                 static_cast<int>(positions.size()));
+    }
+    return options;
 }
 
 surface::HeightMap truth_on_pixels(const optics::Instrument& instrument, const Configuration& configuration,

@@ -45,6 +45,11 @@ optics::Instrument instrument_for(const Configuration& configuration, const spec
 std::optional<optics::Diffraction> make_diffraction(const Configuration& configuration,
                                                     const optics::Instrument& instrument);
 
+// How the configuration asks for its own stack to be evaluated, with the average along z that suits its instrument
+// where none is given: a defocus that blurs waves of four pixels to half their contrast.
+topography::TopographyOptions evaluation_options(const Configuration& configuration,
+                                                 const optics::Instrument& instrument);
+
 // The true surface on the detector's pixels, in the object plane.
 surface::HeightMap truth_on_pixels(const optics::Instrument& instrument, const Configuration& configuration,
                                    const specimen::Specimen& specimen);

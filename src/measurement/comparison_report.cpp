@@ -2,6 +2,7 @@
 
 #include "core/result_folder.hpp"
 #include "core/units.hpp"
+#include "measurement/surface_report.hpp"
 #include "report/parameter_table.hpp"
 #include "report/topography_picture.hpp"
 #include "surface_files/height_image.hpp"
@@ -196,13 +197,14 @@ std::string slope_csv(const topography::Comparison& comparison) {
 Json profile_json(const ComparedProfile& profile) {
     return {{"y_um", profile.line.y_start * um_per_mm},
             {"section_length_um", profile.measured.section_length * um_per_mm},
+            {"l_filter_um", profile.measured.l_filter * um_per_mm},
             {"measured", json_of(report::parameter_rows(profile.measured.parameters))},
             {"true", json_of(report::parameter_rows(profile.truth.parameters))}};
 }
 
 std::string profile_text(const ComparedProfile& profile) {
-    std::string text = fmt::format("\nISO 21920-2, profile at y = {:.4g} um, section length {:.4g} um\n",
-                                   profile.line.y_start * um_per_mm, profile.measured.section_length * um_per_mm);
+    std::string text = fmt::format("\nISO 21920-2, profile at y = {:.4g} um, {}\n", profile.line.y_start * um_per_mm,
+                                   profile_filter_text(profile.measured));
     const auto measured = report::parameter_rows(profile.measured.parameters),
                truth = report::parameter_rows(profile.truth.parameters);
     for (std::size_t k = 0; k < measured.size(); ++k) {

@@ -11,8 +11,10 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <vector>
 
 namespace vkfv::measurement {
 
@@ -47,6 +49,45 @@ std::string band_text(const topography::Band& band) {
         text += fmt::format(", L {:g} um", band.l_filter * um_per_mm);
     }
     return text + ":";
+}
+
+struct Reason {
+    topography::PointState state;
+    std::string sentence;
+};
+
+// What kept points out, with what helps, for each reason that holds for at least a twentieth of them.
+std::string reasons_text(const Evaluation& evaluation) {
+    using topography::PointState;
+    const auto& options = evaluation.options;
+    const auto& state = evaluation.topography.state.values;
+    const std::vector<Reason> reasons = {
+        {PointState::no_peak, "have their largest focus value at an end of the scan, or no maximum: scan further"},
+        {PointState::by_chance,
+         fmt::format(
+             "have focus curves no better than by chance: their images' noise is {:.2g} % of the brightness. More "
+             "light or rays, finer steps, more texture or a larger topography.window_px help; "
+             "topography.false_peak_rate = 1 shows them",
+             100 * evaluation.topography.stack.image_noise)},
+        {PointState::low_contrast,
+         fmt::format("have less contrast than topography.least_contrast = {:g}", options.least_contrast)},
+        {PointState::dark, "have less than a hundredth of the mean brightness around them: light them"},
+        {PointState::poor_fit, fmt::format("are further from a Gaussian than topography.most_fit_residual = {:g}",
+                                           options.most_fit_residual)},
+        {PointState::many_peaks,
+         fmt::format(
+             "have a second maximum above topography.most_rival = {:g} of the first, or more than "
+             "topography.most_peaks = {}: a larger topography.window_px helps, or texture that light can resolve",
+             options.most_rival, options.most_peaks)}};
+    constexpr double least_share = 0.05;
+    std::string text;
+    for (const auto& [which, sentence] : reasons) {
+        const double share = static_cast<double>(std::ranges::count(state, which)) / static_cast<double>(state.size());
+        if (share >= least_share) {
+            text += fmt::format("  {:.1f} % {}\n", 100 * share, sentence);
+        }
+    }
+    return text;
 }
 
 } // namespace
@@ -149,12 +190,15 @@ Evaluation StackEvaluation::finish(double pitch, const std::optional<Flat>& flat
 
 std::string summary(const Evaluation& evaluation) {
     const double measured = surface::height_parameters(evaluation.topography.height).measured_share;
-    if (!(measured > 0)) {
-        return "no point was measured: the focus of no pixel rises above its noise. Trace more rays, scan "
-               "further or in "
-               "finer steps, or give the specimen texture.\n";
+    std::string text = fmt::format("measured {:.1f} % of the points\n", 100 * measured) + reasons_text(evaluation);
+    const auto& stack = evaluation.topography.stack;
+    if (const double rate = stack.limits.rate; rate < 1 && rate > 2 * evaluation.options.false_peak_rate) {
+        text += fmt::format("with the images in random order {:.2g} % would pass: so few images tell no more\n",
+                            100 * rate);
     }
-    std::string text = fmt::format("measured {:.1f} % of the points\n", 100 * measured);
+    if (!(measured > 0)) {
+        return text;
+    }
     if (evaluation.flatness) {
         text += fmt::format("field curvature removed by the flat: {:.3g} um peak to valley\n",
                             evaluation.flatness->deviation * um_per_mm);

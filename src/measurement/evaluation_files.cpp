@@ -11,12 +11,17 @@
 #include "report/topography_picture.hpp"
 #include "scan/store.hpp"
 #include "surface/filter.hpp"
+#include "surface_files/gwy.hpp"
 #include "surface_files/height_image.hpp"
 #include "surface_files/surface_file.hpp"
 
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
+#include <iterator>
+#include <limits>
+#include <vector>
 
 namespace vkfv::measurement {
 
@@ -27,8 +32,9 @@ nlohmann::ordered_json point_counts(const Grid<topography::PointState>& state) {
     using topography::PointState;
     const auto count = [&](PointState wanted) { return std::ranges::count(state.values, wanted); };
     return {{"measured", count(PointState::measured)},         {"no_peak", count(PointState::no_peak)},
-            {"low_contrast", count(PointState::low_contrast)}, {"poor_fit", count(PointState::poor_fit)},
-            {"many_peaks", count(PointState::many_peaks)},     {"repaired", count(PointState::repaired)}};
+            {"by_chance", count(PointState::by_chance)},       {"poor_fit", count(PointState::poor_fit)},
+            {"many_peaks", count(PointState::many_peaks)},     {"repaired", count(PointState::repaired)},
+            {"low_contrast", count(PointState::low_contrast)}, {"dark", count(PointState::dark)}};
 }
 
 template <class To, class From>
@@ -36,6 +42,18 @@ Grid<To> converted(const Grid<From>& grid) {
     Grid<To> result(grid.columns, grid.rows);
     std::ranges::transform(grid.values, result.values.begin(), [](From value) { return static_cast<To>(value); });
     return result;
+}
+
+// Of the finite values; NaN without any.
+double median_of(const Grid<double>& grid) {
+    std::vector<double> values;
+    std::ranges::copy_if(grid.values, std::back_inserter(values), [](double value) { return std::isfinite(value); });
+    if (values.empty()) {
+        return std::numeric_limits<double>::quiet_NaN();
+    }
+    const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
+    std::ranges::nth_element(values, middle);
+    return *middle;
 }
 
 // Levelled, with the filtered ones within.
@@ -51,25 +69,15 @@ nlohmann::ordered_json json_of(const topography::TopographyOptions& options) {
     return {{"focus_measure", name_of(options.focus_measure)},
             {"window_px", options.window_px},
             {"window_shape", name_of(options.window_shape)},
-            {"smoothing_steps", options.smoothing_steps},
+            {"smoothing_steps", options.smoothing_steps.value_or(0)},
             {"peak", name_of(options.peak)},
             {"peak_range_steps", options.peak_range_steps},
             {"false_peak_rate", options.false_peak_rate},
+            {"most_rival", options.most_rival},
             {"least_contrast", options.least_contrast},
             {"most_fit_residual", options.most_fit_residual},
             {"most_peaks", options.most_peaks},
             {"repair_outliers", options.repair_outliers}};
-}
-
-// Mean of the channels.
-Grid<float> grey(const topography::Channels& channels) {
-    Grid<float> result(channels.front().columns, channels.front().rows);
-    for (const auto& channel : channels) {
-        for (std::size_t k = 0; k < result.values.size(); ++k) {
-            result.values[k] += channel.values[k] / static_cast<float>(channels.size());
-        }
-    }
-    return result;
 }
 
 // A folder's own name, also of "out/" and ".".
@@ -89,8 +97,34 @@ std::string picture_of(const std::filesystem::path& folder, const Evaluation& ev
         picture.truth = level(*evaluation.truth);
         picture.deviation = topography::deviation_map(evaluation.topography.height, *evaluation.truth);
     }
-    picture.all_in_focus = grey(evaluation.topography.all_in_focus);
+    picture.all_in_focus = topography::grey(evaluation.topography.all_in_focus);
     return report::topography_picture(picture);
+}
+
+// Other values at the places of a map.
+surface::HeightMap with_values(surface::HeightMap map, Grid<double> values) {
+    map.height = std::move(values);
+    return map;
+}
+
+// Every map on the heights' grid.
+std::vector<surface::GwyChannel> channels_of(const Evaluation& evaluation) {
+    const auto& topography = evaluation.topography;
+    const auto on_grid = [&](Grid<double> values) { return with_values(topography.height, std::move(values)); };
+    std::vector<surface::GwyChannel> channels = {{.title = "Height", .map = topography.height}};
+    if (evaluation.truth) {
+        channels.push_back({.title = "True height", .map = *evaluation.truth});
+        channels.push_back({.title = "Deviation from the true height",
+                            .map = topography::deviation_map(topography.height, *evaluation.truth, evaluation.band)});
+    }
+    channels.push_back({.title = "Noise of the height", .map = on_grid(topography.height_noise)});
+    channels.push_back({.title = "Contrast", .unit = "", .map = on_grid(topography.contrast)});
+    channels.push_back({.title = "Fit residual", .unit = "", .map = on_grid(topography.fit_residual)});
+    channels.push_back(
+        {.title = "What became of the point", .unit = "", .map = on_grid(converted<double>(topography.state))});
+    const auto grey = topography::grey(topography.all_in_focus);
+    channels.push_back({.title = "All in focus", .unit = "", .map = on_grid(converted<double>(grey))});
+    return channels;
 }
 
 // Into this folder in the results' own. Returns the picture.
@@ -98,7 +132,9 @@ std::string write_maps(ResultFolder& results, const std::filesystem::path& folde
                        const TopographyFiles& files) {
     const auto& topography = evaluation.topography;
     for (const std::string& file : files.names) {
-        results.write(folder / file, surface::surface_bytes(file, topography.height, files.provenance));
+        const bool holds_all = file.ends_with(".gwy");
+        results.write(folder / file, holds_all ? surface::gwy_bytes(channels_of(evaluation), files.provenance)
+                                               : surface::surface_bytes(file, topography.height, files.provenance));
     }
     const images::ImageTags pitch{
         .pitch_x = topography.height.pitch_x, .pitch_y = topography.height.pitch_y, .description = {}};
@@ -106,6 +142,8 @@ std::string write_maps(ResultFolder& results, const std::filesystem::path& folde
         results.write(folder / name, images::tiff_bytes(map, pitch));
     };
     write("quality.tif", converted<float>(topography.contrast));
+    results.write(folder / "height_noise.tif",
+                  surface::height_map_bytes(with_values(topography.height, topography.height_noise)));
     write("fit_residual.tif", converted<float>(topography.fit_residual));
     write("mask.tif", converted<std::uint16_t>(topography.state));
     write("all_in_focus.tif", topography.all_in_focus);
@@ -151,6 +189,13 @@ void write_results(ResultFolder& folder, const EvaluatedStack& stack) {
         results["flatness"] = {{"file", evaluation.flatness->file.string()},
                                {"deviation_um", evaluation.flatness->deviation * um_per_mm}};
     }
+    const auto& whole = evaluation.topography.stack;
+    results["curves"] = {{"curve_width_steps", whole.curve_width_steps},
+                         {"least_unimodality", whole.limits.unimodality},
+                         {"least_relief", whole.limits.relief},
+                         {"chance_rate", whole.limits.rate},
+                         {"image_noise", whole.image_noise},
+                         {"height_noise_um", median_of(evaluation.topography.height_noise) * um_per_mm}};
     results["points"] = point_counts(evaluation.topography.state);
     results["evaluated_by"] = fmt::format("vkfv {}", VKFV_VERSION);
     results.update(stack.origin);

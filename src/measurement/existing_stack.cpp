@@ -69,6 +69,71 @@ bool any_negative(const topography::Channels& image) {
     });
 }
 
+// The images of another instrument, each laid over the one in the middle if that is asked for.
+class LaidImages {
+  public:
+    LaidImages(const scan::ImageSeries& series, topography::Registration what) : series_(series) {
+        if (what == topography::Registration::none) {
+            return;
+        }
+        std::vector<topography::ImageTransform> steps(1);
+        Grid<float> before = topography::grey(series.read(0));
+        for (int image = 1; image < series.size(); ++image) {
+            Grid<float> next = topography::grey(series.read(image));
+            if (next.columns != before.columns || next.rows != before.rows) {
+                return; // refused when it is evaluated
+            }
+            steps.push_back(topography::registered(before, next, what));
+            before = std::move(next);
+        }
+        transforms_ = topography::in_common_frame(steps);
+        const auto& first = transforms_.front();
+        const auto& last = transforms_.back();
+        spdlog::info("images laid over each other: from the first to the last ({:.2f}, {:.2f}) pixels, scale {:.5f}",
+                     last.shift_x - first.shift_x, last.shift_y - first.shift_y, last.scale / first.scale);
+    }
+
+    topography::Channels read(int image) const {
+        auto channels = series_.read(image);
+        return transforms_.empty() ? channels
+                                   : topography::resampled(channels, transforms_[static_cast<std::size_t>(image)]);
+    }
+
+    // Shift in pixels and scale of each image, in their order.
+    nlohmann::ordered_json json() const {
+        auto rows = nlohmann::ordered_json::array();
+        for (const auto& transform : transforms_) {
+            rows.push_back({transform.shift_x, transform.shift_y, transform.scale});
+        }
+        return rows;
+    }
+
+  private:
+    const scan::ImageSeries& series_;
+    std::vector<topography::ImageTransform> transforms_; // none: as they are
+};
+
+// Images of an instrument that vkfv does not know are read twice: first for the width of their focus curves.
+double smoothing_of(const LaidImages& images, const std::vector<int>& order,
+                    const topography::TopographyOptions& options) {
+    std::optional<topography::FocusProbes> probes;
+    int columns = 0, rows = 0;
+    for (const int image : order) {
+        const auto channels = images.read(image);
+        if (!probes) {
+            columns = channels.front().columns;
+            rows = channels.front().rows;
+            probes.emplace(columns, rows, options.focus_measure,
+                           topography::FocusWindow(options.window_px, options.window_shape));
+        }
+        if (channels.front().columns != columns || channels.front().rows != rows) {
+            return 0; // refused when it is evaluated
+        }
+        probes->add(channels);
+    }
+    return probes->suitable_smoothing();
+}
+
 } // namespace
 
 EvaluatedStack evaluate_own_stack(const OwnStack& stack) {
@@ -79,7 +144,7 @@ EvaluatedStack evaluate_own_stack(const OwnStack& stack) {
     const int pixels = configuration.instrument.detector_pixels;
     const auto flat = read_flat(configuration, pixels, pixels, instrument.first_order.pixel_pitch);
     const auto order = order_of_images(positions.size(), stack.shuffle);
-    StackEvaluation evaluation(configuration.topography, planes_for(configuration),
+    StackEvaluation evaluation(evaluation_options(configuration, instrument), planes_for(configuration),
                                make_diffraction(configuration, instrument));
     for (std::size_t place = 0; place < positions.size(); ++place) {
         const int image = order[place];
@@ -103,15 +168,23 @@ EvaluatedStack evaluate_own_stack(const OwnStack& stack) {
 
 EvaluatedStack evaluate_images(const scan::ImageSeries& series, const ForeignStack& stack) {
     const auto configuration = topography_configuration(stack.overrides);
-    StackEvaluation evaluation(configuration.topography, planes_for(configuration));
     const auto order = order_of_images(static_cast<std::size_t>(series.size()), stack.shuffle);
+    const auto at_place = [&](int place) {
+        // Heights ascend, whichever way the instrument went.
+        return stack.z_step > 0 ? place : series.size() - 1 - place;
+    };
+    const LaidImages images(series, configuration.registration);
+    auto options = configuration.topography;
+    if (!options.smoothing_steps) {
+        options.smoothing_steps = smoothing_of(images, order, options);
+    }
+    StackEvaluation evaluation(options, planes_for(configuration));
     spdlog::info("{} images, {} to {}", series.size(), series.name(0), series.name(series.size() - 1));
     std::optional<Flat> flat;
     bool negative = false;
     for (int place = 0; place < series.size(); ++place) {
-        // Heights ascend, whichever way the instrument went.
-        const int image = stack.z_step > 0 ? place : series.size() - 1 - place;
-        auto channels = series.read(order[static_cast<std::size_t>(image)]);
+        const int image = at_place(place);
+        auto channels = images.read(order[static_cast<std::size_t>(image)]);
         if (place == 0) {
             flat = read_flat(configuration, channels.front().columns, channels.front().rows, stack.pitch);
         }
@@ -124,16 +197,15 @@ EvaluatedStack evaluate_images(const scan::ImageSeries& series, const ForeignSta
             "any background subtracted.",
             stack.images.string());
     }
-    return {.evaluation = evaluation.finish(stack.pitch, flat),
-            .origin = {{"stack", stack.images.string()},
-                       {"images", series.size()},
-                       {"first_image", series.name(0)},
-                       {"last_image", series.name(series.size() - 1)},
-                       {"z_start_um", stack.z_start * um_per_mm},
-                       {"z_step_um", stack.z_step * um_per_mm},
-                       {"pitch_um", stack.pitch * um_per_mm}},
-            .source = {},
-            .files = {}};
+    nlohmann::ordered_json origin = {
+        {"stack", stack.images.string()},          {"images", series.size()},
+        {"first_image", series.name(0)},           {"last_image", series.name(series.size() - 1)},
+        {"z_start_um", stack.z_start * um_per_mm}, {"z_step_um", stack.z_step * um_per_mm},
+        {"pitch_um", stack.pitch * um_per_mm}};
+    if (configuration.registration != topography::Registration::none) {
+        origin["registration"] = images.json();
+    }
+    return {.evaluation = evaluation.finish(stack.pitch, flat), .origin = std::move(origin), .source = {}, .files = {}};
 }
 
 } // namespace vkfv::measurement

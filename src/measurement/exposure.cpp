@@ -78,4 +78,17 @@ double signal_to_noise(const trace::Image& image) {
     return flux / std::sqrt(variance * static_cast<double>(image.flux.values.size()));
 }
 
+std::string remedy_of_noise(const Configuration& configuration, double share, double wanted) {
+    const double times = std::ceil(share * share / (wanted * wanted));
+    std::string text = fmt::format("Launch {:.3g} times as many rays (--rays {:.2g})", times,
+                                   times * static_cast<double>(configuration.trace.rays));
+    if (configuration.trace.estimator == trace::Estimator::forward) {
+        text += ", or close the field stop to the field of view";
+        if (!configuration.instrument.ring && !configuration.trace.nonsequential) {
+            text += ", or take --estimator backward";
+        }
+    }
+    return text;
+}
+
 } // namespace vkfv::measurement

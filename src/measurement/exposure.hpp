@@ -29,6 +29,10 @@ Exposure expose(const Configuration& configuration, const optics::Instrument& in
                 const specimen::Specimen& specimen, double focal_height);
 // The pixels' mean over the root mean square of their standard errors.
 double signal_to_noise(const trace::Image& image);
+
+// What helps where noise is this share of a pixel's mean light and should be `wanted`, with the configuration's source
+// and estimator; a sentence.
+std::string remedy_of_noise(const Configuration& configuration, double share, double wanted);
 // The files of an exposure by their names, beside each other: NAME, float32 W per pixel, and the diffracted image as
 // NAME_diffracted.
 std::vector<std::pair<std::filesystem::path, std::string>> image_files(const std::filesystem::path& name,

@@ -55,10 +55,8 @@ ImageResult measure_image(const Configuration& configuration, double focal_heigh
         spdlog::warn(warning);
     }
     if (const double ratio = signal_to_noise(exposure.image); ratio < least_signal_to_noise) {
-        spdlog::warn(
-            "noise is {:.0f} % of a pixel's mean light. Launch more rays with --rays, close the field stop to the "
-            "field of view, or take --estimator backward",
-            100 / ratio);
+        spdlog::warn("noise is {:.0f} % of a pixel's mean light. {}", 100 / ratio,
+                     remedy_of_noise(configuration, 1 / ratio, 1 / least_signal_to_noise));
     }
     return result;
 }

@@ -3,6 +3,7 @@
 #include "core/digest.hpp"
 #include "measurement/assembly.hpp"
 #include "measurement/evaluation_files.hpp"
+#include "measurement/exposure.hpp"
 #include "specimen/geometry_digest.hpp"
 
 #include <fmt/format.h>
@@ -11,6 +12,12 @@
 #include <algorithm>
 
 namespace vkfv::measurement {
+
+namespace {
+
+constexpr double most_image_noise = 0.5, good_image_noise = 0.1;
+
+} // namespace
 
 StackResult measure_stack(const Configuration& configuration, Progress& progress) {
     const auto positions = configuration.scan->positions();
@@ -29,7 +36,7 @@ StackResult measure_stack(const Configuration& configuration, Progress& progress
                                                             .rows = pixels,
                                                             .pitch = instrument.first_order.pixel_pitch});
     // Evaluated as they are traced: no second pass over the disk.
-    StackEvaluation stack_evaluation(configuration.topography,
+    StackEvaluation stack_evaluation(evaluation_options(configuration, instrument),
                                      focus_planes_for(configuration.evaluate_on, configuration.trace.device),
                                      make_diffraction(configuration, instrument));
     bool any_light = false;
@@ -52,6 +59,10 @@ StackResult measure_stack(const Configuration& configuration, Progress& progress
                                     {"rays_per_image", rays_per_image}},
                          .source = stack_source(configuration, instrument),
                          .files = topography_files(configuration)};
+    if (const double noise = stack.evaluation.topography.stack.image_noise; noise > most_image_noise) {
+        spdlog::warn("The images' noise is {:.0f} % of their brightness: what is measured is little or rough. {}",
+                     100 * noise, remedy_of_noise(configuration, noise, good_image_noise));
+    }
     write_results(store.results(), stack);
     return {.evaluation = std::move(stack.evaluation),
             .traced = traced,

@@ -29,7 +29,8 @@ surface::SurfaceFile requested_surface(const SurfaceRequest& request) {
         return surface::read_surface(request.file, request.scale);
     } catch (const InputError& error) {
         throw error.with_each([](InputProblem& problem) {
-            if (problem.key == "pitch" || problem.key == "unit") { // the reader does not know the command line
+            if (problem.key == surface::scale_pitch_key ||
+                problem.key == surface::scale_unit_key) { // the reader does not know the command line
                 problem.key = "--" + problem.key + "_um";
             }
         });
@@ -74,6 +75,25 @@ surface::ProfileLine line_of(const SurfaceRequest& request, const HeightMap& map
     return line;
 }
 
+// Throws for a profile that is too short for its setting class, or rougher than all.
+void check_class(const SurfaceRequest& request, const surface::RoughnessProfile& profile) {
+    if (profile.setting_class == nullptr) {
+        return;
+    }
+    const double length = static_cast<double>(profile.profile.height.size() - 1) * profile.profile.spacing;
+    const double needed = 5 * profile.setting_class->l_filter;
+    if (length < needed - 0.5 * profile.profile.spacing) {
+        refuse_file(request.file, "--profile_setting", fmt::format("a profile of {:.4g} mm", length),
+                    fmt::format("{:g} mm, the evaluation length of {}", needed, profile.setting_class->name),
+                    "Choose a longer profile, a finer class, or leave it out for a fifth of the profile.");
+    }
+    if (request.setting.kind == surface::ProfileSetting::Kind::by_ra && std::isnan(profile.parameters.ra)) {
+        refuse_file(request.file, "--profile_setting", "no class",
+                    fmt::format("a profile with Ra up to {:g} um", profile.setting_class->greatest_ra * um_per_mm),
+                    "Choose another profile, or name the nesting index by --profile_filter_um.");
+    }
+}
+
 } // namespace
 
 SurfaceFigures measure_surface(const SurfaceRequest& request) {
@@ -90,7 +110,9 @@ SurfaceFigures measure_surface(const SurfaceRequest& request) {
                                           report::treatment_text(request.band));
         write_file(*request.out, surface::surface_bytes(*request.out, map, provenance));
     }
-    return surface_figures(map, line, request.band);
+    auto figures = surface_figures(map, line, request.setting, request.band);
+    check_class(request, figures.profile);
+    return figures;
 }
 
 } // namespace vkfv::measurement

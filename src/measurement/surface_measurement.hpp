@@ -14,6 +14,7 @@ struct SurfaceRequest {
     surface::ImageScale scale;                // of an image that states none itself
     surface::Band band;                       // what is done to the surface
     std::optional<surface::ProfileLine> line; // none: the middle row
+    surface::ProfileSetting setting;          // the profile's own filters
     std::optional<std::filesystem::path> out; // where the treated surface is written; its name tells the format
 };
 

@@ -15,8 +15,7 @@ bool any_height(const surface::HeightMap& map) {
 }
 
 SurfaceFigures surface_figures(const surface::HeightMap& map, const surface::ProfileLine& line,
-                               const surface::Band& band) {
-    const auto profile = surface::roughness_profile(map, line);
+                               const surface::ProfileSetting& setting, const surface::Band& band) {
     return {.columns = map.columns(),
             .rows = map.rows(),
             .x0 = map.x0,
@@ -27,8 +26,36 @@ SurfaceFigures surface_figures(const surface::HeightMap& map, const surface::Pro
             .not_measured = std::ranges::count_if(map.height.values, [](double z) { return !std::isfinite(z); }),
             .parameters = report::parameter_rows(surface::areal_parameters(map)),
             .line = line,
-            .section_length = profile.section_length,
-            .profile = report::parameter_rows(profile.parameters)};
+            .profile = surface::roughness_profile(map, line, setting)};
+}
+
+std::string profile_filter_text(const surface::RoughnessProfile& profile) {
+    const auto um = [](double length) { return fmt::format("{:.4g} um", length * um_per_mm); };
+    std::string text = "section length " + um(profile.section_length);
+    if (profile.s_filter > 0) {
+        text += ", S-filter " + um(profile.s_filter);
+    }
+    if (profile.l_filter <= 0) {
+        return text + ", no L-filter of its own";
+    }
+    text += ", L-filter " + um(profile.l_filter) + " (Gaussian";
+    if (profile.setting_class != nullptr) {
+        text += fmt::format(", {} of ISO 21920-3", profile.setting_class->name);
+    } else if (profile.l_filter == profile.section_length) {
+        text += ", a fifth of the profile";
+    }
+    return text + ")";
+}
+
+nlohmann::ordered_json profile_filter_json(const surface::RoughnessProfile& profile) {
+    nlohmann::ordered_json json = {{"section_length_um", profile.section_length * um_per_mm},
+                                   {"s_filter_um", profile.s_filter * um_per_mm},
+                                   {"l_filter_um", profile.l_filter * um_per_mm},
+                                   {"setting_class", nullptr}};
+    if (profile.setting_class != nullptr) {
+        json["setting_class"] = std::string(profile.setting_class->name);
+    }
+    return json;
 }
 
 nlohmann::ordered_json surface_json(const SurfaceFigures& figures, const std::filesystem::path& file) {
@@ -43,9 +70,9 @@ nlohmann::ordered_json surface_json(const SurfaceFigures& figures, const std::fi
     report["parameters"] = report::json_of(figures.parameters);
     const auto& line = figures.line;
     report["profile"] = {{"start_um", {line.x_start * um_per_mm, line.y_start * um_per_mm}},
-                         {"end_um", {line.x_end * um_per_mm, line.y_end * um_per_mm}},
-                         {"section_length_um", figures.section_length * um_per_mm}};
-    report["profile"].update(report::json_of(figures.profile));
+                         {"end_um", {line.x_end * um_per_mm, line.y_end * um_per_mm}}};
+    report["profile"].update(profile_filter_json(figures.profile));
+    report["profile"].update(report::json_of(report::parameter_rows(figures.profile.parameters)));
     report["evaluated_by"] = fmt::format("vkfv {}", VKFV_VERSION);
     return report;
 }
@@ -69,11 +96,10 @@ std::string surface_text(const SurfaceFigures& figures) {
     text += "\nISO 25178-2\n";
     table(figures.parameters);
     const auto& line = figures.line;
-    text += fmt::format(
-        "\nISO 21920-2, profile from ({:.6g}, {:.6g}) um to ({:.6g}, {:.6g}) um, section length {:.4g} um\n",
-        line.x_start * um_per_mm, line.y_start * um_per_mm, line.x_end * um_per_mm, line.y_end * um_per_mm,
-        figures.section_length * um_per_mm);
-    table(figures.profile);
+    text += fmt::format("\nISO 21920-2, profile from ({:.6g}, {:.6g}) um to ({:.6g}, {:.6g}) um, {}\n",
+                        line.x_start * um_per_mm, line.y_start * um_per_mm, line.x_end * um_per_mm,
+                        line.y_end * um_per_mm, profile_filter_text(figures.profile));
+    table(report::parameter_rows(figures.profile.parameters));
     return text;
 }
 

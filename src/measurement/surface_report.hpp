@@ -26,13 +26,17 @@ struct SurfaceFigures {
     std::ptrdiff_t not_measured = 0;              // points; beyond a sphere too
     std::vector<report::ParameterRow> parameters; // ISO 25178-2
     surface::ProfileLine line;
-    double section_length = 0;                 // mm
-    std::vector<report::ParameterRow> profile; // ISO 21920-2
+    surface::RoughnessProfile profile;
 };
 
 // Of a surface that was treated by `band`, and of the profile along the line.
 SurfaceFigures surface_figures(const surface::HeightMap& map, const surface::ProfileLine& line,
-                               const surface::Band& band);
+                               const surface::ProfileSetting& setting, const surface::Band& band);
+
+// "section length 20 um, L-filter 20 um (Gaussian, a fifth of the profile)"
+std::string profile_filter_text(const surface::RoughnessProfile& profile);
+// The same as members: section_length_um, s_filter_um, l_filter_um and setting_class, null without one.
+nlohmann::ordered_json profile_filter_json(const surface::RoughnessProfile& profile);
 
 // file: where the surface was read. NaN (undefined) becomes null.
 nlohmann::ordered_json surface_json(const SurfaceFigures& figures, const std::filesystem::path& file);

@@ -52,12 +52,12 @@ nlohmann::ordered_json treatment_json(const surface::Band& band) {
     return {{"form", surface::form_name(band.form)},
             {"s_filter_um", band.s_filter * um_per_mm},
             {"l_filter_um", band.l_filter * um_per_mm},
-            {"filter", band.spline ? "spline" : "gaussian"}};
+            {"filter", surface::filter_name(band)}};
 }
 
 std::string treatment_text(const surface::Band& band) {
     std::string text = "form " + surface::form_name(band.form);
-    const char* filter = band.spline ? "spline" : "Gaussian";
+    const char* filter = band.spline ? surface::filter_name(band) : "Gaussian";
     if (band.s_filter > 0) {
         text += fmt::format(", S-filter {:g} um ({})", band.s_filter * um_per_mm, filter);
     }

@@ -1,9 +1,11 @@
 #include "surface/filter.hpp"
 
+#include "core/fourier.hpp"
 #include "core/units.hpp"
 
 #include <algorithm>
 #include <cmath>
+#include <complex>
 #include <limits>
 #include <numbers>
 #include <stdexcept>
@@ -48,6 +50,39 @@ Grid<double> convolve_rows(const Grid<double>& grid, const std::vector<double>& 
                 sum += weights[static_cast<std::size_t>(source - column + radius)] * grid(source, row);
             result(column, row) = sum;
         }
+    return result;
+}
+
+// Of both axes; more take longer than transforms do.
+constexpr std::size_t most_direct_weights = 120;
+
+// Heights and measured points are the real and the imaginary part of one convolution. A measured point's own weight is
+// one: the quotient does not magnify rounding.
+HeightMap low_pass_by_transforms(const HeightMap& map, const std::vector<double>& along_x,
+                                 const std::vector<double>& along_y) {
+    // In units of their greatest distance from one of them, heights round as their weights do, and a constant stays.
+    double level = undefined, greatest = 0;
+    for (const double z : map.height.values)
+        if (std::isfinite(z)) {
+            if (std::isnan(level))
+                level = z;
+            greatest = std::max(greatest, std::abs(z - level));
+        }
+    const double unit = greatest > 0 ? greatest : 1;
+    Grid<std::complex<double>> grid(map.columns(), map.rows());
+    for (std::size_t k = 0; k < grid.values.size(); ++k)
+        if (const double z = map.height.values[k]; std::isfinite(z))
+            grid.values[k] = {(z - level) / unit, 1};
+    const auto outwards = [](const std::vector<double>& weights) {
+        return std::vector<double>(weights.begin() + static_cast<std::ptrdiff_t>(weights.size() / 2), weights.end());
+    };
+    convolve(grid, outwards(along_x), outwards(along_y));
+    HeightMap result = map;
+    for (std::size_t k = 0; k < grid.values.size(); ++k)
+        if (double& z = result.height.values[k]; std::isfinite(z))
+            z = level + unit * grid.values[k].real() / grid.values[k].imag();
+        else
+            z = undefined;
     return result;
 }
 
@@ -115,9 +150,15 @@ HeightMap remove_plane(HeightMap map, const Plane& plane) {
     return map;
 }
 
-HeightMap gaussian_low_pass(const HeightMap& map, double nesting_index) {
+HeightMap gaussian_low_pass(const HeightMap& map, double nesting_index, Convolution how) {
     if (!(nesting_index > 0))
         throw std::invalid_argument("gaussian_low_pass: the nesting index must be positive");
+    const auto along_x = gaussian_weights(nesting_index, map.pitch_x, map.columns());
+    const auto along_y = gaussian_weights(nesting_index, map.pitch_y, map.rows());
+    if (how == Convolution::by_cost)
+        how = along_x.size() + along_y.size() > most_direct_weights ? Convolution::by_transforms : Convolution::direct;
+    if (how == Convolution::by_transforms)
+        return low_pass_by_transforms(map, along_x, along_y);
     Grid<double> values(map.columns(), map.rows());
     Grid<double> present(map.columns(), map.rows());
     for (std::size_t k = 0; k < values.values.size(); ++k)
@@ -125,17 +166,14 @@ HeightMap gaussian_low_pass(const HeightMap& map, double nesting_index) {
             values.values[k] = z;
             present.values[k] = 1;
         }
-    const auto along_x = gaussian_weights(nesting_index, map.pitch_x, map.columns());
-    const auto along_y = gaussian_weights(nesting_index, map.pitch_y, map.rows());
-    const auto convolve = [&](const Grid<double>& grid) {
+    const auto convolve_directly = [&](const Grid<double>& grid) {
         return convolve_columns(convolve_rows(grid, along_x), along_y);
     };
-    const Grid<double> sum = convolve(values);
-    const Grid<double> weight = convolve(present);
+    const Grid<double> sum = convolve_directly(values);
+    const Grid<double> weight = convolve_directly(present);
     HeightMap result = map;
     for (std::size_t k = 0; k < result.height.values.size(); ++k)
-        result.height.values[k] = std::isfinite(map.height.values[k]) ? sum.values[k] / weight.values[k]
-                                                                      : std::numeric_limits<double>::quiet_NaN();
+        result.height.values[k] = std::isfinite(map.height.values[k]) ? sum.values[k] / weight.values[k] : undefined;
     return result;
 }
 

@@ -1,15 +1,39 @@
 #include "surface/hybrid_parameters.hpp"
 
 #include <cmath>
-#include <limits>
 
 namespace vkfv::surface {
+namespace {
 
-HybridParameters hybrid_parameters(const HeightMap& map) {
-    double triangles = 0, squares = 0, excess = 0;
+struct MeanSquare {
+    double sum = 0, count = 0;
+
+    void add(double difference) {
+        if (std::isfinite(difference)) {
+            sum += difference * difference;
+            count += 1;
+        }
+    }
+    double value() const { return count > 0 ? sum / count : undefined; }
+};
+
+double gradient(const HeightMap& map) {
+    MeanSquare along_x, along_y;
+    for (int row = 0; row < map.rows(); ++row)
+        for (int column = 0; column < map.columns(); ++column) {
+            const double z = map.height(column, row);
+            if (column + 1 < map.columns())
+                along_x.add((map.height(column + 1, row) - z) / map.pitch_x);
+            if (row + 1 < map.rows())
+                along_y.add((map.height(column, row + 1) - z) / map.pitch_y);
+        }
+    return std::sqrt(along_x.value() + along_y.value());
+}
+
+double area_ratio(const HeightMap& map) {
+    double triangles = 0, excess = 0;
     const auto add_triangle = [&](double along_x, double along_y) {
         const double square = along_x * along_x + along_y * along_y;
-        squares += square;
         excess += square / (1 + std::sqrt(1 + square)); // sqrt(1 + square) - 1 without cancellation
         triangles += 1;
     };
@@ -21,14 +45,18 @@ HybridParameters hybrid_parameters(const HeightMap& map) {
                 continue;
             const double below = (b - a) / map.pitch_x, above = (d - c) / map.pitch_x;
             const double left = (c - a) / map.pitch_y, right = (d - b) / map.pitch_y;
-            add_triangle(below, (left + right) / 2);
-            add_triangle(above, (left + right) / 2);
-            add_triangle((below + above) / 2, left);
-            add_triangle((below + above) / 2, right);
+            add_triangle(below, left);
+            add_triangle(above, right);
+            add_triangle(below, right);
+            add_triangle(above, left);
         }
-    if (triangles == 0)
-        return {.sdq = std::numeric_limits<double>::quiet_NaN(), .sdr = std::numeric_limits<double>::quiet_NaN()};
-    return {.sdq = std::sqrt(squares / triangles), .sdr = excess / triangles};
+    return triangles > 0 ? excess / triangles : undefined;
+}
+
+} // namespace
+
+HybridParameters hybrid_parameters(const HeightMap& map) {
+    return {.sdq = gradient(map), .sdr = area_ratio(map)};
 }
 
 } // namespace vkfv::surface

@@ -5,11 +5,19 @@
 
 namespace vkfv::surface {
 
-// The standard leaves open what lies between the points. Here every cell of four neighbouring points is four
-// triangles that meet above its middle at the mean of the four heights: both parameters are integrals over
-// these triangles, so that sdr is sdq^2 / 2 for small slopes. A cell with a not-measured corner is left out, of
-// the area referred to as well. NaN without a whole cell. A sinusoid of n points a period keeps the share
-// sin(pi / n) / (pi / n) of its slope.
+// The standard leaves open what lies between the points. A sinusoid of n points a period keeps the share
+// sin(pi / n) / (pi / n) of its slope. NaN where sdq lacks a pair along an axis, sdr a whole cell.
+//
+// sdq: the mean square of the differences of all neighbouring pairs of measured points along x over the pitch, plus
+// that along y, as Gwyddion, surfalize and SurfaceTopography have it but for how
+// they weight borders. An egg box of 10 points a period loses 1.6 %;
+// central differences lose 6.4 %, the mean gradient of each cell's four triangles 4.0 %. The seven-point formula of
+// ISO 4287 loses 0.2 % there, but of slopes whose spectrum is white up to the Nyquist frequency 20 %, these 14 %; it
+// needs three measured points on either side, and those programs do not take it.
+//
+// sdr: a cell of four measured points is split into two triangles by either diagonal, and counts by the mean of
+// both, so that sdr is sdq^2 / 2 for small slopes: of that egg box 3.2 % less. Gwyddion's four triangles that meet at
+// the cell's mean height lose 7.8 %.
 struct HybridParameters {
     double sdq = 0; // root mean square gradient
     double sdr = 0; // developed interfacial area ratio: area of the surface over that of its projection, less one

@@ -3,6 +3,9 @@
 
 #include "surface/profile.hpp"
 
+#include <array>
+#include <string_view>
+
 namespace vkfv::surface {
 
 // In mm of the map's frame.
@@ -15,14 +18,44 @@ struct ProfileLine {
 
 ProfileLine middle_row(const HeightMap& map);
 
-struct RoughnessProfile {
-    Profile profile;              // before the filter
-    double section_length = 0;    // mm
-    ProfileParameters parameters; // NaN for a profile of six points or fewer
+// A setting class of ISO 21920-3:2021, table 1, by Ra; mm. The evaluation length is five nesting indices of the
+// L-filter.
+struct SettingClass {
+    std::string_view name;
+    double greatest_ra;
+    double s_filter, l_filter; // nesting indices
 };
 
-// Points one pitch apart, the shorter pitch unless the line lies along an axis; roughness after the Gaussian filter
-// whose nesting index is the section length, a fifth of the profile (ISO 21920-2).
-RoughnessProfile roughness_profile(const HeightMap& map, const ProfileLine& line);
+inline constexpr std::array<SettingClass, 5> setting_classes{{{"Sc1", 0.02e-3, 0.0025, 0.08},
+                                                              {"Sc2", 0.1e-3, 0.0025, 0.25},
+                                                              {"Sc3", 2e-3, 0.0025, 0.8},
+                                                              {"Sc4", 10e-3, 0.008, 2.5},
+                                                              {"Sc5", 80e-3, 0.025, 8}}};
+
+// How a profile is filtered after what was done to its surface.
+struct ProfileSetting {
+    enum class Kind {
+        fifth,         // L-filter of a fifth of the profile, for a profile that is too short for the standard's
+        nesting_index, // L-filter of this one
+        by_class,
+        by_ra // the first class whose Ra is the profile's
+    };
+    Kind kind = Kind::fifth;
+    double nesting_index = 0;      // mm; 0: no filter
+    std::size_t setting_class = 0; // of setting_classes
+};
+
+struct RoughnessProfile {
+    Profile profile;                             // before the filter
+    double s_filter = 0, l_filter = 0;           // nesting indices, mm; 0: none
+    const SettingClass* setting_class = nullptr; // whose they are
+    double section_length = 0;                   // mm
+    ProfileParameters parameters; // NaN for a profile of six points or fewer, or too short for the class or for all
+};
+
+// Points one pitch apart, the shorter pitch unless the line lies along an axis; roughness after the Gaussian filters of
+// ISO 16610-21, over five sections (ISO 21920-2): of the whole profile, or of a class's evaluation length in its
+// middle.
+RoughnessProfile roughness_profile(const HeightMap& map, const ProfileLine& line, const ProfileSetting& setting = {});
 
 } // namespace vkfv::surface

@@ -28,15 +28,16 @@ double bilinear(const Grid<Complex>& grid, double x, double y, const Function& v
 }
 
 // By the theorem of Wiener and Khinchin, for heights and measured points at once: the real part is the sum of the
-// products at a lag, the imaginary part the number of pairs.
-Grid<Complex> sums_and_pairs(const HeightMap& map, double mean) {
+// products at a lag, the imaginary part the number of pairs. Heights are in units of Sq: the rounding of the one part
+// is a share of the greater of both, and squares of nanometres in mm drown in pairs.
+Grid<Complex> sums_and_pairs(const HeightMap& map, const HeightParameters& parameters) {
     // Zeros as wide as the greatest lag keep the ends apart.
     Grid<Complex> grid(convenient_length(map.columns() + map.columns() / 2 + 1),
                        convenient_length(map.rows() + map.rows() / 2 + 1));
     for (int row = 0; row < map.rows(); ++row)
         for (int column = 0; column < map.columns(); ++column)
             if (const double z = map.height(column, row); std::isfinite(z))
-                grid(column, row) = {z - mean, 1};
+                grid(column, row) = {(z - parameters.mean) / parameters.sq, 1};
     fourier_transform(grid);
     // The transform of a + i b, a and b real, is A + i B; at the opposite frequency conj(A) + i conj(B).
     for (int row = 0; row < grid.rows; ++row)
@@ -60,11 +61,10 @@ struct Falls {
 
 Falls falls_of_autocorrelation(const HeightMap& map, const HeightParameters& parameters) {
     constexpr double s = 0.2;
-    const Grid<Complex> sums = sums_and_pairs(map, parameters.mean);
-    const double mean_square = parameters.sq * parameters.sq;
+    const Grid<Complex> sums = sums_and_pairs(map, parameters);
     const auto normalised = [&](Complex sum_and_pairs) {
         // Pairs are whole numbers, but for the transform's rounding.
-        return sum_and_pairs.imag() > 0.5 ? sum_and_pairs.real() / sum_and_pairs.imag() / mean_square : 1;
+        return sum_and_pairs.imag() > 0.5 ? sum_and_pairs.real() / sum_and_pairs.imag() : 1;
     };
     const int columns = map.columns() / 2, rows = map.rows() / 2;
     constexpr double rounding = 1e-9; // of a lag along an axis, whose other part is hardly ever zero

@@ -1,31 +1,21 @@
 #include "surface/spline_filter.hpp"
 
-#include "core/fourier.hpp"
+#include "surface/filter.hpp"
+#include "surface/whole_spline.hpp"
 
 #include <cmath>
-#include <limits>
 #include <stdexcept>
-#include <utility>
 #include <vector>
 
 namespace vkfv::surface {
 namespace {
 
-// The filter of a whole map: the inverse of 1 + mu Laplacian^2 under mirrored borders.
-std::vector<double> whole_low_pass(std::vector<double> heights, const HeightMap& map, double nesting_index) {
-    Grid<double> grid;
-    grid.columns = map.columns();
-    grid.rows = map.rows();
-    grid.values = std::move(heights);
-    cosine_transform(grid);
-    for (int row = 0; row < grid.rows; ++row)
-        for (int column = 0; column < grid.columns; ++column) {
-            const double frequency =
-                std::hypot(column / (2 * grid.columns * map.pitch_x), row / (2 * grid.rows * map.pitch_y));
-            grid(column, row) /= 1 + std::pow(nesting_index * frequency, 4);
-        }
-    inverse_cosine_transform(grid);
-    return std::move(grid.values);
+// What passes either filter as it is: the mean, or with natural ends the plane. The goal is one of the rest.
+Plane passing(const HeightMap& map, SplineEnds ends) {
+    Plane plane = least_squares_plane(map);
+    if (ends == SplineEnds::mirrored)
+        plane.slope_x = plane.slope_y = 0;
+    return plane;
 }
 
 double dot(const std::vector<double>& a, const std::vector<double>& b) {
@@ -37,36 +27,31 @@ double dot(const std::vector<double>& a, const std::vector<double>& b) {
 
 } // namespace
 
-HeightMap spline_low_pass(const HeightMap& map, double nesting_index) {
+HeightMap spline_low_pass(const HeightMap& map, double nesting_index, SplineEnds ends) {
     if (!(nesting_index > 0))
         throw std::invalid_argument("spline_low_pass: the nesting index must be positive");
-    // (W + mu B) s = W z, W 1 at measured points and 0 elsewhere, B the squared Laplacian: conjugate gradients with the
-    // filter of a whole map, (1 + mu B)^-1, as preconditioner. Without gaps its first step is the solution.
+    // (W + B) s = W z, W 1 at measured points and 0 elsewhere, B the bending: conjugate gradients with the filter of a
+    // whole map, (1 + B)^-1, as preconditioner. Without gaps its first step is the solution.
+    const WholeSpline whole(map, nesting_index, ends);
     const std::size_t points = map.height.values.size();
     std::vector<double> weight(points), residual(points), spline(points);
-    // The filter passes the mean as it is; the goal is one of the heights about it.
-    double sum = 0, count = 0;
-    for (const double z : map.height.values)
-        if (std::isfinite(z)) {
-            sum += z;
-            count += 1;
-        }
-    const double mean = sum / count;
+    const Plane plane = passing(map, ends);
+    const HeightMap level = remove_plane(map, plane);
     for (std::size_t k = 0; k < points; ++k)
-        if (const double z = map.height.values[k]; std::isfinite(z)) {
+        if (const double z = level.height.values[k]; std::isfinite(z)) {
             weight[k] = 1;
-            residual[k] = z - mean;
+            residual[k] = z;
         }
     const double goal = 1e-10 * dot(residual, residual);      // squared: a relative 1e-5
-    std::vector<double> direction(points), stretched(points); // stretched = (1 + mu B) direction
+    std::vector<double> direction(points), stretched(points); // stretched = (1 + B) direction
     double before = 0;
     // As many steps as points would end it but for rounding, which must not keep it going.
     for (std::size_t step = 0; step < points && dot(residual, residual) > goal; ++step) {
-        const std::vector<double> smooth = whole_low_pass(residual, map, nesting_index);
+        const std::vector<double> smooth = whole.low_pass(residual);
         const double now = dot(residual, smooth);
         const double share = step == 0 ? 0 : now / before;
         before = now;
-        std::vector<double> image(points); // (W + mu B) direction
+        std::vector<double> image(points); // (W + B) direction
         for (std::size_t k = 0; k < points; ++k) {
             direction[k] = smooth[k] + share * direction[k];
             stretched[k] = residual[k] + share * stretched[k];
@@ -79,8 +64,11 @@ HeightMap spline_low_pass(const HeightMap& map, double nesting_index) {
         }
     }
     HeightMap result = map;
-    for (std::size_t k = 0; k < points; ++k)
-        result.height.values[k] = weight[k] > 0 ? mean + spline[k] : std::numeric_limits<double>::quiet_NaN();
+    for (int row = 0; row < map.rows(); ++row)
+        for (int column = 0; column < map.columns(); ++column) {
+            const std::size_t k = map.height.index(column, row);
+            result.height.values[k] = weight[k] > 0 ? plane.height(map.x(column), map.y(row)) + spline[k] : undefined;
+        }
     return result;
 }
 

@@ -3,6 +3,8 @@
 #include "core/byte_reader.hpp"
 #include "surface/metres.hpp"
 
+#include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 #include <map>
@@ -10,17 +12,18 @@
 namespace vkfv::surface {
 namespace {
 
-constexpr std::string_view magic("AliconaImaging\0\r\n", 17);
+constexpr std::string_view al3d_magic("AliconaImaging\0\r\n", 17);
 constexpr std::size_t key_length = 20, value_length = 30, tag_length = 52;
 constexpr std::uint64_t row_alignment = 8;
-constexpr std::size_t least_tags = 2; // Version and TagCount
+constexpr std::array images_behind = {"TextureImageOffset", "IconOffset"}; // whose bytes no longer are depths
+constexpr std::size_t least_tags = 2;                                      // Version and TagCount
 
 class Tags {
   public:
     explicit Tags(const ByteReader& file) : file_(file) {
         std::uint64_t count = least_tags;
         for (std::uint64_t k = 0; k < count; ++k) {
-            const auto line = file.bytes(magic.size() + tag_length * k, tag_length, "tag");
+            const auto line = file.bytes(al3d_magic.size() + tag_length * k, tag_length, "tag");
             const std::string key = text_in(line.substr(0, key_length));
             values_[key] = text_in(line.substr(key_length, value_length));
             if (key == "TagCount")
@@ -47,10 +50,21 @@ class Tags {
     std::map<std::string, std::string> values_;
 };
 
+// Bytes from row to row: rows are padded, but for those of some writers, which show in too little room for it.
+std::uint64_t stride_of(const Tags& tags, std::uint64_t offset, std::uint64_t columns, std::uint64_t rows,
+                        std::uint64_t end) {
+    for (const char* image : images_behind)
+        if (const auto begin = number_in<std::uint64_t>(tags.text(image)); begin && *begin > offset)
+            end = std::min(end, *begin);
+    const std::uint64_t row = columns * sizeof(float);
+    const std::uint64_t padded = (row + row_alignment - 1) / row_alignment * row_alignment;
+    return offset <= end && padded * (rows - 1) + row > end - offset ? row : padded;
+}
+
 } // namespace
 
 bool looks_like_al3d(std::string_view bytes) {
-    return bytes.starts_with(magic);
+    return bytes.starts_with(al3d_magic);
 }
 
 SurfaceFile parse_al3d(std::string_view bytes, const std::filesystem::path& path) {
@@ -62,8 +76,8 @@ SurfaceFile parse_al3d(std::string_view bytes, const std::filesystem::path& path
     const double pitch_y = mm_from_metres(tags.number<double>("PixelSizeYMeter"));
     file.check_spacing(pitch_x, "PixelSizeXMeter");
     file.check_spacing(pitch_y, "PixelSizeYMeter");
-    const std::uint64_t stride = (columns * sizeof(float) + row_alignment - 1) / row_alignment * row_alignment;
     const auto offset = tags.number<std::uint64_t>("DepthImageOffset");
+    const std::uint64_t stride = stride_of(tags, offset, columns, rows, bytes.size());
     // The last row may lack its padding.
     const auto depth = file.bytes(offset, stride * (rows - 1) + columns * sizeof(float), "DepthImageOffset");
     const auto gap = number_in<float>(tags.text("InvalidPixelValue"));

@@ -4,6 +4,7 @@
 #include "core/units.hpp"
 #include "images/exr_header.hpp"
 #include "images/image_file.hpp"
+#include "surface_files/image_scale.hpp"
 
 #include <fmt/format.h>
 
@@ -17,7 +18,7 @@ namespace vkfv::surface {
 namespace {
 
 // Of the text that height_map_bytes() begins an image's description with.
-constexpr std::string_view own_title = "vkfv height map", last_grid_key = "pitch_y_mm=";
+constexpr std::string_view height_image_title = "vkfv height map", last_grid_key = "pitch_y_mm=";
 
 std::optional<images::ImageFormat> format_of(std::string_view bytes) {
     using namespace std::string_view_literals;
@@ -91,28 +92,15 @@ SurfaceFile parse_height_image(std::string_view bytes, const std::filesystem::pa
                     "Export the surface in one of these formats.");
     const images::DescribedImage image = images::parse_image(bytes, *format, path);
     const std::string& description = image.description;
-    if (description.starts_with(own_title)) {
-        if (scale.pitch || scale.unit)
-            refuse_file(path, scale.pitch ? "pitch" : "unit", "given", "no second scale: the file states its own",
-                        "Leave it out.");
+    if (description.starts_with(height_image_title)) {
+        refuse_second_scale(path, scale);
         SurfaceFile result{.map = height_map_of(image, path), .provenance = {}};
         const auto grid = description.find(last_grid_key);
         const auto rest = std::min(description.find('\n', grid), description.size());
         result.provenance = parse_provenance(std::string_view(description).substr(rest));
         return result;
     }
-    const auto check = [&](const char* key, const std::optional<double>& value) {
-        if (!value || !(std::isfinite(*value) && *value > 0))
-            refuse_file(
-                path, key, value ? fmt::format("{}", *value) : "not given",
-                "a positive length, which an image does not state",
-                fmt::format(
-                    "Give the {} that belongs to this image; vkfv --surface IMAGE --pitch_um P --unit_um U --out "
-                    "NAME.x3p writes a file that states its own.",
-                    key));
-    };
-    check("pitch", scale.pitch);
-    check("unit", scale.unit);
+    check_scale(path, scale);
     SurfaceFile result;
     result.map.pitch_x = result.map.pitch_y = *scale.pitch;
     result.map.height = Grid<double>(image.values.columns, image.values.rows);

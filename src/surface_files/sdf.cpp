@@ -12,6 +12,10 @@ namespace vkfv::surface {
 namespace {
 
 constexpr std::string_view binary_magic = "bISO-1.0", text_magic = "aISO-1.0";
+// Before ISO 25178-71 the same header had the names of the BCR's report EUR 15178 and of the NPL's softgauges.
+constexpr std::array binary_magics = {binary_magic, std::string_view("bBCR-1.0")};
+constexpr std::array text_magics = {text_magic, std::string_view("aBCR-1.0"), std::string_view("aBCR-0.0"),
+                                    std::string_view("aNPL-1.0")};
 constexpr std::size_t manufacturer_at = 8, manufacturer_length = 10, creation_at = 18, date_length = 12,
                       columns_at = 42, rows_at = 44, x_scale_at = 46, y_scale_at = 54, z_scale_at = 62,
                       compression_at = 78, type_at = 79, check_at = 80, header_size = 81;
@@ -48,7 +52,7 @@ void check_scale(const ByteReader& file, double scale, std::optional<std::uint64
 }
 
 template <class Stored>
-void read_heights(std::string_view points, double scale, Grid<double>& heights) {
+void read_sdf_heights(std::string_view points, double scale, Grid<double>& heights) {
     std::size_t index = 0;
     for (int row = heights.rows - 1; row >= 0; --row)
         for (int column = 0; column < heights.columns; ++column, ++index) {
@@ -80,10 +84,10 @@ SurfaceFile parse_binary(const ByteReader& file) {
     result.map.pitch_x = x_scale;
     result.map.pitch_y = y_scale;
     result.map.height = Grid<double>(columns, rows);
-    (type == float_type   ? read_heights<float>
-     : type == short_type ? read_heights<std::int16_t>
-     : type == int_type   ? read_heights<std::int32_t>
-                          : read_heights<double>)(points, z_scale, result.map.height);
+    (type == float_type   ? read_sdf_heights<float>
+     : type == short_type ? read_sdf_heights<std::int16_t>
+     : type == int_type   ? read_sdf_heights<std::int32_t>
+                          : read_sdf_heights<double>)(points, z_scale, result.map.height);
     result.provenance.manufacturer = plain_line(file.bytes(manufacturer_at, manufacturer_length, "manufacturer"));
     result.provenance.date = date_from(file.bytes(creation_at, date_length, "date"));
     return result;
@@ -163,6 +167,10 @@ SurfaceFile parse_text(const ByteReader& file, std::string_view text) {
     return result;
 }
 
+bool is_binary(std::string_view bytes) {
+    return std::ranges::any_of(binary_magics, [&](std::string_view magic) { return bytes.starts_with(magic); });
+}
+
 void check_fits(const HeightMap& map) {
     if (map.columns() > std::numeric_limits<std::uint16_t>::max() ||
         map.rows() > std::numeric_limits<std::uint16_t>::max())
@@ -174,12 +182,13 @@ void check_fits(const HeightMap& map) {
 } // namespace
 
 bool looks_like_sdf(std::string_view bytes) {
-    return bytes.starts_with(binary_magic) || bytes.starts_with(text_magic);
+    return is_binary(bytes) ||
+           std::ranges::any_of(text_magics, [&](std::string_view magic) { return bytes.starts_with(magic); });
 }
 
 SurfaceFile parse_sdf(std::string_view bytes, const std::filesystem::path& path) {
     const ByteReader file(bytes, path);
-    return bytes.starts_with(binary_magic) ? parse_binary(file) : parse_text(file, bytes);
+    return is_binary(bytes) ? parse_binary(file) : parse_text(file, bytes);
 }
 
 std::string sdf_bytes(const HeightMap& map, const Provenance& provenance) {

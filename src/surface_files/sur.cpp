@@ -1,6 +1,7 @@
 #include "surface_files/sur.hpp"
 
 #include "core/byte_reader.hpp"
+#include "surface_files/lengths.hpp"
 
 #include <zlib.h>
 
@@ -12,7 +13,7 @@
 namespace vkfv::surface {
 namespace {
 
-constexpr std::string_view magic = "DIGITAL SURF", packed_magic = "DSCOMPRESSED";
+constexpr std::string_view sur_magic = "DIGITAL SURF", packed_magic = "DSCOMPRESSED";
 
 // Offsets of the header's fields, in bytes.
 constexpr std::size_t object_count_at = 14, version_at = 16, type_at = 18, object_name_at = 20, operator_name_at = 50,
@@ -24,24 +25,17 @@ constexpr std::size_t object_count_at = 14, version_at = 16, type_at = 18, objec
                       private_length_at = 336, x0_at = 466, y0_at = 470, z0_at = 474, header_size = 512;
 constexpr std::size_t name_length = 30, axis_length = 16;
 constexpr std::int16_t surface_type = 2;
-constexpr double deflate_ratio = 1032; // zlib's largest: 258 bytes by two bits
-
-// mm per unit; the sign for micro as UTF-8, in both of Unicode's forms, and as Latin-1.
-constexpr std::array length_units = {
-    std::pair{std::string_view("m"), 1e3},          std::pair{std::string_view("cm"), 1e1},
-    std::pair{std::string_view("mm"), 1.0},         std::pair{std::string_view("um"), 1e-3},
-    std::pair{std::string_view("\xC2\xB5m"), 1e-3}, std::pair{std::string_view("\xCE\xBCm"), 1e-3},
-    std::pair{std::string_view("\xB5m"), 1e-3},     std::pair{std::string_view("nm"), 1e-6},
-    std::pair{std::string_view("pm"), 1e-9},        std::pair{std::string_view("inch"), 25.4}};
+constexpr std::int16_t profile_type = 1; // of surfaces too as Gwyddion 2.62 exports them
+constexpr double deflate_ratio = 1032;   // zlib's largest: 258 bytes by two bits
 
 double unit_at(const ByteReader& file, std::size_t offset) {
     std::string_view text = file.bytes(offset, axis_length, "unit");
     text = text.substr(0, text.find_first_of(std::string_view(" \0", 2)));
-    const auto unit = std::ranges::find(length_units, text, &std::pair<std::string_view, double>::first);
-    if (unit == length_units.end())
-        file.fail(offset, "unit", plain_line(text), "a unit of length: m, cm, mm, um, nm, pm or inch",
+    const auto unit = mm_per_unit(text);
+    if (!unit)
+        file.fail(offset, "unit of length", text.empty() ? "nothing" : plain_line(text), length_unit_names,
                   "Export the surface with lengths on all three axes.");
-    return unit->second;
+    return *unit;
 }
 
 std::string unpacked(const ByteReader& file, std::size_t directory, std::uint64_t size) {
@@ -75,7 +69,8 @@ std::string unpacked(const ByteReader& file, std::size_t directory, std::uint64_
 }
 
 template <class Stored>
-void read_heights(std::string_view points, std::int64_t not_measured, double step, double z0, Grid<double>& heights) {
+void read_sur_heights(std::string_view points, std::int64_t not_measured, double step, double z0,
+                      Grid<double>& heights) {
     std::size_t index = 0;
     for (int row = heights.rows - 1; row >= 0; --row)
         for (int column = 0; column < heights.columns; ++column, ++index) {
@@ -111,18 +106,19 @@ int exponent_of_steps(const HeightMap& map) {
 } // namespace
 
 bool looks_like_sur(std::string_view bytes) {
-    return bytes.starts_with(magic) || bytes.starts_with(packed_magic);
+    return bytes.starts_with(sur_magic) || bytes.starts_with(packed_magic);
 }
 
 SurfaceFile parse_sur(std::string_view bytes, const std::filesystem::path& path) {
     const ByteReader file(bytes, path);
     (void)file.bytes(0, header_size, "header");
-    if (const auto type = file.at<std::int16_t>(type_at, "type"); type != surface_type)
-        file.fail(type_at, "type", fmt::format("{}", type), "2, a surface", "Export a single surface.");
     const auto columns = file.at<std::int32_t>(columns_at, "points a line");
     const auto rows = file.at<std::int32_t>(rows_at, "lines");
     file.check_size(static_cast<std::uint64_t>(std::max(columns, 0)), static_cast<std::uint64_t>(std::max(rows, 0)),
                     columns_at);
+    const auto type = file.at<std::int16_t>(type_at, "type");
+    if (type != surface_type && !(type == profile_type && rows > 1))
+        file.fail(type_at, "type", fmt::format("{}", type), "2, a surface", "Export a single surface.");
     const auto bits = file.at<std::int16_t>(bits_at, "bits a point");
     if (bits != 16 && bits != 32)
         file.fail(bits_at, "bits a point", fmt::format("{}", bits), "16 or 32");
@@ -164,8 +160,8 @@ SurfaceFile parse_sur(std::string_view bytes, const std::filesystem::path& path)
                                           ? std::int64_t{file.at<std::int32_t>(z_min_at, "lowest point")} - 2
                                           : std::numeric_limits<std::int64_t>::min();
     result.map.height = Grid<double>(columns, rows);
-    (bits == 16 ? read_heights<std::int16_t> : read_heights<std::int32_t>)(points, not_measured, step, z0,
-                                                                           result.map.height);
+    (bits == 16 ? read_sur_heights<std::int16_t> : read_sur_heights<std::int32_t>)(points, not_measured, step, z0,
+                                                                                   result.map.height);
 
     result.provenance = parse_provenance(comment);
     const auto known = [&](std::string& member, std::size_t offset) {
@@ -215,7 +211,7 @@ std::string sur_bytes(const HeightMap& map, const Provenance& provenance) {
                             ' ');
         std::ranges::copy(text, bytes.begin() + static_cast<std::ptrdiff_t>(offset));
     };
-    std::ranges::copy(magic, bytes.begin());
+    std::ranges::copy(sur_magic, bytes.begin());
     put(object_count_at, std::int16_t{1});
     put(version_at, std::int16_t{1});
     put(type_at, surface_type);

@@ -4,7 +4,13 @@
 #include "core/file.hpp"
 #include "images/image_file.hpp"
 #include "surface_files/al3d.hpp"
+#include "surface_files/gsf.hpp"
+#include "surface_files/gwy.hpp"
 #include "surface_files/height_image.hpp"
+#include "surface_files/height_table.hpp"
+#include "surface_files/image_scale.hpp"
+#include "surface_files/instruments.hpp"
+#include "surface_files/npy.hpp"
 #include "surface_files/ply.hpp"
 #include "surface_files/sdf.hpp"
 #include "surface_files/sur.hpp"
@@ -23,24 +29,41 @@ std::string name_of(const std::filesystem::path& path) {
     return name;
 }
 
+// Files that state their own scale.
+struct Format {
+    bool (*looks_like)(std::string_view bytes);
+    SurfaceFile (*parse)(std::string_view bytes, const std::filesystem::path& file);
+};
+constexpr Format formats[] = {{looks_like_x3p, parse_x3p}, {looks_like_sur, parse_sur},
+                              {looks_like_sdf, parse_sdf}, {looks_like_al3d, parse_al3d},
+                              {looks_like_gsf, parse_gsf}, {looks_like_gwy, parse_gwy},
+                              {looks_like_opd, parse_opd}, {looks_like_metropro, parse_metropro},
+                              {looks_like_nms, parse_nms}, {looks_like_plu, parse_plu}};
+// Those that need one.
+struct UnscaledFormat {
+    bool (*looks_like)(std::string_view bytes);
+    SurfaceFile (*parse)(std::string_view bytes, const std::filesystem::path& file, const ImageScale& scale);
+};
+constexpr UnscaledFormat unscaled_formats[] = {{looks_like_height_image, parse_height_image},
+                                               {looks_like_npy, parse_npy}};
+
 } // namespace
 
 SurfaceFile read_surface(const std::filesystem::path& path, const ImageScale& scale) {
     const std::string bytes = read_file(path, {.expected = "a surface or image file"});
-    if (looks_like_height_image(bytes))
-        return parse_height_image(bytes, path, scale);
-    if (scale.pitch || scale.unit)
-        refuse_file(path, scale.pitch ? "pitch" : "unit", "given", "no second scale: the file states its own",
-                    "Leave it out.");
-    if (looks_like_x3p(bytes))
-        return parse_x3p(bytes, path);
-    if (looks_like_sur(bytes))
-        return parse_sur(bytes, path);
-    if (looks_like_sdf(bytes))
-        return parse_sdf(bytes, path);
-    if (looks_like_al3d(bytes))
-        return parse_al3d(bytes, path);
-    refuse_file(path, "", "a file of unknown kind", "an X3P, SUR, SDF, AL3D, TIFF or OpenEXR file",
+    for (const auto& [looks_like, parse] : unscaled_formats)
+        if (looks_like(bytes))
+            return parse(bytes, path, scale);
+    for (const auto& [looks_like, parse] : formats)
+        if (looks_like(bytes)) {
+            refuse_second_scale(path, scale);
+            return parse(bytes, path);
+        }
+    if (!bytes.empty() && named_like_height_table(name_of(path)))
+        return parse_height_table(bytes, path, scale);
+    refuse_file(path, "", "a file of unknown kind",
+                "an X3P, SUR, SDF, AL3D, GSF, GWY, OPD, MetroPro, NMS, PLU, TIFF, OpenEXR or NPY file, or a table of "
+                "heights named .csv, .txt, .asc or .xyz",
                 "Export the surface in one of these formats.");
 }
 
@@ -58,7 +81,16 @@ std::string surface_bytes(const std::filesystem::path& path, const HeightMap& ma
         return height_map_bytes(map, provenance);
     if (name.ends_with(".ply"))
         return ply_bytes(map, provenance);
-    refuse_file(path, "", "a name that ends otherwise", "one that ends in .x3p, .sur, .sdf, .tif or .ply",
+    if (name.ends_with(".gsf"))
+        return gsf_bytes(map, provenance);
+    if (name.ends_with(".gwy"))
+        return gwy_bytes(map, provenance);
+    if (name.ends_with(".npy"))
+        return npy_bytes(map);
+    if (name.ends_with(".csv") || name.ends_with(".txt"))
+        return height_table(map, provenance);
+    refuse_file(path, "", "a name that ends otherwise",
+                "one that ends in .x3p, .sur, .sdf, .gwy, .gsf, .npy, .csv, .tif or .ply",
                 "Choose one of these formats by the name's ending.");
 }
 

@@ -23,20 +23,28 @@ struct ImageScale {
     std::optional<double> pitch; // mm between pixels
     std::optional<double> unit;  // mm per unit of a pixel's value
 };
+// The keys of problems with it; no problem of anything else in a file has them.
+inline constexpr const char *scale_pitch_key = "pitch", *scale_unit_key = "unit";
 
-// X3P, SUR, SDF, AL3D, or a TIFF or OpenEXR image of heights, known by its first bytes. `scale` is for images that
-// vkfv did not write, which need both of its parts; where the file has a scale of its own, a second one is an error.
+// X3P, SUR, SDF, AL3D, GSF, GWY, OPD, MetroPro's DAT, NMS, PLU, a TIFF or OpenEXR image or NPY array of heights, known
+// by its first bytes, or else a table of numbers, known by its name's ending. `scale` is for images that vkfv did not
+// write, arrays and tables, which need both of its parts; where the file has a scale of its own, a second one is an
+// error.
 // Throws InputError for anything that is not a whole and sound file; what it costs in memory is bounded by the file's
 // size and, for packed files, by the number of points its header names.
 SurfaceFile read_surface(const std::filesystem::path& path, const ImageScale& scale = {});
 
-// A surface file in memory, for core/file.hpp to write. By the name's ending: .x3p .sur .sdf (.asc.sdf: as text) .tif
-// .tiff .ply; another is an InputError. The same map and provenance give the same bytes, also after they were read
-// back. RunError where the format cannot hold the map.
+// A surface file in memory, for core/file.hpp to write. By the name's ending: .x3p .sur .sdf (.asc.sdf: as text) .gwy
+// .gsf .csv .txt .npy .tif .tiff .ply; another is an InputError. The same map and provenance give the same bytes, also
+// after they were read back. RunError where the format cannot hold the map.
 //   .x3p  float64 metres
 //   .sur  32-bit integers, steps of at most 2^-29 of the largest height; pitches and position as float32
 //   .sdf  float64 metres; without position, and of the provenance only manufacturer and date; .asc.sdf keeps all
 //   .tif  float32 micrometres; pitches and position exact
+//   .gwy  float64 metres, with a mask; for Gwyddion
+//   .gsf  float32 metres
+//   .csv  (.txt) text, um; all exact
+//   .npy  float64 um; without pitch, position and provenance
 //   .ply  float32 mm, two triangles a cell, for viewers of meshes; not read back
 std::string surface_bytes(const std::filesystem::path& path, const HeightMap& map, const Provenance& provenance = {});
 

@@ -54,15 +54,19 @@ class Archive {
         zip_error_fini(&error);
         if (!archive_) {
             zip_source_free(source);
-            file.fail({}, "X3P", reason, "a ZIP archive");
+            file.fail({}, "", reason, "a whole ZIP archive");
         }
+        find_folder();
     }
 
-    // Nothing without such an entry. Memory grows as the data come, up to the limit, which an entry that states to be
-    // longer does not come near.
+    bool has(const char* name) const { return zip_name_locate(archive_.get(), (folder_ + name).c_str(), 0) >= 0; }
+
+    // By its name in the folder of main.xml; nothing without such an entry. Memory grows as the data come, up to the
+    // limit, which an entry that states to be longer does not come near.
     std::optional<std::string> read(std::string name, std::uint64_t largest) const {
         if (name.starts_with("./"))
             name.erase(0, 2);
+        name.insert(0, folder_);
         const zip_int64_t index = zip_name_locate(archive_.get(), name.c_str(), 0);
         if (index < 0)
             return std::nullopt;
@@ -94,8 +98,23 @@ class Archive {
     }
 
   private:
+    // Some writers (x3ptools) pack the folder itself, not what is in it.
+    void find_folder() {
+        if (has(xml_name))
+            return;
+        for (zip_int64_t k = 0, count = zip_get_num_entries(archive_.get(), 0); k < count; ++k) {
+            const char* name = zip_get_name(archive_.get(), static_cast<zip_uint64_t>(k), 0);
+            const std::string_view entry = name ? name : "";
+            if (entry.ends_with(std::string("/") + xml_name)) {
+                folder_ = entry.substr(0, entry.size() - std::string_view(xml_name).size());
+                return;
+            }
+        }
+    }
+
     const ByteReader& file_;
     std::unique_ptr<zip_t, Discard> archive_;
+    std::string folder_{}; // of main.xml, with a slash at its end; empty: the root
 };
 
 // Prefixes of namespaces are the writer's choice.
@@ -162,8 +181,8 @@ void check_md5(const ByteReader& file, const std::string& what, const std::strin
 }
 
 template <class Stored>
-void read_heights(std::string_view points, std::string_view valid, double offset, double increment,
-                  Grid<double>& heights) {
+void read_x3p_heights(std::string_view points, std::string_view valid, double offset, double increment,
+                      Grid<double>& heights) {
     std::size_t index = 0;
     for (int row = heights.rows - 1; row >= 0; --row)
         for (int column = 0; column < heights.columns; ++column, ++index) {
@@ -174,13 +193,21 @@ void read_heights(std::string_view points, std::string_view valid, double offset
         }
 }
 
+// What an element says that the schema asks for and nothing is known of; pyx3p fails at an empty one.
+constexpr const char* unknown = "unknown";
+
+std::string known_text(const pugi::xml_node& parent, const char* name) {
+    const std::string text = text_of(parent, name);
+    return text == unknown ? std::string() : text;
+}
+
 Provenance read_provenance(const pugi::xml_node& record) {
     const auto instrument = child(record, "Instrument");
     return {.creator = text_of(record, "Creator"),
-            .manufacturer = text_of(instrument, "Manufacturer"),
-            .model = text_of(instrument, "Model"),
-            .serial = text_of(instrument, "Serial"),
-            .version = text_of(instrument, "Version"),
+            .manufacturer = known_text(instrument, "Manufacturer"),
+            .model = known_text(instrument, "Model"),
+            .serial = known_text(instrument, "Serial"),
+            .version = known_text(instrument, "Version"),
             .date = known_date(text_of(record, "Date")),
             .comment = plain_lines(child(record, "Comment").text().get())};
 }
@@ -220,14 +247,18 @@ std::string main_xml(const HeightMap& map, const Provenance& provenance, const s
     if (const std::string creator = plain_line(provenance.creator); !creator.empty())
         add(record2, "Creator", creator);
     auto instrument = record2.append_child("Instrument");
-    add(instrument, "Manufacturer", plain_line(provenance.manufacturer));
-    add(instrument, "Model", plain_line(provenance.model));
-    add(instrument, "Serial", plain_line(provenance.serial));
-    add(instrument, "Version", plain_line(provenance.version));
+    const auto add_known = [&](pugi::xml_node parent, const char* name, const std::string& text) {
+        const std::string line = plain_line(text);
+        add(parent, name, line.empty() ? unknown : line);
+    };
+    add_known(instrument, "Manufacturer", provenance.manufacturer);
+    add_known(instrument, "Model", provenance.model);
+    add_known(instrument, "Serial", provenance.serial);
+    add_known(instrument, "Version", provenance.version);
     add(record2, "CalibrationDate", date);
     auto probing = record2.append_child("ProbingSystem");
     add(probing, "Type", "Software");
-    add(probing, "Identification", plain_line(provenance.model));
+    add_known(probing, "Identification", provenance.model);
     if (const std::string comment = plain_lines(provenance.comment); !comment.empty())
         add(record2, "Comment", comment);
 
@@ -298,6 +329,78 @@ std::string valid_points(const ByteReader& file, const Archive& archive, const p
     return *content;
 }
 
+// Rotated points have no heights over a grid; some writers state the identity.
+void check_rotation(const ByteReader& file, const Document& document, const pugi::xml_node& axes) {
+    const auto rotation = child(axes, "Rotation");
+    if (!rotation)
+        return;
+    constexpr double rounding = 1e-9;
+    for (int row = 1; row <= 3; ++row)
+        for (int column = 1; column <= 3; ++column) {
+            const std::string name = fmt::format("r{}{}", row, column);
+            const double expected = row == column ? 1 : 0;
+            if (!(std::abs(document.number<double>(rotation, name.c_str()) - expected) <= rounding))
+                file.fail({}, fmt::format("{}: Rotation", xml_name), "a rotation of the points",
+                          "none, or the identity", "Export the surface in the frame of its grid.");
+        }
+}
+
+struct Scale {
+    std::string type; // of the points: I, L, F or D
+    double offset, increment;
+};
+
+Grid<double> linked_heights(const ByteReader& file, const Archive& archive, const pugi::xml_node& link,
+                            const Scale& scale, std::uint64_t columns, std::uint64_t rows) {
+    const std::string name = text_of(link, "PointDataLink");
+    if (name.empty())
+        file.fail({}, fmt::format("{}: Record3.DataLink", xml_name), "nothing",
+                  "a DataList, or the name of a binary file of points");
+    const std::uint64_t count = columns * rows;
+    const std::uint64_t point_bytes = scale.type == "I" ? 2 : scale.type == "D" ? 8 : 4;
+    file.check_packing(count * sizeof(double), name);
+    const auto points = archive.read(name, count * point_bytes);
+    if (!points || points->size() != count * point_bytes)
+        file.fail(
+            {}, name, points ? fmt::format("{} bytes", points->size()) : "no such entry",
+            fmt::format("{} bytes for {} x {} points of type {}", count * point_bytes, columns, rows, scale.type));
+    check_md5(file, name, *points, text_of(link, "MD5ChecksumPointData"));
+    const std::string valid = valid_points(file, archive, link, count);
+    Grid<double> heights(static_cast<int>(columns), static_cast<int>(rows));
+    (scale.type == "I"   ? read_x3p_heights<std::int16_t>
+     : scale.type == "L" ? read_x3p_heights<std::int32_t>
+     : scale.type == "F" ? read_x3p_heights<float>
+                         : read_x3p_heights<double>)(*points, valid, scale.offset, scale.increment, heights);
+    return heights;
+}
+
+// A Datum a point: its coordinates between semicolons, z the last of them; on a grid x and y may be left out. An empty
+// one is not measured (ISO 5436-2, the schema's notes on DataListType).
+Grid<double> listed_heights(const ByteReader& file, const pugi::xml_node& list, const Scale& scale,
+                            std::uint64_t columns, std::uint64_t rows) {
+    std::uint64_t count = 0;
+    for (auto datum = list.first_child(); datum; datum = datum.next_sibling())
+        count += datum.type() == pugi::node_element ? 1 : 0;
+    if (count != columns * rows)
+        file.fail({}, fmt::format("{}: Record3.DataList", xml_name), fmt::format("{} points", count),
+                  fmt::format("{} x {}", columns, rows));
+    Grid<double> heights(static_cast<int>(columns), static_cast<int>(rows));
+    auto datum = list.first_child();
+    for (int row = heights.rows - 1; row >= 0; --row)
+        for (int column = 0; column < heights.columns; ++column, datum = datum.next_sibling()) {
+            while (datum.type() != pugi::node_element)
+                datum = datum.next_sibling();
+            const std::string text = plain_line(datum.text().get());
+            const std::string z = text.substr(text.rfind(';') + 1);
+            const auto value = number_in<double>(z);
+            if (!value && !z.empty() && z != "NaN")
+                file.fail({}, fmt::format("{}: Record3.DataList", xml_name), text, "coordinates between semicolons");
+            heights(column, row) = value ? height_from_metres(scale.offset + scale.increment * *value)
+                                         : std::numeric_limits<double>::quiet_NaN();
+        }
+    return heights;
+}
+
 } // namespace
 
 bool looks_like_x3p(std::string_view bytes) {
@@ -307,17 +410,16 @@ bool looks_like_x3p(std::string_view bytes) {
 SurfaceFile parse_x3p(std::string_view bytes, const std::filesystem::path& path) {
     const ByteReader file(bytes, path);
     const Archive archive(file);
+    if (!archive.has(xml_name))
+        refuse_file(path, "", fmt::format("a ZIP archive of another kind, without {}", xml_name),
+                    "a surface file of a format that is read here", "Export the surface as X3P.");
     const auto xml = archive.read(xml_name, largest_xml);
-    if (!xml)
-        file.fail({}, xml_name, "no such entry", "an X3P archive with one at its root");
     const Document document(file, *xml);
 
     const auto record1 = child(document.root(), "Record1");
     document.require(record1, "FeatureType", "SUR");
     const auto axes = child(record1, "Axes");
-    if (child(axes, "Rotation"))
-        file.fail({}, fmt::format("{}: Rotation", xml_name), "a rotation of the points", "none",
-                  "Export the surface in the frame of its grid.");
+    check_rotation(file, document, axes);
     const auto x = child(axes, "CX"), y = child(axes, "CY"), z = child(axes, "CZ");
     document.require(x, "AxisType", "I");
     document.require(y, "AxisType", "I");
@@ -337,12 +439,13 @@ SurfaceFile parse_x3p(std::string_view bytes, const std::filesystem::path& path)
     result.map.pitch_y = pitch(y);
     result.map.x0 = position(x);
     result.map.y0 = position(y);
-    const double offset = document.number<double>(z, "Offset", 0.0);
-    const double increment = document.number<double>(z, "Increment", 1.0);
-    const std::string type = text_of(z, "DataType");
+    const Scale scale = {.type = text_of(z, "DataType"),
+                         .offset = document.number<double>(z, "Offset", 0.0),
+                         .increment = document.number<double>(z, "Increment", 1.0)};
+    const std::string& type = scale.type;
     if (type != "I" && type != "L" && type != "F" && type != "D")
         file.fail({}, fmt::format("{}: CZ.DataType", xml_name), type.empty() ? "nothing" : type, "I, L, F or D");
-    if (increment == 0)
+    if (scale.increment == 0)
         file.fail({}, fmt::format("{}: CZ.Increment", xml_name), "0", "another number");
 
     const auto record3 = child(document.root(), "Record3");
@@ -351,29 +454,11 @@ SurfaceFile parse_x3p(std::string_view bytes, const std::filesystem::path& path)
     const auto rows = document.number<std::uint64_t>(matrix, "SizeY");
     file.check_size(columns, rows);
     document.require(matrix, "SizeZ", "1");
-    const auto link = child(record3, "DataLink");
-    const std::string link_name = text_of(link, "PointDataLink");
-    if (link_name.empty())
-        file.fail({}, fmt::format("{}: Record3.DataLink", xml_name), "nothing", "the name of a binary file of points",
-                  "Export the heights in binary form.");
-
     const auto checksum = archive.read(checksum_name, largest_checksum_file);
     check_md5(file, xml_name, *xml, checksum ? checksum->substr(0, md5_digits) : "");
-    const std::uint64_t count = columns * rows;
-    const std::uint64_t point_bytes = type == "I" ? 2 : type == "D" ? 8 : 4;
-    file.check_packing(count * sizeof(double), link_name);
-    const auto points = archive.read(link_name, count * point_bytes);
-    if (!points || points->size() != count * point_bytes)
-        file.fail({}, link_name, points ? fmt::format("{} bytes", points->size()) : "no such entry",
-                  fmt::format("{} bytes for {} x {} points of type {}", count * point_bytes, columns, rows, type));
-    check_md5(file, link_name, *points, text_of(link, "MD5ChecksumPointData"));
-    const std::string valid = valid_points(file, archive, link, count);
-
-    result.map.height = Grid<double>(static_cast<int>(columns), static_cast<int>(rows));
-    (type == "I"   ? read_heights<std::int16_t>
-     : type == "L" ? read_heights<std::int32_t>
-     : type == "F" ? read_heights<float>
-                   : read_heights<double>)(*points, valid, offset, increment, result.map.height);
+    const auto list = child(record3, "DataList");
+    result.map.height = list ? listed_heights(file, list, scale, columns, rows)
+                             : linked_heights(file, archive, child(record3, "DataLink"), scale, columns, rows);
     result.provenance = read_provenance(child(document.root(), "Record2"));
     return result;
 }

@@ -10,7 +10,8 @@ namespace vkfv::surface {
 
 bool looks_like_x3p(std::string_view bytes);
 
-// Surfaces on a regular grid: FeatureType SUR, CX and CY incremental, heights as I, L, F or D in a binary file; points
+// Surfaces on a regular grid: FeatureType SUR, CX and CY incremental, no rotation, heights as I, L, F or D in a binary
+// file, or as text in main.xml itself; all at the archive's root or in one folder of it. Points
 // that valid.bin leaves out and every height that is not finite are not measured. A wrong MD5 sum is an error, a
 // missing one a warning in the log. Throws InputError.
 SurfaceFile parse_x3p(std::string_view bytes, const std::filesystem::path& file);

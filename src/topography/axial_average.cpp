@@ -62,6 +62,15 @@ std::vector<Share> axial_shares(const std::vector<double>& weights, int at, int 
     return shares;
 }
 
+std::vector<double> twice_averaged(const std::vector<double>& weights, int at, int images) {
+    const Shares shares = twice_shares_at(weights, at, images);
+    std::vector<double> result(static_cast<std::size_t>(images));
+    for (int image = shares.first; image < shares.end(); ++image) {
+        result[static_cast<std::size_t>(image)] = shares[image];
+    }
+    return result;
+}
+
 std::vector<AveragedPoint> averaged_points(const std::vector<double>& weights, int images) {
     const int reach = 2 * (static_cast<int>(weights.size()) - 1);
     std::vector<AveragedPoint> points;

@@ -21,6 +21,9 @@ struct Share {
 // The average at image `at` of a stack of `images`, in ascending order of the images.
 std::vector<Share> axial_shares(const std::vector<double>& weights, int at, int images);
 
+// The weights of all images in the curve's point `at` after both averages, in their order.
+std::vector<double> twice_averaged(const std::vector<double>& weights, int at, int images);
+
 // What a point of the focus curve is after both averages, first of the images, then of the curve.
 struct AveragedPoint {
     double position = 0; // that it stands for, in steps of the scan: what the averages make of a straight line

@@ -1,9 +1,9 @@
 #include "topography/device_focus_planes.hpp"
 
+#include "spirv/focus_brightness.h"
 #include "spirv/focus_columns.h"
 #include "spirv/focus_follow.h"
 #include "spirv/focus_mean.h"
-#include "spirv/focus_noise.h"
 #include "spirv/focus_response.h"
 #include "spirv/focus_rows.h"
 #include "spirv/focus_select.h"
@@ -53,10 +53,8 @@ class DeviceFocusPlanes final : public FocusPlanes {
           pixels_(static_cast<std::size_t>(plan_.columns) * static_cast<std::size_t>(plan_.rows)),
           channels_(static_cast<std::size_t>(plan_.channels)), device_(vulkan::DeviceOptions{selector}),
           mean_(device_, "focus_mean", ::focus_mean, storage_buffers({BINDING_FROM, BINDING_TO}), sizeof(MeanTerm)),
-          noise_(device_, "focus_noise", ::focus_noise,
-                 storage_buffers(
-                     {BINDING_IMAGE, BINDING_BEFORE, BINDING_EARLIER, BINDING_BRIGHTNESS, BINDING_SQUARED_DIFFERENCES}),
-                 sizeof(NoiseSizes)),
+          add_brightness_(device_, "focus_brightness", ::focus_brightness,
+                          storage_buffers({BINDING_IMAGE, BINDING_BRIGHTNESS}), sizeof(ImageSize)),
           response_(device_, "focus_response", ::focus_response, storage_buffers({BINDING_IMAGE, BINDING_RESPONSES}),
                     sizeof(FocusPlan)),
           rows_(device_, "focus_rows", ::focus_rows,
@@ -65,20 +63,18 @@ class DeviceFocusPlanes final : public FocusPlanes {
           columns_(device_, "focus_columns", ::focus_columns,
                    storage_buffers({BINDING_ROW_SUMS, BINDING_WEIGHTS, BINDING_CURVE}), sizeof(FocusPlan)),
           follow_(device_, "focus_follow", ::focus_follow,
-                  storage_buffers({BINDING_CURVES, BINDING_RECORDS, BINDING_SHARPEST}), sizeof(FollowedImage)),
+                  storage_buffers({BINDING_CURVES, BINDING_RECORDS, BINDING_PLACES}), sizeof(FollowedImage)),
           select_(device_, "focus_select", ::focus_select,
-                  storage_buffers({BINDING_IMAGE, BINDING_SHARPEST, BINDING_ALL_IN_FOCUS}), sizeof(SelectedImage)),
+                  storage_buffers({BINDING_IMAGE, BINDING_PLACES, BINDING_ALL_IN_FOCUS}), sizeof(SelectedImage)),
           mean_image_(device_, channels_ * pixels_ * sizeof(float)), responses_(device_, pixels_ * sizeof(WindowSums)),
           row_sums_(device_, static_cast<std::size_t>(focus_fields(plan_)) * pixels_ * sizeof(WindowSums)),
           weights_(device_, stack.window.weights().size() * sizeof(float)),
           averaged_(device_, static_cast<std::size_t>(averaged_curves_) * pixels_ * sizeof(float)),
-          records_(device_, pixels_ * sizeof(CurveRecord)), sharpest_(device_, pixels_ * sizeof(std::int32_t)),
-          brightness_(device_, pixels_ * sizeof(float)), squared_differences_(device_, pixels_ * sizeof(float)),
-          all_in_focus_(device_, channels_ * pixels_ * sizeof(float)) {
+          records_(device_, pixels_ * sizeof(CurveRecord)), places_(device_, pixels_ * sizeof(float)),
+          brightness_(device_, pixels_ * sizeof(float)), all_in_focus_(device_, channels_ * pixels_ * sizeof(float)) {
         const std::vector<float> weights(stack.window.weights().begin(), stack.window.weights().end());
         weights_.write_values(std::span<const float>(weights));
         brightness_.fill_zero();
-        squared_differences_.fill_zero();
         all_in_focus_.fill_zero();
         for (int k = 0; k < stack.images_kept; ++k) {
             images_.emplace_back(device_, channels_ * pixels_ * sizeof(float));
@@ -93,16 +89,8 @@ class DeviceFocusPlanes final : public FocusPlanes {
         for (std::size_t channel = 0; channel < channels.size(); ++channel) {
             image_at(image).write_values(std::span<const float>(channels[channel].values), channel * pixels_);
         }
-        const bool differences = image >= 2;
-        dispatch(noise_,
-                 {{BINDING_IMAGE, &image_at(image)},
-                  {BINDING_BEFORE, &image_at(differences ? image - 1 : image)},
-                  {BINDING_EARLIER, &image_at(differences ? image - 2 : image)},
-                  {BINDING_BRIGHTNESS, &brightness_},
-                  {BINDING_SQUARED_DIFFERENCES, &squared_differences_}},
-                 NoiseSizes{static_cast<std::uint32_t>(pixels_), static_cast<std::uint32_t>(channels_),
-                            differences ? 1u : 0u},
-                 pixels_);
+        dispatch(add_brightness_, {{BINDING_IMAGE, &image_at(image)}, {BINDING_BRIGHTNESS, &brightness_}},
+                 ImageSize{static_cast<std::uint32_t>(pixels_), static_cast<std::uint32_t>(channels_)}, pixels_);
     }
 
     void measure(int image, std::span<const Share> shares) override {
@@ -135,14 +123,14 @@ class DeviceFocusPlanes final : public FocusPlanes {
     }
 
     void follow(int image, int images) override {
-        dispatch(follow_, {{BINDING_CURVES, &averaged_}, {BINDING_RECORDS, &records_}, {BINDING_SHARPEST, &sharpest_}},
+        dispatch(follow_, {{BINDING_CURVES, &averaged_}, {BINDING_RECORDS, &records_}, {BINDING_PLACES, &places_}},
                  FollowedImage{plan_, image, images, averaged_curves_}, pixels_);
         const int first = std::max(0, image - plan_.peak_range);
         const int last = std::min(images - 1, image + plan_.peak_range);
         for (int k = first; k <= last; ++k) {
             dispatch(
                 select_,
-                {{BINDING_IMAGE, &image_at(k)}, {BINDING_SHARPEST, &sharpest_}, {BINDING_ALL_IN_FOCUS, &all_in_focus_}},
+                {{BINDING_IMAGE, &image_at(k)}, {BINDING_PLACES, &places_}, {BINDING_ALL_IN_FOCUS, &all_in_focus_}},
                 SelectedImage{static_cast<std::uint32_t>(pixels_), static_cast<std::uint32_t>(channels_), k}, pixels_);
         }
     }
@@ -156,7 +144,6 @@ class DeviceFocusPlanes final : public FocusPlanes {
         };
         StackSummary result;
         result.brightness = grid(brightness_.read_values<float>(pixels_));
-        result.squared_differences = grid(squared_differences_.read_values<float>(pixels_));
         result.curves = Grid<focus::f64::CurveRecord>(plan_.columns, plan_.rows);
         std::ranges::transform(records_.read_values<CurveRecord>(pixels_), result.curves.values.begin(), in_double);
         for (std::size_t channel = 0; channel < channels_; ++channel) {
@@ -206,9 +193,9 @@ class DeviceFocusPlanes final : public FocusPlanes {
     std::size_t pixels_;
     std::size_t channels_;
     vulkan::Device device_;
-    vulkan::Kernel mean_, noise_, response_, rows_, columns_, follow_, select_;
-    vulkan::Buffer mean_image_, responses_, row_sums_, weights_, averaged_, records_, sharpest_, brightness_,
-        squared_differences_, all_in_focus_;
+    vulkan::Kernel mean_, add_brightness_, response_, rows_, columns_, follow_, select_;
+    vulkan::Buffer mean_image_, responses_, row_sums_, weights_, averaged_, records_, places_, brightness_,
+        all_in_focus_;
     std::vector<vulkan::Buffer> images_; // the last few in turn
     std::vector<vulkan::Buffer> curves_; // likewise
     std::optional<vulkan::Commands> commands_;

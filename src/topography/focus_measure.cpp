@@ -44,6 +44,26 @@ struct RowScene {
     }
 };
 
+// Both at once, computed where they are asked for: of few pixels.
+struct PixelScene {
+    const Channels& image;
+    const f64::FocusPlan& plan;
+    const std::vector<double>& weights;
+    double image_value(int channel, int column, int row) const {
+        return image[static_cast<std::size_t>(channel)](column, row);
+    }
+    double window_weight(int distance) const { return weights[static_cast<std::size_t>(distance)]; }
+    f64::WindowSums window_source(int field, int column, int row) const {
+        if (plan.measure == f64::FOCUS_STANDARD_DEVIATION) {
+            return {image_value(field, column, row), 0};
+        }
+        return {f64::brightness_at(*this, plan, column, row), f64::focus_response(*this, plan, column, row)};
+    }
+    f64::WindowSums window_row(int field, int column, int row) const {
+        return f64::window_along_row(*this, plan, field, column, row);
+    }
+};
+
 // Calls task(column, row) for every pixel.
 template <class Task>
 void every_pixel(int columns, int rows, const Task& task) {
@@ -77,6 +97,16 @@ f64::FocusPlan plan_of(const Channels& image, FocusMeasure measure, const FocusW
 }
 
 } // namespace
+
+Grid<float> grey(const Channels& channels) {
+    Grid<float> mean(channels.front().columns, channels.front().rows);
+    for (const auto& channel : channels) {
+        for (std::size_t k = 0; k < mean.values.size(); ++k) {
+            mean.values[k] += channel.values[k] / static_cast<float>(channels.size());
+        }
+    }
+    return mean;
+}
 
 const std::vector<std::string>& focus_measure_names() {
     static const std::vector<std::string> names = {"standard-deviation", "tenengrad", "modified-laplacian", "brenner",
@@ -145,6 +175,11 @@ Grid<float> focus_measure(const Channels& image, FocusMeasure measure, const Foc
         result(column, row) = static_cast<float>(f64::focus_value(rows, plan, column, row));
     });
     return result;
+}
+
+double focus_at(const Channels& image, FocusMeasure measure, const FocusWindow& window, int column, int row) {
+    const f64::FocusPlan plan = plan_of(image, measure, window);
+    return f64::focus_value(PixelScene{image, plan, window.weights()}, plan, column, row);
 }
 
 Grid<float> window_mean(const Grid<float>& image, const FocusWindow& window) {

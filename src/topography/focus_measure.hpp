@@ -14,6 +14,9 @@ namespace vkfv::topography {
 // The channels of one image, all of one size: one of grey, three of colour.
 using Channels = std::vector<Grid<float>>;
 
+// Their mean.
+Grid<float> grey(const Channels& channels);
+
 // In the order of the constants FOCUS_*.
 enum class FocusMeasure {
     standard_deviation = focus::f64::FOCUS_STANDARD_DEVIATION, // local standard deviation
@@ -58,6 +61,9 @@ class FocusWindow {
 // and so dimensionless: a slowly varying illumination cancels. Where the local mean is not positive the measure is 0.
 // In double; rows are shared among threads, and the result does not depend on how.
 Grid<float> focus_measure(const Channels& image, FocusMeasure measure, const FocusWindow& window);
+
+// The same at one pixel, without threads.
+double focus_at(const Channels& image, FocusMeasure measure, const FocusWindow& window, int column, int row);
 
 // Weighted mean over the same windows.
 Grid<float> window_mean(const Grid<float>& image, const FocusWindow& window);

@@ -14,10 +14,9 @@ namespace vkfv::topography {
 
 // What one pass over a stack leaves of it, pixel by pixel.
 struct StackSummary {
-    Grid<float> brightness;          // sum over the images of the channels' mean
-    Grid<float> squared_differences; // sum over images and channels of (I[k-1] - 2 I[k] + I[k+1])^2
+    Grid<float> brightness; // sum over the images of the channels' mean
     Grid<focus::f64::CurveRecord> curves;
-    Channels all_in_focus; // each pixel from the image nearest its maximum
+    Channels all_in_focus; // each pixel from the images around its maximum
 };
 
 struct FocusPlanesPlan {

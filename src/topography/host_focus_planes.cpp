@@ -2,6 +2,9 @@
 
 #include "topography/parallel_rows.hpp"
 
+#include <algorithm>
+#include <cmath>
+
 namespace vkfv::topography {
 namespace {
 
@@ -30,7 +33,7 @@ class HostFocusPlanes final : public FocusPlanes {
     explicit HostFocusPlanes(const FocusPlanesPlan& plan)
         : plan_(plan.plan), window_(plan.window), images_(plan.images_kept), curves_(plan.curves_kept),
           averaged_(plan.averaged_curves_kept) {
-        summary_.brightness = summary_.squared_differences = Grid<float>(plan_.columns, plan_.rows);
+        summary_.brightness = Grid<float>(plan_.columns, plan_.rows);
         summary_.curves = Grid<f64::CurveRecord>(plan_.columns, plan_.rows, f64::empty_curve());
         summary_.all_in_focus.assign(static_cast<std::size_t>(plan_.channels), Grid<float>(plan_.columns, plan_.rows));
     }
@@ -40,13 +43,7 @@ class HostFocusPlanes final : public FocusPlanes {
         const float share = 1.0f / static_cast<float>(plan_.channels);
         for (std::size_t channel = 0; channel < images_[image].size(); ++channel)
             pixels([&, channel](std::size_t k) {
-                const float value = images_[image][channel].values[k];
-                summary_.brightness.values[k] += share * value;
-                if (image >= 2) {
-                    const float difference =
-                        images_[image - 2][channel].values[k] - 2 * images_[image - 1][channel].values[k] + value;
-                    summary_.squared_differences.values[k] += difference * difference;
-                }
+                summary_.brightness.values[k] += share * images_[image][channel].values[k];
             });
     }
 
@@ -71,9 +68,18 @@ class HostFocusPlanes final : public FocusPlanes {
             const auto step =
                 f64::follow_curve(CurveScene{averaged_, k}, plan_, summary_.curves.values[k], image, images);
             summary_.curves.values[k] = step.curve;
-            if (step.sharpest != f64::NO_IMAGE)
-                for (std::size_t channel = 0; channel < summary_.all_in_focus.size(); ++channel)
-                    summary_.all_in_focus[channel].values[k] = images_[step.sharpest][channel].values[k];
+            if (step.place == f64::NO_PLACE) {
+                return;
+            }
+            const int before = static_cast<int>(std::floor(step.place));
+            for (std::size_t channel = 0; channel < summary_.all_in_focus.size(); ++channel) {
+                float& value = summary_.all_in_focus[channel].values[k];
+                value = 0;
+                for (int near = before; near <= std::min(before + 1, images - 1); ++near) {
+                    value +=
+                        static_cast<float>(f64::share_in_focus(step.place, near)) * images_[near][channel].values[k];
+                }
+            }
         });
     }
 

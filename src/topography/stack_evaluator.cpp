@@ -13,6 +13,7 @@ namespace vkfv::topography {
 namespace {
 
 constexpr int most_peak_range_steps = 100; // 202 curves in memory
+constexpr double dark = 0.01;              // of the stack's mean brightness
 
 void require(bool good, std::string key, std::string found, std::string expected, std::string remedy) {
     if (!good)
@@ -32,12 +33,15 @@ const TopographyOptions& checked(const TopographyOptions& options) {
             "topography.peak_range_steps", fmt::format("{}", options.peak_range_steps),
             fmt::format("an integer in [1, {}]", most_peak_range_steps),
             "Give the half width of the range around the maximum in steps of the scan.");
-    require(options.smoothing_steps >= 0 && options.smoothing_steps <= 100, "topography.smoothing_steps",
-            fmt::format("{}", options.smoothing_steps), "a number in [0, 100]",
-            "Give the average's standard deviation in steps of the scan.");
-    require(options.false_peak_rate > 0 && options.false_peak_rate < 1, "topography.false_peak_rate",
-            fmt::format("{}", options.false_peak_rate), "a number in (0, 1)",
-            "Give the probability with which noise may pass as a height.");
+    require(options.smoothing_steps.value_or(0) >= 0 && options.smoothing_steps.value_or(0) <= 100,
+            "topography.smoothing_steps", fmt::format("{}", options.smoothing_steps.value_or(0)),
+            "a number in [0, 100]", "Give the average's standard deviation in steps of the scan.");
+    require(options.false_peak_rate > 0 && options.false_peak_rate <= 1, "topography.false_peak_rate",
+            fmt::format("{}", options.false_peak_rate), "a number in (0, 1]",
+            "Give the share of points that may pass by chance; 1 for no such limit.");
+    require(options.most_rival > 0 && options.most_rival <= 1, "topography.most_rival",
+            fmt::format("{}", options.most_rival), "a number in (0, 1]",
+            "Give the second maximum's share of the largest; 1 for no such limit.");
     require(options.least_contrast >= 0, "topography.least_contrast", fmt::format("{}", options.least_contrast),
             "a number >= 0", "Give it in standard deviations of the focus curve's noise.");
     require(options.most_fit_residual > 0, "topography.most_fit_residual", fmt::format("{}", options.most_fit_residual),
@@ -47,29 +51,62 @@ const TopographyOptions& checked(const TopographyOptions& options) {
     return options;
 }
 
-// Standard deviation of a single image's noise over brightness, both over the window and all images. The variances of
-// the channels are added, as their energies are: that is the noise of the measure if the channels' noises agree, as
-// after demosaicing, and an upper bound of it if not.
-Grid<float> relative_noise(const StackSummary& stack, const FocusWindow& window, int images, std::size_t channels) {
-    const Grid<float> brightness = window_mean(stack.brightness, window);
-    Grid<float> noise = window_mean(stack.squared_differences, window);
-    constexpr double gain = 1 + 4 + 1; // of the second difference on the variance of independent values
-    for (std::size_t k = 0; k < noise.values.size(); ++k) {
-        const double mean = brightness.values[k] / images * std::sqrt(static_cast<double>(channels));
-        noise.values[k] = mean > 0 ? static_cast<float>(std::sqrt(noise.values[k] / (images - 2) / gain) / mean) : 0.0f;
+// Standard deviation of a single image's noise over its brightness. The variances of the channels are
+// added, as their energies are: that is the noise of the measure if the channels' noises agree, as after demosaicing,
+// and an upper bound of it if not.
+double relative_noise(double brightness, const NoiseModel& model) {
+    return brightness > 0 ? std::sqrt(model.variance(brightness)) / brightness : 0;
+}
+
+double mean_of(const Grid<float>& grid) {
+    return std::accumulate(grid.values.begin(), grid.values.end(), 0.0) / static_cast<double>(grid.values.size());
+}
+
+// If a twenty-fifth or more of the measured points would be so by chance, none is measured: those that are not cannot
+// be told from them.
+void leave_out_chance(Topography& topography, double chance_rate) {
+    constexpr double most = 0.04;
+    auto& states = topography.state.values;
+    const auto measured = static_cast<double>(std::ranges::count(states, PointState::measured));
+    if (chance_rate * static_cast<double>(states.size()) < most * measured) {
+        return;
     }
-    return noise;
+    for (std::size_t k = 0; k < states.size(); ++k) {
+        if (states[k] == PointState::measured) {
+            states[k] = PointState::by_chance;
+            topography.height.height.values[k] = topography.height_noise.values[k] =
+                std::numeric_limits<double>::quiet_NaN();
+        }
+    }
+}
+
+// Standard deviation of the difference of a smoothed curve's values one step before and after a point over that of a
+// single image's: of the twice averaged noise, away from the ends.
+double difference_noise(const std::vector<double>& axial_weights) {
+    const int radius = static_cast<int>(axial_weights.size()) - 1;
+    const int images = 8 * radius + 5;
+    const std::vector<double> kernel = twice_averaged(axial_weights, images / 2, images);
+    double variance = 0;
+    for (int k = 0; k < images; ++k) {
+        const double before = k + 1 < images ? kernel[static_cast<std::size_t>(k + 1)] : 0;
+        const double after = k > 0 ? kernel[static_cast<std::size_t>(k - 1)] : 0;
+        variance += (after - before) * (after - before);
+    }
+    return std::sqrt(variance);
 }
 
 } // namespace
 
-double contrast_threshold(int images, double false_peak_rate) {
-    return std::sqrt(2 * std::max(0.0, std::log(images / (2 * false_peak_rate))));
+double suitable_smoothing(double curve_width_steps, int images) {
+    constexpr double most_of_the_scan = 1.0 / 30;
+    constexpr double least = 0.4; // less averages nothing
+    const double steps = std::min(most_smoothing_of_width * curve_width_steps, most_of_the_scan * (images - 1));
+    return steps >= least ? steps : 0;
 }
 
 StackEvaluator::StackEvaluator(const TopographyOptions& options, FocusPlanesMaker make_planes)
     : options_(checked(options)), measure_(options.focus_measure), window_(options.window_px, options.window_shape),
-      axial_weights_(axial_weights(options.smoothing_steps)), make_planes_(std::move(make_planes)) {}
+      axial_weights_(axial_weights(options.smoothing_steps.value_or(0))), make_planes_(std::move(make_planes)) {}
 
 void StackEvaluator::check(const Channels& image, double z) const {
     const std::string which = fmt::format("image {}", z_.size());
@@ -114,6 +151,7 @@ void StackEvaluator::begin(const Channels& first) {
     plan.window_radius = window_.radius();
     plan.peak = static_cast<int>(options_.peak);
     plan.peak_range = options_.peak_range_steps;
+    probes_.emplace(columns_, rows_, measure_, window_);
     // An image is judged once the curve's average has passed it by the range: its own neighbours are asked for then.
     planes_ = make_planes_({.plan = plan,
                             .window = window_,
@@ -129,6 +167,7 @@ void StackEvaluator::add(Channels image, double z) {
     for (Grid<float>& channel : image)
         for (float& value : channel.values)
             value *= scale_;
+    probes_->add(image);
     planes_->take(static_cast<int>(z_.size()), std::move(image));
     z_.push_back(z);
     advance(false);
@@ -161,6 +200,41 @@ void StackEvaluator::advance(bool all_taken) {
         planes_->follow(followed_, averaged_);
 }
 
+// What a curve must have to be no matter of chance.
+StackFigures StackEvaluator::judge_stack() const {
+    StackFigures figures{.smoothing_steps = options_.smoothing_steps.value_or(0),
+                         .curve_width_steps = probes_->curve_width(),
+                         .limits = {}};
+    if (options_.false_peak_rate < 1) {
+        figures.limits = limits_of(probes_->by_chance(axial_weights_, options_.false_peak_rate),
+                                   options_.false_peak_rate, static_cast<int>(z_.size()));
+    }
+    return figures;
+}
+
+// rise: of the largest value over the mean; noise: of the curve.
+PointState StackEvaluator::judge(const focus::f64::CurveRecord& curve, double rise, double noise, int peaks,
+                                 const StackFigures& figures) const {
+    if (curve.found == 0) {
+        return PointState::no_peak;
+    }
+    const int images = static_cast<int>(z_.size());
+    if (!(focus::f64::unimodality(curve) > figures.limits.unimodality ||
+          focus::f64::relief(curve, images) > figures.limits.relief)) {
+        return PointState::by_chance;
+    }
+    if (!(rise >= options_.least_contrast * noise)) {
+        return PointState::low_contrast;
+    }
+    if (curve.residual > options_.most_fit_residual) {
+        return PointState::poor_fit;
+    }
+    // Noise has maxima too: how prominent the largest of many are, as the range of normal values.
+    const double by_noise = 2 * noise * std::sqrt(2 * std::log(static_cast<double>(images)));
+    const bool rivalled = options_.most_rival < 1 && curve.rival > options_.most_rival * rise && curve.rival > by_noise;
+    return peaks > options_.most_peaks || rivalled ? PointState::many_peaks : PointState::measured;
+}
+
 Topography StackEvaluator::finish(double x0, double y0, double pitch) {
     require(z_.size() >= 3, "stack", fmt::format("{} images", z_.size()), "at least 3 images",
             "A peak needs an image on either side: widen the scan.");
@@ -169,7 +243,9 @@ Topography StackEvaluator::finish(double x0, double y0, double pitch) {
     planes_.reset();
 
     const int images = static_cast<int>(z_.size());
-    const double threshold = std::max(contrast_threshold(images, options_.false_peak_rate), options_.least_contrast);
+    const NoiseModel noise_model = probes_->noise();
+    StackFigures figures = judge_stack();
+    const double noise_of_difference = difference_noise(axial_weights_);
     const std::vector<AveragedPoint> points = averaged_points(axial_weights_, images);
     // Of a place between the curve's points.
     const auto position = [&](double at) {
@@ -177,7 +253,8 @@ Topography StackEvaluator::finish(double x0, double y0, double pitch) {
         const double here = points[static_cast<std::size_t>(before)].position;
         return here + (at - before) * (points[static_cast<std::size_t>(before + 1)].position - here);
     };
-    const Grid<float> noise = relative_noise(stack, window_, images, channels_);
+    const double brightness = mean_of(stack.brightness) / images;
+    const Grid<float> brightness_around = window_mean(stack.brightness, window_); // of all images together
     const double step = (z_.back() - z_.front()) / (images - 1);
     Topography result;
     result.height = {.height = Grid<double>(columns_, rows_, std::numeric_limits<double>::quiet_NaN()),
@@ -186,6 +263,7 @@ Topography StackEvaluator::finish(double x0, double y0, double pitch) {
                      .pitch_x = pitch,
                      .pitch_y = pitch};
     result.contrast = result.fit_residual = Grid<double>(columns_, rows_);
+    result.height_noise = result.height.height;
     result.peaks = Grid<std::uint16_t>(columns_, rows_);
     result.state = Grid<PointState>(columns_, rows_, PointState::measured);
     for (int row = 0; row < rows_; ++row)
@@ -193,30 +271,33 @@ Topography StackEvaluator::finish(double x0, double y0, double pitch) {
             const auto& curve = stack.curves(column, row);
             const double pixels = window_.pixels(columns_, rows_, column, row);
             const double averaging = std::sqrt(points[static_cast<std::size_t>(curve.at)].variance);
-            const double curve_noise = noise(column, row) * noise_gain(measure_, pixels) * averaging;
-            const double contrast = (curve.largest - curve.sum / images) / curve_noise;
+            const double here = brightness_around(column, row) / images;
+            // Of a single image's value.
+            const double image_noise = relative_noise(here, noise_model) * noise_gain(measure_, pixels);
+            const double rise = curve.largest - curve.sum / images;
             const int peaks = focus::f64::count_peaks(curve, images);
-            result.contrast(column, row) = contrast;
+            result.contrast(column, row) = rise / (image_noise * averaging);
             result.fit_residual(column, row) = curve.residual;
             result.peaks(column, row) = static_cast<std::uint16_t>(peaks);
             PointState& state = result.state(column, row);
-            if (curve.found == 0)
-                state = PointState::no_peak;
-            else if (!(contrast >= threshold))
-                state = PointState::low_contrast;
-            else if (curve.residual > options_.most_fit_residual)
-                state = PointState::poor_fit;
-            else if (peaks > options_.most_peaks)
-                state = PointState::many_peaks;
-            else
+            state = here > dark * brightness ? judge(curve, rise, image_noise * averaging, peaks, figures)
+                                             : PointState::dark;
+            if (state == PointState::measured) {
                 result.height.height(column, row) = z_.front() + step * position(curve.at + curve.offset);
+                result.height_noise(column, row) =
+                    step * image_noise * noise_of_difference / (2 * std::max(curve.bend, 1e-30));
+            }
         }
     for (Grid<float>& channel : stack.all_in_focus)
         for (float& value : channel.values)
             value /= scale_;
     result.all_in_focus = std::move(stack.all_in_focus);
+    if (figures.limits.rate < 1 && images > few_images)
+        leave_out_chance(result, figures.limits.rate);
     if (options_.repair_outliers)
         repair_outliers(result);
+    figures.image_noise = relative_noise(brightness, noise_model);
+    result.stack = figures;
     return result;
 }
 
@@ -224,7 +305,16 @@ Topography reconstruct(std::span<const Grid<float>> stack, std::span<const doubl
                        double pitch, const TopographyOptions& options) {
     if (stack.size() != z.size())
         throw std::invalid_argument("reconstruct: as many heights as images are needed");
-    StackEvaluator evaluator(options);
+    TopographyOptions settled = options;
+    if (!settled.smoothing_steps && !stack.empty()) {
+        FocusProbes probes(stack[0].columns, stack[0].rows, options.focus_measure,
+                           FocusWindow(options.window_px, options.window_shape));
+        for (const auto& image : stack) {
+            probes.add({image});
+        }
+        settled.smoothing_steps = probes.suitable_smoothing();
+    }
+    StackEvaluator evaluator(settled);
     for (std::size_t k = 0; k < stack.size(); ++k)
         evaluator.add(stack[k], z[k]);
     return evaluator.finish(x0, y0, pitch);

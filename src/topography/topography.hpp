@@ -4,17 +4,20 @@
 //
 // - The images are averaged along z with Gaussian weights (smoothing_steps). Texture in focus stays in focus
 //   over several steps, ray noise does not: averaging before the focus measure squares the noise helps most.
-//   A symmetric average does not shift a symmetric focus curve.
+//   A symmetric average does not shift a symmetric focus curve. How far it may reach follows from how wide the
+//   focus curves are (suitable_smoothing()).
 //
 // - A windowed focus measure of every averaged image (focus_measure.hpp) gives the focus curve along z.
 //
 // - The curve is averaged with the same weights, and its maximum is found to a fraction of a step
 //   (peak_method.hpp).
 //
-// - The point is "not measured" where the maximum lies at either end of the scan, or stands no further above
-//   the curve's mean than image noise alone would bring it at `false_peak_rate`. The noise is taken from the
-//   stack itself: from second differences along z, in which texture that changes slowly cancels. Further limits
-//   of quality can be set.
+// - The point is "not measured" where the maximum lies at either end of the scan, or where the curve is no better
+//   than this stack's curves with the images in random order. What is compared is the curve's unimodality (curve.glsl):
+//   the share of all its rises and falls that its largest maximum accounts for. How large it is by chance is found by
+//   shuffling the stack at some hundred places (focus_probes.hpp), so no noise need be known, and it holds for few
+//   images and many, for light of few rays and for texture that a coarse scan jumps over. Nor is a point measured whose
+//   curve has a second maximum that stands out almost as the first. Further limits of quality can be set.
 //
 // Near the ends of the scan the averages hold only the images there are. The places that they stand for, and their
 // larger noise, are reckoned with, but a curve is blunted less there than elsewhere, which draws peaks towards the end.
@@ -26,10 +29,12 @@
 #include "surface/height_map.hpp"
 #include "topography/focus_measure.hpp"
 #include "topography/focus_planes.hpp"
+#include "topography/focus_probes.hpp"
 #include "topography/host_focus_planes.hpp"
 #include "topography/peak_method.hpp"
 
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -42,14 +47,17 @@ struct TopographyOptions {
     PeakMethod peak = PeakMethod::gaussian;
     // Half width of the range around the maximum that fits, fit_residual and the number of peaks are of, in steps.
     int peak_range_steps = 3;
-    // Standard deviation, in steps of the scan, of the Gaussian average along z; 0 switches it off. Best at
-    // about half the half width of the focus curve: 3 for steps of an eighth of it, less for coarser steps.
-    double smoothing_steps = 3;
-    // Probability that a pixel gets a height from noise alone, its texture not changing along z. An upper
-    // bound for normal sums: with windows below 7 pixels and no average along z the skew of the measure may
-    // double it.
-    double false_peak_rate = 1e-3;
-    // What a point must keep to count as measured, beside false_peak_rate; these values let all pass.
+    // Standard deviation, in steps of the scan, of the Gaussian average along z; 0 switches it off. None: what
+    // FocusProbes::suitable_smoothing() tells; the evaluator is given a number.
+    std::optional<double> smoothing_steps{};
+    // Share of the points that would be measured with the images in random order; 1 switches the limit off. Where a
+    // twentieth or more of all that are measured would be by chance, none is. With
+    // few_images or fewer more than most_unimodality_asked is demanded of no curve, since they are often in order by
+    // chance: what rate that means, the evaluation tells.
+    double false_peak_rate = 3e-3;
+    // Prominence of the second maximum over the height of the largest above the curve's mean; 1 switches the limit off.
+    double most_rival = 0.15;
+    // What a point must keep to count as measured besides; these values let all pass.
     double least_contrast = 0;
     double most_fit_residual = 1;
     int most_peaks = 4;
@@ -60,10 +68,20 @@ struct TopographyOptions {
 enum class PointState : std::uint16_t {
     measured = 0,
     no_peak = 1,      // the largest value stands at an end of the scan, or the method finds no maximum
-    low_contrast = 2, // below what noise brings, or least_contrast
+    by_chance = 2,    // no more unimodal than in random order, by false_peak_rate
     poor_fit = 3,     // fit residual above most_fit_residual
-    many_peaks = 4,   // more than most_peaks
+    many_peaks = 4,   // more than most_peaks, or a second maximum above most_rival
     repaired = 5,     // an outlier; its height is the median of its neighbours
+    low_contrast = 6, // below least_contrast
+    dark = 7,         // around it less than a hundredth of the stack's mean brightness
+};
+
+// Of a stack as a whole.
+struct StackFigures {
+    double smoothing_steps = 0;   // that were used
+    double curve_width_steps = 0; // standard deviation of its focus curves, FocusProbes::curve_width()
+    ChanceLimits limits;          // one of which a measured point exceeds
+    double image_noise = 0;       // standard deviation of a pixel over its brightness, at the mean brightness
 };
 
 struct Topography {
@@ -71,21 +89,24 @@ struct Topography {
     // Height of the focus curve's maximum over its mean in standard deviations of the curve's noise:
     // dimensionless; infinite on a stack without any noise.
     Grid<double> contrast;
+    // Standard deviation of the height that the images' noise brings, mm; NaN: not measured.
+    Grid<double> height_noise;
     // RMS distance of the curve from a Gaussian over the range around its maximum, in units of the maximum.
     Grid<double> fit_residual;
     // Local maxima, each the largest within the range around it, that stand at least half as high above the curve's
     // mean as the largest; 4 means "or more".
     Grid<std::uint16_t> peaks;
     Grid<PointState> state;
-    // Every pixel from the image nearest its height; where nothing was measured, from the image in which the focus
-    // measure is largest. In the images' unit; as many channels as they have.
+    // Every pixel from the two images around its height, linear between them; where nothing was measured, from those
+    // around the largest value of the focus measure. In the images' unit; as many channels as they have.
     Channels all_in_focus;
+    StackFigures stack;
 };
 
 // Evaluates a stack whose images come one at a time, in one pass. With r = ceil(3 smoothing_steps), R =
 // peak_range_steps and C channels it holds, however long the stack, for every pixel about 4 bytes for each of
-// C (2r + 2R + 2) values of images and 2r + 2R + 2 of curves, and 100 + 50 C bytes besides: 280 MB for 1000 x 1000
-// grey pixels with the default options, 1.2 GB with smoothing_steps = 20 (measured: 1.2 GB).
+// C (2r + 2R + 2) values of images and 2r + 2R + 2 of curves, and 140 + 50 C bytes besides: 320 MB for 1000 x 1000
+// grey pixels with smoothing_steps = 3, 1.2 GB with 20; and 128 MB at most for its probes.
 class StackEvaluator {
   public:
     // `make_planes` makes what does the work: the host's cores unless a device is given. Throws InputError where an
@@ -105,12 +126,16 @@ class StackEvaluator {
     void check(const Channels& image, double z) const;
     void begin(const Channels& first);
     void advance(bool all_taken);
+    StackFigures judge_stack() const;
+    PointState judge(const focus::f64::CurveRecord& curve, double rise, double noise, int peaks,
+                     const StackFigures& figures) const;
 
     TopographyOptions options_;
     FocusMeasure measure_;
     FocusWindow window_;
     std::vector<double> axial_weights_;
     FocusPlanesMaker make_planes_;
+    std::optional<FocusProbes> probes_;   // from the first image on
     std::unique_ptr<FocusPlanes> planes_; // from the first image on
     int columns_ = 0;
     int rows_ = 0;
@@ -122,10 +147,9 @@ class StackEvaluator {
     int followed_ = 0;
 };
 
-// The smallest contrast that counts as a peak among so many images. The largest of n normal values exceeds t
-// standard deviations with probability below n exp(-t^2 / 2) / 2, the union bound with Chernoff's tail;
-// solved for t.
-double contrast_threshold(int images, double false_peak_rate);
+// Standard deviation of the average along z, in steps, that suits focus curves of this standard deviation in steps
+// before any image is there: half of their half width, or a thirtieth of the scan.
+double suitable_smoothing(double curve_width_steps, int images);
 
 // Gives outliers the median height of their neighbours, and marks them. An outlier is a measured point with at least 5
 // of its 8 neighbours measured whose distance from their median exceeds 6 robust standard deviations (1.4826 times the

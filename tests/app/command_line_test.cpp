@@ -205,6 +205,8 @@ TEST(CommandLine, DocumentationIsThatOfTheProgram) {
     EXPECT_EQ(read_file(std::filesystem::path(VKFV_SOURCE_DIR) / "docs/commands.md"),
               command_line::reference_markdown())
         << "docs/commands.md is stale. Renew it: " VKFV_BINARY_DIR "/vkfv help --markdown > docs/commands.md";
+    EXPECT_EQ(run_program({"help", "--markdown"}, fresh_folder("page")).standard_output,
+              command_line::reference_markdown());
 }
 
 // Exit code of a shell's command; what it prints is in the file `printed`.
@@ -246,7 +248,7 @@ TEST(CommandLine, BashCompletes) {
         {"vkfv surface x --s_", "--s_filter_um\n"},
         {"vkfv --surface x --fi", "--filter\n"},
         {"vkfv stack x --s_", "\n"},
-        {"vkfv surface x --filter sp", "spline\n"},
+        {"vkfv surface x --filter sp", "spline\nspline-mirrored\n"},
         {"vkfv check x --traversal ''", "auto\nray-query\nquadtree\nbvh\n"},
         {"vkfv check de", "demo one.toml\n"},
         {"vkfv stack x --out de", "demo one.toml\n"},

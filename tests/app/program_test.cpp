@@ -1,6 +1,8 @@
 // The program's commands from end to end, on the device at hand.
 #include "app/program.hpp"
+#include "core/units.hpp"
 #include "images/image_file.hpp"
+#include "surface_files/surface_file.hpp"
 
 #include <fmt/format.h>
 #include <gmock/gmock.h>
@@ -162,7 +164,7 @@ TEST(Program, TopographyEvaluatesAStackAnew) {
     // heights.
     const auto stack =
         run_program({"--stack", "c.toml", "--rays", "2e5", "--set", "topography.smoothing_steps=0", "--set",
-                     "topography.false_peak_rate=0.999", "--set", "topography.focus_measure=standard-deviation"},
+                     "topography.false_peak_rate=1", "--set", "topography.focus_measure=standard-deviation"},
                     folder);
     ASSERT_EQ(stack.exit_code, 0) << stack.standard_error;
     const auto results = nlohmann::json::parse(read_file(folder / "out/results.json"));
@@ -197,6 +199,32 @@ TEST(Program, TopographyEvaluatesAStackAnew) {
         const auto changed = run_program({"--topography", "out", "--set", setting}, folder);
         EXPECT_EQ(changed.exit_code, 2) << setting;
         EXPECT_THAT(changed.standard_error, HasSubstr("traced with"));
+    }
+}
+
+TEST(Program, HeightsAreWrittenInEveryFormatAndAllMapsInOneFile) {
+    const auto folder = fresh_folder("formats");
+    write_file(folder / "c.toml", small_configuration);
+    const auto stack = run_program({"stack", "c.toml", "--rays", "2e5", "--quiet", "--set",
+                                    "topography.false_peak_rate=1", "--set", "topography.smoothing_steps=0", "--set",
+                                    "output.surfaces=[\"tiff\", \"gwy\", \"gsf\", \"npy\", \"csv\", \"sdf\"]"},
+                                   folder);
+    ASSERT_EQ(stack.exit_code, 0) << stack.standard_error;
+    const auto expected = surface::read_surface(folder / "out/topography.tif").map;
+    const surface::ImageScale scale{.pitch = expected.pitch_x, .unit = mm_per_um};
+    for (const char* name : {"gwy", "gsf", "npy", "csv", "sdf"}) {
+        const auto file = folder / (std::string("out/topography.") + name);
+        const auto map = surface::read_surface(file, name == std::string("npy") ? scale : surface::ImageScale{}).map;
+        ASSERT_EQ(map.height.values.size(), expected.height.values.size()) << name;
+        for (std::size_t k = 0; k < map.height.values.size(); ++k) {
+            const double here = map.height.values[k], there = expected.height.values[k];
+            EXPECT_TRUE(std::isnan(here) ? std::isnan(there) : std::abs(here - there) < 1e-9) << name; // floats of mm
+        }
+    }
+    const auto all = read_file(folder / "out/topography.gwy");
+    for (const char* title :
+         {"Height", "True height", "Deviation", "Noise of the height", "Contrast", "All in focus"}) {
+        EXPECT_THAT(all, HasSubstr(title));
     }
 }
 

@@ -1,5 +1,6 @@
 // Writes the corpus of the surface readers' fuzzers into a folder: small whole files of every format, and the same
 // truncated and with headers that lie.
+#include "support/instrument_files.hpp"
 #include "support/surface_files.hpp"
 #include "surface/exr_bytes.hpp"
 #include "surface_files/surface_file.hpp"
@@ -11,10 +12,12 @@
 #include <iterator>
 #include <limits>
 #include <string>
+#include <utility>
 
 namespace {
 
 using namespace vkfv::surface;
+using namespace std::string_literals;
 namespace fs = std::filesystem;
 
 std::string bytes_of(const fs::path& file) {
@@ -86,7 +89,8 @@ int main(int argument_count, char** arguments) {
                                 .version = "2",
                                 .date = "2026-01-31T12:34:56Z",
                                 .comment = "two\nlines"};
-    for (const char* reader : {"x3p", "sur", "sdf", "al3d", "height_image"})
+    for (const char* reader : {"x3p", "sur", "sdf", "al3d", "height_image", "height_table", "gsf", "gwy", "npy", "opd",
+                               "metropro", "nms", "plu"})
         fs::create_directories(root / reader);
     const auto whole = [&](const char* reader, const std::string& name, bool gaps) {
         write_surface(root / reader / name, wave(gaps), provenance);
@@ -138,6 +142,33 @@ int main(int argument_count, char** arguments) {
     // The third and the second tag's values.
     write(root / "al3d" / "rows_2_31", al3d().replace(17 + 2 * 52 + 20, 10, "2147483648"));
     write(root / "al3d" / "tags_many", al3d().replace(17 + 52 + 20, 8, "99999999"));
+
+    const std::string gsf = whole("gsf", "gaps.gsf", true);
+    write(root / "gsf" / "columns_2_31", replaced(gsf, "XRes = 5", "XRes = 2147483648"));
+    write(root / "gsf" / "unit_nm", replaced(gsf, "XYUnits = m", "XYUnits = nm"));
+    whole("gwy", "full.gwy", false);
+    const std::string gwy = whole("gwy", "gaps.gwy", true);
+    const auto columns_of_gwy = gwy.find("xres") + 6, points_of_gwy = gwy.find("data\0D"s) + 6;
+    write(root / "gwy" / "columns_largest", with(gwy, columns_of_gwy, std::numeric_limits<std::int32_t>::max()));
+    write(root / "gwy" / "points_largest", with(gwy, points_of_gwy, 0xffffffffu));
+    const std::string npy = whole("npy", "gaps.npy", true);
+    write(root / "npy" / "columns_2_31", replaced(npy, "5)", "2147483648)"));
+    write(root / "npy" / "by_columns", replaced(npy, "False", "True "));
+    write(root / "npy" / "integers", replaced(npy, "<f8", ">i2"));
+    whole("height_table", "gaps.csv", true);
+    write(root / "height_table" / "points", "0,0,1\n1,0,2\n0,1,3\n1,1,4\n");
+    write(root / "height_table" / "decimal_commas", "1,5;2\n3;4,25\n");
+    write(root / "height_table" / "gwyddion", "# Width: 2 nm\n# Height: 3 nm\n# Value units: m\n1e-6 2e-6\n* 4e-6\n");
+    for (const auto& [reader, ending] :
+         {std::pair{"opd", "opd"}, {"metropro", "dat"}, {"nms", "nms"}, {"plu", "plu"}}) {
+        const std::string bytes = vkfv::test::instrument_file(ending);
+        write(root / reader / "whole", bytes);
+        write_cuts(root / reader, "whole", bytes);
+    }
+    write(root / "plu" / "rows_largest", with(vkfv::test::plu_file(), 500, 0xffffffffu));
+    write(root / "nms" / "offset_largest", with(vkfv::test::nms_file(), 1352, 0xffffffffu));
+    write(root / "opd" / "directory_largest", with(vkfv::test::opd_file(), 20, 0xffffffffu));
+    write(root / "metropro" / "intensities_largest", with(vkfv::test::metropro_file(), 60, 0xffffffffu));
 
     whole("height_image", "full.tif", false);
     const std::string tiff = whole("height_image", "gaps.tif", true);

@@ -1,5 +1,6 @@
 // Every file that vkfv writes, as Gwyddion's own import modules see it.
 #include "gwyddion/gwyddion.hpp"
+#include "support/instrument_files.hpp"
 #include "support/surface_files.hpp"
 #include "surface_files/surface_file.hpp"
 
@@ -9,6 +10,7 @@
 
 #include <cmath>
 #include <limits>
+#include <utility>
 #include <vector>
 
 namespace vkfv::surface {
@@ -129,6 +131,46 @@ TEST_F(Gwyddion, Tiff) {
     write_surface(folder_ / "letter.tif", letter());
     expect_same(load(folder_ / "letter.tif", "tiffbig"), letter(),
                 {.unit = 1e3, .height = 8 * std::ldexp(1, -24), .pitch = std::numeric_limits<double>::infinity()});
+}
+
+TEST_F(Gwyddion, Gwy) {
+    write_surface(folder_ / "letter.gwy", letter());
+    expect_same(load(folder_ / "letter.gwy", "gwyfile"), letter(), {});
+}
+
+// Float32 metres.
+TEST_F(Gwyddion, Gsf) {
+    write_surface(folder_ / "letter.gsf", letter());
+    const GwyddionFile container = load(folder_ / "letter.gsf", "gsffile");
+    expect_same(container, letter(), {.height = 6e-6 * std::ldexp(1, -24)});
+}
+
+// Gwyddion's own export of what it read comes back the same.
+TEST_F(Gwyddion, GwyAsGwyddionWritesIt) {
+    write_surface(folder_ / "letter.x3p", letter());
+    const GwyddionFile container = test::load_in_gwyddion(folder_ / "letter.x3p");
+    GError* error = nullptr;
+    ASSERT_NE(gwy_file_save(container.get(), (folder_ / "saved.gwy").c_str(), GWY_RUN_NONINTERACTIVE, &error), 0)
+        << (error ? error->message : "");
+    const HeightMap map = read_surface(folder_ / "saved.gwy").map;
+    for (std::size_t k = 0; k < map.height.values.size(); ++k)
+        if (const double z = letter().height.values[k]; std::isnan(z))
+            EXPECT_TRUE(std::isnan(map.height.values[k])) << k;
+        else
+            EXPECT_NEAR(map.height.values[k], z, 1e-17) << k;
+    EXPECT_NEAR(map.pitch_x, letter().pitch_x, 1e-17);
+    EXPECT_NEAR(map.pitch_y, letter().pitch_y, 1e-17);
+}
+
+// Files of instruments that are read alone.
+TEST_F(Gwyddion, FilesOfInstruments) {
+    for (const auto& [ending, import] : {std::pair{"plu", "sensofar"}, {"opd", "opdfile"}, {"dat", "metropro"}}) {
+        const auto file = folder_ / (std::string("a.") + ending);
+        write_file(file, test::instrument_file(ending));
+        const HeightMap map = read_surface(file).map;
+        SCOPED_TRACE(ending);
+        expect_same(load(file, import), map, {.height = 1e-14, .pitch = 1e-7});
+    }
 }
 
 } // namespace

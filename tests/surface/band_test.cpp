@@ -9,6 +9,8 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <stdexcept>
+#include <string_view>
 
 namespace vkfv::surface {
 namespace {
@@ -49,6 +51,21 @@ TEST(Band, TakesTheSplineIfAsked) {
     const HeightMap spline = scale_limited(map, {.s_filter = 0.005, .spline = true});
     expect_same(spline, spline_low_pass(level, 0.005));
     EXPECT_NE(spline.height(30, 20), gaussian_low_pass(level, 0.005).height(30, 20));
+}
+
+TEST(Band, TakesAndSaysTheNameOfItsFilter) {
+    const auto map = waves();
+    for (const char* name : filter_names) {
+        Band band{.s_filter = 0.005, .form = {.kind = Form::Kind::none}};
+        take_filter(band, name);
+        EXPECT_STREQ(filter_name(band), name);
+        const std::string_view word = name;
+        expect_same(scale_limited(map, band), word == "gaussian" ? gaussian_low_pass(map, 0.005)
+                                              : word == "spline" ? spline_low_pass(map, 0.005, SplineEnds::natural)
+                                                                 : spline_low_pass(map, 0.005, SplineEnds::mirrored));
+    }
+    Band band;
+    EXPECT_THROW(take_filter(band, "box"), std::invalid_argument);
 }
 
 TEST(Band, LeavesNoRoundingOfAConstant) {

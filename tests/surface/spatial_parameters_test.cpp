@@ -112,6 +112,20 @@ TEST(SpatialParameters, OfSmoothedNoiseFallAtTheKernelsLength) {
     EXPECT_GT(std::abs(p.std_angle), pi / 4);
 }
 
+TEST(SpatialParameters, DoNotDependOnTheUnitOfHeights) {
+    // Down to an Sq of 0.01 nm, whose squares in mm are 1e-16 of a pair.
+    for (const bool gaps : {false, true}) {
+        auto map = egg_box(0.03, 0.045, gaps);
+        const SpatialParameters p = spatial_parameters(map);
+        for (double& z : map.height.values)
+            z *= 1e-8;
+        const SpatialParameters small = spatial_parameters(map);
+        EXPECT_NEAR(small.sal, p.sal, 1e-9 * p.sal);
+        EXPECT_NEAR(small.str, p.str, 1e-9);
+        EXPECT_NEAR(small.std_angle, p.std_angle, 1e-9);
+    }
+}
+
 TEST(SpatialParameters, OfAProfileAreThoseAlongIt) {
     const double period = 0.025;
     const auto wave = [=](double x, double y) { return std::cos(2 * pi * (x + y) / period); };

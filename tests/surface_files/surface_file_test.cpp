@@ -560,7 +560,7 @@ TEST_F(SurfaceFiles, HostileSurIsRefused) {
     refused(with(good, 124, 0.0f), "spacing along y");
     refused(with(good, 128, 0.0f), "step of z");
     refused(with(good, 98, std::int16_t{8}), "bits a point");
-    refused(with(good, 18, std::int16_t{1}), "a surface");
+    refused(with(good, 18, std::int16_t{4}), "a surface");
     refused(with_text(good, 212, "V", 16), "unit of length");
     refused(with(good, 334, std::int16_t{32767}), "bytes");
 }

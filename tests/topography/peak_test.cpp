@@ -146,7 +146,7 @@ TEST(Peak, OutsideTheRangeThereIsNone) {
     const PeakFit fit = locate_peak(curve, plan, 3, 3);
     EXPECT_EQ(fit.found, 0);
     EXPECT_EQ(fit.offset, 0);
-    EXPECT_EQ(follow_curve(curve, plan, empty_curve(), 3, 7).sharpest, 3);
+    EXPECT_EQ(follow_curve(curve, plan, empty_curve(), 3, 7).place, 3);
     // The wrong twin: the parabola does have a maximum.
     const ParabolaFit parabola = fit_parabola(curve, 3, 3, 0);
     EXPECT_LT(parabola.bend, 0);

@@ -87,7 +87,7 @@ TEST(Reconstruct, FindsTheHeightsOfASyntheticStack) {
         EXPECT_EQ(topography.height.x0, stack.truth.x0);
         EXPECT_EQ(topography.height.pitch_y, pitch);
         const Deviation deviation = compare(topography.height, stack.truth);
-        EXPECT_GT(deviation.measured_share, 0.98) << measure;
+        EXPECT_GT(deviation.measured_share, 0.93) << measure; // of 31 images of so much noise
         EXPECT_GT(deviation.correlation, 0.95) << measure;
         // The window averages the heights over 14 um of waves of 96 and 48 um: sinc(14/96) sinc(14/48) = 0.84
         // for a focus measure with equal weights, nearer 1 as sharp pixels weigh more.
@@ -123,18 +123,18 @@ TEST(Reconstruct, HeightsAreNotMirroredOrTransposed) {
 
 TEST(Reconstruct, HeightsFromShuffledFramesDoNotCorrelateWithTheTruth) {
     // One shuffle maps heights to other heights by chance, with a correlation of some 0.5 over the few points
-    // that still have a peak: the mean over 200 shuffles is 0 to 0.5 / sqrt(200) = 0.035, and 0.1 is 2.8 of
+    // that still have a peak: the mean over 60 shuffles is 0 to 0.5 / sqrt(60) = 0.065, and 0.18 is 2.8 of
     // these. The seed is fixed.
     SyntheticStack stack = make_stack(300, 3);
     std::mt19937 random(1);
     double sum = 0;
-    constexpr int shuffles = 200;
+    constexpr int shuffles = 60;
     for (int k = 0; k < shuffles; ++k) {
         std::shuffle(stack.images.begin(), stack.images.end(), random);
         const Deviation deviation = compare(evaluate(stack).height, stack.truth);
         sum += std::isfinite(deviation.correlation) ? deviation.correlation : 0;
     }
-    EXPECT_LT(std::abs(sum / shuffles), 0.1);
+    EXPECT_LT(std::abs(sum / shuffles), 0.18);
 }
 
 TEST(Reconstruct, NoiseWithoutTextureIsNotMeasured) {
@@ -156,8 +156,8 @@ TEST(Reconstruct, NoiseWithoutTextureIsNotMeasured) {
         for (const double smoothing_steps : {0.0, 3.0})
             EXPECT_LE(measured(focus_measure_from_name(measure), smoothing_steps, 1e-3), pixels * pixels / 100)
                 << measure;
-    // The wrong twin: with hardly any test for significance many of the same pixels get a height.
-    EXPECT_GT(measured(FocusMeasure::modified_laplacian, 0, 0.99), pixels * pixels / 10);
+    // The wrong twin: without the test for significance many of the same pixels get a height.
+    EXPECT_GT(measured(FocusMeasure::modified_laplacian, 0, 1), pixels * pixels / 10);
 }
 
 TEST(Reconstruct, PeaksBeyondTheScanAreNotMeasured) {
@@ -219,7 +219,7 @@ MeanHeight mean_height(const Topography& topography) {
 TEST(Reconstruct, TextureWeakerThanTheNoiseIsMeasuredInTheMiddleOfALongScan) {
     for (const auto measure : {FocusMeasure::modified_laplacian, FocusMeasure::wavelet}) {
         const auto found = mean_height(evaluate(level_stack(61, 30.4, 6, 0.8), {.focus_measure = measure}));
-        EXPECT_GT(found.measured_share, 0.9) << name_of(measure);
+        EXPECT_GT(found.measured_share, 0.7) << name_of(measure);
         EXPECT_NEAR(found.mean, 30.4, 0.3) << name_of(measure);
     }
 }
@@ -364,7 +364,7 @@ TEST(Reconstruct, AnImageAtATimeGivesWhatTheWholeStackGives) {
                                     .smoothing_steps = 0.6};
     const Topography streamed = evaluate(stack, options);
     const int images = static_cast<int>(stack.images.size());
-    const auto weights = axial_weights(options.smoothing_steps);
+    const auto weights = axial_weights(*options.smoothing_steps);
     const auto averaged = [&](const std::vector<Grid<float>>& planes, int at) {
         Grid<float> mean(pixels, pixels);
         for (const Share& share : axial_shares(weights, at, images))
@@ -402,10 +402,12 @@ TEST(Reconstruct, AnImageAtATimeGivesWhatTheWholeStackGives) {
         // The images are scaled by a power of two; curves differ in their float32 sums' last digits, over curvatures of
         // the peak of some 0.02: 1e-5 steps of 0.8 um.
         EXPECT_NEAR(height, stack.z[0] + 0.0008 * (at + fit.offset), 1e-5 * 0.0008);
-        const auto nearest = static_cast<std::size_t>(std::lround(at + fit.offset));
-        if (std::abs(at + fit.offset - std::floor(at + fit.offset) - 0.5) > 1e-4) {
-            EXPECT_EQ(streamed.all_in_focus[0].values[p], stack.images[nearest].values[p]);
-        }
+        const double place = std::clamp(at + fit.offset, 0.0, images - 1.0);
+        const auto before = std::min(static_cast<std::size_t>(place), static_cast<std::size_t>(images) - 2);
+        const double share = place - static_cast<double>(before);
+        const double blended =
+            (1 - share) * stack.images[before].values[p] + share * stack.images[before + 1].values[p];
+        EXPECT_NEAR(streamed.all_in_focus[0].values[p], blended, 1e-3 * blended);
         ++compared;
     }
     EXPECT_GT(compared, pixels * pixels / 2);
@@ -420,20 +422,26 @@ TEST(Reconstruct, LimitsOfQualityTakePointsOut) {
                       std::isfinite(topography.height.height.values[k]));
         return std::ranges::count(topography.state.values, state);
     };
-    const TopographyOptions options{.smoothing_steps = 1};
-    const Topography all = evaluate(stack, options);
+    const Topography all = evaluate(stack, {.smoothing_steps = 1, .false_peak_rate = 1, .most_rival = 1});
     // Half the points have less than the median.
     std::vector<double> contrasts = all.contrast.values, residuals = all.fit_residual.values;
     std::ranges::nth_element(contrasts, contrasts.begin() + pixels * pixels / 2);
     std::ranges::nth_element(residuals, residuals.begin() + pixels * pixels / 2);
-    EXPECT_NEAR(
-        count({.smoothing_steps = 1, .least_contrast = contrasts[pixels * pixels / 2]}, PointState::low_contrast),
-        pixels * pixels / 2, pixels * pixels / 20); // some have no peak at all
-    EXPECT_NEAR(
-        count({.smoothing_steps = 1, .most_fit_residual = residuals[pixels * pixels / 2]}, PointState::poor_fit),
-        pixels * pixels / 2, pixels * pixels / 20);
-    EXPECT_EQ(count({.smoothing_steps = 1, .most_peaks = 1}, PointState::many_peaks),
-              std::ranges::count_if(all.peaks.values, [](int peaks) { return peaks > 1; }));
+    EXPECT_NEAR(count({.smoothing_steps = 1,
+                       .false_peak_rate = 1,
+                       .most_rival = 1,
+                       .least_contrast = contrasts[pixels * pixels / 2]},
+                      PointState::low_contrast),
+                pixels * pixels / 2, pixels * pixels / 20); // some have no peak at all
+    EXPECT_NEAR(count({.smoothing_steps = 1,
+                       .false_peak_rate = 1,
+                       .most_rival = 1,
+                       .most_fit_residual = residuals[pixels * pixels / 2]},
+                      PointState::poor_fit),
+                pixels * pixels / 2, pixels * pixels / 20);
+    EXPECT_EQ(
+        count({.smoothing_steps = 1, .false_peak_rate = 1, .most_rival = 1, .most_peaks = 1}, PointState::many_peaks),
+        std::ranges::count_if(all.peaks.values, [](int peaks) { return peaks > 1; }));
 }
 
 TEST(Reconstruct, RepairsOutliersOnlyWhenAsked) {

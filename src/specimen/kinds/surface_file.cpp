@@ -16,7 +16,9 @@
 namespace vkfv::specimen {
 namespace {
 
-const FileKey surface_key = needed_file_key("The surface: X3P, SUR, SDF, AL3D, or a TIFF or OpenEXR image of heights.");
+const FileKey surface_key =
+    needed_file_key("The surface: any file that `vkfv surface` reads: X3P, SUR, SDF, GWY, a TIFF "
+                    "or OpenEXR image of heights and others.");
 const NumberKey surface_pitch_key("pitch_um", NumberRange::positive(), Default::in_words("the file's own"),
                                   "Distance of the pixels of an image that has no scale of its own.");
 const NumberKey size_key("size_mm", NumberRange::positive(), Default::in_words("all of the file"),

@@ -1,0 +1,20 @@
+#version 460
+#extension GL_GOOGLE_include_directive : require
+// Adds an image to the sum that tells the stack's brightness.
+layout(local_size_x = 128) in;
+
+#include "focus/device.glsl"
+
+layout(set = 0, binding = BINDING_IMAGE, scalar) readonly buffer Latest { float latest[]; };
+layout(set = 0, binding = BINDING_BRIGHTNESS, scalar) buffer Brightness { float brightness[]; };
+
+layout(push_constant, scalar) uniform Push { ImageSize size; };
+
+void main() {
+    uint k = invocation();
+    if (k < size.pixels) {
+        for (uint channel = 0u; channel < size.channels; ++channel) {
+            brightness[k] += latest[channel * size.pixels + k] / float(size.channels);
+        }
+    }
+}

@@ -1,0 +1,20 @@
+// GSF, Gwyddion Simple Field: lines of text and float32 (http://gwyddion.net/documentation/user-guide-en/gsf.html).
+#pragma once
+
+#include "surface_files/surface_file.hpp"
+
+#include <string>
+#include <string_view>
+
+namespace vkfv::surface {
+
+bool looks_like_gsf(std::string_view bytes);
+
+// Heights in a unit of length over a grid in one; NaN is not measured. XOffset and YOffset are the position of the
+// point with the lowest x and y. Throws InputError.
+SurfaceFile parse_gsf(std::string_view bytes, const std::filesystem::path& file);
+
+// Float32 metres. RunError for a map without extent.
+std::string gsf_bytes(const HeightMap& map, const Provenance& provenance);
+
+} // namespace vkfv::surface

@@ -1,0 +1,29 @@
+// GWY, Gwyddion's own files (http://gwyddion.net/documentation/user-guide-en/gwyfile-format.html).
+#pragma once
+
+#include "surface_files/surface_file.hpp"
+
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace vkfv::surface {
+
+bool looks_like_gwy(std::string_view bytes);
+
+// The first channel whose values are lengths over lengths; what its mask covers is not measured. XOffset and YOffset
+// are the position of the point with the lowest x and y. Throws InputError.
+SurfaceFile parse_gwy(std::string_view bytes, const std::filesystem::path& file);
+
+// One of the images of a file.
+struct GwyChannel {
+    std::string title;
+    std::string unit = "m"; // of the values; with "m" the map's mm are converted, others are written as they are
+    HeightMap map;
+};
+
+// Float64; with a mask where points are not measured.
+std::string gwy_bytes(const std::vector<GwyChannel>& channels, const Provenance& provenance);
+std::string gwy_bytes(const HeightMap& map, const Provenance& provenance);
+
+} // namespace vkfv::surface

@@ -1,0 +1,156 @@
+#include "surface_files/npy.hpp"
+
+#include "core/byte_reader.hpp"
+#include "core/units.hpp"
+#include "surface_files/image_scale.hpp"
+#include "surface_files/lengths.hpp"
+
+#include <algorithm>
+
+namespace vkfv::surface {
+namespace {
+
+constexpr std::string_view npy_magic = "\x93NUMPY";
+constexpr std::size_t major_at = 6, length_at = 8, npy_alignment = 64;
+constexpr std::string_view blanks = " \t\n";
+
+// The text behind "'key':" of the header, which is a dictionary as Python writes it.
+std::string_view value_of(const ByteReader& file, std::string_view header, const char* key) {
+    for (const char quote : {'\'', '"'}) {
+        const std::string name = fmt::format("{}{}{}", quote, key, quote);
+        const auto at = header.find(name);
+        if (at == std::string_view::npos)
+            continue;
+        const auto colon = header.find_first_not_of(blanks, at + name.size());
+        if (colon == std::string_view::npos || header[colon] != ':')
+            break;
+        const auto begin = header.find_first_not_of(blanks, colon + 1);
+        if (begin != std::string_view::npos)
+            return header.substr(begin);
+    }
+    file.fail(length_at, key, "nothing", "a header of NumPy with it");
+}
+
+struct Shape {
+    std::uint64_t rows, columns;
+};
+
+Shape shape_of(const ByteReader& file, std::string_view text) {
+    const auto end = text.find(')');
+    const auto comma = text.find(',');
+    std::optional<std::uint64_t> rows, columns;
+    if (text.starts_with('(') && end != std::string_view::npos && comma < end) {
+        std::string_view second = text.substr(comma + 1, end - comma - 1);
+        second = second.substr(0, second.find_last_not_of(" \t\n,") + 1); // a comma at the end is Python's too
+        rows = number_in<std::uint64_t>(text.substr(1, comma - 1));
+        columns = number_in<std::uint64_t>(second);
+    }
+    if (!rows || !columns)
+        file.fail(length_at, "shape", plain_line(text.substr(0, std::min<std::size_t>(end, 60))),
+                  "two dimensions, rows and columns", "Save one height map as an array of two dimensions.");
+    return {*rows, *columns};
+}
+
+struct Element {
+    char kind;         // 'f', 'i' or 'u'
+    std::size_t bytes; // of one
+    bool swapped;      // big-endian
+};
+
+Element element_of(const ByteReader& file, std::string_view text) {
+    const std::string_view name = text.substr(0, std::min<std::size_t>(text.size(), 5)); // '<f8'
+    const bool order = name.size() == 5 && std::string_view("<>|=").find(name[1]) != std::string_view::npos;
+    if (order && std::string_view("fiu").find(name[2]) != std::string_view::npos && (name[4] == '\'' || name[4] == '"'))
+        for (const std::size_t bytes : {1, 2, 4, 8})
+            if (static_cast<std::size_t>(name[3] - '0') == bytes && !(name[2] == 'f' && bytes < 4))
+                return {name[2], bytes, name[1] == '>'};
+    file.fail(length_at, "descr", plain_line(name), "f4, f8, or integers i or u of 1, 2, 4 or 8 bytes",
+              "Save the array as float64.");
+}
+
+template <class Stored>
+double value_at(std::string_view points, std::size_t index, bool swapped) {
+    std::array<char, sizeof(Stored)> bytes{};
+    std::ranges::copy(points.substr(index * sizeof(Stored), sizeof(Stored)), bytes.begin());
+    if (swapped)
+        std::ranges::reverse(bytes);
+    return static_cast<double>(std::bit_cast<Stored>(bytes));
+}
+
+using ValueAt = double (*)(std::string_view, std::size_t, bool);
+
+ValueAt reader_of(const Element& type) {
+    if (type.kind == 'f')
+        return type.bytes == 4 ? value_at<float> : value_at<double>;
+    const bool with_sign = type.kind == 'i';
+    switch (type.bytes) {
+    case 1:
+        return with_sign ? value_at<std::int8_t> : value_at<std::uint8_t>;
+    case 2:
+        return with_sign ? value_at<std::int16_t> : value_at<std::uint16_t>;
+    case 4:
+        return with_sign ? value_at<std::int32_t> : value_at<std::uint32_t>;
+    default:
+        return with_sign ? value_at<std::int64_t> : value_at<std::uint64_t>;
+    }
+}
+
+} // namespace
+
+bool looks_like_npy(std::string_view bytes) {
+    return bytes.starts_with(npy_magic);
+}
+
+SurfaceFile parse_npy(std::string_view bytes, const std::filesystem::path& path, const ImageScale& scale) {
+    check_scale(path, scale);
+    const ByteReader file(bytes, path);
+    const int major = file.at<std::uint8_t>(major_at, "version");
+    if (major < 1 || major > 3)
+        file.fail(major_at, "version", fmt::format("{}", major), "1, 2 or 3");
+    const std::uint64_t length = major == 1 ? file.at<std::uint16_t>(length_at, "length of the header")
+                                            : file.at<std::uint32_t>(length_at, "length of the header");
+    const std::uint64_t header_at = length_at + (major == 1 ? sizeof(std::uint16_t) : sizeof(std::uint32_t));
+    const auto header = file.bytes(header_at, length, "header");
+    const Element type = element_of(file, value_of(file, header, "descr"));
+    const Shape shape = shape_of(file, value_of(file, header, "shape"));
+    const std::string_view order = value_of(file, header, "fortran_order");
+    if (!order.starts_with("True") && !order.starts_with("False"))
+        file.fail(length_at, "fortran_order", plain_line(order.substr(0, 10)), "True or False");
+    const bool by_columns = order.starts_with("True");
+    file.check_size(shape.columns, shape.rows);
+    const auto points = file.bytes(header_at + length, shape.columns * shape.rows * type.bytes, "points");
+
+    SurfaceFile result;
+    result.map.pitch_x = result.map.pitch_y = *scale.pitch;
+    Grid<double>& heights = result.map.height;
+    heights = Grid<double>(static_cast<int>(shape.columns), static_cast<int>(shape.rows));
+    const ValueAt value = reader_of(type);
+    for (std::size_t line = 0; line < shape.rows; ++line)
+        for (std::size_t column = 0; column < shape.columns; ++column) {
+            const std::size_t index = by_columns ? column * shape.rows + line : line * shape.columns + column;
+            heights(static_cast<int>(column), static_cast<int>(shape.rows - 1 - line)) =
+                height_from(value(points, index, type.swapped), *scale.unit);
+        }
+    return result;
+}
+
+std::string npy_bytes(const HeightMap& map) {
+    std::string header =
+        fmt::format("{{'descr': '<f8', 'fortran_order': False, 'shape': ({}, {}), }}", map.rows(), map.columns());
+    const std::size_t fixed = length_at + sizeof(std::uint16_t);
+    header.resize((fixed + header.size()) / npy_alignment * npy_alignment + npy_alignment - fixed, ' ');
+    header.back() = '\n';
+    std::string bytes(npy_magic);
+    bytes += std::string("\x01\0", 2);
+    append(bytes, static_cast<std::uint16_t>(header.size()));
+    bytes += header;
+    bytes.reserve(bytes.size() + map.height.values.size() * sizeof(double));
+    for (int row = map.rows() - 1; row >= 0; --row)
+        for (int column = 0; column < map.columns(); ++column) {
+            const double mm = map.height(column, row);
+            append(bytes, std::isfinite(mm) ? mm / mm_per_um : std::numeric_limits<double>::quiet_NaN());
+        }
+    return bytes;
+}
+
+} // namespace vkfv::surface

@@ -1,0 +1,348 @@
+#include "topography/focus_probes.hpp"
+
+#include "core/units.hpp"
+
+#include <algorithm>
+#include <atomic>
+#include <cmath>
+#include <cstdint>
+#include <functional>
+#include <limits>
+#include <numeric>
+#include <random>
+#include <thread>
+
+namespace vkfv::topography {
+namespace {
+
+constexpr int probes_a_side = 16;
+constexpr int reach = 2; // of the measures' masks beyond the window
+constexpr std::size_t most_values = std::size_t{1} << 25;
+
+// Calls task(k) for 0 .. count - 1, on all cores; tasks are of unequal length.
+template <class Task>
+void in_parallel(int count, const Task& task) {
+    std::atomic<int> next = 0;
+    const auto work = [&] {
+        for (int k = next++; k < count; k = next++) {
+            task(k);
+        }
+    };
+    const int threads = std::min(count, static_cast<int>(std::max(1u, std::thread::hardware_concurrency())));
+    std::vector<std::jthread> others;
+    for (int k = 1; k < threads; ++k) {
+        others.emplace_back(work);
+    }
+    work();
+}
+
+struct Shape {
+    double unimodality = 0;
+    double relief = 0;
+};
+
+Shape shape_of(const std::vector<double>& values) {
+    auto shape = focus::f64::empty_curve();
+    for (std::size_t k = 0; k < values.size(); ++k) {
+        shape = focus::f64::follow_shape(shape, values[k], static_cast<int>(k));
+        shape.sum += values[k];
+    }
+    const bool inside = shape.highest > values.front() && shape.highest > values.back();
+    return inside ? Shape{.unimodality = focus::f64::unimodality(shape),
+                          .relief = focus::f64::relief(shape, static_cast<int>(values.size()))}
+                  : Shape{};
+}
+
+// Beyond the largest of n values the next one lies with the probability 1 / (n + 1), give or take as much: a few more
+// of them where the limit is near what curves of few images have.
+int random_orders(double rate, bool cheap, int images) {
+    constexpr int many_images = 64;
+    constexpr double most = 100000;
+    const double times = cheap ? 32 : images <= many_images ? 4 : 1;
+    return static_cast<int>(std::clamp(std::ceil(times / rate), 250.0, most));
+}
+
+std::vector<std::vector<Share>> means_of(const std::vector<double>& axial_weights, int images) {
+    std::vector<std::vector<Share>> means;
+    for (int at = 0; at < images; ++at) {
+        means.push_back(axial_shares(axial_weights, at, images));
+    }
+    return means;
+}
+
+std::vector<double> averaged(const std::vector<double>& values, const std::vector<std::vector<Share>>& means) {
+    std::vector<double> result;
+    for (const auto& shares : means) {
+        double sum = 0;
+        for (const auto& [image, weight] : shares) {
+            sum += weight * values[static_cast<std::size_t>(image)];
+        }
+        result.push_back(sum);
+    }
+    return result;
+}
+
+// Evenly over a side, each with its window and the masks' reach inside the image where it is large enough.
+std::vector<int> middles(int count, int margin) {
+    const int first = std::min(margin, (count - 1) / 2), last = std::max(count - 1 - margin, count / 2);
+    const int places = std::min(probes_a_side, last - first + 1);
+    std::vector<int> result;
+    for (int k = 0; k < places; ++k) {
+        result.push_back(places == 1 ? (first + last) / 2 : first + (last - first) * k / (places - 1));
+    }
+    return result;
+}
+
+// Line through points (x, y), least squares, neither coefficient negative.
+NoiseModel fitted(const std::vector<double>& x, const std::vector<double>& y) {
+    const auto count = static_cast<double>(x.size());
+    const double mean_x = std::accumulate(x.begin(), x.end(), 0.0) / count;
+    const double mean_y = std::accumulate(y.begin(), y.end(), 0.0) / count;
+    double xx = 0, xy = 0;
+    for (std::size_t k = 0; k < x.size(); ++k) {
+        xx += (x[k] - mean_x) * (x[k] - mean_x);
+        xy += (x[k] - mean_x) * (y[k] - mean_y);
+    }
+    const double slope = xx > 0 ? std::max(0.0, xy / xx) : 0;
+    const double constant = mean_y - slope * mean_x;
+    return constant >= 0 ? NoiseModel{.constant = constant, .slope = slope}
+                         : NoiseModel{.constant = 0, .slope = mean_x > 0 ? mean_y / mean_x : 0};
+}
+
+} // namespace
+
+FocusProbes::FocusProbes(int columns, int rows, FocusMeasure measure, const FocusWindow& window)
+    : measure_(measure), window_(window) {
+    const int margin = window.radius() + reach;
+    for (const int row : middles(rows, margin)) {
+        for (const int column : middles(columns, margin)) {
+            Probe& probe = probes_.emplace_back();
+            probe.column = std::max(0, column - margin);
+            probe.row = std::max(0, row - margin);
+            probe.columns = std::min(columns, column + margin + 1) - probe.column;
+            probe.rows = std::min(rows, row + margin + 1) - probe.row;
+            probe.middle_column = column - probe.column;
+            probe.middle_row = row - probe.row;
+        }
+    }
+}
+
+void FocusProbes::add(const Channels& image) {
+    channels_ = static_cast<int>(image.size());
+    ++images_;
+    std::size_t held = 0;
+    for (Probe& probe : probes_) {
+        for (const Grid<float>& channel : image) {
+            for (int row = probe.row; row < probe.row + probe.rows; ++row) {
+                const auto first =
+                    channel.values.begin() + static_cast<std::ptrdiff_t>(channel.index(probe.column, row));
+                probe.values.insert(probe.values.end(), first, first + probe.columns);
+            }
+        }
+        held += probe.values.size();
+    }
+    while (held > most_values && probes_.size() > 1) {
+        held = 0;
+        std::vector<Probe> every_second;
+        for (std::size_t k = 0; k < probes_.size(); k += 2) {
+            held += probes_[k].values.size();
+            every_second.push_back(std::move(probes_[k]));
+        }
+        probes_ = std::move(every_second);
+    }
+}
+
+std::vector<double> FocusProbes::curve(const Probe& probe, const std::vector<int>& order, const Means& means) const {
+    const auto pixels = probe.pixels();
+    Channels mean(static_cast<std::size_t>(channels_), Grid<float>(probe.columns, probe.rows));
+    std::vector<double> values;
+    for (const auto& shares : means) {
+        for (auto& channel : mean) {
+            std::ranges::fill(channel.values, 0.0f);
+        }
+        for (const auto& [image, weight] : shares) {
+            const float* from = probe.values.data() +
+                                static_cast<std::size_t>(order[static_cast<std::size_t>(image)]) * mean.size() * pixels;
+            for (auto& channel : mean) {
+                for (std::size_t k = 0; k < pixels; ++k) {
+                    channel.values[k] += weight * from[k];
+                }
+                from += pixels;
+            }
+        }
+        values.push_back(focus_at(mean, measure_, window_, probe.middle_column, probe.middle_row));
+    }
+    return averaged(values, means);
+}
+
+std::vector<std::vector<double>> FocusProbes::curves_in_order(const Means& means) const {
+    std::vector<int> order(static_cast<std::size_t>(images_));
+    std::iota(order.begin(), order.end(), 0);
+    std::vector<std::vector<double>> curves(probes_.size());
+    in_parallel(static_cast<int>(probes_.size()), [&](int k) {
+        curves[static_cast<std::size_t>(k)] = curve(probes_[static_cast<std::size_t>(k)], order, means);
+    });
+    return curves;
+}
+
+double FocusProbes::curve_width() const {
+    if (images_ < 4) {
+        return 0;
+    }
+    constexpr int most_lags = 200;
+    const int lags = std::min(most_lags, images_ / 2);
+    std::vector<double> structure(static_cast<std::size_t>(lags));
+    for (const auto& values : curves_in_order(means_of({1}, images_))) {
+        const double mean = std::accumulate(values.begin(), values.end(), 0.0) / images_;
+        double variance = 0, steps = 0;
+        for (std::size_t k = 0; k < values.size(); ++k) {
+            variance += (values[k] - mean) * (values[k] - mean) / images_;
+            steps += k > 0 ? (values[k] - values[k - 1]) * (values[k] - values[k - 1]) / (images_ - 1) : 0;
+        }
+        // By how much neighbours agree: noise alone says nothing of a width, but there is much of it.
+        const double weight = variance > 0 ? std::max(0.0, 1 - steps / (2 * variance)) / variance : 0;
+        for (int lag = 1; weight > 0 && lag <= lags; ++lag) {
+            double sum = 0;
+            for (int k = 0; k + lag < images_; ++k) {
+                const double step = values[static_cast<std::size_t>(k + lag)] - values[static_cast<std::size_t>(k)];
+                sum += step * step;
+            }
+            structure[static_cast<std::size_t>(lag - 1)] +=
+                weight * sum / images_; // a peak has as many pairs at every lag
+        }
+    }
+    // Noise and rise follow by linear least squares for every width; the width is tried.
+    double best = 0, least = std::numeric_limits<double>::infinity();
+    constexpr double finest = 0.3, ratio = 1.05;
+    for (double width = finest; width < images_; width *= ratio) {
+        std::vector<double> form;
+        for (int lag = 1; lag <= lags; ++lag) {
+            form.push_back(1 - std::exp(-lag * lag / (4 * width * width)));
+        }
+        const NoiseModel line = fitted(form, structure);
+        double distance = 0;
+        for (std::size_t k = 0; k < form.size(); ++k) {
+            const double off = line.constant + line.slope * form[k] - structure[k];
+            distance += off * off;
+        }
+        if (line.slope > 0 && distance < least) {
+            least = distance;
+            best = width;
+        }
+    }
+    return best;
+}
+
+NoiseModel FocusProbes::noise() const {
+    std::vector<double> levels, variances;
+    for (const Probe& probe : probes_) {
+        const auto pixels = probe.pixels();
+        const auto stride = static_cast<std::size_t>(channels_) * pixels;
+        for (std::size_t channel = 0; channel < static_cast<std::size_t>(channels_); ++channel) {
+            std::vector<double> differences;
+            double level = 0;
+            for (int image = 1; image + 1 < images_; ++image) {
+                const float* here = probe.values.data() + static_cast<std::size_t>(image) * stride + channel * pixels;
+                double sum = 0;
+                for (std::size_t k = 0; k < pixels; ++k) {
+                    const double second = here[k - stride] - 2.0 * here[k] + here[k + stride];
+                    sum += second * second;
+                    level += here[k];
+                }
+                constexpr double gain = 1 + 4 + 1; // of the second difference on the variance of independent values
+                differences.push_back(sum / static_cast<double>(pixels) / gain);
+            }
+            if (differences.empty()) {
+                continue;
+            }
+            const auto quarter = differences.begin() + static_cast<std::ptrdiff_t>(differences.size() / 4);
+            std::ranges::nth_element(differences, quarter);
+            // Of images that are mostly dark, the quarter that saw no light says nothing.
+            const auto dark = std::ranges::count(probe.values, 0.0f);
+            const bool sparse = static_cast<std::size_t>(dark) > probe.values.size() / 2;
+            const double mean =
+                std::accumulate(differences.begin(), differences.end(), 0.0) / static_cast<double>(differences.size());
+            levels.push_back(level / static_cast<double>(pixels * differences.size()));
+            variances.push_back(sparse ? mean : *quarter);
+        }
+    }
+    return levels.empty() ? NoiseModel{} : fitted(levels, variances);
+}
+
+Chance FocusProbes::by_chance(const std::vector<double>& axial_weights, double rate) const {
+    const Means means = means_of(axial_weights, images_);
+    const bool alone = axial_weights.size() == 1; // an image's own value, in whatever order
+    const int orders = random_orders(rate, alone, images_);
+    const auto in_order = alone ? curves_in_order(means) : std::vector<std::vector<double>>();
+    Chance result{.unimodality = std::vector<double>(static_cast<std::size_t>(orders)),
+                  .relief = std::vector<double>(static_cast<std::size_t>(orders))};
+    in_parallel(orders, [&](int sample) {
+        const auto here = static_cast<std::size_t>(sample), k = here % probes_.size();
+        std::vector<int> order(static_cast<std::size_t>(images_));
+        std::iota(order.begin(), order.end(), 0);
+        std::mt19937_64 random(static_cast<std::uint64_t>(sample));
+        for (std::size_t last = order.size(); last > 1; --last) {
+            std::swap(order[last - 1], order[random() % last]);
+        }
+        std::vector<double> values;
+        if (alone) {
+            for (const int image : order) {
+                values.push_back(in_order[k][static_cast<std::size_t>(image)]);
+            }
+        } else {
+            values = curve(probes_[k], order, means);
+        }
+        const Shape shape = shape_of(values);
+        result.unimodality[here] = shape.unimodality;
+        result.relief[here] = shape.relief;
+    });
+    return result;
+}
+
+namespace {
+
+// Another value exceeds the k-th largest of n with the probability k / (n + 1).
+double exceeded_by(std::vector<double> values, double rate) {
+    const double count = static_cast<double>(values.size());
+    const auto place = static_cast<std::ptrdiff_t>(std::clamp(std::floor(rate * (count + 1)), 1.0, count)) - 1;
+    std::ranges::nth_element(values, values.begin() + place, std::greater<>());
+    return values[static_cast<std::size_t>(place)];
+}
+
+} // namespace
+
+double FocusProbes::suitable_smoothing() const {
+    constexpr double least = 0.4; // less averages nothing
+    constexpr double rate = 0.01; // few orders will do to choose by
+    constexpr double low = 0.6, well_below = 0.6;
+    const bool long_scan = images_ > 2 * few_images; // a short one shows less than the whole peak
+    if (images_ <= few_images) {
+        return 0;
+    }
+    const double width = curve_width();
+    for (double smoothing = most_smoothing_of_width * width; smoothing >= least; smoothing /= 1.5) {
+        const ChanceLimits limits = limits_of(by_chance(axial_weights(smoothing), rate), rate, images_);
+        const double averaged_width = std::sqrt(width * width + 2 * smoothing * smoothing);
+        const double relief = 1 - std::sqrt(2 * pi) * averaged_width / images_; // of a Gaussian
+        if (limits.unimodality < low || (long_scan && limits.relief < well_below * relief)) {
+            return smoothing;
+        }
+    }
+    return 0;
+}
+
+ChanceLimits limits_of(const Chance& chance, double rate, int images) {
+    ChanceLimits limits{.unimodality = exceeded_by(chance.unimodality, rate / 2),
+                        .relief = exceeded_by(chance.relief, rate / 2)};
+    if (images <= few_images) {
+        limits.unimodality = std::min(limits.unimodality, most_unimodality_asked);
+    }
+    double above = 1; // the next one may be
+    for (std::size_t k = 0; k < chance.relief.size(); ++k) {
+        above += chance.unimodality[k] > limits.unimodality || chance.relief[k] > limits.relief ? 1 : 0;
+    }
+    limits.rate = above / static_cast<double>(chance.relief.size() + 1);
+    return limits;
+}
+
+} // namespace vkfv::topography

@@ -1,0 +1,97 @@
+// A few places of a stack that are kept whole, image by image. Their curves tell what the evaluation of all pixels
+// needs to know of the stack: how wide its focus curves are, how noisy its images, and what a curve looks like by
+// chance.
+#pragma once
+
+#include "topography/axial_average.hpp"
+#include "topography/focus_measure.hpp"
+
+#include <cstddef>
+#include <vector>
+
+namespace vkfv::topography {
+
+// Curves of few images are often as unimodal as a curve can be by chance: no more than this is asked of them.
+inline constexpr int few_images = 14;
+inline constexpr double most_unimodality_asked = 0.8;
+
+// The widest average along z over the standard deviation of the focus curves: half the half width of a Gaussian.
+inline constexpr double most_smoothing_of_width = 0.6;
+
+// What curves look like by chance: unimodality and relief (curve.glsl) of a stack's curves with its images in random
+// order, 0 where the largest value stands at an end.
+struct Chance {
+    std::vector<double> unimodality, relief; // of the same order each
+};
+
+// A curve is no matter of chance that exceeds one of these.
+struct ChanceLimits {
+    double unimodality = 0;
+    double relief = 0;
+    double rate = 1; // of the random orders that do
+};
+
+// Each is exceeded by half of this share of random orders on average, but for most_unimodality_asked.
+ChanceLimits limits_of(const Chance& chance, double rate, int images);
+
+// Of single images: variance = constant + slope * value, in the images' unit squared.
+struct NoiseModel {
+    double constant = 0;
+    double slope = 0;
+    double variance(double value) const { return constant + slope * (value > 0 ? value : 0); }
+};
+
+class FocusProbes {
+  public:
+    // At most 256 of them on a regular grid, fewer once they hold 128 MB.
+    FocusProbes(int columns, int rows, FocusMeasure measure, const FocusWindow& window);
+
+    void add(const Channels& image);
+
+    // Standard deviation, in images, of the Gaussian that the focus curves resemble; 0: they have no form that
+    // outlasts an image. From their structure function D(l) = mean of (F[k] - F[k+l])^2 = 2 noise^2 +
+    // 2 S (1 - exp(-l^2 / (4 width^2))), whose first term alone is noise's. At least 4 images; else 0.
+    double curve_width() const;
+
+    // By least squares over all probes, from those second differences along z that are the smallest quarter of each:
+    // texture that comes into focus makes others larger. Of a channel.
+    NoiseModel noise() const;
+
+    // axial_weights: of both averages (axial_average.hpp). Of as many orders as tell what a share of `rate` exceeds,
+    // the better the less an order costs.
+    Chance by_chance(const std::vector<double>& axial_weights, double rate) const;
+
+    // Standard deviation of the average along z, in images: half the half width of the focus curves, or the part of it
+    // that leaves chance well below what curves of their width are. How well these images are in order has no say: what
+    // is judged by the order must not be chosen by it. None of few_images.
+    double suitable_smoothing() const;
+
+  private:
+    struct Probe {
+        int column = 0; // where its patch begins
+        int row = 0;
+        int columns = 0; // of the patch
+        int rows = 0;
+        int middle_column = 0; // in the patch
+        int middle_row = 0;
+        std::vector<float> values; // image by image, channel by channel, row by row
+
+        std::size_t pixels() const { return static_cast<std::size_t>(columns) * static_cast<std::size_t>(rows); }
+    };
+
+    // What every image's mean is made of.
+    using Means = std::vector<std::vector<Share>>;
+
+    // Of the weighted means of images in this order.
+    std::vector<double> curve(const Probe& probe, const std::vector<int>& order, const Means& means) const;
+    // A probe's each, after both averages.
+    std::vector<std::vector<double>> curves_in_order(const Means& means) const;
+
+    FocusMeasure measure_;
+    FocusWindow window_;
+    std::vector<Probe> probes_;
+    int channels_ = 0;
+    int images_ = 0;
+};
+
+} // namespace vkfv::topography

@@ -1,0 +1,10 @@
+#include "surface_files/gwy.hpp"
+
+#include "surface_fuzzing.hpp"
+
+extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+    using namespace vkfv;
+    return fuzzing::read_write_read(data, size, surface::parse_gwy, [](const auto& map, const auto& provenance) {
+        return surface::gwy_bytes(map, provenance);
+    });
+}

@@ -1,0 +1,256 @@
+// GSF, GWY, NPY, tables of heights, and the formats of instruments that are read alone: files as other programs write
+// them, byte by byte, and hostile ones.
+#include "support/instrument_files.hpp"
+#include "surface_files/gsf.hpp"
+#include "surface_files/gwy.hpp"
+#include "surface_files/height_table.hpp"
+#include "surface_files/instruments.hpp"
+#include "surface_files/npy.hpp"
+
+#include "core/error.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <limits>
+
+namespace vkfv::surface::formats {
+namespace {
+
+constexpr double not_measured = std::numeric_limits<double>::quiet_NaN();
+
+HeightMap wave(int columns = 37, int rows = 23) {
+    HeightMap map{.height = Grid<double>(columns, rows),
+                  .x0 = -1.0 / 3,
+                  .y0 = 1e-5 / 3,
+                  .pitch_x = 1.0 / 3000,
+                  .pitch_y = 0.1 / 7};
+    for (std::size_t k = 0; k < map.height.values.size(); ++k)
+        map.height.values[k] = k % 11 == 3 ? not_measured : 1e-3 * std::sin(0.37 * static_cast<double>(k));
+    return map;
+}
+
+const Provenance provenance = {.creator = "vkfv",
+                               .manufacturer = "none",
+                               .model = "10x \"tube\"",
+                               .serial = "7",
+                               .version = "1",
+                               .date = "2026-01-31T12:34:56Z",
+                               .comment = "two\nlines"};
+
+void expect_same_map(const HeightMap& found, const HeightMap& expected, double tolerance) {
+    ASSERT_EQ(found.columns(), expected.columns());
+    ASSERT_EQ(found.rows(), expected.rows());
+    EXPECT_DOUBLE_EQ(found.pitch_x, expected.pitch_x);
+    EXPECT_DOUBLE_EQ(found.pitch_y, expected.pitch_y);
+    for (std::size_t k = 0; k < expected.height.values.size(); ++k) {
+        const double z = expected.height.values[k];
+        if (std::isnan(z))
+            EXPECT_TRUE(std::isnan(found.height.values[k])) << k;
+        else
+            EXPECT_NEAR(found.height.values[k], z, tolerance * std::abs(z)) << k;
+    }
+}
+
+template <class Parse>
+void expect_refusal(Parse parse, const std::string& part) {
+    try {
+        parse();
+        ADD_FAILURE() << "accepted: " << part;
+    } catch (const InputError& error) {
+        EXPECT_THAT(error.what(), testing::HasSubstr(part));
+        EXPECT_FALSE(error.problem().remedy.empty());
+    }
+}
+
+TEST(SurfaceFormats, GsfGwyAndTableReadBackAndAreWrittenTheSame) {
+    for (const Provenance& known : {Provenance{}, provenance}) {
+        const std::string gsf = gsf_bytes(wave(), known), gwy = gwy_bytes(wave(), known),
+                          table = height_table(wave(), known);
+        const auto read_gsf = parse_gsf(gsf, "a.gsf"), read_gwy = parse_gwy(gwy, "a.gwy"),
+                   read_table = parse_height_table(table, "a.csv", {});
+        expect_same_map(read_gsf.map, wave(), std::ldexp(1, -23));
+        expect_same_map(read_gwy.map, wave(), std::ldexp(1, -51));
+        expect_same_map(read_table.map, wave(), 0);
+        for (const auto* file : {&read_gsf, &read_gwy, &read_table}) {
+            EXPECT_NEAR(file->map.x0, wave().x0, 1e-16);
+            EXPECT_NEAR(file->map.y0, wave().y0, 1e-20);
+            EXPECT_TRUE(file->provenance == known);
+        }
+        EXPECT_TRUE(gsf_bytes(read_gsf.map, read_gsf.provenance) == gsf);
+        EXPECT_TRUE(gwy_bytes(read_gwy.map, read_gwy.provenance) == gwy);
+        EXPECT_TRUE(height_table(read_table.map, read_table.provenance) == table);
+    }
+}
+
+TEST(SurfaceFormats, HostileGsfIsRefused) {
+    const std::string good = gsf_bytes(wave(), {});
+    const auto with = [&](const std::string& from, const std::string& to) {
+        std::string bytes = good;
+        return bytes.replace(bytes.find(from), from.size(), to);
+    };
+    const auto refused = [](const std::string& bytes, const std::string& part) {
+        expect_refusal([&] { (void)parse_gsf(bytes, "a.gsf"); }, part);
+    };
+    refused(good.substr(0, good.size() - 1), "points");
+    refused(good.substr(0, 30), "header");
+    refused(with("XRes = 37", "XRes = 4294967296"), "points");
+    refused(with("XRes = 37", "XRes = -3"), "XRes = -3");
+    refused(with("ZUnits = m", "ZUnits = V"), "unit of length");
+    refused(with("XReal = ", "XReal = -"), "positive spacing");
+}
+
+// A second channel is left alone; a channel of other values is passed over.
+TEST(SurfaceFormats, GwyOfSeveralChannels) {
+    const std::string bytes =
+        gwy_bytes({{"Contrast", "", wave()}, {"Height", "m", wave(5, 4)}, {"More", "m", wave()}}, provenance);
+    const auto file = parse_gwy(bytes, "a.gwy");
+    expect_same_map(file.map, wave(5, 4), 1e-15);
+    EXPECT_EQ(file.provenance, provenance);
+    expect_refusal([] { (void)parse_gwy(gwy_bytes({{"Contrast", "", wave()}}, {}), "a.gwy"); }, "a channel whose");
+    for (const std::size_t length : {std::size_t{5}, std::size_t{30}, bytes.size() / 2, bytes.size() - 1})
+        expect_refusal([&] { (void)parse_gwy(bytes.substr(0, length), "a.gwy"); }, "");
+}
+
+std::string npy_of(const std::string& type, const std::string& order, const std::string& shape,
+                   const std::string& points, char version = 1) {
+    const std::string header = "{'descr': '" + type + "', 'fortran_order': " + order + ", 'shape': " + shape + ", }\n";
+    std::string bytes = "\x93NUMPY" + std::string{version, '\0'};
+    bytes += static_cast<char>(header.size());
+    bytes += std::string(version == 1 ? 1 : 3, '\0');
+    return bytes + header + points;
+}
+
+TEST(SurfaceFormats, NpyOfEveryTypeAndOrder) {
+    using test::raw_points;
+    const ImageScale scale{.pitch = 2e-3, .unit = 0.5};
+    // 2 lines of 3; by columns the same lie in another order.
+    const std::vector<double> by_rows = {1, 2, 3, 4, 5, 6}, by_columns = {1, 4, 2, 5, 3, 6};
+    const auto expect = [&](const std::string& bytes) {
+        const HeightMap map = parse_npy(bytes, "a.npy", scale).map;
+        EXPECT_THAT(map.height.values, testing::ElementsAre(2, 2.5, 3, 0.5, 1, 1.5));
+        EXPECT_EQ(map.columns(), 3);
+        EXPECT_EQ(map.pitch_y, 2e-3);
+    };
+    expect(npy_of("<f8", "False", "(2, 3)", raw_points<double>(by_rows)));
+    expect(npy_of("<f4", "False", "(2, 3,)", raw_points<float>(by_rows), 2));
+    expect(npy_of("|u1", "True", "(2,3)", raw_points<std::uint8_t>(by_columns)));
+    expect(npy_of("<i2", "True", "(2, 3)", raw_points<std::int16_t>(by_columns)));
+    expect(npy_of(">i2", "False", "(2, 3)", std::string("\0\1\0\2\0\3\0\4\0\5\0\6", 12)));
+    expect(npy_of("<u4", "False", "(2, 3)", raw_points<std::uint32_t>(by_rows)));
+    expect(npy_of("<i8", "False", "(2, 3)", raw_points<std::int64_t>(by_rows), 3));
+    const HeightMap read = parse_npy(npy_bytes(wave()), "a.npy", {.pitch = 1, .unit = 1e-3}).map;
+    EXPECT_TRUE(npy_bytes(read) == npy_bytes(wave()));
+
+    const auto refused = [&](const std::string& bytes, const std::string& part) {
+        expect_refusal([&] { (void)parse_npy(bytes, "a.npy", scale); }, part);
+    };
+    refused(npy_of("<f8", "False", "(6,)", raw_points<double>(by_rows)), "two dimensions");
+    refused(npy_of("<f8", "False", "(2, 3, 1)", raw_points<double>(by_rows)), "two dimensions");
+    refused(npy_of("<c8", "False", "(2, 3)", raw_points<double>(by_rows)), "descr");
+    refused(npy_of("<f8", "Maybe", "(2, 3)", raw_points<double>(by_rows)), "True or False");
+    refused(npy_of("<f8", "False", "(20000, 10000)", "1"), "bytes from here on");
+    refused(npy_of("<f8", "False", "(4294967296, 4294967296)", "1"), "points");
+    expect_refusal([&] { (void)parse_npy(npy_bytes(wave()), "a.npy", {}); }, "unit");
+}
+
+// Lines of the file, first line first.
+std::vector<double> table_values(const std::string& text, const char* name = "a.csv") {
+    const HeightMap map = parse_height_table(text, name, {.pitch = 1, .unit = 1}).map;
+    std::vector<double> values;
+    for (int row = map.rows() - 1; row >= 0; --row)
+        for (int column = 0; column < map.columns(); ++column)
+            values.push_back(map.height(column, row));
+    return values;
+}
+
+TEST(SurfaceFormats, TablesOfEverySeparator) {
+    using testing::ElementsAre;
+    for (const char* text :
+         {"1.5,2,-3\n4,5,6e0\n", "1.5;2;-3\r\n4;5;6\r\n", "1,5;2,0;-3,0\n4;5;6", "1.5\t2\t-3\n4\t5\t6\n",
+          "  1.5   2 -3\n  4 5\t6 \n", "1,5 2,0 -3,0\n4,0 5,0 6,0\n", "1.5, 2, -3\n4, 5, 6\n",
+          "\xEF\xBB\xBF"
+          "1.5,2,-3,\n4,5,6,\n",
+          "Height map\nof 2 lines\n\n1.5,2,-3\n4,5,6\n# the end\n"})
+        EXPECT_THAT(table_values(text), ElementsAre(1.5, 2, -3, 4, 5, 6)) << text;
+    EXPECT_THAT(table_values("1,NaN,3\n,5,***\n"),
+                ElementsAre(1, testing::IsNan(), 3, testing::IsNan(), 5, testing::IsNan()));
+    for (const auto& [text, part] :
+         {std::pair{"1,2\n3\n", "columns = 1"}, {"1,2\n3,4x\n", "4x"}, {"words\n", "no line"}, {"1\n2 3\n", "columns"}})
+        expect_refusal([text = text] { (void)table_values(text); }, part);
+    expect_refusal([] { (void)parse_height_table(std::string("1\0002", 3), "a.csv", {}); }, "NUL");
+    expect_refusal([] { (void)parse_height_table("1 2\n3 4\n", "a.csv", {}); }, "unit = not given");
+    expect_refusal([] { (void)parse_height_table("1 2\n3 4\n", "a.csv", {.pitch = {}, .unit = 1}); }, "pitch");
+}
+
+TEST(SurfaceFormats, TableOfGwyddionStatesItsScale) {
+    const std::string text =
+        "# Channel: Topo\n# Width: 10 \xC2\xB5m\n# Height: 4.0 nm\n# Value units: m\n1e-6 2e-6\n3e-6 4e-6\n";
+    const HeightMap map = parse_height_table(text, "a.txt", {}).map;
+    EXPECT_DOUBLE_EQ(map.pitch_x, 5e-3);
+    EXPECT_DOUBLE_EQ(map.pitch_y, 2e-6);
+    EXPECT_DOUBLE_EQ(map.height(0, 1), 1e-3);
+    expect_refusal([&] { (void)parse_height_table(text, "a.txt", {.pitch = 1, .unit = {}}); }, "no second scale");
+}
+
+TEST(SurfaceFormats, PointsOnAGrid) {
+    // In any order; one is left out.
+    const HeightMap map = parse_height_table("x y z\n1.0 5 1\n1.5 5 2\n2.0 5 3\n1.0 5.25 4\n2.0 5.25 6\n", "a.xyz",
+                                             {.pitch = {}, .unit = 1e-3})
+                              .map;
+    ASSERT_EQ(map.columns(), 3);
+    ASSERT_EQ(map.rows(), 2);
+    EXPECT_DOUBLE_EQ(map.pitch_x, 0.5e-3);
+    EXPECT_DOUBLE_EQ(map.pitch_y, 0.25e-3);
+    EXPECT_DOUBLE_EQ(map.x0, 1e-3);
+    EXPECT_DOUBLE_EQ(map.height(0, 0), 1e-3);
+    EXPECT_TRUE(std::isnan(map.height(1, 1)));
+    EXPECT_DOUBLE_EQ(map.height(2, 1), 6e-3);
+    // Three columns of heights are a matrix.
+    EXPECT_EQ(table_values("1.01 2.3 3\n1.2 7.7 2\n3.4 5.1 1\n9.12 1.4 3\n").size(), 12u);
+    expect_refusal([] { (void)table_values("1.01 2.3 3\n1.2 7.7 2\n3.4 5.1 1\n9.12 1.4 3\n", "a.xyz"); }, "grid");
+    expect_refusal([] { (void)table_values("0 0 3\n1e9 0 2\n1 1e9 1\n2 2 3\n", "a.xyz"); }, "grid");
+}
+
+using test::instrument_file;
+
+struct InstrumentFormat {
+    const char* name;
+    SurfaceFile (*parse)(std::string_view, const std::filesystem::path&);
+    bool (*looks_like)(std::string_view);
+};
+constexpr InstrumentFormat instrument_formats[] = {{"plu", parse_plu, looks_like_plu},
+                                                   {"opd", parse_opd, looks_like_opd},
+                                                   {"dat", parse_metropro, looks_like_metropro},
+                                                   {"nms", parse_nms, looks_like_nms}};
+
+TEST(SurfaceFormats, FilesOfInstruments) {
+    for (const auto& [name, parse, looks_like] : instrument_formats) {
+        const std::string bytes = instrument_file(name);
+        ASSERT_TRUE(looks_like(bytes)) << name;
+        const HeightMap map = parse(bytes, name).map;
+        ASSERT_EQ(map.columns(), 3) << name;
+        ASSERT_EQ(map.rows(), 2) << name;
+        EXPECT_NEAR(map.pitch_x, 1e-3, 1e-9) << name;
+        const bool gap = std::string(name) != "nms";
+        // The first line of the file's picture is 1 2 3 um, the second 4 (a gap) 6.
+        const std::vector<double> um = {4, gap ? not_measured : 5, 6, 1, 2, 3};
+        for (std::size_t k = 0; k < um.size(); ++k)
+            if (std::isnan(um[k]))
+                EXPECT_TRUE(std::isnan(map.height.values[k])) << name << k;
+            else
+                EXPECT_NEAR(map.height.values[k], um[k] * 1e-3, 2e-7) << name << k;
+        for (std::size_t length = 0; length < bytes.size(); length += 17)
+            if (looks_like(bytes.substr(0, length))) {
+                EXPECT_THROW((void)parse(bytes.substr(0, length), name), InputError) << name << length;
+            }
+        for (const InstrumentFormat& other : instrument_formats)
+            if (other.parse != parse) {
+                EXPECT_THROW((void)other.parse(bytes, name), InputError) << name;
+            }
+    }
+}
+
+} // namespace
+} // namespace vkfv::surface::formats

@@ -1,0 +1,216 @@
+// Variants of X3P, SUR, SDF and AL3D that other programs write.
+#include "surface_files/al3d.hpp"
+#include "surface_files/sdf.hpp"
+#include "surface_files/sur.hpp"
+#include "surface_files/x3p.hpp"
+
+#include "core/error.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <unistd.h>
+#include <zip.h>
+
+#include <cmath>
+#include <cstring>
+#include <fstream>
+#include <functional>
+#include <iterator>
+#include <utility>
+#include <vector>
+
+namespace vkfv::surface::variants {
+namespace {
+
+using ZipEntries = std::vector<std::pair<std::string, std::string>>;
+
+std::string zipped(const ZipEntries& entries) {
+    const auto path =
+        std::filesystem::path(testing::TempDir()) / ("vkfv_variants_" + std::to_string(::getpid()) + ".zip");
+    int error = 0;
+    zip_t* archive = zip_open(path.c_str(), ZIP_CREATE | ZIP_TRUNCATE, &error);
+    for (const auto& [name, content] : entries)
+        zip_file_add(archive, name.c_str(), zip_source_buffer(archive, content.data(), content.size(), 0), 0);
+    EXPECT_EQ(zip_close(archive), 0);
+    std::ifstream stream(path, std::ios::binary);
+    std::string bytes{std::istreambuf_iterator<char>(stream), {}};
+    std::filesystem::remove(path);
+    return bytes;
+}
+
+// 2 x 2 points whose heights stand in `data`, an element of Record3.
+std::string main_xml(const std::string& data, const std::string& rotation = "") {
+    return "<p:ISO5436_2 xmlns:p='http://www.opengps.eu/2008/ISO5436_2'><Record1><FeatureType>SUR</FeatureType><Axes>"
+           "<CX><AxisType>I</AxisType><Increment>1e-6</Increment></CX>"
+           "<CY><AxisType>I</AxisType><Increment>1e-6</Increment></CY>"
+           "<CZ><AxisType>A</AxisType><DataType>D</DataType></CZ>" +
+           rotation +
+           "</Axes></Record1><Record3><MatrixDimension><SizeX>2</SizeX><SizeY>2</SizeY><SizeZ>1</SizeZ>"
+           "</MatrixDimension>" +
+           data + "</Record3></p:ISO5436_2>";
+}
+
+std::string data_list(const std::vector<std::string>& points) {
+    std::string text = "<DataList>";
+    for (const std::string& point : points)
+        text += "<Datum>" + point + "</Datum>\n";
+    return text + "</DataList>";
+}
+
+const std::string link = "<DataLink><PointDataLink>bindata/data.bin</PointDataLink></DataLink>";
+
+std::string rotation_of(const std::string& first) {
+    std::string text = "<Rotation><r11>" + first + "</r11>";
+    for (const char* name : {"r12", "r13", "r21", "r22", "r23", "r31", "r32", "r33"})
+        text += std::string("<") + name + (name[1] == name[2] ? ">1.0</" : ">0</") + name + ">";
+    return text + "</Rotation>";
+}
+
+// um, in the file's order.
+std::vector<double> x3p_heights(const ZipEntries& entries) {
+    const HeightMap map = parse_x3p(zipped(entries), "a.x3p").map;
+    std::vector<double> um;
+    for (int row = map.rows() - 1; row >= 0; --row)
+        for (int column = 0; column < map.columns(); ++column)
+            um.push_back(map.height(column, row) * 1e3);
+    return um;
+}
+
+template <class Parse>
+void expect_told(Parse parse, const std::string& part, const std::string& absent = "\n") {
+    try {
+        parse();
+        ADD_FAILURE() << "accepted: " << part;
+    } catch (const InputError& error) {
+        EXPECT_THAT(error.what(), testing::HasSubstr(part));
+        EXPECT_THAT(error.what(), testing::Not(testing::HasSubstr(absent)));
+    }
+}
+
+std::string doubles(const std::vector<double>& values) {
+    return {reinterpret_cast<const char*>(values.data()), values.size() * sizeof(double)};
+}
+
+TEST(SurfaceVariants, X3pWithDataInline) {
+    const auto near = [](double value) { return testing::DoubleNear(value, 1e-9); };
+    EXPECT_THAT(x3p_heights({{"main.xml", main_xml(data_list({"1e-6", "", "0;0;-2e-6", ";;NaN"}))}}),
+                testing::ElementsAre(near(1), testing::IsNan(), near(-2), testing::IsNan()));
+    expect_told([] { x3p_heights({{"main.xml", main_xml(data_list({"1", "2", "3"}))}}); }, "3 points");
+    expect_told([] { x3p_heights({{"main.xml", main_xml(data_list({"1", "2", "3", "high"}))}}); }, "high");
+    expect_told([] { x3p_heights({{"main.xml", main_xml("")}}); }, "DataList");
+}
+
+TEST(SurfaceVariants, X3pOfAFolderAndWithTheIdentity) {
+    const std::string points = doubles({1e-6, 2e-6, 3e-6, 4e-6});
+    const auto are = testing::ElementsAre(testing::DoubleNear(1, 1e-9), testing::DoubleNear(2, 1e-9),
+                                          testing::DoubleNear(3, 1e-9), testing::DoubleNear(4, 1e-9));
+    EXPECT_THAT(x3p_heights({{"a/b/main.xml", main_xml(link)}, {"a/b/bindata/data.bin", points}}), are);
+    EXPECT_THAT(x3p_heights({{"main.xml", main_xml(link, rotation_of("1"))}, {"bindata/data.bin", points}}), are);
+    for (const char* turned : {"-1", "0.5", "", "1e-9"})
+        expect_told(
+            [&] {
+                x3p_heights({{"main.xml", main_xml(link, rotation_of(turned))}, {"bindata/data.bin", points}});
+            },
+            "otation");
+}
+
+TEST(SurfaceVariants, OtherZipsAreNotCalledX3p) {
+    for (const ZipEntries& entries :
+         {ZipEntries{{"index.xml", "<xml/>"}, {"LAYER_0.raw", "1"}}, ZipEntries{{"[Content_Types].xml", "<Types/>"}}})
+        expect_told([&] { x3p_heights(entries); }, "a ZIP archive of another kind", "n X3P");
+    expect_told([] { (void)parse_x3p("PK\x03\x04", "a.xlsx"); }, "a whole ZIP archive", "X3P");
+}
+
+// pyx3p fails at empty elements.
+TEST(SurfaceVariants, WrittenX3pHasNoEmptyElement) {
+    HeightMap map{.height = Grid<double>(2, 2), .pitch_x = 1e-3, .pitch_y = 1e-3};
+    const std::string bytes = x3p_bytes(map, {});
+    EXPECT_EQ(parse_x3p(bytes, "a.x3p").provenance, Provenance{});
+    const auto path =
+        std::filesystem::path(testing::TempDir()) / ("vkfv_variants_" + std::to_string(::getpid()) + ".x3p");
+    std::ofstream(path, std::ios::binary) << bytes;
+    zip_t* archive = zip_open(path.c_str(), ZIP_RDONLY, nullptr);
+    zip_stat_t stat;
+    ASSERT_EQ(zip_stat(archive, "main.xml", 0, &stat), 0);
+    std::string xml(stat.size, '\0');
+    zip_file_t* entry = zip_fopen(archive, "main.xml", 0);
+    EXPECT_EQ(zip_fread(entry, xml.data(), xml.size()), static_cast<zip_int64_t>(xml.size()));
+    zip_fclose(entry);
+    zip_discard(archive);
+    std::filesystem::remove(path);
+    EXPECT_THAT(xml, testing::HasSubstr("<Model>unknown</Model>"));
+    EXPECT_THAT(xml, testing::Not(testing::HasSubstr("/>")));
+}
+
+HeightMap slope(int columns, int rows) {
+    HeightMap map{.height = Grid<double>(columns, rows), .pitch_x = 1e-3, .pitch_y = 2e-3};
+    for (std::size_t k = 0; k < map.height.values.size(); ++k)
+        map.height.values[k] = 0.25 * static_cast<double>(k);
+    return map;
+}
+
+TEST(SurfaceVariants, SurOfTypeOneWithSeveralRows) {
+    std::string bytes = sur_bytes(slope(3, 2), {});
+    bytes[18] = 1;
+    EXPECT_EQ(parse_sur(bytes, "a.sur").map.height.values, slope(3, 2).height.values);
+    std::string profile = sur_bytes(slope(3, 1), {});
+    profile[18] = 1;
+    expect_told([&] { (void)parse_sur(profile, "a.sur"); }, "a surface");
+    // Without a unit of length: told as what it is, not as an option.
+    bytes[212] = ' ';
+    bytes[213] = ' ';
+    expect_told([&] { (void)parse_sur(bytes, "a.sur"); }, "unit of length = nothing");
+}
+
+TEST(SurfaceVariants, SdfOfEveryMagic) {
+    const auto expected = slope(3, 2).height.values;
+    const auto renamed = [](std::string bytes, const std::string& magic) { return bytes.replace(0, 8, magic); };
+    for (const char* magic : {"bISO-1.0", "bBCR-1.0"}) {
+        const std::string bytes = renamed(sdf_bytes(slope(3, 2), {}), magic);
+        ASSERT_TRUE(looks_like_sdf(bytes)) << magic;
+        EXPECT_EQ(parse_sdf(bytes, "a.sdf").map.height.values, expected) << magic;
+    }
+    for (const char* magic : {"aISO-1.0", "aBCR-1.0", "aBCR-0.0", "aNPL-1.0"}) {
+        const std::string bytes = renamed(sdf_text(slope(3, 2), {}), magic);
+        ASSERT_TRUE(looks_like_sdf(bytes)) << magic;
+        EXPECT_EQ(parse_sdf(bytes, "a.sdf").map.height.values, expected) << magic;
+    }
+    EXPECT_FALSE(looks_like_sdf("aISO-2.0"));
+}
+
+std::string al3d_of(int rows, const std::string& more_tag, std::size_t row_bytes) {
+    const auto tag = [](std::string key, std::string value) {
+        key.resize(20, '\0');
+        value.resize(30, '\0');
+        return key + value + "\r\n";
+    };
+    std::string bytes("AliconaImaging\0\r\n", 17);
+    bytes += tag("Version", "1") + tag("TagCount", "6") + tag("Rows", std::to_string(rows)) + tag("Cols", "3") +
+             tag("PixelSizeXMeter", "1e-06") + tag("PixelSizeYMeter", "2e-06") + tag("DepthImageOffset", "440");
+    bytes += more_tag.empty() ? tag("Comment", "") : tag(more_tag, std::to_string(440 + row_bytes * 3));
+    bytes.resize(440, '\0');
+    for (int row = 0; row < rows; ++row) {
+        std::string line(row_bytes, '\0');
+        for (int column = 0; column < 3; ++column) {
+            const float metres = 1e-3f * static_cast<float>(3 * (rows - 1 - row) + column);
+            std::memcpy(line.data() + 4 * column, &metres, sizeof metres);
+        }
+        bytes += line;
+    }
+    return bytes;
+}
+
+TEST(SurfaceVariants, Al3dWithAndWithoutPadding) {
+    for (const std::size_t row_bytes : {std::size_t{12}, std::size_t{16}})
+        for (const char* texture : {"", "TextureImageOffset"}) {
+            std::string bytes = al3d_of(3, texture, row_bytes);
+            if (*texture)
+                bytes += std::string(100, 'x');
+            const HeightMap map = parse_al3d(bytes, "a.al3d").map;
+            for (int k = 0; k < 9; ++k)
+                EXPECT_NEAR(map.height.values[static_cast<std::size_t>(k)], k, 1e-6) << row_bytes << texture << k;
+        }
+}
+
+} // namespace
+} // namespace vkfv::surface::variants

@@ -1,0 +1,165 @@
+// Stacks of few images, of curves as narrow as their steps, of 8 bits, and in random order: stacks made without optics,
+// whose contrast in every pixel is a Gaussian along z around its height.
+#include "topography/topography.hpp"
+
+#include "core/units.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+#include <random>
+#include <vector>
+
+namespace vkfv::topography {
+namespace {
+
+constexpr int side = 72;
+
+struct ModelStack {
+    std::vector<Grid<float>> images;
+    std::vector<double> z; // in steps
+    Grid<double> height;   // likewise
+};
+
+// White noise averaged with its neighbours, of standard deviation 1.
+Grid<double> texture_of(std::mt19937& random) {
+    std::normal_distribution<double> normal;
+    Grid<double> white(side, side), result(side, side);
+    for (double& value : white.values) {
+        value = normal(random);
+    }
+    for (int row = 0; row < side; ++row) {
+        for (int column = 0; column < side; ++column) {
+            const auto at = [&](int i, int j) { return white((i + side) % side, (j + side) % side); };
+            result(column, row) = (2 * at(column, row) + at(column + 1, row) + at(column - 1, row) +
+                                   at(column, row + 1) + at(column, row - 1)) /
+                                  std::sqrt(8.0);
+        }
+    }
+    return result;
+}
+
+// width: standard deviation of the focus curves in steps.
+ModelStack model_stack(int images, double width, bool bytes, unsigned seed) {
+    std::mt19937 random(seed);
+    const Grid<double> texture = texture_of(random);
+    ModelStack stack{.images = {}, .z = {}, .height = Grid<double>(side, side)};
+    const double amplitude = std::min(0.25 * (images - 1), 1.5);
+    for (int row = 0; row < side; ++row) {
+        for (int column = 0; column < side; ++column) {
+            stack.height(column, row) =
+                0.5 * (images - 1) + amplitude * std::sin(2 * pi * column / side) * std::cos(2 * pi * row / side);
+        }
+    }
+    for (int image = 0; image < images; ++image) {
+        Grid<float> values(side, side);
+        for (std::size_t k = 0; k < values.values.size(); ++k) {
+            const double defocus = (image - stack.height.values[k]) / width;
+            const double value = 120 + 30 * texture.values[k] * std::exp(-0.5 * defocus * defocus);
+            values.values[k] = static_cast<float>(bytes ? std::clamp(std::round(value), 0.0, 255.0) : value);
+        }
+        stack.images.push_back(std::move(values));
+        stack.z.push_back(image);
+    }
+    return stack;
+}
+
+TEST(FewImages, AreMeasuredByDefault) {
+    for (const int images : {7, 9, 15, 31}) {
+        for (const double width : {0.8, 1.0, 2.0, 5.0}) {
+            for (const bool bytes : {false, true}) {
+                SCOPED_TRACE(testing::Message() << images << " images, width " << width << (bytes ? ", 8 bits" : ""));
+                const ModelStack stack = model_stack(images, width, bytes, 1);
+                const Topography topography = reconstruct(stack.images, stack.z, 0, 0, 1, {});
+                double sum = 0;
+                int measured = 0;
+                for (std::size_t k = 0; k < stack.height.values.size(); ++k) {
+                    const double off = topography.height.height.values[k] - stack.height.values[k];
+                    if (std::isfinite(off)) {
+                        sum += off * off;
+                        ++measured;
+                    }
+                }
+                EXPECT_GE(measured, 0.98 * side * side);
+                EXPECT_LE(std::sqrt(sum / measured), images == 7 ? 0.15 : 0.09); // the window rounds the waves off
+            }
+        }
+    }
+}
+
+TEST(FewImages, InRandomOrderAreNotMeasured) {
+    for (const auto& [images, width] : {std::pair{15, 1.0}, {31, 5.0}}) {
+        SCOPED_TRACE(testing::Message() << images << " images, width " << width);
+        ModelStack stack = model_stack(images, width, true, 2);
+        std::mt19937 random(3);
+        constexpr int orders = 10;
+        double share = 0;
+        for (int k = 0; k < orders; ++k) {
+            std::ranges::shuffle(stack.images, random);
+            const Topography topography = reconstruct(stack.images, stack.z, 0, 0, 1, {});
+            share += static_cast<double>(std::ranges::count(topography.state.values, PointState::measured)) /
+                     (side * side) / orders;
+        }
+        EXPECT_LE(share, 0.01);
+    }
+}
+
+TEST(FewImages, TellWhatPassesByChance) {
+    // Of seven values in random order a share of 0.03 to 0.1 is unimodal, by their form.
+    const ModelStack stack = model_stack(7, 1, false, 4);
+    const Topography topography = reconstruct(stack.images, stack.z, 0, 0, 1, {});
+    EXPECT_EQ(topography.stack.limits.unimodality, most_unimodality_asked);
+    EXPECT_GT(topography.stack.limits.rate, 0.01);
+    EXPECT_LT(topography.stack.limits.rate, 0.15);
+    const Topography unlimited = reconstruct(stack.images, stack.z, 0, 0, 1, {.false_peak_rate = 1});
+    EXPECT_EQ(unlimited.stack.limits.unimodality, 0);
+}
+
+TEST(FocusProbes, TellTheWidthOfFocusCurves) {
+    for (const double width : {1.0, 2.0, 5.0}) {
+        const ModelStack stack = model_stack(61, width, false, 5);
+        FocusProbes probes(side, side, FocusMeasure::wavelet, FocusWindow(7, WindowShape::box));
+        for (const auto& image : stack.images) {
+            probes.add({image});
+        }
+        EXPECT_NEAR(probes.curve_width(), width, 0.2 * width) << width;
+    }
+}
+
+TEST(FocusProbes, TellTheNoiseOfImages) {
+    // Variance 4 + 0.1 value, on a stack whose texture comes into focus.
+    ModelStack stack = model_stack(61, 2, false, 6);
+    std::mt19937 random(7);
+    std::normal_distribution<double> normal;
+    FocusProbes probes(side, side, FocusMeasure::wavelet, FocusWindow(7, WindowShape::box));
+    for (auto& image : stack.images) {
+        for (float& value : image.values) {
+            value += static_cast<float>(std::sqrt(4 + 0.1 * value) * normal(random));
+        }
+        probes.add({image});
+    }
+    EXPECT_NEAR(probes.noise().variance(120), 16, 2.4);
+}
+
+TEST(FocusCurve, UnimodalityAndTheRivalAreTheirDefinitions) {
+    const auto shape_of = [](const std::vector<double>& values) {
+        auto shape = focus::f64::empty_curve();
+        for (std::size_t k = 0; k < values.size(); ++k) {
+            shape = focus::f64::follow_shape(shape, values[k], static_cast<int>(k));
+        }
+        return shape;
+    };
+    EXPECT_EQ(focus::f64::unimodality(shape_of({1, 2, 5, 5, 3, 1})), 1);
+    EXPECT_EQ(shape_of({1, 2, 5, 5, 3, 1}).rival, 0);
+    // Rises and falls: 4 + 3 + 2 + 3; the largest accounts for 4 + 4 of these.
+    EXPECT_EQ(focus::f64::unimodality(shape_of({1, 5, 2, 4, 1})), 8.0 / 12);
+    EXPECT_EQ(shape_of({1, 5, 2, 4, 1}).rival, 2);
+    EXPECT_EQ(shape_of({1, 4, 2, 5, 1}).rival, 2); // the lesser one first
+    EXPECT_EQ(shape_of({5, 1, 3, 0, 4}).rival, 4); // by the deepest valley
+    EXPECT_EQ(focus::f64::unimodality(shape_of({3, 3, 3})), 0);
+}
+
+} // namespace
+} // namespace vkfv::topography
