@@ -106,8 +106,8 @@ double direct_measure(const Channels& image, FocusMeasure measure, int window,
 }
 
 TEST(FocusMeasure, IsItsDefinitionInEveryWindow) {
-    const Channels grey = {noise_image(15, 11, 200, 15, 1)};
-    const Channels colour = {grey[0], noise_image(15, 11, 100, 20, 2), noise_image(15, 11, 300, 5, 3)};
+    const Channels grey = {noise_image(23, 17, 200, 15, 1)};
+    const Channels colour = {grey[0], noise_image(23, 17, 100, 20, 2), noise_image(23, 17, 300, 5, 3)};
     for (const auto measure : all_measures)
         for (const Channels& image : {grey, colour})
             for (const int window : {3, 7, 15, 41})
