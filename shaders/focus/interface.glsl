@@ -12,6 +12,7 @@ const uint BINDING_CURVES = 8u; // the last images' in turn
 const uint BINDING_RECORDS = 9u;
 const uint BINDING_PLACES = 10u;
 const uint BINDING_ALL_IN_FOCUS = 11u;
+const uint BINDING_SINGLES = 12u;
 
 // focus_mean.comp: a term of a weighted mean of planes.
 struct MeanTerm {
@@ -25,6 +26,12 @@ struct MeanTerm {
 struct ImageSize {
     uint pixels;
     uint channels;
+};
+
+// focus_single.comp
+struct SingleImage {
+    uint pixels;
+    int at;
 };
 
 // focus_follow.comp

@@ -40,6 +40,7 @@ struct FocusPlan {
     FIELD(int, at)        /* image of the largest value; the first of equals */ \
     FIELD(int, found)     /* 1: the method finds a maximum there */ \
     FIELD(real, first)     /* value */ \
+    FIELD(real, squares)   /* of differences from it */ \
     FIELD(real, latest)    /* value */ \
     FIELD(real, variation) /* sum of the steps from value to value, up or down */ \
     FIELD(real, highest)   /* value */ \
@@ -51,5 +52,23 @@ struct FocusPlan {
     FIELD(real, peak_4)
 struct CurveRecord {
     VKFV_CURVE_RECORD_FIELDS(VKFV_DECLARE)
+};
+
+// The same of the curve of single images, before any average along z.
+#define VKFV_SINGLE_RECORD_FIELDS(FIELD) \
+    FIELD(real, first)   /* value, which the sums are of differences from */ \
+    FIELD(real, sum) \
+    FIELD(real, squares) \
+    FIELD(real, before_1) /* the last values, the latest first */ \
+    FIELD(real, before_2) \
+    FIELD(real, before_3) \
+    FIELD(real, steps_1)  /* sum of squared differences between a value and the next, */ \
+    FIELD(real, steps_2)  /*   the one after that */ \
+    FIELD(real, steps_3)  /*   and the third */ \
+    FIELD(real, highest) \
+    FIELD(real, valley)  /* as above */ \
+    FIELD(real, rival)
+struct SingleRecord {
+    VKFV_SINGLE_RECORD_FIELDS(VKFV_DECLARE)
 };
 // clang-format on

@@ -192,7 +192,7 @@ std::string summary(const Evaluation& evaluation) {
     const double measured = surface::height_parameters(evaluation.topography.height).measured_share;
     std::string text = fmt::format("measured {:.1f} % of the points\n", 100 * measured) + reasons_text(evaluation);
     const auto& stack = evaluation.topography.stack;
-    if (const double rate = stack.limits.rate; rate < 1 && rate > 2 * evaluation.options.false_peak_rate) {
+    if (const double rate = stack.limit.rate; rate < 1 && rate > 2 * evaluation.options.false_peak_rate) {
         text += fmt::format("with the images in random order {:.2g} % would pass: so few images tell no more\n",
                             100 * rate);
     }

@@ -191,9 +191,9 @@ void write_results(ResultFolder& folder, const EvaluatedStack& stack) {
     }
     const auto& whole = evaluation.topography.stack;
     results["curves"] = {{"curve_width_steps", whole.curve_width_steps},
-                         {"least_unimodality", whole.limits.unimodality},
-                         {"least_relief", whole.limits.relief},
-                         {"chance_rate", whole.limits.rate},
+                         {"least_unimodality", whole.limit.least.unimodality},
+                         {"least_order", whole.limit.least.order},
+                         {"chance_rate", whole.limit.rate},
                          {"image_noise", whole.image_noise},
                          {"height_noise_um", median_of(evaluation.topography.height_noise) * um_per_mm}};
     results["points"] = point_counts(evaluation.topography.state);

@@ -7,6 +7,7 @@
 #include "spirv/focus_response.h"
 #include "spirv/focus_rows.h"
 #include "spirv/focus_select.h"
+#include "spirv/focus_single.h"
 #include "vulkan/kernel.hpp"
 
 #include <algorithm>
@@ -21,7 +22,7 @@ constexpr std::uint32_t most_groups_in_a_row = 65535; // Vulkan's promise
 
 using namespace focus::f32; // bindings and push constants: shaders/focus/interface.glsl
 
-static_assert(alignof(FollowedImage) == 4 && alignof(CurveRecord) == 4 &&
+static_assert(alignof(FollowedImage) == 4 && alignof(CurveRecord) == 4 && alignof(SingleRecord) == 4 &&
               alignof(WindowSums) == 4); // nothing is padded
 
 #define VKFV_CONVERT(type, name) result.name = record.name;
@@ -35,6 +36,12 @@ focus::f32::FocusPlan on_device(const focus::f64::FocusPlan& record) {
 focus::f64::CurveRecord in_double(const focus::f32::CurveRecord& record) {
     focus::f64::CurveRecord result{};
     VKFV_CURVE_RECORD_FIELDS(VKFV_CONVERT)
+    return result;
+}
+
+focus::f64::SingleRecord single_in_double(const focus::f32::SingleRecord& record) {
+    focus::f64::SingleRecord result{};
+    VKFV_SINGLE_RECORD_FIELDS(VKFV_CONVERT)
     return result;
 }
 
@@ -62,6 +69,8 @@ class DeviceFocusPlanes final : public FocusPlanes {
                 sizeof(FocusPlan)),
           columns_(device_, "focus_columns", ::focus_columns,
                    storage_buffers({BINDING_ROW_SUMS, BINDING_WEIGHTS, BINDING_CURVE}), sizeof(FocusPlan)),
+          single_(device_, "focus_single", ::focus_single, storage_buffers({BINDING_CURVE, BINDING_SINGLES}),
+                  sizeof(SingleImage)),
           follow_(device_, "focus_follow", ::focus_follow,
                   storage_buffers({BINDING_CURVES, BINDING_RECORDS, BINDING_PLACES}), sizeof(FollowedImage)),
           select_(device_, "focus_select", ::focus_select,
@@ -70,7 +79,8 @@ class DeviceFocusPlanes final : public FocusPlanes {
           row_sums_(device_, static_cast<std::size_t>(focus_fields(plan_)) * pixels_ * sizeof(WindowSums)),
           weights_(device_, stack.window.weights().size() * sizeof(float)),
           averaged_(device_, static_cast<std::size_t>(averaged_curves_) * pixels_ * sizeof(float)),
-          records_(device_, pixels_ * sizeof(CurveRecord)), places_(device_, pixels_ * sizeof(float)),
+          alone_(device_, pixels_ * sizeof(float)), records_(device_, pixels_ * sizeof(CurveRecord)),
+          singles_(device_, pixels_ * sizeof(SingleRecord)), places_(device_, pixels_ * sizeof(float)),
           brightness_(device_, pixels_ * sizeof(float)), all_in_focus_(device_, channels_ * pixels_ * sizeof(float)) {
         const std::vector<float> weights(stack.window.weights().begin(), stack.window.weights().end());
         weights_.write_values(std::span<const float>(weights));
@@ -102,18 +112,17 @@ class DeviceFocusPlanes final : public FocusPlanes {
                 shares, [&](int k) -> const vulkan::Buffer& { return image_at(k); }, mean_image_, 0,
                 channels_* pixels_);
         }
-        if (plan_.measure != FOCUS_STANDARD_DEVIATION) {
-            dispatch(response_, {{BINDING_IMAGE, measured}, {BINDING_RESPONSES, &responses_}}, plan_, pixels_);
+        measured_alone_ = shares.size() == 1;
+        measure(*measured, curve_at(image));
+    }
+
+    void measure_alone(int image) override {
+        if (!measured_alone_) {
+            measure(image_at(image), alone_);
         }
-        dispatch(rows_,
-                 {{BINDING_IMAGE, measured},
-                  {BINDING_RESPONSES, &responses_},
-                  {BINDING_WEIGHTS, &weights_},
-                  {BINDING_ROW_SUMS, &row_sums_}},
-                 plan_, pixels_);
-        dispatch(columns_,
-                 {{BINDING_ROW_SUMS, &row_sums_}, {BINDING_WEIGHTS, &weights_}, {BINDING_CURVE, &curve_at(image)}},
-                 plan_, pixels_);
+        dispatch(single_,
+                 {{BINDING_CURVE, measured_alone_ ? &curve_at(image) : &alone_}, {BINDING_SINGLES, &singles_}},
+                 SingleImage{static_cast<std::uint32_t>(pixels_), image}, pixels_);
     }
 
     void average(int image, std::span<const Share> shares) override {
@@ -146,6 +155,9 @@ class DeviceFocusPlanes final : public FocusPlanes {
         result.brightness = grid(brightness_.read_values<float>(pixels_));
         result.curves = Grid<focus::f64::CurveRecord>(plan_.columns, plan_.rows);
         std::ranges::transform(records_.read_values<CurveRecord>(pixels_), result.curves.values.begin(), in_double);
+        result.singles = Grid<focus::f64::SingleRecord>(plan_.columns, plan_.rows);
+        std::ranges::transform(singles_.read_values<SingleRecord>(pixels_), result.singles.values.begin(),
+                               single_in_double);
         for (std::size_t channel = 0; channel < channels_; ++channel) {
             result.all_in_focus.push_back(grid(all_in_focus_.read_values<float>(pixels_, channel * pixels_)));
         }
@@ -166,6 +178,21 @@ class DeviceFocusPlanes final : public FocusPlanes {
         const std::uint32_t group_rows = (groups + most_groups_in_a_row - 1) / most_groups_in_a_row;
         commands_->dispatch(kernel, bindings, push, (groups + group_rows - 1) / group_rows, group_rows);
         commands_->barrier();
+    }
+
+    void measure(const vulkan::Buffer& image, const vulkan::Buffer& curve) {
+        if (plan_.measure != FOCUS_STANDARD_DEVIATION) {
+            dispatch(response_, {{BINDING_IMAGE, &image}, {BINDING_RESPONSES, &responses_}}, plan_, pixels_);
+        }
+        dispatch(rows_,
+                 {{BINDING_IMAGE, &image},
+                  {BINDING_RESPONSES, &responses_},
+                  {BINDING_WEIGHTS, &weights_},
+                  {BINDING_ROW_SUMS, &row_sums_}},
+                 plan_, pixels_);
+        dispatch(columns_,
+                 {{BINDING_ROW_SUMS, &row_sums_}, {BINDING_WEIGHTS, &weights_}, {BINDING_CURVE, &curve}},
+                 plan_, pixels_);
     }
 
     // first_to: in values.
@@ -193,11 +220,12 @@ class DeviceFocusPlanes final : public FocusPlanes {
     std::size_t pixels_;
     std::size_t channels_;
     vulkan::Device device_;
-    vulkan::Kernel mean_, add_brightness_, response_, rows_, columns_, follow_, select_;
-    vulkan::Buffer mean_image_, responses_, row_sums_, weights_, averaged_, records_, places_, brightness_,
-        all_in_focus_;
+    vulkan::Kernel mean_, add_brightness_, response_, rows_, columns_, single_, follow_, select_;
+    vulkan::Buffer mean_image_, responses_, row_sums_, weights_, averaged_, alone_, records_, singles_, places_,
+        brightness_, all_in_focus_;
     std::vector<vulkan::Buffer> images_; // the last few in turn
     std::vector<vulkan::Buffer> curves_; // likewise
+    bool measured_alone_ = false; // what was measured last is an image itself
     std::optional<vulkan::Commands> commands_;
 };
 

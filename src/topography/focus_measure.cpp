@@ -202,7 +202,7 @@ double noise_gain(FocusMeasure measure, double window_pixels) {
         case FocusMeasure::tenengrad:
             return 130.0 / 3;
         case FocusMeasure::modified_laplacian:
-            return 12.0;
+            return 27.9;
         case FocusMeasure::brenner:
             return 5.0;
         case FocusMeasure::wavelet:

@@ -76,9 +76,9 @@ Grid<float> window_mean(const Grid<float>& image, const FocusWindow& window);
 // and lengths: 1 (standard deviation), 130/3 (Tenengrad), 5 (Brenner), 269165/36096 (wavelet). That is the noise where
 // white texture exceeds it; without texture it is 1 / sqrt(2) of that.
 //
-// Modified Laplacian: sqrt(12 / n): the second differences along x and y each have the variance 6, and their absolute
-// values, without texture, have the covariances (2/pi)(sqrt(1 - r^2) + r asin r - 1) between pixels, which add up to
-// 12.02 / n. On white texture the differences keep its signs, and sums of 6 r (2/pi) asin r make it 27.9 / n.
+// Modified Laplacian: sqrt(27.9 / n). The second differences along x and y each have the variance 6; on white texture
+// they keep its signs, and the sums of 6 r (2/pi) asin r over pixels with the correlation r make it that. Without
+// texture their absolute values have the covariances (2/pi)(sqrt(1 - r^2) + r asin r - 1), which add up to 12.02 / n.
 double noise_gain(FocusMeasure measure, double window_pixels);
 
 } // namespace vkfv::topography

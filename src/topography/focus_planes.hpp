@@ -16,6 +16,7 @@ namespace vkfv::topography {
 struct StackSummary {
     Grid<float> brightness; // sum over the images of the channels' mean
     Grid<focus::f64::CurveRecord> curves;
+    Grid<focus::f64::SingleRecord> singles;
     Channels all_in_focus; // each pixel from the images around its maximum
 };
 
@@ -35,6 +36,8 @@ class FocusPlanes {
     virtual void take(int image, Channels channels) = 0;
     // The focus measure of the weighted mean of images taken: the curves' values at `image`.
     virtual void measure(int image, std::span<const Share> shares) = 0;
+    // The focus measure of the image itself, which was measured last, for follow_single() of every pixel.
+    virtual void measure_alone(int image) = 0;
     // The weighted mean of curves measured: the averaged curves' values at `image`.
     virtual void average(int image, std::span<const Share> shares) = 0;
     // follow_curve() of every pixel; `images` averaged curves are there.

@@ -7,6 +7,7 @@
 #include <cmath>
 #include <cstdint>
 #include <functional>
+#include <iterator>
 #include <limits>
 #include <numeric>
 #include <random>
@@ -36,21 +37,22 @@ void in_parallel(int count, const Task& task) {
     work();
 }
 
-struct Shape {
-    double unimodality = 0;
-    double relief = 0;
-};
-
-Shape shape_of(const std::vector<double>& values) {
-    auto shape = focus::f64::empty_curve();
+// singles: of single images in the same order. Nothing where the largest value stands at an end.
+Evidence evidence_of(const std::vector<double>& values, const focus::f64::SingleRecord& singles) {
+    auto curve = focus::f64::empty_curve();
     for (std::size_t k = 0; k < values.size(); ++k) {
-        shape = focus::f64::follow_shape(shape, values[k], static_cast<int>(k));
-        shape.sum += values[k];
+        curve = focus::f64::follow_shape(curve, values[k], static_cast<int>(k));
     }
-    const bool inside = shape.highest > values.front() && shape.highest > values.back();
-    return inside ? Shape{.unimodality = focus::f64::unimodality(shape),
-                          .relief = focus::f64::relief(shape, static_cast<int>(values.size()))}
-                  : Shape{};
+    const bool inside = curve.highest > values.front() && curve.highest > values.back();
+    return inside ? evidence(curve, singles, static_cast<int>(values.size())) : Evidence{};
+}
+
+focus::f64::SingleRecord single_record(const std::vector<double>& values) {
+    focus::f64::SingleRecord record{};
+    for (std::size_t k = 0; k < values.size(); ++k) {
+        record = focus::f64::follow_single(record, values[k], static_cast<int>(k));
+    }
+    return record;
 }
 
 // Beyond the largest of n values the next one lies with the probability 1 / (n + 1), give or take as much: a few more
@@ -269,32 +271,25 @@ NoiseModel FocusProbes::noise() const {
     return levels.empty() ? NoiseModel{} : fitted(levels, variances);
 }
 
-Chance FocusProbes::by_chance(const std::vector<double>& axial_weights, double rate) const {
+std::vector<Evidence> FocusProbes::by_chance(const std::vector<double>& axial_weights, double rate) const {
     const Means means = means_of(axial_weights, images_);
     const bool alone = axial_weights.size() == 1; // an image's own value, in whatever order
-    const int orders = random_orders(rate, alone, images_);
-    const auto in_order = alone ? curves_in_order(means) : std::vector<std::vector<double>>();
-    Chance result{.unimodality = std::vector<double>(static_cast<std::size_t>(orders)),
-                  .relief = std::vector<double>(static_cast<std::size_t>(orders))};
-    in_parallel(orders, [&](int sample) {
-        const auto here = static_cast<std::size_t>(sample), k = here % probes_.size();
+    const auto in_order = curves_in_order(means_of({1}, images_));
+    std::vector<Evidence> result(static_cast<std::size_t>(random_orders(rate, alone, images_)));
+    in_parallel(static_cast<int>(result.size()), [&](int sample) {
+        const auto probe = static_cast<std::size_t>(sample) % probes_.size();
         std::vector<int> order(static_cast<std::size_t>(images_));
         std::iota(order.begin(), order.end(), 0);
         std::mt19937_64 random(static_cast<std::uint64_t>(sample));
         for (std::size_t last = order.size(); last > 1; --last) {
             std::swap(order[last - 1], order[random() % last]);
         }
-        std::vector<double> values;
-        if (alone) {
-            for (const int image : order) {
-                values.push_back(in_order[k][static_cast<std::size_t>(image)]);
-            }
-        } else {
-            values = curve(probes_[k], order, means);
+        std::vector<double> singles;
+        for (const int image : order) {
+            singles.push_back(in_order[probe][static_cast<std::size_t>(image)]);
         }
-        const Shape shape = shape_of(values);
-        result.unimodality[here] = shape.unimodality;
-        result.relief[here] = shape.relief;
+        result[static_cast<std::size_t>(sample)] =
+            evidence_of(alone ? singles : curve(probes_[probe], order, means), single_record(singles));
     });
     return result;
 }
@@ -312,37 +307,40 @@ double exceeded_by(std::vector<double> values, double rate) {
 } // namespace
 
 double FocusProbes::suitable_smoothing() const {
-    constexpr double least = 0.4; // less averages nothing
-    constexpr double rate = 0.01; // few orders will do to choose by
-    constexpr double low = 0.6, well_below = 0.6;
-    const bool long_scan = images_ > 2 * few_images; // a short one shows less than the whole peak
-    if (images_ <= few_images) {
-        return 0;
-    }
-    const double width = curve_width();
-    for (double smoothing = most_smoothing_of_width * width; smoothing >= least; smoothing /= 1.5) {
-        const ChanceLimits limits = limits_of(by_chance(axial_weights(smoothing), rate), rate, images_);
-        const double averaged_width = std::sqrt(width * width + 2 * smoothing * smoothing);
-        const double relief = 1 - std::sqrt(2 * pi) * averaged_width / images_; // of a Gaussian
-        if (limits.unimodality < low || (long_scan && limits.relief < well_below * relief)) {
-            return smoothing;
-        }
-    }
-    return 0;
+    return images_ <= few_images ? 0 : topography::suitable_smoothing(curve_width(), images_);
 }
 
-ChanceLimits limits_of(const Chance& chance, double rate, int images) {
-    ChanceLimits limits{.unimodality = exceeded_by(chance.unimodality, rate / 2),
-                        .relief = exceeded_by(chance.relief, rate / 2)};
+double suitable_smoothing(double curve_width, int images) {
+    constexpr double most_of_the_scan = 0.1;
+    constexpr double least = 1; // less averages little, but makes three images of curves as narrow as one unimodal
+    const double smoothing = std::min(most_smoothing_of_width * curve_width, most_of_the_scan * (images - 1));
+    return smoothing >= least ? smoothing : 0;
+}
+
+// Unimodality has half of the rate; the order shown what is left of it by those random orders that exceed the limit of
+// unimodality: all of it where averages along z make every curve unimodal.
+ChanceLimit limit_of(const std::vector<Evidence>& by_chance, double rate, int images) {
+    std::vector<double> unimodality, order;
+    std::ranges::transform(by_chance, std::back_inserter(unimodality), &Evidence::unimodality);
+    ChanceLimit limit{.least = {.unimodality = exceeded_by(unimodality, rate / 2)}};
     if (images <= few_images) {
-        limits.unimodality = std::min(limits.unimodality, most_unimodality_asked);
+        limit.least.unimodality = std::min(limit.least.unimodality, most_unimodality_asked);
     }
-    double above = 1; // the next one may be
-    for (std::size_t k = 0; k < chance.relief.size(); ++k) {
-        above += chance.unimodality[k] > limits.unimodality || chance.relief[k] > limits.relief ? 1 : 0;
+    double above = 0;
+    for (const Evidence& found : by_chance) {
+        const bool unimodal = found.unimodality > limit.least.unimodality;
+        above += unimodal ? 1 : 0;
+        order.push_back(unimodal ? 0 : found.order);
     }
-    limits.rate = above / static_cast<double>(chance.relief.size() + 1);
-    return limits;
+    const auto orders = static_cast<double>(by_chance.size());
+    limit.least.order = exceeded_by(order, std::max(rate / 2, rate - above / orders));
+    above += static_cast<double>(std::ranges::count_if(order, [&](double found) { return found > limit.least.order; }));
+    limit.rate = (above + 1) / (orders + 1); // the next one may be
+    return limit;
+}
+
+Evidence evidence(const focus::f64::CurveRecord& curve, const focus::f64::SingleRecord& single, int images) {
+    return {.unimodality = focus::f64::unimodality(curve), .order = focus::f64::order_shown(curve, single, images)};
 }
 
 } // namespace vkfv::topography

@@ -15,24 +15,27 @@ namespace vkfv::topography {
 inline constexpr int few_images = 14;
 inline constexpr double most_unimodality_asked = 0.8;
 
-// The widest average along z over the standard deviation of the focus curves: half the half width of a Gaussian.
-inline constexpr double most_smoothing_of_width = 0.6;
+// The widest average along z over the standard deviation of the focus curves: two thirds of a Gaussian's half width.
+// Heights are best at 0.6 to 1, of stacks full of noise at 1; the wider, the more of a short scan is blurred.
+inline constexpr double most_smoothing_of_width = 0.8;
 
-// What curves look like by chance: unimodality and relief (curve.glsl) of a stack's curves with its images in random
-// order, 0 where the largest value stands at an end.
-struct Chance {
-    std::vector<double> unimodality, relief; // of the same order each
+// What tells a curve from chance (curve.glsl): unimodality best where there are few images or little noise, the order
+// shown elsewhere.
+struct Evidence {
+    double unimodality = 0;
+    double order = 0;
 };
 
-// A curve is no matter of chance that exceeds one of these.
-struct ChanceLimits {
-    double unimodality = 0;
-    double relief = 0;
+Evidence evidence(const focus::f64::CurveRecord& curve, const focus::f64::SingleRecord& single, int images);
+
+// A curve is no matter of chance that exceeds one or the other.
+struct ChanceLimit {
+    Evidence least;
     double rate = 1; // of the random orders that do
 };
 
-// Each is exceeded by half of this share of random orders on average, but for most_unimodality_asked.
-ChanceLimits limits_of(const Chance& chance, double rate, int images);
+// by_chance: of curves in random order. This share of them exceeds the limit, but for most_unimodality_asked.
+ChanceLimit limit_of(const std::vector<Evidence>& by_chance, double rate, int images);
 
 // Of single images: variance = constant + slope * value, in the images' unit squared.
 struct NoiseModel {
@@ -57,13 +60,12 @@ class FocusProbes {
     // texture that comes into focus makes others larger. Of a channel.
     NoiseModel noise() const;
 
-    // axial_weights: of both averages (axial_average.hpp). Of as many orders as tell what a share of `rate` exceeds,
-    // the better the less an order costs.
-    Chance by_chance(const std::vector<double>& axial_weights, double rate) const;
+    // The evidence of curves with the images in random order, none where the largest value stands at an end. axial_weights:
+    // of both averages (axial_average.hpp). Of as many orders as tell what a share of `rate` exceeds, the better the less
+    // an order costs.
+    std::vector<Evidence> by_chance(const std::vector<double>& axial_weights, double rate) const;
 
-    // Standard deviation of the average along z, in images: half the half width of the focus curves, or the part of it
-    // that leaves chance well below what curves of their width are. How well these images are in order has no say: what
-    // is judged by the order must not be chosen by it. None of few_images.
+    // Standard deviation of the average along z, in images, that suits these curves. None of few_images.
     double suitable_smoothing() const;
 
   private:
@@ -93,5 +95,9 @@ class FocusProbes {
     int channels_ = 0;
     int images_ = 0;
 };
+
+// Standard deviation of the average along z, in images, that suits focus curves of this standard deviation in images:
+// most_smoothing_of_width, or a tenth of the scan.
+double suitable_smoothing(double curve_width, int images);
 
 } // namespace vkfv::topography

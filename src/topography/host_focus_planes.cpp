@@ -35,6 +35,7 @@ class HostFocusPlanes final : public FocusPlanes {
           averaged_(plan.averaged_curves_kept) {
         summary_.brightness = Grid<float>(plan_.columns, plan_.rows);
         summary_.curves = Grid<f64::CurveRecord>(plan_.columns, plan_.rows, f64::empty_curve());
+        summary_.singles = Grid<f64::SingleRecord>(plan_.columns, plan_.rows);
         summary_.all_in_focus.assign(static_cast<std::size_t>(plan_.channels), Grid<float>(plan_.columns, plan_.rows));
     }
 
@@ -48,15 +49,22 @@ class HostFocusPlanes final : public FocusPlanes {
     }
 
     void measure(int image, std::span<const Share> shares) override {
-        const auto measure = static_cast<FocusMeasure>(plan_.measure);
-        if (shares.size() == 1) {
-            curves_[image] = focus_measure(images_[shares[0].image], measure, window_);
+        alone_ = shares.size() == 1;
+        if (alone_) {
+            curves_[image] = measure_of(images_[image]);
             return;
         }
         Channels mean;
         for (std::size_t channel = 0; channel < static_cast<std::size_t>(plan_.channels); ++channel)
             mean.push_back(weighted_mean(shares, [&](int k) -> const Grid<float>& { return images_[k][channel]; }));
-        curves_[image] = focus_measure(mean, measure, window_);
+        curves_[image] = measure_of(mean);
+    }
+
+    void measure_alone(int image) override {
+        const Grid<float> values = alone_ ? curves_[image] : measure_of(images_[image]);
+        pixels([&](std::size_t k) {
+            summary_.singles.values[k] = f64::follow_single(summary_.singles.values[k], values.values[k], image);
+        });
     }
 
     void average(int image, std::span<const Share> shares) override {
@@ -86,6 +94,10 @@ class HostFocusPlanes final : public FocusPlanes {
     StackSummary summary() override { return std::move(summary_); }
 
   private:
+    Grid<float> measure_of(const Channels& image) const {
+        return focus_measure(image, static_cast<FocusMeasure>(plan_.measure), window_);
+    }
+
     template <class Task>
     void pixels(const Task& task) const {
         parallel_rows(plan_.columns, plan_.rows, [&](int first, int end) {
@@ -115,6 +127,7 @@ class HostFocusPlanes final : public FocusPlanes {
     Ring<Grid<float>> curves_;
     Ring<Grid<float>> averaged_;
     StackSummary summary_;
+    bool alone_ = false; // what was measured last is an image itself
 };
 
 } // namespace

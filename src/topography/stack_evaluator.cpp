@@ -63,9 +63,9 @@ double mean_of(const Grid<float>& grid) {
 }
 
 // If a twenty-fifth or more of the measured points would be so by chance, none is measured: those that are not cannot
-// be told from them.
-void leave_out_chance(Topography& topography, double chance_rate) {
-    constexpr double most = 0.04;
+// be told from them. Who asks for a high rate accepts twice as much.
+void leave_out_chance(Topography& topography, double chance_rate, double accepted_rate) {
+    const double most = std::max(0.04, 2 * accepted_rate);
     auto& states = topography.state.values;
     const auto measured = static_cast<double>(std::ranges::count(states, PointState::measured));
     if (chance_rate * static_cast<double>(states.size()) < most * measured) {
@@ -80,29 +80,37 @@ void leave_out_chance(Topography& topography, double chance_rate) {
     }
 }
 
-// Standard deviation of the difference of a smoothed curve's values one step before and after a point over that of a
-// single image's: of the twice averaged noise, away from the ends.
-double difference_noise(const std::vector<double>& axial_weights) {
+// Of a smoothed curve's noise over that of a single image's, away from the ends: standard deviation of the difference of
+// its values one step before and after a point, and of its second difference there.
+struct SmoothedNoise {
+    double difference = 0;
+    double bend = 0;
+};
+
+SmoothedNoise smoothed_noise(const std::vector<double>& axial_weights) {
     const int radius = static_cast<int>(axial_weights.size()) - 1;
     const int images = 8 * radius + 5;
     const std::vector<double> kernel = twice_averaged(axial_weights, images / 2, images);
-    double variance = 0;
+    SmoothedNoise variance;
     for (int k = 0; k < images; ++k) {
         const double before = k + 1 < images ? kernel[static_cast<std::size_t>(k + 1)] : 0;
         const double after = k > 0 ? kernel[static_cast<std::size_t>(k - 1)] : 0;
-        variance += (after - before) * (after - before);
+        const double bend = 2 * kernel[static_cast<std::size_t>(k)] - before - after;
+        variance.difference += (after - before) * (after - before);
+        variance.bend += bend * bend;
     }
-    return std::sqrt(variance);
+    return {.difference = std::sqrt(variance.difference), .bend = std::sqrt(variance.bend)};
+}
+
+// Of a maximum's place, in steps: the noise of the difference over the curve's bend. The bend is found with its noise,
+// which adds to its square what is taken off here, but for a quarter of it.
+double place_noise(double bend, double image_noise, const SmoothedNoise& smoothed) {
+    const double by_noise = image_noise * smoothed.bend;
+    const double without = std::sqrt(std::max(bend * bend - by_noise * by_noise, bend * bend / 4));
+    return image_noise * smoothed.difference / (2 * std::max(without, 1e-30));
 }
 
 } // namespace
-
-double suitable_smoothing(double curve_width_steps, int images) {
-    constexpr double most_of_the_scan = 1.0 / 30;
-    constexpr double least = 0.4; // less averages nothing
-    const double steps = std::min(most_smoothing_of_width * curve_width_steps, most_of_the_scan * (images - 1));
-    return steps >= least ? steps : 0;
-}
 
 StackEvaluator::StackEvaluator(const TopographyOptions& options, FocusPlanesMaker make_planes)
     : options_(checked(options)), measure_(options.focus_measure), window_(options.window_px, options.window_shape),
@@ -190,6 +198,7 @@ void StackEvaluator::advance(bool all_taken) {
     };
     while (measured_ < (all_taken ? images : images - radius)) {
         planes_->measure(measured_, axial_shares(axial_weights_, measured_, images));
+        planes_->measure_alone(measured_);
         ++measured_;
         average(false);
     }
@@ -204,35 +213,41 @@ void StackEvaluator::advance(bool all_taken) {
 StackFigures StackEvaluator::judge_stack() const {
     StackFigures figures{.smoothing_steps = options_.smoothing_steps.value_or(0),
                          .curve_width_steps = probes_->curve_width(),
-                         .limits = {}};
+                         .limit = {}};
     if (options_.false_peak_rate < 1) {
-        figures.limits = limits_of(probes_->by_chance(axial_weights_, options_.false_peak_rate),
+        figures.limit = limit_of(probes_->by_chance(axial_weights_, options_.false_peak_rate),
                                    options_.false_peak_rate, static_cast<int>(z_.size()));
     }
     return figures;
 }
 
-// rise: of the largest value over the mean; noise: of the curve.
-PointState StackEvaluator::judge(const focus::f64::CurveRecord& curve, double rise, double noise, int peaks,
-                                 const StackFigures& figures) const {
+PointState StackEvaluator::judge(const focus::f64::CurveRecord& curve, const focus::f64::SingleRecord& single,
+                                 double noise, double averaging, const StackFigures& figures) const {
     if (curve.found == 0) {
         return PointState::no_peak;
     }
     const int images = static_cast<int>(z_.size());
-    if (!(focus::f64::unimodality(curve) > figures.limits.unimodality ||
-          focus::f64::relief(curve, images) > figures.limits.relief)) {
+    const Evidence found = evidence(curve, single, images);
+    const Evidence& least = figures.limit.least;
+    if (options_.false_peak_rate < 1 && !(found.unimodality > least.unimodality || found.order > least.order)) {
         return PointState::by_chance;
     }
-    if (!(rise >= options_.least_contrast * noise)) {
+    const double rise = curve.largest - curve.sum / images;
+    if (!(rise >= options_.least_contrast * noise * averaging)) {
         return PointState::low_contrast;
     }
     if (curve.residual > options_.most_fit_residual) {
         return PointState::poor_fit;
     }
-    // Noise has maxima too: how prominent the largest of many are, as the range of normal values.
+    // Noise has maxima too: how prominent the largest of many are, as the range of normal values. Averages fill the
+    // valley between two maxima, single images hide it in their noise: either may show it.
     const double by_noise = 2 * noise * std::sqrt(2 * std::log(static_cast<double>(images)));
-    const bool rivalled = options_.most_rival < 1 && curve.rival > options_.most_rival * rise && curve.rival > by_noise;
-    return peaks > options_.most_peaks || rivalled ? PointState::many_peaks : PointState::measured;
+    const bool rivalled =
+        options_.most_rival < 1 &&
+        (curve.rival > std::max(options_.most_rival * rise, by_noise * averaging) ||
+         single.rival > std::max(options_.most_rival * focus::f64::single_rise(single, images), by_noise));
+    return rivalled || focus::f64::count_peaks(curve, images) > options_.most_peaks ? PointState::many_peaks
+                                                                                  : PointState::measured;
 }
 
 Topography StackEvaluator::finish(double x0, double y0, double pitch) {
@@ -245,7 +260,7 @@ Topography StackEvaluator::finish(double x0, double y0, double pitch) {
     const int images = static_cast<int>(z_.size());
     const NoiseModel noise_model = probes_->noise();
     StackFigures figures = judge_stack();
-    const double noise_of_difference = difference_noise(axial_weights_);
+    const SmoothedNoise smoothed = smoothed_noise(axial_weights_);
     const std::vector<AveragedPoint> points = averaged_points(axial_weights_, images);
     // Of a place between the curve's points.
     const auto position = [&](double at) {
@@ -275,25 +290,23 @@ Topography StackEvaluator::finish(double x0, double y0, double pitch) {
             // Of a single image's value.
             const double image_noise = relative_noise(here, noise_model) * noise_gain(measure_, pixels);
             const double rise = curve.largest - curve.sum / images;
-            const int peaks = focus::f64::count_peaks(curve, images);
             result.contrast(column, row) = rise / (image_noise * averaging);
             result.fit_residual(column, row) = curve.residual;
-            result.peaks(column, row) = static_cast<std::uint16_t>(peaks);
+            result.peaks(column, row) = static_cast<std::uint16_t>(focus::f64::count_peaks(curve, images));
             PointState& state = result.state(column, row);
-            state = here > dark * brightness ? judge(curve, rise, image_noise * averaging, peaks, figures)
+            state = here > dark * brightness ? judge(curve, stack.singles(column, row), image_noise, averaging, figures)
                                              : PointState::dark;
             if (state == PointState::measured) {
                 result.height.height(column, row) = z_.front() + step * position(curve.at + curve.offset);
-                result.height_noise(column, row) =
-                    step * image_noise * noise_of_difference / (2 * std::max(curve.bend, 1e-30));
+                result.height_noise(column, row) = step * place_noise(curve.bend, image_noise, smoothed);
             }
         }
     for (Grid<float>& channel : stack.all_in_focus)
         for (float& value : channel.values)
             value /= scale_;
     result.all_in_focus = std::move(stack.all_in_focus);
-    if (figures.limits.rate < 1 && images > few_images)
-        leave_out_chance(result, figures.limits.rate);
+    if (figures.limit.rate < 1 && images > few_images)
+        leave_out_chance(result, std::max(options_.false_peak_rate, figures.limit.rate), options_.false_peak_rate);
     if (options_.repair_outliers)
         repair_outliers(result);
     figures.image_noise = relative_noise(brightness, noise_model);

@@ -13,11 +13,11 @@
 //   (peak_method.hpp).
 //
 // - The point is "not measured" where the maximum lies at either end of the scan, or where the curve is no better
-//   than this stack's curves with the images in random order. What is compared is the curve's unimodality (curve.glsl):
-//   the share of all its rises and falls that its largest maximum accounts for. How large it is by chance is found by
-//   shuffling the stack at some hundred places (focus_probes.hpp), so no noise need be known, and it holds for few
-//   images and many, for light of few rays and for texture that a coarse scan jumps over. Nor is a point measured whose
-//   curve has a second maximum that stands out almost as the first. Further limits of quality can be set.
+//   than this stack's curves with the images in random order. What is compared is the curve's unimodality, and the order
+//   it shows (curve.glsl). How large they are by chance is found by shuffling the stack at some hundred places
+//   (focus_probes.hpp), so no noise need be known, and it holds for few images and many, for light of few rays and for
+//   texture that a coarse scan jumps over. Nor is a point measured whose curve, averaged or not, has a second maximum
+//   that stands out almost as the first. Further limits of quality can be set.
 //
 // Near the ends of the scan the averages hold only the images there are. The places that they stand for, and their
 // larger noise, are reckoned with, but a curve is blunted less there than elsewhere, which draws peaks towards the end.
@@ -51,9 +51,9 @@ struct TopographyOptions {
     // FocusProbes::suitable_smoothing() tells; the evaluator is given a number.
     std::optional<double> smoothing_steps{};
     // Share of the points that would be measured with the images in random order; 1 switches the limit off. Where a
-    // twentieth or more of all that are measured would be by chance, none is. With
-    // few_images or fewer more than most_unimodality_asked is demanded of no curve, since they are often in order by
-    // chance: what rate that means, the evaluation tells.
+    // twenty-fifth or more of all that are measured would be by chance, and more than twice this, none is. Of few_images
+    // or fewer no more than most_unimodality_asked is demanded, since they are often in order by chance: what rate that
+    // means, the evaluation tells.
     double false_peak_rate = 3e-3;
     // Prominence of the second maximum over the height of the largest above the curve's mean; 1 switches the limit off.
     double most_rival = 0.15;
@@ -80,7 +80,7 @@ enum class PointState : std::uint16_t {
 struct StackFigures {
     double smoothing_steps = 0;   // that were used
     double curve_width_steps = 0; // standard deviation of its focus curves, FocusProbes::curve_width()
-    ChanceLimits limits;          // one of which a measured point exceeds
+    ChanceLimit limit;            // that a measured point exceeds
     double image_noise = 0;       // standard deviation of a pixel over its brightness, at the mean brightness
 };
 
@@ -105,8 +105,8 @@ struct Topography {
 
 // Evaluates a stack whose images come one at a time, in one pass. With r = ceil(3 smoothing_steps), R =
 // peak_range_steps and C channels it holds, however long the stack, for every pixel about 4 bytes for each of
-// C (2r + 2R + 2) values of images and 2r + 2R + 2 of curves, and 140 + 50 C bytes besides: 320 MB for 1000 x 1000
-// grey pixels with smoothing_steps = 3, 1.2 GB with 20; and 128 MB at most for its probes.
+// C (2r + 2R + 2) values of images and 2r + 2R + 2 of curves, and 240 + 50 C bytes besides: 500 MB for 1000 x 1000
+// grey pixels with smoothing_steps = 3, 1.3 GB with 20; and 128 MB at most for its probes.
 class StackEvaluator {
   public:
     // `make_planes` makes what does the work: the host's cores unless a device is given. Throws InputError where an
@@ -127,8 +127,9 @@ class StackEvaluator {
     void begin(const Channels& first);
     void advance(bool all_taken);
     StackFigures judge_stack() const;
-    PointState judge(const focus::f64::CurveRecord& curve, double rise, double noise, int peaks,
-                     const StackFigures& figures) const;
+    // noise: standard deviation of a single image's measure; averaging: the factor on it that both averages leave.
+    PointState judge(const focus::f64::CurveRecord& curve, const focus::f64::SingleRecord& single, double noise,
+                     double averaging, const StackFigures& figures) const;
 
     TopographyOptions options_;
     FocusMeasure measure_;
@@ -146,10 +147,6 @@ class StackEvaluator {
     int averaged_ = 0;
     int followed_ = 0;
 };
-
-// Standard deviation of the average along z, in steps, that suits focus curves of this standard deviation in steps
-// before any image is there: half of their half width, or a thirtieth of the scan.
-double suitable_smoothing(double curve_width_steps, int images);
 
 // Gives outliers the median height of their neighbours, and marks them. An outlier is a measured point with at least 5
 // of its 8 neighbours measured whose distance from their median exceeds 6 robust standard deviations (1.4826 times the

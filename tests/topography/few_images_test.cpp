@@ -50,7 +50,7 @@ ModelStack model_stack(int images, double width, bool bytes, unsigned seed) {
     for (int row = 0; row < side; ++row) {
         for (int column = 0; column < side; ++column) {
             stack.height(column, row) =
-                0.5 * (images - 1) + amplitude * std::sin(2 * pi * column / side) * std::cos(2 * pi * row / side);
+                0.5 * (images - 1) + amplitude * std::sin(pi * column / side) * std::cos(pi * row / side);
         }
     }
     for (int image = 0; image < images; ++image) {
@@ -83,18 +83,18 @@ TEST(FewImages, AreMeasuredByDefault) {
                     }
                 }
                 EXPECT_GE(measured, 0.98 * side * side);
-                EXPECT_LE(std::sqrt(sum / measured), images == 7 ? 0.15 : 0.09); // the window rounds the waves off
+                EXPECT_LE(std::sqrt(sum / measured), images == 7 ? 0.15 : bytes && width == 5 ? 0.07 : 0.06); // rounding moves flat curves
             }
         }
     }
 }
 
 TEST(FewImages, InRandomOrderAreNotMeasured) {
-    for (const auto& [images, width] : {std::pair{15, 1.0}, {31, 5.0}}) {
+    for (const auto& [images, width] : {std::pair{15, 1.0}, {15, 5.0}, {31, 1.0}, {31, 5.0}}) {
         SCOPED_TRACE(testing::Message() << images << " images, width " << width);
         ModelStack stack = model_stack(images, width, true, 2);
         std::mt19937 random(3);
-        constexpr int orders = 10;
+        constexpr int orders = 20;
         double share = 0;
         for (int k = 0; k < orders; ++k) {
             std::ranges::shuffle(stack.images, random);
@@ -110,11 +110,35 @@ TEST(FewImages, TellWhatPassesByChance) {
     // Of seven values in random order a share of 0.03 to 0.1 is unimodal, by their form.
     const ModelStack stack = model_stack(7, 1, false, 4);
     const Topography topography = reconstruct(stack.images, stack.z, 0, 0, 1, {});
-    EXPECT_EQ(topography.stack.limits.unimodality, most_unimodality_asked);
-    EXPECT_GT(topography.stack.limits.rate, 0.01);
-    EXPECT_LT(topography.stack.limits.rate, 0.15);
+    EXPECT_EQ(topography.stack.limit.least.unimodality, most_unimodality_asked);
+    EXPECT_GT(topography.stack.limit.rate, 0.01);
+    EXPECT_LT(topography.stack.limit.rate, 0.15);
     const Topography unlimited = reconstruct(stack.images, stack.z, 0, 0, 1, {.false_peak_rate = 1});
-    EXPECT_EQ(unlimited.stack.limits.unimodality, 0);
+    EXPECT_EQ(unlimited.stack.limit.least.unimodality, 0);
+}
+
+// Maxima 3 steps apart, which the average along z makes one of, on texture of Gaussian contrast around both heights.
+TEST(FocusCurve, TwoMaximaThatAveragesMakeOneAreNotMeasured) {
+    constexpr int images = 41;
+    std::mt19937 random(8);
+    const Grid<double> texture = texture_of(random);
+    const auto measured = [&](double apart, double most_rival) {
+        StackEvaluator evaluator({.smoothing_steps = 2, .most_rival = most_rival});
+        for (int image = 0; image < images; ++image) {
+            const auto contrast = [&](double height) { return std::exp(-0.5 * (image - height) * (image - height)); };
+            const double here = contrast(20 - apart / 2) + contrast(20 + apart / 2);
+            Grid<float> values(side, side);
+            for (std::size_t k = 0; k < values.values.size(); ++k) {
+                values.values[k] = static_cast<float>(120 + 10 * texture.values[k] * here);
+            }
+            evaluator.add(values, image);
+        }
+        const auto state = evaluator.finish(0, 0, 1).state;
+        return std::ranges::count(state.values, PointState::measured);
+    };
+    EXPECT_EQ(measured(0, 0.15), side * side);
+    EXPECT_EQ(measured(3.4, 0.15), 0);
+    EXPECT_EQ(measured(3.4, 1), side * side);
 }
 
 TEST(FocusProbes, TellTheWidthOfFocusCurves) {
@@ -159,6 +183,33 @@ TEST(FocusCurve, UnimodalityAndTheRivalAreTheirDefinitions) {
     EXPECT_EQ(shape_of({1, 4, 2, 5, 1}).rival, 2); // the lesser one first
     EXPECT_EQ(shape_of({5, 1, 3, 0, 4}).rival, 4); // by the deepest valley
     EXPECT_EQ(focus::f64::unimodality(shape_of({3, 3, 3})), 0);
+}
+
+TEST(FocusCurve, TheOrderShownIsItsDefinition) {
+    const std::vector<double> single = {3, 7, 2, 9, 4, 5, 1}, averaged = {2, 4, 6, 7, 5, 4, 3};
+    auto curve = focus::f64::empty_curve();
+    focus::f64::SingleRecord record{};
+    for (std::size_t k = 0; k < single.size(); ++k) {
+        curve = focus::f64::follow_shape(curve, averaged[k], static_cast<int>(k));
+        record = focus::f64::follow_single(record, single[k], static_cast<int>(k));
+    }
+    const auto variance = [](const std::vector<double>& values) {
+        const double count = static_cast<double>(values.size());
+        const double mean = std::accumulate(values.begin(), values.end(), 0.0) / count;
+        return std::accumulate(values.begin(), values.end(), 0.0,
+                               [&](double sum, double value) { return sum + (value - mean) * (value - mean); }) /
+               count;
+    };
+    // Steps squared, one to three images apart: 16 + 25 + 49 + 25 + 1 + 16, 1 + 4 + 4 + 16 + 9, 36 + 9 + 9 + 64.
+    const double twice = 2 * 7 * variance(single);
+    const double correlation =
+        (6.0 / 7 - 132 / twice) + 0.8 * (5.0 / 7 - 34 / twice) + 0.5 * (4.0 / 7 - 118 / twice);
+    const double unimodal = (2 * 7 - 2 - 3) / 9.0;
+    EXPECT_NEAR(focus::f64::order_shown(curve, record, 7),
+                unimodal * std::sqrt(variance(averaged) / variance(single)) * std::exp(correlation), 1e-14);
+    EXPECT_EQ(record.rival, 5); // from 7 to 2, and up again beyond it
+    EXPECT_NEAR(focus::f64::single_rise(record, 7), 9 - 31.0 / 7, 1e-14);
+    EXPECT_EQ(focus::f64::order_shown(curve, focus::f64::SingleRecord{}, 7), 0); // nothing varies
 }
 
 } // namespace
