@@ -131,7 +131,8 @@ TEST(Reconstruct, HeightsFromShuffledFramesDoNotCorrelateWithTheTruth) {
     constexpr int shuffles = 200;
     for (int k = 0; k < shuffles; ++k) {
         std::shuffle(stack.images.begin(), stack.images.end(), random);
-        const Deviation deviation = compare(evaluate(stack, {.false_peak_rate = 1, .most_rival = 1}).height, stack.truth);
+        const Deviation deviation =
+            compare(evaluate(stack, {.false_peak_rate = 1, .most_rival = 1}).height, stack.truth);
         sum += std::isfinite(deviation.correlation) ? deviation.correlation : 0;
     }
     EXPECT_LT(std::abs(sum / shuffles), 0.1);
@@ -344,11 +345,12 @@ TEST(Reconstruct, HoldsFewImagesHoweverLongTheStack) {
         for (const double smoothing : {0.0, 0.5, 2.0})
             for (const int range : {1, 4}) {
                 int kept = 0;
-                StackEvaluator evaluator({.peak_range_steps = range, .smoothing_steps = smoothing, .false_peak_rate = 1},
-                                         [&](const FocusPlanesPlan& plan) {
-                                             kept = plan.images_kept + plan.curves_kept + plan.averaged_curves_kept;
-                                             return std::make_unique<WatchedPlanes>(plan);
-                                         });
+                StackEvaluator evaluator(
+                    {.peak_range_steps = range, .smoothing_steps = smoothing, .false_peak_rate = 1},
+                    [&](const FocusPlanesPlan& plan) {
+                        kept = plan.images_kept + plan.curves_kept + plan.averaged_curves_kept;
+                        return std::make_unique<WatchedPlanes>(plan);
+                    });
                 for (int k = 0; k < images; ++k) {
                     Grid<float> image(5, 4);
                     for (float& value : image.values)
