@@ -53,50 +53,6 @@ const Codec& codec() {
     return once;
 }
 
-std::string tiff_bytes(const Grid<float>& image, const ImageTags& tags) {
-    return codec().tiff_of_floats(std::span(&image, 1), tags);
-}
-
-std::string tiff_bytes(const std::vector<Grid<float>>& channels, const ImageTags& tags) {
-    return codec().tiff_of_floats(channels, tags);
-}
-
-std::string tiff_bytes(const Grid<std::uint16_t>& image, const ImageTags& tags) {
-    return codec().tiff_of_integers(image, tags);
-}
-
-int page_count(const std::filesystem::path& path) {
-    return codec().page_count(path);
-}
-
-Grid<float> read_image(const std::filesystem::path& path, int page) {
-    return codec().read_image(path, page);
-}
-
-std::vector<Grid<float>> read_channels(const std::filesystem::path& path, int page) {
-    return codec().read_channels(path, page);
-}
-
-std::string image_description(const std::filesystem::path& path) {
-    return codec().image_description(path);
-}
-
-StoredImage parse_tiff(std::string_view bytes, const std::filesystem::path& path) {
-    return codec().parse_tiff(bytes, path);
-}
-
-DescribedImage parse_image(std::string_view bytes, ImageFormat format, const std::filesystem::path& path) {
-    return codec().parse_image(bytes, format, path);
-}
-
-Grid<float> parse_grey(std::string_view bytes, std::uint64_t most_pixels, const std::filesystem::path& path) {
-    return codec().parse_grey(bytes, most_pixels, path);
-}
-
-std::string png_bytes(int columns, int rows, std::span<const std::uint8_t> rgb) {
-    return codec().png(columns, rows, rgb);
-}
-
 Ink ink_of(const std::string& letter, int size, const std::string& font) {
     return codec().ink_of(letter, size, font);
 }

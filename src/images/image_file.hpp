@@ -1,4 +1,4 @@
-// Images as files, through OpenImageIO.
+// Images as files: plain TIFFs, as vkfv writes them, by libtiff, and all others by OpenImageIO.
 //
 // Row order: in memory row 0 has the lowest y; in a file the first row has the highest y, so that every
 // viewer shows the specimen as seen from +z, x to the right and y up. Writers flip the rows, readers flip

@@ -1,4 +1,4 @@
-// Pictures: PNG, and letters as pixels, through OpenImageIO.
+// Pictures: PNG by libpng, and letters as pixels by OpenImageIO.
 #pragma once
 
 #include "core/grid.hpp"
@@ -9,7 +9,7 @@
 
 namespace vkfv::images {
 
-// Three bytes a pixel, the first row on top. The same pixels give the same bytes. RunError where OpenImageIO cannot.
+// Three bytes a pixel, the first row on top. The same pixels give the same bytes. RunError where libpng cannot.
 std::string png_bytes(int columns, int rows, std::span<const std::uint8_t> rgb);
 
 // The pixels that a letter covers, its origin on the baseline, y down; ends excluded.

@@ -9,7 +9,7 @@
 namespace vkfv::report {
 
 // Row 0 of the grid, the lowest y, becomes the PNG's last. The same pixels give the same bytes. RunError where
-// OpenImageIO cannot.
+// libpng cannot.
 std::string png_bytes(const Grid<Rgb>& pixels);
 
 std::string base64(const std::string& bytes);

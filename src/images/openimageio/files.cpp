@@ -1,4 +1,4 @@
-// Images as files: what images/image_file.hpp promises.
+// Image files of all kinds: what images/image_file.hpp promises.
 #include "images/openimageio/functions.hpp"
 
 #include "core/error.hpp"
@@ -12,19 +12,12 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <array>
-#include <charconv>
-#include <cmath>
-#include <limits>
 #include <memory>
-#include <span>
 #include <string_view>
 #include <vector>
 
 namespace vkfv::images::openimageio {
 namespace {
-
-constexpr double mm_per_cm = 10.0;
 
 template <class Value>
 constexpr OIIO::TypeDesc type_of();
@@ -70,42 +63,6 @@ std::vector<Value> flipped_rows(const Grid<Value>& grid) {
                     result.begin() + static_cast<std::ptrdiff_t>(grid.index(0, grid.rows - 1 - row)));
     }
     return result;
-}
-
-template <class Value>
-std::string single_page(std::span<const Grid<Value>> channels, const ImageTags& tags) {
-    const Grid<Value>& image = channels.front();
-    const std::size_t count = channels.size();
-    OIIO::ImageSpec spec(image.columns, image.rows, static_cast<int>(count), type_of<Value>());
-    spec.attribute("compression", "none");
-    // One strip: Gwyddion 2.62 crashes on float images of several.
-    spec.attribute("tiff:RowsPerStrip", image.rows);
-    // Without these OpenImageIO writes its version and the time of day; it cannot leave DateTime out.
-    spec.attribute("Software", "vkfv");
-    spec.attribute("DateTime", "1970:01:01 00:00:00");
-    if (!tags.description.empty())
-        spec.attribute("ImageDescription", tags.description);
-    if (tags.pitch_x > 0 && tags.pitch_y > 0) {
-        spec.attribute("ResolutionUnit", "cm");
-        spec.attribute("XResolution", static_cast<float>(mm_per_cm / tags.pitch_x));
-        spec.attribute("YResolution", static_cast<float>(mm_per_cm / tags.pitch_y));
-        // OpenImageIO writes the y resolution as this times that of x.
-        spec.attribute("PixelAspectRatio", static_cast<float>(tags.pitch_x / tags.pitch_y));
-    }
-    std::vector<Value> values(count * image.values.size());
-    for (std::size_t channel = 0; channel < count; ++channel) {
-        const std::vector<Value> rows = flipped_rows(channels[channel]);
-        for (std::size_t k = 0; k < rows.size(); ++k)
-            values[k * count + channel] = rows[k];
-    }
-    std::vector<unsigned char> bytes;
-    OIIO::Filesystem::IOVecOutput memory(bytes);
-    const std::unique_ptr<OIIO::ImageOutput> output = OIIO::ImageOutput::create("tiff");
-    if (!output || !output->set_ioproxy(&memory) || !output->open("image.tif", spec) ||
-        !output->write_image(type_of<Value>(), values.data()) || !output->close())
-        throw RunError(
-            fmt::format("OpenImageIO cannot encode a TIFF image: {}", output ? output->geterror() : OIIO::geterror()));
-    return {bytes.begin(), bytes.end()};
 }
 
 struct OpenImage {
@@ -249,14 +206,6 @@ std::string description_of(const OpenImage& image) {
 }
 
 } // namespace
-
-std::string tiff_of_floats(std::span<const Grid<float>> channels, const ImageTags& tags) {
-    return single_page(channels, tags);
-}
-
-std::string tiff_of_integers(const Grid<std::uint16_t>& image, const ImageTags& tags) {
-    return single_page(std::span(&image, 1), tags);
-}
 
 int page_count(const std::filesystem::path& path) {
     const OpenImage image = open_image(path);

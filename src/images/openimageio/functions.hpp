@@ -5,8 +5,6 @@
 
 namespace vkfv::images::openimageio {
 
-std::string tiff_of_floats(std::span<const Grid<float>> channels, const ImageTags& tags);
-std::string tiff_of_integers(const Grid<std::uint16_t>& image, const ImageTags& tags);
 int page_count(const std::filesystem::path& path);
 Grid<float> read_image(const std::filesystem::path& path, int page);
 std::vector<Grid<float>> read_channels(const std::filesystem::path& path, int page);
@@ -14,7 +12,6 @@ std::string image_description(const std::filesystem::path& path);
 StoredImage parse_tiff(std::string_view bytes, const std::filesystem::path& path);
 DescribedImage parse_image(std::string_view bytes, ImageFormat format, const std::filesystem::path& path);
 Grid<float> parse_grey(std::string_view bytes, std::uint64_t most_pixels, const std::filesystem::path& path);
-std::string png(int columns, int rows, std::span<const std::uint8_t> rgb);
 Ink ink_of(const std::string& letter, int size, const std::string& font);
 Grid<float> drawn(const DrawnLetter& letter, int columns, int rows);
 

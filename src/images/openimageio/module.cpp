@@ -5,15 +5,12 @@ extern "C" __attribute__((visibility("default"))) const vkfv::images::Codec vkfv
 
 namespace io = vkfv::images::openimageio;
 
-const vkfv::images::Codec vkfv_image_codec = {.tiff_of_floats = io::tiff_of_floats,
-                                              .tiff_of_integers = io::tiff_of_integers,
-                                              .page_count = io::page_count,
+const vkfv::images::Codec vkfv_image_codec = {.page_count = io::page_count,
                                               .read_image = io::read_image,
                                               .read_channels = io::read_channels,
                                               .image_description = io::image_description,
                                               .parse_tiff = io::parse_tiff,
                                               .parse_image = io::parse_image,
                                               .parse_grey = io::parse_grey,
-                                              .png = io::png,
                                               .ink_of = io::ink_of,
                                               .drawn = io::drawn};

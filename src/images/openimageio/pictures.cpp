@@ -1,30 +1,12 @@
-// PNG, and letters as pixels: what images/picture.hpp promises.
+// Letters as pixels: what images/picture.hpp promises.
 #include "core/error.hpp"
 #include "images/openimageio/functions.hpp"
 
-#include <OpenImageIO/filesystem.h>
 #include <OpenImageIO/imagebuf.h>
 #include <OpenImageIO/imagebufalgo.h>
 #include <OpenImageIO/imageio.h>
 
-#include <memory>
-
 namespace vkfv::images::openimageio {
-
-std::string png(int columns, int rows, std::span<const std::uint8_t> rgb) {
-    std::vector<unsigned char> bytes;
-    OIIO::Filesystem::IOVecOutput destination(bytes);
-    const auto output = OIIO::ImageOutput::create("png");
-    OIIO::ImageSpec spec(columns, rows, 3, OIIO::TypeDesc::UINT8);
-    // Without these OpenImageIO writes its version and the time of day.
-    spec.attribute("Software", "vkfv");
-    spec.attribute("DateTime", "1970:01:01 00:00:00");
-    if (!output || !output->set_ioproxy(&destination) || !output->open("picture.png", spec) ||
-        !output->write_image(OIIO::TypeDesc::UINT8, rgb.data()) || !output->close()) {
-        throw RunError("OpenImageIO cannot write PNG: " + (output ? output->geterror() : OIIO::geterror()));
-    }
-    return {bytes.begin(), bytes.end()};
-}
 
 Ink ink_of(const std::string& letter, int size, const std::string& font) {
     const auto ink = OIIO::ImageBufAlgo::text_size(letter, size, font);
