@@ -7,6 +7,7 @@
 
 #include <algorithm>
 #include <array>
+#include <span>
 #include <sstream>
 #include <vector>
 
@@ -14,6 +15,7 @@ namespace vkfv::surface {
 namespace {
 
 constexpr std::string_view table_title = "# vkfv heights in um";
+constexpr std::size_t title_lines = 5; // with the scale; provenance follows, whose text may look like either
 constexpr double nan = std::numeric_limits<double>::quiet_NaN();
 
 std::string_view bare(std::string_view text) {
@@ -150,7 +152,11 @@ std::optional<double> length_in(std::string_view text) {
     return value && unit ? std::optional(*value * *unit) : std::nullopt;
 }
 
-Header header_of(const std::vector<std::string_view>& lines) {
+bool is_own(const std::vector<std::string_view>& header) {
+    return !header.empty() && header.front().starts_with(table_title);
+}
+
+Header header_of(std::span<const std::string_view> lines) {
     Header header;
     const std::array<std::pair<std::string_view, std::optional<double>*>, 4> own = {{{"x0_mm=", &header.x0},
                                                                                      {"y0_mm=", &header.y0},
@@ -274,7 +280,9 @@ SurfaceFile parse_height_table(std::string_view bytes, const std::filesystem::pa
     if (bytes.find('\0') != std::string_view::npos)
         file.fail(bytes.find('\0'), "", "a NUL", "text", "Export the heights as plain text, ASCII or UTF-8.");
     const Table table = table_of(file, bytes);
-    const Header header = header_of(table.header);
+    const bool own = is_own(table.header);
+    const Header header = header_of(
+        std::span(table.header).first(std::min(table.header.size(), own ? title_lines : table.header.size())));
     file.check_size(table.columns, table.rows);
     if (header.unit && scale.unit)
         refuse_second_scale(path, {.pitch = {}, .unit = scale.unit});
@@ -306,9 +314,9 @@ SurfaceFile parse_height_table(std::string_view bytes, const std::filesystem::pa
     for (double& height : result.map.height.values)
         height = height_from(height, unit);
     std::string provenance;
-    if (!table.header.empty() && table.header.front().starts_with(table_title))
-        for (std::size_t k = 5; k < table.header.size(); ++k)
-            provenance += std::string(bare(table.header[k].substr(1))) + '\n';
+    for (std::size_t k = title_lines; own && k < table.header.size(); ++k)
+        if (const std::string_view line = table.header[k]; line.starts_with('#'))
+            provenance += std::string(bare(line.substr(1))) + '\n';
     result.provenance = parse_provenance(provenance);
     return result;
 }

@@ -120,8 +120,7 @@ class DeviceFocusPlanes final : public FocusPlanes {
         if (!measured_alone_) {
             measure(image_at(image), alone_);
         }
-        dispatch(single_,
-                 {{BINDING_CURVE, measured_alone_ ? &curve_at(image) : &alone_}, {BINDING_SINGLES, &singles_}},
+        dispatch(single_, {{BINDING_CURVE, measured_alone_ ? &curve_at(image) : &alone_}, {BINDING_SINGLES, &singles_}},
                  SingleImage{static_cast<std::uint32_t>(pixels_), image}, pixels_);
     }
 
@@ -190,8 +189,7 @@ class DeviceFocusPlanes final : public FocusPlanes {
                   {BINDING_WEIGHTS, &weights_},
                   {BINDING_ROW_SUMS, &row_sums_}},
                  plan_, pixels_);
-        dispatch(columns_,
-                 {{BINDING_ROW_SUMS, &row_sums_}, {BINDING_WEIGHTS, &weights_}, {BINDING_CURVE, &curve}},
+        dispatch(columns_, {{BINDING_ROW_SUMS, &row_sums_}, {BINDING_WEIGHTS, &weights_}, {BINDING_CURVE, &curve}},
                  plan_, pixels_);
     }
 
@@ -225,7 +223,7 @@ class DeviceFocusPlanes final : public FocusPlanes {
         brightness_, all_in_focus_;
     std::vector<vulkan::Buffer> images_; // the last few in turn
     std::vector<vulkan::Buffer> curves_; // likewise
-    bool measured_alone_ = false; // what was measured last is an image itself
+    bool measured_alone_ = false;        // what was measured last is an image itself
     std::optional<vulkan::Commands> commands_;
 };
 

@@ -60,9 +60,9 @@ class FocusProbes {
     // texture that comes into focus makes others larger. Of a channel.
     NoiseModel noise() const;
 
-    // The evidence of curves with the images in random order, none where the largest value stands at an end. axial_weights:
-    // of both averages (axial_average.hpp). Of as many orders as tell what a share of `rate` exceeds, the better the less
-    // an order costs.
+    // The evidence of curves with the images in random order, none where the largest value stands at an end.
+    // axial_weights: of both averages (axial_average.hpp). Of as many orders as tell what a share of `rate` exceeds,
+    // the better the less an order costs.
     std::vector<Evidence> by_chance(const std::vector<double>& axial_weights, double rate) const;
 
     // Standard deviation of the average along z, in images, that suits these curves. None of few_images.

@@ -80,8 +80,8 @@ void leave_out_chance(Topography& topography, double chance_rate, double accepte
     }
 }
 
-// Of a smoothed curve's noise over that of a single image's, away from the ends: standard deviation of the difference of
-// its values one step before and after a point, and of its second difference there.
+// Of a smoothed curve's noise over that of a single image's, away from the ends: standard deviation of the difference
+// of its values one step before and after a point, and of its second difference there.
 struct SmoothedNoise {
     double difference = 0;
     double bend = 0;
@@ -215,8 +215,8 @@ StackFigures StackEvaluator::judge_stack() const {
                          .curve_width_steps = probes_->curve_width(),
                          .limit = {}};
     if (options_.false_peak_rate < 1) {
-        figures.limit = limit_of(probes_->by_chance(axial_weights_, options_.false_peak_rate),
-                                   options_.false_peak_rate, static_cast<int>(z_.size()));
+        figures.limit = limit_of(probes_->by_chance(axial_weights_, options_.false_peak_rate), options_.false_peak_rate,
+                                 static_cast<int>(z_.size()));
     }
     return figures;
 }
@@ -247,7 +247,7 @@ PointState StackEvaluator::judge(const focus::f64::CurveRecord& curve, const foc
         (curve.rival > std::max(options_.most_rival * rise, by_noise * averaging) ||
          single.rival > std::max(options_.most_rival * focus::f64::single_rise(single, images), by_noise));
     return rivalled || focus::f64::count_peaks(curve, images) > options_.most_peaks ? PointState::many_peaks
-                                                                                  : PointState::measured;
+                                                                                    : PointState::measured;
 }
 
 Topography StackEvaluator::finish(double x0, double y0, double pitch) {

@@ -13,8 +13,8 @@
 //   (peak_method.hpp).
 //
 // - The point is "not measured" where the maximum lies at either end of the scan, or where the curve is no better
-//   than this stack's curves with the images in random order. What is compared is the curve's unimodality, and the order
-//   it shows (curve.glsl). How large they are by chance is found by shuffling the stack at some hundred places
+//   than this stack's curves with the images in random order. What is compared is the curve's unimodality, and the
+//   order it shows (curve.glsl). How large they are by chance is found by shuffling the stack at some hundred places
 //   (focus_probes.hpp), so no noise need be known, and it holds for few images and many, for light of few rays and for
 //   texture that a coarse scan jumps over. Nor is a point measured whose curve, averaged or not, has a second maximum
 //   that stands out almost as the first. Further limits of quality can be set.
@@ -51,9 +51,9 @@ struct TopographyOptions {
     // FocusProbes::suitable_smoothing() tells; the evaluator is given a number.
     std::optional<double> smoothing_steps{};
     // Share of the points that would be measured with the images in random order; 1 switches the limit off. Where a
-    // twenty-fifth or more of all that are measured would be by chance, and more than twice this, none is. Of few_images
-    // or fewer no more than most_unimodality_asked is demanded, since they are often in order by chance: what rate that
-    // means, the evaluation tells.
+    // twenty-fifth or more of all that are measured would be by chance, and more than twice this, none is. Of
+    // few_images or fewer no more than most_unimodality_asked is demanded, since they are often in order by chance:
+    // what rate that means, the evaluation tells.
     double false_peak_rate = 3e-3;
     // Prominence of the second maximum over the height of the largest above the curve's mean; 1 switches the limit off.
     double most_rival = 0.15;

@@ -84,6 +84,20 @@ TEST(SurfaceFormats, GsfGwyAndTableReadBackAndAreWrittenTheSame) {
     }
 }
 
+TEST(SurfaceFormats, TextOfATableThatLooksLikeItsScaleStaysText) {
+    Provenance named = provenance;
+    named.comment = "two lines\npitch_x_mm=1.5\nx0_mm=-7\nValue units: m";
+    const std::string table = height_table(wave(), named);
+    const auto read = parse_height_table(table, "a.csv", {});
+    expect_same_map(read.map, wave(), 0);
+    EXPECT_EQ(read.provenance.comment, named.comment);
+    EXPECT_EQ(height_table(read.map, read.provenance), table);
+    // A heading's line that is no comment is none of it.
+    const auto at = table.find("# manufacturer");
+    const auto other = parse_height_table(table.substr(0, at) + "re#v sion=2\n" + table.substr(at), "a.csv", {});
+    EXPECT_TRUE(other.provenance == named);
+}
+
 TEST(SurfaceFormats, HostileGsfIsRefused) {
     const std::string good = gsf_bytes(wave(), {});
     const auto with = [&](const std::string& from, const std::string& to) {

@@ -83,7 +83,9 @@ TEST(FewImages, AreMeasuredByDefault) {
                     }
                 }
                 EXPECT_GE(measured, 0.98 * side * side);
-                EXPECT_LE(std::sqrt(sum / measured), images == 7 ? 0.15 : bytes && width == 5 ? 0.07 : 0.06); // rounding moves flat curves
+                EXPECT_LE(std::sqrt(sum / measured), images == 7           ? 0.15
+                                                     : bytes && width == 5 ? 0.07
+                                                                           : 0.06); // rounding moves flat curves
             }
         }
     }
@@ -202,8 +204,7 @@ TEST(FocusCurve, TheOrderShownIsItsDefinition) {
     };
     // Steps squared, one to three images apart: 16 + 25 + 49 + 25 + 1 + 16, 1 + 4 + 4 + 16 + 9, 36 + 9 + 9 + 64.
     const double twice = 2 * 7 * variance(single);
-    const double correlation =
-        (6.0 / 7 - 132 / twice) + 0.8 * (5.0 / 7 - 34 / twice) + 0.5 * (4.0 / 7 - 118 / twice);
+    const double correlation = (6.0 / 7 - 132 / twice) + 0.8 * (5.0 / 7 - 34 / twice) + 0.5 * (4.0 / 7 - 118 / twice);
     const double unimodal = (2 * 7 - 2 - 3) / 9.0;
     EXPECT_NEAR(focus::f64::order_shown(curve, record, 7),
                 unimodal * std::sqrt(variance(averaged) / variance(single)) * std::exp(correlation), 1e-14);
