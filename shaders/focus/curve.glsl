@@ -78,9 +78,7 @@ VKFV_FUNCTION CurveRecord follow_shape(CurveRecord before, real value, int at) {
     return curve;
 }
 
-VKFV_FUNCTION real squared_step(real from, real to) {
-    return (to - from) * (to - from);
-}
+VKFV_FUNCTION real squared_step(real from, real to) { return (to - from) * (to - from); }
 
 VKFV_FUNCTION SingleRecord follow_single(SingleRecord before, real value, int at) {
     SingleRecord single = before;
@@ -173,9 +171,9 @@ VKFV_FUNCTION real variance_about(real sum, real squares, int images) {
     return max(real(0.0), squares / real(images) - mean * mean);
 }
 
-// How much of an order a curve shows: its unimodality; times its standard deviation over that of single images, which no
-// order changes, since what is alike from image to image outlasts averages along z, and noise or texture that comes and
-// goes does not; times exp(c), where c is the single images' serial correlation over one to three images (J. von
+// How much of an order a curve shows: its unimodality; times its standard deviation over that of single images, which
+// no order changes, since what is alike from image to image outlasts averages along z, and noise or texture that comes
+// and goes does not; times exp(c), where c is the single images' serial correlation over one to three images (J. von
 // Neumann, "Distribution of the ratio of the mean square successive difference to the variance", 1941) with weights 1,
 // 0.8 and 0.5. What values in random order reach, the stack itself tells.
 VKFV_FUNCTION real order_shown(CurveRecord curve, SingleRecord single, int images) {
