@@ -266,7 +266,7 @@ TEST_F(PlainTiffs, PagesAreOpenImageIOs) {
     expect_as_the_module({std::istreambuf_iterator<char>(stream), {}}, "two pages");
 }
 
-// What a byte of the directory may become, and where a file may end.
+// Every byte of a directory another, and many ends of a file.
 TEST_F(PlainTiffs, DamagedFilesGiveWhatOpenImageIOGives) {
     Grid<float> heights(4, 3);
     for (std::size_t k = 0; k < 12; ++k) {
@@ -277,17 +277,15 @@ TEST_F(PlainTiffs, DamagedFilesGiveWhatOpenImageIOGives) {
         int harmless = 0; // another letter of the description
         const std::size_t values = whole.find(bits_of(std::vector<float>{heights(0, 2)}));
         for (std::size_t at = 0; at < values; ++at) {
-            for (const int change : {1, 7}) {
-                std::string bytes = whole;
-                bytes[at] = static_cast<char>(bytes[at] ^ change);
-                if (plain_tiff(bytes, TiffPart::all)) { // else the module is asked anyway
-                    expect_as_the_module(bytes, fmt::format("byte {} differs by {}", at, change));
-                    ++harmless;
-                }
+            std::string bytes = whole;
+            bytes[at] = static_cast<char>(bytes[at] ^ 7);
+            if (plain_tiff(bytes, TiffPart::all)) { // else the module is asked anyway
+                expect_as_the_module(bytes, fmt::format("byte {}", at));
+                ++harmless;
             }
         }
-        EXPECT_GT(harmless, 50);
-        for (std::size_t length = 0; length < whole.size(); length += 9) {
+        EXPECT_GT(harmless, 20);
+        for (std::size_t length = 0; length < whole.size(); length += 7) {
             EXPECT_FALSE(plain_tiff(whole.substr(0, length), TiffPart::all));
             expect_as_the_module(whole.substr(0, length), fmt::format("{} bytes", length));
         }
