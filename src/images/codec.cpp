@@ -39,7 +39,7 @@ const Codec& loaded() {
     const void* const found = module != nullptr ? dlsym(module, "vkfv_image_codec") : nullptr;
     if (found == nullptr) {
         throw RunError(
-            fmt::format("The module that reads and writes images cannot be loaded: {}. Install vkfv again, or "
+            fmt::format("The module that reads images of all kinds cannot be loaded: {}. Install vkfv again, or "
                         "what is missing of OpenImageIO",
                         dlerror()));
     }
