@@ -6,7 +6,9 @@
 #define VKFV_PARAMETERS_FIELDS(FIELD) \
     FIELD(Instrument, instrument) \
     FIELD(SpecimenRecord, specimen) \
-    FIELD(Exposure, exposure)
+    FIELD(Exposure, exposure) \
+    FIELD(PupilCells, pupil_cells) \
+    FIELD(uvec2, cell_light) /* address of the light sorted by cells, 64 bits a part of a pixel */
 // clang-format on
 
 // Pushed: some of an image's paths.

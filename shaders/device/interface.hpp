@@ -19,6 +19,7 @@ using physics::f32::BackwardOptics;
 using physics::f32::Exposure;
 using physics::f32::Instrument;
 using physics::f32::Lattice;
+using physics::f32::PupilCells;
 using physics::f32::SourceFrame;
 using physics::f32::SpecimenRecord;
 #include "device/blocks.glsl"

@@ -2,6 +2,7 @@
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_shader_explicit_arithmetic_types_int64 : require
 #extension GL_EXT_shader_atomic_int64 : require
+#extension GL_EXT_buffer_reference : require
 #ifdef VKFV_RAY_QUERY
 #extension GL_EXT_ray_query : require
 #endif

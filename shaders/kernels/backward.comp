@@ -6,6 +6,7 @@
 layout(local_size_x = 128) in;
 
 #include "device/kernel.glsl"
+#include "device/cell_light.glsl"
 
 layout(set = 0, binding = BINDING_PIXELS, scalar) buffer Pixels {
     uint64_t pixels[];
@@ -24,12 +25,20 @@ layout(constant_id = CONSTANT_QUERY_CAPACITY) const uint query_capacity =
     12u; // more than a path asks: once at each bounce, and at its end
 SourceQuery queries[query_capacity];
 uint query_count = 0u;
+// With pupil cells: where the light of the path under way, and of each query, is sorted to.
+uint64_t path_cell = uint64_t(0);
+uint64_t query_cells[query_capacity];
 
 real ask_source(Instrument, SpecimenRecord, Exposure, SourceQuery query) {
     queries[query_count] = query;
+    if (sorts_light) {
+        query_cells[query_count] = path_cell;
+    }
     query_count += 1u;
     return real(0.0);
 }
+
+uint64_t in_units(real value) { return uint64_t(value * BACKWARD_UNIT + real(0.5)); }
 
 void main() {
     uint pixel_count = uint(instrument.detector_pixels * instrument.detector_pixels);
@@ -49,15 +58,28 @@ void main() {
         real sum = real(0.0);
         for (uint point = 0u; point < batch.chunk_points;) {
             for (bool room = true; room; ++point) {
-                sum += trace_backward(known_instrument(), known, known_specimen(), exposure, column, row,
-                                      batch.randomisation, backward.lattice, shift, chunk * batch.chunk_points + point);
+                uint place = chunk * batch.chunk_points + point;
+                if (sorts_light) {
+                    path_cell = cell_index(backward_place(known, pupil_cells, column, row,
+                                                          backward_start(backward.lattice, shift, place)));
+                }
+                real value = trace_backward(known_instrument(), known, known_specimen(), exposure, column, row,
+                                            batch.randomisation, backward.lattice, shift, place);
+                sum += value;
+                if (sorts_light && value > real(0.0)) {
+                    add_cell_light(path_cell, in_units(value));
+                }
                 room = query_count <= most_queries && point + 1u < batch.chunk_points;
             }
             for (uint k = 0u; k < query_count; ++k) {
-                sum += trace_to_source(known_instrument(), known_specimen(), exposure, queries[k]);
+                real value = trace_to_source(known_instrument(), known_specimen(), exposure, queries[k]);
+                sum += value;
+                if (sorts_light && value > real(0.0)) {
+                    add_cell_light(query_cells[k], in_units(value));
+                }
             }
             query_count = 0u;
         }
-        atomicAdd(pixels[pixel], uint64_t(sum * BACKWARD_UNIT + real(0.5)));
+        atomicAdd(pixels[pixel], in_units(sum));
     }
 }

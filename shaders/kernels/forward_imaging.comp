@@ -7,6 +7,7 @@ layout(local_size_x = 128) in;
 #include "device/kernel.glsl"
 #include "device/tally.glsl"
 #include "device/survivors.glsl"
+#include "device/cell_light.glsl"
 
 layout(set = 0, binding = BINDING_PIXELS, scalar) buffer Pixels { uint64_t pixels[]; };
 
@@ -32,6 +33,10 @@ void main() {
             atomicAdd(pixels[2 * pixel + 1], (uint64_t(weight) * uint64_t(weight)) >> 20);
         } else if (counted) {
             atomicAdd(pixels[pixel], uint64_t(1));
+        }
+        if (counted && sorts_light) {
+            add_cell_light(cell_index(detection_place(instrument, pupil_cells, detection)),
+                           weighted ? uint64_t(weight) : uint64_t(1));
         }
         if (weighted && detection.fate.status == PATH_ALIVE) {
             // The first half took it for counted.

@@ -44,6 +44,7 @@ void echo(Lobe record) { VKFV_LOBE_FIELDS(VKFV_ECHO, VKFV_ECHO_ARRAY) }
 void echo(Material record) { VKFV_MATERIAL_FIELDS(VKFV_ECHO) }
 void echo(SpecimenRecord record) { VKFV_SPECIMEN_RECORD_FIELDS(VKFV_ECHO) }
 void echo(Exposure record) { VKFV_EXPOSURE_FIELDS(VKFV_ECHO) }
+void echo(PupilCells record) { VKFV_PUPIL_CELLS_FIELDS(VKFV_ECHO) }
 void echo(Survivor record) { VKFV_SURVIVOR_FIELDS(VKFV_ECHO) }
 
 void main() {
@@ -52,6 +53,9 @@ void main() {
     echo(instrument);
     echo(specimen);
     echo(exposure);
+    echo(pupil_cells);
+    echo(cell_light.x);
+    echo(cell_light.y);
     echo(spectrum[2]);
     echo(survivors[2]);
     echo(elements[2]);

@@ -215,6 +215,35 @@ VKFV_FUNCTION bool lobe_is_delta(Lobe lobe) {
     return delta;
 }
 
+// Where on a pixel and in the pupil a path starts.
+struct BackwardStart {
+    real column; // of the pixel, in [0, 1)
+    real row;
+    real2 pupil; // a point of the unit disc, as for look_from_detector()
+};
+
+VKFV_FUNCTION BackwardStart backward_start(Lattice lattice, LatticeShift shift, uint point) {
+    real rho = sqrt(lattice_coordinate(lattice, point, lattice.z_2, shift.first.z));
+    Turn azimuth = turn_of(lattice_coordinate(lattice, point, lattice.z_3, shift.first.w));
+    BackwardStart start;
+    start.column = lattice_coordinate(lattice, point, lattice.z_0, shift.first.x);
+    start.row = lattice_coordinate(lattice, point, lattice.z_1, shift.first.y);
+    start.pupil = real2(rho * azimuth.cosine, rho * azimuth.sine);
+    return start;
+}
+
+// Where the light of a path is sorted to. In the detector's frame light arrives with the slope
+// (-pupil_radius pupil.x, pupil_radius pupil.y) about the chief ray's.
+VKFV_FUNCTION CellPlace backward_place(BackwardOptics backward, PupilCells cells, int column, int row,
+                                       BackwardStart start) {
+    CellPlace place;
+    place.column = column * int(cells.parts) + pixel_part(cells, start.column);
+    place.row = row * int(cells.parts) + pixel_part(cells, start.row);
+    place.cell =
+        pupil_cell(cells, real2(-backward.pupil_radius * start.pupil.x, backward.pupil_radius * start.pupil.y));
+    return place;
+}
+
 // The value of one path (see above): of one point of a pixel's lattice, whose number keys further draws.
 VKFV_SCENE_FUNCTION VKFV_FUNCTION real trace_backward(VKFV_SCENE_PARAMETER Instrument instrument,
                                                       BackwardOptics backward, SpecimenRecord specimen,
@@ -222,18 +251,15 @@ VKFV_SCENE_FUNCTION VKFV_FUNCTION real trace_backward(VKFV_SCENE_PARAMETER Instr
                                                       Lattice lattice, LatticeShift shift, uint point) {
     real turn = instrument.magnification < real(0.0) ? real(-1.0) : real(1.0);
     real pitch = real(2.0) * instrument.detector_half_size / real(instrument.detector_pixels);
-    real x = turn * ((real(column) + lattice_coordinate(lattice, point, lattice.z_0, shift.first.x)) * pitch -
-                     instrument.detector_half_size);
-    real y = turn * ((real(row) + lattice_coordinate(lattice, point, lattice.z_1, shift.first.y)) * pitch -
-                     instrument.detector_half_size);
-    real rho = sqrt(lattice_coordinate(lattice, point, lattice.z_2, shift.first.z));
-    Turn azimuth = turn_of(lattice_coordinate(lattice, point, lattice.z_3, shift.first.w));
+    BackwardStart start = backward_start(lattice, shift, point);
+    real x = turn * ((real(column) + start.column) * pitch - instrument.detector_half_size);
+    real y = turn * ((real(row) + start.row) * pitch - instrument.detector_half_size);
     Light light = light_of_spectral(instrument, real(0.0));
     if ((features(VKFV_SCENE_ALONE) & FEATURE_SPECTRUM) != 0u) {
         light = draw_light(VKFV_SCENE instrument, lattice_coordinate(lattice, point, lattice.z_7, shift.second.w));
     }
-    BackwardArrival arrival = look_from_detector(VKFV_SCENE instrument, backward, specimen, exposure, x, y,
-                                                 real2(rho * azimuth.cosine, rho * azimuth.sine), light);
+    BackwardArrival arrival =
+        look_from_detector(VKFV_SCENE instrument, backward, specimen, exposure, x, y, start.pupil, light);
     real value = real(0.0);
     real throughput = arrival.weight;
     real3 direction = arrival.direction;

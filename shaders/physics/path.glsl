@@ -287,6 +287,7 @@ struct Detection {
     int row;
     real x; // detector's plane, axes parallel to the specimen's, inversion not removed, mm
     real y;
+    real2 slope; // dx/dz and dy/dz there
 };
 
 VKFV_FUNCTION real3 survivor_direction(Survivor survivor) {
@@ -316,6 +317,7 @@ VKFV_FUNCTION Detection detect(Instrument instrument, real x, real y) {
     Detection detection;
     detection.x = x;
     detection.y = y;
+    detection.slope = real2(real(0.0), real(0.0));
     detection.column = on_detector ? clamp(int(floor((turn * x + half_size) * scale)), 0, last) : 0;
     detection.row = on_detector ? clamp(int(floor((turn * y + half_size) * scale)), 0, last) : 0;
     detection.fate = make_fate(!finite ? PATH_NUMERICAL : on_detector ? PATH_DETECTED : PATH_OFF_DETECTOR, -1);
@@ -341,9 +343,23 @@ VKFV_SCENE_FUNCTION VKFV_FUNCTION Detection image_survivor(VKFV_SCENE_PARAMETER 
         trace_train(VKFV_SCENE instrument.imaging_first, instrument.imaging_count, ray, index, true, light);
     Ray arrived = fly_to_plane(train.ray, instrument.detector_distance, train.index);
     Detection detection = detect(instrument, arrived.position.x, arrived.position.y);
+    detection.slope = real2(arrived.direction.x, arrived.direction.y) / arrived.direction.z;
     bool twin = (survivor.mark & SURVIVOR_TWIN) != 0u;
     detection.fate = occluded                     ? make_fate(twin ? PATH_ALIVE : PATH_BOUNCE_LIMIT, -1)
                      : train.status != PATH_ALIVE ? make_fate(train.status, train.surface)
                                                   : detection.fate;
     return detection;
+}
+
+// Where light that was detected is sorted to.
+VKFV_FUNCTION CellPlace detection_place(Instrument instrument, PupilCells cells, Detection detection) {
+    real turn = instrument.magnification < real(0.0) ? real(-1.0) : real(1.0);
+    real scale = real(instrument.detector_pixels) / (real(2.0) * instrument.detector_half_size);
+    real column = (turn * detection.x + instrument.detector_half_size) * scale - real(detection.column);
+    real row = (turn * detection.y + instrument.detector_half_size) * scale - real(detection.row);
+    CellPlace place;
+    place.column = detection.column * int(cells.parts) + pixel_part(cells, column);
+    place.row = detection.row * int(cells.parts) + pixel_part(cells, row);
+    place.cell = pupil_cell(cells, detection.slope - real2(detection.x, detection.y) * cells.chief_position);
+    return place;
 }

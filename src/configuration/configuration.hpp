@@ -21,7 +21,7 @@ namespace vkfv {
 // Which tables a command cannot do without: [specimen] for an exposure, [scan] besides for a stack.
 enum class Needs { instrument, exposure, stack };
 
-// How images are blurred after the trace, if at all. Belongs to no traced image.
+// How images are blurred after the trace, if at all. Belongs to no traced image (waves do: trace::TraceOptions).
 struct DiffractionOptions {
     bool airy = false;
     std::filesystem::path file; // else a measured point spread function
@@ -49,7 +49,7 @@ enum class EvaluateOn { automatic, host, device };
 // Of the texts in ReadKeys, `canonical` is TOML that load_configuration() takes, and `identity` is what the images
 // depend on, a line a key, for telling one stack from another. Of the keys of `canonical` the identity leaves out, with
 // the reason:
-//   diffraction.*, topography.*, output.directory   blur, evaluate or place the images
+//   diffraction.* but for waves', topography.*, output.directory   blur, evaluate or place the images
 //   trace.batch                      the same bits for any batch size
 //   trace.device, trace.traversal    requests; what they resolve to is in the tracer's description
 //   file paths                       the content counts, and stands in its place as a digest

@@ -12,6 +12,8 @@ namespace {
 
 constexpr double most_smoothing_steps = 100; // 1202 images in memory
 constexpr std::int64_t most_peak_range_steps = 100;
+constexpr std::int64_t most_pupil_cells = 32; // 512 images of light
+constexpr std::int64_t most_parts = 16;
 
 const topography::TopographyOptions defaults;
 
@@ -89,19 +91,32 @@ const NumberKey l_filter =
     without_influence(NumberKey("l_filter_um", NumberRange::at_least(0), 0.0,
                                 "Nesting index of the L-filter of a second comparison with the truth; 0: none."));
 
-enum class PointSpread { none, airy, file };
+enum class DiffractionModel { none, airy, file, waves };
 
-const ChoiceKey<PointSpread> point_spread =
-    without_influence(ChoiceKey<PointSpread>("point_spread",
-                                             {{PointSpread::none, "none", "geometrical images"},
-                                              {PointSpread::airy, "airy", "the Airy pattern of the instrument"},
-                                              {PointSpread::file, "file", "a measured point spread function"}},
-                                             PointSpread::none, "What images are blurred by after the trace."));
+// What images depend on is the key `cells`, which waves alone have.
+const ChoiceKey<DiffractionModel> model = without_influence(ChoiceKey<DiffractionModel>(
+    "model",
+    {{DiffractionModel::none, "none", "images as rays make them"},
+     {DiffractionModel::airy, "airy", "these blurred by the Airy pattern, at every height alike"},
+     {DiffractionModel::file, "file", "these blurred by a measured point spread function, at every height alike"},
+     {DiffractionModel::waves, "waves", "images as waves make them at each height, by the light of the pupil's cells"}},
+    DiffractionModel::none, "What diffraction makes of the images."));
+const ChoiceKey<DiffractionModel> point_spread = without_influence(ChoiceKey<DiffractionModel>(
+    "point_spread",
+    {{DiffractionModel::none, "none", ""}, {DiffractionModel::airy, "airy", ""}, {DiffractionModel::file, "file", ""}},
+    DiffractionModel::none, "The older name of `model`, without waves."));
 const FileKey point_spread_file = of_kinds(
     {"file"}, without_influence(FileKey("file", Default::none(), "Image of a measured point spread function.")));
 const NumberKey point_spread_pitch =
     of_kinds({"file"}, without_influence(NumberKey("pitch_um", NumberRange::positive(), needed,
                                                    "Distance of that image's pixels in the object.")));
+const IntegerKey pupil_cells =
+    of_kinds({"waves"}, IntegerKey("cells", 2, most_pupil_cells, optics::WaveOptions{}.cells,
+                                   "Cells across the pupil that light is sorted by, an even number."));
+const IntegerKey parts = of_kinds(
+    {"waves"}, IntegerKey("parts_per_pixel", 0, most_parts, 0,
+                          "Parts of a pixel's side in which light is sorted; 0: as many as waves of the instrument's "
+                          "numerical aperture ask for."));
 
 } // namespace
 
@@ -119,12 +134,13 @@ const KeyTable& topography_keys() {
 }
 
 const KeyTable& diffraction_keys() {
-    static const KeyTable table{.path = "diffraction",
-                                .presence = KeyTable::Presence::optional,
-                                .meaning = "Diffraction, after the trace.",
-                                .subject = "",
-                                .kind = "point_spread",
-                                .keys = {&point_spread, &point_spread_file, &point_spread_pitch}};
+    static const KeyTable table{
+        .path = "diffraction",
+        .presence = KeyTable::Presence::optional,
+        .meaning = "Diffraction.",
+        .subject = "",
+        .kind = "model",
+        .keys = {&model, &point_spread, &point_spread_file, &point_spread_pitch, &pupil_cells, &parts}};
     return table;
 }
 
@@ -167,11 +183,29 @@ void read_topography(const TomlTable& root, Configuration& configuration, Needs 
 
 void read_diffraction(const TomlTable& root, Configuration& configuration) {
     const Section section(root.table_or_empty("diffraction"), diffraction_keys(), configuration);
-    const PointSpread what = section.kind(point_spread);
-    configuration.diffraction.airy = what == PointSpread::airy;
-    if (what == PointSpread::file) {
+    if (section.has(model) && section.has(point_spread)) {
+        section.fail(point_spread, "no such key beside model, which says the same", "Remove it.");
+    }
+    const DiffractionModel what = section.has(point_spread) ? section.kind(point_spread) : section.kind(model);
+    configuration.diffraction.airy = what == DiffractionModel::airy;
+    if (what == DiffractionModel::file) {
         configuration.diffraction.file = section.file(point_spread_file);
         configuration.diffraction.pitch = from_um(section.number(point_spread_pitch));
+    }
+    if (what == DiffractionModel::waves) {
+        optics::WaveOptions& waves = configuration.trace.waves.emplace();
+        waves.cells = static_cast<int>(section.integer(pupil_cells));
+        waves.parts = static_cast<int>(section.integer(parts));
+        if (waves.cells % 2 != 0) {
+            section.fail(pupil_cells, "an even number, so that opposite points of the pupil share a cell",
+                         fmt::format("Choose {} or {}.", waves.cells - 1, waves.cells + 1));
+        }
+        if (configuration.trace.nonsequential) {
+            section.fail(
+                model, "\"none\", \"airy\" or \"file\" with trace.mode = \"nonsequential\"",
+                "Light that finds its own way has no pupil that waves could be sorted by: choose one of these, "
+                "or mode = \"sequential\".");
+        }
     }
 }
 

@@ -76,6 +76,10 @@ void BackwardImage::add(std::span<const std::uint64_t> sums) {
     }
 }
 
+double BackwardImage::power_per_number() const {
+    return scale_ / (static_cast<double>(physics::f64::BACKWARD_UNIT) * static_cast<double>(plan_.rays_per_pixel()));
+}
+
 Image BackwardImage::image() const {
     Image image;
     image.flux = Grid<double>(pixels_, pixels_);

@@ -33,6 +33,8 @@ class BackwardImage {
 
     // sums: of the values of all points, in 1 / BACKWARD_UNIT.
     void add(std::span<const std::uint64_t> sums);
+    // W on the detector for each unit of the sums of all randomisations.
+    double power_per_number() const;
     // Detected power alone stands in its ledger: what becomes of the rest, backward paths do not see.
     Image image() const;
 

@@ -6,6 +6,7 @@
 #include "spirv/backward_specialised_bvh.h"
 #include "spirv/backward_specialised_quadtree.h"
 #include "spirv/backward_specialised_ray_query.h"
+#include "trace/wave_image.hpp"
 
 #include <fmt/format.h>
 
@@ -102,7 +103,8 @@ class BackwardTracer final : public Tracer {
                    const TraceOptions& options)
         : instrument_(instrument), turned_(optics::turned_round(instrument)),
           plan_(backward_plan(options.rays, instrument.constants.detector_pixels)),
-          scene_(make_device_scene(turned_, specimen, options)),
+          waves_(wave_filter(instrument, options)),
+          scene_(make_device_scene(turned_, specimen, options, waves_ ? &*waves_ : nullptr)),
           trace_(scene_, backward_optics(instrument_, scene_.host_record.material), plan_, options.batch) {}
 
     Image expose(double focal_height, std::uint32_t image) const override {
@@ -118,6 +120,9 @@ class BackwardTracer final : public Tracer {
                 if (first == 0) {
                     trace_.clear(commands);
                 }
+                if (first == 0 && randomisation == 0) {
+                    scene_.clear_cell_light(commands);
+                }
                 trace_.record(commands, randomisation, first,
                               std::min(trace_.points_per_batch(), plan_.points - first));
                 commands.timestamp();
@@ -127,6 +132,9 @@ class BackwardTracer final : public Tracer {
             sums.add(trace_.sums());
         }
         Image result = sums.image();
+        if (waves_) {
+            result = with_waves(std::move(result), light_of_waves(scene_, *waves_), sums.power_per_number(), *waves_);
+        }
         result.device_seconds = device_seconds;
         // Of the imaging train alone: who goes on to the source, no one counts.
         result.crossings = static_cast<double>(result.rays) * turned_.constants.illumination_count;
@@ -144,6 +152,7 @@ class BackwardTracer final : public Tracer {
     optics::Instrument instrument_;
     optics::Instrument turned_;
     BackwardPlan plan_;
+    std::optional<optics::PupilFilter> waves_;
     mutable std::mutex mutex_; // one exposure at a time: the buffers are shared
     mutable DeviceScene scene_;
     BackwardTrace trace_;

@@ -76,6 +76,7 @@ VKFV_TO_FLOAT(SourceFrame, VKFV_SOURCE_FRAME_FIELDS)
 VKFV_TO_FLOAT(Instrument, VKFV_INSTRUMENT_FIELDS)
 VKFV_TO_FLOAT(BackwardOptics, VKFV_BACKWARD_OPTICS_FIELDS)
 VKFV_TO_FLOAT(Lattice, VKFV_LATTICE_FIELDS)
+VKFV_TO_FLOAT(PupilCells, VKFV_PUPIL_CELLS_FIELDS)
 
 physics::f32::SpecimenRecord to_float(const physics::f64::SpecimenRecord& record) {
     physics::f32::SpecimenRecord result{};

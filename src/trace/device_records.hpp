@@ -21,6 +21,7 @@ physics::f32::SourceFrame to_float(const physics::f64::SourceFrame& record);
 physics::f32::Instrument to_float(const physics::f64::Instrument& record);
 physics::f32::BackwardOptics to_float(const physics::f64::BackwardOptics& record);
 physics::f32::Lattice to_float(const physics::f64::Lattice& record);
+physics::f32::PupilCells to_float(const physics::f64::PupilCells& record);
 // Bottom, top and slope still bound the surface.
 physics::f32::SpecimenRecord to_float(const physics::f64::SpecimenRecord& record);
 physics::f32::Exposure to_float(const physics::f64::Exposure& record); // with its top_distance_residual

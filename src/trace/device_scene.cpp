@@ -1,5 +1,6 @@
 #include "trace/device_scene.hpp"
 #include "trace/outward.hpp"
+#include "trace/wave_image.hpp"
 
 #include <bit>
 #include <cmath>
@@ -45,7 +46,7 @@ std::vector<vulkan::Box> boxes_of(const optics::Room& room) {
 }
 
 DeviceScene make_device_scene(const optics::Instrument& instrument, const specimen::Specimen& specimen,
-                              const TraceOptions& options) {
+                              const TraceOptions& options, const optics::PupilFilter* filter) {
     auto device = std::make_unique<const vulkan::Device>(vulkan::DeviceOptions{options.device});
     optics::Room room = options.nonsequential ? optics::furnish(instrument) : optics::Room{};
     Accounts accounts =
@@ -63,6 +64,14 @@ DeviceScene make_device_scene(const optics::Instrument& instrument, const specim
     if (!room.elements.empty()) {
         elements.emplace(element_buffers(*device, room, device_specimen.element_order()));
     }
+    std::optional<vulkan::Buffer> cell_light;
+    if (filter != nullptr) {
+        cell_light.emplace(*device,
+                           WaveImage(*filter, instrument.constants.detector_pixels).numbers() * sizeof(std::uint64_t));
+        constants.pupil_cells = to_float(filter->cells());
+        const vk::DeviceAddress address = cell_light->address();
+        constants.cell_light = {static_cast<std::uint32_t>(address), static_cast<std::uint32_t>(address >> 32)};
+    }
     vulkan::Buffer surfaces = buffer_of(*device, surface_block(instrument));
     vulkan::Buffer parameters(*device, sizeof(kernels::Parameters), vulkan::Buffer::Memory::host);
     vulkan::Buffer spectrum = buffer_of(*device, spectrum_block(instrument));
@@ -73,7 +82,8 @@ DeviceScene make_device_scene(const optics::Instrument& instrument, const specim
             .instrument_in_constants = options.instrument_in_constants,
             .room = std::move(room),
             .accounts = std::move(accounts),
-            .features = instrument.features | (options.directed_scatter ? physics::f32::FEATURE_DIRECTED_SCATTER : 0u),
+            .features = instrument.features | (options.directed_scatter ? physics::f32::FEATURE_DIRECTED_SCATTER : 0u) |
+                        (filter != nullptr ? physics::f32::FEATURE_PUPIL_CELLS : 0u),
             .traversal = std::move(traversal),
             .device_specimen = std::move(device_specimen),
             .constants = constants,
@@ -81,12 +91,20 @@ DeviceScene make_device_scene(const optics::Instrument& instrument, const specim
             .surfaces = std::move(surfaces),
             .parameters = std::move(parameters),
             .spectrum = std::move(spectrum),
-            .elements = std::move(elements)};
+            .elements = std::move(elements),
+            .cell_light = std::move(cell_light)};
 }
 
 void DeviceScene::set_exposure(double focal_height, std::uint32_t image) {
     constants.exposure = to_float(make_exposure(instrument, host_record, focal_height, seed, image));
     parameters.write_values(std::span<const kernels::Parameters>(&constants, 1));
+}
+
+void DeviceScene::clear_cell_light(vulkan::Commands& commands) const {
+    if (cell_light) {
+        commands.fill_zero(*cell_light);
+        commands.barrier();
+    }
 }
 
 std::vector<vulkan::Binding> DeviceScene::bindings(std::initializer_list<vulkan::Binding> further) const {
@@ -165,6 +183,11 @@ std::span<const std::uint32_t> DeviceScene::variant(std::span<const std::uint32_
     return traversal.traversal == Traversal::ray_query ? by_ray_query
            : traversal.traversal == Traversal::bvh     ? by_bvh
                                                        : by_quadtree;
+}
+
+Grid<double> light_of_waves(const DeviceScene& scene, const optics::PupilFilter& filter) {
+    const WaveImage image(filter, scene.instrument.constants.detector_pixels);
+    return image.apply(scene.cell_light.value().read_values<std::uint64_t>(image.numbers()));
 }
 
 TracerIdentity DeviceScene::identity() const {

@@ -30,6 +30,8 @@ struct ElementBuffers {
 // make_device_scene() makes it. The instrument must outlive it.
 struct DeviceScene {
     void set_exposure(double focal_height, std::uint32_t image);
+    // Of an image before its first path.
+    void clear_cell_light(vulkan::Commands& commands) const;
 
     // The scene's bindings and those given.
     std::vector<vulkan::Binding> bindings(std::initializer_list<vulkan::Binding> further) const;
@@ -67,12 +69,17 @@ struct DeviceScene {
     vulkan::Buffer surfaces;
     vulkan::Buffer parameters; // `constants`
     vulkan::Buffer spectrum;
-    std::optional<ElementBuffers> elements; // only for non-sequential paths
+    std::optional<ElementBuffers> elements;   // only for non-sequential paths
+    std::optional<vulkan::Buffer> cell_light; // only with pupil cells
 };
 
 // Throws DeviceError (no usable device, too little memory) or InputError (a traversal that specimen or device does not
 // admit, too many surfaces).
+// filter: of the pupil cells that light is sorted by; none: it is not.
 DeviceScene make_device_scene(const optics::Instrument& instrument, const specimen::Specimen& specimen,
-                              const TraceOptions& options);
+                              const TraceOptions& options, const optics::PupilFilter* filter = nullptr);
+
+// Of the light that the scene has sorted: see WaveImage.
+Grid<double> light_of_waves(const DeviceScene& scene, const optics::PupilFilter& filter);
 
 } // namespace vkfv::trace

@@ -3,6 +3,7 @@
 #include "trace/backward_trace.hpp"
 #include "trace/forward_trace.hpp"
 #include "trace/nonsequential_trace.hpp"
+#include "trace/wave_image.hpp"
 
 #include "spirv/probe_nonsequential_bvh.h"
 #include "spirv/probe_nonsequential_ray_query.h"
@@ -26,7 +27,8 @@ constexpr std::uint32_t batches_per_submission_gpu = 8;
 class DeviceTracer final : public Tracer {
   public:
     DeviceTracer(const optics::Instrument& instrument, const specimen::Specimen& specimen, const TraceOptions& options)
-        : instrument_(instrument), rays_(options.rays), scene_(make_device_scene(instrument_, specimen, options)),
+        : instrument_(instrument), rays_(options.rays), waves_(wave_filter(instrument, options)),
+          scene_(make_device_scene(instrument_, specimen, options, waves_ ? &*waves_ : nullptr)),
           trace_(make_trace(scene_, options)) {}
 
     Image expose(double focal_height, std::uint32_t image) const override {
@@ -41,6 +43,7 @@ class DeviceTracer final : public Tracer {
             commands.timestamp();
             if (first == 0) {
                 trace_->clear(commands);
+                scene_.clear_cell_light(commands);
             }
             const std::uint64_t end = std::min(rays_, first + per_submission);
             for (std::uint64_t path = first; path < end; path += trace_->batch()) {
@@ -52,6 +55,10 @@ class DeviceTracer final : public Tracer {
             device_seconds += commands.seconds()[1];
         }
         Image result = scene_.accounts.image(trace_->pixels(), trace_->fates(), rays_);
+        if (waves_) {
+            result = with_waves(std::move(result), light_of_waves(scene_, *waves_),
+                                scene_.accounts.power_per_number(rays_), *waves_);
+        }
         result.device_seconds = device_seconds;
         result.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
         return result;
@@ -74,6 +81,7 @@ class DeviceTracer final : public Tracer {
 
     optics::Instrument instrument_;
     std::uint64_t rays_;
+    std::optional<optics::PupilFilter> waves_;
     mutable std::mutex mutex_; // one exposure at a time: the buffers are shared
     mutable DeviceScene scene_;
     std::unique_ptr<PathTrace> trace_;

@@ -4,6 +4,7 @@
 #include "trace/backward_image.hpp"
 #include "trace/host_scene.hpp"
 #include "trace/host_tracer.hpp"
+#include "trace/wave_image.hpp"
 
 #include <fmt/format.h>
 
@@ -25,7 +26,8 @@ class HostBackwardTracer final : public Tracer {
                        const TraceOptions& options)
         : instrument_(instrument), turned_(optics::turned_round(instrument)),
           record_(specimen::record(specimen, options.max_bounces)), intersector_(specimen), seed_(options.seed),
-          plan_(backward_plan(options.rays, instrument.constants.detector_pixels)) {}
+          plan_(backward_plan(options.rays, instrument.constants.detector_pixels)),
+          filter_(wave_filter(instrument, options)) {}
 
     Image expose(double focal_height, std::uint32_t image) const override {
         const auto start = std::chrono::steady_clock::now();
@@ -34,13 +36,15 @@ class HostBackwardTracer final : public Tracer {
         const int pixels = turned_.constants.detector_pixels;
         const unsigned workers = std::max(1u, std::thread::hardware_concurrency());
         BackwardImage result(instrument_, plan_);
+        CellLight light(filter_, pixels);
         for (std::uint32_t randomisation = 0; randomisation < plan_.randomisations; ++randomisation) {
             std::vector<std::uint64_t> sums(static_cast<std::size_t>(pixels) * static_cast<std::size_t>(pixels));
             std::vector<std::jthread> threads;
             for (unsigned worker = 0; worker < workers; ++worker) {
                 threads.emplace_back([&, worker] {
                     for (std::size_t pixel = worker; pixel < sums.size(); pixel += workers) {
-                        sums[pixel] = sum_of_pixel(scene, exposure, static_cast<std::uint32_t>(pixel), randomisation);
+                        sums[pixel] =
+                            sum_of_pixel(scene, exposure, static_cast<std::uint32_t>(pixel), randomisation, light);
                     }
                 });
             }
@@ -48,6 +52,9 @@ class HostBackwardTracer final : public Tracer {
             result.add(sums);
         }
         Image exposed = result.image();
+        if (filter_) {
+            exposed = with_waves(std::move(exposed), light.image(), result.power_per_number(), *filter_);
+        }
         exposed.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
         return exposed;
     }
@@ -60,13 +67,21 @@ class HostBackwardTracer final : public Tracer {
 
   private:
     std::uint64_t sum_of_pixel(const HostScene& scene, const Exposure& exposure, std::uint32_t pixel,
-                               std::uint32_t randomisation) const {
+                               std::uint32_t randomisation, CellLight& light) const {
         const auto side = static_cast<std::uint32_t>(turned_.constants.detector_pixels);
         const LatticeShift shift = lattice_shift(exposure.seed, exposure.image, pixel, randomisation);
+        const int column = static_cast<int>(pixel % side);
+        const int row = static_cast<int>(pixel / side);
         double sum = 0;
         for (std::uint32_t point = 0; point < plan_.points; ++point) {
-            sum += trace_backward(scene, turned_.constants, optics_, record_, exposure, static_cast<int>(pixel % side),
-                                  static_cast<int>(pixel / side), randomisation, lattice_, shift, point);
+            const double value = trace_backward(scene, turned_.constants, optics_, record_, exposure, column, row,
+                                                randomisation, lattice_, shift, point);
+            sum += value;
+            if (filter_) {
+                light.add(
+                    backward_place(optics_, filter_->cells(), column, row, backward_start(lattice_, shift, point)),
+                    static_cast<std::uint64_t>(value * BACKWARD_UNIT + 0.5));
+            }
         }
         return static_cast<std::uint64_t>(sum * BACKWARD_UNIT + 0.5);
     }
@@ -77,6 +92,7 @@ class HostBackwardTracer final : public Tracer {
     specimen::Intersector intersector_;
     std::uint32_t seed_;
     BackwardPlan plan_;
+    std::optional<optics::PupilFilter> filter_;
     Lattice lattice_ = plan_.lattice();
     BackwardOptics optics_ = backward_optics(instrument_, record_.material);
 };

@@ -6,6 +6,7 @@
 #include "trace/host_backward_tracer.hpp"
 #include "trace/host_scene.hpp"
 #include "trace/ledger.hpp"
+#include "trace/wave_image.hpp"
 
 #include <fmt/format.h>
 
@@ -62,7 +63,8 @@ class HostTracer final : public Tracer {
   public:
     HostTracer(const optics::Instrument& instrument, const specimen::Specimen& specimen, const TraceOptions& options)
         : instrument_(instrument), record_(specimen::record(specimen, options.max_bounces)), intersector_(specimen),
-          options_(options), accounts_(instrument, options.directed_scatter) {
+          options_(options), accounts_(instrument, options.directed_scatter),
+          filter_(wave_filter(instrument, options)) {
         if (options.nonsequential) {
             room_ = optics::furnish(instrument);
             accounts_ = Accounts(instrument, room_.names);
@@ -76,12 +78,13 @@ class HostTracer final : public Tracer {
         const unsigned workers = std::max(1u, std::thread::hardware_concurrency());
         std::vector<std::vector<std::uint64_t>> counts(workers, std::vector<std::uint64_t>(accounts_.pixel_numbers()));
         std::vector<std::vector<std::uint64_t>> fates(workers, std::vector<std::uint64_t>(accounts_.ledger_numbers()));
+        CellLight light(filter_, instrument_.constants.detector_pixels);
         {
             std::vector<std::jthread> threads;
             for (unsigned worker = 0; worker < workers; ++worker) {
                 threads.emplace_back([&, worker] {
                     for (std::uint64_t path = worker; path < options_.rays; path += workers) {
-                        trace_path(scene, exposure, path, counts[worker], fates[worker]);
+                        trace_path(scene, exposure, path, counts[worker], fates[worker], light);
                     }
                 });
             }
@@ -91,6 +94,9 @@ class HostTracer final : public Tracer {
             std::ranges::transform(fates[0], fates[worker], fates[0].begin(), std::plus<>());
         }
         Image result = accounts_.image(counts[0], fates[0], options_.rays);
+        if (filter_) {
+            result = with_waves(std::move(result), light.image(), accounts_.power_per_number(options_.rays), *filter_);
+        }
         result.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
         return result;
     }
@@ -103,12 +109,16 @@ class HostTracer final : public Tracer {
 
   private:
     void trace_path(const HostScene& scene, const Exposure& exposure, std::uint64_t index,
-                    std::vector<std::uint64_t>& pixels, std::vector<std::uint64_t>& fates) const {
+                    std::vector<std::uint64_t>& pixels, std::vector<std::uint64_t>& fates, CellLight& light) const {
         const HostPath path =
             trace_host_path(scene, instrument_.constants, record_, exposure, room_, options_.nonsequential, index);
         const Fate fate = path.end.fate;
         const auto pixel =
             static_cast<std::size_t>(path.end.row * instrument_.constants.detector_pixels + path.end.column);
+        if (filter_ && fate.status == PATH_DETECTED) {
+            light.add(detection_place(instrument_.constants, filter_->cells(), path.end),
+                      options_.directed_scatter ? survivor_weight(path.survivor) : 1u);
+        }
         if (!options_.directed_scatter) {
             pixels[pixel] += fate.status == PATH_DETECTED ? 1 : 0;
             fates[static_cast<std::size_t>(ledger_slot(fate))] += 1;
@@ -141,6 +151,7 @@ class HostTracer final : public Tracer {
     TraceOptions options_;
     optics::Room room_;
     Accounts accounts_;
+    std::optional<optics::PupilFilter> filter_;
 };
 
 } // namespace

@@ -197,6 +197,10 @@ Ledger Accounts::ledger(std::span<const std::uint64_t> numbers, std::uint64_t ra
     return ledger;
 }
 
+double Accounts::power_per_number(std::uint64_t rays) const {
+    return flux_ * aimed_ * left_[2] / static_cast<double>(rays) / (weighted_ ? WEIGHT_ONE : 1);
+}
+
 Image Accounts::image(std::span<const std::uint64_t> pixel_numbers, std::span<const std::uint64_t> ledger_numbers,
                       std::uint64_t rays) const {
     const double per_ray = flux_ * aimed_ * left_[2] / static_cast<double>(rays);

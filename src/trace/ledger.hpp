@@ -47,6 +47,9 @@ class Accounts {
     Image image(std::span<const std::uint64_t> pixel_numbers, std::span<const std::uint64_t> ledger_numbers,
                 std::uint64_t rays) const;
 
+    // W on the detector for each unit of a pixel's number.
+    double power_per_number(std::uint64_t rays) const;
+
   private:
     // Where a ray may end.
     struct Surface {

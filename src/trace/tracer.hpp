@@ -3,6 +3,7 @@
 
 #include "core/grid.hpp"
 #include "optics/instrument.hpp"
+#include "optics/pupil_filter.hpp"
 #include "specimen/specimen.hpp"
 #include "trace/tracer_identity.hpp"
 
@@ -30,6 +31,7 @@ struct TraceOptions {
     bool nonsequential = false;    // light finds its own way, and interfaces split it
     bool directed_scatter = false; // forward, sequential: every bounce also aims at the pupil, and light has weights
     std::optional<bool> instrument_in_constants; // of the forward kernels; none: where it pays
+    std::optional<optics::WaveOptions> waves;    // sequential: images as waves make them; none: as rays do
 };
 
 // How many rays an exposure launches: those asked for, or what each pixel's share is rounded up to backward.
@@ -74,7 +76,8 @@ struct Ledger {
     double residual_error = 0;  // its standard error, W; 0: the ledger closes exactly
 };
 
-// One exposure. Radiant flux per pixel in W and the standard error of each; rows ascend with y.
+// One exposure. Radiant flux per pixel in W and the standard error of each; rows ascend with y. Waves make the errors
+// of neighbouring pixels depend on each other; the one told is the rays', times the filter's noise.
 struct Image {
     Grid<double> flux;
     Grid<double> standard_error;

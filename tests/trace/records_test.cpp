@@ -62,6 +62,9 @@ class Filler {
     void fill(Exposure& record) {
         VKFV_EXPOSURE_FIELDS(VKFV_FILL)
     }
+    void fill(PupilCells& record) {
+        VKFV_PUPIL_CELLS_FIELDS(VKFV_FILL)
+    }
     void fill(Survivor& record){VKFV_SURVIVOR_FIELDS(VKFV_FILL)}
 
     std::vector<float> written;
@@ -94,6 +97,9 @@ TEST(Records, the_device_sees_every_field_where_the_host_wrote_it) {
     filler.fill(parameters.instrument);
     filler.fill(parameters.specimen);
     filler.fill(parameters.exposure);
+    filler.fill(parameters.pupil_cells);
+    filler.fill(parameters.cell_light.x);
+    filler.fill(parameters.cell_light.y);
     filler.fill(bins[2]);
     filler.fill(survivors[2]);
     filler.fill(elements[2]);

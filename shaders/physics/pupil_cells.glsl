@@ -1,0 +1,38 @@
+// Light sorted by where it crosses the pupil, for what diffraction makes of it afterwards (optics/pupil_cells.hpp): a
+// square grid of cells over the exit pupil as the detector sees it, each with its opposite in one, and in every cell an
+// image whose pixels are parted so finely that it can hold all that light waves resolve.
+// clang-format off
+#define VKFV_PUPIL_CELLS_FIELDS(FIELD) \
+    FIELD(uint, side)             /* cells across the pupil, an even number; 0: light is not sorted */ \
+    FIELD(uint, parts)            /* of a pixel's side */ \
+    FIELD(real, chief_position)   /* 1/mm: the chief ray's slope at the detector over its position there */ \
+    FIELD(real, per_slope)        /* 1 over the largest slope about the chief ray */
+struct PupilCells {
+    VKFV_PUPIL_CELLS_FIELDS(VKFV_DECLARE)
+};
+// clang-format on
+
+VKFV_FUNCTION uint pupil_cell_count(PupilCells cells) { return cells.side * cells.side / 2u; }
+
+// about_chief: slope dx/dz, dy/dz of light that arrives at the detector, less the chief ray's. Light from outside the
+// grid belongs to the cell at its edge.
+VKFV_FUNCTION uint pupil_cell(PupilCells cells, real2 about_chief) {
+    real opposite = about_chief.y < real(0.0) ? real(-1.0) : real(1.0);
+    real half_side = real(0.5) * real(cells.side);
+    int last = int(cells.side) - 1;
+    int column = clamp(int(floor((about_chief.x * opposite * cells.per_slope + real(1.0)) * half_side)), 0, last);
+    int row = clamp(int(floor(about_chief.y * opposite * cells.per_slope * half_side)), 0, int(half_side) - 1);
+    return uint(row) * cells.side + uint(column);
+}
+
+// Which part of a pixel: of a coordinate in pixels.
+VKFV_FUNCTION int pixel_part(PupilCells cells, real within) {
+    return clamp(int(floor(within * real(cells.parts))), 0, int(cells.parts) - 1);
+}
+
+// A cell, and the part of a pixel in its image.
+struct CellPlace {
+    uint cell;
+    int column; // of parts, over the whole image
+    int row;
+};

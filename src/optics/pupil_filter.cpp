@@ -1,0 +1,250 @@
+#include "optics/pupil_filter.hpp"
+
+#include "core/error.hpp"
+#include "core/units.hpp"
+#include "optics/apertures.hpp"
+#include "optics/image_quality.hpp"
+#include "optics/wavefront.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <thread>
+
+namespace vkfv::optics {
+
+namespace {
+
+using Complex = std::complex<double>;
+
+// Points of a lattice across the pupil's half width that the mean over a cell is taken from, for each cell across it.
+constexpr int points_a_cell = 10;
+constexpr int spectral_samples = 8;
+
+// The pupil on a lattice whose points p + lambda f / 2 are points again, for frequencies that are multiples of the
+// cutoff over `half`. No point lies on an axis, where mirror images would share a cell's edge.
+struct Lattice {
+    Lattice(const Wavefront& wavefront, int half, const physics::f64::PupilCells& cells)
+        : half(half), side(2 * half), spacing(wavefront.largest_rim() / half),
+          cell(static_cast<std::size_t>(side * side), -1), phase(cell.size()), tilt(cell.size()) {
+        const double k = 2 * pi / wavefront.wavelength();
+        for (int j = -half; j < half; ++j) {
+            for (int i = -half; i < half; ++i) {
+                const glm::dvec2 p = spacing * glm::dvec2(i + 0.5, j + 0.5);
+                if (wavefront.passes(p)) {
+                    const std::size_t place = index(i, j);
+                    cell[place] = static_cast<int>(physics::f64::pupil_cell(cells, wavefront.image_slope(p)));
+                    phase[place] = k * wavefront.path(p);
+                    tilt[place] = 2 * k * spacing * wavefront.displacement(p);
+                }
+            }
+        }
+    }
+    std::size_t index(int i, int j) const { return static_cast<std::size_t>((j + half) * side + i + half); }
+
+    // Sums over each cell of the integrand of w, for the frequency (dx, dy) cutoff / half.
+    void add_up(int dx, int dy, std::vector<Complex>& sums) const {
+        std::fill(sums.begin(), sums.end(), Complex(0));
+        const int reach_x = half - std::abs(dx);
+        const int reach_y = half - std::abs(dy);
+        const std::ptrdiff_t step = static_cast<std::ptrdiff_t>(dy) * side + dx;
+        for (int j = -reach_y; j < reach_y; ++j) {
+            for (int i = -reach_x; i < reach_x; ++i) {
+                const auto place = static_cast<std::ptrdiff_t>(index(i, j));
+                const auto here = static_cast<std::size_t>(place);
+                const auto ahead = static_cast<std::size_t>(place + step);
+                const auto behind = static_cast<std::size_t>(place - step);
+                if (cell[here] >= 0 && cell[ahead] >= 0 && cell[behind] >= 0) {
+                    const double turn = phase[ahead] - phase[behind] - dx * tilt[here].x - dy * tilt[here].y;
+                    sums[static_cast<std::size_t>(cell[here])] +=
+                        std::abs(turn) < 1e-9 ? Complex(1) : std::polar(1.0, -turn);
+                }
+            }
+        }
+    }
+
+    int half;
+    int side;
+    double spacing;
+    std::vector<int> cell; // -1: outside the pupil
+    std::vector<double> phase;
+    std::vector<glm::dvec2> tilt;
+};
+
+// Values at -steps ... steps and 0 ... steps, bilinear between; 0 beyond.
+template <class Value>
+Complex interpolated(const Value* values, int steps, double x, double y) {
+    if (y < 0 || (y == 0 && x < 0)) {
+        return std::conj(interpolated(values, steps, -x, -y));
+    }
+    if (std::abs(x) >= steps || y >= steps) {
+        return 0;
+    }
+    const double left = std::floor(x);
+    const double low = std::floor(y);
+    const double u = x - left;
+    const double v = y - low;
+    const Value* corner = values + static_cast<std::ptrdiff_t>(low) * (2 * steps + 1) + static_cast<int>(left) + steps;
+    const auto row = [&](const Value* first) { return Complex(first[0]) * (1 - u) + Complex(first[1]) * u; };
+    return row(corner) * (1 - v) + row(corner + 2 * steps + 1) * v;
+}
+
+// The chief ray's slope at the detector over its position there, 1/mm, at the field's edge.
+double chief_slope_per_position(const Instrument& instrument) {
+    const Imaging imaging = imaging_of(instrument);
+    const glm::dvec2 field(instrument.first_order.field_edge, 0);
+    const auto landing =
+        imaging.trace(field, instrument.first_order.best_focus_offset, imaging.chief_cosines(field), 0);
+    return landing && landing->position.x != 0 ? landing->direction.x / landing->direction.z / landing->position.x : 0;
+}
+
+double shortest_wavelength(std::span<const SpectralNode> nodes) {
+    const auto least = std::ranges::min_element(nodes, {}, &SpectralNode::wavelength_um);
+    return least->wavelength_um / um_per_mm;
+}
+
+} // namespace
+
+int parts_for_waves(const Instrument& instrument) {
+    const double pitch = shortest_wavelength(spectral_nodes(instrument, spectral_samples)) /
+                         (4 * instrument.first_order.numerical_aperture);
+    return std::max(1, static_cast<int>(std::ceil(instrument.first_order.pixel_pitch / pitch * (1 - 1e-9))));
+}
+
+PupilFilter::PupilFilter(const Instrument& instrument, const WaveOptions& options)
+    : steps_(std::max(32, points_a_cell * options.cells / 2)) {
+    const auto nodes = spectral_nodes(instrument, spectral_samples);
+    cells_.side = static_cast<std::uint32_t>(options.cells);
+    cells_.parts = static_cast<std::uint32_t>(options.parts > 0 ? options.parts : parts_for_waves(instrument));
+    part_pitch_ = instrument.first_order.pixel_pitch / cells_.parts;
+    cells_.chief_position = chief_slope_per_position(instrument);
+    double largest = 0;
+    for (const SpectralNode& node : nodes) {
+        const Wavefront wavefront(instrument, node);
+        cutoff_ = std::max(cutoff_, 2 * wavefront.largest_rim() / wavefront.wavelength());
+        constexpr int azimuths = 64;
+        for (int k = 0; k < azimuths; ++k) {
+            const double azimuth = 2 * pi * k / azimuths;
+            const glm::dvec2 rim = wavefront.rim(azimuth) * glm::dvec2(std::cos(azimuth), std::sin(azimuth));
+            largest = std::max(largest, glm::length(wavefront.image_slope(rim)));
+        }
+    }
+    if (largest == 0) {
+        throw InputError({.where = {},
+                          .key = "diffraction.model",
+                          .found = "no light from the axis that comes through the imaging train",
+                          .expected = "a pupil",
+                          .remedy = "See by vkfv layout what stops the light, or set diffraction.model = \"none\"."});
+    }
+    cells_.per_slope = 1 / largest;
+    shares_.resize(static_cast<std::size_t>(cell_count()));
+    table_.resize(shares_.size() * static_cast<std::size_t>((2 * steps_ + 1) * (steps_ + 1)));
+    for (const SpectralNode& node : nodes) {
+        add_wavelength(instrument, node);
+    }
+    fill_dark_cells();
+}
+
+void PupilFilter::fill_dark_cells() {
+    const int side = static_cast<int>(cells_.side);
+    const auto middle = [side](int cell) { return glm::dvec2(cell % side - 0.5 * (side - 1), cell / side + 0.5); };
+    const auto plane = static_cast<std::ptrdiff_t>(table_.size() / shares_.size());
+    for (int dark = 0; dark < cell_count(); ++dark) {
+        int nearest = -1;
+        for (int lit = 0; lit < cell_count() && share(dark) == 0; ++lit) {
+            if (share(lit) > 0 && (nearest < 0 || glm::length(middle(lit) - middle(dark)) <
+                                                      glm::length(middle(nearest) - middle(dark)))) {
+                nearest = lit;
+            }
+        }
+        if (nearest >= 0) {
+            std::copy_n(table_.begin() + nearest * plane, plane, table_.begin() + dark * plane);
+        }
+    }
+}
+
+void PupilFilter::add_wavelength(const Instrument& instrument, const SpectralNode& node) {
+    const Wavefront wavefront(instrument, node);
+    const Lattice lattice(wavefront, steps_, cells_);
+    const std::size_t count = shares_.size();
+    std::vector<double> points(count);
+    for (const int cell : lattice.cell) {
+        if (cell >= 0) {
+            points[static_cast<std::size_t>(cell)] += 1;
+        }
+    }
+    const int columns = 2 * steps_ + 1;
+    const auto plane = static_cast<std::size_t>(columns * (steps_ + 1));
+    std::vector<Complex> own(count * plane); // at multiples of this wavelength's cutoff
+    {
+        const int workers = static_cast<int>(std::max(1u, std::thread::hardware_concurrency()));
+        std::vector<std::jthread> threads;
+        for (int worker = 0; worker < workers; ++worker) {
+            threads.emplace_back([&, worker] {
+                std::vector<Complex> sums(count);
+                for (int dy = worker; dy <= steps_; dy += workers) {
+                    for (int dx = -steps_; dx <= steps_; ++dx) {
+                        lattice.add_up(dx, dy, sums);
+                        for (std::size_t cell = 0; cell < count; ++cell) {
+                            own[cell * plane + static_cast<std::size_t>(dy * columns + dx + steps_)] =
+                                points[cell] > 0 ? sums[cell] / points[cell] : Complex(0);
+                        }
+                    }
+                }
+            });
+        }
+    }
+    double all = 0;
+    for (const double each : points) {
+        all += each;
+    }
+    const double ratio = cutoff_ * wavefront.wavelength() / (2 * wavefront.largest_rim());
+    for (std::size_t cell = 0; cell < count; ++cell) {
+        shares_[cell] += node.weight * points[cell] / all;
+        for (int dy = 0; dy <= steps_; ++dy) {
+            for (int dx = -steps_; dx <= steps_; ++dx) {
+                const Complex value = interpolated(own.data() + cell * plane, steps_, dx * ratio, dy * ratio);
+                table_[cell * plane + static_cast<std::size_t>(dy * columns + dx + steps_)] +=
+                    std::complex<float>(node.weight * value);
+            }
+        }
+    }
+}
+
+int PupilFilter::mirrored(int cell) const {
+    const int side = static_cast<int>(cells_.side);
+    return cell / side * side + side - 1 - cell % side;
+}
+
+std::complex<double> PupilFilter::transfer(int cell, double fx, double fy) const {
+    const auto plane = static_cast<std::size_t>((2 * steps_ + 1) * (steps_ + 1));
+    const double scale = steps_ / cutoff_;
+    return interpolated(table_.data() + static_cast<std::size_t>(cell) * plane, steps_, fx * scale, fy * scale);
+}
+
+double PupilFilter::noise() const {
+    // White noise on the parts of pixels, filtered and added up over the pixel's.
+    constexpr int samples = 48; // of half the band
+    const int parts = static_cast<int>(cells_.parts);
+    const auto added_up = [parts](double f) { // cycles per part
+        const double part = std::sin(pi * f);
+        return part == 0 ? 1.0 : std::pow(std::sin(pi * f * parts) / (parts * part), 2);
+    };
+    double before = 0;
+    double after = 0;
+    for (int j = -samples; j < samples; ++j) {
+        for (int i = -samples; i < samples; ++i) {
+            const double fx = 0.5 * (i + 0.5) / samples;
+            const double fy = 0.5 * (j + 0.5) / samples;
+            const double pixel = added_up(fx) * added_up(fy);
+            before += pixel;
+            for (int cell = 0; cell < cell_count(); ++cell) {
+                if (share(cell) > 0) {
+                    after += pixel * share(cell) * std::norm(transfer(cell, fx / part_pitch_, fy / part_pitch_));
+                }
+            }
+        }
+    }
+    return std::sqrt(after / before);
+}
+
+} // namespace vkfv::optics

@@ -1,0 +1,69 @@
+// What waves make of an image that was traced by rays, at every height of focus: light sorted by where it crosses the
+// pupil (physics/pupil_cells.glsl), each cell's image filtered by a transfer function of its own. The rays carry
+// defocus, the surface's slope, shadows and vignetting; the filter adds what they lack, the overlap of two displaced
+// pupils.
+#pragma once
+
+#include "optics/instrument.hpp"
+#include "physics/physics.hpp"
+
+#include <complex>
+#include <vector>
+
+namespace vkfv::optics {
+
+struct WaveOptions {
+    int cells = 8; // across the pupil, even
+    int parts = 0; // of a pixel's side in which light is sorted; 0: as fine as waves ask for
+};
+
+// Parts of a pixel's side whose pitch is at most lambda / (4 NA) for the shortest wavelength: the frequencies that the
+// pupil passes are then all below a half cycle a part.
+int parts_for_waves(const Instrument& instrument);
+
+// Of an instrument's axis. The image has the spectrum  sum over the cells c of  w_c(f) I_c(f)  with
+//   w_c(f) = mean over p in c of  1{p + lambda f / 2 and p - lambda f / 2 in the pupil}
+//                                 exp(-i (k [W(p + lambda f / 2) - W(p - lambda f / 2)] - 2 pi f . t(p)))
+// where p are direction cosines times the index in the object space, W the wavefront and t its rays' displacement in
+// best focus (optics/wavefront.hpp), by the transform exp(-2 pi i f . x). It is Hopkins' transfer function (Proc. R.
+// Soc. A 231, 91, 1955) with what rays have of it left to them. |w_c| <= 1, so noise does not grow; w_c(0) = 1.
+// Of several wavelengths the mean by their shares of the light.
+class PupilFilter {
+  public:
+    // Throws InputError where no light comes through.
+    PupilFilter(const Instrument& instrument, const WaveOptions& options);
+
+    const physics::f64::PupilCells& cells() const { return cells_; }
+    int cell_count() const { return static_cast<int>(physics::f64::pupil_cell_count(cells_)); }
+    // Of light from the axis that fills the pupil as a Lambertian surface's does. What arrives in a cell of share 0
+    // comes from the field's edge; it is filtered as that of the nearest other cell.
+    double share(int cell) const { return shares_[static_cast<std::size_t>(cell)]; }
+    // The cell that the mirror image of a cell's light, left to right, belongs to.
+    int mirrored(int cell) const;
+
+    // w of a frequency in cycles per mm of the object plane.
+    std::complex<double> transfer(int cell, double fx, double fy) const;
+    double cutoff() const { return cutoff_; }         // 2 NA / lambda of the shortest wavelength, cycles per mm
+    double part_pitch() const { return part_pitch_; } // mm in the object plane
+
+    // Standard deviation of a pixel's noise after the filter over that before it, for light that is alike everywhere.
+    double noise() const;
+
+    // As a device reads it: w at fx = column / steps cutoff, from -steps to steps, and fy = row / steps cutoff, from 0,
+    // bilinear between; cell after cell, row after row. For fy < 0: the conjugate of -f.
+    const std::vector<std::complex<float>>& table() const { return table_; }
+    int steps() const { return steps_; }
+
+  private:
+    void add_wavelength(const Instrument& instrument, const SpectralNode& node);
+    void fill_dark_cells();
+
+    physics::f64::PupilCells cells_{};
+    int steps_;
+    double cutoff_ = 0;
+    double part_pitch_;
+    std::vector<double> shares_;
+    std::vector<std::complex<float>> table_;
+};
+
+} // namespace vkfv::optics

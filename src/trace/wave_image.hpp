@@ -1,0 +1,64 @@
+// The image that waves make of light sorted by pupil cells, on the host in double.
+#pragma once
+
+#include "core/grid.hpp"
+#include "optics/pupil_filter.hpp"
+#include "trace/tracer.hpp"
+
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <vector>
+
+namespace vkfv::trace {
+
+// Beyond its border the image continues as its mirror image, the pupil mirrored with it, so that no light is lost: of
+// an instrument that is symmetric about its axis the sum over the pixels stays the same, of others but for what the
+// asymmetry of the point spread carries over the border.
+class WaveImage {
+  public:
+    // Of a square detector of so many pixels a side. The filter must outlive it.
+    WaveImage(const optics::PupilFilter& filter, int pixels);
+
+    // How many numbers the sorted light has: cell after cell, row after row of parts of pixels.
+    std::size_t numbers() const;
+    // Light of the pixels in the units of the sorted light.
+    Grid<double> apply(std::span<const std::uint64_t> light) const;
+
+  private:
+    struct Spectrum;
+    // Of a cell and its mirror image: the parts of their images' extension that are even and odd in both directions.
+    struct Pair {
+        Grid<double> even;
+        Grid<double> odd;
+    };
+    Pair transform(std::span<const std::uint64_t> light, int cell, int mirrored) const;
+    void add(Spectrum& sum, const Pair& pair, int cell, int mirrored) const;
+    Grid<double> pixels_of(const Spectrum& sum) const;
+
+    const optics::PupilFilter& filter_;
+    int pixels_;
+    int side_; // in parts of pixels
+};
+
+// Light that the host sorts; many may add to it at a time. Without a filter nothing is kept.
+class CellLight {
+  public:
+    CellLight(const std::optional<optics::PupilFilter>& filter, int pixels);
+
+    void add(const physics::f64::CellPlace& place, std::uint64_t light);
+    Grid<double> image() const { return image_.value().apply(numbers_); }
+
+  private:
+    std::optional<WaveImage> image_;
+    std::size_t side_ = 0; // in parts of pixels
+    std::vector<std::uint64_t> numbers_;
+};
+
+// The filter that the options ask for, of an instrument that is not turned round; none: images as rays make them.
+std::optional<optics::PupilFilter> wave_filter(const optics::Instrument& instrument, const TraceOptions& options);
+
+// The same exposure with its light as waves make it, in W, from that of WaveImage::apply().
+Image with_waves(Image image, const Grid<double>& light, double power_per_number, const optics::PupilFilter& filter);
+
+} // namespace vkfv::trace
