@@ -45,7 +45,9 @@ std::optional<Imaging::Landing> Imaging::trace(glm::dvec2 position, double heigh
         return std::nullopt;
     }
     const auto arrived = physics::f64::fly_to_plane(result.ray, detector_distance, result.index);
-    return Landing{.position = {arrived.position.x, arrived.position.y}, .path_length = arrived.path_length};
+    return Landing{.position = {arrived.position.x, arrived.position.y},
+                   .direction = arrived.direction,
+                   .path_length = arrived.path_length};
 }
 
 glm::dvec2 Imaging::chief_cosines(glm::dvec2 position) const {

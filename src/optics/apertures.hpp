@@ -24,9 +24,11 @@ struct Imaging {
     bool symmetric = true;        // about the axis
 
     // Light that leaves (position, height) with the direction cosines (l, m), at the detector; none: it does not come
-    // so far. The landing point is in the detector's frame, and path_length the optical path to it.
+    // so far. The landing point and the direction (of length index) are in the detector's frame, and path_length is the
+    // optical path to it.
     struct Landing {
         glm::dvec2 position;
+        glm::dvec3 direction;
         double path_length = 0;
     };
     std::optional<Landing> trace(glm::dvec2 position, double height, glm::dvec2 cosines, std::uint32_t apertures = 1,

@@ -122,22 +122,21 @@ std::string list_of_lenses(const std::vector<Clipping>& clipping) {
 } // namespace
 
 std::vector<SpectralNode> spectral_nodes(const Instrument& instrument, int fewest) {
-    const auto& bins = instrument.spectral_bins;
-    const int per_bin = (fewest + static_cast<int>(bins.size()) - 1) / static_cast<int>(bins.size());
-    std::vector<SpectralNode> nodes;
-    double before = 0;
-    for (const auto& bin : bins) {
-        const int count = bin.start == bin.stop ? 1 : per_bin;
-        for (int i = 0; i < count; ++i) {
-            const double wavelength = physics::f64::wavelength_in_bin(bin, (i + 0.5) / count);
-            nodes.push_back(
-                {.spectral = physics::f64::light_of_wave_number(instrument.constants, 1 / wavelength).spectral,
-                 .wavelength_um = wavelength,
-                 .weight = (bin.cumulative - before) / count});
-        }
-        before = bin.cumulative;
-    }
-    return nodes;
+    return spectral_nodes(instrument.spectral_bins, instrument.constants.spectrum_centre,
+                          instrument.constants.spectrum_half_width, fewest);
+}
+
+Imaging imaging_of(const Instrument& instrument) {
+    const auto& constants = instrument.constants;
+    const auto first = instrument.surfaces.begin() + constants.imaging_first;
+    Imaging imaging;
+    imaging.train = {first, first + constants.imaging_count};
+    imaging.working_distance = instrument.first_order.working_distance;
+    imaging.detector_distance = constants.detector_distance;
+    imaging.pupil_curvature = constants.gate_position;
+    imaging.symmetric = std::ranges::none_of(imaging.train, is_displaced);
+    imaging.detector_index = imaging.train.back().index_after;
+    return imaging;
 }
 
 Imaging at_wavelength(Imaging imaging, double spectral) {
@@ -235,17 +234,9 @@ Setting setting_of(const InstrumentDescription& description, const Instrument& i
     Setting setting{
         .description = description,
         .instrument = instrument,
-        .imaging = {},
+        .imaging = imaging_of(instrument),
         .nodes = spectral_nodes(instrument),
         .reference = {{.spectral = 0, .wavelength_um = 1 / std::sqrt(constants.spectrum_centre), .weight = 1}}};
-    const auto first = instrument.surfaces.begin() + constants.imaging_first;
-    Imaging& imaging = setting.imaging;
-    imaging.train = {first, first + constants.imaging_count};
-    imaging.working_distance = instrument.first_order.working_distance;
-    imaging.detector_distance = constants.detector_distance;
-    imaging.pupil_curvature = constants.gate_position;
-    imaging.symmetric = std::ranges::none_of(imaging.train, is_displaced);
-    imaging.detector_index = imaging.train.back().index_after;
     // The cover glass' two surfaces stand before the objective's.
     const auto& objective = description.objective.surfaces;
     const std::size_t objective_first = description.cover_glass ? 2 : 0;
@@ -253,7 +244,7 @@ Setting setting_of(const InstrumentDescription& description, const Instrument& i
     setting.stop = objective_first + static_cast<std::size_t>(marked - objective.begin());
     setting.objective_end = objective_first + objective.size();
     setting.height = instrument.first_order.best_focus_offset;
-    setting.on_axis = outline_at(imaging, {0, 0});
+    setting.on_axis = outline_at(setting.imaging, {0, 0});
     return setting;
 }
 

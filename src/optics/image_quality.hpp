@@ -11,13 +11,6 @@
 
 namespace vkfv::optics {
 
-// A wavelength of a quadrature over the spectrum.
-struct SpectralNode {
-    double spectral = 0; // x of physics::Light
-    double wavelength_um = 0;
-    double weight = 0; // share of the flux; they add up to 1
-};
-
 // Lines one by one, a continuous spectrum by at least `fewest` nodes in its bins.
 std::vector<SpectralNode> spectral_nodes(const Instrument& instrument, int fewest = 32);
 
@@ -41,6 +34,9 @@ struct PointImage {
 // 0.
 PointImage point_image(const Imaging& imaging, const Outline& outline, double height,
                        std::span<const SpectralNode> spectrum);
+
+// The imaging train of an instrument.
+Imaging imaging_of(const Instrument& instrument);
 
 // The imaging train for one wavelength, as if monochromatic.
 Imaging at_wavelength(Imaging imaging, double spectral);

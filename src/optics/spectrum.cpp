@@ -181,4 +181,22 @@ SpectralIndex spectral_index(const Medium& medium, const Spectrum& spectrum) {
     return result;
 }
 
+std::vector<SpectralNode> spectral_nodes(const std::vector<physics::f64::SpectralBin>& bins, double centre,
+                                         double half_width, int fewest) {
+    const int per_bin = (fewest + static_cast<int>(bins.size()) - 1) / static_cast<int>(bins.size());
+    std::vector<SpectralNode> nodes;
+    double before = 0;
+    for (const auto& bin : bins) {
+        const int count = bin.start == bin.stop ? 1 : per_bin;
+        for (int i = 0; i < count; ++i) {
+            const double wavelength = physics::f64::wavelength_in_bin(bin, (i + 0.5) / count);
+            nodes.push_back({.spectral = (1 / (wavelength * wavelength) - centre) / half_width,
+                             .wavelength_um = wavelength,
+                             .weight = (bin.cumulative - before) / count});
+        }
+        before = bin.cumulative;
+    }
+    return nodes;
+}
+
 } // namespace vkfv::optics

@@ -30,6 +30,17 @@ struct Spectrum {
     static Spectrum table(const std::vector<double>& wavelengths_um, const std::vector<double>& densities);
 };
 
+// A wavelength of a quadrature over the spectrum.
+struct SpectralNode {
+    double spectral = 0; // x of physics::Light
+    double wavelength_um = 0;
+    double weight = 0; // share of the flux; they add up to 1
+};
+
+// Lines one by one, a continuous spectrum by at least `fewest` nodes in its bins. centre, half_width: as Spectrum's.
+std::vector<SpectralNode> spectral_nodes(const std::vector<physics::f64::SpectralBin>& bins, double centre,
+                                         double half_width, int fewest = 32);
+
 // Index of a medium over a spectrum: at x = 0 exactly, and a polynomial that agrees at six wavelengths more.
 struct SpectralIndex {
     double centre = 1;

@@ -1,0 +1,35 @@
+// Polynomials of two variables, fitted over the unit disc.
+#pragma once
+
+#include <glm/glm.hpp>
+
+#include <span>
+#include <vector>
+
+namespace vkfv::optics {
+
+// The sum of c_ij x^i y^j over i + j <= degree.
+class PlanePolynomial {
+  public:
+    PlanePolynomial() : PlanePolynomial(0) {}
+    explicit PlanePolynomial(int degree) : degree_(degree), coefficients_(terms(degree), 0.0) {}
+
+    static std::size_t terms(int degree) { return static_cast<std::size_t>((degree + 1) * (degree + 2) / 2); }
+
+    int degree() const { return degree_; }
+    std::span<double> coefficients() { return coefficients_; } // by j, then by i
+    double value(glm::dvec2 at) const;
+    glm::dvec2 gradient(glm::dvec2 at) const;
+
+  private:
+    int degree_ = 0;
+    std::vector<double> coefficients_;
+};
+
+// The polynomial for each column of `values` whose squared deviations at the points have the least sum, by
+// Householder's reflections (Golub and Van Loan, "Matrix Computations", section 5.3). Points within the unit disc, more
+// of them than terms: std::invalid_argument.
+std::vector<PlanePolynomial> fit_polynomials(int degree, const std::vector<glm::dvec2>& points,
+                                             std::vector<std::vector<double>> values);
+
+} // namespace vkfv::optics

@@ -1,0 +1,305 @@
+#include "optics/wavefront.hpp"
+
+#include "core/units.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <optional>
+
+namespace vkfv::optics {
+
+namespace {
+
+constexpr std::size_t azimuths = 144;
+
+// Light of one p that lands on a point of the detector.
+struct TracedWave {
+    glm::dvec2 object_point; // where it leaves the object plane
+    double path_length = 0;  // from there to the point
+    glm::dvec2 slope;        // at the detector
+};
+
+// The object plane seen from one point of the detector.
+struct View {
+    const Imaging& imaging;
+    double index;
+    double magnification;
+    double plane; // the object plane, above the paraxial one
+    glm::dvec2 detector;
+    glm::dvec2 guess; // about where its image lies
+
+    // By Broyden's method. None: no such ray, or an aperture stops it.
+    std::optional<TracedWave> trace(glm::dvec2 p, std::uint32_t apertures) const;
+};
+
+std::optional<TracedWave> View::trace(glm::dvec2 p, std::uint32_t apertures) const {
+    constexpr int most_steps = 25;
+    constexpr double enough = 1e-11; // mm in the object; rounding leaves 1e-14 of a train's length
+    const glm::dvec2 cosines = p / index;
+    glm::dvec2 point = guess;
+    auto landing = imaging.trace(point, plane, cosines, 0);
+    glm::dmat2 rate(magnification); // of the landing with the point
+    for (int step = 0; landing && step < most_steps; ++step) {
+        const glm::dvec2 miss = landing->position - detector;
+        const glm::dvec2 move = -(glm::inverse(rate) * miss);
+        const double length_squared = glm::dot(move, move);
+        if (length_squared < enough * enough) {
+            if (apertures != 0u && !imaging.trace(point, plane, cosines, apertures)) {
+                return std::nullopt;
+            }
+            // What is missing to the point, to first order.
+            const double rest = glm::dot(glm::dvec2(landing->direction), miss);
+            return TracedWave{.object_point = point + move,
+                              .path_length = landing->path_length - rest - glm::dot(p, move),
+                              .slope = glm::dvec2(landing->direction) / landing->direction.z};
+        }
+        const glm::dvec2 before = landing->position;
+        point += move;
+        landing = imaging.trace(point, plane, cosines, 0);
+        if (landing) {
+            rate += glm::outerProduct(landing->position - before - rate * move, move) / length_squared;
+        }
+    }
+    return std::nullopt;
+}
+
+double axial(double index, glm::dvec2 p) {
+    return std::sqrt(std::max(0.0, index * index - glm::dot(p, p)));
+}
+
+// The centroid of what passes, where that passes itself.
+std::optional<glm::dvec2> middle_of_light(const View& view) {
+    constexpr int steps = 32; // from the axis to the largest direction cosine
+    glm::dvec2 sum(0);
+    int count = 0;
+    for (int j = -steps; j <= steps; ++j) {
+        for (int i = -steps; i <= steps; ++i) {
+            const glm::dvec2 p = view.index / steps * glm::dvec2(i, j);
+            if (i * i + j * j < steps * steps && view.trace(p, 1)) {
+                sum += p;
+                ++count;
+            }
+        }
+    }
+    const glm::dvec2 middle = sum / std::max(1.0, static_cast<double>(count));
+    return count > 0 && view.trace(middle, 1) ? std::optional(middle) : std::nullopt;
+}
+
+glm::dvec2 direction_of(double azimuth) {
+    return {std::cos(azimuth), std::sin(azimuth)};
+}
+
+// Samples that fill a pupil, dense towards its rim as a fit wants them.
+std::vector<glm::dvec2> fill_pupil(const Wavefront& wavefront, int rings, int spokes, double turn) {
+    std::vector<glm::dvec2> points;
+    for (int spoke = 0; spoke < spokes; ++spoke) {
+        const double azimuth = 2 * pi * (spoke + turn) / spokes;
+        // Within the rim, which is known at some azimuths and drawn straight between them.
+        const double rim = (1 - 1e-9) * wavefront.rim(azimuth);
+        for (int ring = 0; ring < rings; ++ring) {
+            points.push_back(wavefront.chief() + rim * std::cos(pi * ring / (2.0 * rings)) * direction_of(azimuth));
+        }
+    }
+    return points;
+}
+
+// The factor of Wavefront::defocus() that leaves the least variance.
+double defocus_of(const std::vector<double>& path, const std::vector<double>& defocus) {
+    double mean_path = 0;
+    double mean_defocus = 0;
+    for (std::size_t i = 0; i < path.size(); ++i) {
+        mean_path += path[i] / static_cast<double>(path.size());
+        mean_defocus += defocus[i] / static_cast<double>(path.size());
+    }
+    double both = 0;
+    double square = 0;
+    for (std::size_t i = 0; i < path.size(); ++i) {
+        both += (path[i] - mean_path) * (defocus[i] - mean_defocus);
+        square += (defocus[i] - mean_defocus) * (defocus[i] - mean_defocus);
+    }
+    return square > 0 ? both / square : 0;
+}
+
+} // namespace
+
+Wavefront::Wavefront(const Instrument& instrument, const SpectralNode& wavelength, glm::dvec2 field, double height)
+    : Wavefront(imaging_of(instrument), instrument.first_order.magnification, instrument.first_order.best_focus_offset,
+                wavelength, field, height) {}
+
+Wavefront::Wavefront(const Imaging& imaging, double magnification, double focus, const SpectralNode& wavelength,
+                     glm::dvec2 field, double height)
+    : wavelength_(wavelength.wavelength_um * mm_per_um), weight_(wavelength.weight), height_(height),
+      rims_(azimuths, 0.0) {
+    const Imaging alone = at_wavelength(imaging, wavelength.spectral);
+    index_ = alone.train.front().index_before;
+    chief_ = index_ * imaging.chief_cosines(field);
+    axial_chief_ = axial(index_, chief_);
+    View view{.imaging = alone,
+              .index = index_,
+              .magnification = magnification,
+              .plane = focus,
+              .detector = magnification * field,
+              .guess = field};
+    const auto chief = view.trace(chief_, 0);
+    object_point_ = view.guess = chief ? chief->object_point : field;
+    if (!view.trace(chief_, 1)) {
+        if (const auto middle = middle_of_light(view)) {
+            chief_ = *middle;
+            axial_chief_ = axial(index_, chief_);
+            object_point_ = view.trace(chief_, 0)->object_point;
+        }
+    }
+    // About the axis, and about a point of the x axis, a symmetric train's pupil has its symmetry.
+    const bool round = imaging.symmetric && field == glm::dvec2(0);
+    const bool half = imaging.symmetric && field.y == 0;
+    for (std::size_t i = 0; i < azimuths; ++i) {
+        if (round && i > 0) {
+            rims_[i] = rims_[0];
+        } else if (half && i > azimuths / 2) {
+            rims_[i] = rims_[azimuths - i];
+        } else {
+            const glm::dvec2 direction = direction_of(2 * pi * static_cast<double>(i) / azimuths);
+            rims_[i] = farthest(index_ + glm::length(chief_), [&](double radius) {
+                           return view.trace(chief_ + radius * direction, 1).has_value();
+                       }).value_or(0);
+        }
+    }
+    largest_rim_ = *std::ranges::max_element(rims_);
+    smallest_rim_ = *std::ranges::min_element(rims_);
+    if (smallest_rim_ > 0) {
+        fit(view.imaging, view.detector, magnification, focus);
+    } else {
+        largest_rim_ = 0;
+        std::ranges::fill(rims_, 0.0);
+    }
+}
+
+void Wavefront::fit(const Imaging& imaging, glm::dvec2 detector, double magnification, double focus) {
+    const View view{.imaging = imaging,
+                    .index = index_,
+                    .magnification = magnification,
+                    .plane = focus,
+                    .detector = detector,
+                    .guess = object_point_};
+    struct Samples {
+        std::vector<glm::dvec2> places; // in the unit disc
+        std::vector<double> defocus;
+        std::vector<std::vector<double>> values{3}; // W, slopes
+    };
+    const auto chief = view.trace(chief_, 0);
+    const auto sample = [&](int rings, int spokes, double turn) {
+        Samples samples;
+        for (const glm::dvec2 p : fill_pupil(*this, rings, spokes, turn)) {
+            if (const auto traced = view.trace(p, 0); traced && chief) {
+                samples.places.push_back((p - chief_) / largest_rim_);
+                samples.defocus.push_back(defocus(p));
+                samples.values[0].push_back(chief->path_length - traced->path_length -
+                                            glm::dot(p, traced->object_point - chief->object_point));
+                samples.values[1].push_back(traced->slope.x - chief->slope.x);
+                samples.values[2].push_back(traced->slope.y - chief->slope.y);
+            }
+        }
+        return samples;
+    };
+    constexpr int degrees[] = {8, 12, 16, 20, 24};
+    for (const int degree : degrees) {
+        Samples samples = sample(degree / 2 + 3, 2 * degree + 4, 0);
+        defocus_ = defocus_of(samples.values[0], samples.defocus);
+        for (std::size_t i = 0; i < samples.places.size(); ++i) {
+            samples.values[0][i] -= defocus_ * samples.defocus[i];
+        }
+        if (samples.places.size() < PlanePolynomial::terms(degree)) {
+            break;
+        }
+        auto fitted = fit_polynomials(degree, samples.places, std::move(samples.values));
+        path_ = std::move(fitted[0]);
+        // They are 0 by definition: piston and tilt.
+        const auto coefficients = path_.coefficients();
+        coefficients[0] = coefficients[1] = coefficients[static_cast<std::size_t>(degree) + 1] = 0;
+        slope_x_ = std::move(fitted[1]);
+        slope_y_ = std::move(fitted[2]);
+        // Other rays tell whether that is enough.
+        constexpr double enough = 1e-7;       // wavelengths
+        constexpr double enough_slope = 5e-6; // of the largest
+        const Samples others = sample(degree / 2 + 1, 2 * degree + 1, 0.5);
+        double path_error = 0;
+        double slope_error = 0;
+        double largest_slope = 0;
+        for (std::size_t i = 0; i < others.places.size(); ++i) {
+            const glm::dvec2 place = others.places[i];
+            const glm::dvec2 slope(others.values[1][i], others.values[2][i]);
+            path_error =
+                std::max(path_error, std::abs(path_.value(place) + defocus_ * others.defocus[i] - others.values[0][i]));
+            slope_error =
+                std::max(slope_error, glm::length(glm::dvec2(slope_x_.value(place), slope_y_.value(place)) - slope));
+            largest_slope = std::max(largest_slope, glm::length(slope));
+        }
+        if (path_error < enough * wavelength_ && slope_error < enough_slope * largest_slope) {
+            break;
+        }
+    }
+}
+
+Wavefront Wavefront::at_height(double height) const {
+    Wavefront other = *this;
+    other.height_ = height;
+    return other;
+}
+
+double Wavefront::rim(double azimuth) const {
+    const double turns = azimuth / (2 * pi);
+    const double place = (turns - std::floor(turns)) * azimuths;
+    const auto before = std::min(static_cast<std::size_t>(place), azimuths - 1);
+    const double share = place - static_cast<double>(before);
+    return (1 - share) * rims_[before] + share * rims_[(before + 1) % azimuths];
+}
+
+bool Wavefront::passes(glm::dvec2 p) const {
+    const glm::dvec2 from_chief = p - chief_;
+    const double square = glm::dot(from_chief, from_chief);
+    if (square > largest_rim_ * largest_rim_) {
+        return false;
+    }
+    // Straight lines between the rims may come this much nearer; most of the pupil needs no more.
+    if (square <= smallest_rim_ * smallest_rim_) {
+        return true;
+    }
+    const double rim = this->rim(std::atan2(from_chief.y, from_chief.x));
+    return square <= rim * rim;
+}
+
+double Wavefront::area() const {
+    double sum = 0;
+    for (std::size_t i = 0; i < azimuths; ++i) {
+        // Of the square of a radius that is linear in the azimuth.
+        const double a = rims_[i];
+        const double b = rims_[(i + 1) % azimuths];
+        sum += (a * a + a * b + b * b) / 3;
+    }
+    return sum * pi / azimuths;
+}
+
+double Wavefront::defocus(glm::dvec2 p) const {
+    return axial(index_, p) - axial_chief_ + glm::dot(chief_, p - chief_) / axial_chief_;
+}
+
+glm::dvec2 Wavefront::object_point() const {
+    return object_point_ + height_ / axial_chief_ * chief_;
+}
+
+double Wavefront::path(glm::dvec2 p) const {
+    return path_.value((p - chief_) / largest_rim_) + (defocus_ + height_) * defocus(p);
+}
+
+glm::dvec2 Wavefront::displacement(glm::dvec2 p) const {
+    return path_.gradient((p - chief_) / largest_rim_) / largest_rim_ -
+           (defocus_ + height_) * (p / axial(index_, p) - chief_ / axial_chief_);
+}
+
+glm::dvec2 Wavefront::image_slope(glm::dvec2 p) const {
+    const glm::dvec2 place = (p - chief_) / largest_rim_;
+    return {slope_x_.value(place), slope_y_.value(place)};
+}
+
+} // namespace vkfv::optics

@@ -1,0 +1,74 @@
+// The wavefront of the imaging train, traced in double: what waves add to rays. Lengths in mm.
+//
+// All of it is in the object space. p = (px, py): direction cosines times the index n of the specimen's medium, of
+// light that leaves the specimen, axes of the specimen frame. For one point of the detector the light of every p comes
+// from a point x(p) of the object plane; with V(p) the optical path from there, Hamilton's mixed characteristic V + p .
+// x has the gradient x (Born and Wolf, "Principles of Optics", section 4.1). So
+//   W(p) = V_c - V - p . (x - x_c),   grad W = t(p) = x_c - x(p),   c: the chief ray.
+// t is where the light of a common object point lands, in the object, inversion removed. An amplitude point spread is
+// the integral of exp(i k (W(p) - p . x)) over the pupil.
+#pragma once
+
+#include "optics/image_quality.hpp"
+#include "optics/plane_polynomial.hpp"
+
+#include <vector>
+
+namespace vkfv::optics {
+
+// Of one wavelength and one point of the detector. A pupil that no light passes has the rim 0 and no wavefront.
+class Wavefront {
+  public:
+    // field: mm in the object; the point of the detector is its paraxial image, on the axis the detector's middle.
+    // height: of the object plane above best focus on the axis (z = 0 of a scan).
+    Wavefront(const Instrument& instrument, const SpectralNode& wavelength, glm::dvec2 field = glm::dvec2(0),
+              double height = 0);
+    // The plane of best focus stands `focus` above the paraxial object plane.
+    Wavefront(const Imaging& imaging, double magnification, double focus, const SpectralNode& wavelength,
+              glm::dvec2 field = glm::dvec2(0), double height = 0);
+
+    // The same light, of another object plane: raised by z (mm) it adds z sqrt(n^2 - p^2), Debye's defocus.
+    Wavefront at_height(double height) const;
+
+    double wavelength() const { return wavelength_; } // mm, in vacuum
+    double weight() const { return weight_; }         // the wavelength's share of the flux
+    double index() const { return index_; }           // of the specimen's medium
+    double height() const { return height_; }         // of the object plane
+    glm::dvec2 chief() const { return chief_; } // p of the paraxial chief ray; if it is stopped, of the light's middle
+    glm::dvec2 object_point() const;            // x of the chief ray
+
+    // The largest |p - chief| that passes all apertures in that direction (rad from x); continuous. Pupils with holes
+    // are taken for filled.
+    double rim(double azimuth) const;
+    double largest_rim() const { return largest_rim_; }
+    bool passes(glm::dvec2 p) const;
+    double area() const; // of the pupil, in p
+
+    // Of a p that passes.
+    double path(glm::dvec2 p) const;             // W, mm; 0 at the chief ray
+    glm::dvec2 displacement(glm::dvec2 p) const; // t, mm
+    // (dx/dz, dy/dz) of the light at the detector, in the frame of physics::Detection, less that of the chief ray.
+    glm::dvec2 image_slope(glm::dvec2 p) const;
+
+  private:
+    double defocus(glm::dvec2 p) const; // sqrt(n^2 - p^2), without piston and tilt at the chief ray
+    void fit(const Imaging& imaging, glm::dvec2 detector, double magnification, double focus);
+
+    double wavelength_ = 0;
+    double weight_ = 1;
+    double index_ = 1;
+    double height_ = 0;
+    double defocus_ = 0; // mm of defocus() in W at height 0: kept apart, as it is no polynomial
+    glm::dvec2 chief_ = glm::dvec2(0);
+    glm::dvec2 object_point_ = glm::dvec2(0);
+    std::vector<double> rims_; // at azimuths i * 2 pi / count
+    double largest_rim_ = 0;
+    double smallest_rim_ = 0;
+    double axial_chief_ = 1; // sqrt(n^2 - p^2) there
+    // In (p - chief) / largest rim: the rest of W, and the slopes.
+    PlanePolynomial path_;
+    PlanePolynomial slope_x_;
+    PlanePolynomial slope_y_;
+};
+
+} // namespace vkfv::optics
