@@ -18,7 +18,6 @@ namespace vkfv::topography {
 namespace {
 
 constexpr std::uint32_t workgroup = 128;
-constexpr std::uint32_t most_groups_in_a_row = 65535; // Vulkan's promise
 
 using namespace focus::f32; // bindings and push constants: shaders/focus/interface.glsl
 

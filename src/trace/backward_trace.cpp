@@ -6,7 +6,7 @@
 #include "spirv/backward_specialised_bvh.h"
 #include "spirv/backward_specialised_quadtree.h"
 #include "spirv/backward_specialised_ray_query.h"
-#include "trace/wave_image.hpp"
+#include "trace/scene_waves.hpp"
 
 #include <fmt/format.h>
 
@@ -20,7 +20,6 @@ namespace {
 
 constexpr std::uint32_t most_points_per_chunk = 32;
 constexpr std::uint32_t workgroup = 128;
-constexpr std::uint32_t most_groups_in_a_row = 65535; // Vulkan's promise
 
 std::uint32_t pixel_count(const DeviceScene& scene) {
     const auto side = static_cast<std::uint32_t>(scene.instrument.constants.detector_pixels);
@@ -68,7 +67,7 @@ BackwardTrace::BackwardTrace(const DeviceScene& scene, const physics::f64::Backw
     const std::uint64_t wanted = asked_batch > 0    ? asked_batch
                                  : scene.software() ? std::uint64_t{1} << 19
                                                     : std::uint64_t{1} << 27;
-    const std::uint64_t most_chunks = std::uint64_t{most_groups_in_a_row} * workgroup / pixels_;
+    const std::uint64_t most_chunks = std::uint64_t{vulkan::most_groups_in_a_row} * workgroup / pixels_;
     const std::uint64_t chunks =
         std::clamp<std::uint64_t>(wanted / pixels_ / points_per_chunk_, 1, std::max<std::uint64_t>(1, most_chunks));
     points_per_batch_ = static_cast<std::uint32_t>(std::min<std::uint64_t>(plan.points, chunks * points_per_chunk_));
@@ -84,10 +83,8 @@ void BackwardTrace::record(vulkan::Commands& commands, std::uint32_t randomisati
     auto bindings = scene_.bindings({{kernels::BINDING_PIXELS, &sums_}, {kernels::BINDING_BACKWARD, &optics_}});
     const kernels::BackwardBatch batch{first / points_per_chunk_, count / points_per_chunk_, points_per_chunk_,
                                        randomisation};
-    const std::uint64_t invocations = std::uint64_t{batch.chunks} * pixels_;
-    const auto groups = static_cast<std::uint32_t>((invocations + workgroup - 1) / workgroup);
-    const std::uint32_t rows = (groups + most_groups_in_a_row - 1) / most_groups_in_a_row;
-    commands.dispatch(kernel_, bindings, batch, (groups + rows - 1) / rows, rows);
+    const auto groups = vulkan::groups_of(std::uint64_t{batch.chunks} * pixels_, workgroup);
+    commands.dispatch(kernel_, bindings, batch, groups.x, groups.y);
     commands.barrier();
 }
 
@@ -103,9 +100,13 @@ class BackwardTracer final : public Tracer {
                    const TraceOptions& options)
         : instrument_(instrument), turned_(optics::turned_round(instrument)),
           plan_(backward_plan(options.rays, instrument.constants.detector_pixels)),
-          waves_(wave_filter(instrument, options)),
-          scene_(make_device_scene(turned_, specimen, options, waves_ ? &*waves_ : nullptr)),
-          trace_(scene_, backward_optics(instrument_, scene_.host_record.material), plan_, options.batch) {}
+          filter_(filter_for_waves(instrument, options)),
+          scene_(make_device_scene(turned_, specimen, options, filter_ ? &*filter_ : nullptr)),
+          trace_(scene_, backward_optics(instrument_, scene_.host_record.material), plan_, options.batch) {
+        if (filter_) {
+            waves_.emplace(scene_, *filter_);
+        }
+    }
 
     Image expose(double focal_height, std::uint32_t image) const override {
         const std::scoped_lock lock(mutex_);
@@ -133,7 +134,9 @@ class BackwardTracer final : public Tracer {
         }
         Image result = sums.image();
         if (waves_) {
-            result = with_waves(std::move(result), light_of_waves(scene_, *waves_), sums.power_per_number(), *waves_);
+            const auto light = waves_->light();
+            device_seconds += light.device_seconds;
+            result = with_waves(std::move(result), light.pixels, sums.power_per_number(), *filter_);
         }
         result.device_seconds = device_seconds;
         // Of the imaging train alone: who goes on to the source, no one counts.
@@ -152,10 +155,11 @@ class BackwardTracer final : public Tracer {
     optics::Instrument instrument_;
     optics::Instrument turned_;
     BackwardPlan plan_;
-    std::optional<optics::PupilFilter> waves_;
+    std::optional<optics::PupilFilter> filter_;
     mutable std::mutex mutex_; // one exposure at a time: the buffers are shared
     mutable DeviceScene scene_;
     BackwardTrace trace_;
+    std::optional<SceneWaves> waves_;
 };
 
 } // namespace

@@ -185,13 +185,8 @@ std::span<const std::uint32_t> DeviceScene::variant(std::span<const std::uint32_
                                                        : by_quadtree;
 }
 
-Grid<double> light_of_waves(const DeviceScene& scene, const optics::PupilFilter& filter) {
-    const WaveImage image(filter, scene.instrument.constants.detector_pixels);
-    return image.apply(scene.cell_light.value().read_values<std::uint64_t>(image.numbers()));
-}
-
 TracerIdentity DeviceScene::identity() const {
-    return device_identity(device->report(), traversal_name(traversal.traversal), instrument);
+    return device_identity(device->report(), traversal_name(traversal.traversal), instrument, cell_light.has_value());
 }
 
 } // namespace vkfv::trace

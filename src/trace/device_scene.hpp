@@ -52,7 +52,7 @@ struct DeviceScene {
                                            std::span<const std::uint32_t> by_bvh) const;
     // Of an instrument that paths run through in this scene's direction.
     TracerIdentity identity() const;
-    bool software() const { return device->report().type == "CPU"; }
+    bool software() const { return vulkan::is_software(device->report()); }
 
     std::unique_ptr<const vulkan::Device> device; // buffers point to it
     const optics::Instrument& instrument;
@@ -78,8 +78,5 @@ struct DeviceScene {
 // filter: of the pupil cells that light is sorted by; none: it is not.
 DeviceScene make_device_scene(const optics::Instrument& instrument, const specimen::Specimen& specimen,
                               const TraceOptions& options, const optics::PupilFilter* filter = nullptr);
-
-// Of the light that the scene has sorted: see WaveImage.
-Grid<double> light_of_waves(const DeviceScene& scene, const optics::PupilFilter& filter);
 
 } // namespace vkfv::trace

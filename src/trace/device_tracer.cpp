@@ -3,7 +3,7 @@
 #include "trace/backward_trace.hpp"
 #include "trace/forward_trace.hpp"
 #include "trace/nonsequential_trace.hpp"
-#include "trace/wave_image.hpp"
+#include "trace/scene_waves.hpp"
 
 #include "spirv/probe_nonsequential_bvh.h"
 #include "spirv/probe_nonsequential_ray_query.h"
@@ -27,9 +27,13 @@ constexpr std::uint32_t batches_per_submission_gpu = 8;
 class DeviceTracer final : public Tracer {
   public:
     DeviceTracer(const optics::Instrument& instrument, const specimen::Specimen& specimen, const TraceOptions& options)
-        : instrument_(instrument), rays_(options.rays), waves_(wave_filter(instrument, options)),
-          scene_(make_device_scene(instrument_, specimen, options, waves_ ? &*waves_ : nullptr)),
-          trace_(make_trace(scene_, options)) {}
+        : instrument_(instrument), rays_(options.rays), filter_(filter_for_waves(instrument, options)),
+          scene_(make_device_scene(instrument_, specimen, options, filter_ ? &*filter_ : nullptr)),
+          trace_(make_trace(scene_, options)) {
+        if (filter_) {
+            waves_.emplace(scene_, *filter_);
+        }
+    }
 
     Image expose(double focal_height, std::uint32_t image) const override {
         const std::scoped_lock lock(mutex_);
@@ -56,8 +60,9 @@ class DeviceTracer final : public Tracer {
         }
         Image result = scene_.accounts.image(trace_->pixels(), trace_->fates(), rays_);
         if (waves_) {
-            result = with_waves(std::move(result), light_of_waves(scene_, *waves_),
-                                scene_.accounts.power_per_number(rays_), *waves_);
+            const auto light = waves_->light();
+            device_seconds += light.device_seconds;
+            result = with_waves(std::move(result), light.pixels, scene_.accounts.power_per_number(rays_), *filter_);
         }
         result.device_seconds = device_seconds;
         result.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
@@ -81,10 +86,11 @@ class DeviceTracer final : public Tracer {
 
     optics::Instrument instrument_;
     std::uint64_t rays_;
-    std::optional<optics::PupilFilter> waves_;
+    std::optional<optics::PupilFilter> filter_;
     mutable std::mutex mutex_; // one exposure at a time: the buffers are shared
     mutable DeviceScene scene_;
     std::unique_ptr<PathTrace> trace_;
+    std::optional<SceneWaves> waves_;
 };
 
 } // namespace
@@ -107,7 +113,7 @@ TracerIdentity expected_identity(const optics::Instrument& instrument, const spe
     const auto reports = vulkan::list_devices();
     const auto& report = reports[vulkan::choose_device(reports, {options.device})];
     const auto traversal = choose_traversal(report, specimen, options.traversal, options.nonsequential).traversal;
-    return device_identity(report, traversal_name(traversal), traced);
+    return device_identity(report, traversal_name(traversal), traced, options.waves && !options.nonsequential);
 }
 
 std::vector<PathEnd> device_paths(const optics::Instrument& instrument, const specimen::Specimen& specimen,

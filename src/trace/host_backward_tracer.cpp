@@ -27,7 +27,7 @@ class HostBackwardTracer final : public Tracer {
         : instrument_(instrument), turned_(optics::turned_round(instrument)),
           record_(specimen::record(specimen, options.max_bounces)), intersector_(specimen), seed_(options.seed),
           plan_(backward_plan(options.rays, instrument.constants.detector_pixels)),
-          filter_(wave_filter(instrument, options)) {}
+          filter_(filter_for_waves(instrument, options)) {}
 
     Image expose(double focal_height, std::uint32_t image) const override {
         const auto start = std::chrono::steady_clock::now();

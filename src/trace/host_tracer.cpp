@@ -64,7 +64,7 @@ class HostTracer final : public Tracer {
     HostTracer(const optics::Instrument& instrument, const specimen::Specimen& specimen, const TraceOptions& options)
         : instrument_(instrument), record_(specimen::record(specimen, options.max_bounces)), intersector_(specimen),
           options_(options), accounts_(instrument, options.directed_scatter),
-          filter_(wave_filter(instrument, options)) {
+          filter_(filter_for_waves(instrument, options)) {
         if (options.nonsequential) {
             room_ = optics::furnish(instrument);
             accounts_ = Accounts(instrument, room_.names);

@@ -4,6 +4,7 @@
 #include "core/toml_reader.hpp"
 #include "trace/device_records.hpp"
 #include "vulkan/device.hpp"
+#include "vulkan/fourier_planes.hpp"
 
 #include "spirv/digest.h"
 
@@ -24,6 +25,9 @@ std::string TracerIdentity::toml() const {
     }
     if (!traversal.empty()) {
         text += fmt::format("traversal = {}\n", toml_quoted(traversal));
+    }
+    if (!fourier.empty()) {
+        text += fmt::format("fourier = {}\n", toml_quoted(fourier));
     }
     return text +
            fmt::format("kernels_digest = {}\ninstrument_digest = {}\n", toml_quoted(kernels), toml_quoted(instrument));
@@ -61,12 +65,13 @@ TracerIdentity host_identity(const optics::Instrument& instrument) {
 }
 
 TracerIdentity device_identity(const vulkan::DeviceReport& device, const std::string& traversal,
-                               const optics::Instrument& instrument) {
+                               const optics::Instrument& instrument, bool waves) {
     return {.device = device.name,
             .vendor_id = device.vendor_id,
             .device_id = device.device_id,
             .driver = device.driver,
             .traversal = traversal,
+            .fourier = waves && !vulkan::is_software(device) ? vulkan::fourier_library() : "",
             .kernels = kernels_digest(),
             .instrument = instrument_digest(instrument)};
 }

@@ -19,6 +19,7 @@ struct TracerIdentity {
     std::uint32_t device_id = 0;
     std::string driver;     // with its version
     std::string traversal;  // "quadtree", "bvh", "ray-query"; empty: the host
+    std::string fourier;    // the library that transforms images for waves; empty: the host, or images of rays
     std::string kernels;    // digest of the SPIR-V, whose source is that of the host's physics too
     std::string instrument; // digest of the records that the instrument became
 
@@ -34,8 +35,8 @@ std::string kernels_digest();
 
 // Of the reference in double.
 TracerIdentity host_identity(const optics::Instrument& instrument);
-// Of a device by its report. `instrument`: as the paths run through it.
+// Of a device by its report. `instrument`: as the paths run through it; waves: images are as waves make them.
 TracerIdentity device_identity(const vulkan::DeviceReport& device, const std::string& traversal,
-                               const optics::Instrument& instrument);
+                               const optics::Instrument& instrument, bool waves);
 
 } // namespace vkfv::trace

@@ -138,7 +138,7 @@ void CellLight::add(const physics::f64::CellPlace& place, std::uint64_t light) {
     std::atomic_ref(number).fetch_add(light, std::memory_order_relaxed);
 }
 
-std::optional<optics::PupilFilter> wave_filter(const optics::Instrument& instrument, const TraceOptions& options) {
+std::optional<optics::PupilFilter> filter_for_waves(const optics::Instrument& instrument, const TraceOptions& options) {
     return options.waves && !options.nonsequential
                ? std::optional<optics::PupilFilter>(std::in_place, instrument, *options.waves)
                : std::nullopt;

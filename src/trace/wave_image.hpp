@@ -56,7 +56,7 @@ class CellLight {
 };
 
 // The filter that the options ask for, of an instrument that is not turned round; none: images as rays make them.
-std::optional<optics::PupilFilter> wave_filter(const optics::Instrument& instrument, const TraceOptions& options);
+std::optional<optics::PupilFilter> filter_for_waves(const optics::Instrument& instrument, const TraceOptions& options);
 
 // The same exposure with its light as waves make it, in W, from that of WaveImage::apply().
 Image with_waves(Image image, const Grid<double>& light, double power_per_number, const optics::PupilFilter& filter);

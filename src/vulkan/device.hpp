@@ -28,6 +28,11 @@ struct DeviceReport {
     bool preferred = false; // the one that would be used
 };
 
+// Whether it is the host's own cores.
+inline bool is_software(const DeviceReport& report) {
+    return report.type == "CPU";
+}
+
 struct DeviceOptions {
     std::string selector; // empty: the best; else an index or a part of the name
 };

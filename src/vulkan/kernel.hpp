@@ -52,6 +52,19 @@ class Kernel {
     vk::raii::Pipeline pipeline_{nullptr};
 };
 
+// Workgroups for so many places (at least 1), in rows where a dispatch may not hold them in one. The last row may reach
+// beyond the places.
+inline constexpr std::uint32_t most_groups_in_a_row = 65535; // Vulkan's promise
+struct Groups {
+    std::uint32_t x;
+    std::uint32_t y;
+};
+inline Groups groups_of(std::uint64_t places, std::uint32_t workgroup) {
+    const std::uint64_t groups = (places + workgroup - 1) / workgroup;
+    const std::uint64_t rows = (groups + most_groups_in_a_row - 1) / most_groups_in_a_row;
+    return {static_cast<std::uint32_t>((groups + rows - 1) / rows), static_cast<std::uint32_t>(rows)};
+}
+
 // Commands recorded once and submitted; waits for their end. All barriers are made here: one stands before
 // the first command and one after the last, those between are the caller's barrier().
 class Commands {

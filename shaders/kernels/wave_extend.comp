@@ -1,0 +1,34 @@
+#version 460
+#extension GL_GOOGLE_include_directive : require
+// The spectrum of the image with its mirror images, as seen from the middle of the first part.
+layout(local_size_x = 128) in;
+
+#include "waves/device.glsl"
+
+layout(set = 0, binding = WAVES_BINDING_SPECTRUM, scalar) readonly buffer Spectrum { vec4 spectrum[]; };
+layout(set = 0, binding = WAVES_BINDING_IMAGE, scalar) writeonly buffer Image { vec2 image[]; };
+layout(push_constant, scalar) uniform Push { WaveSize size; };
+
+void main() {
+    uint place = invocation();
+    uint period = 2u * size.side;
+    if (place < size.side * period) {
+        uint column = place % period;
+        uint row = place / period; // the lower half; the rest are the conjugates of the opposite frequencies
+        uint nearest = column < size.side ? column : period - column;
+        vec2 value = vec2(0.0);
+        if (nearest < size.side) {
+            vec4 both = spectrum[row * size.side + nearest];
+            bool behind = column > size.side;
+            float half_turns = (behind ? float(row) - float(nearest) : float(row + nearest)) / float(period);
+            value = times(turned(half_turns), behind ? both.zw : both.xy);
+        }
+        image[row * period + column] = value;
+        if (row > 0u) {
+            uint opposite = column == 0u ? 0u : period - column;
+            image[(period - row) * period + opposite] = vec2(value.x, -value.y);
+        } else {
+            image[size.side * period + column] = vec2(0.0); // the frequency of a half, which no pupil passes
+        }
+    }
+}

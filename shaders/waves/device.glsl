@@ -1,0 +1,26 @@
+// What the kernels of the image that waves make begin with: an invocation a place, workgroups in rows where one row
+// holds too few.
+#extension GL_GOOGLE_include_directive : require
+#extension GL_EXT_scalar_block_layout : require
+#extension GL_EXT_shader_explicit_arithmetic_types_int64 : require
+#extension GL_EXT_buffer_reference : require
+#include "physics/lang.glsl"
+#include "waves/interface.glsl"
+
+uint invocation() {
+    return (gl_WorkGroupID.y * gl_NumWorkGroups.x + gl_WorkGroupID.x) * gl_WorkGroupSize.x + gl_LocalInvocationIndex;
+}
+
+vec2 times(vec2 a, vec2 b) { return vec2(a.x * b.x - a.y * b.y, a.x * b.y + a.y * b.x); }
+
+vec2 turned(float half_turns) {
+    float angle = 3.14159265358979324 * half_turns;
+    return vec2(cos(angle), sin(angle));
+}
+
+// A pair of cells: the k-th cell of the left half, and its mirror image.
+uvec2 cells_of_pair(uint pair, uint side) {
+    uint row = pair / (side / 2u);
+    uint column = pair % (side / 2u);
+    return uvec2(row * side + column, row * side + side - 1u - column);
+}

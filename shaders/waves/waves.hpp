@@ -1,0 +1,15 @@
+// The C++ side of interface.glsl.
+#pragma once
+
+#include <cstdint>
+
+#include <glm/glm.hpp>
+
+namespace vkfv::waves {
+
+using glm::uvec2;
+using uint = std::uint32_t;
+using real = float;
+#include "waves/interface.glsl"
+
+} // namespace vkfv::waves

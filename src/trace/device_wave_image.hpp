@@ -1,0 +1,50 @@
+// The image that waves make of light sorted by pupil cells, on a device: WaveImage in float.
+#pragma once
+
+#include "core/grid.hpp"
+#include "optics/pupil_filter.hpp"
+#include "vulkan/fourier_planes.hpp"
+
+#include <cstddef>
+
+namespace vkfv::trace {
+
+class DeviceWaveImage {
+  public:
+    // light: as WaveImage::numbers() of 64 bits. Device, filter and light must outlive it.
+    DeviceWaveImage(const vulkan::Device& device, const optics::PupilFilter& filter, int pixels,
+                    const vulkan::Buffer& light);
+
+    // Of the light as it is when the commands run.
+    void record(vulkan::Commands& commands) const;
+    // Light of the pixels in the units of the sorted light.
+    Grid<double> image() const;
+    std::size_t bytes() const; // of the device's memory, without the light
+
+  private:
+    void dispatch(vulkan::Commands& commands, const vulkan::Kernel& kernel, std::span<const vulkan::Binding> bindings,
+                  std::span<const std::byte> push, std::size_t places) const;
+
+    const vulkan::Buffer& light_;
+    int pixels_;
+    std::uint32_t side_; // in parts of pixels
+    std::uint32_t parts_;
+    std::uint32_t cells_side_;
+    std::uint32_t pairs_;
+    std::uint32_t pairs_at_once_;
+    std::uint32_t steps_;
+    float steps_a_line_;
+    vulkan::Buffer planes_;
+    vulkan::Buffer table_;
+    vulkan::Buffer spectrum_;
+    vulkan::Buffer image_;
+    vulkan::Buffer result_;
+    vulkan::FourierPlanes forward_;
+    vulkan::FourierPlanes inverse_;
+    vulkan::Kernel sort_;
+    vulkan::Kernel filter_;
+    vulkan::Kernel extend_;
+    vulkan::Kernel add_up_;
+};
+
+} // namespace vkfv::trace
