@@ -73,7 +73,8 @@ DeviceScene make_device_scene(const optics::Instrument& instrument, const specim
             .instrument_in_constants = options.instrument_in_constants,
             .room = std::move(room),
             .accounts = std::move(accounts),
-            .features = instrument.features | (options.directed_scatter ? physics::f32::FEATURE_DIRECTED_SCATTER : 0u),
+            .features = instrument.features | (options.directed_scatter ? physics::f32::FEATURE_DIRECTED_SCATTER : 0u) |
+                        (specimen.reflectance ? physics::f32::FEATURE_REFLECTANCE_MAP : 0u),
             .traversal = std::move(traversal),
             .device_specimen = std::move(device_specimen),
             .constants = constants,
