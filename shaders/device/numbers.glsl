@@ -19,6 +19,7 @@ const uint BINDING_SPECTRUM = 14u;
 const uint BINDING_ELEMENTS = 15u;
 const uint BINDING_ELEMENT_ORDER = 16u;
 const uint BINDING_BACKWARD = 17u;
+const uint BINDING_REFLECTANCES = 18u; // of a specimen: the grid of its reflectance map
 
 const uint CONSTANT_SPECIMEN_KIND = 0u;
 const uint CONSTANT_LEDGER_SLOTS = 1u;

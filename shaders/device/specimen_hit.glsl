@@ -12,6 +12,11 @@ layout(set = 0, binding = BINDING_HEIGHTS, scalar) readonly buffer Heights { rea
 
 real lattice_at(int column, int row) { return heights[row * specimen.columns + column]; }
 
+// Rows as the heights'.
+layout(set = 0, binding = BINDING_REFLECTANCES, scalar) readonly buffer Reflectances { real reflectances[]; };
+
+real reflectance_at(int column, int row) { return reflectances[row * specimen.reflectance.columns + column]; }
+
 // A ray cut to what can meet the specimen. Its start is re-based, as the error of a distance grows with the distance.
 struct SpecimenRay {
     real3 origin;

@@ -17,6 +17,7 @@
 #include "physics/scatter.glsl"
 #include "physics/surface_function.glsl"
 #include "physics/pupil_cells.glsl"
+#include "physics/reflectance.glsl"
 #include "physics/path.glsl"
 #if defined(__cplusplus) || defined(VKFV_NONSEQUENTIAL) // most kernels have no elements
 #include "physics/nonsequential.glsl"

@@ -279,6 +279,7 @@ VKFV_SCENE_FUNCTION VKFV_FUNCTION real trace_backward(VKFV_SCENE_PARAMETER Instr
         uint block = 1u + uint(bounce) * (SCATTER_BLOCKS + 2u);
         real3 outgoing = -direction;
         real3 origin = scatter_origin(hit);
+        throughput = throughput * reflectance_share(VKFV_SCENE specimen, hit.position);
         Draws draws;
         draws.u0 = lattice_coordinate(lattice, point, lattice.z_4, shift.second.x);
         draws.u1 = lattice_coordinate(lattice, point, lattice.z_5, shift.second.y);

@@ -211,8 +211,8 @@ VKFV_SCENE_FUNCTION VKFV_FUNCTION Departure scatter_at_specimen(VKFV_SCENE_PARAM
         uint first_block = 1u + uint(bounce) * SCATTER_BLOCKS;
         bool last = bounce + 1 == specimen.max_bounces;
         Incidence incidence = make_incidence(direction, hit.normal);
-        Scattered scattered =
-            scatter(specimen.material, direction, hit.normal, exposure.seed, exposure.image, path, first_block);
+        Scattered scattered = scatter(material_at(VKFV_SCENE specimen, hit.position), direction, hit.normal,
+                                      exposure.seed, exposure.image, path, first_block);
         direction = scattered.direction;
         origin = scatter_origin(hit);
         under_way = scattered.accepted;

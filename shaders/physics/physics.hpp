@@ -6,6 +6,7 @@
 //   uint features() const;                             FEATURE_* of its trains
 //   SpectralBin spectral_bin(int index) const;         only with FEATURE_SPECTRUM
 //   Hit specimen_hit(real3 origin, real3 direction) const;
+//   real reflectance_at(int column, int row) const;    only with FEATURE_REFLECTANCE_MAP
 //   Element element_at(int index) const;              only for non-sequential paths
 //   ElementHit nearest_element(real3 origin, real3 direction, int left) const;   likewise
 //   real lattice_at(int column, int row) const;      only for analytic specimens with a lattice

@@ -35,7 +35,11 @@ const uint FEATURE_SPECTRUM = 4u;  // more than one wavelength
 const uint FEATURE_IDEAL_LENS = 8u;
 const uint FEATURE_RING = 16u;             // a ring light instead of the disc
 const uint FEATURE_DIRECTED_SCATTER = 32u; // of the trace, not of the instrument: survivors have weights
+<<<<<<< HEAD
 const uint FEATURE_PUPIL_CELLS = 128u;     // likewise: light is sorted by where it crosses the pupil
+=======
+const uint FEATURE_REFLECTANCE_MAP = 64u;  // of the specimen
+>>>>>>> maps
 
 const int SURFACE_CAPACITY = 128;  // surfaces of both trains together that the device's uniform block holds
 const int KNOWN_SURFACES = 64;     // of them, that a kernel can have as constants (device/prescription.glsl)
@@ -245,6 +249,29 @@ struct Material {
     VKFV_MATERIAL_FIELDS(VKFV_DECLARE)
 };
 
+const uint REFLECTANCE_GRATING = 0u;
+const uint REFLECTANCE_CHECKERBOARD = 1u;
+const uint REFLECTANCE_STAR = 2u;
+const uint REFLECTANCE_GRID = 3u; // of an image's pixels, or of noise
+
+// What varies the reflectance over the specimen: reflectance.glsl. Read with FEATURE_REFLECTANCE_MAP alone.
+#define VKFV_REFLECTANCE_MAP_FIELDS(FIELD) \
+    FIELD(real, lowest)   /* factors, of the pattern's values 0 and 1 */ \
+    FIELD(real, highest) \
+    FIELD(real, centre_x) /* the pattern's origin, mm */ \
+    FIELD(real, centre_y) \
+    FIELD(real, axis_x)   /* unit vector along the pattern's x */ \
+    FIELD(real, axis_y) \
+    FIELD(real, per_mm)   /* periods of a grating, squares of a checkerboard, points of a grid; a star's: 1 */ \
+    FIELD(int, cycles)    /* of a star, in one turn */ \
+    FIELD(int, columns)   /* of a grid */ \
+    FIELD(int, rows) \
+    FIELD(uint, square)   /* 1: a grating or star of two levels, 0: sinusoidal */ \
+    FIELD(uint, kind)     /* REFLECTANCE_* */
+struct ReflectanceMap {
+    VKFV_REFLECTANCE_MAP_FIELDS(VKFV_DECLARE)
+};
+
 // The specimen in its own frame: x and y across, +z towards the objective, mm.
 #define VKFV_SPECIMEN_RECORD_FIELDS(FIELD) \
     FIELD(real, x_min)             /* footprint */ \
@@ -262,6 +289,7 @@ struct Material {
     FIELD(real, shape_parameter_3) \
     FIELD(real, lipschitz)         /* bound of the analytic function's slope */ \
     FIELD(Material, material) \
+    FIELD(ReflectanceMap, reflectance) \
     FIELD(int, columns)            /* points of the height field or lattice; 0 x 0: none */ \
     FIELD(int, rows) \
     FIELD(int, max_bounces)        /* scatter events permitted */ \

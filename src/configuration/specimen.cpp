@@ -1,4 +1,4 @@
-// [specimen], [specimen.roughness], [specimen.material] and [[specimen.material.lobe]].
+// [specimen], [specimen.roughness], [specimen.material] and [[specimen.material.lobe]]; reflectance.cpp has its map.
 #include "configuration/ranges.hpp"
 #include "configuration/tables.hpp"
 #include "physics/scatter_registry.hpp"
@@ -244,7 +244,8 @@ specimen::Roughness read_roughness(const TomlTable& table, const TomlTable& spec
 } // namespace
 
 std::vector<const KeyTable*> specimen_key_tables() {
-    return {&specimen_keys().table, &roughness_keys().table, &material_keys().table, &lobe_keys().table};
+    return {&specimen_keys().table, &roughness_keys().table, &material_keys().table, &lobe_keys().table,
+            &reflectance_keys()};
 }
 
 void read_specimen(const TomlTable& root, Configuration& configuration) {
@@ -260,6 +261,9 @@ void read_specimen(const TomlTable& root, Configuration& configuration) {
         description.roughness = read_roughness(*roughness_table, table, kind, read);
     }
     description.material = read_material(table.table_or_empty("material"), read);
+    if (const auto reflectance = table.optional_table("reflectance")) {
+        description.reflectance = read_reflectance(*reflectance, read);
+    }
     configuration.specimen = std::move(description);
 }
 

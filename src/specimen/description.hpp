@@ -15,6 +15,7 @@ struct Description {
     Shape shape{};                        // of one of the kinds in specimen/kinds/
     std::optional<Roughness> roughness{}; // added to any kind but a mesh
     Material material{};
+    std::optional<Reflectance> reflectance{};
     SourceLocation where{}; // of the [specimen] table or its `file`, for messages
 
     bool operator==(const Description&) const = default;

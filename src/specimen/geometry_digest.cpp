@@ -28,6 +28,12 @@ std::string geometry_digest(const Specimen& specimen) {
             add_field(*analytic->lattice);
         }
     }
+    // Of the reflectance what a file or random numbers contribute; the rest are keys.
+    if (specimen.reflectance && !specimen.reflectance->values.values.empty()) {
+        const Grid<float>& values = specimen.reflectance->values;
+        digest.add(fmt::format("reflectance {} {};", values.columns, values.rows));
+        digest.add_values(std::span<const float>(values.values));
+    }
     return digest.text();
 }
 

@@ -295,6 +295,7 @@ class Marcher {
 
 struct Intersector::State {
     std::variant<FieldWalk, Hierarchy, Marcher> geometry;
+    std::optional<ReflectanceMap> reflectance;
 };
 
 Intersector::Intersector(const Specimen& specimen) {
@@ -304,7 +305,7 @@ Intersector::Intersector(const Specimen& specimen) {
         Geometry operator()(const Mesh& mesh) const { return Hierarchy(mesh); }
         Geometry operator()(const Analytic& analytic) const { return Marcher(analytic); }
     };
-    state_ = std::make_unique<State>(State{std::visit(Prepare{}, specimen.geometry)});
+    state_ = std::make_unique<State>(State{std::visit(Prepare{}, specimen.geometry), specimen.reflectance});
 }
 
 Intersector::~Intersector() = default;
@@ -312,6 +313,14 @@ Intersector::Intersector(Intersector&&) noexcept = default;
 
 Hit Intersector::hit(glm::dvec3 origin, glm::dvec3 direction) const {
     return std::visit([&](const auto& geometry) { return geometry.hit(origin, direction); }, state_->geometry);
+}
+
+std::uint32_t Intersector::features() const {
+    return state_->reflectance ? physics::f64::FEATURE_REFLECTANCE_MAP : 0u;
+}
+
+double Intersector::reflectance_at(int column, int row) const {
+    return static_cast<double>(state_->reflectance->values(column, row));
 }
 
 } // namespace vkfv::specimen

@@ -18,6 +18,10 @@ class Intersector {
     // Nearest meeting at a distance > 0 (mm for a unit direction); specimen frame.
     physics::f64::Hit hit(glm::dvec3 origin, glm::dvec3 direction) const;
 
+    // What the shared physics asks of the specimen besides: FEATURE_REFLECTANCE_MAP if it has one, and its grid.
+    std::uint32_t features() const;
+    double reflectance_at(int column, int row) const;
+
   private:
     struct State;
     std::unique_ptr<State> state_;

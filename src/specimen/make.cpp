@@ -81,6 +81,10 @@ Specimen make(const Description& d) {
     specimen.material = d.material;
     specimen.geometry = std::visit([&](const auto& kind) { return geometry_of(kind, d); }, d.shape);
     check_extent(specimen, d.where);
+    if (d.reflectance) {
+        const SpecimenRecord r = record(specimen, 1);
+        specimen.reflectance = make_reflectance_map(*d.reflectance, {r.x_min, r.y_min, r.x_max, r.y_max}, d.where);
+    }
     return specimen;
 }
 

@@ -20,14 +20,6 @@ const NumberKey correlation_length_key =
 
 const IntegerKey random_seed_key("seed", 0, largest_seed, 1, "Of the random numbers that the surface is made of.");
 
-void subtract_mean(Grid<double>& grid) {
-    const double mean =
-        std::reduce(grid.values.begin(), grid.values.end(), 0.0) / static_cast<double>(grid.values.size());
-    for (double& value : grid.values) {
-        value -= mean;
-    }
-}
-
 // One direction of the separable filter: `rows` lines of `columns` points each, periodic.
 void filter_lines(Grid<double>& grid, const std::vector<double>& weights) {
     const int radius = static_cast<int>(weights.size()) - 1; // weights[k] at distance k
@@ -60,6 +52,14 @@ Grid<double> transposed(const Grid<double>& grid) {
 }
 
 } // namespace
+
+void subtract_mean(Grid<double>& grid) {
+    const double mean =
+        std::reduce(grid.values.begin(), grid.values.end(), 0.0) / static_cast<double>(grid.values.size());
+    for (double& value : grid.values) {
+        value -= mean;
+    }
+}
 
 double root_mean_square(const Grid<double>& grid) {
     const double sum = std::inner_product(grid.values.begin(), grid.values.end(), grid.values.begin(), 0.0);

@@ -41,6 +41,7 @@ std::uint32_t read_seed(const Section& section);
 // library's log, sin and cos alone.
 Grid<double> filtered_noise(int columns, int rows, double kernel, std::uint32_t seed);
 
+void subtract_mean(Grid<double>& grid);
 double root_mean_square(const Grid<double>& grid);
 
 // Throws InputError for a grid over a rectangle (mm) whose points a filter of this standard deviation (mm) would go

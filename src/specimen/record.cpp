@@ -188,6 +188,9 @@ SpecimenRecord record(const Specimen& specimen, int max_bounces) {
     SpecimenRecord result{};
     std::visit(Recorder{result}, specimen.geometry);
     result.material = material_record(specimen.material);
+    if (specimen.reflectance) {
+        result.reflectance = specimen.reflectance->record;
+    }
     result.max_bounces = max_bounces;
     // Rays start on the plane z = top and must find the surface ahead of them, also where it is level and
     // after rounding to float: 128 steps of a float of the largest coordinate.

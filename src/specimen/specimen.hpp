@@ -4,6 +4,7 @@
 #include "core/error.hpp"
 #include "core/grid.hpp"
 #include "physics/physics.hpp"
+#include "specimen/reflectance.hpp"
 #include "surface/height_map.hpp"
 
 #include <glm/glm.hpp>
@@ -75,6 +76,7 @@ physics::f64::Material material_record(const Material& material, const SourceLoc
 struct Specimen {
     std::variant<HeightField, Mesh, Analytic> geometry;
     Material material;
+    std::optional<ReflectanceMap> reflectance{}; // what scales the material's, if it varies
 };
 
 } // namespace vkfv::specimen

@@ -172,9 +172,8 @@ class DeviceFocusPlanes final : public FocusPlanes {
         if (!commands_) {
             commands_.emplace(device_);
         }
-        const auto groups = static_cast<std::uint32_t>((invocations + workgroup - 1) / workgroup);
-        const std::uint32_t group_rows = (groups + most_groups_in_a_row - 1) / most_groups_in_a_row;
-        commands_->dispatch(kernel, bindings, push, (groups + group_rows - 1) / group_rows, group_rows);
+        const auto groups = vulkan::groups_of(invocations, workgroup);
+        commands_->dispatch(kernel, bindings, push, groups.x, groups.y);
         commands_->barrier();
     }
 

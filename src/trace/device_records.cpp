@@ -56,6 +56,7 @@ physics::f32::Lobe to_float(const physics::f64::Lobe& record) {
 }
 
 VKFV_TO_FLOAT(Material, VKFV_MATERIAL_FIELDS)
+VKFV_TO_FLOAT(ReflectanceMap, VKFV_REFLECTANCE_MAP_FIELDS)
 
 } // namespace
 

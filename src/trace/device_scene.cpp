@@ -83,7 +83,8 @@ DeviceScene make_device_scene(const optics::Instrument& instrument, const specim
             .room = std::move(room),
             .accounts = std::move(accounts),
             .features = instrument.features | (options.directed_scatter ? physics::f32::FEATURE_DIRECTED_SCATTER : 0u) |
-                        (filter != nullptr ? physics::f32::FEATURE_PUPIL_CELLS : 0u),
+                        (filter != nullptr ? physics::f32::FEATURE_PUPIL_CELLS : 0u) |
+                        (specimen.reflectance ? physics::f32::FEATURE_REFLECTANCE_MAP : 0u),
             .traversal = std::move(traversal),
             .device_specimen = std::move(device_specimen),
             .constants = constants,

@@ -61,7 +61,7 @@ struct DeviceScene {
     std::optional<bool> instrument_in_constants; // see TraceOptions
     optics::Room room;                           // of elements; without any for sequential paths
     Accounts accounts;
-    std::uint32_t features; // FEATURE_* of instrument and trace
+    std::uint32_t features; // FEATURE_* of instrument, trace and specimen
     ChosenTraversal traversal;
     DeviceSpecimen device_specimen;
     kernels::Parameters constants;            // with the last exposure

@@ -300,7 +300,7 @@ ChosenTraversal choose_traversal(const vulkan::DeviceReport& device, const speci
 
 DeviceSpecimen::DeviceSpecimen(const vulkan::Device& device, const specimen::Specimen& specimen, Traversal traversal,
                                std::span<const vulkan::Box> elements)
-    : record_(to_float(specimen::record(specimen, 0))) {
+    : record_(to_float(specimen::record(specimen, 0))), has_reflectance_map_(specimen.reflectance.has_value()) {
     if (traversal == Traversal::automatic) {
         throw std::logic_error("DeviceSpecimen takes a traversal that has been chosen");
     }
@@ -330,6 +330,10 @@ DeviceSpecimen::DeviceSpecimen(const vulkan::Device& device, const specimen::Spe
         uploader.put(kernels::BINDING_STRUCTURE, "hierarchy of boxes", hierarchy.nodes);
     }
     structure_ = std::move(hierarchy.structure);
+    if (specimen.reflectance && !specimen.reflectance->values.values.empty()) {
+        uploader.put(kernels::BINDING_REFLECTANCES, "reflectances", specimen.reflectance->values.values);
+    }
+    uploader.leave_unread(kernels::BINDING_REFLECTANCES);
     uploader.leave_unread(kernels::BINDING_HEIGHTS);
     if (traversal != Traversal::quadtree) {
         uploader.leave_unread(kernels::BINDING_VERTICES);
@@ -362,7 +366,7 @@ std::vector<vulkan::BindingDeclaration> DeviceSpecimen::declarations() const {
 
 std::vector<vulkan::SpecializationConstant> DeviceSpecimen::constants() const {
     const auto& material = record_.material;
-    const bool one_white_lobe = material.lobe_0.weight >= 1 && material.lobe_1.weight <= 0;
+    const bool one_white_lobe = material.lobe_0.weight >= 1 && material.lobe_1.weight <= 0 && !has_reflectance_map_;
     std::uint32_t models = one_white_lobe ? 0u : physics::f32::SCATTER_CHOICE;
     for (const auto& lobe : {material.lobe_0, material.lobe_1, material.lobe_2, material.lobe_3}) {
         models |= lobe.weight > 0 ? 1u << lobe.model : 0u;

@@ -46,6 +46,7 @@ class DeviceSpecimen {
 
   private:
     physics::f32::SpecimenRecord record_{};
+    bool has_reflectance_map_ = false;
     std::map<std::uint32_t, vulkan::Buffer> buffers_; // by slot
     std::unique_ptr<vulkan::AccelerationStructure> structure_;
     std::uint32_t elements_root_ = 0;

@@ -12,11 +12,12 @@ struct HostScene {
     const optics::Room* room = nullptr; // only for non-sequential paths
 
     const physics::f64::Surface& surface_at(int index) const { return trains.surface_at(index); }
-    std::uint32_t features() const { return trains.features(); }
+    std::uint32_t features() const { return trains.features() | intersector->features(); }
     const physics::f64::SpectralBin& spectral_bin(int index) const { return trains.spectral_bin(index); }
     physics::f64::Hit specimen_hit(physics::f64::real3 origin, physics::f64::real3 direction) const {
         return intersector->hit(origin, direction);
     }
+    double reflectance_at(int column, int row) const { return intersector->reflectance_at(column, row); }
     const physics::f64::Element& element_at(int index) const { return room->elements[static_cast<std::size_t>(index)]; }
     physics::f64::ElementHit nearest_element(physics::f64::real3 origin, physics::f64::real3 direction,
                                              int left) const {

@@ -111,6 +111,17 @@ Case ring_fault(const std::string& name, const std::string& keys, std::vector<st
             std::move(message)};
 }
 
+// A map of the specimen's reflectance of these keys, from line 31 on.
+Case map_fault(const std::string& name, const std::string& keys, std::vector<std::string> message,
+               std::map<std::string, std::string> files = {}) {
+    return {name,
+            {{"g = 0.8\n", "g = 0.8\n[specimen.reflectance]\n" + keys}},
+            2,
+            std::move(message),
+            {"--check", "c.toml"},
+            std::move(files)};
+}
+
 std::vector<Case> cases() {
     const std::vector<std::string> stack = {"--stack", "c.toml"};
     const std::vector<std::string> import = {"--import", "lens.zmx"};
@@ -407,6 +418,40 @@ std::vector<Case> cases() {
          {{"[specimen.material]\ng = 0.8", "[specimen.material]\nlobe = [{}, {}, {}, {}, {}]"}},
          2,
          {"c.toml:29:8", "specimen.material.lobe", "at most 4 lobes"}},
+        // The map of its reflectance.
+        map_fault("MapWithoutKind", "period_um = 8\n", {"c.toml:30:", "specimen.reflectance.kind", "\"grating\""}),
+        map_fault("UnknownMap", "kind = \"gratings\"\n",
+                  {"c.toml:31:8", "specimen.reflectance.kind", "Did you mean \"grating\"?"}),
+        map_fault("GratingWithoutPeriod", "kind = \"grating\"\n",
+                  {"c.toml:30:", "specimen.reflectance.period_um", "a finite number > 0"}),
+        map_fault("GratingOfNoPeriod", "kind = \"grating\"\nperiod_um = 0\n",
+                  {"c.toml:32:13", "specimen.reflectance.period_um = 0", "a finite number > 0"}),
+        map_fault("GratingTooFineForFloats", "kind = \"grating\"\nperiod_um = 1e-30\n",
+                  {"c.toml:32:13", "specimen.reflectance.period_um", "a length from 1e-07 to 1e+09 um"}),
+        map_fault("SideOfAGrating", "kind = \"grating\"\nperiod_um = 8\nside_um = 4\n",
+                  {"c.toml:33:11", "specimen.reflectance.side_um", "kind \"checkerboard\""}),
+        map_fault("UnknownProfile", "kind = \"grating\"\nperiod_um = 8\nprofile = \"triangular\"\n",
+                  {"c.toml:33:11", "specimen.reflectance.profile", "\"sinusoidal\" or \"square\""}),
+        map_fault("MoreReflectanceThanAll", "kind = \"checkerboard\"\nside_um = 4\nhighest = 1.5\n",
+                  {"c.toml:33:11", "specimen.reflectance.highest = 1.5", "[0, 1]"}),
+        map_fault("DarkerThanTheDarkest", "kind = \"checkerboard\"\nside_um = 4\nhighest = 0.4\nlowest = 0.6\n",
+                  {"c.toml:34:10", "specimen.reflectance.lowest", "at most highest = 0.4"}),
+        map_fault("StarOfNoCycles", "kind = \"star\"\ncycles = 0\n",
+                  {"c.toml:32:10", "specimen.reflectance.cycles = 0", "an integer in [1, 1024]"}),
+        map_fault("CoarseNoise", "kind = \"noise\"\npitch_um = 4\ncorrelation_length_um = 5\n",
+                  {"c.toml:32:12", "specimen.reflectance.pitch_um", "at most half the correlation length, 2.5 um"}),
+        map_fault("NoiseWiderThanTheSpecimen", "kind = \"noise\"\npitch_um = 4\ncorrelation_length_um = 500\n",
+                  {"c.toml:33:25", "specimen.reflectance.correlation_length_um", "at most the specimen's"}),
+        map_fault("EndlessNoise", "kind = \"noise\"\npitch_um = 0.001\ncorrelation_length_um = 5\n",
+                  {"c.toml:32:12", "specimen.reflectance.pitch_um", "Choose reflectance.pitch_um >="}),
+        map_fault("NegativeSeedOfNoise", "kind = \"noise\"\npitch_um = 4\nseed = -1\n",
+                  {"c.toml:33:8", "specimen.reflectance.seed = -1", "an integer in [0, "}),
+        map_fault("ImageOfReflectanceWithoutFile", "kind = \"image\"\npitch_um = 1\n",
+                  {"c.toml:30:", "specimen.reflectance.file"}),
+        map_fault("MissingImageOfReflectance", "kind = \"image\"\npitch_um = 1\nfile = \"absent.png\"\n",
+                  {"c.toml:33:8", "specimen.reflectance.file", "absent.png", "no such file"}),
+        map_fault("DamagedImageOfReflectance", "kind = \"image\"\npitch_um = 1\nfile = \"map.png\"\n", {"map.png"},
+                  {{"map.png", std::string("\x89PNG\r\n\x1a\n\0\0\0", 11)}}),
         {"UnknownKind", {{"\"step\"", "\"stp\""}}, 2, {"c.toml:25:8", "specimen.kind", "Did you mean \"step\"?"}},
         {"TooFineFacets",
          {{"height_um = 2.0", "height_um = 2.0\npitch_um = 1e-6"}},

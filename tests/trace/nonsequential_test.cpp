@@ -55,6 +55,7 @@ struct Bench {
     std::uint32_t features() const { return 0; }
     SpectralBin spectral_bin(int) const { return {}; }
     Hit specimen_hit(real3, real3) const { return {}; }
+    double reflectance_at(int, int) const { return 1; }
     Element element_at(int index) const { return room.elements[static_cast<std::size_t>(index)]; }
     ElementHit nearest_element(real3 origin, real3 direction, int left) const {
         return optics::nearest_element(room, origin, direction, left);

@@ -56,6 +56,9 @@ class Filler {
     void fill(Material& record) {
         VKFV_MATERIAL_FIELDS(VKFV_FILL)
     }
+    void fill(ReflectanceMap& record) {
+        VKFV_REFLECTANCE_MAP_FIELDS(VKFV_FILL)
+    }
     void fill(SpecimenRecord& record) {
         VKFV_SPECIMEN_RECORD_FIELDS(VKFV_FILL)
     }
