@@ -35,11 +35,8 @@ const uint FEATURE_SPECTRUM = 4u;  // more than one wavelength
 const uint FEATURE_IDEAL_LENS = 8u;
 const uint FEATURE_RING = 16u;             // a ring light instead of the disc
 const uint FEATURE_DIRECTED_SCATTER = 32u; // of the trace, not of the instrument: survivors have weights
-<<<<<<< HEAD
 const uint FEATURE_PUPIL_CELLS = 128u;     // likewise: light is sorted by where it crosses the pupil
-=======
 const uint FEATURE_REFLECTANCE_MAP = 64u;  // of the specimen
->>>>>>> maps
 
 const int SURFACE_CAPACITY = 128;  // surfaces of both trains together that the device's uniform block holds
 const int KNOWN_SURFACES = 64;     // of them, that a kernel can have as constants (device/prescription.glsl)
