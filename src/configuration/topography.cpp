@@ -100,7 +100,8 @@ const ChoiceKey<DiffractionModel> model = without_influence(ChoiceKey<Diffractio
      {DiffractionModel::airy, "airy", "these blurred by the Airy pattern, at every height alike"},
      {DiffractionModel::file, "file", "these blurred by a measured point spread function, at every height alike"},
      {DiffractionModel::waves, "waves", "images as waves make them at each height, by the light of the pupil's cells"}},
-    DiffractionModel::none, "What diffraction makes of the images."));
+    DiffractionModel::waves,
+    "What diffraction makes of the images; with trace.mode = \"nonsequential\" the default is \"none\"."));
 const ChoiceKey<DiffractionModel> point_spread = without_influence(ChoiceKey<DiffractionModel>(
     "point_spread",
     {{DiffractionModel::none, "none", ""}, {DiffractionModel::airy, "airy", ""}, {DiffractionModel::file, "file", ""}},
@@ -185,6 +186,10 @@ void read_diffraction(const TomlTable& root, Configuration& configuration) {
     const Section section(root.table_or_empty("diffraction"), diffraction_keys(), configuration);
     if (section.has(model) && section.has(point_spread)) {
         section.fail(point_spread, "no such key beside model, which says the same", "Remove it.");
+    }
+    if (configuration.trace.nonsequential && !section.has(model) && !section.has(point_spread)) {
+        section.record(model, "\"none\"");
+        return;
     }
     const DiffractionModel what = section.has(point_spread) ? section.kind(point_spread) : section.kind(model);
     configuration.diffraction.airy = what == DiffractionModel::airy;

@@ -142,6 +142,7 @@ PupilFilter::PupilFilter(const Instrument& instrument, const WaveOptions& option
         add_wavelength(instrument, node);
     }
     fill_dark_cells();
+    noise_ = noise_of_pixels();
 }
 
 void PupilFilter::fill_dark_cells() {
@@ -221,7 +222,7 @@ std::complex<double> PupilFilter::transfer(int cell, double fx, double fy) const
     return interpolated(table_.data() + static_cast<std::size_t>(cell) * plane, steps_, fx * scale, fy * scale);
 }
 
-double PupilFilter::noise() const {
+double PupilFilter::noise_of_pixels() const {
     // White noise on the parts of pixels, filtered and added up over the pixel's.
     constexpr int samples = 48; // of half the band
     const int parts = static_cast<int>(cells_.parts);

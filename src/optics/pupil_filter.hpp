@@ -47,7 +47,7 @@ class PupilFilter {
     double part_pitch() const { return part_pitch_; } // mm in the object plane
 
     // Standard deviation of a pixel's noise after the filter over that before it, for light that is alike everywhere.
-    double noise() const;
+    double noise() const { return noise_; }
 
     // As a device reads it: w at fx = column / steps cutoff, from -steps to steps, and fy = row / steps cutoff, from 0,
     // bilinear between; cell after cell, row after row. For fy < 0: the conjugate of -f.
@@ -57,11 +57,13 @@ class PupilFilter {
   private:
     void add_wavelength(const Instrument& instrument, const SpectralNode& node);
     void fill_dark_cells();
+    double noise_of_pixels() const;
 
     physics::f64::PupilCells cells_{};
     int steps_;
     double cutoff_ = 0;
     double part_pitch_;
+    double noise_ = 1;
     std::vector<double> shares_;
     std::vector<std::complex<float>> table_;
 };
