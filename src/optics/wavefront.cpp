@@ -86,10 +86,6 @@ std::optional<glm::dvec2> middle_of_light(const View& view) {
     return count > 0 && view.trace(middle, 1) ? std::optional(middle) : std::nullopt;
 }
 
-glm::dvec2 direction_of(double azimuth) {
-    return {std::cos(azimuth), std::sin(azimuth)};
-}
-
 // Samples that fill a pupil, dense towards its rim as a fit wants them.
 std::vector<glm::dvec2> fill_pupil(const Wavefront& wavefront, int rings, int spokes, double turn) {
     std::vector<glm::dvec2> points;
@@ -278,6 +274,21 @@ double Wavefront::area() const {
         sum += (a * a + a * b + b * b) / 3;
     }
     return sum * pi / azimuths;
+}
+
+double Wavefront::range() const {
+    constexpr int spokes = 24;
+    double least = 0;
+    double most = 0;
+    for (int i = 0; i < spokes; ++i) {
+        const double azimuth = 2 * pi * i / spokes;
+        for (const double share : {0.25, 0.5, 0.75, 0.9, 1.0}) {
+            const double path = this->path(chief_ + share * rim(azimuth) * direction_of(azimuth));
+            least = std::min(least, path);
+            most = std::max(most, path);
+        }
+    }
+    return most - least;
 }
 
 double Wavefront::defocus(glm::dvec2 p) const {
