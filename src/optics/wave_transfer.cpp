@@ -119,34 +119,8 @@ std::complex<double> transfer(const Wavefront& wavefront, glm::dvec2 frequency) 
     return sum / wavefront.area();
 }
 
-namespace {
-
-// Neighbouring wavelengths together, none with more than its share.
-std::vector<SpectralNode> merged(const std::vector<SpectralNode>& nodes, int most) {
-    if (nodes.size() <= static_cast<std::size_t>(most)) {
-        return nodes;
-    }
-    std::vector<SpectralNode> groups(static_cast<std::size_t>(most), SpectralNode{});
-    double before = 0;
-    for (const SpectralNode& node : nodes) {
-        const auto group = static_cast<std::size_t>(std::min(most - 1.0, (before + 0.5 * node.weight) * most));
-        before += node.weight;
-        groups[group].spectral += node.weight * node.spectral;
-        groups[group].wavelength_um += node.weight * node.wavelength_um;
-        groups[group].weight += node.weight;
-    }
-    std::erase_if(groups, [](const SpectralNode& group) { return group.weight == 0; });
-    for (SpectralNode& group : groups) {
-        group.spectral /= group.weight;
-        group.wavelength_um /= group.weight;
-    }
-    return groups;
-}
-
-} // namespace
-
 WaveImage::WaveImage(const Instrument& instrument, glm::dvec2 field, int most) {
-    for (const SpectralNode& node : merged(spectral_nodes(instrument, most), most)) {
+    for (const SpectralNode& node : at_most(most, spectral_nodes(instrument, most))) {
         wavefronts_.emplace_back(instrument, node, field);
     }
 }
