@@ -10,7 +10,7 @@ namespace vkfv::optics {
 namespace {
 
 struct Sample {
-    glm::dvec2 p;
+    glm::dvec2 p = glm::dvec2(0);
     double path = 0;    // W, mm
     double defocus = 0; // what a plane higher by 1 mm adds
     double weight = 0;

@@ -8,9 +8,9 @@
 namespace vkfv::optics {
 
 struct TracedWave {
-    glm::dvec2 object_point; // where it leaves the object plane
-    double path_length = 0;  // optical, from there to the point
-    glm::dvec2 slope;        // at the detector
+    glm::dvec2 object_point = glm::dvec2(0); // where it leaves the object plane
+    double path_length = 0;                  // optical, from there to the point
+    glm::dvec2 slope = glm::dvec2(0);        // at the detector
 };
 
 struct DetectorView {

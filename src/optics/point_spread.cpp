@@ -12,7 +12,7 @@ namespace {
 
 // A pupil's area in pieces.
 struct Piece {
-    glm::dvec2 p;
+    glm::dvec2 p = glm::dvec2(0);
     double area = 0;
 };
 
@@ -104,12 +104,16 @@ double PointSpread::value(glm::dvec2 from_centre) const {
     return light;
 }
 
-double PointSpread::strehl() const {
+double PointSpread::ideal_peak() const {
     double ideal = 0;
     for (const Pupil& pupil : pupils_) {
         ideal += pupil.ideal_peak;
     }
-    return ideal > 0 ? value(glm::dvec2(0)) / ideal : NAN;
+    return ideal;
+}
+
+double PointSpread::strehl() const {
+    return ideal_peak() > 0 ? value(glm::dvec2(0)) / ideal_peak() : NAN;
 }
 
 double PointSpread::around(double radius) const {

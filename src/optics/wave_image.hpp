@@ -24,7 +24,7 @@ class PointSpread {
   public:
     // Of one wavelength.
     struct Sample {
-        glm::dvec2 p; // from the chief ray
+        glm::dvec2 p = glm::dvec2(0); // from the chief ray
         std::complex<double> amplitude;
     };
     struct Pupil {
@@ -38,6 +38,7 @@ class PointSpread {
 
     glm::dvec2 centre() const { return centre_; }    // from where the middle wavelength's chief ray lands
     double value(glm::dvec2 from_centre) const;      // light per area, 1/mm^2; its integral is 1
+    double ideal_peak() const;                       // the value in the centre without aberrations
     double strehl() const;                           // the value in the centre over that without aberrations
     double around(double radius) const;              // mean of the values on a circle
     std::vector<double> dark_rings(int count) const; // radii of the first minima of that, as far as there are
