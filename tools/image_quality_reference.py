@@ -2,7 +2,8 @@
 """Spot, wavefront and Strehl ratio of the 10x/0.28 with the 200 mm tube lens, for tests/optics/image_quality_test.cpp.
 
 Shares no code with vkfv: spheres traced from the prescriptions, midpoints instead of Gauss's nodes over the cone, reference
-spheres of finite radius. Usage: tools/image_quality_reference.py [rings [sphere's radius, mm]]
+spheres of finite radius. The plane is that of the least wavefront variance about such spheres, or the given one.
+Usage: tools/image_quality_reference.py [rings [sphere's radius, mm [height of the plane, um]]]
 """
 import cmath
 import math
@@ -123,15 +124,17 @@ def evaluate(x, z, cone, sphere):
 
 def figures(rings, sphere):
     on_axis = passing(0.0, rings)
-    # The mean square is a parabola in the height.
-    low, middle, high = (spot(through(0.0, h, on_axis))[1] ** 2 for h in (0.005, 0.0065, 0.008))
-    best = 0.0065 + 0.0015 * (low - high) / (2 * (low + high - 2 * middle))
+    # The wavefront's mean square is a parabola in the height.
+    low, middle, high = (evaluate(0.0, h, on_axis, sphere)[2] ** 2 for h in (0.0045, 0.006, 0.0075))
+    found = 0.006 + 0.0015 * (low - high) / (2 * (low + high - 2 * middle))
+    best = height if height is not None else found
     edge = 0.64 / abs(magnification)  # of a detector of 1.28 mm
-    return [best, *evaluate(0.0, best, on_axis, sphere), *evaluate(edge, best, passing(edge, rings), sphere)]
+    return [found, *evaluate(0.0, best, on_axis, sphere), *evaluate(edge, best, passing(edge, rings), sphere)]
 
 
 rings = int(sys.argv[1]) if len(sys.argv) > 1 else 30
 sphere = float(sys.argv[2]) if len(sys.argv) > 2 else 1e5
+height = float(sys.argv[3]) * 1e-3 if len(sys.argv) > 3 else None
 # The midpoint rule's error goes with the square of its step.
 coarse, fine = figures(rings, sphere), figures(2 * rings, sphere)
 best, *images = [f + (f - c) / 3 for c, f in zip(coarse, fine)]

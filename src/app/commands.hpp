@@ -21,6 +21,7 @@ Command verify_command();
 Command check_command();
 Command trace_rays_command();
 Command layout_command();
+Command optics_command();
 Command devices_command();
 Command bench_command();
 Command import_command();
@@ -45,6 +46,8 @@ void run_check(const CommandOptions& options);
 void run_trace_rays(const CommandOptions& options);
 // The instrument to scale with rays through it, as an SVG.
 void run_layout(const CommandOptions& options);
+// What waves make of points of the field, as pictures, tables and optics.json in a folder.
+void run_optics(const CommandOptions& options);
 // The devices at hand, what each lacks and which would be used.
 void run_devices(const CommandOptions& options);
 // Rays per second of the configuration's chain, by stages and whatever else bench.hpp tells of; with `out`, also as

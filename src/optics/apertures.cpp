@@ -14,6 +14,7 @@ namespace {
 using physics::f64::PATH_ALIVE;
 using physics::f64::Ray;
 using physics::f64::real3;
+using physics::f64::Surface;
 
 // What is found in the finite places that are searched may be exceeded between them: by less than this share, as
 // outlines of pupils are smooth but for the corners where two edges meet.
@@ -68,6 +69,16 @@ double Outline::area() const {
     return sum;
 }
 
+Imaging at_wavelength(Imaging imaging, double spectral) {
+    for (Surface& surface : imaging.train) {
+        surface.index_before += physics::f64::disperse(surface.dispersion_before, spectral);
+        surface.index_after += physics::f64::disperse(surface.dispersion_after, spectral);
+        surface.dispersion_before = surface.dispersion_after = {};
+    }
+    imaging.detector_index = imaging.train.empty() ? 1 : imaging.train.back().index_after;
+    return imaging;
+}
+
 Outline outline_at(const Imaging& imaging, glm::dvec2 position) {
     constexpr std::size_t azimuths = 48;
     Outline outline{
@@ -118,7 +129,7 @@ std::vector<ConeRay> fill_cone(const Outline& outline, int panels) {
 
 // The landing points are all but linear in the height, so Gauss and Newton's method on their deviations from the
 // centroid converges in two steps; three leave rounding.
-double best_focus(const Imaging& imaging, const Outline& outline) {
+double least_spot(const Imaging& imaging, const Outline& outline) {
     // mm, for the central difference: landing points curve far less than rounding over a micrometre.
     constexpr double difference = 1e-3;
     struct Sample {

@@ -36,6 +36,9 @@ struct Imaging {
     glm::dvec2 chief_cosines(glm::dvec2 position) const;
 };
 
+// The train for one wavelength, as if monochromatic.
+Imaging at_wavelength(Imaging imaging, double spectral);
+
 // The largest t of [0, limit] at which the predicate holds, to rounding: looked for inward in steps of limit / 32, then
 // by bisection. Where it holds only between two steps, and not at 0, it is not found. None: it holds at no step.
 template <class Predicate>
@@ -83,7 +86,7 @@ std::vector<ConeRay> fill_cone(const Outline& outline, int panels = 1);
 
 // Height above the object plane at which the RMS distance of the outline's light from its centroid on the detector is
 // least. The cone is that of the object plane.
-double best_focus(const Imaging& imaging, const Outline& outline);
+double least_spot(const Imaging& imaging, const Outline& outline);
 
 // Of physics::Instrument, for light from within field_radius and from heights between lowest and highest.
 double gate_radius(const Imaging& imaging, double field_radius, double lowest, double highest);

@@ -70,6 +70,7 @@ struct MeasuredImaging {
     double numerical_aperture = 0;
     double depth_of_field = 0;
     double best_focus_offset = 0; // these as in FirstOrder
+    double least_spot_offset = 0;
     double field_curvature = 0;
     double field_curvature_corner = 0;
     std::vector<std::string> warnings;

@@ -1,6 +1,7 @@
 #include "optics/assembly.hpp"
 
 #include "core/units.hpp"
+#include "optics/best_focus.hpp"
 #include "optics/first_order.hpp"
 
 #include <fmt/format.h>
@@ -138,11 +139,18 @@ MeasuredImaging measure_imaging(const InstrumentDescription& description, const 
     }
     measured.depth_of_field = index * description.spectrum.reference_um * mm_per_um /
                               (measured.numerical_aperture * measured.numerical_aperture);
-    measured.best_focus_offset = best_focus(imaging, on_axis);
-    measured.field_curvature =
-        best_focus(imaging, outline_at(imaging, {layout.field_half_side, 0})) - measured.best_focus_offset;
+    const Spectrum& spectrum = description.spectrum;
+    constexpr int wavelengths = 9;
+    const auto nodes =
+        at_most(wavelengths, spectral_nodes(spectrum.bins, spectrum.centre(), spectrum.half_width(), wavelengths));
+    const auto focus = [&](const Outline& outline) {
+        return best_focus(imaging, layout.magnification, outline, nodes);
+    };
+    measured.best_focus_offset = focus(on_axis);
+    measured.least_spot_offset = least_spot(imaging, on_axis);
+    measured.field_curvature = focus(outline_at(imaging, {layout.field_half_side, 0})) - measured.best_focus_offset;
     const Outline at_corner = outline_at(imaging, {layout.field_half_diagonal, 0});
-    measured.field_curvature_corner = best_focus(imaging, at_corner) - measured.best_focus_offset;
+    measured.field_curvature_corner = focus(at_corner) - measured.best_focus_offset;
     const double relative_light = at_corner.area() / on_axis.area();
     if (relative_light < 0.9) {
         measured.warnings.push_back(

@@ -1,6 +1,7 @@
 #include "optics/image_quality.hpp"
 
 #include "core/units.hpp"
+#include "optics/best_focus.hpp"
 #include "optics/first_order.hpp"
 
 #include <fmt/format.h>
@@ -136,16 +137,6 @@ Imaging imaging_of(const Instrument& instrument) {
     imaging.pupil_curvature = constants.gate_position;
     imaging.symmetric = std::ranges::none_of(imaging.train, is_displaced);
     imaging.detector_index = imaging.train.back().index_after;
-    return imaging;
-}
-
-Imaging at_wavelength(Imaging imaging, double spectral) {
-    for (Surface& surface : imaging.train) {
-        surface.index_before += physics::f64::disperse(surface.dispersion_before, spectral);
-        surface.index_after += physics::f64::disperse(surface.dispersion_after, spectral);
-        surface.dispersion_before = surface.dispersion_after = {};
-    }
-    imaging.detector_index = imaging.train.empty() ? 1 : imaging.train.back().index_after;
     return imaging;
 }
 
@@ -330,8 +321,9 @@ void measure_colour(ImageQuality& quality, const Setting& setting, const Outline
     const auto at_share = [&](double share) {
         const double spectral = physics::f64::draw_light(scene, setting.instrument.constants, share).spectral;
         const Imaging tinted = at_wavelength(setting.imaging, spectral);
+        const std::array node = {SpectralNode{.spectral = spectral, .wavelength_um = 1, .weight = 1}};
         const glm::dvec2 origin = point_image(tinted, setting.on_axis, setting.height, setting.reference).centroid;
-        return Colour{.focus = best_focus(tinted, setting.on_axis),
+        return Colour{.focus = best_focus(setting.imaging, first_order.magnification, setting.on_axis, node),
                       .height = real_magnification(setting, tinted, edge, origin) * first_order.field_edge};
     };
     const Colour shorter = at_share(0.05);

@@ -38,9 +38,6 @@ PointImage point_image(const Imaging& imaging, const Outline& outline, double he
 // The imaging train of an instrument.
 Imaging imaging_of(const Instrument& instrument);
 
-// The imaging train for one wavelength, as if monochromatic.
-Imaging at_wavelength(Imaging imaging, double spectral);
-
 // Of a part on its own, from its own vertices, in the direction of the imaging (mm).
 struct CardinalPoints {
     double focal_length = 0;

@@ -32,6 +32,7 @@ FirstOrder first_order_of(const InstrumentDescription& description, const AxialL
             .depth_of_field = measured.depth_of_field,
             .pixel_pitch = description.detector_size / description.detector_pixels / std::abs(layout.magnification),
             .best_focus_offset = measured.best_focus_offset,
+            .least_spot_offset = measured.least_spot_offset,
             .field_curvature = measured.field_curvature,
             .field_curvature_corner = measured.field_curvature_corner,
             .field_edge = layout.field_half_side,

@@ -99,10 +99,10 @@ struct FirstOrder {
     double magnification = 0;      // signed, paraxial, at the detector
     double depth_of_field = 0;     // n lambda / NA^2: ISO 25178-604's optical depth of field
     double pixel_pitch = 0;        // in the object plane
-    // Height above the paraxial plane, towards the objective (+z), of the on-axis point whose rays have the
-    // least RMS distance from their centroid on the detector. They fill the real apertures with uniform
-    // density in direction cosines, as the light of a Lambertian specimen does.
-    double best_focus_offset = 0;
+    // Heights above the paraxial plane, towards the objective (+z), of a point on the axis; its light fills the real
+    // apertures with uniform density in direction cosines, as a Lambertian specimen's does.
+    double best_focus_offset = 0;         // its wavefront has the least variance, over the spectrum: z = 0 of a scan
+    double least_spot_offset = 0;         // its rays have the least RMS distance from their centroid on the detector
     double field_curvature = 0;           // the same at the field's edge, from the on-axis best focus (+z)
     double field_curvature_corner = 0;    // in the field's corners
     double field_edge = 0;                // the field height that belongs to it: half the detector's side in the object

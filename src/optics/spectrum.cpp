@@ -199,4 +199,25 @@ std::vector<SpectralNode> spectral_nodes(const std::vector<physics::f64::Spectra
     return nodes;
 }
 
+std::vector<SpectralNode> at_most(int most, const std::vector<SpectralNode>& nodes) {
+    if (nodes.size() <= static_cast<std::size_t>(most)) {
+        return nodes;
+    }
+    std::vector<SpectralNode> groups(static_cast<std::size_t>(most), SpectralNode{});
+    double before = 0;
+    for (const SpectralNode& node : nodes) {
+        const auto group = static_cast<std::size_t>(std::min(most - 1.0, (before + 0.5 * node.weight) * most));
+        before += node.weight;
+        groups[group].spectral += node.weight * node.spectral;
+        groups[group].wavelength_um += node.weight * node.wavelength_um;
+        groups[group].weight += node.weight;
+    }
+    std::erase_if(groups, [](const SpectralNode& group) { return group.weight == 0; });
+    for (SpectralNode& group : groups) {
+        group.spectral /= group.weight;
+        group.wavelength_um /= group.weight;
+    }
+    return groups;
+}
+
 } // namespace vkfv::optics

@@ -1,6 +1,7 @@
 #include "optics/wavefront.hpp"
 
 #include "core/units.hpp"
+#include "optics/detector_view.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -13,63 +14,12 @@ namespace {
 
 constexpr std::size_t azimuths = 144;
 
-// Light of one p that lands on a point of the detector.
-struct TracedWave {
-    glm::dvec2 object_point; // where it leaves the object plane
-    double path_length = 0;  // from there to the point
-    glm::dvec2 slope;        // at the detector
-};
-
-// The object plane seen from one point of the detector.
-struct View {
-    const Imaging& imaging;
-    double index;
-    double magnification;
-    double plane; // the object plane, above the paraxial one
-    glm::dvec2 detector;
-    glm::dvec2 guess; // about where its image lies
-
-    // By Broyden's method. None: no such ray, or an aperture stops it.
-    std::optional<TracedWave> trace(glm::dvec2 p, std::uint32_t apertures) const;
-};
-
-std::optional<TracedWave> View::trace(glm::dvec2 p, std::uint32_t apertures) const {
-    constexpr int most_steps = 25;
-    constexpr double enough = 1e-11; // mm in the object; rounding leaves 1e-14 of a train's length
-    const glm::dvec2 cosines = p / index;
-    glm::dvec2 point = guess;
-    auto landing = imaging.trace(point, plane, cosines, 0);
-    glm::dmat2 rate(magnification); // of the landing with the point
-    for (int step = 0; landing && step < most_steps; ++step) {
-        const glm::dvec2 miss = landing->position - detector;
-        const glm::dvec2 move = -(glm::inverse(rate) * miss);
-        const double length_squared = glm::dot(move, move);
-        if (length_squared < enough * enough) {
-            if (apertures != 0u && !imaging.trace(point, plane, cosines, apertures)) {
-                return std::nullopt;
-            }
-            // What is missing to the point, to first order.
-            const double rest = glm::dot(glm::dvec2(landing->direction), miss);
-            return TracedWave{.object_point = point + move,
-                              .path_length = landing->path_length - rest - glm::dot(p, move),
-                              .slope = glm::dvec2(landing->direction) / landing->direction.z};
-        }
-        const glm::dvec2 before = landing->position;
-        point += move;
-        landing = imaging.trace(point, plane, cosines, 0);
-        if (landing) {
-            rate += glm::outerProduct(landing->position - before - rate * move, move) / length_squared;
-        }
-    }
-    return std::nullopt;
-}
-
 double axial(double index, glm::dvec2 p) {
     return std::sqrt(std::max(0.0, index * index - glm::dot(p, p)));
 }
 
 // The centroid of what passes, where that passes itself.
-std::optional<glm::dvec2> middle_of_light(const View& view) {
+std::optional<glm::dvec2> middle_of_light(const DetectorView& view) {
     constexpr int steps = 32; // from the axis to the largest direction cosine
     glm::dvec2 sum(0);
     int count = 0;
@@ -84,10 +34,6 @@ std::optional<glm::dvec2> middle_of_light(const View& view) {
     }
     const glm::dvec2 middle = sum / std::max(1.0, static_cast<double>(count));
     return count > 0 && view.trace(middle, 1) ? std::optional(middle) : std::nullopt;
-}
-
-glm::dvec2 direction_of(double azimuth) {
-    return {std::cos(azimuth), std::sin(azimuth)};
 }
 
 // Samples that fill a pupil, dense towards its rim as a fit wants them.
@@ -135,12 +81,12 @@ Wavefront::Wavefront(const Imaging& imaging, double magnification, double focus,
     index_ = alone.train.front().index_before;
     chief_ = index_ * imaging.chief_cosines(field);
     axial_chief_ = axial(index_, chief_);
-    View view{.imaging = alone,
-              .index = index_,
-              .magnification = magnification,
-              .plane = focus,
-              .detector = magnification * field,
-              .guess = field};
+    DetectorView view{.imaging = alone,
+                      .index = index_,
+                      .magnification = magnification,
+                      .plane = focus,
+                      .detector = magnification * field,
+                      .guess = field};
     const auto chief = view.trace(chief_, 0);
     object_point_ = view.guess = chief ? chief->object_point : field;
     if (!view.trace(chief_, 1)) {
@@ -176,12 +122,12 @@ Wavefront::Wavefront(const Imaging& imaging, double magnification, double focus,
 }
 
 void Wavefront::fit(const Imaging& imaging, glm::dvec2 detector, double magnification, double focus) {
-    const View view{.imaging = imaging,
-                    .index = index_,
-                    .magnification = magnification,
-                    .plane = focus,
-                    .detector = detector,
-                    .guess = object_point_};
+    const DetectorView view{.imaging = imaging,
+                            .index = index_,
+                            .magnification = magnification,
+                            .plane = focus,
+                            .detector = detector,
+                            .guess = object_point_};
     struct Samples {
         std::vector<glm::dvec2> places; // in the unit disc
         std::vector<double> defocus;
@@ -278,6 +224,21 @@ double Wavefront::area() const {
         sum += (a * a + a * b + b * b) / 3;
     }
     return sum * pi / azimuths;
+}
+
+double Wavefront::range() const {
+    constexpr int spokes = 24;
+    double least = 0;
+    double most = 0;
+    for (int i = 0; i < spokes; ++i) {
+        const double azimuth = 2 * pi * i / spokes;
+        for (const double share : {0.25, 0.5, 0.75, 0.9, 1.0}) {
+            const double path = this->path(chief_ + share * rim(azimuth) * direction_of(azimuth));
+            least = std::min(least, path);
+            most = std::max(most, path);
+        }
+    }
+    return most - least;
 }
 
 double Wavefront::defocus(glm::dvec2 p) const {

@@ -12,9 +12,15 @@
 #include "optics/image_quality.hpp"
 #include "optics/plane_polynomial.hpp"
 
+#include <cmath>
 #include <vector>
 
 namespace vkfv::optics {
+
+// Rad from the x axis.
+inline glm::dvec2 direction_of(double azimuth) {
+    return {std::cos(azimuth), std::sin(azimuth)};
+}
 
 // Of one wavelength and one point of the detector. A pupil that no light passes has the rim 0 and no wavefront.
 class Wavefront {
@@ -41,8 +47,11 @@ class Wavefront {
     // are taken for filled.
     double rim(double azimuth) const;
     double largest_rim() const { return largest_rim_; }
+    double smallest_rim() const { return smallest_rim_; }
     bool passes(glm::dvec2 p) const;
     double area() const; // of the pupil, in p
+    // Between the least and the largest W, looked for along 24 radii: mm.
+    double range() const;
 
     // Of a p that passes.
     double path(glm::dvec2 p) const;             // W, mm; 0 at the chief ray

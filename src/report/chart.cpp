@@ -93,6 +93,16 @@ Frame chart_frame(dvec2 corner, dvec2 size, const Axis& x, const Axis& y) {
     return {{corner.x + 58, corner.y + size.y - 38}, {corner.x + size.x - 12, corner.y + 26}, widened(x), widened(y)};
 }
 
+// Of a round length, a third of the width (um) at most; `scale` in pixels per um.
+void draw_scale_bar(Svg& svg, dvec2 right, double width, double scale) {
+    const double length = round_below(0.3 * width);
+    svg.rectangle({right.x - scale * length - 6, right.y - 22}, {scale * length + 12, 28},
+                  "fill=\"#ffffff\" fill-opacity=\"0.75\"");
+    svg.rectangle({right.x - scale * length, right.y - 4}, {scale * length, 4}, "fill=\"#111111\"");
+    svg.text({right.x - 0.5 * scale * length, right.y - 9}, fmt::format("{:g} um", length),
+             "font-size=\"11\" text-anchor=\"middle\" fill=\"#111111\"");
+}
+
 // Means over the blocks that divide the values into `columns` by `rows`, no more than there are; NaN where no value of
 // a block is finite.
 Grid<double> averaged(const Grid<double>& values, int columns, int rows) {
@@ -223,12 +233,15 @@ void draw_map(Svg& svg, dvec2 corner, dvec2 size, const Map& map) {
     const double bar_room = map.colour_bar ? 74 : 8;
     const dvec2 room{size.x - 58 - bar_room, size.y - 26 - 38};
     const dvec2 extent = dvec2(map.values.columns, map.values.rows) * map.pitch;
-    const double scale = std::min(room.x / extent.x, room.y / extent.y); // pixels per um
-    const dvec2 low{corner.x + 58, corner.y + 26 + scale * extent.y};
-    const dvec2 high{low.x + scale * extent.x, corner.y + 26};
+    const dvec2 fitting = room / extent;
+    const dvec2 scales = map.of_place ? dvec2(std::min(fitting.x, fitting.y)) : fitting; // pixels per unit
+    const dvec2 low{corner.x + 58, corner.y + 26 + scales.y * extent.y};
+    const dvec2 high{low.x + scales.x * extent.x, corner.y + 26};
     const dvec2 first = dvec2(map.x0, map.y0) - 0.5 * map.pitch;
-    const Frame frame{
-        low, high, {first.x, first.x + extent.x, "x / um", false}, {first.y, first.y + extent.y, "y / um", false}};
+    const Frame frame{low,
+                      high,
+                      {first.x, first.x + extent.x, map.x_label, false},
+                      {first.y, first.y + extent.y, map.y_label, false}};
 
     // Twice the picture's pixels keep their sharpness on screens of high resolution.
     const auto blocks = [](int points, double length) {
@@ -239,7 +252,7 @@ void draw_map(Svg& svg, dvec2 corner, dvec2 size, const Map& map) {
     Grid<Rgb> pixels(shown.columns, shown.rows);
     std::transform(shown.values.begin(), shown.values.end(), pixels.values.begin(), [&](double value) {
         return std::isfinite(value) ? colour_of(map.palette, (value - map.low) / (map.high - map.low))
-                                    : not_measured_colour;
+                                    : map.not_a_number;
     });
     if (map.brightness) {
         const Grid<double> brightness = averaged(*map.brightness, columns, rows);
@@ -250,14 +263,8 @@ void draw_map(Svg& svg, dvec2 corner, dvec2 size, const Map& map) {
     svg.image({low.x, high.y}, {high.x - low.x, low.y - high.y}, png_bytes(pixels));
     draw_axes(svg, frame, false);
 
-    // A scale bar of a round length, a third of the width at most.
-    const double length = round_below(0.3 * extent.x);
-    const dvec2 right{high.x - 10, low.y - 10};
-    svg.rectangle({right.x - scale * length - 6, right.y - 22}, {scale * length + 12, 28},
-                  "fill=\"#ffffff\" fill-opacity=\"0.75\"");
-    svg.rectangle({right.x - scale * length, right.y - 4}, {scale * length, 4}, "fill=\"#111111\"");
-    svg.text({right.x - 0.5 * scale * length, right.y - 9}, fmt::format("{:g} um", length),
-             "font-size=\"11\" text-anchor=\"middle\" fill=\"#111111\"");
+    if (map.of_place && map.scale_bar)
+        draw_scale_bar(svg, {high.x - 10, low.y - 10}, extent.x, scales.x);
 
     if (map.colour_bar) {
         constexpr int steps = 128;

@@ -48,7 +48,7 @@ struct Chart {
 void draw_histogram(Svg& svg, glm::dvec2 corner, glm::dvec2 size, std::string_view title, const Axis& x,
                     std::span<const double> counts);
 
-// Values over an area in micrometres; NaN is shown as not measured.
+// Values over an area, in micrometres unless the labels say otherwise; NaN is shown as not measured.
 struct Map {
     std::string title;
     std::string unit = "um"; // beside the colour bar
@@ -59,9 +59,13 @@ struct Map {
     Palette palette = Palette::height;
     std::optional<Grid<double>> brightness{}; // in [0, 1], dims the colours; none: 1 throughout
     bool colour_bar = true;
+    std::string x_label = "x / um", y_label = "y / um";
+    bool of_place = true;  // else x and y are no two lengths: each fills its side
+    bool scale_bar = true; // of a place
+    Rgb not_a_number = not_measured_colour;
 };
 
-// The map with axes in micrometres, a scale bar and a colour bar. Equal scales in x and y; values are averaged where
+// The map with axes, a scale bar and a colour bar. Equal scales in x and y of a place; values are averaged where
 // there are more than two of them to a pixel of the picture, along either side.
 void draw_map(Svg& svg, glm::dvec2 corner, glm::dvec2 size, const Map& map);
 

@@ -3,6 +3,8 @@
 #include "core/error.hpp"
 #include "core/units.hpp"
 #include "optics/first_order.hpp"
+#include "optics/wave_image.hpp"
+#include "optics/zernike.hpp"
 #include "parts.hpp"
 
 #include <gmock/gmock.h>
@@ -148,7 +150,7 @@ TEST(BestFocus, OfOtherProgramsGrid) {
 // The mean square of the landings of random light, its directions uniform in their cosines, is least at the
 // stated height. The step is the standard error of that minimum with 20000 rays times five, and the paraxial
 // plane the wrong twin.
-TEST(BestFocus, OfRandomLight) {
+TEST(LeastSpot, OfRandomLight) {
     for (const char* name : {"10x_0.28", "5x_0.15"}) {
         const auto instrument = assemble(test::microscope(name));
         const auto train = imaging_train(instrument);
@@ -161,7 +163,8 @@ TEST(BestFocus, OfRandomLight) {
             double n = 0, y = 0, r = 0, yy = 0, yr = 0, rr = 0; // sums of landings y and rates r
             std::vector<std::pair<double, double>> samples;
             const double reach = 1.3 * first_order.numerical_aperture;
-            const double expected = first_order.best_focus_offset + (field > 0 ? first_order.field_curvature : 0);
+            const Imaging imaging = imaging_of(instrument);
+            const double expected = least_spot(imaging, outline_at(imaging, {field, 0}));
             while (samples.size() < 40000) {
                 const double l = reach * uniform(generator);
                 const double m = reach * uniform(generator);
@@ -215,9 +218,50 @@ TEST(BestFocus, OfRandomLight) {
 
 // The figures themselves, by a tracer of a few lines of numpy that shares no code: midpoint rule over 400
 // rings, whose error is below 5e-4 um.
+TEST(LeastSpot, OfAnIndependentTracer) {
+    EXPECT_NEAR(assemble(test::microscope("10x_0.28")).first_order.least_spot_offset, 6.685796e-3, 5e-7);
+    EXPECT_NEAR(assemble(test::microscope("5x_0.15")).first_order.least_spot_offset, -54.978192e-3, 5e-7);
+}
+
+// tools/wavefront_reference.py, which shares no code, prints these. Its pupil is that of the light that reaches the
+// detector's middle, here that of a point of the paraxial plane: 3 nm.
 TEST(BestFocus, OfAnIndependentTracer) {
-    EXPECT_NEAR(assemble(test::microscope("10x_0.28")).first_order.best_focus_offset, 6.685796e-3, 5e-7);
-    EXPECT_NEAR(assemble(test::microscope("5x_0.15")).first_order.best_focus_offset, -54.978192e-3, 5e-7);
+    const auto focus = [](const char* objective) {
+        return assemble(test::microscope(objective)).first_order.best_focus_offset;
+    };
+    EXPECT_NEAR(focus("5x_0.15"), -57.041226e-3, 5e-6);
+    EXPECT_NEAR(focus("10x_0.28"), 5.961326e-3, 5e-6);
+    EXPECT_NEAR(focus("20x_0.41"), 5.649179e-3, 5e-6);
+    EXPECT_NEAR(focus("50x_0.66"), -0.080373e-3, 5e-6);
+    EXPECT_NEAR(focus("100x_0.83"), -0.222717e-3, 5e-6);
+}
+
+// What the wavefront's polynomials over the traced pupil say, in the field's corner, too, and of several wavelengths:
+// the mean square of W without piston and tilt is least there.
+TEST(BestFocus, IsWhereTheWavefrontVariesLeast) {
+    auto description = test::microscope("5x_0.15");
+    description.spectrum = Spectrum::lines({0.48, 0.59, 0.65}, {1, 2, 1});
+    const Instrument instrument = assemble(description);
+    const double side = instrument.first_order.field_edge;
+    for (const bool corner : {false, true}) {
+        const WaveImage image(instrument, corner ? glm::dvec2(std::sqrt(2.0) * side, 0) : glm::dvec2(0));
+        const double focus = corner ? instrument.first_order.field_curvature_corner : 0;
+        const auto variance = [&](double height) {
+            double sum = 0;
+            const WaveImage raised = image.at_height(height);
+            for (const Wavefront& wavefront : raised.wavefronts()) {
+                const auto coefficients = zernike_coefficients(wavefront, 37);
+                for (std::size_t j = 3; j < coefficients.size(); ++j) {
+                    sum += wavefront.weight() * coefficients[j] * coefficients[j];
+                }
+            }
+            return sum;
+        };
+        const double step = 2e-3;
+        const double below = variance(focus - step), middle = variance(focus), above = variance(focus + step);
+        const double least = 0.5 * step * (below - above) / (below + above - 2 * middle);
+        EXPECT_NEAR(least, 0, 5e-5) << corner; // mm; the pupil in the corner is no disc
+    }
 }
 
 // Every random ray from the specimen that reaches the detector lies within the gate; a gate 5 % narrower

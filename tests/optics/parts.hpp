@@ -1,6 +1,7 @@
 // Parts and rays that the tests of the optics share.
 #pragma once
 
+#include "optics/ideal_lens.hpp"
 #include "optics/instrument.hpp"
 
 #include <filesystem>
@@ -30,6 +31,15 @@ inline optics::InstrumentDescription microscope(const std::string& objective = "
     description.tube_lens = optics::load_prescription("200mm", "tube_lenses", base);
     description.detector_size = 1.3;
     description.detector_pixels = 64;
+    return description;
+}
+
+// The same with lenses without aberrations, f = 20 and 200 mm.
+inline optics::InstrumentDescription ideal_microscope(double aperture) {
+    auto description = microscope();
+    description.spectrum = optics::Spectrum::line(0.55);
+    description.objective = optics::ideal_objective(20, aperture);
+    description.tube_lens = optics::ideal_lens(200);
     return description;
 }
 

@@ -1,7 +1,6 @@
 #include "optics/wavefront.hpp"
 
 #include "core/units.hpp"
-#include "optics/ideal_lens.hpp"
 #include "parts.hpp"
 
 #include <gtest/gtest.h>
@@ -97,19 +96,11 @@ INSTANTIATE_TEST_SUITE_P(Shipped, WavefrontOf,
                                             ::testing::Values(0.0, 1.0)),
                          [](const auto& info) { return "case_" + std::to_string(info.index); });
 
-InstrumentDescription ideal_microscope(double aperture) {
-    auto description = test::microscope();
-    description.objective = ideal_objective(20, aperture);
-    description.tube_lens = ideal_lens(200);
-    description.detector_size = 1.28;
-    return description;
-}
-
 class Ideal : public ::testing::TestWithParam<double> {};
 
 TEST_P(Ideal, LeavesDebyesDefocusAlone) {
     const double aperture = GetParam();
-    const Instrument instrument = assemble(ideal_microscope(aperture));
+    const Instrument instrument = assemble(test::ideal_microscope(aperture));
     for (const double z : {0.0, 3e-3, -8e-3}) {
         const Wavefront wavefront(instrument, reference_of(instrument), glm::dvec2(0), z);
         for (const glm::dvec2 p : pupil_points(wavefront)) {
@@ -134,7 +125,7 @@ INSTANTIATE_TEST_SUITE_P(Apertures, Ideal, ::testing::Values(0.28, 0.66, 0.83));
 // Ways and media: a cover glass under oil, a tube lens that stands aside, another wavelength, a pupil that two edges
 // cut.
 TEST(Wavefront, OfImmersionAndCoverGlass) {
-    auto description = ideal_microscope(0.5);
+    auto description = test::ideal_microscope(0.5);
     description.immersion = Medium::constant("water", 1.33);
     description.cover_glass =
         CoverGlass{.thickness = 0.17, .glass = Medium::constant("N-BK7", 1.5168), .distance = 2.0};

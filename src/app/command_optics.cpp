@@ -1,0 +1,65 @@
+#include "app/commands.hpp"
+#include "measurement/assembly.hpp"
+#include "measurement/wave_figures.hpp"
+#include "measurement/wave_report.hpp"
+
+#include "core/result_folder.hpp"
+
+#include <fmt/format.h>
+
+#include <cmath>
+#include <cstdio>
+
+namespace vkfv::app {
+
+namespace {
+
+struct OpticsOptions {
+    std::filesystem::path folder;
+    std::optional<double> reach; // mm
+};
+
+} // namespace
+
+Command optics_command() {
+    const Option reach = {.name = "--z_range_um,--z-range-um",
+                          .value = "UM",
+                          .description = "How far above and below best focus",
+                          .target = in_mm(&OpticsOptions::reach),
+                          .fallback = "two depths of field"};
+    return {.name = "optics",
+            .summary = "Draw what waves make of a point on the axis, at the edge and in the corner of the field: "
+                       "transfer function and point spread through focus, wavefront with its Zernike coefficients; "
+                       "needs no device",
+            .operands = {{"C.toml", "Configuration", into(&CommandOptions::file)},
+                         {"OUT", "Output folder", into(&OpticsOptions::folder)}},
+            .options = together({configuration_options(), {reach}}),
+            .run = run_optics,
+            .example = "vkfv optics assets/stacks/demo.toml optics"};
+}
+
+void run_optics(const CommandOptions& options) {
+    const auto own = options.of<OpticsOptions>();
+    if (own.reach && !(std::isfinite(*own.reach) && *own.reach > 0)) {
+        refuse_argument(fmt::format("--z_range_um {}", *own.reach * um_per_mm), "a positive length",
+                        "Correct it, or leave it out for two depths of field.");
+    }
+    const auto configuration = load_configuration(options.file, options.overrides, Needs::instrument);
+    const auto instrument = measurement::assemble_instrument(configuration);
+    ResultFolder results(own.folder);
+    const auto figures =
+        measurement::wave_figures(instrument, own.reach.value_or(2 * instrument.first_order.depth_of_field));
+    const std::string name = options.file.stem().string();
+    results.write("transfer.svg", measurement::transfer_picture(figures, name + ": transfer function"));
+    results.write("transfer.csv", measurement::transfer_table(figures));
+    results.write("point_spread.svg", measurement::spread_picture(figures, name + ": point spread"));
+    results.write("point_spread.csv", measurement::spread_table(figures));
+    results.write("encircled.csv", measurement::encircled_table(figures));
+    results.write("wavefront.svg", measurement::wavefront_picture(figures, name + ": wavefront at z = 0"));
+    results.write("wavefront.csv", measurement::wavefront_table(figures));
+    results.write("zernike.csv", measurement::zernike_table(figures));
+    results.write("optics.json", measurement::wave_json(figures).dump(2) + "\n");
+    results.write_checksums();
+}
+
+} // namespace vkfv::app

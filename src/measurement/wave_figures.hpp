@@ -1,0 +1,59 @@
+// What waves make of the points of the field: transfer functions, point spreads, wavefronts, by integrals over the
+// traced pupils. Lengths in mm in the object unless a name says otherwise.
+#pragma once
+
+#include "core/grid.hpp"
+#include "optics/wave_image.hpp"
+
+#include <complex>
+#include <nlohmann/json.hpp>
+#include <string>
+#include <vector>
+
+namespace vkfv::measurement {
+
+// The axes that all points of the field share.
+struct WaveAxes {
+    std::vector<double> heights;     // of the object plane above best focus on the axis
+    std::vector<double> frequencies; // cycles per mm, from 0 to the cutoff on the axis
+    std::vector<double> places;      // across a point spread, from its centre
+};
+
+// Of light from one point of the field. "Radial" is along the line from the axis (x on the axis).
+struct WavePoint {
+    std::string name; // "axis", "edge", "corner"
+    glm::dvec2 field{0};
+    glm::dvec2 radial{1, 0};
+    double aperture = 0; // of a disc of the pupil's area, NA
+    // At z = 0 and the wavelength in the middle of the flux.
+    double wavelength_um = 0;
+    std::vector<double> zernike; // waves, Noll's numbers from 1
+    double wavefront_rms = 0;    // waves, without piston and tilt
+    Grid<double> wavefront;      // waves, over the square about the pupil; NaN outside it
+    double pupil_radius = 0;     // half the side of that square, in p
+    // At z = 0, over the spectrum.
+    double strehl = 0;
+    std::vector<double> dark_rings;
+    std::vector<double> encircled_in_rings;
+    std::vector<glm::dvec2> encircled; // radius, share of the light
+    Grid<double> spread;               // over places (columns: radial), the ideal peak is 1
+    // A row a height, over the spectrum.
+    Grid<std::complex<double>> radial_transfer;
+    Grid<std::complex<double>> tangential_transfer; // across the radial direction
+    Grid<double> spread_through_focus;              // over places along the radial direction
+    std::vector<double> strehl_of_height;
+};
+
+struct WaveFigures {
+    WaveAxes axes;
+    std::vector<WavePoint> points;
+};
+
+// Of the axis, the middle of a side and the corner of the field; heights from -reach to reach. Points that no light
+// comes from are left out.
+WaveFigures wave_figures(const optics::Instrument& instrument, double reach);
+
+// Strehl ratios, rings and coefficients.
+nlohmann::ordered_json wave_json(const WaveFigures& figures);
+
+} // namespace vkfv::measurement

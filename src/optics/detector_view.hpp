@@ -1,0 +1,29 @@
+// The light that one point of the detector sees. Lengths in mm.
+#pragma once
+
+#include "optics/apertures.hpp"
+
+#include <optional>
+
+namespace vkfv::optics {
+
+struct TracedWave {
+    glm::dvec2 object_point = glm::dvec2(0); // where it leaves the object plane
+    double path_length = 0;                  // optical, from there to the point
+    glm::dvec2 slope = glm::dvec2(0);        // at the detector
+};
+
+struct DetectorView {
+    const Imaging& imaging;    // of one wavelength: at_wavelength()
+    double index = 1;          // of the specimen's medium
+    double magnification = -1; // about
+    double plane = 0;          // the object plane, above the paraxial one
+    glm::dvec2 detector;       // the point
+    glm::dvec2 guess;          // about where its image lies
+
+    // What leaves the object plane with the direction cosines p / index, by Broyden's method. None: there is no such
+    // ray, or an aperture stops it.
+    std::optional<TracedWave> trace(glm::dvec2 p, std::uint32_t apertures) const;
+};
+
+} // namespace vkfv::optics

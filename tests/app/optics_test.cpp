@@ -1,0 +1,114 @@
+// vkfv optics through the real program.
+#include "app/program.hpp"
+
+#include "core/units.hpp"
+
+#include <fmt/format.h>
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <nlohmann/json.hpp>
+
+#include <array>
+#include <cmath>
+#include <map>
+#include <sstream>
+
+namespace vkfv::test {
+namespace {
+
+using testing::HasSubstr;
+using testing::StartsWith;
+
+const std::string stacks = VKFV_SOURCE_DIR "/assets/stacks/";
+
+// The rows of a table by their first columns, and the numbers behind.
+using Rows = std::map<std::string, std::vector<double>>;
+Rows rows_of(const std::filesystem::path& file, int key_columns) {
+    std::istringstream lines(read_file(file));
+    std::string line;
+    std::getline(lines, line);
+    Rows rows;
+    while (std::getline(lines, line)) {
+        std::istringstream cells(line);
+        std::string cell, key;
+        for (int i = 0; i < key_columns && std::getline(cells, cell, ','); ++i) {
+            key += (i > 0 ? "," : "") + cell;
+        }
+        while (std::getline(cells, cell, ',')) {
+            rows[key].push_back(std::stod(cell));
+        }
+    }
+    return rows;
+}
+
+// An ideal lens of NA 0.28, a quarter of a wave out of focus at the rim: the scalar Debye integral's figures.
+TEST(OpticsCommand, IntegratesThePupilOfAnIdealLens) {
+    const auto folder = fresh_folder("optics_ideal");
+    constexpr double aperture = 0.28, wavelength_um = 0.55;
+    const std::string reach = fmt::format("{:.17g}", 0.5 * wavelength_um / (aperture * aperture));
+    const auto result = run_program(
+        {"optics", stacks + "ideal_lenses.toml", "out", "--set", "source.wavelength_um=0.55", "--z_range_um", reach},
+        folder);
+    ASSERT_EQ(result.exit_code, 0) << result.standard_error;
+    const auto report = nlohmann::json::parse(read_file(folder / "out/optics.json"));
+    ASSERT_EQ(report["points"].size(), 3u);
+    const auto& axis = report["points"][0];
+    EXPECT_EQ(axis["point"], "axis");
+    EXPECT_NEAR(axis["strehl"].get<double>(), 1, 1e-6);
+    EXPECT_NEAR(axis["through_focus"].front()["strehl"].get<double>(), 0.803, 1e-3);
+    EXPECT_NEAR(axis["through_focus"].back()["strehl"].get<double>(), 0.803, 1e-3);
+    // Zeros of J1 over 2 pi, and the light within.
+    const double unit = wavelength_um / aperture;
+    const std::array radii = {0.609835, 1.116565, 1.619157};
+    const std::array light = {0.8378, 0.9099, 0.9376};
+    ASSERT_EQ(axis["dark_rings"].size(), 3u);
+    for (std::size_t i = 0; i < radii.size(); ++i) {
+        EXPECT_NEAR(axis["dark_rings"][i]["radius_um"].get<double>(), radii[i] * unit, 1e-3 * unit);
+        EXPECT_NEAR(axis["dark_rings"][i]["light"].get<double>(), light[i], 2e-4);
+    }
+    const double cutoff = report["cutoff_per_mm"].get<double>();
+    EXPECT_NEAR(cutoff, 2 * aperture / wavelength_um * um_per_mm, 1e-6 * cutoff);
+    const Rows transfer = rows_of(folder / "out/transfer.csv", 4);
+    const auto contrast = [&](const char* direction, double s) {
+        return transfer.at(fmt::format("axis,{},{:.6g},{:.6g}", direction, std::stod(reach), s * cutoff)).front();
+    };
+    EXPECT_NEAR(contrast("radial", 0.25), 0.572, 1e-3);
+    EXPECT_NEAR(contrast("tangential", 0.5), 0.284, 1e-3);
+    EXPECT_NEAR(contrast("radial", 0.75), 0.121, 1e-3);
+}
+
+// tools/wavefront_reference.py, which shares no code: the 10x at its best focus.
+TEST(OpticsCommand, TellsAShippedObjectivesWavefront) {
+    const auto folder = fresh_folder("optics_demo");
+    const auto result = run_program({"optics", stacks + "demo.toml", "out"}, folder);
+    ASSERT_EQ(result.exit_code, 0) << result.standard_error;
+    EXPECT_EQ(result.standard_output, "");
+    const Rows zernike = rows_of(folder / "out/zernike.csv", 2);
+    EXPECT_NEAR(zernike.at("axis,4").back(), 0, 1e-3);
+    EXPECT_NEAR(zernike.at("axis,11").back(), -0.0106, 1e-3);
+    EXPECT_NEAR(zernike.at("axis,37").back(), 0.0124, 1e-3);
+    EXPECT_NEAR(zernike.at("axis,8").back(), 0, 1e-6);
+    EXPECT_GT(std::abs(zernike.at("corner,8").back()), 1e-3); // coma
+    for (const char* picture : {"transfer.svg", "point_spread.svg", "wavefront.svg"}) {
+        EXPECT_THAT(read_file(folder / "out" / picture), StartsWith("<svg "));
+        EXPECT_THAT(read_file(folder / "out" / picture), HasSubstr("<title>demo: "));
+    }
+    EXPECT_GT(rows_of(folder / "out/wavefront.csv", 3).size(), 1000u);
+    EXPECT_EQ(run_program({"verify", "out"}, folder).exit_code, 0);
+}
+
+TEST(OpticsCommand, SaysWhatIsWrong) {
+    const auto folder = fresh_folder("optics_wrong");
+    write_file(folder / "file", "");
+    const auto range = run_program({"optics", stacks + "demo.toml", "out", "--z_range_um", "-3"}, folder);
+    EXPECT_EQ(range.exit_code, 2);
+    EXPECT_THAT(range.standard_error, HasSubstr("--z_range_um -3"));
+    const auto place = run_program({"optics", stacks + "demo.toml", "file/out"}, folder);
+    EXPECT_EQ(place.exit_code, 4);
+    EXPECT_THAT(place.standard_error, HasSubstr("file"));
+    EXPECT_EQ(run_program({"optics", "missing.toml", "out"}, folder).exit_code, 2);
+    EXPECT_EQ(run_program({"optics", stacks + "demo.toml"}, folder).exit_code, 2);
+}
+
+} // namespace
+} // namespace vkfv::test
