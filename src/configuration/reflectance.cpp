@@ -17,23 +17,24 @@ struct ReflectanceKeys {
 
     ChoiceKey<Kind> kind = for_example(
         "\"noise\"", ChoiceKey<Kind>("kind",
-                                     {{Kind::grating, "grating", "Lines across the pattern's x, bright at its origin."},
-                                      {Kind::checkerboard, "checkerboard", "Squares, a corner of them at the origin."},
-                                      {Kind::star, "star", "A Siemens star about the origin, without an end."},
-                                      {Kind::noise, "noise", "A random texture over all of the specimen."},
-                                      {Kind::image, "image", "The grey values of an image; mirrored beyond its edge."}},
+                                     {{Kind::grating, "grating", "lines across the pattern's x, bright at its origin"},
+                                      {Kind::checkerboard, "checkerboard", "squares, a corner of them at the origin"},
+                                      {Kind::star, "star", "a Siemens star about the origin, without an end"},
+                                      {Kind::noise, "noise", "a random texture over all of the specimen"},
+                                      {Kind::image, "image", "the grey values of an image, mirrored beyond its edge"}},
                                      needed, "How the reflectance varies."));
-    NumberKey period = of_kinds({"grating"}, for_example("8.0", NumberKey("period_um", NumberRange::positive(), needed,
-                                                                          "Of the grating's lines.")));
-    NumberKey side = of_kinds(
-        {"checkerboard"}, for_example("4.0", NumberKey("side_um", NumberRange::positive(), needed, "Of the squares.")));
+    NumberKey period =
+        of_kinds({"grating"},
+                 for_example("8.0", NumberKey("period_um", NumberRange::positive(), needed, "Period of the grating.")));
+    NumberKey side =
+        of_kinds({"checkerboard"},
+                 for_example("4.0", NumberKey("side_um", NumberRange::positive(), needed, "Side of a square.")));
     IntegerKey cycles = of_kinds({"star"}, for_example("36", IntegerKey("cycles", 1, most_cycles, needed,
                                                                         "Bright and dark sectors in one turn.")));
-    ChoiceKey<bool> profile = of_kinds(
-        {"grating", "star"}, ChoiceKey<bool>("profile",
-                                             {{false, "sinusoidal", "One frequency, which shows the transfer."},
-                                              {true, "square", "Two levels, as printed targets have."}},
-                                             false, "Between the lowest and the highest reflectance."));
+    ChoiceKey<bool> profile =
+        of_kinds({"grating", "star"},
+                 ChoiceKey<bool>("profile", {{false, "sinusoidal", "one frequency"}, {true, "square", "two levels"}},
+                                 false, "How the reflectance goes from the lowest to the highest."));
     FileKey file = of_kinds(
         {"image"}, for_example("\"texture.png\"", FileKey("file", Default::none(),
                                                           "The image: black is the lowest reflectance, white (of "

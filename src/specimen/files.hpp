@@ -23,8 +23,9 @@ struct FileMesh {
 };
 
 // All bytes of a regular file. `mention` is where the configuration names it: the place of the message where there is
-// none.
-std::string specimen_bytes(const std::filesystem::path& file, const SourceLocation& mention);
+// none; `key` the one by which it does.
+std::string specimen_bytes(const std::filesystem::path& file, const SourceLocation& mention,
+                           const std::string& key = "specimen.file");
 
 // Binary where the size fits the count of triangles (84 + 50 n bytes), else ASCII, also with a byte-order mark and with
 // any ends of lines.

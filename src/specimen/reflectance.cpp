@@ -1,6 +1,5 @@
 #include "specimen/reflectance.hpp"
 
-#include "core/file.hpp"
 #include "specimen/files.hpp"
 #include "specimen/lengths.hpp"
 #include "specimen/random_heights.hpp"
@@ -88,8 +87,7 @@ Grid<float> noise_values(const Reflectance& noise, const Rectangle& footprint, c
 
 Grid<float> image_values(const Reflectance& image, const SourceLocation& where) {
     require_length("pitch_um", image.pitch, where);
-    const std::string bytes =
-        read_file(image.file, {.key = "specimen.reflectance.file", .expected = "a file that can be read"});
+    const std::string bytes = specimen_bytes(image.file, where, "specimen.reflectance.file");
     Grid<float> values = parse_image(bytes, image.file);
     const auto outside = std::ranges::find_if(values.values, [](float value) { return !(value >= 0 && value <= 1); });
     if (outside != values.values.end()) {

@@ -6,9 +6,9 @@
 
 namespace vkfv::specimen {
 
-std::string specimen_bytes(const std::filesystem::path& file, const SourceLocation& mention) {
+std::string specimen_bytes(const std::filesystem::path& file, const SourceLocation& mention, const std::string& key) {
     try {
-        return read_file(file, {.key = "specimen.file", .expected = "a file that can be read"});
+        return read_file(file, {.key = key, .expected = "a file that can be read"});
     } catch (const InputError& error) {
         InputProblem problem = error.problem();
         // A file that became shorter while it was read keeps its place.

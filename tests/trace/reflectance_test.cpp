@@ -111,7 +111,7 @@ specimen::Specimen with_map(specimen::Specimen specimen, const specimen::Reflect
 
 // Whole periods in the field: 3 along x and 4 along y.
 constexpr int periods_x = 3, periods_y = 4;
-constexpr double lowest = 0.2, highest = 0.9;
+constexpr double lowest = 0.05, highest = 0.95;
 constexpr double origin_x = 0.0013, origin_y = -0.0007;
 
 specimen::Reflectance grating(double sign_of_angle = 1) {
@@ -172,11 +172,10 @@ void expect_closed_form(const trace::Image& image, const trace::Image& bare, dou
     const auto seen = coefficient(image, bare, periods_x, periods_y);
     const auto across = coefficient(image, bare, periods_x, -periods_y);
     const double bound = 4 * seen.error + further_error;
-    RecordProperty("error", std::to_string(seen.error));
     EXPECT_NEAR(mean.value.real(), 0.5 * (lowest + highest), bound);
     EXPECT_LT(std::abs(seen.value - fundamental), bound);
     EXPECT_LT(std::abs(across.value), bound);
-    EXPECT_GT(std::abs(fundamental), 10 * bound) << "nothing is told apart";
+    EXPECT_GT(std::abs(fundamental), 4 * bound) << "nothing is told apart";
 }
 
 // Probability of a greater sum over the pixels of (difference)^2 / variance, the variances shared out as the light is.
@@ -211,10 +210,10 @@ double difference(const trace::Image& one, const trace::Image& other) {
 // Backward paths of the same points: pixels of the bare flat divide the illumination out.
 TEST(ReflectanceMap, a_grating_on_every_kind_of_specimen_and_in_every_traversal_has_its_closed_form) {
     const auto instrument = ideal_microscope();
-    const auto quadtree = way("quadtree", Estimator::backward, 1 << 17, Traversal::quadtree);
-    const auto bvh = way("bvh", Estimator::backward, 1 << 17, Traversal::bvh);
-    const auto ray_query = way("ray query", Estimator::backward, 1 << 17, Traversal::ray_query);
-    const auto host = on_host(way("host", Estimator::backward, 1 << 15));
+    const auto quadtree = way("quadtree", Estimator::backward, 1 << 14, Traversal::quadtree);
+    const auto bvh = way("bvh", Estimator::backward, 1 << 14, Traversal::bvh);
+    const auto ray_query = way("ray query", Estimator::backward, 1 << 14, Traversal::ray_query);
+    const auto host = on_host(way("host", Estimator::backward, 1 << 12));
     struct Case {
         const char* name;
         specimen::Specimen flat;
@@ -236,14 +235,24 @@ TEST(ReflectanceMap, forward_paths_of_every_form_have_the_closed_form) {
     const auto flat = analytic_flat();
     const auto mapped = with_map(flat, grating());
     const auto bare = expose(instrument, flat, way("backward", Estimator::backward, 1 << 18));
-    for (const Way& by :
-         {way("analog", Estimator::forward, 3'000'000, Traversal::quadtree),
-          directed(way("directed", Estimator::forward, 1'000'000, Traversal::bvh)),
-          nonsequential(way("nonsequential bvh", Estimator::forward, 3'000'000, Traversal::bvh)),
-          nonsequential(way("nonsequential ray query", Estimator::forward, 3'000'000, Traversal::ray_query))}) {
+    for (const Way& by : {way("analog", Estimator::forward, 1'000'000, Traversal::quadtree),
+                          directed(way("directed", Estimator::forward, 300'000, Traversal::bvh)),
+                          nonsequential(way("nonsequential", Estimator::forward, 1'600'000, Traversal::bvh))}) {
         SCOPED_TRACE(by.name);
         expect_closed_form(expose(instrument, mapped, by), bare, 1e-3);
     }
+}
+
+// By ray queries the same paths as by the hierarchy of boxes, but for those within rounding of an edge.
+TEST(ReflectanceMap, nonsequential_paths_meet_the_same_map_by_ray_query) {
+    const auto instrument = ideal_microscope();
+    const auto mapped = with_map(mesh_flat(), grating());
+    const auto by = [&](Traversal traversal) {
+        return expose(instrument, mapped, nonsequential(way("", Estimator::forward, 100'000, traversal)));
+    };
+    const auto boxes = by(Traversal::bvh);
+    ASSERT_GT(boxes.detected, 100U);
+    EXPECT_LT(difference(boxes, by(Traversal::ray_query)), 0.02);
 }
 
 // The wrong twin: the angle the other way is told by every way.
@@ -283,19 +292,21 @@ TEST(ReflectanceMap, host_and_every_traversal_trace_the_same_paths) {
     const auto instrument = optics::assemble(small_description());
     const auto mapped = with_map(test::steep_specimen(0.65), texture());
     const auto by = [&](Traversal traversal) {
-        return expose(instrument, mapped, way("backward", Estimator::backward, 1 << 14, traversal, 3), 0.002);
+        return expose(instrument, mapped, way("backward", Estimator::backward, 1 << 13, traversal, 3), 0.002);
     };
-    const auto host = expose(instrument, mapped, on_host(way("host", Estimator::backward, 1 << 14, {}, 3)), 0.002);
+    const auto host = expose(instrument, mapped, on_host(way("host", Estimator::backward, 1 << 13, {}, 3)), 0.002);
     for (const auto traversal : {Traversal::quadtree, Traversal::bvh, Traversal::ray_query}) {
         EXPECT_LT(difference(host, by(traversal)), 5e-3);
     }
-    const auto forward = way("forward", Estimator::forward, 100'000, Traversal::quadtree, 3);
-    const auto of_device = expose(instrument, mapped, forward, 0.002);
-    const auto of_host = expose(instrument, mapped, on_host(forward), 0.002);
+    // Little roughness and a narrow lobe, so that much of the light returns.
+    const auto smooth = test::rough_specimen(0.95, 0.0002);
+    const auto forward = way("forward", Estimator::forward, 50'000, Traversal::quadtree, 3);
+    const auto of_device = expose(instrument, with_map(smooth, texture()), forward, 0.002);
+    const auto of_host = expose(instrument, with_map(smooth, texture()), on_host(forward), 0.002);
     ASSERT_GT(of_device.detected, 500U);
     EXPECT_LT(difference(of_host, of_device), 0.02);
-    const auto other = with_map(test::steep_specimen(0.65), texture(2));
-    EXPECT_GT(difference(of_host, expose(instrument, other, forward, 0.002)), 0.2); // wrong twin
+    const auto other = expose(instrument, with_map(smooth, texture(2)), forward, 0.002);
+    EXPECT_GT(difference(of_host, other), 0.1); // wrong twin
 }
 
 // What the map takes is absorbed: its mean of what arrives, and the ledger closes.
@@ -303,9 +314,9 @@ TEST(ReflectanceMap, the_ledger_counts_what_the_map_absorbs) {
     const auto instrument = ideal_microscope();
     const auto mapped = with_map(analytic_flat(), grating());
     using Status = trace::Ledger::Status;
-    for (const Way& by : {way("analog", Estimator::forward, 500'000, Traversal::quadtree),
-                          directed(way("directed", Estimator::forward, 500'000, Traversal::quadtree)),
-                          nonsequential(way("nonsequential", Estimator::forward, 500'000, Traversal::bvh))}) {
+    for (const Way& by : {way("analog", Estimator::forward, 200'000, Traversal::quadtree),
+                          directed(way("directed", Estimator::forward, 200'000, Traversal::quadtree)),
+                          nonsequential(way("nonsequential", Estimator::forward, 200'000, Traversal::bvh))}) {
         SCOPED_TRACE(by.name);
         const auto image = expose(instrument, mapped, by);
         EXPECT_LT(std::abs(image.ledger.residual()),
@@ -318,7 +329,7 @@ TEST(ReflectanceMap, the_ledger_counts_what_the_map_absorbs) {
             rays += entry.status == Status::absorbed ? static_cast<double>(entry.rays) : 0;
             left += leaves ? entry.power : 0;
         }
-        ASSERT_GT(rays, 5000);
+        ASSERT_GT(rays, 2000);
         if (!by.options.nonsequential) { // where light from the specimen and light to it meet the same elements
             EXPECT_NEAR(absorbed / (absorbed + left), 1 - 0.5 * (lowest + highest), 4 / std::sqrt(rays));
         }
