@@ -18,13 +18,19 @@ VKFV_FUNCTION real ggx_reach(real alpha, real cosine) {
 VKFV_FUNCTION ScatterTry ggx_try(real alpha, Incidence incidence, real u0, real u1, real u2) {
     real3 normal = incidence.normal;
     real incoming_cosine = -dot(incidence.incoming, normal);
-    // Stretched, so that facets are those of a hemisphere.
-    real3 along = incidence.incoming + normal * incoming_cosine;
-    real3 stretched = normal * incoming_cosine - along * alpha;
-    stretched = stretched * (real(1.0) / sqrt(dot(stretched, stretched)));
-    real extent = real(1.0) + dot(stretched, normal);
-    real3 facet = direction_around(normal, u0 * extent, u1) + stretched;
-    facet = (facet - normal * dot(facet, normal)) * alpha + normal * ((real(1.0) - u0) * extent);
+    // Stretched, facets are those of a hemisphere, and their normals halfway to the directions of a cap, which is
+    // uniform.
+    real3 flat_part = (incidence.incoming + normal * incoming_cosine) * -alpha;
+    real scale = real(1.0) / sqrt(dot(flat_part, flat_part) + incoming_cosine * incoming_cosine);
+    flat_part = flat_part * scale;
+    real cap = real(1.0) + incoming_cosine * scale;
+    real left = (real(1.0) - u0) * cap;
+    // With the versine u0 * cap; left is what the sum of both has along the normal.
+    real sine = sqrt(u0 * cap * (left + dot(flat_part, flat_part) / cap));
+    Frame frame = frame_around(normal);
+    Turn turn = turn_of(u1);
+    real3 facet = flat_part + frame.first * (sine * turn.cosine) + frame.second * (sine * turn.sine);
+    facet = facet * alpha + normal * left;
     facet = facet * (real(1.0) / sqrt(dot(facet, facet)));
     ScatterTry result;
     result.direction = mirrored(incidence.incoming, facet);
