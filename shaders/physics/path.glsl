@@ -217,7 +217,9 @@ VKFV_SCENE_FUNCTION VKFV_FUNCTION Departure scatter_at_specimen(VKFV_SCENE_PARAM
         origin = scatter_origin(hit);
         under_way = scattered.accepted;
         status = under_way ? PATH_ALIVE : scattered.absorbed ? PATH_ABSORBED : PATH_NUMERICAL;
-        if (directed && under_way) {
+        // What a lossy lobe absorbs is of its own direction alone.
+        bool lobe_lost = scattered.absorbed && scattered.lobe.model != SCATTER_NONE;
+        if (directed && (under_way || lobe_lost)) {
             Draws draws = draw(exposure.seed, exposure.image, path, first_block + SCATTER_BLOCKS - 1u);
             GateDisc disc = gate_disc(instrument, specimen.top, origin);
             real3 aimed = direction_in_disc(disc, draws.u0, draws.u1);

@@ -1,7 +1,8 @@
 // Scatter at the specimen: its material is a weighted sum of lobes, each of one model of scatter/.
 //
-// Densities are not symmetric: theta_i is always the angle on the source's side, also for a path that is traced
-// backward, so a backward path gives scatter_density() its own direction reversed as `outgoing`.
+// Densities are not symmetric, and some models' bsdf is not reciprocal: theta_i is always the angle on the source's
+// side, also for a path that is traced backward, so a backward path gives scatter_density() its own direction reversed
+// as `outgoing`.
 
 // By one number, uniform in (0, 1): a lobe with the probability of its weight, else SCATTER_NONE. Lobes that a material
 // has not weigh nothing.
@@ -44,7 +45,8 @@ VKFV_FUNCTION real scatter_bsdf(Material material, real3 incoming, real3 normal,
     return dot(incoming, normal) < real(0.0) && dot(outgoing, normal) > real(0.0) ? bsdf : real(0.0);
 }
 
-// The same per sr of the outgoing direction: its integral over the hemisphere is the reflectance.
+// The same per sr of the outgoing direction: its integral over the hemisphere is the reflectance,
+// less what lossy lobes absorb.
 VKFV_FUNCTION real scatter_density(Material material, real3 incoming, real3 normal, real3 outgoing) {
     return scatter_bsdf(material, incoming, normal, outgoing) * max(dot(outgoing, normal), real(0.0));
 }
@@ -58,7 +60,7 @@ struct Scattered {
     bool accepted; // else absorbed, or tries exhausted
     bool absorbed;
     real3 direction;
-    Lobe lobe; // that was chosen
+    Lobe lobe; // that was chosen; if none was, its model is SCATTER_NONE
 };
 
 // incoming: unit, towards the surface; normal: unit, on the incoming side.
@@ -80,6 +82,7 @@ VKFV_FUNCTION Scattered scatter(Material material, real3 incoming, real3 normal,
         }
         ScatterTry attempt = lobe_try(lobe, incidence, draws.u0, draws.u1, draws.u2);
         result.accepted = attempt.accepted;
+        result.absorbed = result.absorbed || (!attempt.accepted && lobe_is_lossy(lobe));
         result.direction = attempt.direction;
     }
     result.lobe = lobe;

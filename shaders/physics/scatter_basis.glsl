@@ -7,8 +7,9 @@
 //   real NAME_bsdf(parameters..., Incidence incidence, real3 outgoing)
 //     asked for above the surface alone, 1/sr: the density per sr of the outgoing direction divided by its cosine, so
 //     that the integral of bsdf * cosine over the hemisphere is 1; a delta has 0
-// With the line `// table`, NAME_bsdf takes `real table[LOBE_TABLE_SIZE]` after the parameters, and the host fills it:
-// src/specimen/scatter_tables.cpp.
+// The line `// lossy` says that the first try decides: what it does not accept is absorbed, and the integral is the
+// share that is accepted. With the line `// table`, NAME_bsdf takes `real table[LOBE_TABLE_SIZE]` after the parameters,
+// and the host fills it: src/specimen/scatter_tables.cpp.
 
 // The models that the specimen's material has, bit k for model k, and SCATTER_CHOICE unless it is one lobe that
 // reflects everything: what it has not is compiled out of a kernel.

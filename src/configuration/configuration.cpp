@@ -78,7 +78,7 @@ void read_instrument(const TomlTable& root, Configuration& configuration) {
         {"objective", read_objective},       {"cover_glass", read_cover_glass},
         {"tube_lens", read_tube_lens},       {"detector", read_detector}};
     for (const auto& [key, read] : parts) {
-        root.attempt(key, [&] { read(root, configuration); });
+        root.attempt(key, [&, read = read] { read(root, configuration); }); // clang 14 captures no binding by name
     }
     if (root.sound("")) { // what takes all of them together
         root.attempt("source", [&] { require_indices(configuration, wavelength_key); });

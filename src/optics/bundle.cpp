@@ -3,9 +3,9 @@
 #include "optics/train.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
-#include <ranges>
 
 namespace vkfv::optics {
 
@@ -131,12 +131,18 @@ bool deflects(const Surface& surface) {
            coefficients_of(surface.dispersion_before) != coefficients_of(surface.dispersion_after);
 }
 
-Affine index_of(double centre, const Dispersion& dispersion, const Affine& x) {
+// c_0 x + c_1 x^2 + ..., by Horner's rule.
+template <std::size_t size>
+Affine powers(const std::array<double, size>& coefficients, const Affine& x) {
     Affine sum;
-    for (const double coefficient : coefficients_of(dispersion) | std::views::reverse) {
-        sum = x * (sum + constant(coefficient));
+    for (std::size_t i = size; i > 0; --i) { // clang 14 cannot compile libstdc++'s views
+        sum = x * (sum + constant(coefficients[i - 1]));
     }
-    return sum + constant(centre);
+    return sum;
+}
+
+Affine index_of(double centre, const Dispersion& dispersion, const Affine& x) {
+    return powers(coefficients_of(dispersion), x) + constant(centre);
 }
 
 Vector rotated(const Surface& surface, const Vector& v) {
@@ -159,11 +165,7 @@ Vector turned(const Vector& v, const Affine& angle) {
 
 // A polynomial's part of an even asphere's sag (mm), and (1/r) d/dr of it (1/mm), at q = r^2.
 Affine aspheric_sag(const Surface& surface, const Affine& q) {
-    Affine sum;
-    for (const double coefficient : coefficients_of(surface) | std::views::reverse) {
-        sum = q * (sum + constant(coefficient));
-    }
-    return q * sum;
+    return q * powers(coefficients_of(surface), q);
 }
 Affine aspheric_slope(const Surface& surface, const Affine& q) {
     const auto coefficients = coefficients_of(surface);

@@ -185,6 +185,9 @@ int main(int argument_count, char** arguments) {
     write(root / "height_image" / "window_largest.exr", ExrBytes{.window = {0, 0, largest, largest}}.bytes());
     write(root / "height_image" / "window_negative.exr", ExrBytes{.window = {2, 1, 0, 0}}.bytes());
     write(root / "height_image" / "tile_largest.exr", ExrBytes{.tile = 0xffffffff}.bytes());
+    const std::string tiled = ExrBytes{.tile = 2}.bytes();
+    constexpr std::string_view tiles("tiledesc\0", 9);
+    write(root / "height_image" / "tile_high.exr", with(tiled, tiled.find(tiles) + tiles.size() + 8, 0x7b20002u));
     constexpr std::string_view compression("compression\0compression\0", 24);
     write(root / "height_image" / "attribute_long.exr",
           with(exr, exr.find(compression) + compression.size() + 2, 0x68));

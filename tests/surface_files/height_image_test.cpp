@@ -90,6 +90,20 @@ TEST(HeightImage, ExrWhoseHeaderLiesIsRefused) {
         expect_refused(ExrBytes{.tile = tile}.bytes(), fmt::format("tile {}", tile));
 }
 
+// The library makes room for every tile as a whole: twice 1 GB for six pixels were found by fuzzing.
+TEST(HeightImage, ExrOfSmallImageAndVastTilesIsRefused) {
+    std::string bytes = ExrBytes{.tile = 2}.bytes();
+    constexpr std::string_view before("tiledesc\0", 9);
+    constexpr std::int32_t height = 0x7b20002;
+    std::memcpy(bytes.data() + bytes.find(before) + before.size() + 8, &height, sizeof height);
+    try {
+        (void)parse_height_image(bytes, "bad.exr", scale);
+        ADD_FAILURE() << "accepted";
+    } catch (const InputError& error) {
+        EXPECT_NE(error.problem().found.find("3 x 2 pixels"), std::string::npos) << error.problem().found;
+    }
+}
+
 // The library would make room for the text before it looks for it; 1.7 GB of it were found by fuzzing.
 TEST(HeightImage, ExrWithAnAttributeLongerThanTheFileIsRefusedAtItsLength) {
     for (const int parts : {1, 2})

@@ -131,6 +131,24 @@ TEST(Backward, knows_every_material) {
     expect_agreement(forward_image(instrument, specimen, 1), backward_image(instrument, specimen, 1));
 }
 
+// GGX loses light at each event, and not the same backward: with the lobe as wide as the source's cone, sharper, and
+// much wider, on facets that light meets again.
+TEST(Backward, knows_what_a_lossy_lobe_absorbs) {
+    const auto instrument = optics::assemble(small_description());
+    const auto rough = test::rough_specimen();
+    for (const double alpha : {0.03, 0.2, 0.7}) {
+        SCOPED_TRACE(alpha);
+        const auto specimen = with_material(rough, {{{"ggx", 1, {alpha}}}});
+        const auto forward = forward_image(instrument, specimen, 2, 8'000'000);
+        expect_agreement(forward, backward_image(instrument, specimen, 2));
+        EXPECT_LT(agreement(forward, backward_image(instrument, with_material(rough, {{{"ggx", 0.97, {alpha}}}}), 2)),
+                  level); // wrong twin
+    }
+    const specimen::Material mixture{{{"ggx", 0.4, {0.5}}, {"lambertian", 0.3, {}}, {"ggx", 0.2, {0.05}}}};
+    const auto steep = with_material(test::steep_specimen(0), mixture);
+    expect_agreement(forward_image(instrument, steep, 4, 8'000'000), backward_image(instrument, steep, 4));
+}
+
 // Losses at interfaces, a spectrum, parts that stand askew, a cube: whatever makes the trains differ.
 TEST(Backward, knows_every_instrument) {
     const auto rough = test::rough_specimen();

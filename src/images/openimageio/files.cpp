@@ -1,5 +1,6 @@
 // Image files of all kinds: what images/image_file.hpp promises.
 #include "images/openimageio/functions.hpp"
+#include "images/openimageio/packing.hpp"
 
 #include "core/error.hpp"
 #include "core/file.hpp"
@@ -127,15 +128,13 @@ OpenImage open_image(const std::filesystem::path& path) {
 constexpr double largest_pixel_count = 1 << 28;
 constexpr double freely_given_bytes = 1 << 28;
 constexpr double largest_packing = 64;
-// No packing in use makes images smaller than by this factor: a header that names more is a wrong one.
-constexpr double impossible_packing = 1e4;
 
 void check_size(const OpenImage& image, const OIIO::ImageSpec& spec, const std::filesystem::path& path) {
     const double pixels = static_cast<double>(spec.width) * spec.height;
     const double bytes = pixels * spec.nchannels * static_cast<double>(spec.format.size());
     if (!(spec.width > 0 && spec.height > 0 && pixels <= largest_pixel_count &&
           bytes <= std::max(freely_given_bytes, largest_packing * image.bytes) &&
-          bytes <= impossible_packing * image.bytes))
+          packing_is_possible(spec, image.bytes)))
         refuse_file(
             path, "size",
             fmt::format("{} x {} pixels, {:.0f} bytes, in a file of {:.0f} bytes", spec.width, spec.height, bytes,

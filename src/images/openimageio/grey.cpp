@@ -2,6 +2,7 @@
 #include "core/error.hpp"
 #include "images/exr_header.hpp"
 #include "images/openimageio/functions.hpp"
+#include "images/openimageio/packing.hpp"
 #include "images/pnm_header.hpp"
 
 #include <OpenImageIO/filesystem.h>
@@ -69,6 +70,12 @@ Channels check(const OIIO::ImageSpec& spec, std::uint64_t file_bytes, std::uint6
              fmt::format("beyond {} pixels a byte of the file for every {} of them", most_packed_pixels,
                          most_pixels_a_byte),
              "Crop or scale the image, or save it without compression if it is really so large.");
+    }
+    if (!packing_is_possible(spec, static_cast<double>(file_bytes))) {
+        fail(file,
+             fmt::format("{} x {} pixels, {} x {} in a tile, in {} bytes", spec.width, spec.height, spec.tile_width,
+                         spec.tile_height, file_bytes),
+             "no more than packing can do", "The file is truncated or damaged: write or copy it anew.");
     }
     const bool opacity = spec.alpha_channel >= 0;
     const int others = spec.nchannels - (opacity ? 1 : 0);
