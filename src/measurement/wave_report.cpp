@@ -194,13 +194,13 @@ std::string wavefront_picture(const WaveFigures& figures, const std::string& tit
         map.values = point.wavefront;
         map.x0 = map.y0 = -point.pupil_radius;
         map.pitch = glm::dvec2(2 * point.pupil_radius / (point.wavefront.columns - 1));
-        map.x_label = "n sin, x";
-        map.y_label = "n sin, y";
+        map.x_label = "p_x: direction cosine times n";
+        map.y_label = "p_y";
         map.low = -most;
         map.high = most;
         map.palette = report::Palette::signed_deviation;
         map.scale_bar = false;
-        map.not_a_number = {255, 255, 255};
+        map.not_a_number = {232, 232, 232};
         report::draw_map(sheet.svg(), sheet.next(), panel, map);
         std::vector<report::Curve> bars;
         report::Curve coefficients{.name = "", .points = {}, .spreads = {}, .line = true};
