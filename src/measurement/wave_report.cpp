@@ -274,14 +274,13 @@ std::string wavefront_table(const WaveFigures& figures) {
 }
 
 std::string zernike_table(const WaveFigures& figures) {
-    std::string text = "point,number,radial_order,azimuthal_order,name,coefficient_waves\n";
+    std::string text = "point,number,name,radial_order,azimuthal_order,coefficient_waves\n";
     for (const WavePoint& point : figures.points) {
         for (std::size_t j = 0; j < point.zernike.size(); ++j) {
             const int number = static_cast<int>(j) + 1;
             const auto order = optics::zernike_order(number);
-            text += fmt::format("{},{},{},{},\"{}\",{:.6f}\n", point.name, number, order.radial,
-                                order.sine ? -order.azimuthal : order.azimuthal, optics::zernike_name(number),
-                                point.zernike[j]);
+            text += fmt::format("{},{},{},{},{},{:.6f}\n", point.name, number, optics::zernike_name(number),
+                                order.radial, order.sine ? -order.azimuthal : order.azimuthal, point.zernike[j]);
         }
     }
     return text;
