@@ -4,7 +4,10 @@
 #include "optics/zernike.hpp"
 
 #include <cmath>
+#include <future>
 #include <limits>
+#include <tuple>
+#include <utility>
 
 namespace vkfv::measurement {
 
@@ -16,7 +19,7 @@ constexpr int frequency_steps = 48;
 constexpr int half_places = 40;
 constexpr double rings_shown = 5; // of an ideal lens
 constexpr int zernike_terms = 37;
-constexpr int half_pupil = 48;
+constexpr int half_pupil = 64;
 
 WaveAxes axes_of(const optics::WaveImage& on_axis, double reach) {
     WaveAxes axes;
@@ -64,7 +67,8 @@ void measure_wavefront(WavePoint& point, const optics::Wavefront& wavefront) {
     point.wavefront_rms = std::sqrt(square / pixels);
 }
 
-void measure_spread(WavePoint& point, const WaveAxes& axes, const optics::WaveImage& image) {
+// mirrored: about the radial direction, as of a symmetric instrument.
+void measure_spread(WavePoint& point, const WaveAxes& axes, const optics::WaveImage& image, bool mirrored) {
     const double reach = axes.places.back();
     const optics::PointSpread spread = image.point_spread(std::sqrt(2.0) * reach);
     const glm::dvec2 tangential(-point.radial.y, point.radial.x);
@@ -83,6 +87,10 @@ void measure_spread(WavePoint& point, const WaveAxes& axes, const optics::WaveIm
     point.spread = Grid<double>(count(axes.places), count(axes.places));
     for (int row = 0; row < point.spread.rows; ++row) {
         for (int column = 0; column < point.spread.columns; ++column) {
+            if (mirrored && row > half_places) {
+                point.spread(column, row) = point.spread(column, 2 * half_places - row);
+                continue;
+            }
             const glm::dvec2 at = axes.places[static_cast<std::size_t>(column)] * point.radial +
                                   axes.places[static_cast<std::size_t>(row)] * tangential;
             point.spread(column, row) = spread.value(at) / spread.ideal_peak();
@@ -90,7 +98,8 @@ void measure_spread(WavePoint& point, const WaveAxes& axes, const optics::WaveIm
     }
 }
 
-void measure_through_focus(WavePoint& point, const WaveAxes& axes, const optics::WaveImage& focused) {
+// round: all directions are alike.
+void measure_through_focus(WavePoint& point, const WaveAxes& axes, const optics::WaveImage& focused, bool round) {
     const glm::dvec2 tangential(-point.radial.y, point.radial.x);
     point.radial_transfer = Grid<std::complex<double>>(count(axes.frequencies), count(axes.heights));
     point.tangential_transfer = point.radial_transfer;
@@ -100,7 +109,8 @@ void measure_through_focus(WavePoint& point, const WaveAxes& axes, const optics:
         for (int column = 0; column < count(axes.frequencies); ++column) {
             const double frequency = axes.frequencies[static_cast<std::size_t>(column)];
             point.radial_transfer(column, row) = image.transfer(frequency * point.radial);
-            point.tangential_transfer(column, row) = image.transfer(frequency * tangential);
+            point.tangential_transfer(column, row) =
+                round ? point.radial_transfer(column, row) : image.transfer(frequency * tangential);
         }
         const optics::PointSpread spread = image.point_spread(axes.places.back());
         point.strehl_of_height.push_back(spread.strehl());
@@ -116,7 +126,9 @@ void measure_through_focus(WavePoint& point, const WaveAxes& axes, const optics:
 WaveFigures wave_figures(const optics::Instrument& instrument, double reach) {
     const double side = instrument.first_order.field_edge;
     const double diagonal = std::sqrt(0.5);
+    const bool symmetric = optics::imaging_of(instrument).symmetric;
     WaveFigures figures;
+    std::vector<std::future<WavePoint>> points;
     for (const auto& [name, field, radial] : {std::tuple{"axis", glm::dvec2(0), glm::dvec2(1, 0)},
                                               std::tuple{"edge", glm::dvec2(side, 0), glm::dvec2(1, 0)},
                                               std::tuple{"corner", glm::dvec2(side), glm::dvec2(diagonal)}}) {
@@ -124,16 +136,22 @@ WaveFigures wave_figures(const optics::Instrument& instrument, double reach) {
         if (image.middle().largest_rim() == 0) {
             continue;
         }
-        if (figures.points.empty()) {
+        if (points.empty()) {
             figures.axes = axes_of(image, reach);
         }
-        WavePoint& point = figures.points.emplace_back();
-        point.name = name;
-        point.field = field;
-        point.radial = radial;
-        measure_wavefront(point, image.middle());
-        measure_spread(point, figures.axes, image);
-        measure_through_focus(point, figures.axes, image);
+        points.push_back(std::async(std::launch::async, [=, axes = figures.axes] {
+            WavePoint point;
+            point.name = name;
+            point.field = field;
+            point.radial = radial;
+            measure_wavefront(point, image.middle());
+            measure_spread(point, axes, image, symmetric);
+            measure_through_focus(point, axes, image, symmetric && field == glm::dvec2(0));
+            return point;
+        }));
+    }
+    for (std::future<WavePoint>& point : points) {
+        figures.points.push_back(point.get());
     }
     return figures;
 }

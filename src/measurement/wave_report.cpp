@@ -194,13 +194,13 @@ std::string wavefront_picture(const WaveFigures& figures, const std::string& tit
         map.values = point.wavefront;
         map.x0 = map.y0 = -point.pupil_radius;
         map.pitch = glm::dvec2(2 * point.pupil_radius / (point.wavefront.columns - 1));
-        map.x_label = "n sin, x";
-        map.y_label = "n sin, y";
+        map.x_label = "p_x: direction cosine times n";
+        map.y_label = "p_y";
         map.low = -most;
         map.high = most;
         map.palette = report::Palette::signed_deviation;
         map.scale_bar = false;
-        map.not_a_number = {255, 255, 255};
+        map.not_a_number = {232, 232, 232};
         report::draw_map(sheet.svg(), sheet.next(), panel, map);
         std::vector<report::Curve> bars;
         report::Curve coefficients{.name = "", .points = {}, .spreads = {}, .line = true};
@@ -274,14 +274,13 @@ std::string wavefront_table(const WaveFigures& figures) {
 }
 
 std::string zernike_table(const WaveFigures& figures) {
-    std::string text = "point,number,radial_order,azimuthal_order,name,coefficient_waves\n";
+    std::string text = "point,number,name,radial_order,azimuthal_order,coefficient_waves\n";
     for (const WavePoint& point : figures.points) {
         for (std::size_t j = 0; j < point.zernike.size(); ++j) {
             const int number = static_cast<int>(j) + 1;
             const auto order = optics::zernike_order(number);
-            text += fmt::format("{},{},{},{},\"{}\",{:.6f}\n", point.name, number, order.radial,
-                                order.sine ? -order.azimuthal : order.azimuthal, optics::zernike_name(number),
-                                point.zernike[j]);
+            text += fmt::format("{},{},{},{},{},{:.6f}\n", point.name, number, optics::zernike_name(number),
+                                order.radial, order.sine ? -order.azimuthal : order.azimuthal, point.zernike[j]);
         }
     }
     return text;

@@ -18,6 +18,9 @@ class PlanePolynomial {
 
     int degree() const { return degree_; }
     std::span<double> coefficients() { return coefficients_; } // by j, then by i
+    std::span<const double> along_x() const {
+        return std::span(coefficients_).first(static_cast<std::size_t>(degree_ + 1));
+    }
     double value(glm::dvec2 at) const;
     glm::dvec2 gradient(glm::dvec2 at) const;
 

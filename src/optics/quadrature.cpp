@@ -13,7 +13,8 @@ std::vector<QuadratureNode> gauss_legendre(int count, double from, double to) {
     for (int k = 0; k < count; ++k) {
         double x = -std::cos(pi * (k + 0.75) / (count + 0.5));
         double slope = 1;
-        for (int step = 0; step < 8; ++step) {
+        double last = 1;
+        for (int step = 0; step < 8 && std::abs(last) > 1e-15; ++step) {
             double before = 0;
             double value = 1;
             for (int n = 1; n <= count; ++n) {
@@ -22,7 +23,8 @@ std::vector<QuadratureNode> gauss_legendre(int count, double from, double to) {
                 value = next;
             }
             slope = count * (before - x * value) / ((1 - x) * (1 + x));
-            x -= value / slope;
+            last = value / slope;
+            x -= last;
         }
         const double half = 0.5 * (to - from);
         nodes.push_back({.place = from + half * (1 + x), .weight = half * 2 / ((1 - x) * (1 + x) * slope * slope)});

@@ -97,8 +97,8 @@ std::complex<double> transfer(const Wavefront& wavefront, glm::dvec2 frequency) 
     const double top = reach_of_overlap(chords, shift, widest, chords.top());
     const double bottom = reach_of_overlap(chords, shift, widest, chords.bottom());
     // Nodes that resolve the phase, whose range is at most twice W's; from there on Gauss's rule converges fast.
-    constexpr int fewest = 24;
-    const int count = std::min(400, fewest + static_cast<int>(8 * wavefront.range() / wavefront.wavelength()));
+    constexpr int fewest = 16;
+    const int count = std::min(400, fewest + static_cast<int>(7 * wavefront.range() / wavefront.wavelength()));
     const auto nodes = gauss_legendre(count);
     const double wave_number = 2 * pi / wavefront.wavelength();
     std::complex<double> sum = 0;

@@ -36,6 +36,22 @@ std::optional<glm::dvec2> middle_of_light(const DetectorView& view) {
     return count > 0 && view.trace(middle, 1) ? std::optional(middle) : std::nullopt;
 }
 
+double horner(const std::vector<double>& coefficients, double at) {
+    double sum = 0;
+    for (std::size_t k = coefficients.size(); k-- > 0;) {
+        sum = sum * at + coefficients[k];
+    }
+    return sum;
+}
+
+double slope_of_horner(const std::vector<double>& coefficients, double at) {
+    double sum = 0;
+    for (std::size_t k = coefficients.size(); k-- > 1;) {
+        sum = sum * at + static_cast<double>(k) * coefficients[k];
+    }
+    return sum;
+}
+
 // Samples that fill a pupil, dense towards its rim as a fit wants them.
 std::vector<glm::dvec2> fill_pupil(const Wavefront& wavefront, int rings, int spokes, double turn) {
     std::vector<glm::dvec2> points;
@@ -97,10 +113,10 @@ Wavefront::Wavefront(const Imaging& imaging, double magnification, double focus,
         }
     }
     // About the axis, and about a point of the x axis, a symmetric train's pupil has its symmetry.
-    const bool round = imaging.symmetric && field == glm::dvec2(0);
+    round_ = imaging.symmetric && field == glm::dvec2(0);
     const bool half = imaging.symmetric && field.y == 0;
     for (std::size_t i = 0; i < azimuths; ++i) {
-        if (round && i > 0) {
+        if (round_ && i > 0) {
             rims_[i] = rims_[0];
         } else if (half && i > azimuths / 2) {
             rims_[i] = rims_[azimuths - i];
@@ -166,7 +182,7 @@ void Wavefront::fit(const Imaging& imaging, glm::dvec2 detector, double magnific
         slope_x_ = std::move(fitted[1]);
         slope_y_ = std::move(fitted[2]);
         // Other rays tell whether that is enough.
-        constexpr double enough = 1e-7;       // wavelengths
+        constexpr double enough = 1e-6;       // wavelengths
         constexpr double enough_slope = 5e-6; // of the largest
         const Samples others = sample(degree / 2 + 1, 2 * degree + 1, 0.5);
         double path_error = 0;
@@ -184,6 +200,13 @@ void Wavefront::fit(const Imaging& imaging, glm::dvec2 detector, double magnific
         if (path_error < enough * wavelength_ && slope_error < enough_slope * largest_slope) {
             break;
         }
+    }
+    // (x^2 + y^2)^k has x^(2 k).
+    for (std::size_t k = 0; 2 * k < path_.along_x().size(); ++k) {
+        round_path_.push_back(path_.along_x()[2 * k]);
+    }
+    for (std::size_t k = 0; 2 * k + 1 < slope_x_.along_x().size(); ++k) {
+        round_slope_.push_back(slope_x_.along_x()[2 * k + 1]);
     }
 }
 
@@ -250,17 +273,22 @@ glm::dvec2 Wavefront::object_point() const {
 }
 
 double Wavefront::path(glm::dvec2 p) const {
-    return path_.value((p - chief_) / largest_rim_) + (defocus_ + height_) * defocus(p);
+    const glm::dvec2 place = (p - chief_) / largest_rim_;
+    const double rest = round_ ? horner(round_path_, glm::dot(place, place)) : path_.value(place);
+    return rest + (defocus_ + height_) * defocus(p);
 }
 
 glm::dvec2 Wavefront::displacement(glm::dvec2 p) const {
-    return path_.gradient((p - chief_) / largest_rim_) / largest_rim_ -
-           (defocus_ + height_) * (p / axial(index_, p) - chief_ / axial_chief_);
+    const glm::dvec2 place = (p - chief_) / largest_rim_;
+    const glm::dvec2 rest =
+        round_ ? 2 * slope_of_horner(round_path_, glm::dot(place, place)) * place : path_.gradient(place);
+    return rest / largest_rim_ - (defocus_ + height_) * (p / axial(index_, p) - chief_ / axial_chief_);
 }
 
 glm::dvec2 Wavefront::image_slope(glm::dvec2 p) const {
     const glm::dvec2 place = (p - chief_) / largest_rim_;
-    return {slope_x_.value(place), slope_y_.value(place)};
+    return round_ ? horner(round_slope_, glm::dot(place, place)) * place
+                  : glm::dvec2(slope_x_.value(place), slope_y_.value(place));
 }
 
 } // namespace vkfv::optics

@@ -78,6 +78,10 @@ class Wavefront {
     PlanePolynomial path_;
     PlanePolynomial slope_x_;
     PlanePolynomial slope_y_;
+    // About the axis W is a polynomial in the square, and the slope that times the place: what is asked for most, fast.
+    bool round_ = false;
+    std::vector<double> round_path_;
+    std::vector<double> round_slope_;
 };
 
 } // namespace vkfv::optics
