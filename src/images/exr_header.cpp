@@ -10,6 +10,8 @@ namespace {
 constexpr std::string_view magic = "\x76\x2f\x31\x01";
 constexpr std::uint64_t first_attribute = 8;    // behind the magic number and the version
 constexpr std::uint32_t several_parts = 0x1000; // of the version's flags
+// The library makes room for whole tiles as it opens a file; those in use have sides of tens to hundreds of pixels.
+constexpr std::uint64_t most_pixels_of_a_tile = std::uint64_t{1} << 24;
 
 } // namespace
 
@@ -40,12 +42,19 @@ void check_exr_attributes(std::string_view bytes, const std::filesystem::path& p
             continue;
         }
         after_header = false;
-        text(); // type
+        const std::string_view type = text();
         const auto length = file.at<std::int32_t>(place, "length of an attribute");
         place += sizeof length;
         if (length < 0 || static_cast<std::uint64_t>(length) > bytes.size() - place)
             file.fail(place - sizeof length, "length of an attribute", fmt::format("{}", length),
                       fmt::format("at most the {} bytes that are left", bytes.size() - place));
+        if (type == "tiledesc" && length >= 8) {
+            const auto columns = file.at<std::uint32_t>(place, "columns of a tile");
+            const auto rows = file.at<std::uint32_t>(place + sizeof columns, "rows of a tile");
+            if (std::uint64_t{columns} * rows > most_pixels_of_a_tile)
+                file.fail(place, "size of a tile", fmt::format("{} x {} pixels", columns, rows),
+                          fmt::format("at most {} pixels", most_pixels_of_a_tile));
+        }
         place += static_cast<std::uint64_t>(length);
     }
 }

@@ -95,12 +95,13 @@ TEST(HeightImage, ExrOfSmallImageAndVastTilesIsRefused) {
     std::string bytes = ExrBytes{.tile = 2}.bytes();
     constexpr std::string_view before("tiledesc\0", 9);
     constexpr std::int32_t height = 0x7b20002;
-    std::memcpy(bytes.data() + bytes.find(before) + before.size() + 8, &height, sizeof height);
+    const std::size_t place = bytes.find(before) + before.size() + 4; // behind the length
+    std::memcpy(bytes.data() + place + 4, &height, sizeof height);
     try {
         (void)parse_height_image(bytes, "bad.exr", scale);
         ADD_FAILURE() << "accepted";
     } catch (const InputError& error) {
-        EXPECT_NE(error.problem().found.find("3 x 2 pixels"), std::string::npos) << error.problem().found;
+        EXPECT_EQ(error.problem().where.byte_offset, place);
     }
 }
 
