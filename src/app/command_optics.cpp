@@ -15,7 +15,6 @@ namespace vkfv::app {
 namespace {
 
 struct OpticsOptions {
-    std::filesystem::path folder;
     std::optional<double> reach; // mm
 };
 
@@ -31,11 +30,10 @@ Command optics_command() {
             .summary = "Draw what waves make of a point on the axis, at the edge and in the corner of the field: "
                        "transfer function and point spread through focus, wavefront with its Zernike coefficients; "
                        "needs no device",
-            .operands = {{"C.toml", "Configuration", into(&CommandOptions::file)},
-                         {"OUT", "Output folder", into(&OpticsOptions::folder)}},
-            .options = together({configuration_options(), {reach}}),
+            .operands = {{"C.toml", "Configuration", into(&CommandOptions::file)}},
+            .options = together({configuration_options(), {out_option("Output folder (default: C-optics)"), reach}}),
             .run = run_optics,
-            .example = "vkfv optics assets/stacks/demo.toml optics"};
+            .example = "vkfv optics assets/stacks/demo.toml --out optics"};
 }
 
 void run_optics(const CommandOptions& options) {
@@ -46,10 +44,10 @@ void run_optics(const CommandOptions& options) {
     }
     const auto configuration = load_configuration(options.file, options.overrides, Needs::instrument);
     const auto instrument = measurement::assemble_instrument(configuration);
-    ResultFolder results(own.folder);
+    const std::string name = options.file.stem().string();
+    ResultFolder results(options.out.value_or(name + "-optics"));
     const auto figures =
         measurement::wave_figures(instrument, own.reach.value_or(2 * instrument.first_order.depth_of_field));
-    const std::string name = options.file.stem().string();
     results.write("transfer.svg", measurement::transfer_picture(figures, name + ": transfer function"));
     results.write("transfer.csv", measurement::transfer_table(figures));
     results.write("point_spread.svg", measurement::spread_picture(figures, name + ": point spread"));
@@ -60,6 +58,7 @@ void run_optics(const CommandOptions& options) {
     results.write("zernike.csv", measurement::zernike_table(figures));
     results.write("optics.json", measurement::wave_json(figures).dump(2) + "\n");
     results.write_checksums();
+    fmt::print("{}", measurement::summary(figures));
 }
 
 } // namespace vkfv::app

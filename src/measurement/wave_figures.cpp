@@ -3,6 +3,8 @@
 #include "core/units.hpp"
 #include "optics/zernike.hpp"
 
+#include <fmt/format.h>
+
 #include <cmath>
 #include <future>
 #include <limits>
@@ -154,6 +156,19 @@ WaveFigures wave_figures(const optics::Instrument& instrument, double reach) {
         figures.points.push_back(point.get());
     }
     return figures;
+}
+
+std::string summary(const WaveFigures& figures) {
+    std::string text = fmt::format("{:8} {:>18} {:>8} {:>16} {:>12} {:>16}\n", "point", "x, y / um", "NA",
+                                   "wavefront / waves", "Strehl ratio", "dark ring / um");
+    for (const WavePoint& point : figures.points) {
+        text += fmt::format("{:8} {:>18} {:8.4f} {:16.4f} {:12.4f} {:>16}\n", point.name,
+                            fmt::format("{:.4g}, {:.4g}", point.field.x * um_per_mm, point.field.y * um_per_mm),
+                            point.aperture, point.wavefront_rms, point.strehl,
+                            point.dark_rings.empty() ? std::string("-")
+                                                     : fmt::format("{:.4f}", point.dark_rings.front() * um_per_mm));
+    }
+    return text;
 }
 
 nlohmann::ordered_json wave_json(const WaveFigures& figures) {

@@ -53,6 +53,9 @@ struct WaveFigures {
 // comes from are left out.
 WaveFigures wave_figures(const optics::Instrument& instrument, double reach);
 
+// A line a point of the field, for a terminal.
+std::string summary(const WaveFigures& figures);
+
 // Strehl ratios, rings and coefficients.
 nlohmann::ordered_json wave_json(const WaveFigures& figures);
 

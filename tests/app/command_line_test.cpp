@@ -77,7 +77,7 @@ TEST(CommandLine, ACommandIsItsOption) {
                                       {"trace-rays", "c.toml", "rays.csv", "--apertures", "off"},
                                       {"trace-rays", "c.toml", "rays.csv", "--precision", "half"},
                                       {"layout", "c.toml", "layout.svg"},
-                                      {"optics", "c.toml", "optics", "--z_range_um", "none"},
+                                      {"optics", "c.toml", "--out", "optics", "--z_range_um", "none"},
                                       {"devices", "--json"},
                                       {"devices", "--quick"},
                                       {"bench", "c.toml", "--runs", "0"},

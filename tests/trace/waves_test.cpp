@@ -166,8 +166,8 @@ TEST(Waves, sort_light_alike_forward_and_backward_on_device_and_host) {
     double expected = 0;
     for (std::size_t pixel = 0; pixel < images[0].flux.values.size(); ++pixel) {
         squares += std::pow(images[0].flux.values[pixel] - images[2].flux.values[pixel], 2);
-        expected += std::pow(images[0].standard_error.values[pixel], 2) +
-                    std::pow(images[2].standard_error.values[pixel], 2);
+        expected +=
+            std::pow(images[0].standard_error.values[pixel], 2) + std::pow(images[2].standard_error.values[pixel], 2);
     }
     EXPECT_NEAR(squares / expected, 1, 0.25);
 }
