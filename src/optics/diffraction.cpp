@@ -12,27 +12,13 @@ namespace {
 
 using Complex = std::complex<double>;
 
-double sinc(double x) {
-    return x == 0 ? 1 : std::sin(pi * x) / (pi * x);
-}
-
 } // namespace
 
 Diffraction::Diffraction(const AiryPattern& pattern, int columns, int rows, double pitch)
     : columns_(columns), rows_(rows), symmetric_(columns, rows) {
-    // Sampling at the pixels folds the frequencies beyond their own into these.
-    const double cutoff = pattern.cutoff() * pitch; // cycles per pixel
-    const int folds = static_cast<int>(std::ceil(cutoff + 0.5));
     for (int row = 0; row < rows; ++row)
-        for (int column = 0; column < columns; ++column) {
-            const double fx = 0.5 * column / columns, fy = 0.5 * row / rows;
-            double sum = 0;
-            for (int n = -folds; n <= folds; ++n)
-                for (int m = -folds; m <= folds; ++m)
-                    sum += pattern.transfer(std::hypot(fx + m, fy + n) / pitch) * sinc(fx + m) * sinc(fy + n);
-            symmetric_(column, row) = sum;
-        }
-    symmetric_(0, 0) = 1; // as the sum is, but for rounding
+        for (int column = 0; column < columns; ++column)
+            symmetric_(column, row) = pattern.transfer(std::hypot(0.5 * column / columns, 0.5 * row / rows) / pitch);
 }
 
 Diffraction::Diffraction(const Grid<float>& point_spread, double point_spread_pitch, int columns, int rows,

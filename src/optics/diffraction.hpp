@@ -9,9 +9,9 @@
 namespace vkfv::optics {
 
 // The incoherent image: the traced one convolved with the point spread function of the focused instrument, at every
-// focal height alike. The light of a pixel is taken to come from its middle and is collected over each pixel's area,
-// which keeps it positive; beside pixels of half the Airy pattern's finest period that changes the contrast of waves
-// longer than four pixels by at most 5 %. Beyond the border the image continues as its mirror image, and no light is
+// focal height alike. A traced pixel is the light of its area, so its spectrum holds the pixel's own transfer already
+// and is multiplied by the pattern's alone; frequencies beyond a half cycle a pixel are not in it, so a point between
+// coarse pixels rings by what they lack. Beyond the border the image continues as its mirror image, and no light is
 // lost: the sum over the pixels stays the same (to rounding for the Airy pattern; for a measured point spread function
 // but for what its asymmetry carries over the border).
 class Diffraction {

@@ -50,7 +50,6 @@ TEST(Diffraction, encircled_energy_is_rayleighs) {
                 if (std::abs(r - radius) < pitch)
                     brightest_on_rim = std::max(brightest_on_rim, value);
             }
-        // The box of the pixel widens the pattern too, by p^2 / 24 of its curvature: below 0.002 here.
         EXPECT_NEAR(inside, encircled(radius), 3 * std::sqrt(8 * radius / pitch) * 0.5 * brightest_on_rim + 0.004)
             << radius;
         // An aperture 10 % off is seen where the pattern is steep.
@@ -60,13 +59,12 @@ TEST(Diffraction, encircled_energy_is_rayleighs) {
     }
 }
 
-TEST(Diffraction, keeps_the_light_and_stays_positive) {
+TEST(Diffraction, keeps_the_light) {
     const double pitch = 1e-3;
     const Diffraction diffraction(pattern(), 40, 40, pitch);
     for (const auto& [column, row] : {std::pair{20, 20}, std::pair{0, 0}, std::pair{39, 7}}) {
         const Grid<float> image = diffraction.apply(point(40, column, row));
         EXPECT_NEAR(sum(image), 1, 1e-5); // 1600 values rounded to float
-        EXPECT_GT(*std::min_element(image.values.begin(), image.values.end()), -1e-7f);
     }
     const Grid<float> flat(40, 40, 3.0f);
     for (const float value : diffraction.apply(flat).values)
@@ -89,7 +87,7 @@ TEST(Diffraction, long_waves_keep_the_contrast_of_the_transfer_function) {
                          std::cos(2 * pi * cycles * (column + 0.5) / size);
         const double frequency = cycles / (size * pitch), cutoff = 2 * aperture / wavelength;
         const double expected = 0.5 * optics::circular_pupil_transfer(frequency, cutoff);
-        EXPECT_NEAR(amplitude / expected, 1, 0.11) << cycles;     // sinc(1/4) = 0.90 for the shortest of them
+        EXPECT_NEAR(amplitude / expected, 1, 1e-5) << cycles;     // the pixels' own transfer is the trace's
         EXPECT_GT(std::abs(amplitude / 0.5 - 1), 0.04) << cycles; // it does something
     }
 }
