@@ -111,6 +111,36 @@ NoiseModel fitted(const std::vector<double>& x, const std::vector<double>& y) {
                          : NoiseModel{.constant = 0, .slope = mean_x > 0 ? mean_y / mean_x : 0};
 }
 
+// The limit of the smallest quarter.
+double smallest_quarter(std::vector<double> values) {
+    const auto quarter = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 4);
+    std::ranges::nth_element(values, quarter);
+    return *quarter;
+}
+
+// Images whose second differences along z are noise, by the variances of those of image 1, 2, ... Noise is least
+// correlated where it is least by chance: what decides is not an image's own difference but those three images before
+// and after, which share no image with it. Its own tells texture that is in focus in an image or two.
+std::vector<int> quiet_images(const std::vector<double>& variances, bool all) {
+    constexpr int apart = 3;
+    constexpr double most = 3; // of the smallest quarter's limit, which noise hardly reaches
+    const int count = static_cast<int>(variances.size());
+    const auto at = [&](int k) { return variances[static_cast<std::size_t>(k)]; };
+    std::vector<double> around;
+    for (int k = 0; k < count; ++k) {
+        const int before = k >= apart ? k - apart : k + apart, after = k + apart < count ? k + apart : k - apart;
+        around.push_back(at(std::clamp(before, 0, count - 1)) + at(std::clamp(after, 0, count - 1)));
+    }
+    std::vector<int> images;
+    const double quiet = smallest_quarter(around), limit = most * smallest_quarter(variances);
+    for (int k = 0; k < count; ++k) {
+        if (all || (around[static_cast<std::size_t>(k)] <= quiet && at(k) <= limit)) {
+            images.push_back(k + 1);
+        }
+    }
+    return images;
+}
+
 // Adds values(p) values(p + k) for every k = (column - reach, row) of sums, over the pixels p of a patch.
 void add_products(const std::vector<double>& values, int columns, int rows, Grid<double>& sums) {
     const int reach = sums.columns / 2;
@@ -257,8 +287,7 @@ double FocusProbes::curve_width() const {
 FocusProbes::Differences FocusProbes::differences(const Probe& probe, std::size_t channel) const {
     const auto pixels = probe.pixels();
     const auto stride = static_cast<std::size_t>(channels_) * pixels;
-    Differences found{.images = {}, .level = 0, .variance = 0};
-    std::vector<double> variances;
+    Differences found;
     for (int image = 1; image + 1 < images_; ++image) {
         const float* here = probe.values.data() + static_cast<std::size_t>(image) * stride + channel * pixels;
         double sum = 0;
@@ -268,25 +297,18 @@ FocusProbes::Differences FocusProbes::differences(const Probe& probe, std::size_
             found.level += here[k];
         }
         constexpr double gain = 1 + 4 + 1; // of the second difference on the variance of independent values
-        variances.push_back(sum / static_cast<double>(pixels) / gain);
-        found.images.push_back(image);
+        found.variances.push_back(sum / static_cast<double>(pixels) / gain);
     }
-    if (variances.empty()) {
+    if (found.variances.empty()) {
         return found;
     }
-    const auto count = static_cast<double>(variances.size());
+    const auto count = static_cast<double>(found.variances.size());
     found.level /= static_cast<double>(pixels) * count;
     // Of images that are mostly dark, the quarter that saw no light says nothing.
     const auto dark = std::ranges::count(probe.values, 0.0f);
-    if (static_cast<std::size_t>(dark) > probe.values.size() / 2) {
-        found.variance = std::accumulate(variances.begin(), variances.end(), 0.0) / count;
-        return found;
-    }
-    auto sorted = variances;
-    const auto quarter = sorted.begin() + static_cast<std::ptrdiff_t>(sorted.size() / 4);
-    std::ranges::nth_element(sorted, quarter);
-    found.variance = *quarter;
-    std::erase_if(found.images, [&](int image) { return variances[static_cast<std::size_t>(image - 1)] > *quarter; });
+    found.sparse = static_cast<std::size_t>(dark) > probe.values.size() / 2;
+    found.variance = found.sparse ? std::accumulate(found.variances.begin(), found.variances.end(), 0.0) / count
+                                  : smallest_quarter(found.variances);
     return found;
 }
 
@@ -295,7 +317,7 @@ NoiseModel FocusProbes::noise() const {
     for (const Probe& probe : probes_) {
         for (std::size_t channel = 0; channel < static_cast<std::size_t>(channels_); ++channel) {
             const Differences found = differences(probe, channel);
-            if (!found.images.empty()) {
+            if (!found.variances.empty()) {
                 levels.push_back(found.level);
                 variances.push_back(found.variance);
             }
@@ -320,7 +342,8 @@ NoiseCorrelation FocusProbes::noise_correlation() const {
         for (std::size_t channel = 0; channel < static_cast<std::size_t>(channels_); ++channel) {
             const Differences found = differences(probe, channel);
             Grid<double> sums(products.columns, products.rows);
-            for (const int image : found.images) {
+            const auto images = quiet_images(found.variances, found.sparse);
+            for (const int image : images) {
                 const float* here = probe.values.data() + static_cast<std::size_t>(image) * stride + channel * pixels;
                 second.clear();
                 for (std::size_t k = 0; k < pixels; ++k) {
@@ -337,7 +360,7 @@ NoiseCorrelation FocusProbes::noise_correlation() const {
                 for (int dx = -reach; dx <= reach; ++dx) {
                     const double here = std::max(0, probe.columns - std::abs(dx)) * std::max(0, probe.rows - dy);
                     products(dx + reach, dy) += here > 0 ? sums(dx + reach, dy) / (variance * here) : 0;
-                    pairs(dx + reach, dy) += here * static_cast<double>(found.images.size());
+                    pairs(dx + reach, dy) += here * static_cast<double>(images.size());
                 }
             }
         }

@@ -64,9 +64,9 @@ class FocusProbes {
     // texture that comes into focus makes others larger. Of a channel.
     NoiseModel noise() const;
 
-    // Of the same second differences, those that are the smallest quarter; every probe counts alike, all channels
-    // together. What does not exceed four standard deviations of its own is 0, so independent noise stays that;
-    // independence too of less than least_images_for_correlation and of images without noise.
+    // Of the same second differences, those between the smallest; every probe counts alike, all channels together. What
+    // does not exceed four standard deviations of its own is 0, so independent noise stays that; independence too of
+    // less than least_images_for_correlation and of images without noise.
     NoiseCorrelation noise_correlation() const;
 
     // The evidence of curves with the images in random order, none where the largest value stands at an end.
@@ -92,9 +92,10 @@ class FocusProbes {
 
     // Second differences along z of a channel.
     struct Differences {
-        std::vector<int> images; // the middle ones of those that tell the noise
-        double level = 0;        // mean brightness of all
-        double variance = 0;     // of a single image's noise
+        std::vector<double> variances{}; // of a single image's noise by that of image 1, 2, ...
+        double level = 0;                // mean brightness of all
+        double variance = 0;             // by the smallest quarter of the variances; sparse: by all
+        bool sparse = false;             // most of the values are 0
     };
     Differences differences(const Probe& probe, std::size_t channel) const;
 

@@ -9,6 +9,7 @@
 #include <algorithm>
 #include <cmath>
 #include <complex>
+#include <numeric>
 #include <random>
 
 namespace vkfv::topography::test {
@@ -24,7 +25,6 @@ class BlurredNoise {
             return x == 0 ? 1 : std::pow(std::sin(x) / x, 2);
         };
         const int folds = static_cast<int>(std::ceil(cutoff * pitch));
-        double sum = 0;
         for (int row = 0; row < side; ++row) {
             for (int column = 0; column < side; ++column) {
                 double& here = power_(column, row);
@@ -37,13 +37,15 @@ class BlurredNoise {
                         }
                     }
                 }
-                sum += here;
             }
         }
+        const double sum = std::accumulate(power_.values.begin(), power_.values.end(), 0.0);
         for (double& value : power_.values) {
             value *= static_cast<double>(power_.values.size()) / sum;
         }
     }
+    // Independent pixels.
+    explicit BlurredNoise(int side) : power_(side, side, 1.0) {}
 
     // The transform of the power, cut off at the reach.
     NoiseCorrelation correlation() const {
