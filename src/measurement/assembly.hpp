@@ -46,7 +46,8 @@ std::optional<optics::Diffraction> make_diffraction(const Configuration& configu
                                                     const optics::Instrument& instrument);
 
 // How the configuration asks for its own stack to be evaluated, with the average along z that suits its instrument
-// where none is given: a defocus that blurs waves of four pixels to half their contrast.
+// where none is given: a defocus that blurs waves of four pixels to half their contrast, with [diffraction] model =
+// "waves" waves of twice the resolution limit where these are longer.
 topography::TopographyOptions evaluation_options(const Configuration& configuration,
                                                  const optics::Instrument& instrument);
 

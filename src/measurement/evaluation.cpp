@@ -127,7 +127,10 @@ std::optional<Flat> read_flat(const Configuration& configuration, int columns, i
              fmt::format("at least {:.0f} %", 100 * least_share),
              "Give the flat texture and light enough to be measured, and scan as far as the field curves."});
     }
-    return Flat{.file = file, .heights = std::move(flat)};
+    const double band = configuration.band.s_filter;
+    const double s_filter = band > 0 ? band : configuration.topography.window_px * pitch;
+    const double deviation = topography::flatness_deviation(flat, s_filter);
+    return Flat{.file = file, .heights = std::move(flat), .deviation = deviation, .s_filter = s_filter};
 }
 
 StackEvaluation::StackEvaluation(const topography::TopographyOptions& options, topography::FocusPlanesMaker make_planes,
@@ -156,7 +159,10 @@ void StackEvaluation::reconstruct(double x0, double y0, double pitch, const std:
     if (flat) {
         auto corrected = topography::correct_flatness(std::move(evaluation_.topography.height), flat->heights);
         evaluation_.topography.height = std::move(corrected.heights);
-        evaluation_.flatness = {.file = flat->file, .deviation = corrected.peak_to_valley};
+        evaluation_.flatness = {.file = flat->file,
+                                .deviation = flat->deviation,
+                                .s_filter = flat->s_filter,
+                                .polynomial_peak_to_valley = corrected.polynomial_peak_to_valley};
     }
 }
 
@@ -200,8 +206,11 @@ std::string summary(const Evaluation& evaluation) {
         return text;
     }
     if (evaluation.flatness) {
-        text += fmt::format("field curvature removed by the flat: {:.3g} um peak to valley\n",
-                            evaluation.flatness->deviation * um_per_mm);
+        text +=
+            fmt::format("field curvature removed by the flat: a polynomial of {:.3g} um peak to valley; z_FLT of the "
+                        "flat is {:.3g} um (S-filter {:g} um)\n",
+                        evaluation.flatness->polynomial_peak_to_valley * um_per_mm,
+                        evaluation.flatness->deviation * um_per_mm, evaluation.flatness->s_filter * um_per_mm);
     }
     if (evaluation.deviation) {
         text += text_of("levelled:", *evaluation.deviation);

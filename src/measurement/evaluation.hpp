@@ -16,16 +16,22 @@ namespace vkfv::measurement {
 struct Flat {
     std::filesystem::path file;
     surface::HeightMap heights;
+    double deviation = 0; // mm, its z_FLT
+    double s_filter = 0;  // mm, nesting index of the S-filter before it
 };
 
 // That the configuration names, for stacks of this grid (pitch in mm); none if it names none. Throws InputError where
 // its grid is another, since it must have been measured by the same instrument, or where too little of it was measured.
+// The S-filter is that of topography.s_filter_um; where that is none, as long as the focus window is wide, since
+// shorter waves of heights are no instrument's form.
 std::optional<Flat> read_flat(const Configuration& configuration, int columns, int rows, double pitch);
 
-// What it took off.
+// What it tells, and what it took off.
 struct Flatness {
     std::filesystem::path file;
-    double deviation = 0; // mm, peak to valley
+    double deviation = 0;                 // mm, z_FLT of the flat
+    double s_filter = 0;                  // mm, nesting index of its S-filter
+    double polynomial_peak_to_valley = 0; // mm, of what was removed
 };
 
 struct Evaluation {

@@ -186,8 +186,11 @@ void write_results(ResultFolder& folder, const EvaluatedStack& stack) {
     }
     results["topography"] = json_of(evaluation.options);
     if (evaluation.flatness) {
-        results["flatness"] = {{"file", evaluation.flatness->file.string()},
-                               {"deviation_um", evaluation.flatness->deviation * um_per_mm}};
+        results["flatness"] = {
+            {"file", evaluation.flatness->file.string()},
+            {"z_flt_um", evaluation.flatness->deviation * um_per_mm},
+            {"z_flt_s_filter_um", evaluation.flatness->s_filter * um_per_mm},
+            {"polynomial_peak_to_valley_um", evaluation.flatness->polynomial_peak_to_valley * um_per_mm}};
     }
     const auto& whole = evaluation.topography.stack;
     results["curves"] = {{"curve_width_steps", whole.curve_width_steps},
@@ -195,6 +198,7 @@ void write_results(ResultFolder& folder, const EvaluatedStack& stack) {
                          {"least_order", whole.limit.least.order},
                          {"chance_rate", whole.limit.rate},
                          {"image_noise", whole.image_noise},
+                         {"noise_correlation", {whole.noise_correlation(1, 0), whole.noise_correlation(0, 1)}},
                          {"height_noise_um", median_of(evaluation.topography.height_noise) * um_per_mm}};
     results["points"] = point_counts(evaluation.topography.state);
     results["evaluated_by"] = fmt::format("vkfv {}", VKFV_VERSION);

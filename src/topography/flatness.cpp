@@ -1,5 +1,7 @@
 #include "topography/flatness.hpp"
 
+#include "surface/band.hpp"
+#include "surface/height_parameters.hpp"
 #include "surface/polynomial.hpp"
 
 #include <algorithm>
@@ -8,6 +10,10 @@
 #include <stdexcept>
 
 namespace vkfv::topography {
+
+double flatness_deviation(const surface::HeightMap& flat, double s_filter) {
+    return surface::height_parameters(surface::scale_limited(flat, {.s_filter = s_filter})).sz;
+}
 
 FlatnessCorrected correct_flatness(surface::HeightMap measured, const surface::HeightMap& flat) {
     if (measured.columns() != flat.columns() || measured.rows() != flat.rows())
@@ -25,7 +31,7 @@ FlatnessCorrected correct_flatness(surface::HeightMap measured, const surface::H
             }
             height -= removed;
         }
-    return {.heights = std::move(measured), .peak_to_valley = highest > lowest ? highest - lowest : 0};
+    return {.heights = std::move(measured), .polynomial_peak_to_valley = highest > lowest ? highest - lowest : 0};
 }
 
 } // namespace vkfv::topography

@@ -194,23 +194,4 @@ Grid<float> window_mean(const Grid<float>& image, const FocusWindow& window) {
     return result;
 }
 
-double noise_gain(FocusMeasure measure, double window_pixels) {
-    const auto variance = [measure] {
-        switch (measure) {
-        case FocusMeasure::standard_deviation:
-            return 1.0;
-        case FocusMeasure::tenengrad:
-            return 130.0 / 3;
-        case FocusMeasure::modified_laplacian:
-            return 27.9;
-        case FocusMeasure::brenner:
-            return 5.0;
-        case FocusMeasure::wavelet:
-            return 269165.0 / 36096;
-        }
-        return 0.0;
-    };
-    return std::sqrt(variance() / window_pixels);
-}
-
 } // namespace vkfv::topography

@@ -68,17 +68,4 @@ double focus_at(const Channels& image, FocusMeasure measure, const FocusWindow& 
 // Weighted mean over the same windows.
 Grid<float> window_mean(const Grid<float>& image, const FocusWindow& window);
 
-// Standard deviation of the measure over a window of n pixels, for independent image noise of relative standard
-// deviation 1 in every pixel; noise passes linearly for small values. Narrow windows average less of what correlates
-// between pixels, and have up to a fifth less.
-//
-// Roots of energies: sqrt(<e^2> / <e> / n) with the power response e of the measure's masks to waves of all directions
-// and lengths: 1 (standard deviation), 130/3 (Tenengrad), 5 (Brenner), 269165/36096 (wavelet). That is the noise where
-// white texture exceeds it; without texture it is 1 / sqrt(2) of that.
-//
-// Modified Laplacian: sqrt(27.9 / n). The second differences along x and y each have the variance 6; on white texture
-// they keep its signs, and the sums of 6 r (2/pi) asin r over pixels with the correlation r make it that. Without
-// texture their absolute values have the covariances (2/pi)(sqrt(1 - r^2) + r asin r - 1), which add up to 12.02 / n.
-double noise_gain(FocusMeasure measure, double window_pixels);
-
 } // namespace vkfv::topography

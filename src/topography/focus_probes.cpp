@@ -111,10 +111,59 @@ NoiseModel fitted(const std::vector<double>& x, const std::vector<double>& y) {
                          : NoiseModel{.constant = 0, .slope = mean_x > 0 ? mean_y / mean_x : 0};
 }
 
+// The limit of the smallest quarter.
+double smallest_quarter(std::vector<double> values) {
+    const auto quarter = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 4);
+    std::ranges::nth_element(values, quarter);
+    return *quarter;
+}
+
+// Images whose second differences along z are noise, by the variances of those of image 1, 2, ... Noise is least
+// correlated where it is least by chance: what decides is not an image's own difference but those three images before
+// and after, which share no image with it. Its own tells texture that is in focus in an image or two.
+std::vector<int> quiet_images(const std::vector<double>& variances, bool all) {
+    constexpr int apart = 3;
+    constexpr double most = 3; // of the smallest quarter's limit, which noise hardly reaches
+    const int count = static_cast<int>(variances.size());
+    const auto at = [&](int k) { return variances[static_cast<std::size_t>(k)]; };
+    std::vector<double> around;
+    for (int k = 0; k < count; ++k) {
+        const int before = k >= apart ? k - apart : k + apart, after = k + apart < count ? k + apart : k - apart;
+        around.push_back(at(std::clamp(before, 0, count - 1)) + at(std::clamp(after, 0, count - 1)));
+    }
+    std::vector<int> images;
+    const double quiet = smallest_quarter(around), limit = most * smallest_quarter(variances);
+    for (int k = 0; k < count; ++k) {
+        if (all || (around[static_cast<std::size_t>(k)] <= quiet && at(k) <= limit)) {
+            images.push_back(k + 1);
+        }
+    }
+    return images;
+}
+
+// Adds values(p) values(p + k) for every k = (column - reach, row) of sums, over the pixels p of a patch.
+void add_products(const std::vector<double>& values, int columns, int rows, Grid<double>& sums) {
+    const int reach = sums.columns / 2;
+    for (int dy = 0; dy < sums.rows; ++dy) {
+        for (int dx = -reach; dx <= reach; ++dx) {
+            double sum = 0;
+            for (int row = 0; row + dy < rows; ++row) {
+                const auto here = static_cast<std::size_t>(row) * static_cast<std::size_t>(columns);
+                const auto there = here + static_cast<std::size_t>(dy) * static_cast<std::size_t>(columns);
+                for (int column = std::max(0, -dx); column < std::min(columns, columns - dx); ++column) {
+                    sum += values[here + static_cast<std::size_t>(column)] *
+                           values[there + static_cast<std::size_t>(column + dx)];
+                }
+            }
+            sums(dx + reach, dy) += sum;
+        }
+    }
+}
+
 } // namespace
 
 FocusProbes::FocusProbes(int columns, int rows, FocusMeasure measure, const FocusWindow& window)
-    : measure_(measure), window_(window) {
+    : measure_(measure), window_(window), pixels_(static_cast<std::size_t>(columns) * static_cast<std::size_t>(rows)) {
     const int margin = window.radius() + reach;
     for (const int row : middles(rows, margin)) {
         for (const int column : middles(columns, margin)) {
@@ -235,40 +284,101 @@ double FocusProbes::curve_width() const {
     return best;
 }
 
+FocusProbes::Differences FocusProbes::differences(const Probe& probe, std::size_t channel) const {
+    const auto pixels = probe.pixels();
+    const auto stride = static_cast<std::size_t>(channels_) * pixels;
+    Differences found;
+    for (int image = 1; image + 1 < images_; ++image) {
+        const float* here = probe.values.data() + static_cast<std::size_t>(image) * stride + channel * pixels;
+        double sum = 0;
+        for (std::size_t k = 0; k < pixels; ++k) {
+            const double second = here[k - stride] - 2.0 * here[k] + here[k + stride];
+            sum += second * second;
+            found.level += here[k];
+        }
+        constexpr double gain = 1 + 4 + 1; // of the second difference on the variance of independent values
+        found.variances.push_back(sum / static_cast<double>(pixels) / gain);
+    }
+    if (found.variances.empty()) {
+        return found;
+    }
+    const auto count = static_cast<double>(found.variances.size());
+    found.level /= static_cast<double>(pixels) * count;
+    // Of images that are mostly dark, the quarter that saw no light says nothing.
+    const auto dark = std::ranges::count(probe.values, 0.0f);
+    found.sparse = static_cast<std::size_t>(dark) > probe.values.size() / 2;
+    found.variance = found.sparse ? std::accumulate(found.variances.begin(), found.variances.end(), 0.0) / count
+                                  : smallest_quarter(found.variances);
+    return found;
+}
+
 NoiseModel FocusProbes::noise() const {
     std::vector<double> levels, variances;
+    for (const Probe& probe : probes_) {
+        for (std::size_t channel = 0; channel < static_cast<std::size_t>(channels_); ++channel) {
+            const Differences found = differences(probe, channel);
+            if (!found.variances.empty()) {
+                levels.push_back(found.level);
+                variances.push_back(found.variance);
+            }
+        }
+    }
+    return levels.empty() ? NoiseModel{} : fitted(levels, variances);
+}
+
+NoiseCorrelation FocusProbes::noise_correlation() const {
+    NoiseCorrelation correlation;
+    if (images_ < least_images_for_correlation) {
+        return correlation;
+    }
+    constexpr int reach = NoiseCorrelation::reach;
+    // Of pairs (dx, dy) apart: mean products over each patch's variance, with the number of pairs in all patches.
+    Grid<double> products(2 * reach + 1, reach + 1), pairs = products;
+    double patches = 0;
+    std::vector<double> second;
     for (const Probe& probe : probes_) {
         const auto pixels = probe.pixels();
         const auto stride = static_cast<std::size_t>(channels_) * pixels;
         for (std::size_t channel = 0; channel < static_cast<std::size_t>(channels_); ++channel) {
-            std::vector<double> differences;
-            double level = 0;
-            for (int image = 1; image + 1 < images_; ++image) {
+            const Differences found = differences(probe, channel);
+            Grid<double> sums(products.columns, products.rows);
+            const auto images = quiet_images(found.variances, found.sparse);
+            for (const int image : images) {
                 const float* here = probe.values.data() + static_cast<std::size_t>(image) * stride + channel * pixels;
-                double sum = 0;
+                second.clear();
                 for (std::size_t k = 0; k < pixels; ++k) {
-                    const double second = here[k - stride] - 2.0 * here[k] + here[k + stride];
-                    sum += second * second;
-                    level += here[k];
+                    second.push_back(here[k - stride] - 2.0 * here[k] + here[k + stride]);
                 }
-                constexpr double gain = 1 + 4 + 1; // of the second difference on the variance of independent values
-                differences.push_back(sum / static_cast<double>(pixels) / gain);
+                add_products(second, probe.columns, probe.rows, sums);
             }
-            if (differences.empty()) {
+            const double variance = sums(reach, 0) / static_cast<double>(pixels);
+            if (!(variance > 0)) {
                 continue;
             }
-            const auto quarter = differences.begin() + static_cast<std::ptrdiff_t>(differences.size() / 4);
-            std::ranges::nth_element(differences, quarter);
-            // Of images that are mostly dark, the quarter that saw no light says nothing.
-            const auto dark = std::ranges::count(probe.values, 0.0f);
-            const bool sparse = static_cast<std::size_t>(dark) > probe.values.size() / 2;
-            const double mean =
-                std::accumulate(differences.begin(), differences.end(), 0.0) / static_cast<double>(differences.size());
-            levels.push_back(level / static_cast<double>(pixels * differences.size()));
-            variances.push_back(sparse ? mean : *quarter);
+            patches += 1;
+            for (int dy = 0; dy <= reach; ++dy) {
+                for (int dx = -reach; dx <= reach; ++dx) {
+                    const double here = std::max(0, probe.columns - std::abs(dx)) * std::max(0, probe.rows - dy);
+                    products(dx + reach, dy) += here > 0 ? sums(dx + reach, dy) / (variance * here) : 0;
+                    pairs(dx + reach, dy) += here * static_cast<double>(images.size());
+                }
+            }
         }
     }
-    return levels.empty() ? NoiseModel{} : fitted(levels, variances);
+    // Patches of small images overlap; and differences of images that follow each other are alike in part, which
+    // doubles the products' variance at most.
+    const double most_pairs = static_cast<double>(pixels_) * channels_ * images_ / 4.0;
+    for (int dy = 0; dy <= reach; ++dy) {
+        for (int dx = dy == 0 ? 1 : -reach; dx <= reach; ++dx) {
+            const double count = std::min(most_pairs, pairs(dx + reach, dy));
+            const double value = patches > 0 ? products(dx + reach, dy) / patches : 0;
+            constexpr double significant = 4; // standard deviations: 40 places, each by chance in 16000 stacks
+            if (count > 0 && std::abs(value) > significant * std::sqrt(2 / count)) {
+                correlation.set(dx, dy, std::clamp(value, -1.0, 1.0));
+            }
+        }
+    }
+    return correlation;
 }
 
 std::vector<Evidence> FocusProbes::by_chance(const std::vector<double>& axial_weights, double rate) const {

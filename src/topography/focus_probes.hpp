@@ -5,6 +5,7 @@
 
 #include "topography/axial_average.hpp"
 #include "topography/focus_measure.hpp"
+#include "topography/noise_gain.hpp"
 
 #include <cstddef>
 #include <vector>
@@ -14,6 +15,9 @@ namespace vkfv::topography {
 // Curves of few images are often as unimodal as a curve can be by chance: no more than this is asked of them.
 inline constexpr int few_images = 14;
 inline constexpr double most_unimodality_asked = 0.8;
+
+// Of fewer a quarter of the second differences along z is too few to be without texture.
+inline constexpr int least_images_for_correlation = 10;
 
 // The widest average along z over the standard deviation of the focus curves: two thirds of a Gaussian's half width.
 // Heights are best at 0.6 to 1, of stacks full of noise at 1; the wider, the more of a short scan is blurred.
@@ -60,6 +64,11 @@ class FocusProbes {
     // texture that comes into focus makes others larger. Of a channel.
     NoiseModel noise() const;
 
+    // Of the same second differences, those between the smallest; every probe counts alike, all channels together. What
+    // does not exceed four standard deviations of its own is 0, so independent noise stays that; independence too of
+    // less than least_images_for_correlation and of images without noise.
+    NoiseCorrelation noise_correlation() const;
+
     // The evidence of curves with the images in random order, none where the largest value stands at an end.
     // axial_weights: of both averages (axial_average.hpp). Of as many orders as tell what a share of `rate` exceeds,
     // the better the less an order costs.
@@ -81,6 +90,15 @@ class FocusProbes {
         std::size_t pixels() const { return static_cast<std::size_t>(columns) * static_cast<std::size_t>(rows); }
     };
 
+    // Second differences along z of a channel.
+    struct Differences {
+        std::vector<double> variances{}; // of a single image's noise by that of image 1, 2, ...
+        double level = 0;                // mean brightness of all
+        double variance = 0;             // by the smallest quarter of the variances; sparse: by all
+        bool sparse = false;             // most of the values are 0
+    };
+    Differences differences(const Probe& probe, std::size_t channel) const;
+
     // What every image's mean is made of.
     using Means = std::vector<std::vector<Share>>;
 
@@ -91,6 +109,7 @@ class FocusProbes {
 
     FocusMeasure measure_;
     FocusWindow window_;
+    std::size_t pixels_; // of an image
     std::vector<Probe> probes_;
     int channels_ = 0;
     int images_ = 0;

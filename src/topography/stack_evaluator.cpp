@@ -259,6 +259,8 @@ Topography StackEvaluator::finish(double x0, double y0, double pitch) {
 
     const int images = static_cast<int>(z_.size());
     const NoiseModel noise_model = probes_->noise();
+    const NoiseCorrelation correlation = probes_->noise_correlation();
+    const double gain = noise_gain(measure_, 1, correlation);
     StackFigures figures = judge_stack();
     const SmoothedNoise smoothed = smoothed_noise(axial_weights_);
     const std::vector<AveragedPoint> points = averaged_points(axial_weights_, images);
@@ -288,7 +290,7 @@ Topography StackEvaluator::finish(double x0, double y0, double pitch) {
             const double averaging = std::sqrt(points[static_cast<std::size_t>(curve.at)].variance);
             const double here = brightness_around(column, row) / images;
             // Of a single image's value.
-            const double image_noise = relative_noise(here, noise_model) * noise_gain(measure_, pixels);
+            const double image_noise = relative_noise(here, noise_model) * gain / std::sqrt(pixels);
             const double rise = curve.largest - curve.sum / images;
             result.contrast(column, row) = rise / (image_noise * averaging);
             result.fit_residual(column, row) = curve.residual;
@@ -310,6 +312,7 @@ Topography StackEvaluator::finish(double x0, double y0, double pitch) {
     if (options_.repair_outliers)
         repair_outliers(result);
     figures.image_noise = relative_noise(brightness, noise_model);
+    figures.noise_correlation = correlation;
     result.stack = figures;
     return result;
 }

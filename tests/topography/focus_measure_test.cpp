@@ -1,6 +1,7 @@
 #include "topography/focus_measure.hpp"
 
 #include "core/error.hpp"
+#include "topography/noise_gain.hpp"
 
 #include <gtest/gtest.h>
 
