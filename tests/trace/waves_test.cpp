@@ -1,4 +1,5 @@
 // The image that waves make of light sorted by pupil cells.
+#include "core/units.hpp"
 #include "optics/airy_pattern.hpp"
 #include "optics/ideal_lens.hpp"
 #include "trace/device_tracer.hpp"
@@ -6,8 +7,6 @@
 #include "trace/host_tracer.hpp"
 #include "trace/microscope.hpp"
 #include "trace/wave_image.hpp"
-
-#include "support/statistics.hpp"
 
 #include <gtest/gtest.h>
 
@@ -71,7 +70,111 @@ optics::Instrument turned_microscope() {
     return optics::assemble(description);
 }
 
+// H at s of the cutoff (scalar Debye integral) with the object z mm from focus: a sum over the overlap of two pupils.
+double debye_transfer(double aperture, double wavelength, double s, double z) {
+    constexpr int half = 300;
+    const double k = 2 * pi / wavelength;
+    double sum = 0;
+    double area = 0;
+    for (int j = -half; j < half; ++j) {
+        for (int i = -half; i < half; ++i) {
+            const double x = aperture * (i + 0.5) / half;
+            const double y = aperture * (j + 0.5) / half;
+            const double ahead = std::pow(x + s * aperture, 2) + y * y;
+            const double behind = std::pow(x - s * aperture, 2) + y * y;
+            area += x * x + y * y <= aperture * aperture ? 1 : 0;
+            if (std::max(ahead, behind) <= aperture * aperture) {
+                sum += std::cos(k * z * (std::sqrt(1 - ahead) - std::sqrt(1 - behind)));
+            }
+        }
+    }
+    return sum / area;
+}
+
+constexpr double grating_wavelength = 0.55e-3;
+constexpr int grating_pixels = 40;
+
+// An ideal lens, pixels of an eighth of the shortest wave that it passes.
+optics::Instrument ideal_microscope(double aperture) {
+    auto description = test::microscope_description();
+    const double focal_length = aperture > 0.5 ? 4 : 20;
+    description.spectrum = optics::Spectrum::line(grating_wavelength * um_per_mm);
+    description.source_radius = 0.5;
+    description.objective = optics::ideal_objective(focal_length, aperture);
+    description.tube_lens = optics::ideal_lens(200);
+    description.detector_pixels = grating_pixels;
+    description.detector_size = grating_pixels * grating_wavelength / (8 * aperture) * 200 / focal_length;
+    description.field_stop_radius = 0.1;
+    description.turned = true;
+    return optics::assemble(description);
+}
+
+// The amplitude of a grating at this angle over its mean, in phase with it, without the pixels' own transfer.
+double grating_contrast(const Grid<double>& image, double period, double angle, double pitch) {
+    double mean = 0;
+    double amplitude = 0;
+    double square = 0;
+    double weights = 0;
+    for (int pass = 0; pass < 2; ++pass) {
+        for (int row = 0; row < image.rows; ++row) {
+            for (int column = 0; column < image.columns; ++column) {
+                const double x = (column - 0.5 * (image.columns - 1)) * pitch;
+                const double y = (row - 0.5 * (image.rows - 1)) * pitch;
+                const double wave = std::cos(2 * pi / period * (x * std::cos(angle) + y * std::sin(angle)));
+                const double weight = std::pow(std::sin(pi * (column + 0.5) / image.columns), 2) *
+                                      std::pow(std::sin(pi * (row + 0.5) / image.rows), 2);
+                if (pass == 0) {
+                    weights += weight;
+                    mean += weight * image(column, row);
+                } else {
+                    amplitude += weight * wave * (image(column, row) - mean / weights);
+                    square += weight * wave * wave;
+                }
+            }
+        }
+    }
+    const auto pixel = [&](double cosine) {
+        const double turn = pi * pitch * cosine / period;
+        return std::abs(turn) < 1e-12 ? 1.0 : std::sin(turn) / turn;
+    };
+    return amplitude / square / (mean / weights) / (pixel(std::cos(angle)) * pixel(std::sin(angle)));
+}
+
 } // namespace
+
+TEST(Waves, give_gratings_the_contrast_of_the_debye_integral) {
+    constexpr double angle = 0.39; // rad, between a cell's side and its diagonal
+    for (const double aperture : {0.28, 0.83}) {
+        const auto instrument = ideal_microscope(aperture);
+        const double pitch = instrument.first_order.pixel_pitch;
+        for (const double s : {0.25, 0.5}) {
+            const double period = grating_wavelength / (2 * aperture * s);
+            specimen::Analytic plane;
+            plane.x_min = plane.y_min = -0.1;
+            plane.x_max = plane.y_max = 0.1;
+            specimen::Specimen specimen{plane, specimen::Material{{{"lambertian", 1, {}}}}};
+            specimen.reflectance = specimen::make_reflectance_map(
+                {.kind = specimen::Reflectance::Kind::grating, .angle = angle, .period = period},
+                {-0.1, -0.1, 0.1, 0.1}, {});
+            for (const double waves : {0.0, 0.5}) {
+                const double z = 2 * waves * grating_wavelength / (aperture * aperture);
+                auto options = with_waves(trace::Estimator::backward);
+                options.rays = 512 * grating_pixels * grating_pixels;
+                options.max_bounces = 1;
+                const auto image = trace::make_device_tracer(instrument, specimen, options)->expose(z, 1);
+                const double expected = debye_transfer(aperture, grating_wavelength, s, z);
+                EXPECT_NEAR(grating_contrast(image.flux, period, angle, pitch), expected, waves == 0 ? 0.01 : 0.04)
+                    << aperture << ' ' << s << ' ' << waves;
+                // The twin: rays, and the Airy transfer of focus at this height too.
+                options.waves.reset();
+                const auto rays = trace::make_device_tracer(instrument, specimen, options)->expose(z, 1);
+                const double blurred =
+                    grating_contrast(rays.flux, period, angle, pitch) * optics::circular_pupil_transfer(s, 1);
+                EXPECT_GT(std::abs(blurred - expected), waves == 0 ? -1 : 0.05);
+            }
+        }
+    }
+}
 
 TEST(Waves, keep_the_light_and_do_not_add_noise) {
     const auto instrument = test::microscope();
