@@ -78,10 +78,10 @@ enum class PointState : std::uint16_t {
 
 // Of a stack as a whole.
 struct StackFigures {
-    double smoothing_steps = 0;         // that were used
-    double curve_width_steps = 0;       // standard deviation of its focus curves, FocusProbes::curve_width()
-    ChanceLimit limit;                  // that a measured point exceeds
-    double image_noise = 0;             // standard deviation of a pixel over its brightness, at the mean brightness
+    double smoothing_steps = 0;           // that were used
+    double curve_width_steps = 0;         // standard deviation of its focus curves, FocusProbes::curve_width()
+    ChanceLimit limit;                    // that a measured point exceeds
+    double image_noise = 0;               // standard deviation of a pixel over its brightness, at the mean brightness
     NoiseCorrelation noise_correlation{}; // of neighbouring pixels' noise, FocusProbes::noise_correlation()
 };
 
