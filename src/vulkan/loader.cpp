@@ -121,9 +121,9 @@ bool loader_is_kept = false;
 } // namespace
 
 #if defined(VKFV_VALIDATION) && defined(__SANITIZE_ADDRESS__)
-// The layer's synchronisation validation leaks some kilobytes of its own.
+// The layer's synchronisation validation leaks some kilobytes of its own, and so does VkFFT where it writes kernels.
 extern "C" const char* __lsan_default_suppressions() {
-    return "leak:libVkLayer_khronos_validation.so\n";
+    return "leak:libVkLayer_khronos_validation.so\nleak:initializeVkFFT\n";
 }
 extern "C" const char* __lsan_default_options() {
     return "print_suppressions=0";

@@ -108,19 +108,24 @@ TEST(Diffraction, a_measured_point_spread_function_is_centred_and_normalised) {
     EXPECT_THROW(Diffraction(Grid<float>(3, 3), pitch, 32, 32, pitch), std::invalid_argument);
 }
 
-// The same pattern by either way: sampled finely, the Airy pattern is a point spread function like any other.
+// A point spread function from a file is collected over the image's pixels: that of the Airy pattern, sampled finely,
+// is the fine image of the pattern added up to pixels.
 TEST(Diffraction, both_ways_agree) {
-    const int size = 64;
+    constexpr int size = 48, parts = 11;
     const double pitch = 1e-3;
-    const Grid<float> spread = Diffraction(pattern(), 257, 257, 0.1 * pitch).apply(point(257, 128, 128));
-    const Grid<float> by_pattern = Diffraction(pattern(), size, size, pitch).apply(point(size, 30, 33));
-    const Grid<float> by_file = Diffraction(spread, 0.1 * pitch, size, size, pitch).apply(point(size, 30, 33));
-    // The file's own pixels widen it twice more, each by q^2 / 24 of the curvature (2 pi NA / wavelength)^2 / 2 along
-    // both axes: 0.7 % of the peak for q = 0.1 um. The tails that the file leaves out are another 1 %.
-    for (int row = 28; row < 39; ++row)
-        for (int column = 25; column < 36; ++column)
-            EXPECT_NEAR(by_file(column, row), by_pattern(column, row), 0.02f * by_pattern(30, 33))
-                << column << " " << row;
+    const double fine = pitch / parts;
+    const Grid<float> spread = Diffraction(pattern(), 257, 257, fine).apply(point(257, 128, 128));
+    const Grid<float> by_file = Diffraction(spread, fine, size, size, pitch).apply(point(size, 22, 25));
+    const Grid<float> by_pattern = Diffraction(pattern(), size * parts, size * parts, fine)
+                                       .apply(point(size * parts, 22 * parts + 5, 25 * parts + 5));
+    Grid<double> pixels(size, size);
+    for (int row = 0; row < size * parts; ++row)
+        for (int column = 0; column < size * parts; ++column)
+            pixels(column / parts, row / parts) += static_cast<double>(by_pattern(column, row));
+    // The tails that the file leaves out are 1 % of the light.
+    for (int row = 20; row < 31; ++row)
+        for (int column = 17; column < 28; ++column)
+            EXPECT_NEAR(by_file(column, row), pixels(column, row), 0.02 * pixels(22, 25)) << column << " " << row;
 }
 
 TEST(AiryPattern, averages_over_the_spectrum) {
