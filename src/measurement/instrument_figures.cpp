@@ -31,7 +31,7 @@ std::vector<FigureGroup> groups_of(const Configuration& configuration, const opt
           {"working_distance_mm", first_order.working_distance, "paraxial object plane to the front vertex"},
           {"free_distance_mm", instrument.front_vertex_height, "plane of best focus to the front vertex"},
           {"best_focus_offset_um", first_order.best_focus_offset * um_per_mm,
-           "on-axis least variance of the wavefront over the paraxial plane: z = 0"},
+           "least wavefront variance over the paraxial plane: z = 0"},
           {"least_spot_offset_um", first_order.least_spot_offset * um_per_mm,
            "on-axis least RMS spot of rays over the paraxial plane"}}},
         {"Pupils",

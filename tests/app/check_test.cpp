@@ -168,7 +168,7 @@ TEST(Check, NamesTheLensThatClipsTheCorner) {
     EXPECT_THAT(warnings_of(check(small_configuration)), Not(Contains(HasSubstr("clipped"))));
 }
 
-// The corners of 1 mm by 1 mm come into focus 14.7 um below the middle.
+// The corners of 1 mm by 1 mm come into focus 14.9 um below the middle, by the wavefront.
 TEST(Check, WarnsOfAScanThatTheFieldCurvatureLeaves) {
     const auto wide_with = [](const std::string& start) {
         return check(small_configuration,
@@ -176,7 +176,7 @@ TEST(Check, WarnsOfAScanThatTheFieldCurvatureLeaves) {
                       "scan.z_start_um=" + start, "--set", "scan.z_stop_um=5", "--set", "scan.z_step_um=1"});
     };
     const auto cut = wide_with("-10");
-    EXPECT_NEAR(cut["field_curvature_corner_um"], 14.7, 0.1);
+    EXPECT_NEAR(cut["field_curvature_corner_um"], 14.9, 0.1);
     EXPECT_THAT(warnings_of(cut), Contains(HasSubstr("The field is curved")));
     EXPECT_THAT(warnings_of(wide_with("-20")), Not(Contains(HasSubstr("The field is curved"))));
 }

@@ -87,7 +87,6 @@ TEST(Configuration, IdentityHoldsWhatChangesImagesAndNothingElse) {
         {"trace.device", "\"host\"", ""},
         {"output.directory", "\"other\"", ""},
         {"output.surfaces", "[\"sur\"]", ""},
-        {"diffraction.point_spread", "\"airy\"", ""},
         {"topography.focus_measure", "\"brenner\"", ""},
         {"topography.window_px", "5", ""},
         {"topography.window_shape", "\"gaussian\"", ""},
@@ -108,7 +107,14 @@ TEST(Configuration, IdentityHoldsWhatChangesImagesAndNothingElse) {
     for (const auto& change : neutral) {
         EXPECT_EQ(load("identity", small_configuration, {change}).identity, reference) << change.key;
     }
+    // A blur comes after the trace, waves do not.
+    const auto of_rays = load("identity", small_configuration, {{"diffraction.model", "\"none\"", ""}}).identity;
+    EXPECT_NE(of_rays, reference);
+    EXPECT_EQ(load("identity", small_configuration, {{"diffraction.model", "\"airy\"", ""}}).identity, of_rays);
+    EXPECT_EQ(load("identity", small_configuration, {{"diffraction.point_spread", "\"airy\"", ""}}).identity, of_rays);
     const std::vector<TomlOverride> influential = {
+        {"diffraction.cells", "6", ""},
+        {"diffraction.parts_per_pixel", "1", ""},
         {"trace.rays", "2001", ""},
         {"trace.seed", "2", ""},
         {"trace.max_bounces", "3", ""},

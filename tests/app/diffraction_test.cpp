@@ -35,7 +35,7 @@ TEST(Diffraction, BlursBesideTheTracedImage) {
         const auto result = run_program(command, folder);
         EXPECT_EQ(result.exit_code, 0) << result.standard_error;
     };
-    run("a.tif", {});
+    run("a.tif", {"--set", "diffraction.model=none"});
     run("b.tif", {"--set", "diffraction.point_spread=airy"});
     EXPECT_EQ(read_file(folder / "a.tif"), read_file(folder / "b.tif"));
     const auto traced = images::read_image(folder / "b.tif");
@@ -43,6 +43,16 @@ TEST(Diffraction, BlursBesideTheTracedImage) {
     // Rounding to float of each pixel.
     EXPECT_NEAR(sum(blurred) / sum(traced), 1, 1e-6);
     EXPECT_LT(spread(blurred), 0.9 * spread(traced));
+
+    // The older name of the key says the same.
+    run("d.tif", {"--set", "diffraction.model=airy"});
+    EXPECT_EQ(read_file(folder / "d_diffracted.tif"), read_file(folder / "b_diffracted.tif"));
+    // Waves are the default, and no blur beside the image.
+    run("w.tif", {});
+    EXPECT_FALSE(std::filesystem::exists(folder / "w_diffracted.tif"));
+    const auto waves = images::read_image(folder / "w.tif");
+    EXPECT_NEAR(sum(waves) / sum(traced), 1, 1e-6);
+    EXPECT_LT(spread(waves), 0.95 * spread(traced));
 
     // A point spread function of one pixel is none.
     Grid<float> point(3, 3);
@@ -73,6 +83,10 @@ TEST(Diffraction, AWrongPointSpreadFunctionIsRefused) {
                 HasSubstr("none.tif"));
     EXPECT_THAT(run({"diffraction.point_spread=airy", "diffraction.pitch_um=0.1"}), HasSubstr("pitch_um"));
     EXPECT_THAT(run({"diffraction.point_spread=gauss"}), HasSubstr("airy"));
+    EXPECT_THAT(run({"diffraction.point_spread=airy", "diffraction.model=airy"}), HasSubstr("beside model"));
+    EXPECT_THAT(run({"diffraction.model=waves", "diffraction.cells=7"}), HasSubstr("even number"));
+    EXPECT_THAT(run({"diffraction.model=none", "diffraction.cells=6"}), HasSubstr("cells"));
+    EXPECT_THAT(run({"diffraction.model=waves", "trace.mode=nonsequential"}), HasSubstr("nonsequential"));
 }
 
 } // namespace

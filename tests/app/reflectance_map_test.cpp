@@ -63,7 +63,8 @@ TEST(ReflectanceMap, APrintedFlatIsMeasuredFlat) {
     const auto folder = fresh_folder("printed_flat");
     const auto example = (std::filesystem::path(VKFV_SOURCE_DIR) / "assets/stacks/printed_flat.toml").string();
     const auto results = [&](const std::string& name, std::vector<std::string> further) {
-        std::vector<std::string> arguments = {"--stack", example, "--out", name, "--quiet", "--rays", "65536"};
+        std::vector<std::string> arguments = {"--stack", example, "--out",           name, "--quiet", "--rays",
+                                              "262144",  "--set", "scan.z_step_um=2"};
         arguments.insert(arguments.end(), further.begin(), further.end());
         const auto result = run_program(arguments, folder);
         EXPECT_EQ(result.exit_code, 0) << result.standard_error;
