@@ -18,7 +18,7 @@ using Complex = std::complex<double>;
 
 // Points of a lattice across the pupil's half width that the mean over a cell is taken from, for each cell across it.
 constexpr int points_a_cell = 10;
-constexpr int spectral_samples = 8;
+constexpr int most_wavelengths = 7; // of a continuous spectrum, whose mean changes slowly with its wavelengths
 
 // The pupil on a lattice whose points p + lambda f / 2 are points again, for frequencies that are multiples of the
 // cutoff over `half`. No point lies on an axis, where mirror images would share a cell's edge.
@@ -105,14 +105,14 @@ double shortest_wavelength(std::span<const SpectralNode> nodes) {
 } // namespace
 
 int parts_for_waves(const Instrument& instrument) {
-    const double pitch = shortest_wavelength(spectral_nodes(instrument, spectral_samples)) /
-                         (4 * instrument.first_order.numerical_aperture);
+    const double pitch =
+        shortest_wavelength(spectral_nodes(instrument)) / (4 * instrument.first_order.numerical_aperture);
     return std::max(1, static_cast<int>(std::ceil(instrument.first_order.pixel_pitch / pitch * (1 - 1e-9))));
 }
 
 PupilFilter::PupilFilter(const Instrument& instrument, const WaveOptions& options)
     : steps_(std::max(32, points_a_cell * options.cells / 2)) {
-    const auto nodes = spectral_nodes(instrument, spectral_samples);
+    const auto nodes = at_most(most_wavelengths, spectral_nodes(instrument));
     cells_.side = static_cast<std::uint32_t>(options.cells);
     cells_.parts = static_cast<std::uint32_t>(options.parts > 0 ? options.parts : parts_for_waves(instrument));
     part_pitch_ = instrument.first_order.pixel_pitch / cells_.parts;
