@@ -39,7 +39,7 @@ class BenchScene {
     const vulkan::DeviceReport& device() const { return device_; }
     const specimen::Specimen& specimen() const { return specimen_; }
     const optics::Instrument& instrument() const { return instrument_; }
-    bool software() const { return device_.type == "CPU"; }
+    bool software() const { return vulkan::is_software(device_); }
 
     // Rays of a run: as many as the device traces in the time of a run, at most the configuration's; 0 until settled.
     std::uint64_t rays() const { return rays_; }

@@ -57,7 +57,7 @@ HitTimes time_hits(const specimen::Specimen& specimen, const trace::TraceOptions
     };
     const vulkan::Kernel kernel = kernel_for(order == HitOrder::leaving ? kernels::HITS_LEAVE : kernels::HITS_ARRIVE);
 
-    const bool software = device.report().type == "CPU";
+    const bool software = vulkan::is_software(device.report());
     kernels::TimedHits batch{};
     batch.count = options.batch > 0 ? static_cast<std::uint32_t>(options.batch) : software ? 1u << 20 : 1u << 28;
     batch.seed = options.seed;

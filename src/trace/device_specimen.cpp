@@ -292,7 +292,7 @@ ChosenTraversal choose_traversal(const vulkan::DeviceReport& device, const speci
     if (!device.ray_query) {
         return {own, fmt::format("{} (the device has no ray query)", traversal_name(own))};
     }
-    if (device.type == "CPU") {
+    if (vulkan::is_software(device)) {
         return {own, fmt::format("{} (faster than ray query on a CPU)", traversal_name(own))};
     }
     return {Traversal::ray_query, "ray-query (the device has it)"};

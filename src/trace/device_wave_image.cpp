@@ -115,8 +115,4 @@ Grid<double> DeviceWaveImage::image() const {
     return image;
 }
 
-std::size_t DeviceWaveImage::bytes() const {
-    return planes_.bytes() + table_.bytes() + spectrum_.bytes() + image_.bytes() + result_.bytes();
-}
-
 } // namespace vkfv::trace

@@ -19,7 +19,6 @@ class DeviceWaveImage {
     void record(vulkan::Commands& commands) const;
     // Light of the pixels in the units of the sorted light.
     Grid<double> image() const;
-    std::size_t bytes() const; // of the device's memory, without the light
 
   private:
     void dispatch(vulkan::Commands& commands, const vulkan::Kernel& kernel, std::span<const vulkan::Binding> bindings,

@@ -353,7 +353,7 @@ std::vector<DeviceReport> list_devices() {
 
 bool is_hardware(const std::string& selector) {
     const auto reports = list_devices();
-    return reports[choose_device(reports, {selector})].type != "CPU";
+    return !is_software(reports[choose_device(reports, {selector})]);
 }
 
 } // namespace vkfv::vulkan
