@@ -5,6 +5,7 @@
 #include "core/error.hpp"
 #include "core/interruption.hpp"
 #include "core/result_folder.hpp"
+#include "core/stages.hpp"
 #include "vulkan/device.hpp"
 #include "vulkan/failure.hpp"
 
@@ -40,6 +41,7 @@ bool standard_output_is_whole() {
 } // namespace
 
 int main(int argument_count, char** argument_values) {
+    vkfv::enter_stage("command line, configuration");
     vkfv::explain_interruptions();
     const vkfv::vulkan::DriverScope drivers;
     try {

@@ -27,6 +27,7 @@ struct CommandOptions {
     std::vector<TomlOverride> overrides;
     std::optional<std::filesystem::path> out;
     bool quiet = false;
+    bool timings = false;
     bool json = false;
     bool markdown = false;
 

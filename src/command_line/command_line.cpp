@@ -2,6 +2,7 @@
 
 #include "command_line/command.hpp"
 #include "command_line/reference.hpp"
+#include "core/stages.hpp"
 
 #include <CLI/CLI.hpp>
 #include <fmt/format.h>
@@ -62,6 +63,9 @@ class CommandLine {
         place_operands(command);
         spdlog::set_level(options_.quiet ? spdlog::level::warn : spdlog::level::info);
         command.run(options_);
+        if (options_.timings) {
+            fmt::print("{}", stage_table());
+        }
     }
 
   private:
@@ -275,6 +279,10 @@ void declare_commands(std::vector<Command> commands) {
                                    .value = "",
                                    .description = "Only warnings and errors, no progress",
                                    .target = into(&CommandOptions::quiet)});
+        command.options.push_back({.name = "--timings",
+                                   .value = "",
+                                   .description = "At the end, where the command's time went",
+                                   .target = into(&CommandOptions::timings)});
     }
     declared() = std::move(commands);
 }

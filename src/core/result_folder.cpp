@@ -118,7 +118,9 @@ void ResultFolder::write(const fs::path& name, std::string_view bytes) {
 }
 
 void ResultFolder::note(const fs::path& name, std::string_view bytes) {
-    sums_[name.generic_string()] = sum_of(bytes);
+    std::string sum = sum_of(bytes);
+    const std::scoped_lock lock(mutex_);
+    sums_[name.generic_string()] = std::move(sum);
 }
 
 bool ResultFolder::holds(const fs::path& name) const {

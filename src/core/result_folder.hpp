@@ -6,6 +6,7 @@
 
 #include <filesystem>
 #include <map>
+#include <mutex>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -33,7 +34,7 @@ class ResultFolder {
     const std::filesystem::path& path() const { return folder_; }
 
     // Files by names relative to the folder, with sub-folders where they have some. write_file() of core/file.hpp, and
-    // a line of the list to be.
+    // a line of the list to be. Several threads may write, each its own files.
     void write(const std::filesystem::path& name, std::string_view bytes);
     // A line of the list for a file that is known to be whole.
     void note(const std::filesystem::path& name, std::string_view bytes);
@@ -48,6 +49,7 @@ class ResultFolder {
     std::filesystem::path folder_;
     int lock_ = -1;                              // file descriptor
     std::map<std::string, std::string> earlier_; // sums by name, of the list that was there
+    std::mutex mutex_;                           // of what follows
     std::map<std::string, std::string> sums_;    // of this run
 };
 

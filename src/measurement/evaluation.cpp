@@ -7,7 +7,6 @@
 #include "surface_files/surface_file.hpp"
 #include "topography/device_focus_planes.hpp"
 #include "topography/flatness.hpp"
-#include "vulkan/device.hpp"
 
 #include <fmt/format.h>
 
@@ -92,13 +91,22 @@ std::string reasons_text(const Evaluation& evaluation) {
 
 } // namespace
 
-topography::FocusPlanesMaker focus_planes_for(EvaluateOn evaluate_on, const std::string& device_selector) {
-    const bool traced_on_host = device_selector == "host";
+topography::FocusPlanesMaker focus_planes_for(EvaluateOn evaluate_on, std::shared_ptr<const vulkan::Device> traces) {
     if (evaluate_on == EvaluateOn::host ||
-        (evaluate_on == EvaluateOn::automatic && (traced_on_host || !vulkan::is_hardware(device_selector)))) {
+        (evaluate_on == EvaluateOn::automatic && (!traces || vulkan::is_software(traces->report())))) {
         return topography::make_host_focus_planes;
     }
-    return topography::device_focus_planes(traced_on_host ? std::string() : device_selector);
+    return topography::device_focus_planes(traces ? std::move(traces) : std::make_shared<const vulkan::Device>());
+}
+
+topography::FocusPlanesMaker focus_planes_for(EvaluateOn evaluate_on, const std::string& device_selector) {
+    const bool on_host = device_selector == "host";
+    if (evaluate_on == EvaluateOn::host ||
+        (evaluate_on == EvaluateOn::automatic && (on_host || !vulkan::is_hardware(device_selector)))) {
+        return topography::make_host_focus_planes;
+    }
+    return topography::device_focus_planes(std::make_shared<const vulkan::Device>(
+        vulkan::DeviceOptions{on_host ? std::string() : device_selector}));
 }
 
 std::optional<Flat> read_flat(const Configuration& configuration, int columns, int rows, double pitch) {

@@ -5,6 +5,7 @@
 #include "optics/diffraction.hpp"
 #include "topography/compare.hpp"
 #include "topography/topography.hpp"
+#include "vulkan/device.hpp"
 
 #include <filesystem>
 #include <memory>
@@ -46,9 +47,11 @@ struct Evaluation {
     std::shared_ptr<Evaluation> diffracted; // the same of the images after diffraction; none without [diffraction]
 };
 
-// Where a stack is evaluated by this choice of [topography] evaluate_on while a device traces it (selector: of the
-// device, or "host"): "auto" means the device if it has cores of its own; on the host's own cores the host's code takes
-// a third of lavapipe's time at 1000 x 1000 pixels. Throws DeviceError.
+// Where a stack is evaluated by this choice of [topography] evaluate_on: "auto" means the device that traces it (none:
+// the host) if it has cores of its own; on the host's own cores the host's code takes a third of lavapipe's time at
+// 1000 x 1000 pixels. Throws DeviceError.
+topography::FocusPlanesMaker focus_planes_for(EvaluateOn evaluate_on, std::shared_ptr<const vulkan::Device> traces);
+// Of a stack that was traced elsewhere; selector: of the device that would trace, or "host".
 topography::FocusPlanesMaker focus_planes_for(EvaluateOn evaluate_on, const std::string& device_selector);
 
 // Takes a stack's images in their order, as they come, and keeps the time that this takes.

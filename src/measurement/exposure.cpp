@@ -1,6 +1,7 @@
 #include "measurement/exposure.hpp"
 
 #include "core/pixel_grid.hpp"
+#include "core/stages.hpp"
 #include "core/units.hpp"
 #include "images/image_file.hpp"
 #include "measurement/assembly.hpp"
@@ -39,7 +40,9 @@ Grid<float> in_float(const Grid<double>& image) {
 
 Exposure expose(const Configuration& configuration, const optics::Instrument& instrument,
                 const specimen::Specimen& specimen, double focal_height) {
+    enter_stage("device, kernels");
     const auto tracer = make_tracer(instrument, specimen, configuration.trace);
+    enter_stage("image");
     const double pitch = instrument.first_order.pixel_pitch;
     const int pixels = configuration.instrument.detector_pixels;
     Exposure exposure{tracer->expose(focal_height, image_index(configuration, focal_height)),

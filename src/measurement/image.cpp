@@ -1,6 +1,7 @@
 #include "measurement/image.hpp"
 
 #include "core/file.hpp"
+#include "core/stages.hpp"
 #include "core/units.hpp"
 #include "measurement/assembly.hpp"
 #include "measurement/specimen_view.hpp"
@@ -35,11 +36,14 @@ std::string text_of(const trace::Ledger& ledger) {
 } // namespace
 
 ImageResult measure_image(const Configuration& configuration, double focal_height, const std::filesystem::path& file) {
+    enter_stage("specimen");
     const auto specimen = make_specimen(configuration);
-    ImageResult result{.exposure = expose(configuration, instrument_for(configuration, specimen, focal_height),
-                                          specimen, focal_height),
+    enter_stage("instrument");
+    const auto instrument = instrument_for(configuration, specimen, focal_height);
+    ImageResult result{.exposure = expose(configuration, instrument, specimen, focal_height),
                        .file = file,
                        .picture = file};
+    enter_stage("files");
     result.picture.replace_extension(".svg");
     const auto& exposure = result.exposure;
     auto files = image_files(file, exposure, focal_height);
@@ -51,6 +55,7 @@ ImageResult measure_image(const Configuration& configuration, double focal_heigh
     for (const auto& [name, bytes] : files) {
         write_file(name, bytes);
     }
+    enter_stage("end");
     for (const auto& warning : warning_of_lost_light(exposure.image)) {
         spdlog::warn(warning);
     }

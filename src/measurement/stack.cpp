@@ -1,6 +1,7 @@
 #include "measurement/stack.hpp"
 
 #include "core/digest.hpp"
+#include "core/stages.hpp"
 #include "measurement/assembly.hpp"
 #include "measurement/evaluation_files.hpp"
 #include "measurement/exposure.hpp"
@@ -21,13 +22,17 @@ constexpr double most_image_noise = 0.5, good_image_noise = 0.1;
 
 StackResult measure_stack(const Configuration& configuration, Progress& progress) {
     const auto positions = configuration.scan->positions();
+    enter_stage("specimen");
     const auto specimen = make_specimen(configuration);
+    enter_stage("instrument");
     const auto instrument = assemble_instrument(configuration, specimen, positions);
     const int pixels = configuration.instrument.detector_pixels;
     const auto flat = read_flat(configuration, pixels, pixels, instrument.first_order.pixel_pitch);
+    enter_stage("device, kernels");
     const auto tracer = make_tracer(instrument, specimen, configuration.trace);
     const std::string identity = image_identity(configuration, specimen::geometry_digest(specimen), tracer->identity());
 
+    enter_stage("folder of the stack");
     scan::ImageStore store(configuration.output_directory, {.configuration = configuration.canonical,
                                                             .identity = identity,
                                                             .digest = Digest().add(identity).text(),
@@ -37,8 +42,9 @@ StackResult measure_stack(const Configuration& configuration, Progress& progress
                                                             .pitch = instrument.first_order.pixel_pitch});
     // Evaluated as they are traced: no second pass over the disk.
     StackEvaluation stack_evaluation(evaluation_options(configuration, instrument),
-                                     focus_planes_for(configuration.evaluate_on, configuration.trace.device),
+                                     focus_planes_for(configuration.evaluate_on, tracer->device()),
                                      make_diffraction(configuration, instrument));
+    enter_stage("images");
     bool any_light = false;
     const auto traced = scan::run_stack(*tracer, store, progress, {}, [&](int image, Grid<float> flux) {
         any_light = any_light || std::ranges::any_of(flux.values, [](float value) { return value > 0; });
@@ -49,6 +55,7 @@ StackResult measure_stack(const Configuration& configuration, Progress& progress
         spdlog::warn("No light reaches the detector in any image. vkfv --image of one position tells where it goes");
     }
 
+    enter_stage("heights and truth");
     const std::uint64_t rays_per_image = trace::launched_rays(configuration.trace, pixels);
     EvaluatedStack stack{.evaluation = stack_evaluation.finish(truth_on_pixels(instrument, configuration, specimen),
                                                                configuration.band, flat),
@@ -63,7 +70,9 @@ StackResult measure_stack(const Configuration& configuration, Progress& progress
         spdlog::warn("The images' noise is {:.0f} % of their brightness: what is measured is little or rough. {}",
                      100 * noise, remedy_of_noise(configuration, noise, good_image_noise));
     }
+    enter_stage("results and report");
     write_results(store.results(), stack);
+    enter_stage("end");
     return {.evaluation = std::move(stack.evaluation),
             .traced = traced,
             .rays_per_image = rays_per_image,

@@ -2,12 +2,19 @@
 
 #include "core/error.hpp"
 #include "core/interruption.hpp"
+#include "core/job_queue.hpp"
 
 #include <fmt/format.h>
 #include <spdlog/spdlog.h>
 
+#include <algorithm>
+#include <chrono>
+#include <deque>
 #include <future>
+#include <memory>
+#include <mutex>
 #include <stdexcept>
+#include <thread>
 #include <vector>
 
 namespace vkfv::scan {
@@ -22,10 +29,15 @@ StackSummary run_stack(const trace::Tracer& tracer, ImageStore& store, Progress&
     }
     const auto& positions = store.description().positions;
     std::vector<int> of_shard;
+    std::vector<int> to_trace;
     StackSummary summary;
     for (int image = shard.index; image < static_cast<int>(positions.size()); image += shard.count) {
         of_shard.push_back(image);
-        summary.kept += store.stored(image) ? 1 : 0;
+        if (store.stored(image)) {
+            ++summary.kept;
+        } else {
+            to_trace.push_back(image);
+        }
     }
     const int images = static_cast<int>(of_shard.size());
     progress.begin(images, summary.kept);
@@ -36,46 +48,63 @@ StackSummary run_stack(const trace::Tracer& tracer, ImageStore& store, Progress&
     };
     tell_what_is_stored();
 
-    // At most one image waits to be written: a second would only hold memory while the disk is the slower
-    // part.
-    std::future<void> writing;
-    std::uint64_t rays_in_writing = 0;
-    const auto finish_writing = [&] {
-        if (!writing.valid()) {
-            return;
-        }
+    std::mutex counting; // of the summary
+    const auto write = [&](int image, const trace::Image& exposure) {
         try {
-            writing.get();
+            store.store(image, exposure);
         } catch (const std::runtime_error& error) {
+            const std::scoped_lock lock(counting);
             throw RunError(fmt::format("{}. {} of {} images are stored in {}: free the disk, then give the same "
                                        "command again to continue",
                                        error.what(), summary.kept + summary.traced, images, store.folder().string()));
         }
+        const std::scoped_lock lock(counting);
         ++summary.traced;
+        summary.rays += exposure.rays;
         tell_what_is_stored();
-        summary.rays += rays_in_writing;
-        progress.advance(rays_in_writing);
+        progress.advance(exposure.rays);
     };
+    // No more images wait to be written than threads write: they would only hold memory while the disk is the slower
+    // part.
+    const int writers = std::clamp(static_cast<int>(std::thread::hardware_concurrency()) / 4, 1, 4);
+    JobQueue writing(writers, static_cast<std::size_t>(writers));
+    JobQueue visiting(1, 2);
+
+    std::deque<std::future<trace::Image>> under_way;
+    auto to_begin = to_trace.begin();
+    auto to_take = to_trace.begin();
+    auto last = std::chrono::steady_clock::now();
+    double device_end = 0; // of the image before
     for (const int image : of_shard) {
         const double z = positions[static_cast<std::size_t>(image)];
-        if (store.stored(image)) {
+        if (to_take == to_trace.end() || *to_take != image) {
             if (visit) {
-                visit(image, read_frame(store.folder(), image, z));
+                visiting.add([&visit, &store, image, z] { visit(image, read_frame(store.folder(), image, z)); });
             }
             continue;
         }
-        trace::Image exposure = tracer.expose(z, static_cast<std::uint32_t>(image));
-        summary.trace_seconds += exposure.seconds;
-        finish_writing();
-        rays_in_writing = exposure.rays;
-        Grid<float> flux = visit ? as_stored(exposure.flux) : Grid<float>();
-        writing = std::async(std::launch::async,
-                             [&store, image, exposure = std::move(exposure)] { store.store(image, exposure); });
-        if (visit) {
-            visit(image, std::move(flux)); // while it is written
+        ++to_take;
+        for (; to_begin != to_trace.end() && static_cast<int>(under_way.size()) < tracer.most_under_way(); ++to_begin) {
+            under_way.push_back(tracer.begin(positions[static_cast<std::size_t>(*to_begin)],
+                                             static_cast<std::uint32_t>(*to_begin)));
         }
+        auto exposure = std::make_shared<trace::Image>(under_way.front().get());
+        under_way.pop_front();
+        // Of the wall clock, what no image before has taken.
+        const auto now = std::chrono::steady_clock::now();
+        exposure->seconds = std::min(exposure->seconds, std::chrono::duration<double>(now - last).count());
+        last = now;
+        summary.trace_seconds += exposure->seconds;
+        summary.device_seconds += exposure->device_seconds;
+        summary.device_span += std::max(0.0, exposure->device_end - device_end);
+        device_end = exposure->device_end;
+        if (visit) {
+            visiting.add([&visit, image, exposure] { visit(image, as_stored(exposure->flux)); });
+        }
+        writing.add([&write, image, exposure] { write(image, *exposure); });
     }
-    finish_writing();
+    visiting.finish();
+    writing.finish();
     store.write_ledger();
     progress.end();
     summary.complete = store.complete();

@@ -22,14 +22,17 @@ struct StackSummary {
     int kept = 0;   // images that were stored before
     int traced = 0; // images of this run
     std::uint64_t rays = 0;
-    double trace_seconds = 0; // wall clock of the traces of this run
+    double trace_seconds = 0;  // wall clock of the traces of this run
+    double device_seconds = 0; // of them, the device's work by its own clock
+    double device_span = 0;    // on that clock, from the first image's beginning to the last one's end
     bool complete = false;    // every image of the stack is stored
 };
 
 // Looks at an image of the shard: radiant flux per pixel in W as it is stored.
 using ImageVisitor = std::function<void(int image, Grid<float> flux)>;
 
-// Exposes and stores all images of the shard that the store lacks; while one is written the next is traced.
+// Exposes and stores all images of the shard that the store lacks. While the tracer works on the next ones, images are
+// written and visited by other threads, visited by one.
 // The image's number keys its random numbers, so an image does not depend on which run traced it. Reports the
 // images of the shard. `visit` sees every image of the shard once, in their order: those stored before from
 // the disk, the others when they have been traced. Throws what the tracer throws, and RunError if an image cannot be

@@ -373,6 +373,7 @@ void ImageStore::store(int image, const trace::Image& exposure) {
                     sealed(images::tiff_bytes(
                         flux, {.pitch_x = description_.pitch, .pitch_y = description_.pitch, .description = text})));
 
+    const std::scoped_lock lock(mutex_);
     const bool first = ledger_header_.empty();
     ledger_header_ = header;
     ledger_rows_[index] = row;

@@ -19,6 +19,7 @@
 
 #include <filesystem>
 #include <memory>
+#include <mutex>
 #include <string>
 #include <vector>
 
@@ -58,7 +59,7 @@ class ImageStore {
     const std::vector<std::string>& damaged() const { return damaged_; }
 
     // Makes one exposure durable; its pixels must be those of the description. Replaces an image stored
-    // before. Throws RunError if the disk fails. Not for several threads at once; stored() of other images
+    // before. Throws RunError if the disk fails. Several threads may store different images; stored() of others
     // may be asked meanwhile.
     void store(int image, const trace::Image& exposure);
 
@@ -71,6 +72,7 @@ class ImageStore {
 
     std::unique_ptr<ResultFolder> results_;
     StackDescription description_;
+    std::mutex mutex_;                     // of the ledger
     std::string ledger_header_;            // empty until the first image
     std::vector<std::string> ledger_rows_; // of each image, without line end; empty: not stored
     std::vector<std::string> damaged_;

@@ -11,7 +11,8 @@
 #include "vulkan/kernel.hpp"
 
 #include <algorithm>
-#include <optional>
+#include <memory>
+#include <utility>
 
 namespace vkfv::topography {
 
@@ -54,10 +55,10 @@ std::vector<vulkan::BindingDeclaration> storage_buffers(std::initializer_list<st
 
 class DeviceFocusPlanes final : public FocusPlanes {
   public:
-    DeviceFocusPlanes(const std::string& selector, const FocusPlanesPlan& stack)
+    DeviceFocusPlanes(std::shared_ptr<const vulkan::Device> device, const FocusPlanesPlan& stack)
         : plan_(on_device(stack.plan)), averaged_curves_(stack.averaged_curves_kept),
           pixels_(static_cast<std::size_t>(plan_.columns) * static_cast<std::size_t>(plan_.rows)),
-          channels_(static_cast<std::size_t>(plan_.channels)), device_(vulkan::DeviceOptions{selector}),
+          channels_(static_cast<std::size_t>(plan_.channels)), shared_(std::move(device)), device_(*shared_),
           mean_(device_, "focus_mean", ::focus_mean, storage_buffers({BINDING_FROM, BINDING_TO}), sizeof(MeanTerm)),
           add_brightness_(device_, "focus_brightness", ::focus_brightness,
                           storage_buffers({BINDING_IMAGE, BINDING_BRIGHTNESS}), sizeof(ImageSize)),
@@ -85,6 +86,9 @@ class DeviceFocusPlanes final : public FocusPlanes {
         weights_.write_values(std::span<const float>(weights));
         brightness_.fill_zero();
         all_in_focus_.fill_zero();
+        for (int k = 0; k < 2; ++k) {
+            carriers_.emplace_back(device_, channels_ * pixels_ * sizeof(float), vulkan::Buffer::Memory::host);
+        }
         for (int k = 0; k < stack.images_kept; ++k) {
             images_.emplace_back(device_, channels_ * pixels_ * sizeof(float));
         }
@@ -95,9 +99,13 @@ class DeviceFocusPlanes final : public FocusPlanes {
 
     void take(int image, Channels channels) override {
         submit();
+        // The one that carried the image before the last has been read.
+        vulkan::Buffer& carrier = carriers_[static_cast<std::size_t>(image) % carriers_.size()];
         for (std::size_t channel = 0; channel < channels.size(); ++channel) {
-            image_at(image).write_values(std::span<const float>(channels[channel].values), channel * pixels_);
+            carrier.write_values(std::span<const float>(channels[channel].values), channel * pixels_);
         }
+        commands().copy(carrier, image_at(image), carrier.bytes());
+        commands().barrier();
         dispatch(add_brightness_, {{BINDING_IMAGE, &image_at(image)}, {BINDING_BRIGHTNESS, &brightness_}},
                  ImageSize{static_cast<std::uint32_t>(pixels_), static_cast<std::uint32_t>(channels_)}, pixels_);
     }
@@ -144,6 +152,9 @@ class DeviceFocusPlanes final : public FocusPlanes {
 
     StackSummary summary() override {
         submit();
+        if (submitted_) {
+            submitted_->wait();
+        }
         const auto grid = [&](const auto& values) {
             Grid<typename std::decay_t<decltype(values)>::value_type> result(plan_.columns, plan_.rows);
             result.values = values;
@@ -169,12 +180,9 @@ class DeviceFocusPlanes final : public FocusPlanes {
     template <class Push>
     void dispatch(const vulkan::Kernel& kernel, const std::vector<vulkan::Binding>& bindings, const Push& push,
                   std::size_t invocations) {
-        if (!commands_) {
-            commands_.emplace(device_);
-        }
         const auto groups = vulkan::groups_of(invocations, workgroup);
-        commands_->dispatch(kernel, bindings, push, groups.x, groups.y);
-        commands_->barrier();
+        commands().dispatch(kernel, bindings, push, groups.x, groups.y);
+        commands().barrier();
     }
 
     void measure(const vulkan::Buffer& image, const vulkan::Buffer& curve) {
@@ -203,11 +211,22 @@ class DeviceFocusPlanes final : public FocusPlanes {
         }
     }
 
-    // What has been recorded since the last image, at once.
+    // Those recorded since the last image.
+    vulkan::Commands& commands() {
+        if (!commands_) {
+            commands_ = std::make_unique<vulkan::Commands>(device_, 0, vulkan::Device::Lane::evaluation);
+        }
+        return *commands_;
+    }
+
+    // Them, once those before have been done.
     void submit() {
-        if (commands_) {
-            commands_->submit_and_wait();
-            commands_.reset();
+        if (submitted_) {
+            submitted_->wait();
+        }
+        submitted_ = std::move(commands_);
+        if (submitted_) {
+            submitted_->submit();
         }
     }
 
@@ -215,20 +234,23 @@ class DeviceFocusPlanes final : public FocusPlanes {
     int averaged_curves_;
     std::size_t pixels_;
     std::size_t channels_;
-    vulkan::Device device_;
+    std::shared_ptr<const vulkan::Device> shared_;
+    const vulkan::Device& device_;
     vulkan::Kernel mean_, add_brightness_, response_, rows_, columns_, single_, follow_, select_;
     vulkan::Buffer mean_image_, responses_, row_sums_, weights_, averaged_, alone_, records_, singles_, places_,
         brightness_, all_in_focus_;
     std::vector<vulkan::Buffer> images_; // the last few in turn
     std::vector<vulkan::Buffer> curves_; // likewise
     bool measured_alone_ = false;        // what was measured last is an image itself
-    std::optional<vulkan::Commands> commands_;
+    std::vector<vulkan::Buffer> carriers_; // in host memory, in turn
+    std::unique_ptr<vulkan::Commands> commands_;
+    std::unique_ptr<vulkan::Commands> submitted_;
 };
 
 } // namespace
 
-FocusPlanesMaker device_focus_planes(const std::string& selector) {
-    return [selector](const FocusPlanesPlan& plan) { return std::make_unique<DeviceFocusPlanes>(selector, plan); };
+FocusPlanesMaker device_focus_planes(std::shared_ptr<const vulkan::Device> device) {
+    return [device](const FocusPlanesPlan& plan) { return std::make_unique<DeviceFocusPlanes>(device, plan); };
 }
 
 } // namespace vkfv::topography

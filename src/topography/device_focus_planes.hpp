@@ -3,12 +3,13 @@
 #pragma once
 
 #include "topography/focus_planes.hpp"
+#include "vulkan/device.hpp"
 
-#include <string>
+#include <memory>
 
 namespace vkfv::topography {
 
-// selector: an index or a part of the device's name; empty: the best. The maker throws DeviceError.
-FocusPlanesMaker device_focus_planes(const std::string& selector);
+// Beside what else the device does. The maker throws DeviceError.
+FocusPlanesMaker device_focus_planes(std::shared_ptr<const vulkan::Device> device);
 
 } // namespace vkfv::topography

@@ -6,13 +6,13 @@
 #include "spirv/backward_specialised_bvh.h"
 #include "spirv/backward_specialised_quadtree.h"
 #include "spirv/backward_specialised_ray_query.h"
+#include "trace/device_exposures.hpp"
 #include "trace/scene_waves.hpp"
 
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <chrono>
-#include <mutex>
+#include <array>
 
 namespace vkfv::trace {
 
@@ -88,17 +88,19 @@ void BackwardTrace::record(vulkan::Commands& commands, std::uint32_t randomisati
     commands.barrier();
 }
 
-std::vector<std::uint64_t> BackwardTrace::sums() const {
-    return sums_.read_values<std::uint64_t>(pixels_);
+void BackwardTrace::copy_sums(vulkan::Commands& commands, const vulkan::Buffer& to, std::size_t to_byte) const {
+    commands.copy(sums_, to, sums_.bytes(), 0, to_byte);
+    commands.barrier();
 }
 
 namespace {
 
-class BackwardTracer final : public Tracer {
+class BackwardTracer final : public DeviceExposures {
   public:
     BackwardTracer(const optics::Instrument& instrument, const specimen::Specimen& specimen,
                    const TraceOptions& options)
-        : instrument_(instrument), turned_(optics::turned_round(instrument)),
+        : instrument_(instrument),
+          turned_(optics::turned_round(instrument)),
           plan_(backward_plan(options.rays, instrument.constants.detector_pixels)),
           filter_(filter_for_waves(instrument, options)),
           scene_(make_device_scene(turned_, specimen, options, filter_ ? &*filter_ : nullptr)),
@@ -108,59 +110,113 @@ class BackwardTracer final : public Tracer {
         }
     }
 
-    Image expose(double focal_height, std::uint32_t image) const override {
-        const std::scoped_lock lock(mutex_);
-        const auto start = std::chrono::steady_clock::now();
-        scene_.set_exposure(focal_height, image);
-        BackwardImage sums(instrument_, plan_);
-        double device_seconds = 0;
-        for (std::uint32_t randomisation = 0; randomisation < plan_.randomisations; ++randomisation) {
-            for (std::uint32_t first = 0; first < plan_.points; first += trace_.points_per_batch()) {
-                vulkan::Commands commands(*scene_.device, 2);
-                commands.timestamp();
-                if (first == 0) {
-                    trace_.clear(commands);
-                }
-                if (first == 0 && randomisation == 0) {
-                    scene_.clear_cell_light(commands);
-                }
-                trace_.record(commands, randomisation, first,
-                              std::min(trace_.points_per_batch(), plan_.points - first));
-                commands.timestamp();
-                commands.submit_and_wait();
-                device_seconds += commands.seconds()[1];
-            }
-            sums.add(trace_.sums());
-        }
-        Image result = sums.image();
-        if (waves_) {
-            const auto light = waves_->light();
-            device_seconds += light.device_seconds;
-            result = with_waves(std::move(result), light.pixels, sums.power_per_number(), *filter_);
-        }
-        result.device_seconds = device_seconds;
-        // Of the imaging train alone: who goes on to the source, no one counts.
-        result.crossings = static_cast<double>(result.rays) * turned_.constants.illumination_count;
-        result.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
-        return result;
-    }
-
     std::string description() const override {
         return fmt::format("{}; traversal {}; backward", scene_.device->choice(), scene_.traversal.reason);
     }
 
     TracerIdentity identity() const override { return scene_.identity(); }
+    std::shared_ptr<const vulkan::Device> device() const override { return scene_.device; }
 
   private:
+    class Exposure;
+
+    std::unique_ptr<DeviceExposure> start(double focal_height, std::uint32_t image, std::size_t slot) const override;
+    std::size_t slots() const override { return waves_ ? waves_->exposures_at_a_time() : most_exposures; }
+
+    std::size_t pixels() const { return pixel_count(scene_); }
+    // Sums of randomisations that are kept for the host at a time.
+    std::size_t randomisations_kept() const { return std::min<std::size_t>(plan_.randomisations, 4); }
+
     optics::Instrument instrument_;
     optics::Instrument turned_;
     BackwardPlan plan_;
     std::optional<optics::PupilFilter> filter_;
-    mutable std::mutex mutex_; // one exposure at a time: the buffers are shared
     mutable DeviceScene scene_;
     BackwardTrace trace_;
     std::optional<SceneWaves> waves_;
+    mutable std::array<std::optional<vulkan::Buffer>, most_exposures> for_host_; // sums, then the light of waves
 };
+
+class BackwardTracer::Exposure final : public DeviceExposure {
+  public:
+    Exposure(const BackwardTracer& tracer, const vulkan::Buffer& for_host)
+        : DeviceExposure(*tracer.scene_.device), tracer_(tracer), for_host_(for_host),
+          sums_(tracer.instrument_, tracer.plan_) {
+        const BackwardPlan& plan = tracer.plan_;
+        const std::uint32_t most = tracer.trace_.points_per_batch();
+        for (std::uint32_t randomisation = 0; randomisation < plan.randomisations; ++randomisation) {
+            if (randomisation >= tracer.randomisations_kept()) {
+                take_sums();
+            }
+            for (std::uint32_t first = 0; first < plan.points; first += most) {
+                vulkan::Commands& commands = work.open();
+                if (first == 0) {
+                    tracer.trace_.clear(commands);
+                    if (randomisation == 0) {
+                        tracer.scene_.clear_cell_light(commands);
+                    }
+                }
+                tracer.trace_.record(commands, randomisation, first, std::min(most, plan.points - first));
+                if (first + most >= plan.points) {
+                    tracer.trace_.copy_sums(commands, for_host_, place_of(randomisation));
+                }
+                work.submit();
+            }
+            last_submissions_.push_back(work.submissions() - 1);
+        }
+        if (tracer.waves_) {
+            tracer.waves_->hand_over(work, for_host_, place_of_light());
+        }
+    }
+
+    Image finish() override {
+        while (taken_ < last_submissions_.size()) {
+            take_sums();
+        }
+        Image image = sums_.image();
+        if (tracer_.waves_) {
+            work.wait(work.submissions() - 1);
+            image = with_waves(std::move(image), tracer_.waves_->light(for_host_, place_of_light()),
+                               sums_.power_per_number(), *tracer_.filter_);
+        }
+        // Of the imaging train alone: who goes on to the source, no one counts.
+        image.crossings = static_cast<double>(image.rays) * tracer_.turned_.constants.illumination_count;
+        return image;
+    }
+
+  private:
+    std::size_t place_of(std::size_t randomisation) const {
+        return randomisation % tracer_.randomisations_kept() * tracer_.pixels() * sizeof(std::uint64_t);
+    }
+    std::size_t place_of_light() const {
+        return tracer_.randomisations_kept() * tracer_.pixels() * sizeof(std::uint64_t);
+    }
+    // Of the first randomisation that has not been taken.
+    void take_sums() {
+        work.wait(last_submissions_[taken_]);
+        sums_.add(for_host_.values<std::uint64_t>(tracer_.pixels(), place_of(taken_)));
+        ++taken_;
+    }
+
+    const BackwardTracer& tracer_;
+    const vulkan::Buffer& for_host_;
+    BackwardImage sums_;
+    std::vector<std::size_t> last_submissions_; // of each randomisation
+    std::size_t taken_ = 0;                     // randomisations
+};
+
+std::unique_ptr<DeviceExposure> BackwardTracer::start(double focal_height, std::uint32_t image,
+                                                      std::size_t slot) const {
+    auto& for_host = for_host_.at(slot);
+    if (!for_host) {
+        const std::size_t numbers = randomisations_kept() * pixels();
+        for_host.emplace(*scene_.device,
+                         numbers * sizeof(std::uint64_t) + (waves_ ? waves_->bytes_for_host() : 0),
+                         vulkan::Buffer::Memory::host);
+    }
+    scene_.set_exposure(focal_height, image, slot);
+    return std::make_unique<Exposure>(*this, *for_host);
+}
 
 } // namespace
 

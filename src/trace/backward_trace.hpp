@@ -20,7 +20,7 @@ class BackwardTrace {
     // Points first ... first + count - 1 of every pixel, multiples of points_per_chunk().
     void record(vulkan::Commands& commands, std::uint32_t randomisation, std::uint32_t first,
                 std::uint32_t count) const;
-    std::vector<std::uint64_t> sums() const;
+    void copy_sums(vulkan::Commands& commands, const vulkan::Buffer& to, std::size_t to_byte) const;
 
     std::uint32_t points_per_chunk() const { return points_per_chunk_; }
     std::uint32_t points_per_batch() const { return points_per_batch_; }

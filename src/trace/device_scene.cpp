@@ -47,7 +47,7 @@ std::vector<vulkan::Box> boxes_of(const optics::Room& room) {
 
 DeviceScene make_device_scene(const optics::Instrument& instrument, const specimen::Specimen& specimen,
                               const TraceOptions& options, const optics::PupilFilter* filter) {
-    auto device = std::make_unique<const vulkan::Device>(vulkan::DeviceOptions{options.device});
+    auto device = std::make_shared<const vulkan::Device>(vulkan::DeviceOptions{options.device});
     optics::Room room = options.nonsequential ? optics::furnish(instrument) : optics::Room{};
     Accounts accounts =
         options.nonsequential ? Accounts(instrument, room.names) : Accounts(instrument, options.directed_scatter);
@@ -73,7 +73,10 @@ DeviceScene make_device_scene(const optics::Instrument& instrument, const specim
         constants.cell_light = {static_cast<std::uint32_t>(address), static_cast<std::uint32_t>(address >> 32)};
     }
     vulkan::Buffer surfaces = buffer_of(*device, surface_block(instrument));
-    vulkan::Buffer parameters(*device, sizeof(kernels::Parameters), vulkan::Buffer::Memory::host);
+    std::vector<vulkan::Buffer> parameters;
+    for (std::size_t slot = 0; slot < most_exposures; ++slot) {
+        parameters.emplace_back(*device, sizeof(kernels::Parameters), vulkan::Buffer::Memory::host);
+    }
     vulkan::Buffer spectrum = buffer_of(*device, spectrum_block(instrument));
     return {.device = std::move(device),
             .instrument = instrument,
@@ -96,9 +99,10 @@ DeviceScene make_device_scene(const optics::Instrument& instrument, const specim
             .cell_light = std::move(cell_light)};
 }
 
-void DeviceScene::set_exposure(double focal_height, std::uint32_t image) {
+void DeviceScene::set_exposure(double focal_height, std::uint32_t image, std::size_t for_slot) {
     constants.exposure = to_float(make_exposure(instrument, host_record, focal_height, seed, image));
-    parameters.write_values(std::span<const kernels::Parameters>(&constants, 1));
+    slot = for_slot;
+    parameters.at(slot).write_values(std::span<const kernels::Parameters>(&constants, 1));
 }
 
 void DeviceScene::clear_cell_light(vulkan::Commands& commands) const {
@@ -110,7 +114,7 @@ void DeviceScene::clear_cell_light(vulkan::Commands& commands) const {
 
 std::vector<vulkan::Binding> DeviceScene::bindings(std::initializer_list<vulkan::Binding> further) const {
     std::vector<vulkan::Binding> all = {{kernels::BINDING_SURFACES, &surfaces},
-                                        {kernels::BINDING_PARAMETERS, &parameters},
+                                        {kernels::BINDING_PARAMETERS, &parameters[slot]},
                                         {kernels::BINDING_SPECTRUM, &spectrum}};
     const auto of_specimen = device_specimen.bindings();
     all.insert(all.end(), of_specimen.begin(), of_specimen.end());

@@ -27,9 +27,14 @@ struct ElementBuffers {
     vulkan::Buffer order; // of their boxes
 };
 
+// Exposures that a device is given at a time: while the host takes one, the device has another.
+inline constexpr std::size_t most_exposures = 3;
+
 // make_device_scene() makes it. The instrument must outlive it.
 struct DeviceScene {
-    void set_exposure(double focal_height, std::uint32_t image);
+    // For what is recorded from now on. slot: of those under way at a time, below most_exposures; what was recorded for
+    // the slot before must have been done.
+    void set_exposure(double focal_height, std::uint32_t image, std::size_t slot = 0);
     // Of an image before its first path.
     void clear_cell_light(vulkan::Commands& commands) const;
 
@@ -54,7 +59,7 @@ struct DeviceScene {
     TracerIdentity identity() const;
     bool software() const { return vulkan::is_software(device->report()); }
 
-    std::unique_ptr<const vulkan::Device> device; // buffers point to it
+    std::shared_ptr<const vulkan::Device> device; // buffers point to it
     const optics::Instrument& instrument;
     std::uint32_t seed;
     std::uint64_t rays;                          // of an image
@@ -67,7 +72,8 @@ struct DeviceScene {
     kernels::Parameters constants;            // with the last exposure
     physics::f64::SpecimenRecord host_record; // with the top plane that the kernels mean: rounded to float
     vulkan::Buffer surfaces;
-    vulkan::Buffer parameters; // `constants`
+    std::vector<vulkan::Buffer> parameters; // a slot each: `constants` as they were set
+    std::size_t slot = 0;                   // set last
     vulkan::Buffer spectrum;
     std::optional<ElementBuffers> elements;   // only for non-sequential paths
     std::optional<vulkan::Buffer> cell_light; // only with pupil cells

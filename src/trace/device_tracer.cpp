@@ -1,6 +1,7 @@
 #include "trace/device_tracer.hpp"
 
 #include "trace/backward_trace.hpp"
+#include "trace/device_exposures.hpp"
 #include "trace/forward_trace.hpp"
 #include "trace/nonsequential_trace.hpp"
 #include "trace/scene_waves.hpp"
@@ -14,8 +15,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <chrono>
-#include <mutex>
+#include <array>
 
 namespace vkfv::trace {
 
@@ -24,10 +24,11 @@ namespace {
 // Batches a submission: waiting for each costs a GPU 60 us, and a software device's dispatch is long enough.
 constexpr std::uint32_t batches_per_submission_gpu = 8;
 
-class DeviceTracer final : public Tracer {
+class DeviceTracer final : public DeviceExposures {
   public:
     DeviceTracer(const optics::Instrument& instrument, const specimen::Specimen& specimen, const TraceOptions& options)
-        : instrument_(instrument), rays_(options.rays), filter_(filter_for_waves(instrument, options)),
+        : instrument_(instrument), rays_(options.rays),
+          filter_(filter_for_waves(instrument, options)),
           scene_(make_device_scene(instrument_, specimen, options, filter_ ? &*filter_ : nullptr)),
           trace_(make_trace(scene_, options)) {
         if (filter_) {
@@ -35,47 +36,16 @@ class DeviceTracer final : public Tracer {
         }
     }
 
-    Image expose(double focal_height, std::uint32_t image) const override {
-        const std::scoped_lock lock(mutex_);
-        const auto start = std::chrono::steady_clock::now();
-        scene_.set_exposure(focal_height, image);
-        const std::uint64_t per_submission =
-            std::uint64_t{trace_->batch()} * (scene_.software() ? 1 : batches_per_submission_gpu);
-        double device_seconds = 0;
-        for (std::uint64_t first = 0; first < rays_; first += per_submission) {
-            vulkan::Commands commands(*scene_.device, 2);
-            commands.timestamp();
-            if (first == 0) {
-                trace_->clear(commands);
-                scene_.clear_cell_light(commands);
-            }
-            const std::uint64_t end = std::min(rays_, first + per_submission);
-            for (std::uint64_t path = first; path < end; path += trace_->batch()) {
-                trace_->record(commands, path,
-                               static_cast<std::uint32_t>(std::min<std::uint64_t>(trace_->batch(), end - path)));
-            }
-            commands.timestamp();
-            commands.submit_and_wait();
-            device_seconds += commands.seconds()[1];
-        }
-        Image result = scene_.accounts.image(trace_->pixels(), trace_->fates(), rays_);
-        if (waves_) {
-            const auto light = waves_->light();
-            device_seconds += light.device_seconds;
-            result = with_waves(std::move(result), light.pixels, scene_.accounts.power_per_number(rays_), *filter_);
-        }
-        result.device_seconds = device_seconds;
-        result.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
-        return result;
-    }
-
     std::string description() const override {
         return fmt::format("{}; traversal {}", scene_.device->choice(), scene_.traversal.reason);
     }
 
     TracerIdentity identity() const override { return scene_.identity(); }
+    std::shared_ptr<const vulkan::Device> device() const override { return scene_.device; }
 
   private:
+    class Exposure;
+
     static std::unique_ptr<PathTrace> make_trace(const DeviceScene& scene, const TraceOptions& options) {
         const std::uint32_t batch = suitable_batch(scene, options.batch, options.rays);
         if (options.nonsequential) {
@@ -84,14 +54,72 @@ class DeviceTracer final : public Tracer {
         return std::make_unique<ForwardTrace>(scene, batch);
     }
 
+    std::unique_ptr<DeviceExposure> start(double focal_height, std::uint32_t image, std::size_t slot) const override;
+    std::size_t slots() const override { return waves_ ? waves_->exposures_at_a_time() : most_exposures; }
+
     optics::Instrument instrument_;
     std::uint64_t rays_;
     std::optional<optics::PupilFilter> filter_;
-    mutable std::mutex mutex_; // one exposure at a time: the buffers are shared
     mutable DeviceScene scene_;
     std::unique_ptr<PathTrace> trace_;
     std::optional<SceneWaves> waves_;
+    mutable std::array<std::optional<vulkan::Buffer>, most_exposures> for_host_; // counts, then the light of waves
 };
+
+class DeviceTracer::Exposure final : public DeviceExposure {
+  public:
+    Exposure(const DeviceTracer& tracer, const vulkan::Buffer& for_host)
+        : DeviceExposure(*tracer.scene_.device), tracer_(tracer), for_host_(for_host) {
+        const PathTrace& trace = *tracer.trace_;
+        const std::uint64_t per_submission =
+            std::uint64_t{trace.batch()} * (tracer.scene_.software() ? 1 : batches_per_submission_gpu);
+        for (std::uint64_t first = 0; first < tracer.rays_; first += per_submission) {
+            vulkan::Commands& commands = work.open();
+            if (first == 0) {
+                trace.clear(commands);
+                tracer.scene_.clear_cell_light(commands);
+            }
+            const std::uint64_t end = std::min(tracer.rays_, first + per_submission);
+            for (std::uint64_t path = first; path < end; path += trace.batch()) {
+                trace.record(commands, path,
+                             static_cast<std::uint32_t>(std::min<std::uint64_t>(trace.batch(), end - path)));
+            }
+            if (end == tracer.rays_) {
+                trace.copy_counts(commands, for_host_);
+            }
+            work.submit();
+        }
+        if (tracer.waves_) {
+            tracer.waves_->hand_over(work, for_host_, trace.bytes_for_host());
+        }
+    }
+
+    Image finish() override {
+        work.wait(work.submissions() - 1);
+        const PathTrace& trace = *tracer_.trace_;
+        const Accounts& accounts = tracer_.scene_.accounts;
+        Image image = accounts.image(trace.pixels(for_host_), trace.fates(for_host_), tracer_.rays_);
+        if (tracer_.waves_) {
+            image = with_waves(std::move(image), tracer_.waves_->light(for_host_, trace.bytes_for_host()),
+                               accounts.power_per_number(tracer_.rays_), *tracer_.filter_);
+        }
+        return image;
+    }
+
+  private:
+    const DeviceTracer& tracer_;
+    const vulkan::Buffer& for_host_;
+};
+
+std::unique_ptr<DeviceExposure> DeviceTracer::start(double focal_height, std::uint32_t image, std::size_t slot) const {
+    auto& for_host = for_host_.at(slot);
+    if (!for_host) {
+        for_host.emplace(*scene_.device, trace_->bytes_for_host() + (waves_ ? waves_->bytes_for_host() : 0),
+                         vulkan::Buffer::Memory::host);
+    }
+    scene_.set_exposure(focal_height, image, slot);
+    return std::make_unique<Exposure>(*this, *for_host);
+}
 
 } // namespace
 

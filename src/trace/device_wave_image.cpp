@@ -78,7 +78,7 @@ void DeviceWaveImage::dispatch(vulkan::Commands& commands, const vulkan::Kernel&
     commands.barrier();
 }
 
-void DeviceWaveImage::record(vulkan::Commands& commands) const {
+void DeviceWaveImage::record(vulkan::Commands& commands, const vulkan::Buffer& for_host, std::size_t to_byte) const {
     const vk::DeviceAddress address = light_.address();
     WavePairs pairs{.light = {static_cast<std::uint32_t>(address), static_cast<std::uint32_t>(address >> 32)},
                     .side = side_,
@@ -106,11 +106,12 @@ void DeviceWaveImage::record(vulkan::Commands& commands) const {
     dispatch(commands, extend_, to_image, push, 2 * places);
     inverse_.record(commands);
     dispatch(commands, add_up_, to_pixels, push, static_cast<std::size_t>(pixels_) * static_cast<std::size_t>(pixels_));
+    commands.copy(result_, for_host, result_.bytes(), 0, to_byte);
 }
 
-Grid<double> DeviceWaveImage::image() const {
+Grid<double> DeviceWaveImage::image(const vulkan::Buffer& for_host, std::size_t from_byte) const {
     Grid<double> image(pixels_, pixels_);
-    const auto values = result_.read_values<float>(image.values.size());
+    const auto values = for_host.values<float>(image.values.size(), from_byte);
     std::copy(values.begin(), values.end(), image.values.begin());
     return image;
 }

@@ -15,10 +15,11 @@ class DeviceWaveImage {
     DeviceWaveImage(const vulkan::Device& device, const optics::PupilFilter& filter, int pixels,
                     const vulkan::Buffer& light);
 
-    // Of the light as it is when the commands run.
-    void record(vulkan::Commands& commands) const;
+    // Of the light as it is when the commands run; the result goes to bytes() of memory that the host sees.
+    void record(vulkan::Commands& commands, const vulkan::Buffer& for_host, std::size_t to_byte) const;
+    std::size_t bytes() const { return result_.bytes(); }
     // Light of the pixels in the units of the sorted light.
-    Grid<double> image() const;
+    Grid<double> image(const vulkan::Buffer& for_host, std::size_t from_byte) const;
 
   private:
     void dispatch(vulkan::Commands& commands, const vulkan::Kernel& kernel, std::span<const vulkan::Binding> bindings,

@@ -8,17 +8,20 @@ SceneWaves::SceneWaves(const DeviceScene& scene, const optics::PupilFilter& filt
     }
 }
 
-SceneWaves::Light SceneWaves::light() const {
+void SceneWaves::hand_over(ExposureWork& work, const vulkan::Buffer& for_host, std::size_t to_byte) const {
     if (on_device_) {
-        vulkan::Commands commands(*scene_.device, 2);
-        commands.timestamp();
-        on_device_->record(commands);
-        commands.timestamp();
-        commands.submit_and_wait();
-        return {.pixels = on_device_->image(), .device_seconds = commands.seconds()[1]};
+        vulkan::Commands& commands = work.open();
+        on_device_->record(commands, for_host, to_byte);
+        work.submit();
+    }
+}
+
+Grid<double> SceneWaves::light(const vulkan::Buffer& for_host, std::size_t from_byte) const {
+    if (on_device_) {
+        return on_device_->image(for_host, from_byte);
     }
     const WaveImage image(filter_, scene_.instrument.constants.detector_pixels);
-    return {.pixels = image.apply(scene_.cell_light.value().read_values<std::uint64_t>(image.numbers()))};
+    return image.apply(scene_.cell_light.value().read_values<std::uint64_t>(image.numbers()));
 }
 
 } // namespace vkfv::trace

@@ -8,10 +8,15 @@
 #include "trace/tracer_identity.hpp"
 
 #include <cstdint>
-#include <functional>
+#include <future>
+#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
+
+namespace vkfv::vulkan {
+class Device;
+}
 
 namespace vkfv::trace {
 
@@ -85,8 +90,11 @@ struct Image {
     std::uint64_t rays = 0;
     std::uint64_t detected = 0; // rays
     double crossings = 0;       // of surfaces in sequence, of all rays together
-    double seconds = 0;         // s, wall clock of the trace; enters no image
-    double device_seconds = 0;  // s, the device's part of it by its own clock
+    // The rest enters no image; s. Exposures that are under way at a time share the wall clock.
+    double seconds = 0;        // wall clock, from beginning to end
+    double device_seconds = 0; // the device's work, by its own clock
+    double device_begin = 0;   // on that clock, from the tracer's first exposure on
+    double device_end = 0;
 };
 
 // Constructed for one instrument, specimen and device, then const: exposures are independent of each other.
@@ -96,8 +104,16 @@ class Tracer {
     // focal_height: z of the image, height of the focal plane in the specimen frame, mm. image: the index that keys
     // the random numbers. The same arguments give the same bits whatever the batch size.
     virtual Image expose(double focal_height, std::uint32_t image) const = 0;
+    // The same image, later: a device works on it from now on, and the host takes what came of it when the future is
+    // asked (or dropped). At most most_under_way() futures may be neither. The tracer must outlive them.
+    virtual std::future<Image> begin(double focal_height, std::uint32_t image) const {
+        return std::async(std::launch::deferred, [this, focal_height, image] { return expose(focal_height, image); });
+    }
+    virtual int most_under_way() const { return 1; }
     virtual std::string description() const = 0; // device, traversal and the reason for both
     virtual TracerIdentity identity() const = 0;
+    // That it works on, for further work there; none: the host.
+    virtual std::shared_ptr<const vulkan::Device> device() const { return nullptr; }
 };
 
 // The identity that a tracer would have, without opening the device. Throws DeviceError, InputError.

@@ -128,6 +128,13 @@ void Buffer::read(std::span<std::byte> data, std::size_t offset) const {
     }
 }
 
+std::span<const std::byte> Buffer::mapped() const {
+    if (mapped_ == nullptr) {
+        throw std::logic_error("the host sees no device memory");
+    }
+    return {mapped_, bytes_};
+}
+
 void Buffer::fill_zero() {
     Commands commands(*device_);
     commands.fill_zero(*this);

@@ -41,7 +41,16 @@ class Buffer {
         return values;
     }
 
+    // Of host memory: what lies in it now, without a copy.
+    template <class Value>
+    std::span<const Value> values(std::size_t count, std::size_t first_byte = 0) const {
+        const std::span<const std::byte> bytes = mapped().subspan(first_byte, count * sizeof(Value));
+        return {reinterpret_cast<const Value*>(bytes.data()), count};
+    }
+
   private:
+    std::span<const std::byte> mapped() const;
+
     const Device* device_;
     std::size_t bytes_ = 0;
     Memory memory_;

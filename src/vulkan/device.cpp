@@ -13,6 +13,7 @@
 #include <cctype>
 #include <charconv>
 #include <cstring>
+#include <mutex>
 #include <string_view>
 
 namespace vkfv::vulkan {
@@ -197,12 +198,14 @@ struct Device::State {
     std::shared_ptr<const Loader> drivers = open_drivers();
     vk::raii::PhysicalDevice physical{nullptr};
     vk::raii::Device device{nullptr};
-    vk::raii::Queue queue{nullptr};
+    std::vector<vk::raii::Queue> queues; // one, or one for each lane
+    std::mutex submitting;
     vk::raii::PipelineCache pipelines{nullptr};
     std::string pipelines_name;     // of this device and driver
     std::size_t pipelines_read = 0; // bytes
     std::uint32_t queue_family = 0;
-    double timestamp_period_ns = 0;
+    double timestamp_period = 0; // s
+    std::uint32_t timestamp_bits = 64;
     vk::PhysicalDeviceMemoryProperties memory;
     DeviceReport report;
     std::string choice;
@@ -253,7 +256,9 @@ Device::Device(const DeviceOptions& options) : state_(std::make_unique<State>())
     state.report.preferred = true;
     state.physical = std::move(devices[chosen]);
     state.queue_family = compute_family(state.physical).value();
-    state.timestamp_period_ns = static_cast<double>(state.physical.getProperties().limits.timestampPeriod);
+    constexpr double seconds_per_nanosecond = 1e-9;
+    state.timestamp_period = seconds_per_nanosecond * state.physical.getProperties().limits.timestampPeriod;
+    state.timestamp_bits = state.physical.getQueueFamilyProperties()[state.queue_family].timestampValidBits;
     state.memory = state.physical.getMemoryProperties();
 
     std::vector<const char*> extensions = {VK_KHR_PUSH_DESCRIPTOR_EXTENSION_NAME};
@@ -273,8 +278,11 @@ Device::Device(const DeviceOptions& options) : state_(std::make_unique<State>())
         chain.unlink<vk::PhysicalDeviceAccelerationStructureFeaturesKHR>();
         chain.unlink<vk::PhysicalDeviceRayQueryFeaturesKHR>();
     }
-    const float priority = 1.0F;
-    const vk::DeviceQueueCreateInfo queue_info({}, state.queue_family, 1, &priority);
+    const std::array<float, 2> priorities = {0.5F, 1.0F}; // evaluation, far shorter, goes first
+    const std::uint32_t queues =
+        std::min<std::uint32_t>(static_cast<std::uint32_t>(priorities.size()),
+                                state.physical.getQueueFamilyProperties()[state.queue_family].queueCount);
+    const vk::DeviceQueueCreateInfo queue_info({}, state.queue_family, queues, priorities.data());
     vk::DeviceCreateInfo& info = chain.get<vk::DeviceCreateInfo>();
     info.setQueueCreateInfos(queue_info);
     info.setPEnabledExtensionNames(extensions);
@@ -288,7 +296,9 @@ Device::Device(const DeviceOptions& options) : state_(std::make_unique<State>())
                                       "or choose another device",
                                       state.report.name, error.what()));
     }
-    state.queue = vk::raii::Queue(state.device, state.queue_family, 0);
+    for (std::uint32_t queue = 0; queue < queues; ++queue) {
+        state.queues.emplace_back(state.device, state.queue_family, queue);
+    }
     state.pipelines_name = pipelines_name(state.physical);
     const std::vector<std::byte> pipelines = read_cached(state.pipelines_name);
     state.pipelines_read = pipelines.size();
@@ -321,13 +331,21 @@ const vk::raii::PipelineCache& Device::pipelines() const {
     return state_->pipelines;
 }
 const vk::raii::Queue& Device::queue() const {
-    return state_->queue;
+    return state_->queues.front();
+}
+void Device::submit(Lane lane, const vk::SubmitInfo& info, vk::Fence done) const {
+    const std::scoped_lock lock(state_->submitting);
+    const auto queue = std::min<std::size_t>(static_cast<std::size_t>(lane), state_->queues.size() - 1);
+    state_->queues[queue].submit(info, done);
 }
 std::uint32_t Device::queue_family() const {
     return state_->queue_family;
 }
-double Device::timestamp_period_ns() const {
-    return state_->timestamp_period_ns;
+double Device::seconds_between(std::uint64_t first, std::uint64_t second) const {
+    // The difference's highest valid bit is its sign.
+    const std::uint32_t unused = 64U - state_->timestamp_bits;
+    const auto ticks = static_cast<std::int64_t>((second - first) << unused) >> unused;
+    return static_cast<double>(ticks) * state_->timestamp_period;
 }
 
 std::uint32_t Device::memory_type(std::uint32_t type_bits, vk::MemoryPropertyFlags properties) const {

@@ -59,12 +59,19 @@ class Device {
     const std::string& choice() const; // one sentence: which device, and why
     const vk::raii::Device& handle() const;
     const vk::raii::PhysicalDevice& physical() const;
+    // What is submitted to one lane works in the order of submission; lanes work beside each other where the device
+    // offers several queues.
+    enum class Lane { trace, evaluation };
+    // From any thread, one at a time. Throws vk::SystemError.
+    void submit(Lane lane, const vk::SubmitInfo& info, vk::Fence done) const;
+    // For a library that submits by itself: of Lane::trace, and while nobody else submits.
     const vk::raii::Queue& queue() const;
     // What the driver has compiled, here and in earlier runs on this device and driver (pipeline_cache.hpp); kept on
     // disk when the device closes.
     const vk::raii::PipelineCache& pipelines() const;
     std::uint32_t queue_family() const;
-    double timestamp_period_ns() const;
+    // s, between two timestamps, whose counter may wrap; less than half of its range apart, either may be the later.
+    double seconds_between(std::uint64_t first, std::uint64_t second) const;
     // Index of a memory type among `type_bits` with the properties; throws DeviceError when there is none.
     std::uint32_t memory_type(std::uint32_t type_bits, vk::MemoryPropertyFlags properties) const;
 

@@ -16,8 +16,6 @@ namespace {
 // What every Vulkan device grants; more would run here and fail elsewhere.
 constexpr std::uint32_t portable_push_constant_bytes = 128;
 
-constexpr double seconds_per_nanosecond = 1e-9;
-
 vk::DescriptorType type_of(BindingKind kind) {
     switch (kind) {
     case BindingKind::storage_buffer:
@@ -107,11 +105,11 @@ Kernel::Kernel(const Device& device, std::string name, std::span<const std::uint
     }
 }
 
-Commands::Commands(const Device& device, std::uint32_t timestamp_capacity) try
+Commands::Commands(const Device& device, std::uint32_t timestamp_capacity, Device::Lane lane) try
     : device_(&device), pool_(device.handle(), vk::CommandPoolCreateInfo(vk::CommandPoolCreateFlagBits::eTransient,
                                                                          device.queue_family())),
       buffers_(device.handle(), vk::CommandBufferAllocateInfo(*pool_, vk::CommandBufferLevel::ePrimary, 1)),
-      timestamp_capacity_(timestamp_capacity) {
+      lane_(lane), timestamp_capacity_(timestamp_capacity) {
     handle().begin(vk::CommandBufferBeginInfo(vk::CommandBufferUsageFlagBits::eOneTimeSubmit));
     if (timestamp_capacity_ > 0) {
         queries_ = vk::raii::QueryPool(device.handle(),
@@ -219,20 +217,37 @@ void Commands::timestamp() {
     handle().writeTimestamp(vk::PipelineStageFlagBits::eBottomOfPipe, *queries_, timestamps_++);
 }
 
-void Commands::submit_and_wait() {
-    if (submitted_) {
+Commands::~Commands() {
+    try {
+        wait();
+    } catch (const std::exception&) { // of a lost device nothing works on
+    }
+}
+
+void Commands::submit() {
+    if (*done_) {
         throw std::logic_error("commands are submitted once");
     }
-    submitted_ = true;
     try {
         barrier();
         handle().end();
-        const vk::raii::Fence done(device_->handle(), vk::FenceCreateInfo());
+        vk::raii::Fence done(device_->handle(), vk::FenceCreateInfo());
         const vk::CommandBuffer commands = *handle();
         vk::SubmitInfo info;
         info.setCommandBuffers(commands);
-        device_->queue().submit(info, *done);
-        const vk::Fence fence = *done;
+        device_->submit(lane_, info, *done);
+        done_ = std::move(done);
+    } catch (const vk::SystemError& error) {
+        throw run_error_of(error, device_->report().name);
+    }
+}
+
+void Commands::wait() {
+    if (!*done_) {
+        return;
+    }
+    try {
+        const vk::Fence fence = *done_;
         // Without a limit the wait ends in success or throws.
         static_cast<void>(device_->handle().waitForFences(fence, VK_TRUE, std::numeric_limits<std::uint64_t>::max()));
     } catch (const vk::SystemError& error) {
@@ -240,30 +255,28 @@ void Commands::submit_and_wait() {
     }
 }
 
-std::vector<double> Commands::seconds() const {
-    if (!submitted_) {
+std::vector<std::uint64_t> Commands::ticks() const {
+    if (!*done_) {
         throw std::logic_error("timestamps are read after the submission");
     }
     if (timestamps_ == 0) {
         return {};
     }
-    std::vector<std::uint64_t> ticks;
     try {
-        ticks =
-            queries_
-                .getResults<std::uint64_t>(0, timestamps_, timestamps_ * sizeof(std::uint64_t), sizeof(std::uint64_t),
-                                           vk::QueryResultFlagBits::e64 | vk::QueryResultFlagBits::eWait)
-                .second;
+        return queries_
+            .getResults<std::uint64_t>(0, timestamps_, timestamps_ * sizeof(std::uint64_t), sizeof(std::uint64_t),
+                                       vk::QueryResultFlagBits::e64 | vk::QueryResultFlagBits::eWait)
+            .second;
     } catch (const vk::SystemError& error) {
         throw run_error_of(error, device_->report().name);
     }
-    const std::uint32_t valid_bits =
-        device_->physical().getQueueFamilyProperties()[device_->queue_family()].timestampValidBits;
-    const std::uint64_t mask = std::numeric_limits<std::uint64_t>::max() >> (64U - valid_bits);
+}
+
+std::vector<double> Commands::seconds() const {
+    const std::vector<std::uint64_t> ticks = this->ticks();
     std::vector<double> seconds;
     for (const std::uint64_t tick : ticks) {
-        const auto elapsed = static_cast<double>((tick - ticks.front()) & mask); // the counter may wrap
-        seconds.push_back(elapsed * device_->timestamp_period_ns() * seconds_per_nanosecond);
+        seconds.push_back(device_->seconds_between(ticks.front(), tick));
     }
     return seconds;
 }

@@ -65,11 +65,16 @@ inline Groups groups_of(std::uint64_t places, std::uint32_t workgroup) {
     return {static_cast<std::uint32_t>((groups + rows - 1) / rows), static_cast<std::uint32_t>(rows)};
 }
 
-// Commands recorded once and submitted; waits for their end. All barriers are made here: one stands before
-// the first command and one after the last, those between are the caller's barrier().
+// Commands recorded once and submitted. All barriers are made here: one stands before the first command and one after
+// the last, those between are the caller's barrier(). Submissions to one lane of a device work one after the other.
 class Commands {
   public:
-    explicit Commands(const Device& device, std::uint32_t timestamp_capacity = 0);
+    explicit Commands(const Device& device, std::uint32_t timestamp_capacity = 0,
+                      Device::Lane lane = Device::Lane::trace);
+    // Waits for what was submitted.
+    ~Commands();
+    Commands(const Commands&) = delete;
+    Commands& operator=(const Commands&) = delete;
 
     // Bindings must name every slot the kernel declares (throws std::logic_error otherwise). Throws
     // DeviceError for a buffer larger than a descriptor may span on this device: reach that one by its
@@ -92,18 +97,25 @@ class Commands {
     // For what has no function here.
     const vk::raii::CommandBuffer& handle() const { return buffers_.front(); }
 
-    // Submits and waits; throws RunError if the device is lost. May be called once.
-    void submit_and_wait();
-    std::vector<double> seconds() const; // timestamps since the first, s
+    // Both throw RunError if the device is lost. submit() may be called once, from any thread.
+    void submit();
+    void wait();
+    void submit_and_wait() {
+        submit();
+        wait();
+    }
+    std::vector<double> seconds() const;     // timestamps since the first, s; waits for them
+    std::vector<std::uint64_t> ticks() const; // the same on the device's own clock, in its timestamp periods
 
   private:
     const Device* device_;
     vk::raii::CommandPool pool_{nullptr};
     vk::raii::CommandBuffers buffers_{nullptr};
     vk::raii::QueryPool queries_{nullptr};
+    vk::raii::Fence done_{nullptr};
+    Device::Lane lane_;
     std::uint32_t timestamp_capacity_;
     std::uint32_t timestamps_ = 0;
-    bool submitted_ = false;
 };
 
 } // namespace vkfv::vulkan
