@@ -3,6 +3,8 @@
 #include "core/units.hpp"
 #include "surface/areal_parameters.hpp"
 
+#include <future>
+
 namespace vkfv::measurement {
 
 namespace {
@@ -26,8 +28,9 @@ Figures figures_in(const topography::Band& band, const Evaluation& evaluation,
         figures.measured = parameters_of(surface::scale_limited(measured, band));
     } else if (deviation && deviation->measured_share > 0) {
         const auto pair = topography::levelled_pair(measured, *evaluation.truth, band);
+        auto truth = std::async(std::launch::async, [&] { return parameters_of(pair.truth); });
         figures.measured = parameters_of(pair.measured);
-        figures.truth = parameters_of(pair.truth);
+        figures.truth = truth.get();
     }
     return figures;
 }

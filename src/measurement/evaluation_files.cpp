@@ -2,6 +2,7 @@
 
 #include "core/digest.hpp"
 #include "core/file.hpp"
+#include "core/job_queue.hpp"
 #include "core/json_depth.hpp"
 #include "core/units.hpp"
 #include "images/image_file.hpp"
@@ -19,8 +20,12 @@
 
 #include <algorithm>
 #include <cmath>
+#include <future>
 #include <iterator>
 #include <limits>
+#include <optional>
+#include <thread>
+#include <utility>
 #include <vector>
 
 namespace vkfv::measurement {
@@ -107,15 +112,15 @@ surface::HeightMap with_values(surface::HeightMap map, Grid<double> values) {
     return map;
 }
 
-// Every map on the heights' grid.
-std::vector<surface::GwyChannel> channels_of(const Evaluation& evaluation) {
+// Every map on the heights' grid. deviation: in the evaluation's band.
+std::vector<surface::GwyChannel> channels_of(const Evaluation& evaluation,
+                                             const std::optional<surface::HeightMap>& deviation) {
     const auto& topography = evaluation.topography;
     const auto on_grid = [&](Grid<double> values) { return with_values(topography.height, std::move(values)); };
     std::vector<surface::GwyChannel> channels = {{.title = "Height", .map = topography.height}};
     if (evaluation.truth) {
         channels.push_back({.title = "True height", .map = *evaluation.truth});
-        channels.push_back({.title = "Deviation from the true height",
-                            .map = topography::deviation_map(topography.height, *evaluation.truth, evaluation.band)});
+        channels.push_back({.title = "Deviation from the true height", .map = deviation.value()});
     }
     channels.push_back({.title = "Noise of the height", .map = on_grid(topography.height_noise)});
     channels.push_back({.title = "Contrast", .unit = "", .map = on_grid(topography.contrast)});
@@ -127,33 +132,40 @@ std::vector<surface::GwyChannel> channels_of(const Evaluation& evaluation) {
     return channels;
 }
 
-// Into this folder in the results' own. Returns the picture.
+// Into this folder in the results' own, each file by a thread of its own. Returns the picture.
 std::string write_maps(ResultFolder& results, const std::filesystem::path& folder, const Evaluation& evaluation,
                        const TopographyFiles& files) {
     const auto& topography = evaluation.topography;
-    for (const std::string& file : files.names) {
-        const bool holds_all = file.ends_with(".gwy");
-        results.write(folder / file, holds_all ? surface::gwy_bytes(channels_of(evaluation), files.provenance)
-                                               : surface::surface_bytes(file, topography.height, files.provenance));
-    }
     const images::ImageTags pitch{
         .pitch_x = topography.height.pitch_x, .pitch_y = topography.height.pitch_y, .description = {}};
-    const auto write = [&](const char* name, const auto& map) {
-        results.write(folder / name, images::tiff_bytes(map, pitch));
+    std::optional<surface::HeightMap> deviation;
+    std::string picture;
+    JobQueue jobs(static_cast<int>(std::max(1u, std::thread::hardware_concurrency())), 100);
+    const auto write = [&](const std::string& name, const auto& bytes_of) {
+        jobs.add([&results, path = folder / name, bytes_of] { results.write(path, bytes_of()); });
     };
-    write("quality.tif", converted<float>(topography.contrast));
-    results.write(folder / "height_noise.tif",
-                  surface::height_map_bytes(with_values(topography.height, topography.height_noise)));
-    write("fit_residual.tif", converted<float>(topography.fit_residual));
-    write("mask.tif", converted<std::uint16_t>(topography.state));
-    write("all_in_focus.tif", topography.all_in_focus);
+    jobs.add([&] {
+        picture = picture_of(results.path() / folder, evaluation);
+        results.write(folder / "topography.svg", picture);
+    });
     if (evaluation.truth) {
-        results.write(folder / "truth.tif", surface::height_map_bytes(*evaluation.truth));
-        results.write(folder / "deviation.tif", surface::height_map_bytes(topography::deviation_map(
-                                                    topography.height, *evaluation.truth, evaluation.band)));
+        write("truth.tif", [&] { return surface::height_map_bytes(*evaluation.truth); });
+        deviation = topography::deviation_map(topography.height, *evaluation.truth, evaluation.band);
+        write("deviation.tif", [&] { return surface::height_map_bytes(*deviation); });
     }
-    const std::string picture = picture_of(results.path() / folder, evaluation);
-    results.write(folder / "topography.svg", picture);
+    for (const std::string& file : files.names) {
+        write(file, [&, file] {
+            return file.ends_with(".gwy") ? surface::gwy_bytes(channels_of(evaluation, deviation), files.provenance)
+                                          : surface::surface_bytes(file, topography.height, files.provenance);
+        });
+    }
+    write("height_noise.tif",
+          [&] { return surface::height_map_bytes(with_values(topography.height, topography.height_noise)); });
+    write("quality.tif", [&] { return images::tiff_bytes(converted<float>(topography.contrast), pitch); });
+    write("fit_residual.tif", [&] { return images::tiff_bytes(converted<float>(topography.fit_residual), pitch); });
+    write("mask.tif", [&] { return images::tiff_bytes(converted<std::uint16_t>(topography.state), pitch); });
+    write("all_in_focus.tif", [&] { return images::tiff_bytes(topography.all_in_focus, pitch); });
+    jobs.finish();
     return picture;
 }
 
@@ -172,8 +184,10 @@ StackSource stack_source(const Configuration& configuration, const optics::Instr
 
 void write_results(ResultFolder& folder, const EvaluatedStack& stack) {
     const auto& evaluation = stack.evaluation;
+    auto figures = std::async(std::launch::async, [&] { return figures_of(evaluation); });
+    std::string svg = write_maps(folder, "", evaluation, stack.files);
     StackPage page{.title = name_of(folder.path()),
-                   .plain = {.figures = figures_of(evaluation), .svg = write_maps(folder, "", evaluation, stack.files)},
+                   .plain = {.figures = figures.get(), .svg = std::move(svg)},
                    .diffracted = {},
                    .results = {},
                    .layout = stack.source.layout,

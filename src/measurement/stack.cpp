@@ -11,6 +11,7 @@
 #include <spdlog/spdlog.h>
 
 #include <algorithm>
+#include <future>
 
 namespace vkfv::measurement {
 
@@ -45,6 +46,9 @@ StackResult measure_stack(const Configuration& configuration, Progress& progress
                                      focus_planes_for(configuration.evaluate_on, tracer->device()),
                                      make_diffraction(configuration, instrument));
     enter_stage("images");
+    // What no image is needed for is made beside them.
+    auto truth = std::async(std::launch::async, [&] { return truth_on_pixels(instrument, configuration, specimen); });
+    auto source = std::async(std::launch::async, [&] { return stack_source(configuration, instrument); });
     bool any_light = false;
     const auto traced = scan::run_stack(*tracer, store, progress, {}, [&](int image, Grid<float> flux) {
         any_light = any_light || std::ranges::any_of(flux.values, [](float value) { return value > 0; });
@@ -57,14 +61,13 @@ StackResult measure_stack(const Configuration& configuration, Progress& progress
 
     enter_stage("heights and truth");
     const std::uint64_t rays_per_image = trace::launched_rays(configuration.trace, pixels);
-    EvaluatedStack stack{.evaluation = stack_evaluation.finish(truth_on_pixels(instrument, configuration, specimen),
-                                                               configuration.band, flat),
+    EvaluatedStack stack{.evaluation = stack_evaluation.finish(truth.get(), configuration.band, flat),
                          .origin = {{"device", tracer->identity().text()},
                                     {"stack_digest", store.description().digest},
                                     {"seed", configuration.trace.seed},
                                     {"images", positions.size()},
                                     {"rays_per_image", rays_per_image}},
-                         .source = stack_source(configuration, instrument),
+                         .source = source.get(),
                          .files = topography_files(configuration)};
     if (const double noise = stack.evaluation.topography.stack.image_noise; noise > most_image_noise) {
         spdlog::warn("The images' noise is {:.0f} % of their brightness: what is measured is little or rough. {}",

@@ -1,3 +1,4 @@
+#include "core/parallel_rows.hpp"
 #include "specimen/analytic.hpp"
 
 #include <algorithm>
@@ -126,11 +127,11 @@ surface::HeightMap truth(const Specimen& specimen, int columns, int rows, double
     map.y0 = y0;
     map.pitch_x = pitch_x;
     map.pitch_y = pitch_y;
-    // Bands of rows keep the points of a large detector within some tens of megabytes.
+    // Bands of rows keep the points of a large detector within some megabytes a thread.
     const int points_per_row = columns * subdivision * subdivision;
-    const int band = std::max(1, (1 << 22) / std::max(1, points_per_row));
-    for (int first = 0; first < rows; first += band) {
-        const int count = std::min(band, rows - first);
+    const int band = std::max(1, (1 << 20) / std::max(1, points_per_row));
+    parallel_bands(rows, band, [&](int first, int end) {
+        const int count = end - first;
         Points points{x0,
                       y0,
                       pitch_x,
@@ -150,7 +151,7 @@ surface::HeightMap truth(const Specimen& specimen, int columns, int rows, double
                     std::isfinite(sum) ? sum / (subdivision * subdivision) : std::numeric_limits<double>::quiet_NaN();
             }
         }
-    }
+    });
     return map;
 }
 

@@ -1,12 +1,17 @@
 #include "surface/areal_parameters.hpp"
 
+#include <future>
+
 namespace vkfv::surface {
 
 ArealParameters areal_parameters(const HeightMap& map) {
+    // None needs another.
+    auto spatial = std::async(std::launch::async, [&] { return spatial_parameters(map); });
+    auto hybrid = std::async(std::launch::async, [&] { return hybrid_parameters(map); });
     const MaterialRatioCurve curve(map);
     return {.height = height_parameters(map),
-            .hybrid = hybrid_parameters(map),
-            .spatial = spatial_parameters(map),
+            .hybrid = hybrid.get(),
+            .spatial = spatial.get(),
             .core = core_parameters(curve),
             .volume = volume_parameters(curve)};
 }

@@ -1,6 +1,6 @@
 #include "topography/host_focus_planes.hpp"
 
-#include "topography/parallel_rows.hpp"
+#include "core/parallel_rows.hpp"
 
 #include <algorithm>
 #include <cmath>

@@ -2,7 +2,7 @@
 
 #include "core/fourier.hpp"
 #include "core/units.hpp"
-#include "topography/parallel_rows.hpp"
+#include "core/parallel_rows.hpp"
 
 #include <algorithm>
 #include <array>

@@ -1,4 +1,5 @@
 #include "core/error.hpp"
+#include "core/parallel_rows.hpp"
 #include "topography/topography.hpp"
 
 #include <fmt/format.h>
@@ -283,8 +284,7 @@ Topography StackEvaluator::finish(double x0, double y0, double pitch) {
     result.height_noise = result.height.height;
     result.peaks = Grid<std::uint16_t>(columns_, rows_);
     result.state = Grid<PointState>(columns_, rows_, PointState::measured);
-    for (int row = 0; row < rows_; ++row)
-        for (int column = 0; column < columns_; ++column) {
+    const auto judge_point = [&](int column, int row) {
             const auto& curve = stack.curves(column, row);
             const double pixels = window_.pixels(columns_, rows_, column, row);
             const double averaging = std::sqrt(points[static_cast<std::size_t>(curve.at)].variance);
@@ -302,7 +302,12 @@ Topography StackEvaluator::finish(double x0, double y0, double pitch) {
                 result.height.height(column, row) = z_.front() + step * position(curve.at + curve.offset);
                 result.height_noise(column, row) = step * place_noise(curve.bend, image_noise, smoothed);
             }
-        }
+        };
+    parallel_rows(columns_, rows_, [&](int first, int end) {
+        for (int row = first; row < end; ++row)
+            for (int column = 0; column < columns_; ++column)
+                judge_point(column, row);
+    });
     for (Grid<float>& channel : stack.all_in_focus)
         for (float& value : channel.values)
             value /= scale_;

@@ -9,6 +9,7 @@
 #include <cstdint>
 #include <cstring>
 #include <functional>
+#include <future>
 
 namespace fs = std::filesystem;
 using namespace vkfv;
@@ -333,6 +334,52 @@ TEST(ImageStore, OneProgramAtATime) {
         EXPECT_THROW(ImageStore(folder.path(), describe()), FolderInUse);
     }
     EXPECT_EQ(opening_message(folder.path()), "");
+}
+
+// Of images that a device has at a time; those that are stored are not begun again.
+class AheadTracer final : public FakeTracer {
+  public:
+    std::future<trace::Image> begin(double focal_height, std::uint32_t image) const override {
+        ++under_way_;
+        most = std::max(most, under_way_);
+        return std::async(std::launch::deferred, [this, focal_height, image] {
+            --under_way_;
+            return expose(focal_height, image);
+        });
+    }
+    int most_under_way() const override { return 3; }
+    mutable int most = 0;
+
+  private:
+    mutable int under_way_ = 0;
+};
+
+TEST(RunStack, BeginsAheadAndKeepsTheOrder) {
+    const FreshFolder one("one_by_one");
+    const FreshFolder ahead("ahead");
+    const auto description = describe(9);
+    run(one.path(), FakeTracer(), description);
+    run(ahead.path(), FakeTracer(), description, {.index = 1, .count = 3}); // 1, 4, 7
+    const AheadTracer tracer;
+    ImageStore store(ahead.path(), description);
+    std::ostringstream nowhere;
+    Progress progress(nowhere, Progress::Style::quiet);
+    std::vector<int> visited;
+    const auto summary = run_stack(tracer, store, progress, {}, [&](int image, const Grid<float>& flux) {
+        visited.push_back(image);
+        const double z = description.positions[static_cast<std::size_t>(image)];
+        EXPECT_EQ(flux.values, read_frame(one.path(), image, z).values);
+    });
+    EXPECT_EQ(tracer.most, 3);
+    EXPECT_THAT(tracer.exposed, ElementsAre(0, 2, 3, 5, 6, 8));
+    EXPECT_THAT(visited, ElementsAre(0, 1, 2, 3, 4, 5, 6, 7, 8));
+    EXPECT_EQ(summary.traced, 6);
+    EXPECT_EQ(summary.kept, 3);
+    EXPECT_TRUE(summary.complete);
+    for (int image = 0; image < 9; ++image) {
+        EXPECT_EQ(bytes_of(one.path() / image_path(image)), bytes_of(ahead.path() / image_path(image)));
+    }
+    EXPECT_EQ(bytes_of(one.path() / "ledger.csv"), bytes_of(ahead.path() / "ledger.csv"));
 }
 
 TEST(RunStack, AnExceptionOfTheTraceLeavesWhatIsStored) {

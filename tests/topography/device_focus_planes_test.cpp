@@ -91,7 +91,8 @@ TEST(DeviceFocusPlanes, GiveTheHostsHeightsByEveryMeasureAndPeakMethod) {
                                                         .smoothing_steps = 0.9,
                                                         .false_peak_rate = 1};
             expect_same(evaluated(grey, options, topography::make_host_focus_planes),
-                        evaluated(grey, options, device_focus_planes(std::make_shared<const vulkan::Device>())), measure + " " + peak);
+                        evaluated(grey, options, device_focus_planes(std::make_shared<const vulkan::Device>())),
+                        measure + " " + peak);
         }
 }
 
@@ -101,7 +102,8 @@ TEST(DeviceFocusPlanes, GiveTheHostsHeightsOfColourAndWithAGaussianWindow) {
         const topography::TopographyOptions options{
             .focus_measure = measure, .window_px = 7, .window_shape = WindowShape::gaussian, .smoothing_steps = 0};
         expect_same(evaluated(colour, options, topography::make_host_focus_planes),
-                    evaluated(colour, options, device_focus_planes(std::make_shared<const vulkan::Device>())), name_of(measure));
+                    evaluated(colour, options, device_focus_planes(std::make_shared<const vulkan::Device>())),
+                    name_of(measure));
     }
 }
 

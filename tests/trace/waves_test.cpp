@@ -11,6 +11,8 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <deque>
+#include <future>
 #include <numeric>
 #include <random>
 #include <vector>
@@ -275,6 +277,48 @@ TEST(Waves, sort_light_alike_forward_and_backward_on_device_and_host) {
             std::pow(images[0].standard_error.values[pixel], 2) + std::pow(images[2].standard_error.values[pixel], 2);
     }
     EXPECT_NEAR(squares / expected, 1, 0.25);
+}
+
+// While one exposure is asked for, the device has others.
+TEST(Exposures, under_way_at_a_time_are_the_same_bits) {
+    const auto instrument = turned_microscope();
+    const auto specimen = test::rough_specimen();
+    for (const auto estimator : {trace::Estimator::forward, trace::Estimator::backward}) {
+        for (const bool waves : {false, true}) {
+            SCOPED_TRACE(waves);
+            auto options = with_waves(estimator);
+            options.rays /= 8;
+            options.waves = waves ? options.waves : std::nullopt;
+            const auto tracer = trace::make_device_tracer(instrument, specimen, options);
+            std::vector<trace::Image> alone;
+            for (std::uint32_t image = 0; image < 6; ++image) {
+                alone.push_back(tracer->expose(0.001 * image, image));
+            }
+            std::deque<std::future<trace::Image>> under_way;
+            double end = 0;
+            for (std::uint32_t image = 0, begun = 0; image < alone.size(); ++image) {
+                for (; begun < alone.size() && static_cast<int>(under_way.size()) < tracer->most_under_way(); ++begun) {
+                    under_way.push_back(tracer->begin(0.001 * begun, begun));
+                }
+                const auto exposed = under_way.front().get();
+                under_way.pop_front();
+                EXPECT_EQ(exposed.flux.values, alone[image].flux.values);
+                EXPECT_EQ(exposed.standard_error.values, alone[image].standard_error.values);
+                EXPECT_EQ(exposed.detected, alone[image].detected);
+                // The device works on one after the other.
+                EXPECT_GE(exposed.device_begin, end);
+                EXPECT_GE(exposed.device_end, exposed.device_begin);
+                EXPECT_LE(exposed.device_seconds, exposed.device_end - exposed.device_begin + 1e-6);
+                end = exposed.device_end;
+            }
+            EXPECT_NE(alone[0].flux.values, alone[1].flux.values);
+            // One that nobody asks for makes room again.
+            for (int k = 0; k < 2 * tracer->most_under_way(); ++k) {
+                tracer->begin(0, 0);
+            }
+            EXPECT_EQ(tracer->expose(0.001, 1).flux.values, alone[1].flux.values);
+        }
+    }
 }
 
 TEST(Waves, are_the_same_bits_for_any_batch) {

@@ -2,11 +2,12 @@
 #pragma once
 
 #include <algorithm>
+#include <atomic>
 #include <cstddef>
 #include <thread>
 #include <vector>
 
-namespace vkfv::topography {
+namespace vkfv {
 
 // Calls task(first_row, end_row) for ranges that cover 0..rows once. `task` must not throw, and what it
 // computes for a row must not depend on the range the row is in. Small images stay on the calling thread.
@@ -24,4 +25,23 @@ void parallel_rows(int columns, int rows, const Task& task) {
     task(0, std::min(share, rows));
 }
 
-} // namespace vkfv::topography
+// The same in bands of so many rows, which threads take one after the other: for rows that differ in their work, and for
+// tasks that take memory a row.
+template <class Task>
+void parallel_bands(int rows, int band, const Task& task) {
+    std::atomic<int> next = 0;
+    const auto work = [&] {
+        for (int first = band * next++; first < rows; first = band * next++) {
+            task(first, std::min(rows, first + band));
+        }
+    };
+    const int bands = (rows + band - 1) / band;
+    const int cores = static_cast<int>(std::max(1u, std::thread::hardware_concurrency()));
+    std::vector<std::jthread> others;
+    for (int k = 1; k < std::min(bands, cores); ++k) {
+        others.emplace_back(work);
+    }
+    work();
+}
+
+} // namespace vkfv
