@@ -70,40 +70,49 @@ StackSummary run_stack(const trace::Tracer& tracer, ImageStore& store, Progress&
     JobQueue writing(writers, static_cast<std::size_t>(writers));
     JobQueue visiting(1, 2);
 
-    std::deque<std::future<trace::Image>> under_way;
-    auto to_begin = to_trace.begin();
-    auto to_take = to_trace.begin();
-    auto last = std::chrono::steady_clock::now();
-    double device_end = 0; // of the image before
-    for (const int image : of_shard) {
-        const double z = positions[static_cast<std::size_t>(image)];
-        if (to_take == to_trace.end() || *to_take != image) {
-            if (visit) {
-                visiting.add([&visit, &store, image, z] { visit(image, read_frame(store.folder(), image, z)); });
+    const auto trace_all = [&] {
+        std::deque<std::future<trace::Image>> under_way;
+        auto to_begin = to_trace.begin();
+        auto to_take = to_trace.begin();
+        auto last = std::chrono::steady_clock::now();
+        double device_end = 0; // of the image before
+        for (const int image : of_shard) {
+            const double z = positions[static_cast<std::size_t>(image)];
+            if (to_take == to_trace.end() || *to_take != image) {
+                if (visit) {
+                    visiting.add([&visit, &store, image, z] { visit(image, read_frame(store.folder(), image, z)); });
+                }
+                continue;
             }
-            continue;
+            ++to_take;
+            for (; to_begin != to_trace.end() && static_cast<int>(under_way.size()) < tracer.most_under_way();
+                 ++to_begin) {
+                under_way.push_back(tracer.begin(positions[static_cast<std::size_t>(*to_begin)],
+                                                 static_cast<std::uint32_t>(*to_begin)));
+            }
+            auto exposure = std::make_shared<trace::Image>(under_way.front().get());
+            under_way.pop_front();
+            // Of the wall clock, what no image before has taken.
+            const auto now = std::chrono::steady_clock::now();
+            exposure->seconds = std::min(exposure->seconds, std::chrono::duration<double>(now - last).count());
+            last = now;
+            summary.trace_seconds += exposure->seconds;
+            summary.device_seconds += exposure->device_seconds;
+            summary.device_span += std::max(0.0, exposure->device_end - device_end);
+            device_end = exposure->device_end;
+            if (visit) {
+                visiting.add([&visit, image, exposure] { visit(image, as_stored(exposure->flux)); });
+            }
+            writing.add([&write, image, exposure] { write(image, *exposure); });
         }
-        ++to_take;
-        for (; to_begin != to_trace.end() && static_cast<int>(under_way.size()) < tracer.most_under_way(); ++to_begin) {
-            under_way.push_back(tracer.begin(positions[static_cast<std::size_t>(*to_begin)],
-                                             static_cast<std::uint32_t>(*to_begin)));
-        }
-        auto exposure = std::make_shared<trace::Image>(under_way.front().get());
-        under_way.pop_front();
-        // Of the wall clock, what no image before has taken.
-        const auto now = std::chrono::steady_clock::now();
-        exposure->seconds = std::min(exposure->seconds, std::chrono::duration<double>(now - last).count());
-        last = now;
-        summary.trace_seconds += exposure->seconds;
-        summary.device_seconds += exposure->device_seconds;
-        summary.device_span += std::max(0.0, exposure->device_end - device_end);
-        device_end = exposure->device_end;
-        if (visit) {
-            visiting.add([&visit, image, exposure] { visit(image, as_stored(exposure->flux)); });
-        }
-        writing.add([&write, image, exposure] { write(image, *exposure); });
+    };
+    try {
+        trace_all();
+        visiting.finish();
+    } catch (...) {
+        writing.finish(); // what was traced before is kept
+        throw;
     }
-    visiting.finish();
     writing.finish();
     store.write_ledger();
     progress.end();

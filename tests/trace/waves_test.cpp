@@ -228,10 +228,11 @@ TEST(Waves, are_the_same_on_the_device_and_on_the_host) {
         vulkan::Buffer buffer(device, light.size() * sizeof(light.front()));
         buffer.write_values(std::span<const std::uint64_t>(light));
         const trace::DeviceWaveImage on_device(device, filter, pixels, buffer);
+        const vulkan::Buffer for_host(device, on_device.bytes(), vulkan::Buffer::Memory::host);
         vulkan::Commands commands(device);
-        on_device.record(commands);
+        on_device.record(commands, for_host, 0);
         commands.submit_and_wait();
-        const auto found = on_device.image();
+        const auto found = on_device.image(for_host, 0);
         const auto expected = on_host.apply(light);
         const double mean = sum(expected.values) / static_cast<double>(expected.values.size());
         for (std::size_t pixel = 0; pixel < found.values.size(); ++pixel) {
