@@ -55,6 +55,10 @@ StackResult measure_stack(const Configuration& configuration, Progress& progress
         stack_evaluation.add({std::move(flux)}, positions[static_cast<std::size_t>(image)]);
     });
     spdlog::info("{} images traced, {} kept from before", traced.traced, traced.kept);
+    if (traced.device_span > 0) {
+        scan::append_timing(store.folder(), "device at work", traced.device_seconds);
+        scan::append_timing(store.folder(), "device from first to last image", traced.device_span);
+    }
     if (!any_light) {
         spdlog::warn("No light reaches the detector in any image. vkfv --image of one position tells where it goes");
     }
@@ -86,9 +90,13 @@ std::string summary(const StackResult& stack) {
     const auto& traced = stack.traced;
     std::string text = summary(stack.evaluation);
     if (traced.traced > 0) {
-        text += fmt::format(
-            "traced {} images in {:.3g} s ({}), evaluated in {:.2g} s\n", traced.traced, traced.trace_seconds,
-            ray_rate_text(static_cast<double>(traced.rays) / traced.trace_seconds), stack.evaluation.seconds);
+        text +=
+            fmt::format("traced {} images in {:.3g} s ({}{}), evaluated in {:.2g} s\n", traced.traced,
+                        traced.trace_seconds, ray_rate_text(static_cast<double>(traced.rays) / traced.trace_seconds),
+                        traced.device_span > 0 ? fmt::format("; the device was at work for {:.0f} % of it",
+                                                             100 * traced.device_seconds / traced.device_span)
+                                               : "",
+                        stack.evaluation.seconds);
     }
     return text + fmt::format("results in {}\n", stack.folder.string());
 }
