@@ -1,4 +1,5 @@
 #include "core/error.hpp"
+#include "topography/texture_place.hpp"
 #include "topography/topography.hpp"
 
 #include <fmt/format.h>
@@ -309,6 +310,8 @@ Topography StackEvaluator::finish(double x0, double y0, double pitch) {
     result.all_in_focus = std::move(stack.all_in_focus);
     if (figures.limit.rate < 1 && images > few_images)
         leave_out_chance(result, std::max(options_.false_peak_rate, figures.limit.rate), options_.false_peak_rate);
+    if (options_.place_by_texture)
+        place_by_texture(result.height.height, result.all_in_focus, measure_, window_);
     if (options_.repair_outliers)
         repair_outliers(result);
     figures.image_noise = relative_noise(brightness, noise_model);
