@@ -146,7 +146,9 @@ double error_on_a_ramp(bool placed) {
     return std::sqrt(sum / count);
 }
 
-TEST(TexturePlace, HalvesTheErrorOnARamp) { EXPECT_LT(error_on_a_ramp(true), 0.5 * error_on_a_ramp(false)); }
+TEST(TexturePlace, HalvesTheErrorOnARamp) {
+    EXPECT_LT(error_on_a_ramp(true), 0.5 * error_on_a_ramp(false));
+}
 
 } // namespace
 } // namespace vkfv::topography
