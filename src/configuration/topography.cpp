@@ -67,6 +67,10 @@ const ChoiceKey<topography::Registration> registration = without_influence(Choic
      {topography::Registration::shift, "shift", "of a stage that drifts"},
      {topography::Registration::shift_and_scale, "shift-and-scale", "of a lens that breathes, too"}},
     topography::Registration::none, "How images of another instrument are laid over each other first."));
+const BooleanKey place_by_texture = without_influence(
+    BooleanKey("place_by_texture", defaults.place_by_texture,
+               "Whether a height, which is that of the texture in the window, is carried from there to the window's "
+               "middle along the surface's slope."));
 const BooleanKey repair_outliers = without_influence(
     BooleanKey("repair_outliers", defaults.repair_outliers, "Whether outliers become the median of their neighbours."));
 const ChoiceKey<EvaluateOn> evaluate_on =
@@ -129,8 +133,8 @@ const KeyTable& topography_keys() {
                                 .kind = "",
                                 .keys = {&focus_measure, &window, &window_shape, &smoothing, &false_peak_rate,
                                          &most_rival, &peak, &peak_range, &least_contrast, &most_fit_residual,
-                                         &most_peaks, &registration, &repair_outliers, &evaluate_on, &flatness_file,
-                                         &filter, &s_filter, &l_filter}};
+                                         &most_peaks, &registration, &place_by_texture, &repair_outliers, &evaluate_on,
+                                         &flatness_file, &filter, &s_filter, &l_filter}};
     return table;
 }
 
@@ -170,6 +174,7 @@ void read_topography(const TomlTable& root, Configuration& configuration, Needs 
     options.least_contrast = section.number(least_contrast);
     options.most_fit_residual = section.number(most_fit_residual);
     options.most_peaks = static_cast<int>(section.integer(most_peaks));
+    options.place_by_texture = section.boolean(place_by_texture);
     options.repair_outliers = section.boolean(repair_outliers);
     configuration.registration = section.choice(registration);
     configuration.evaluate_on = section.choice(evaluate_on);

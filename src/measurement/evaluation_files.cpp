@@ -82,6 +82,7 @@ nlohmann::ordered_json json_of(const topography::TopographyOptions& options) {
             {"least_contrast", options.least_contrast},
             {"most_fit_residual", options.most_fit_residual},
             {"most_peaks", options.most_peaks},
+            {"place_by_texture", options.place_by_texture},
             {"repair_outliers", options.repair_outliers}};
 }
 

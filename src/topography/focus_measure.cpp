@@ -182,6 +182,24 @@ double focus_at(const Channels& image, FocusMeasure measure, const FocusWindow& 
     return f64::focus_value(PixelScene{image, plan, window.weights()}, plan, column, row);
 }
 
+Grid<double> focus_responses(const Channels& image, FocusMeasure measure, const FocusWindow& window) {
+    const f64::FocusPlan plan = plan_of(image, measure, window);
+    Grid<double> responses(plan.columns, plan.rows);
+    if (measure == FocusMeasure::standard_deviation) {
+        for (const Grid<float>& channel : image) {
+            const Grid<float> mean = window_mean(channel, window);
+            for (std::size_t k = 0; k < responses.values.size(); ++k) {
+                responses.values[k] += f64::squared_deviation(channel.values[k], mean.values[k]);
+            }
+        }
+        return responses;
+    }
+    const ImageScene scene{image};
+    every_pixel(plan.columns, plan.rows,
+                [&](int column, int row) { responses(column, row) = f64::focus_response(scene, plan, column, row); });
+    return responses;
+}
+
 Grid<float> window_mean(const Grid<float>& image, const FocusWindow& window) {
     const Channels channels = {image};
     const f64::FocusPlan plan = plan_of(channels, FocusMeasure::standard_deviation, window);

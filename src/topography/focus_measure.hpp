@@ -65,6 +65,10 @@ Grid<float> focus_measure(const Channels& image, FocusMeasure measure, const Foc
 // The same at one pixel, without threads.
 double focus_at(const Channels& image, FocusMeasure measure, const FocusWindow& window, int column, int row);
 
+// What the windows gather of each pixel: the response of the measure, summed over channels. The standard deviation has
+// none of its own: the squared distance from the mean of the window around the pixel stands for it.
+Grid<double> focus_responses(const Channels& image, FocusMeasure measure, const FocusWindow& window);
+
 // Weighted mean over the same windows.
 Grid<float> window_mean(const Grid<float>& image, const FocusWindow& window);
 

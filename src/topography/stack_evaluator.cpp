@@ -1,5 +1,6 @@
 #include "core/error.hpp"
 #include "core/parallel_rows.hpp"
+#include "topography/texture_place.hpp"
 #include "topography/topography.hpp"
 
 #include <fmt/format.h>
@@ -285,24 +286,24 @@ Topography StackEvaluator::finish(double x0, double y0, double pitch) {
     result.peaks = Grid<std::uint16_t>(columns_, rows_);
     result.state = Grid<PointState>(columns_, rows_, PointState::measured);
     const auto judge_point = [&](int column, int row) {
-            const auto& curve = stack.curves(column, row);
-            const double pixels = window_.pixels(columns_, rows_, column, row);
-            const double averaging = std::sqrt(points[static_cast<std::size_t>(curve.at)].variance);
-            const double here = brightness_around(column, row) / images;
-            // Of a single image's value.
-            const double image_noise = relative_noise(here, noise_model) * gain / std::sqrt(pixels);
-            const double rise = curve.largest - curve.sum / images;
-            result.contrast(column, row) = rise / (image_noise * averaging);
-            result.fit_residual(column, row) = curve.residual;
-            result.peaks(column, row) = static_cast<std::uint16_t>(focus::f64::count_peaks(curve, images));
-            PointState& state = result.state(column, row);
-            state = here > dark * brightness ? judge(curve, stack.singles(column, row), image_noise, averaging, figures)
-                                             : PointState::dark;
-            if (state == PointState::measured) {
-                result.height.height(column, row) = z_.front() + step * position(curve.at + curve.offset);
-                result.height_noise(column, row) = step * place_noise(curve.bend, image_noise, smoothed);
-            }
-        };
+        const auto& curve = stack.curves(column, row);
+        const double pixels = window_.pixels(columns_, rows_, column, row);
+        const double averaging = std::sqrt(points[static_cast<std::size_t>(curve.at)].variance);
+        const double here = brightness_around(column, row) / images;
+        // Of a single image's value.
+        const double image_noise = relative_noise(here, noise_model) * gain / std::sqrt(pixels);
+        const double rise = curve.largest - curve.sum / images;
+        result.contrast(column, row) = rise / (image_noise * averaging);
+        result.fit_residual(column, row) = curve.residual;
+        result.peaks(column, row) = static_cast<std::uint16_t>(focus::f64::count_peaks(curve, images));
+        PointState& state = result.state(column, row);
+        state = here > dark * brightness ? judge(curve, stack.singles(column, row), image_noise, averaging, figures)
+                                         : PointState::dark;
+        if (state == PointState::measured) {
+            result.height.height(column, row) = z_.front() + step * position(curve.at + curve.offset);
+            result.height_noise(column, row) = step * place_noise(curve.bend, image_noise, smoothed);
+        }
+    };
     parallel_rows(columns_, rows_, [&](int first, int end) {
         for (int row = first; row < end; ++row)
             for (int column = 0; column < columns_; ++column)
@@ -314,6 +315,8 @@ Topography StackEvaluator::finish(double x0, double y0, double pitch) {
     result.all_in_focus = std::move(stack.all_in_focus);
     if (figures.limit.rate < 1 && images > few_images)
         leave_out_chance(result, std::max(options_.false_peak_rate, figures.limit.rate), options_.false_peak_rate);
+    if (options_.place_by_texture)
+        place_by_texture(result.height.height, result.all_in_focus, measure_, window_);
     if (options_.repair_outliers)
         repair_outliers(result);
     figures.image_noise = relative_noise(brightness, noise_model);

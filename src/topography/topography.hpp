@@ -19,6 +19,9 @@
 //   texture that a coarse scan jumps over. Nor is a point measured whose curve, averaged or not, has a second maximum
 //   that stands out almost as the first. Further limits of quality can be set.
 //
+// - The height is that of the window's texture, wherever in the window this lies: it is carried to the window's middle
+//   along the surface's slope (texture_place.hpp).
+//
 // Near the ends of the scan the averages hold only the images there are. The places that they stand for, and their
 // larger noise, are reckoned with, but a curve is blunted less there than elsewhere, which draws peaks towards the end.
 // The two averages reach 6 smoothing_steps: plan the scan so much wider than the specimen at either side, and a depth
@@ -61,6 +64,7 @@ struct TopographyOptions {
     double least_contrast = 0;
     double most_fit_residual = 1;
     int most_peaks = 4;
+    bool place_by_texture = true; // see texture_place.hpp
     bool repair_outliers = false; // see repair_outliers()
 };
 

@@ -97,6 +97,7 @@ TEST(Configuration, IdentityHoldsWhatChangesImagesAndNothingElse) {
         {"topography.least_contrast", "3", ""},
         {"topography.most_fit_residual", "0.5", ""},
         {"topography.most_peaks", "2", ""},
+        {"topography.place_by_texture", "false", ""},
         {"topography.repair_outliers", "true", ""},
         {"topography.evaluate_on", "\"host\"", ""},
         {"topography.flatness_file", "\"flat.tif\"", ""},
