@@ -100,11 +100,10 @@ class BackwardTracer final : public Tracer {
                    const TraceOptions& options)
         : instrument_(instrument), turned_(optics::turned_round(instrument)),
           plan_(backward_plan(options.rays, instrument.constants.detector_pixels)),
-          filter_(filter_for_waves(instrument, options)),
-          scene_(make_device_scene(turned_, specimen, options, filter_ ? &*filter_ : nullptr)),
+          scene_(make_device_scene(turned_, specimen, options, &instrument_)),
           trace_(scene_, backward_optics(instrument_, scene_.host_record.material), plan_, options.batch) {
-        if (filter_) {
-            waves_.emplace(scene_, *filter_);
+        if (scene_.filter) {
+            waves_.emplace(scene_);
         }
     }
 
@@ -136,7 +135,7 @@ class BackwardTracer final : public Tracer {
         if (waves_) {
             const auto light = waves_->light();
             device_seconds += light.device_seconds;
-            result = with_waves(std::move(result), light.pixels, sums.power_per_number(), *filter_);
+            result = with_waves(std::move(result), light.pixels, sums.power_per_number(), *scene_.filter);
         }
         result.device_seconds = device_seconds;
         // Of the imaging train alone: who goes on to the source, no one counts.
@@ -150,12 +149,12 @@ class BackwardTracer final : public Tracer {
     }
 
     TracerIdentity identity() const override { return scene_.identity(); }
+    const optics::PupilFilter* pupil_filter() const override { return scene_.filter ? &*scene_.filter : nullptr; }
 
   private:
     optics::Instrument instrument_;
     optics::Instrument turned_;
     BackwardPlan plan_;
-    std::optional<optics::PupilFilter> filter_;
     mutable std::mutex mutex_; // one exposure at a time: the buffers are shared
     mutable DeviceScene scene_;
     BackwardTrace trace_;

@@ -4,6 +4,7 @@
 #include "trace/forward_trace.hpp"
 #include "trace/nonsequential_trace.hpp"
 #include "trace/scene_waves.hpp"
+#include "trace/wave_memory.hpp"
 
 #include "spirv/probe_nonsequential_bvh.h"
 #include "spirv/probe_nonsequential_ray_query.h"
@@ -27,11 +28,10 @@ constexpr std::uint32_t batches_per_submission_gpu = 8;
 class DeviceTracer final : public Tracer {
   public:
     DeviceTracer(const optics::Instrument& instrument, const specimen::Specimen& specimen, const TraceOptions& options)
-        : instrument_(instrument), rays_(options.rays), filter_(filter_for_waves(instrument, options)),
-          scene_(make_device_scene(instrument_, specimen, options, filter_ ? &*filter_ : nullptr)),
-          trace_(make_trace(scene_, options)) {
-        if (filter_) {
-            waves_.emplace(scene_, *filter_);
+        : instrument_(instrument), rays_(options.rays),
+          scene_(make_device_scene(instrument_, specimen, options, &instrument_)), trace_(make_trace(scene_, options)) {
+        if (scene_.filter) {
+            waves_.emplace(scene_);
         }
     }
 
@@ -62,7 +62,8 @@ class DeviceTracer final : public Tracer {
         if (waves_) {
             const auto light = waves_->light();
             device_seconds += light.device_seconds;
-            result = with_waves(std::move(result), light.pixels, scene_.accounts.power_per_number(rays_), *filter_);
+            result =
+                with_waves(std::move(result), light.pixels, scene_.accounts.power_per_number(rays_), *scene_.filter);
         }
         result.device_seconds = device_seconds;
         result.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
@@ -74,6 +75,7 @@ class DeviceTracer final : public Tracer {
     }
 
     TracerIdentity identity() const override { return scene_.identity(); }
+    const optics::PupilFilter* pupil_filter() const override { return scene_.filter ? &*scene_.filter : nullptr; }
 
   private:
     static std::unique_ptr<PathTrace> make_trace(const DeviceScene& scene, const TraceOptions& options) {
@@ -86,7 +88,6 @@ class DeviceTracer final : public Tracer {
 
     optics::Instrument instrument_;
     std::uint64_t rays_;
-    std::optional<optics::PupilFilter> filter_;
     mutable std::mutex mutex_; // one exposure at a time: the buffers are shared
     mutable DeviceScene scene_;
     std::unique_ptr<PathTrace> trace_;
@@ -107,13 +108,15 @@ TracerIdentity expected_identity(const optics::Instrument& instrument, const spe
                                  const TraceOptions& options) {
     const optics::Instrument traced =
         options.estimator == Estimator::backward ? optics::turned_round(instrument) : instrument;
+    const auto& waves = options.nonsequential ? std::nullopt : options.waves;
     if (options.device == "host") {
-        return host_identity(traced);
+        return host_identity(traced, waves ? optics::parts_of(*waves, instrument) : 0);
     }
     const auto reports = vulkan::list_devices();
     const auto& report = reports[vulkan::choose_device(reports, {options.device})];
     const auto traversal = choose_traversal(report, specimen, options.traversal, options.nonsequential).traversal;
-    return device_identity(report, traversal_name(traversal), traced, options.waves && !options.nonsequential);
+    return device_identity(report, traversal_name(traversal), traced,
+                           waves ? waves_on_device(*waves, instrument, report).parts : 0);
 }
 
 std::vector<PathEnd> device_paths(const optics::Instrument& instrument, const specimen::Specimen& specimen,

@@ -2,9 +2,10 @@
 
 namespace vkfv::trace {
 
-SceneWaves::SceneWaves(const DeviceScene& scene, const optics::PupilFilter& filter) : scene_(scene), filter_(filter) {
+SceneWaves::SceneWaves(const DeviceScene& scene) : scene_(scene) {
     if (!scene.software()) {
-        on_device_.emplace(*scene.device, filter, scene.instrument.constants.detector_pixels, scene.cell_light.value());
+        on_device_.emplace(*scene.device, scene.filter.value(), scene.instrument.constants.detector_pixels,
+                           scene.cell_light.value());
     }
 }
 
@@ -17,7 +18,7 @@ SceneWaves::Light SceneWaves::light() const {
         commands.submit_and_wait();
         return {.pixels = on_device_->image(), .device_seconds = commands.seconds()[1]};
     }
-    const WaveImage image(filter_, scene_.instrument.constants.detector_pixels);
+    const WaveImage image(scene_.filter.value(), scene_.instrument.constants.detector_pixels);
     return {.pixels = image.apply(scene_.cell_light.value().read_values<std::uint64_t>(image.numbers()))};
 }
 

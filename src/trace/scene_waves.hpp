@@ -9,10 +9,10 @@
 
 namespace vkfv::trace {
 
-// On the device, or on the host for devices that are the host's cores. Scene and filter must outlive it.
+// On the device, or on the host for devices that are the host's cores. The scene, one with a filter, must outlive it.
 class SceneWaves {
   public:
-    SceneWaves(const DeviceScene& scene, const optics::PupilFilter& filter);
+    explicit SceneWaves(const DeviceScene& scene);
 
     struct Light {
         Grid<double> pixels; // in the units of the sorted light
@@ -22,7 +22,6 @@ class SceneWaves {
 
   private:
     const DeviceScene& scene_;
-    const optics::PupilFilter& filter_;
     std::optional<DeviceWaveImage> on_device_;
 };
 

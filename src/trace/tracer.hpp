@@ -98,6 +98,8 @@ class Tracer {
     virtual Image expose(double focal_height, std::uint32_t image) const = 0;
     virtual std::string description() const = 0; // device, traversal and the reason for both
     virtual TracerIdentity identity() const = 0;
+    // What makes its images as waves do; none: they are as rays make them.
+    virtual const optics::PupilFilter* pupil_filter() const { return nullptr; }
 };
 
 // The identity that a tracer would have, without opening the device. Throws DeviceError, InputError.
