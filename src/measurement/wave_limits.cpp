@@ -4,6 +4,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <future>
 
 namespace vkfv::measurement {
@@ -45,15 +46,19 @@ WaveLimits wave_limits(const optics::PupilFilter& filter, const optics::Instrume
 
 std::vector<std::string> warnings_of(const WaveLimits& limits) {
     std::vector<std::string> warnings;
-    for (const auto& [name, error] : limits.points) {
-        if (error.difference > most_error) {
-            warnings.push_back(fmt::format(
-                "Images as waves make them: {} the field the contrast of waves of {:.3g} um at z = {:.3g} um is off by "
-                "{:.2g} ({:.2g} instead of {:.2g}). More diffraction.cells may help; vkfv optics draws what waves do.",
-                std::string_view(name) == "axis" ? "in the middle of" : fmt::format("at the {} of", name),
-                um_per_mm / glm::length(error.frequency), error.height * um_per_mm, error.difference,
-                std::abs(error.filtered), std::abs(error.waves)));
-        }
+    const auto worst =
+        std::ranges::max_element(limits.points, {}, [](const auto& point) { return point.error.difference; });
+    if (worst != limits.points.end() && worst->error.difference > most_error) {
+        const auto& error = worst->error;
+        const bool of_cells = limits.points.front().error.difference > 0.5 * error.difference;
+        warnings.push_back(fmt::format(
+            "Images as waves make them: {} the contrast of waves of {:.3g} um at z = {:.3g} um is off by {:.2g}, phase "
+            "included ({:.2g} instead of {:.2g}). {}",
+            std::string_view(worst->name) == "axis" ? "in the middle of the field"
+                                                    : fmt::format("at the {} of the field", worst->name),
+            um_per_mm / glm::length(error.frequency), error.height * um_per_mm, error.difference,
+            std::abs(error.filtered), std::abs(error.waves),
+            of_cells ? "Take more diffraction.cells." : "The filter is that of the axis: trust what lies near it."));
     }
     if (limits.folded_contrast > 0) {
         warnings.push_back(fmt::format(

@@ -27,7 +27,7 @@ struct WaveLimits {
 // Of the axis, the middle of a side and the corner of the field, within two depths of field.
 WaveLimits wave_limits(const optics::PupilFilter& filter, const optics::Instrument& instrument);
 
-// Where a point's contrast is off by more than 0.1, and where light folds back; a sentence each.
+// Where the worst point's contrast is off by more than 0.1, and where light folds back; some sentences each.
 std::vector<std::string> warnings_of(const WaveLimits& limits);
 
 nlohmann::ordered_json json_of(const WaveLimits& limits);
