@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 """Wavefront and transfer function of a shipped objective on the axis, for tests/optics/wavefront_test.cpp and
-transfer_function_test.cpp.
+point_waves_test.cpp.
 
 Shares no code with vkfv: a fan of meridional rays is traced from the detector's middle backward through spheres of the
 prescriptions, and what vkfv fits over the pupil is integrated here along its radius. Prints the wavefront's Zernike

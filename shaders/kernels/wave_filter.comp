@@ -1,6 +1,6 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
-// Adds to the image's spectrum that of pairs of cells, each cell's by its own transfer function.
+// Adds to the image's spectrum that of groups of cells, each cell's by its own transfer function.
 layout(local_size_x = 128) in;
 
 #include "waves/device.glsl"
@@ -8,55 +8,70 @@ layout(local_size_x = 128) in;
 layout(set = 0, binding = WAVES_BINDING_PLANES, scalar) readonly buffer Planes { vec2 planes[]; };
 layout(set = 0, binding = WAVES_BINDING_TABLE, scalar) readonly buffer Table { vec2 table[]; };
 layout(set = 0, binding = WAVES_BINDING_SPECTRUM, scalar) buffer Spectrum { vec4 spectrum[]; };
-layout(push_constant, scalar) uniform Push { WavePairs pairs; };
+layout(push_constant, scalar) uniform Push { WaveGroups groups; };
 
 // Bilinear; x from -steps to steps, y from 0.
 vec2 transfer(uint cell, float x, float y) {
-    int columns = 2 * int(pairs.steps) + 1;
+    int columns = 2 * int(groups.steps) + 1;
     float left = floor(x);
     float low = floor(y);
-    int corner = (int(cell) * (int(pairs.steps) + 1) + int(low)) * columns + int(left) + int(pairs.steps);
+    int corner = (int(cell) * (int(groups.steps) + 1) + int(low)) * columns + int(left) + int(groups.steps);
     vec2 below = mix(table[corner], table[corner + 1], x - left);
     vec2 above = mix(table[corner + columns], table[corner + columns + 1], x - left);
     return mix(below, above, y - low);
 }
 
+// The transforms of the real and the imaginary part of a plane, at a frequency: of two real planes in a complex one
+// z(f) + conj z(-f) is twice that of the real part, and (z(f) - conj z(-f)) / i twice that of the imaginary part.
+vec4 parted(vec2 z, vec2 opposite) {
+    return 0.5 * vec4(z.x + opposite.x, z.y - opposite.y, z.y + opposite.y, opposite.x - z.x);
+}
+
 void main() {
     uint place = invocation();
-    uint plane = pairs.side * pairs.side;
+    uint plane = groups.side * groups.side;
     if (place >= plane) {
         return;
     }
-    uint column = place % pairs.side;
-    uint row = place / pairs.side;
-    vec2 at = vec2(column, row) * pairs.steps_a_line;
-    vec4 sum = pairs.first == 0u ? vec4(0.0) : spectrum[place];
-    if (dot(at, at) < float(pairs.steps * pairs.steps)) {
-        uint left = column == 0u ? 0u : pairs.side - column;
-        uint low = row == 0u ? 0u : pairs.side - row;
+    uint column = place % groups.side;
+    uint row = place / groups.side;
+    vec2 at = vec2(column, row) * groups.steps_a_line;
+    vec4 sum = groups.first == 0u ? vec4(0.0) : spectrum[place];
+    if (dot(at, at) < float(groups.steps * groups.steps)) {
+        uint left = column == 0u ? 0u : groups.side - column;
+        uint low = row == 0u ? 0u : groups.side - row;
         // From the first value's middle to the border.
-        vec2 turn_column = turned(-0.5 * float(column) / float(pairs.side));
-        vec2 turn_row = turned(-0.5 * float(row) / float(pairs.side));
+        vec2 turn_column = turned(-0.5 * float(column) / float(groups.side));
+        vec2 turn_row = turned(-0.5 * float(row) / float(groups.side));
         vec2 both = times(turn_column, turn_row);
         vec2 against = times(turn_column, vec2(turn_row.x, -turn_row.y));
-        for (uint k = 0u; k < pairs.count; ++k) {
-            uint first = k * plane;
-            vec2 ahead = planes[first + row * pairs.side + column];
-            vec2 ahead_opposite = planes[first + low * pairs.side + left];
-            vec2 across = planes[first + low * pairs.side + column];
-            vec2 across_opposite = planes[first + row * pairs.side + left];
-            // Two real planes in a complex one: z(f) + conj z(-f) is twice the transform of the real part, and
-            // (z(f) - conj z(-f)) / i of the imaginary part.
-            vec2 even_ahead = 0.5 * vec2(ahead.x + ahead_opposite.x, ahead.y - ahead_opposite.y);
-            vec2 even_across = 0.5 * vec2(across.x + across_opposite.x, across.y - across_opposite.y);
-            vec2 odd_ahead = 0.5 * vec2(ahead.y + ahead_opposite.y, ahead_opposite.x - ahead.x);
-            vec2 odd_across = 0.5 * vec2(across.y + across_opposite.y, across_opposite.x - across.x);
-            float even = 0.5 * (times(both, even_ahead).x + times(against, even_across).x);
-            float odd = 0.5 * (times(against, odd_across).x - times(both, odd_ahead).x);
-            uvec2 cells = cells_of_pair(pairs.first + k, pairs.cells_side);
-            // The product of two sines changes its sign where one frequency does; mirrored light has it reversed.
-            sum.xy += transfer(cells.x, at.x, at.y) * (even - odd) + transfer(cells.y, at.x, at.y) * (even + odd);
-            sum.zw += transfer(cells.x, -at.x, at.y) * (even + odd) + transfer(cells.y, -at.x, at.y) * (even - odd);
+        for (uint k = 0u; k < groups.count; ++k) {
+            vec4 ahead[2];
+            vec4 across[2];
+            for (uint which = 0u; which < 2u; ++which) {
+                uint first = (2u * k + which) * plane;
+                ahead[which] =
+                    parted(planes[first + row * groups.side + column], planes[first + low * groups.side + left]);
+                across[which] =
+                    parted(planes[first + low * groups.side + column], planes[first + row * groups.side + left]);
+            }
+            // Cosines along rows and columns are real parts of the turned transforms, sines minus the imaginary ones.
+            float even = 0.5 * (times(both, ahead[0].xy).x + times(against, across[0].xy).x);
+            float odd = 0.5 * (times(against, across[0].zw).x - times(both, ahead[0].zw).x);
+            float odd_along = -0.5 * (times(both, ahead[1].xy).y + times(against, across[1].xy).y);
+            float odd_across = -0.5 * (times(both, ahead[1].zw).y - times(against, across[1].zw).y);
+            // A sine changes its sign where its frequency does; mirrored light has it reversed.
+            vec2 same = vec2(even - odd, -odd_along - odd_across);
+            vec2 sideways = vec2(even + odd, odd_along - odd_across);
+            vec2 upright = vec2(sideways.x, -sideways.y);
+            vec2 turned_round = vec2(same.x, -same.y);
+            uvec4 cells = cells_of_group(groups.first + k, groups.cells_side);
+            sum.xy += times(transfer(cells.x, at.x, at.y), same) + times(transfer(cells.y, at.x, at.y), sideways) +
+                      times(transfer(cells.z, at.x, at.y), upright) +
+                      times(transfer(cells.w, at.x, at.y), turned_round);
+            sum.zw += times(transfer(cells.x, -at.x, at.y), sideways) + times(transfer(cells.y, -at.x, at.y), same) +
+                      times(transfer(cells.z, -at.x, at.y), turned_round) +
+                      times(transfer(cells.w, -at.x, at.y), upright);
         }
     }
     spectrum[place] = sum;

@@ -1,6 +1,7 @@
-// Light sorted by where it crosses the pupil, for what diffraction makes of it afterwards (optics/pupil_cells.hpp): a
-// square grid of cells over the exit pupil as the detector sees it, each with its opposite in one, and in every cell an
-// image whose pixels are parted so finely that it can hold all that light waves resolve.
+// Light sorted by where it crosses the pupil, for what diffraction makes of it afterwards (optics/pupil_filter.hpp): a
+// square grid of cells over the exit pupil as the detector sees it, and in every cell an image whose pixels are parted
+// so finely that it can hold all that light waves resolve. Opposite cells stay apart: what aberration does to the phase
+// of one is the opposite in the other.
 // clang-format off
 #define VKFV_PUPIL_CELLS_FIELDS(FIELD) \
     FIELD(uint, side)             /* cells across the pupil, an even number; 0: light is not sorted */ \
@@ -12,16 +13,15 @@ struct PupilCells {
 };
 // clang-format on
 
-VKFV_FUNCTION uint pupil_cell_count(PupilCells cells) { return cells.side * cells.side / 2u; }
+VKFV_FUNCTION uint pupil_cell_count(PupilCells cells) { return cells.side * cells.side; }
 
 // about_chief: slope dx/dz, dy/dz of light that arrives at the detector, less the chief ray's. Light from outside the
 // grid belongs to the cell at its edge.
 VKFV_FUNCTION uint pupil_cell(PupilCells cells, real2 about_chief) {
-    real opposite = about_chief.y < real(0.0) ? real(-1.0) : real(1.0);
     real half_side = real(0.5) * real(cells.side);
     int last = int(cells.side) - 1;
-    int column = clamp(int(floor((about_chief.x * opposite * cells.per_slope + real(1.0)) * half_side)), 0, last);
-    int row = clamp(int(floor(about_chief.y * opposite * cells.per_slope * half_side)), 0, int(half_side) - 1);
+    int column = clamp(int(floor((about_chief.x * cells.per_slope + real(1.0)) * half_side)), 0, last);
+    int row = clamp(int(floor((about_chief.y * cells.per_slope + real(1.0)) * half_side)), 0, last);
     return uint(row) * cells.side + uint(column);
 }
 

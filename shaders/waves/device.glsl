@@ -18,9 +18,13 @@ vec2 turned(float half_turns) {
     return vec2(cos(angle), sin(angle));
 }
 
-// A pair of cells: the k-th cell of the left half, and its mirror image.
-uvec2 cells_of_pair(uint pair, uint side) {
-    uint row = pair / (side / 2u);
-    uint column = pair % (side / 2u);
-    return uvec2(row * side + column, row * side + side - 1u - column);
+// Four cells that are mirror images: the k-th cell of the lower left quarter, what it is left to right, upside down,
+// and both.
+uvec4 cells_of_group(uint group, uint side) {
+    uint row = group / (side / 2u);
+    uint column = group % (side / 2u);
+    uint other_row = side - 1u - row;
+    uint other_column = side - 1u - column;
+    return uvec4(row * side + column, row * side + other_column, other_row * side + column,
+                 other_row * side + other_column);
 }

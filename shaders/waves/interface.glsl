@@ -1,18 +1,18 @@
 // What host and device share of the image that waves make of light sorted by pupil cells (trace/device_wave_image.hpp):
 // where buffers are bound (set 0), push constants.
 
-const uint WAVES_BINDING_PLANES = 0u;   // complex, a plane a pair of cells
+const uint WAVES_BINDING_PLANES = 0u;   // complex, two planes a group of cells
 const uint WAVES_BINDING_TABLE = 1u;    // the cells' transfer functions
 const uint WAVES_BINDING_SPECTRUM = 2u; // of the image, two complex numbers a frequency: at (l, m) and (-l, m)
 const uint WAVES_BINDING_IMAGE = 3u;    // complex, the image with its mirror images
 const uint WAVES_BINDING_PIXELS = 4u;
 
-// Some pairs of cells, each a cell and its mirror image.
-struct WavePairs {
+// Some groups of cells, each of four that are mirror images.
+struct WaveGroups {
     uvec2 light;     // address of the sorted light
     uint side;       // parts of pixels
     uint cells_side; // cells across the pupil
-    uint first;      // pair
+    uint first;      // group
     uint count;
     uint steps;        // of the table, from 0 to the cutoff
     real steps_a_line; // the table's for each 1 / (2 side) cycles a part

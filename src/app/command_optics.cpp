@@ -1,6 +1,7 @@
 #include "app/commands.hpp"
 #include "measurement/assembly.hpp"
 #include "measurement/wave_figures.hpp"
+#include "measurement/wave_limits.hpp"
 #include "measurement/wave_report.hpp"
 
 #include "core/result_folder.hpp"
@@ -56,9 +57,16 @@ void run_optics(const CommandOptions& options) {
     results.write("wavefront.svg", measurement::wavefront_picture(figures, name + ": wavefront at z = 0"));
     results.write("wavefront.csv", measurement::wavefront_table(figures));
     results.write("zernike.csv", measurement::zernike_table(figures));
-    results.write("optics.json", measurement::wave_json(figures).dump(2) + "\n");
+    auto json = measurement::wave_json(figures);
+    std::string text = measurement::summary(figures);
+    if (const auto& waves = configuration.trace.waves) {
+        const auto limits = measurement::wave_limits(optics::PupilFilter(instrument, *waves), instrument);
+        json["images"] = measurement::json_of(limits);
+        text += measurement::summary(limits);
+    }
+    results.write("optics.json", json.dump(2) + "\n");
     results.write_checksums();
-    fmt::print("{}", measurement::summary(figures));
+    fmt::print("{}", text);
 }
 
 } // namespace vkfv::app

@@ -121,7 +121,11 @@ const IntegerKey pupil_cells =
 const IntegerKey parts = of_kinds(
     {"waves"}, IntegerKey("parts_per_pixel", 0, most_parts, 0,
                           "Parts of a pixel's side in which light is sorted; 0: as many as waves of the instrument's "
-                          "numerical aperture ask for."));
+                          "numerical aperture ask for, or as the device's memory allows."));
+// What images depend on is how many parts that leaves, which stands in their identity (trace/tracer_identity.hpp).
+const NumberKey most_memory = of_kinds(
+    {"waves"}, without_influence(NumberKey("most_memory_gib", NumberRange::at_least(0), 0.0,
+                                           "Most device memory for light of waves; 0: four fifths of what there is.")));
 
 } // namespace
 
@@ -145,7 +149,7 @@ const KeyTable& diffraction_keys() {
         .meaning = "Diffraction.",
         .subject = "",
         .kind = "model",
-        .keys = {&model, &point_spread, &point_spread_file, &point_spread_pitch, &pupil_cells, &parts}};
+        .keys = {&model, &point_spread, &point_spread_file, &point_spread_pitch, &pupil_cells, &parts, &most_memory}};
     return table;
 }
 
@@ -206,6 +210,8 @@ void read_diffraction(const TomlTable& root, Configuration& configuration) {
         optics::WaveOptions& waves = configuration.trace.waves.emplace();
         waves.cells = static_cast<int>(section.integer(pupil_cells));
         waves.parts = static_cast<int>(section.integer(parts));
+        constexpr double bytes_per_gib = 1 << 30;
+        waves.most_memory = static_cast<std::uint64_t>(section.number(most_memory) * bytes_per_gib);
         if (waves.cells % 2 != 0) {
             section.fail(pupil_cells, "an even number, so that opposite points of the pupil share a cell",
                          fmt::format("Choose {} or {}.", waves.cells - 1, waves.cells + 1));

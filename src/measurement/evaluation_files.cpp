@@ -234,7 +234,7 @@ nlohmann::ordered_json run_of(const std::filesystem::path& folder) {
     const std::string text = read_file(folder / "results.json");
     check_json_depth(text, folder / "results.json");
     const auto results = nlohmann::ordered_json::parse(text, nullptr, false);
-    for (const char* key : {"device", "stack_digest", "seed", "images", "rays_per_image"}) {
+    for (const char* key : {"device", "stack_digest", "seed", "images", "rays_per_image", "waves"}) {
         if (results.is_object() && results.contains(key)) {
             run[key] = results.at(key);
         }

@@ -5,8 +5,10 @@
 #include "core/units.hpp"
 #include "images/image_file.hpp"
 #include "measurement/assembly.hpp"
+#include "measurement/wave_limits.hpp"
 
 #include <fmt/format.h>
+#include <spdlog/spdlog.h>
 
 #include <algorithm>
 #include <cmath>
@@ -50,6 +52,11 @@ Exposure expose(const Configuration& configuration, const optics::Instrument& in
                       pitch,
                       tracer->identity(),
                       {}};
+    if (const auto* filter = tracer->pupil_filter()) {
+        for (const auto& warning : warnings_of(wave_limits(*filter, instrument))) {
+            spdlog::warn(warning);
+        }
+    }
     if (const auto diffraction = make_diffraction(configuration, instrument)) {
         exposure.diffracted = diffraction->apply(in_float(exposure.image.flux));
     }

@@ -2,7 +2,9 @@
 
 #include "core/units.hpp"
 #include "measurement/assembly.hpp"
+#include "measurement/wave_limits.hpp"
 #include "optics/image_quality.hpp"
+#include "trace/wave_memory.hpp"
 
 #include <fmt/format.h>
 
@@ -98,6 +100,24 @@ FigureGroup aberrations(const optics::FirstOrder& first_order, const optics::Ima
              {"lateral_colour_um", quality.lateral_colour * um_per_mm, "image height at the edge, likewise"}}};
 }
 
+FigureGroup figures_of_waves(const optics::WaveOptions& options, const optics::Instrument& instrument,
+                             std::vector<std::string>& warnings) {
+    constexpr double bytes_per_gib = 1 << 30;
+    const optics::PupilFilter filter(instrument, options);
+    const WaveLimits limits = wave_limits(filter, instrument);
+    const auto further = warnings_of(limits);
+    warnings.insert(warnings.end(), further.begin(), further.end());
+    const auto memory = trace::wave_memory(limits.cells, limits.parts, instrument.constants.detector_pixels);
+    const auto error_of = [&](std::size_t point) { return limits.points[point].error.difference; };
+    return {"Images as waves make them, within two depths of field",
+            {{"wave_parts_per_pixel", static_cast<double>(limits.parts), "of a pixel's side that light is sorted in"},
+             {"wave_memory_gib", static_cast<double>(memory.all()) / bytes_per_gib, "that a GPU needs, at most"},
+             {"wave_folded_contrast", limits.folded_contrast, "what waves too fine for the parts are off by"},
+             {"wave_contrast_error_axis", error_of(0), "of the pupil's cells against Hopkins' integral"},
+             {"wave_contrast_error_edge", error_of(1), "the same at the edge, by the filter of the axis"},
+             {"wave_contrast_error_corner", error_of(2), "the same in the corner"}}};
+}
+
 ScanFigures figures_of_scan(const Configuration& configuration) {
     const auto positions = configuration.scan->positions();
     return {.images = positions.size(),
@@ -178,6 +198,9 @@ InstrumentFigures instrument_figures(const Configuration& configuration) {
     figures.groups.push_back(aberrations(first_order, quality));
     auto& warnings = figures.warnings;
     warnings.insert(warnings.end(), quality.warnings.begin(), quality.warnings.end());
+    if (configuration.trace.waves) {
+        figures.groups.push_back(figures_of_waves(*configuration.trace.waves, instrument, warnings));
+    }
     if (configuration.scan) {
         figures.scan = figures_of_scan(configuration);
         warn_of_step(configuration, *figures.scan, first_order, warnings);

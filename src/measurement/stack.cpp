@@ -5,6 +5,7 @@
 #include "measurement/assembly.hpp"
 #include "measurement/evaluation_files.hpp"
 #include "measurement/exposure.hpp"
+#include "measurement/wave_limits.hpp"
 #include "specimen/geometry_digest.hpp"
 
 #include <fmt/format.h>
@@ -73,6 +74,14 @@ StackResult measure_stack(const Configuration& configuration, Progress& progress
                                     {"rays_per_image", rays_per_image}},
                          .source = source.get(),
                          .files = topography_files(configuration)};
+    if (const auto* filter = tracer->pupil_filter()) {
+        const WaveLimits limits = wave_limits(*filter, instrument);
+        for (const auto& warning : warnings_of(limits)) {
+            spdlog::warn(warning);
+        }
+        stack.origin["waves"] = json_of(limits);
+        stack.origin["waves"]["warnings"] = warnings_of(limits);
+    }
     if (const double noise = stack.evaluation.topography.stack.image_noise; noise > most_image_noise) {
         spdlog::warn("The images' noise is {:.0f} % of their brightness: what is measured is little or rough. {}",
                      100 * noise, remedy_of_noise(configuration, noise, good_image_noise));

@@ -124,6 +124,10 @@ std::string stack_page(const StackPage& content) {
     add_members(page, content.results,
                 {"stack", "first_image", "last_image", "z_start_um", "z_step_um", "pitch_um", "shuffle_seed", "images",
                  "rays_per_image", "seed", "device", "stack_digest", "evaluated_by"});
+    if (const auto waves = content.results.find("waves"); waves != content.results.end()) {
+        page.paragraph("How far they are from what waves make (contrast, within two depths of field):");
+        add_members(page, *waves);
+    }
     if (!content.layout.empty()) {
         page.heading("Instrument");
         page.picture(content.layout, "The instrument to scale, with rays");

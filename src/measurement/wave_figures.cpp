@@ -23,7 +23,7 @@ constexpr double rings_shown = 5; // of an ideal lens
 constexpr int zernike_terms = 37;
 constexpr int half_pupil = 64;
 
-WaveAxes axes_of(const optics::WaveImage& on_axis, double reach) {
+WaveAxes axes_of(const optics::PointWaves& on_axis, double reach) {
     WaveAxes axes;
     for (int i = -half_heights; i <= half_heights; ++i) {
         axes.heights.push_back(reach * i / half_heights);
@@ -70,7 +70,7 @@ void measure_wavefront(WavePoint& point, const optics::Wavefront& wavefront) {
 }
 
 // mirrored: about the radial direction, as of a symmetric instrument.
-void measure_spread(WavePoint& point, const WaveAxes& axes, const optics::WaveImage& image, bool mirrored) {
+void measure_spread(WavePoint& point, const WaveAxes& axes, const optics::PointWaves& image, bool mirrored) {
     const double reach = axes.places.back();
     const optics::PointSpread spread = image.point_spread(std::sqrt(2.0) * reach);
     const glm::dvec2 tangential(-point.radial.y, point.radial.x);
@@ -101,13 +101,13 @@ void measure_spread(WavePoint& point, const WaveAxes& axes, const optics::WaveIm
 }
 
 // round: all directions are alike.
-void measure_through_focus(WavePoint& point, const WaveAxes& axes, const optics::WaveImage& focused, bool round) {
+void measure_through_focus(WavePoint& point, const WaveAxes& axes, const optics::PointWaves& focused, bool round) {
     const glm::dvec2 tangential(-point.radial.y, point.radial.x);
     point.radial_transfer = Grid<std::complex<double>>(count(axes.frequencies), count(axes.heights));
     point.tangential_transfer = point.radial_transfer;
     point.spread_through_focus = Grid<double>(count(axes.places), count(axes.heights));
     for (int row = 0; row < count(axes.heights); ++row) {
-        const optics::WaveImage image = focused.at_height(axes.heights[static_cast<std::size_t>(row)]);
+        const optics::PointWaves image = focused.at_height(axes.heights[static_cast<std::size_t>(row)]);
         for (int column = 0; column < count(axes.frequencies); ++column) {
             const double frequency = axes.frequencies[static_cast<std::size_t>(column)];
             point.radial_transfer(column, row) = image.transfer(frequency * point.radial);
@@ -134,7 +134,7 @@ WaveFigures wave_figures(const optics::Instrument& instrument, double reach) {
     for (const auto& [name, field, radial] : {std::tuple{"axis", glm::dvec2(0), glm::dvec2(1, 0)},
                                               std::tuple{"edge", glm::dvec2(side, 0), glm::dvec2(1, 0)},
                                               std::tuple{"corner", glm::dvec2(side), glm::dvec2(diagonal)}}) {
-        const optics::WaveImage image(instrument, field, wavelengths);
+        const optics::PointWaves image(instrument, field, wavelengths);
         if (image.middle().largest_rim() == 0) {
             continue;
         }

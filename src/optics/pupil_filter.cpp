@@ -20,12 +20,17 @@ using Complex = std::complex<double>;
 constexpr int points_a_cell = 10;
 constexpr int most_wavelengths = 7; // of a continuous spectrum, whose mean changes slowly with its wavelengths
 
+// Without the care of std::complex for what is not finite.
+Complex product(Complex a, Complex b) {
+    return {a.real() * b.real() - a.imag() * b.imag(), a.real() * b.imag() + a.imag() * b.real()};
+}
+
 // The pupil on a lattice whose points p + lambda f / 2 are points again, for frequencies that are multiples of the
 // cutoff over `half`. No point lies on an axis, where mirror images would share a cell's edge.
 struct Lattice {
     Lattice(const Wavefront& wavefront, int half, const physics::f64::PupilCells& cells)
         : half(half), side(2 * half), spacing(wavefront.largest_rim() / half),
-          cell(static_cast<std::size_t>(side * side), -1), phase(cell.size()), tilt(cell.size()) {
+          cell(static_cast<std::size_t>(side * side), -1), wave(cell.size()), tilt(cell.size()) {
         const double k = 2 * pi / wavefront.wavelength();
         for (int j = -half; j < half; ++j) {
             for (int i = -half; i < half; ++i) {
@@ -33,7 +38,7 @@ struct Lattice {
                 if (wavefront.passes(p)) {
                     const std::size_t place = index(i, j);
                     cell[place] = static_cast<int>(physics::f64::pupil_cell(cells, wavefront.image_slope(p)));
-                    phase[place] = k * wavefront.path(p);
+                    wave[place] = std::polar(1.0, k * wavefront.path(p));
                     tilt[place] = 2 * k * spacing * wavefront.displacement(p);
                 }
             }
@@ -41,9 +46,36 @@ struct Lattice {
     }
     std::size_t index(int i, int j) const { return static_cast<std::size_t>((j + half) * side + i + half); }
 
-    // Sums over each cell of the integrand of w, for the frequency (dx, dy) cutoff / half.
-    void add_up(int dx, int dy, std::vector<Complex>& sums) const {
-        std::fill(sums.begin(), sums.end(), Complex(0));
+    // What rays make of each point for a row of frequencies, one after the other.
+    class Rays {
+      public:
+        Rays(const Lattice& lattice, int dx, int dy) : values_(lattice.tilt.size()), steps_(values_.size()) {
+            for (std::size_t place = 0; place < values_.size(); ++place) {
+                const glm::dvec2 tilt = lattice.tilt[place];
+                values_[place] = std::polar(1.0, -dx * tilt.x - dy * tilt.y);
+                steps_[place] = std::polar(1.0, -tilt.x);
+            }
+        }
+        void advance() { std::ranges::transform(values_, steps_, values_.begin(), product); }
+        const Complex& operator[](std::size_t place) const { return values_[place]; }
+
+      private:
+        std::vector<Complex> values_;
+        std::vector<Complex> steps_;
+    };
+
+    // What waves and what rays make of each cell, summed over its points, for the frequency (dx, dy) cutoff / half.
+    struct Sums {
+        Complex waves = 0;
+        Complex rays = 0;
+    };
+    void add_up(int dx, int dy, const Rays& rays, std::vector<Sums>& sums) const {
+        std::fill(sums.begin(), sums.end(), Sums());
+        for (std::size_t place = 0; place < cell.size(); ++place) {
+            if (cell[place] >= 0) {
+                sums[static_cast<std::size_t>(cell[place])].rays += rays[place];
+            }
+        }
         const int reach_x = half - std::abs(dx);
         const int reach_y = half - std::abs(dy);
         const std::ptrdiff_t step = static_cast<std::ptrdiff_t>(dy) * side + dx;
@@ -54,9 +86,7 @@ struct Lattice {
                 const auto ahead = static_cast<std::size_t>(place + step);
                 const auto behind = static_cast<std::size_t>(place - step);
                 if (cell[here] >= 0 && cell[ahead] >= 0 && cell[behind] >= 0) {
-                    const double turn = phase[ahead] - phase[behind] - dx * tilt[here].x - dy * tilt[here].y;
-                    sums[static_cast<std::size_t>(cell[here])] +=
-                        std::abs(turn) < 1e-9 ? Complex(1) : std::polar(1.0, -turn);
+                    sums[static_cast<std::size_t>(cell[here])].waves += product(std::conj(wave[ahead]), wave[behind]);
                 }
             }
         }
@@ -66,7 +96,7 @@ struct Lattice {
     int side;
     double spacing;
     std::vector<int> cell; // -1: outside the pupil
-    std::vector<double> phase;
+    std::vector<Complex> wave;
     std::vector<glm::dvec2> tilt;
 };
 
@@ -97,6 +127,13 @@ double chief_slope_per_position(const Instrument& instrument) {
     return landing && landing->position.x != 0 ? landing->direction.x / landing->direction.z / landing->position.x : 0;
 }
 
+// What turns the rays' into the waves', as far as it does not amplify.
+Complex ratio_of(const Lattice::Sums& sums) {
+    const double waves = std::abs(sums.waves);
+    const double rays = std::abs(sums.rays);
+    return waves == 0 ? 0 : std::polar(waves < rays ? waves / rays : 1.0, std::arg(sums.waves * std::conj(sums.rays)));
+}
+
 double shortest_wavelength(std::span<const SpectralNode> nodes) {
     const auto least = std::ranges::min_element(nodes, {}, &SpectralNode::wavelength_um);
     return least->wavelength_um / um_per_mm;
@@ -110,11 +147,15 @@ int parts_for_waves(const Instrument& instrument) {
     return std::max(1, static_cast<int>(std::ceil(instrument.first_order.pixel_pitch / pitch * (1 - 1e-9))));
 }
 
+int parts_of(const WaveOptions& options, const Instrument& instrument) {
+    return options.parts > 0 ? options.parts : parts_for_waves(instrument);
+}
+
 PupilFilter::PupilFilter(const Instrument& instrument, const WaveOptions& options)
     : steps_(std::max(32, points_a_cell * options.cells / 2)) {
     const auto nodes = at_most(most_wavelengths, spectral_nodes(instrument));
     cells_.side = static_cast<std::uint32_t>(options.cells);
-    cells_.parts = static_cast<std::uint32_t>(options.parts > 0 ? options.parts : parts_for_waves(instrument));
+    cells_.parts = static_cast<std::uint32_t>(parts_of(options, instrument));
     part_pitch_ = instrument.first_order.pixel_pitch / cells_.parts;
     cells_.chief_position = chief_slope_per_position(instrument);
     double largest = 0;
@@ -147,7 +188,7 @@ PupilFilter::PupilFilter(const Instrument& instrument, const WaveOptions& option
 
 void PupilFilter::fill_dark_cells() {
     const int side = static_cast<int>(cells_.side);
-    const auto middle = [side](int cell) { return glm::dvec2(cell % side - 0.5 * (side - 1), cell / side + 0.5); };
+    const auto middle = [side](int cell) { return glm::dvec2(cell % side, cell / side); };
     const auto plane = static_cast<std::ptrdiff_t>(table_.size() / shares_.size());
     for (int dark = 0; dark < cell_count(); ++dark) {
         int nearest = -1;
@@ -181,13 +222,14 @@ void PupilFilter::add_wavelength(const Instrument& instrument, const SpectralNod
         std::vector<std::jthread> threads;
         for (int worker = 0; worker < workers; ++worker) {
             threads.emplace_back([&, worker] {
-                std::vector<Complex> sums(count);
+                std::vector<Lattice::Sums> sums(count);
                 for (int dy = worker; dy <= steps_; dy += workers) {
-                    for (int dx = -steps_; dx <= steps_; ++dx) {
-                        lattice.add_up(dx, dy, sums);
+                    Lattice::Rays rays(lattice, -steps_, dy);
+                    for (int dx = -steps_; dx <= steps_; ++dx, rays.advance()) {
+                        lattice.add_up(dx, dy, rays, sums);
                         for (std::size_t cell = 0; cell < count; ++cell) {
                             own[cell * plane + static_cast<std::size_t>(dy * columns + dx + steps_)] =
-                                points[cell] > 0 ? sums[cell] / points[cell] : Complex(0);
+                                ratio_of(sums[cell]);
                         }
                     }
                 }
@@ -216,10 +258,39 @@ int PupilFilter::mirrored(int cell) const {
     return cell / side * side + side - 1 - cell % side;
 }
 
+int PupilFilter::mirrored_upright(int cell) const {
+    const int side = static_cast<int>(cells_.side);
+    return (side - 1 - cell / side) * side + cell % side;
+}
+
 std::complex<double> PupilFilter::transfer(int cell, double fx, double fy) const {
     const auto plane = static_cast<std::size_t>((2 * steps_ + 1) * (steps_ + 1));
     const double scale = steps_ / cutoff_;
     return interpolated(table_.data() + static_cast<std::size_t>(cell) * plane, steps_, fx * scale, fy * scale);
+}
+
+double PupilFilter::folded_contrast() const {
+    constexpr int samples = 48; // from the axis to the cutoff
+    const double sampling = 1 / part_pitch_;
+    const double pixel_pitch = part_pitch_ * cells_.parts;
+    const auto folded = [sampling](double f) { return f - sampling * std::round(f / sampling); };
+    const auto sinc = [](double x) { return x == 0 ? 1.0 : std::sin(pi * x) / (pi * x); };
+    double largest = 0;
+    for (int j = 0; j < samples; ++j) {
+        for (int i = -samples + 1; i < samples; ++i) {
+            const double fx = cutoff_ * i / samples;
+            const double fy = cutoff_ * j / samples;
+            if (folded(fx) == fx && folded(fy) == fy) {
+                continue;
+            }
+            double difference = 0;
+            for (int cell = 0; cell < cell_count(); ++cell) {
+                difference += share(cell) * std::abs(transfer(cell, folded(fx), folded(fy)) - transfer(cell, fx, fy));
+            }
+            largest = std::max(largest, difference * std::abs(sinc(fx * pixel_pitch) * sinc(fy * pixel_pitch)));
+        }
+    }
+    return largest;
 }
 
 double PupilFilter::noise_of_pixels() const {

@@ -8,26 +8,31 @@
 #include "physics/physics.hpp"
 
 #include <complex>
+#include <cstdint>
 #include <vector>
 
 namespace vkfv::optics {
 
 struct WaveOptions {
-    int cells = 8; // across the pupil, even
-    int parts = 0; // of a pixel's side in which light is sorted; 0: as fine as waves ask for
+    int cells = 8;                 // across the pupil, even
+    int parts = 0;                 // of a pixel's side in which light is sorted; 0: as fine as waves ask for
+    std::uint64_t most_memory = 0; // bytes that this may take of a device; 0: what the device has
 };
 
 // Parts of a pixel's side whose pitch is at most lambda / (4 NA) for the shortest wavelength: the frequencies that the
 // pupil passes are then all below a half cycle a part.
 int parts_for_waves(const Instrument& instrument);
+// Those asked for, else these.
+int parts_of(const WaveOptions& options, const Instrument& instrument);
 
 // Of an instrument's axis. The image has the spectrum  sum over the cells c of  w_c(f) I_c(f)  with
 //   w_c(f) = mean over p in c of  1{p + lambda f / 2 and p - lambda f / 2 in the pupil}
-//                                 exp(-i (k [W(p + lambda f / 2) - W(p - lambda f / 2)] - 2 pi f . t(p)))
+//                                 exp(-i k [W(p + lambda f / 2) - W(p - lambda f / 2)])
+//            over the mean of exp(-2 pi i f . t(p)), its modulus at most 1,
 // where p are direction cosines times the index in the object space, W the wavefront and t its rays' displacement in
 // best focus (optics/wavefront.hpp), by the transform exp(-2 pi i f . x). It is Hopkins' transfer function (Proc. R.
-// Soc. A 231, 91, 1955) with what rays have of it left to them. |w_c| <= 1, so noise does not grow; w_c(0) = 1.
-// Of several wavelengths the mean by their shares of the light.
+// Soc. A 231, 91, 1955) with what rays have of it left to them; in best focus exactly where |w_c| <= 1, which keeps
+// noise from growing. w_c(0) = 1. Of several wavelengths the mean by their shares of the light.
 class PupilFilter {
   public:
     // Throws InputError where no light comes through.
@@ -38,8 +43,9 @@ class PupilFilter {
     // Of light from the axis that fills the pupil as a Lambertian surface's does. What arrives in a cell of share 0
     // comes from the field's edge; it is filtered as that of the nearest other cell.
     double share(int cell) const { return shares_[static_cast<std::size_t>(cell)]; }
-    // The cell that the mirror image of a cell's light, left to right, belongs to.
+    // The cells that the mirror images of a cell's light, left to right and upside down, belong to.
     int mirrored(int cell) const;
+    int mirrored_upright(int cell) const;
 
     // w of a frequency in cycles per mm of the object plane.
     std::complex<double> transfer(int cell, double fx, double fy) const;
@@ -48,6 +54,12 @@ class PupilFilter {
 
     // Standard deviation of a pixel's noise after the filter over that before it, for light that is alike everywhere.
     double noise() const { return noise_; }
+
+    // Beyond half a cycle a part a wave is filtered as the one that it folds back to. By how much the contrast of a
+    // level Lambertian specimen's image is off then, at most, for waves that the pupil passes: the largest
+    //   |sinc(fx pitch) sinc(fy pitch)| sum over c of share(c) |w_c(folded f) - w_c(f)|,
+    // where rays have in no cell more than the contrast 1 (pitch: the pixels'). 0 where no such wave passes.
+    double folded_contrast() const;
 
     // As a device reads it: w at fx = column / steps cutoff, from -steps to steps, and fy = row / steps cutoff, from 0,
     // bilinear between; cell after cell, row after row. For fy < 0: the conjugate of -f.

@@ -92,7 +92,7 @@ Wavefront::Wavefront(const Instrument& instrument, const SpectralNode& wavelengt
 Wavefront::Wavefront(const Imaging& imaging, double magnification, double focus, const SpectralNode& wavelength,
                      glm::dvec2 field, double height)
     : wavelength_(wavelength.wavelength_um * mm_per_um), weight_(wavelength.weight), height_(height),
-      rims_(azimuths, 0.0) {
+      detector_point_(magnification * field), rims_(azimuths, 0.0) {
     const Imaging alone = at_wavelength(imaging, wavelength.spectral);
     index_ = alone.train.front().index_before;
     chief_ = index_ * imaging.chief_cosines(field);
@@ -150,6 +150,7 @@ void Wavefront::fit(const Imaging& imaging, glm::dvec2 detector, double magnific
         std::vector<std::vector<double>> values{3}; // W, slopes
     };
     const auto chief = view.trace(chief_, 0);
+    chief_slope_ = chief ? chief->slope : glm::dvec2(0);
     const auto sample = [&](int rings, int spokes, double turn) {
         Samples samples;
         for (const glm::dvec2 p : fill_pupil(*this, rings, spokes, turn)) {

@@ -58,6 +58,8 @@ class Wavefront {
     glm::dvec2 displacement(glm::dvec2 p) const; // t, mm
     // (dx/dz, dy/dz) of the light at the detector, in the frame of physics::Detection, less that of the chief ray.
     glm::dvec2 image_slope(glm::dvec2 p) const;
+    glm::dvec2 chief_slope() const { return chief_slope_; }       // of the chief ray there
+    glm::dvec2 detector_point() const { return detector_point_; } // in the same frame, mm
 
   private:
     double defocus(glm::dvec2 p) const; // sqrt(n^2 - p^2), without piston and tilt at the chief ray
@@ -70,6 +72,8 @@ class Wavefront {
     double defocus_ = 0; // mm of defocus() in W at height 0: kept apart, as it is no polynomial
     glm::dvec2 chief_ = glm::dvec2(0);
     glm::dvec2 object_point_ = glm::dvec2(0);
+    glm::dvec2 chief_slope_ = glm::dvec2(0);
+    glm::dvec2 detector_point_ = glm::dvec2(0);
     std::vector<double> rims_; // at azimuths i * 2 pi / count
     double largest_rim_ = 0;
     double smallest_rim_ = 0;

@@ -99,14 +99,12 @@ class BackwardTracer final : public DeviceExposures {
   public:
     BackwardTracer(const optics::Instrument& instrument, const specimen::Specimen& specimen,
                    const TraceOptions& options)
-        : instrument_(instrument),
-          turned_(optics::turned_round(instrument)),
+        : instrument_(instrument), turned_(optics::turned_round(instrument)),
           plan_(backward_plan(options.rays, instrument.constants.detector_pixels)),
-          filter_(filter_for_waves(instrument, options)),
-          scene_(make_device_scene(turned_, specimen, options, filter_ ? &*filter_ : nullptr)),
+          scene_(make_device_scene(turned_, specimen, options, &instrument_)),
           trace_(scene_, backward_optics(instrument_, scene_.host_record.material), plan_, options.batch) {
-        if (filter_) {
-            waves_.emplace(scene_, *filter_);
+        if (scene_.filter) {
+            waves_.emplace(scene_);
         }
     }
 
@@ -116,6 +114,7 @@ class BackwardTracer final : public DeviceExposures {
 
     TracerIdentity identity() const override { return scene_.identity(); }
     std::shared_ptr<const vulkan::Device> device() const override { return scene_.device; }
+    const optics::PupilFilter* pupil_filter() const override { return scene_.filter ? &*scene_.filter : nullptr; }
 
   private:
     class Exposure;
@@ -130,7 +129,6 @@ class BackwardTracer final : public DeviceExposures {
     optics::Instrument instrument_;
     optics::Instrument turned_;
     BackwardPlan plan_;
-    std::optional<optics::PupilFilter> filter_;
     mutable DeviceScene scene_;
     BackwardTrace trace_;
     std::optional<SceneWaves> waves_;
@@ -177,7 +175,7 @@ class BackwardTracer::Exposure final : public DeviceExposure {
         if (tracer_.waves_) {
             work.wait(work.submissions() - 1);
             image = with_waves(std::move(image), tracer_.waves_->light(for_host_, place_of_light()),
-                               sums_.power_per_number(), *tracer_.filter_);
+                               sums_.power_per_number(), *tracer_.scene_.filter);
         }
         // Of the imaging train alone: who goes on to the source, no one counts.
         image.crossings = static_cast<double>(image.rays) * tracer_.turned_.constants.illumination_count;
@@ -210,8 +208,7 @@ std::unique_ptr<DeviceExposure> BackwardTracer::start(double focal_height, std::
     auto& for_host = for_host_.at(slot);
     if (!for_host) {
         const std::size_t numbers = randomisations_kept() * pixels();
-        for_host.emplace(*scene_.device,
-                         numbers * sizeof(std::uint64_t) + (waves_ ? waves_->bytes_for_host() : 0),
+        for_host.emplace(*scene_.device, numbers * sizeof(std::uint64_t) + (waves_ ? waves_->bytes_for_host() : 0),
                          vulkan::Buffer::Memory::host);
     }
     scene_.set_exposure(focal_height, image, slot);

@@ -1,6 +1,7 @@
 #include "trace/device_scene.hpp"
 #include "trace/outward.hpp"
 #include "trace/wave_image.hpp"
+#include "trace/wave_memory.hpp"
 
 #include <bit>
 #include <cmath>
@@ -46,7 +47,7 @@ std::vector<vulkan::Box> boxes_of(const optics::Room& room) {
 }
 
 DeviceScene make_device_scene(const optics::Instrument& instrument, const specimen::Specimen& specimen,
-                              const TraceOptions& options, const optics::PupilFilter* filter) {
+                              const TraceOptions& options, const optics::Instrument* seen) {
     auto device = std::make_shared<const vulkan::Device>(vulkan::DeviceOptions{options.device});
     optics::Room room = options.nonsequential ? optics::furnish(instrument) : optics::Room{};
     Accounts accounts =
@@ -64,10 +65,13 @@ DeviceScene make_device_scene(const optics::Instrument& instrument, const specim
     if (!room.elements.empty()) {
         elements.emplace(element_buffers(*device, room, device_specimen.element_order()));
     }
+    std::optional<optics::PupilFilter> filter;
     std::optional<vulkan::Buffer> cell_light;
-    if (filter != nullptr) {
+    if (seen != nullptr && options.waves && !options.nonsequential) {
+        filter.emplace(*seen, waves_on_device(*options.waves, *seen, device->report()));
         cell_light.emplace(*device,
-                           WaveImage(*filter, instrument.constants.detector_pixels).numbers() * sizeof(std::uint64_t));
+                           WaveImage(*filter, instrument.constants.detector_pixels).numbers() * sizeof(std::uint64_t),
+                           vulkan::Buffer::Memory::device, wave_memory_remedy);
         constants.pupil_cells = to_float(filter->cells());
         const vk::DeviceAddress address = cell_light->address();
         constants.cell_light = {static_cast<std::uint32_t>(address), static_cast<std::uint32_t>(address >> 32)};
@@ -86,7 +90,7 @@ DeviceScene make_device_scene(const optics::Instrument& instrument, const specim
             .room = std::move(room),
             .accounts = std::move(accounts),
             .features = instrument.features | (options.directed_scatter ? physics::f32::FEATURE_DIRECTED_SCATTER : 0u) |
-                        (filter != nullptr ? physics::f32::FEATURE_PUPIL_CELLS : 0u) |
+                        (filter ? physics::f32::FEATURE_PUPIL_CELLS : 0u) |
                         (specimen.reflectance ? physics::f32::FEATURE_REFLECTANCE_MAP : 0u),
             .traversal = std::move(traversal),
             .device_specimen = std::move(device_specimen),
@@ -96,6 +100,7 @@ DeviceScene make_device_scene(const optics::Instrument& instrument, const specim
             .parameters = std::move(parameters),
             .spectrum = std::move(spectrum),
             .elements = std::move(elements),
+            .filter = std::move(filter),
             .cell_light = std::move(cell_light)};
 }
 
@@ -191,7 +196,8 @@ std::span<const std::uint32_t> DeviceScene::variant(std::span<const std::uint32_
 }
 
 TracerIdentity DeviceScene::identity() const {
-    return device_identity(device->report(), traversal_name(traversal.traversal), instrument, cell_light.has_value());
+    return device_identity(device->report(), traversal_name(traversal.traversal), instrument,
+                           filter ? static_cast<int>(filter->cells().parts) : 0);
 }
 
 } // namespace vkfv::trace

@@ -75,14 +75,15 @@ struct DeviceScene {
     std::vector<vulkan::Buffer> parameters; // a slot each: `constants` as they were set
     std::size_t slot = 0;                   // set last
     vulkan::Buffer spectrum;
-    std::optional<ElementBuffers> elements;   // only for non-sequential paths
-    std::optional<vulkan::Buffer> cell_light; // only with pupil cells
+    std::optional<ElementBuffers> elements;    // only for non-sequential paths
+    std::optional<optics::PupilFilter> filter; // only for images as waves make them, with the light sorted for it
+    std::optional<vulkan::Buffer> cell_light;
 };
 
 // Throws DeviceError (no usable device, too little memory) or InputError (a traversal that specimen or device does not
 // admit, too many surfaces).
-// filter: of the pupil cells that light is sorted by; none: it is not.
+// seen: the instrument, not turned round, by whose pupil light is sorted if the options ask for waves; none: it is not.
 DeviceScene make_device_scene(const optics::Instrument& instrument, const specimen::Specimen& specimen,
-                              const TraceOptions& options, const optics::PupilFilter* filter = nullptr);
+                              const TraceOptions& options, const optics::Instrument* seen = nullptr);
 
 } // namespace vkfv::trace

@@ -5,6 +5,7 @@
 #include "trace/forward_trace.hpp"
 #include "trace/nonsequential_trace.hpp"
 #include "trace/scene_waves.hpp"
+#include "trace/wave_memory.hpp"
 
 #include "spirv/probe_nonsequential_bvh.h"
 #include "spirv/probe_nonsequential_ray_query.h"
@@ -28,11 +29,9 @@ class DeviceTracer final : public DeviceExposures {
   public:
     DeviceTracer(const optics::Instrument& instrument, const specimen::Specimen& specimen, const TraceOptions& options)
         : instrument_(instrument), rays_(options.rays),
-          filter_(filter_for_waves(instrument, options)),
-          scene_(make_device_scene(instrument_, specimen, options, filter_ ? &*filter_ : nullptr)),
-          trace_(make_trace(scene_, options)) {
-        if (filter_) {
-            waves_.emplace(scene_, *filter_);
+          scene_(make_device_scene(instrument_, specimen, options, &instrument_)), trace_(make_trace(scene_, options)) {
+        if (scene_.filter) {
+            waves_.emplace(scene_);
         }
     }
 
@@ -42,6 +41,7 @@ class DeviceTracer final : public DeviceExposures {
 
     TracerIdentity identity() const override { return scene_.identity(); }
     std::shared_ptr<const vulkan::Device> device() const override { return scene_.device; }
+    const optics::PupilFilter* pupil_filter() const override { return scene_.filter ? &*scene_.filter : nullptr; }
 
   private:
     class Exposure;
@@ -59,7 +59,6 @@ class DeviceTracer final : public DeviceExposures {
 
     optics::Instrument instrument_;
     std::uint64_t rays_;
-    std::optional<optics::PupilFilter> filter_;
     mutable DeviceScene scene_;
     std::unique_ptr<PathTrace> trace_;
     std::optional<SceneWaves> waves_;
@@ -101,7 +100,7 @@ class DeviceTracer::Exposure final : public DeviceExposure {
         Image image = accounts.image(trace.pixels(for_host_), trace.fates(for_host_), tracer_.rays_);
         if (tracer_.waves_) {
             image = with_waves(std::move(image), tracer_.waves_->light(for_host_, trace.bytes_for_host()),
-                               accounts.power_per_number(tracer_.rays_), *tracer_.filter_);
+                               accounts.power_per_number(tracer_.rays_), *tracer_.scene_.filter);
         }
         return image;
     }
@@ -135,13 +134,15 @@ TracerIdentity expected_identity(const optics::Instrument& instrument, const spe
                                  const TraceOptions& options) {
     const optics::Instrument traced =
         options.estimator == Estimator::backward ? optics::turned_round(instrument) : instrument;
+    const auto& waves = options.nonsequential ? std::nullopt : options.waves;
     if (options.device == "host") {
-        return host_identity(traced);
+        return host_identity(traced, waves ? optics::parts_of(*waves, instrument) : 0);
     }
     const auto reports = vulkan::list_devices();
     const auto& report = reports[vulkan::choose_device(reports, {options.device})];
     const auto traversal = choose_traversal(report, specimen, options.traversal, options.nonsequential).traversal;
-    return device_identity(report, traversal_name(traversal), traced, options.waves && !options.nonsequential);
+    return device_identity(report, traversal_name(traversal), traced,
+                           waves ? waves_on_device(*waves, instrument, report).parts : 0);
 }
 
 std::vector<PathEnd> device_paths(const optics::Instrument& instrument, const specimen::Specimen& specimen,

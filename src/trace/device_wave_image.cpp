@@ -1,5 +1,6 @@
 #include "trace/device_wave_image.hpp"
 
+#include "trace/wave_memory.hpp"
 #include "waves/waves.hpp"
 
 #include "spirv/wave_extend.h"
@@ -16,17 +17,8 @@ using namespace waves;
 
 namespace {
 
-constexpr std::size_t most_plane_bytes = std::size_t{1} << 29;
-constexpr std::size_t complex_bytes = 2 * sizeof(float);
-
-// As many pairs at once as fit, in equal parts: the transform is made for one number of planes.
-std::uint32_t pairs_at_once(std::uint32_t pairs, std::size_t side) {
-    const std::size_t most = std::max<std::size_t>(1, most_plane_bytes / (side * side * complex_bytes));
-    auto count = static_cast<std::uint32_t>(std::min<std::size_t>(most, pairs));
-    while (pairs % count != 0) {
-        --count;
-    }
-    return count;
+vulkan::Buffer buffer_of(const vulkan::Device& device, std::size_t bytes) {
+    return {device, bytes, vulkan::Buffer::Memory::device, wave_memory_remedy};
 }
 
 vulkan::Buffer table_of(const vulkan::Device& device, const optics::PupilFilter& filter) {
@@ -50,21 +42,19 @@ vulkan::Kernel kernel_of(const vulkan::Device& device, const char* name, std::sp
 DeviceWaveImage::DeviceWaveImage(const vulkan::Device& device, const optics::PupilFilter& filter, int pixels,
                                  const vulkan::Buffer& light)
     : light_(light), pixels_(pixels), side_(static_cast<std::uint32_t>(pixels) * filter.cells().parts),
-      parts_(filter.cells().parts), cells_side_(filter.cells().side),
-      pairs_(static_cast<std::uint32_t>(filter.cell_count()) / 2), pairs_at_once_(pairs_at_once(pairs_, side_)),
+      parts_(filter.cells().parts), cells_side_(filter.cells().side), sizes_(static_cast<int>(cells_side_), side_),
       steps_(static_cast<std::uint32_t>(filter.steps())),
       steps_a_line_(static_cast<float>(0.5 / side_ / filter.part_pitch() / filter.cutoff() * filter.steps())),
-      planes_(device, std::size_t{side_} * side_ * pairs_at_once_ * complex_bytes), table_(table_of(device, filter)),
-      spectrum_(device, std::size_t{side_} * side_ * 2 * complex_bytes),
-      image_(device, std::size_t{side_} * side_ * 4 * complex_bytes),
+      planes_(buffer_of(device, sizes_.plane_bytes())), table_(table_of(device, filter)),
+      spectrum_(buffer_of(device, sizes_.spectrum_bytes())), image_(buffer_of(device, sizes_.image_bytes())),
       result_(device, static_cast<std::size_t>(pixels) * static_cast<std::size_t>(pixels) * sizeof(float)),
-      forward_(device, planes_, static_cast<int>(side_), static_cast<int>(side_), static_cast<int>(pairs_at_once_),
+      forward_(device, planes_, static_cast<int>(side_), static_cast<int>(side_), sizes_.planes_at_once(),
                vulkan::FourierPlanes::Direction::forward),
       inverse_(device, image_, 2 * static_cast<int>(side_), 2 * static_cast<int>(side_), 1,
                vulkan::FourierPlanes::Direction::inverse),
-      sort_(kernel_of(device, "wave_sort", wave_sort, {WAVES_BINDING_PLANES}, sizeof(WavePairs))),
+      sort_(kernel_of(device, "wave_sort", wave_sort, {WAVES_BINDING_PLANES}, sizeof(WaveGroups))),
       filter_(kernel_of(device, "wave_filter", wave_filter,
-                        {WAVES_BINDING_PLANES, WAVES_BINDING_TABLE, WAVES_BINDING_SPECTRUM}, sizeof(WavePairs))),
+                        {WAVES_BINDING_PLANES, WAVES_BINDING_TABLE, WAVES_BINDING_SPECTRUM}, sizeof(WaveGroups))),
       extend_(kernel_of(device, "wave_extend", wave_extend, {WAVES_BINDING_SPECTRUM, WAVES_BINDING_IMAGE},
                         sizeof(WaveSize))),
       add_up_(kernel_of(device, "wave_pixels", wave_pixels, {WAVES_BINDING_IMAGE, WAVES_BINDING_PIXELS},
@@ -73,20 +63,20 @@ DeviceWaveImage::DeviceWaveImage(const vulkan::Device& device, const optics::Pup
 void DeviceWaveImage::dispatch(vulkan::Commands& commands, const vulkan::Kernel& kernel,
                                std::span<const vulkan::Binding> bindings, std::span<const std::byte> push,
                                std::size_t places) const {
-    const auto groups = vulkan::groups_of(places, 128);
-    commands.dispatch(kernel, bindings, push, groups.x, groups.y);
+    const auto workgroups = vulkan::groups_of(places, 128);
+    commands.dispatch(kernel, bindings, push, workgroups.x, workgroups.y);
     commands.barrier();
 }
 
 void DeviceWaveImage::record(vulkan::Commands& commands, const vulkan::Buffer& for_host, std::size_t to_byte) const {
     const vk::DeviceAddress address = light_.address();
-    WavePairs pairs{.light = {static_cast<std::uint32_t>(address), static_cast<std::uint32_t>(address >> 32)},
-                    .side = side_,
-                    .cells_side = cells_side_,
-                    .first = 0,
-                    .count = pairs_at_once_,
-                    .steps = steps_,
-                    .steps_a_line = steps_a_line_};
+    WaveGroups groups{.light = {static_cast<std::uint32_t>(address), static_cast<std::uint32_t>(address >> 32)},
+                      .side = side_,
+                      .cells_side = cells_side_,
+                      .first = 0,
+                      .count = sizes_.groups_at_once(),
+                      .steps = steps_,
+                      .steps_a_line = steps_a_line_};
     const std::array<vulkan::Binding, 1> to_planes = {{{WAVES_BINDING_PLANES, &planes_}}};
     const std::array<vulkan::Binding, 3> to_spectrum = {
         {{WAVES_BINDING_PLANES, &planes_}, {WAVES_BINDING_TABLE, &table_}, {WAVES_BINDING_SPECTRUM, &spectrum_}}};
@@ -95,8 +85,8 @@ void DeviceWaveImage::record(vulkan::Commands& commands, const vulkan::Buffer& f
     const std::array<vulkan::Binding, 2> to_pixels = {
         {{WAVES_BINDING_IMAGE, &image_}, {WAVES_BINDING_PIXELS, &result_}}};
     const std::size_t places = std::size_t{side_} * side_;
-    for (; pairs.first < pairs_; pairs.first += pairs_at_once_) {
-        const auto push = std::as_bytes(std::span(&pairs, 1));
+    for (; groups.first < sizes_.groups(); groups.first += sizes_.groups_at_once()) {
+        const auto push = std::as_bytes(std::span(&groups, 1));
         dispatch(commands, sort_, to_planes, push, places);
         forward_.record(commands);
         dispatch(commands, filter_, to_spectrum, push, places);

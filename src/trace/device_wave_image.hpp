@@ -3,6 +3,7 @@
 
 #include "core/grid.hpp"
 #include "optics/pupil_filter.hpp"
+#include "trace/wave_planes.hpp"
 #include "vulkan/fourier_planes.hpp"
 
 #include <cstddef>
@@ -30,8 +31,7 @@ class DeviceWaveImage {
     std::uint32_t side_; // in parts of pixels
     std::uint32_t parts_;
     std::uint32_t cells_side_;
-    std::uint32_t pairs_;
-    std::uint32_t pairs_at_once_;
+    WavePlanes sizes_;
     std::uint32_t steps_;
     float steps_a_line_;
     vulkan::Buffer planes_;

@@ -63,7 +63,10 @@ class HostBackwardTracer final : public Tracer {
         return fmt::format("host reference in double on {} threads; backward", std::thread::hardware_concurrency());
     }
 
-    TracerIdentity identity() const override { return host_identity(turned_); }
+    TracerIdentity identity() const override {
+        return host_identity(turned_, filter_ ? static_cast<int>(filter_->cells().parts) : 0);
+    }
+    const optics::PupilFilter* pupil_filter() const override { return filter_ ? &*filter_ : nullptr; }
 
   private:
     std::uint64_t sum_of_pixel(const HostScene& scene, const Exposure& exposure, std::uint32_t pixel,

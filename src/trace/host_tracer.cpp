@@ -105,7 +105,10 @@ class HostTracer final : public Tracer {
         return fmt::format("host reference in double on {} threads", std::thread::hardware_concurrency());
     }
 
-    TracerIdentity identity() const override { return host_identity(instrument_); }
+    TracerIdentity identity() const override {
+        return host_identity(instrument_, filter_ ? static_cast<int>(filter_->cells().parts) : 0);
+    }
+    const optics::PupilFilter* pupil_filter() const override { return filter_ ? &*filter_ : nullptr; }
 
   private:
     void trace_path(const HostScene& scene, const Exposure& exposure, std::uint64_t index,

@@ -2,9 +2,10 @@
 
 namespace vkfv::trace {
 
-SceneWaves::SceneWaves(const DeviceScene& scene, const optics::PupilFilter& filter) : scene_(scene), filter_(filter) {
+SceneWaves::SceneWaves(const DeviceScene& scene) : scene_(scene) {
     if (!scene.software()) {
-        on_device_.emplace(*scene.device, filter, scene.instrument.constants.detector_pixels, scene.cell_light.value());
+        on_device_.emplace(*scene.device, scene.filter.value(), scene.instrument.constants.detector_pixels,
+                           scene.cell_light.value());
     }
 }
 
@@ -20,7 +21,7 @@ Grid<double> SceneWaves::light(const vulkan::Buffer& for_host, std::size_t from_
     if (on_device_) {
         return on_device_->image(for_host, from_byte);
     }
-    const WaveImage image(filter_, scene_.instrument.constants.detector_pixels);
+    const WaveImage image(scene_.filter.value(), scene_.instrument.constants.detector_pixels);
     return image.apply(scene_.cell_light.value().read_values<std::uint64_t>(image.numbers()));
 }
 

@@ -11,10 +11,10 @@
 
 namespace vkfv::trace {
 
-// On the device, or on the host for devices that are the host's cores. Scene and filter must outlive it.
+// On the device, or on the host for devices that are the host's cores. The scene, one with a filter, must outlive it.
 class SceneWaves {
   public:
-    SceneWaves(const DeviceScene& scene, const optics::PupilFilter& filter);
+    explicit SceneWaves(const DeviceScene& scene);
 
     // Exposures that may be under way: sorted light that the host filters must not be cleared for the next before.
     std::size_t exposures_at_a_time() const { return on_device_ ? most_exposures : 1; }
@@ -27,7 +27,6 @@ class SceneWaves {
 
   private:
     const DeviceScene& scene_;
-    const optics::PupilFilter& filter_;
     std::optional<DeviceWaveImage> on_device_;
 };
 

@@ -114,6 +114,8 @@ class Tracer {
     virtual TracerIdentity identity() const = 0;
     // That it works on, for further work there; none: the host.
     virtual std::shared_ptr<const vulkan::Device> device() const { return nullptr; }
+    // What makes its images as waves do; none: they are as rays make them.
+    virtual const optics::PupilFilter* pupil_filter() const { return nullptr; }
 };
 
 // The identity that a tracer would have, without opening the device. Throws DeviceError, InputError.

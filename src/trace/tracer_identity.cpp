@@ -29,6 +29,9 @@ std::string TracerIdentity::toml() const {
     if (!fourier.empty()) {
         text += fmt::format("fourier = {}\n", toml_quoted(fourier));
     }
+    if (parts_per_pixel != 0) {
+        text += fmt::format("parts_per_pixel = {}\n", parts_per_pixel);
+    }
     return text +
            fmt::format("kernels_digest = {}\ninstrument_digest = {}\n", toml_quoted(kernels), toml_quoted(instrument));
 }
@@ -56,22 +59,24 @@ std::string kernels_digest() {
     return spirv_digest;
 }
 
-TracerIdentity host_identity(const optics::Instrument& instrument) {
+TracerIdentity host_identity(const optics::Instrument& instrument, int parts_per_pixel) {
     TracerIdentity identity;
     identity.device = "host";
+    identity.parts_per_pixel = parts_per_pixel;
     identity.kernels = kernels_digest();
     identity.instrument = instrument_digest(instrument);
     return identity;
 }
 
 TracerIdentity device_identity(const vulkan::DeviceReport& device, const std::string& traversal,
-                               const optics::Instrument& instrument, bool waves) {
+                               const optics::Instrument& instrument, int parts_per_pixel) {
     return {.device = device.name,
             .vendor_id = device.vendor_id,
             .device_id = device.device_id,
             .driver = device.driver,
             .traversal = traversal,
-            .fourier = waves && !vulkan::is_software(device) ? vulkan::fourier_library() : "",
+            .fourier = parts_per_pixel != 0 && !vulkan::is_software(device) ? vulkan::fourier_library() : "",
+            .parts_per_pixel = parts_per_pixel,
             .kernels = kernels_digest(),
             .instrument = instrument_digest(instrument)};
 }

@@ -17,11 +17,12 @@ struct TracerIdentity {
     std::string device;          // name; "host": the reference in double
     std::uint32_t vendor_id = 0; // PCI's; 0: the host
     std::uint32_t device_id = 0;
-    std::string driver;     // with its version
-    std::string traversal;  // "quadtree", "bvh", "ray-query"; empty: the host
-    std::string fourier;    // the library that transforms images for waves; empty: the host, or images of rays
-    std::string kernels;    // digest of the SPIR-V, whose source is that of the host's physics too
-    std::string instrument; // digest of the records that the instrument became
+    std::string driver;      // with its version
+    std::string traversal;   // "quadtree", "bvh", "ray-query"; empty: the host
+    std::string fourier;     // the library that transforms images for waves; empty: the host, or images of rays
+    int parts_per_pixel = 0; // a pixel's side that light of waves is sorted in; 0: images of rays
+    std::string kernels;     // digest of the SPIR-V, whose source is that of the host's physics too
+    std::string instrument;  // digest of the records that the instrument became
 
     std::string toml() const; // lines `key = value`
     std::string text() const; // "NVIDIA H100 (NVIDIA 580.159), traversal quadtree"
@@ -34,9 +35,9 @@ std::string instrument_digest(const optics::Instrument& instrument);
 std::string kernels_digest();
 
 // Of the reference in double.
-TracerIdentity host_identity(const optics::Instrument& instrument);
-// Of a device by its report. `instrument`: as the paths run through it; waves: images are as waves make them.
+TracerIdentity host_identity(const optics::Instrument& instrument, int parts_per_pixel);
+// Of a device by its report. `instrument`: as the paths run through it.
 TracerIdentity device_identity(const vulkan::DeviceReport& device, const std::string& traversal,
-                               const optics::Instrument& instrument, bool waves);
+                               const optics::Instrument& instrument, int parts_per_pixel);
 
 } // namespace vkfv::trace

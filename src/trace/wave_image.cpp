@@ -7,7 +7,6 @@
 #include <atomic>
 #include <complex>
 #include <thread>
-#include <utility>
 
 namespace vkfv::trace {
 
@@ -28,41 +27,60 @@ std::size_t WaveImage::numbers() const {
            static_cast<std::size_t>(side_);
 }
 
-WaveImage::Pair WaveImage::transform(std::span<const std::uint64_t> light, int cell, int mirrored) const {
+std::array<int, 4> WaveImage::mirror_images(int cell) const {
+    const int upright = filter_.mirrored_upright(cell);
+    return {cell, filter_.mirrored(cell), upright, filter_.mirrored(upright)};
+}
+
+WaveImage::Parts WaveImage::transform(std::span<const std::uint64_t> light, const std::array<int, 4>& cells) const {
     const std::size_t count = static_cast<std::size_t>(side_) * static_cast<std::size_t>(side_);
-    const auto first = light.subspan(static_cast<std::size_t>(cell) * count, count);
-    const auto second = light.subspan(static_cast<std::size_t>(mirrored) * count, count);
-    Pair pair{Grid<double>(side_, side_), Grid<double>(side_, side_)};
+    const auto image = [&](std::size_t k) { return light.subspan(static_cast<std::size_t>(cells[k]) * count, count); };
+    const std::array images = {image(0), image(1), image(2), image(3)};
+    Parts parts;
+    parts.fill(Grid<double>(side_, side_));
     for (int row = 0; row < side_; ++row) {
         for (int column = 0; column < side_; ++column) {
             const std::size_t k =
                 static_cast<std::size_t>(row) * static_cast<std::size_t>(side_) + static_cast<std::size_t>(column);
-            const auto own = static_cast<double>(first[k]);
-            const auto other = static_cast<double>(second[k]);
-            pair.even.values[k] = 0.5 * (own + other);
+            const auto own = static_cast<double>(images[0][k]);
+            const auto sideways = static_cast<double>(images[1][k]);
+            const auto upright = static_cast<double>(images[2][k]);
+            const auto both = static_cast<double>(images[3][k]);
             // A sine transform is the cosine transform of alternating signs, read from the other end.
-            pair.odd.values[k] = ((row + column) % 2 == 0 ? 0.5 : -0.5) * (own - other);
+            const double along = column % 2 == 0 ? 0.25 : -0.25;
+            const double across = row % 2 == 0 ? 1 : -1;
+            parts[even].values[k] = 0.25 * (own + sideways + upright + both);
+            parts[odd_along].values[k] = along * (own - sideways + upright - both);
+            parts[odd_across].values[k] = 0.25 * across * (own + sideways - upright - both);
+            parts[odd].values[k] = along * across * (own - sideways - upright + both);
         }
     }
-    cosine_transform(pair.even);
-    cosine_transform(pair.odd);
-    return pair;
+    for (Grid<double>& part : parts) {
+        cosine_transform(part);
+    }
+    return parts;
 }
 
-void WaveImage::add(Spectrum& sum, const Pair& pair, int cell, int mirrored) const {
+void WaveImage::add(Spectrum& sum, const Parts& parts, const std::array<int, 4>& cells) const {
     const double step = 0.5 / side_ / filter_.part_pitch();
     for (int row = 0; row < side_; ++row) {
         for (int column = 0; column < side_; ++column) {
             const double fx = column * step;
             const double fy = row * step;
             if (fx * fx + fy * fy < filter_.cutoff() * filter_.cutoff()) {
-                const double even = pair.even(column, row);
-                const double odd = column > 0 && row > 0 ? pair.odd(side_ - column, side_ - row) : 0.0;
-                // The product of two sines changes its sign where one frequency does; mirrored light has it reversed.
-                sum.ahead(column, row) +=
-                    filter_.transfer(cell, fx, fy) * (even - odd) + filter_.transfer(mirrored, fx, fy) * (even + odd);
-                sum.behind(column, row) +=
-                    filter_.transfer(cell, -fx, fy) * (even + odd) + filter_.transfer(mirrored, -fx, fy) * (even - odd);
+                const double cosines = parts[even](column, row);
+                const double sine_along = column > 0 ? parts[odd_along](side_ - column, row) : 0.0;
+                const double sine_across = row > 0 ? parts[odd_across](column, side_ - row) : 0.0;
+                const double sines = column > 0 && row > 0 ? parts[odd](side_ - column, side_ - row) : 0.0;
+                // A sine changes its sign where its frequency does; mirrored light has it reversed.
+                const Complex same(cosines - sines, -sine_along - sine_across);
+                const Complex sideways(cosines + sines, sine_along - sine_across);
+                const std::array ahead = {same, sideways, std::conj(sideways), std::conj(same)};
+                const std::array behind = {sideways, same, std::conj(same), std::conj(sideways)};
+                for (std::size_t k = 0; k < cells.size(); ++k) {
+                    sum.ahead(column, row) += filter_.transfer(cells[k], fx, fy) * ahead[k];
+                    sum.behind(column, row) += filter_.transfer(cells[k], -fx, fy) * behind[k];
+                }
             }
         }
     }
@@ -98,27 +116,26 @@ Grid<double> WaveImage::pixels_of(const Spectrum& sum) const {
 }
 
 Grid<double> WaveImage::apply(std::span<const std::uint64_t> light) const {
-    std::vector<std::pair<int, int>> pairs;
+    std::vector<std::array<int, 4>> groups;
     for (int cell = 0; cell < filter_.cell_count(); ++cell) {
-        if (const int mirrored = filter_.mirrored(cell); cell < mirrored) {
-            pairs.emplace_back(cell, mirrored);
+        if (cell < filter_.mirrored(cell) && cell < filter_.mirrored_upright(cell)) {
+            groups.push_back(mirror_images(cell));
         }
     }
     Spectrum sum{Grid<Complex>(side_, side_), Grid<Complex>(side_, side_)};
     // Transformed side by side, added up in their order: the same bits on any number of cores.
     const std::size_t workers = std::max(1u, std::thread::hardware_concurrency());
-    for (std::size_t first = 0; first < pairs.size(); first += workers) {
-        const std::size_t count = std::min(workers, pairs.size() - first);
-        std::vector<Pair> transformed(count);
+    for (std::size_t first = 0; first < groups.size(); first += workers) {
+        const std::size_t count = std::min(workers, groups.size() - first);
+        std::vector<Parts> transformed(count);
         {
             std::vector<std::jthread> threads;
             for (std::size_t k = 0; k < count; ++k) {
-                threads.emplace_back(
-                    [&, k] { transformed[k] = transform(light, pairs[first + k].first, pairs[first + k].second); });
+                threads.emplace_back([&, k] { transformed[k] = transform(light, groups[first + k]); });
             }
         }
         for (std::size_t k = 0; k < count; ++k) {
-            add(sum, transformed[k], pairs[first + k].first, pairs[first + k].second);
+            add(sum, transformed[k], groups[first + k]);
         }
     }
     return pixels_of(sum);

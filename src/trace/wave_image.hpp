@@ -5,6 +5,7 @@
 #include "optics/pupil_filter.hpp"
 #include "trace/tracer.hpp"
 
+#include <array>
 #include <cstdint>
 #include <optional>
 #include <span>
@@ -27,13 +28,13 @@ class WaveImage {
 
   private:
     struct Spectrum;
-    // Of a cell and its mirror image: the parts of their images' extension that are even and odd in both directions.
-    struct Pair {
-        Grid<double> even;
-        Grid<double> odd;
-    };
-    Pair transform(std::span<const std::uint64_t> light, int cell, int mirrored) const;
-    void add(Spectrum& sum, const Pair& pair, int cell, int mirrored) const;
+    // Of a cell and its mirror images (itself, left to right, upside down, both): the parts of their images' extension
+    // that are even or odd along rows (x) and columns (y).
+    enum Part : std::size_t { even, odd_along, odd_across, odd };
+    using Parts = std::array<Grid<double>, 4>;
+    std::array<int, 4> mirror_images(int cell) const;
+    Parts transform(std::span<const std::uint64_t> light, const std::array<int, 4>& cells) const;
+    void add(Spectrum& sum, const Parts& parts, const std::array<int, 4>& cells) const;
     Grid<double> pixels_of(const Spectrum& sum) const;
 
     const optics::PupilFilter& filter_;

@@ -28,11 +28,9 @@ vk::BufferUsageFlags usage_on(const Device& device) {
 }
 
 [[noreturn]] void throw_too_large(const Device& device, std::size_t bytes, std::string_view limit,
-                                  std::uint64_t allowed) {
-    throw RunError(fmt::format(
-        "A buffer of {} bytes does not fit on {}: its {} is {} bytes. Set a smaller trace.batch, take fewer "
-        "pixels, a smaller specimen or another device",
-        bytes, device.report().name, limit, allowed));
+                                  std::uint64_t allowed, std::string_view remedy) {
+    throw RunError(fmt::format("A buffer of {} bytes does not fit on {}: its {} is {} bytes. Choose another device, {}",
+                               bytes, device.report().name, limit, allowed, remedy));
 }
 
 // Cached memory where there is some: the host reads the others slowly.
@@ -48,13 +46,11 @@ std::uint32_t host_memory_type(const Device& device, std::uint32_t type_bits) {
 
 } // namespace
 
-Buffer::Buffer(const Device& device, std::size_t bytes, Memory memory)
+Buffer::Buffer(const Device& device, std::size_t bytes, Memory memory, std::string_view remedy)
     : device_(&device), bytes_(bytes), memory_(memory) {
-    const auto limits = device.physical()
-                            .getProperties2<vk::PhysicalDeviceProperties2, vk::PhysicalDeviceVulkan11Properties>()
-                            .get<vk::PhysicalDeviceVulkan11Properties>();
-    if (bytes > limits.maxMemoryAllocationSize - 2 * padding) {
-        throw_too_large(device, bytes, "largest allocation", limits.maxMemoryAllocationSize);
+    const std::uint64_t largest = device.report().max_allocation_bytes;
+    if (bytes > largest - 2 * padding) {
+        throw_too_large(device, bytes, "largest allocation", largest, remedy);
     }
     const vk::DeviceSize padded = (bytes + padding + padding - 1) / padding * padding;
     try {
@@ -68,7 +64,7 @@ Buffer::Buffer(const Device& device, std::size_t bytes, Memory memory)
         const vk::PhysicalDeviceMemoryProperties memories = device.physical().getMemoryProperties();
         const std::uint64_t heap = memories.memoryHeaps[memories.memoryTypes[type].heapIndex].size;
         if (needed.size > heap) {
-            throw_too_large(device, bytes, "memory", heap);
+            throw_too_large(device, bytes, "memory", heap, remedy);
         }
         const vk::MemoryAllocateFlagsInfo flags(vk::MemoryAllocateFlagBits::eDeviceAddress);
         allocation_ = vk::raii::DeviceMemory(device.handle(), vk::MemoryAllocateInfo(needed.size, type, &flags));
@@ -77,8 +73,10 @@ Buffer::Buffer(const Device& device, std::size_t bytes, Memory memory)
             mapped_ = static_cast<std::byte*>(allocation_.mapMemory(0, VK_WHOLE_SIZE, {}));
         }
     } catch (const vk::SystemError& error) {
-        throw run_error_of(error, fmt::format("{}, asked for {} of its {} bytes,", device.report().name, bytes,
-                                              device.report().memory_bytes));
+        throw run_error_of(
+            error,
+            fmt::format("{}, asked for {} of its {} bytes,", device.report().name, bytes, device.report().memory_bytes),
+            remedy);
     }
 }
 

@@ -2,9 +2,11 @@
 #pragma once
 
 #include "vulkan/device.hpp"
+#include "vulkan/failure.hpp"
 
 #include <cstddef>
 #include <span>
+#include <string_view>
 #include <vector>
 
 namespace vkfv::vulkan {
@@ -18,8 +20,9 @@ class Buffer {
     };
     // Contents are undefined. Throws RunError with sizes when the device cannot give `bytes`. The
     // allocation is at least 64 bytes larger and a multiple of 64: GPU-assisted validation misreads the last
-    // scalar-packed record.
-    Buffer(const Device& device, std::size_t bytes, Memory memory = Memory::device);
+    // scalar-packed record. remedy: what takes less memory, for the error.
+    Buffer(const Device& device, std::size_t bytes, Memory memory = Memory::device,
+           std::string_view remedy = usual_memory_remedy);
 
     std::size_t bytes() const { return bytes_; }
     vk::Buffer handle() const { return *buffer_; }

@@ -90,6 +90,7 @@ DeviceReport examine(const vk::raii::PhysicalDevice& device, int index) {
     const auto& properties_11 = properties.get<vk::PhysicalDeviceVulkan11Properties>();
     const auto& properties_12 = properties.get<vk::PhysicalDeviceVulkan12Properties>();
     report.driver = fmt::format("{} {}", properties_12.driverName.data(), properties_12.driverInfo.data());
+    report.max_allocation_bytes = properties_11.maxMemoryAllocationSize;
     report.subgroup_size = properties_11.subgroupSize;
     const auto has_subgroup = [&](vk::SubgroupFeatureFlagBits operation) {
         return (properties_11.subgroupSupportedStages & vk::ShaderStageFlagBits::eCompute) &&

@@ -23,7 +23,7 @@ bool lacks_memory(const vk::SystemError& failure) {
 
 } // namespace
 
-RunError run_error_of(const vk::SystemError& failure, const std::string& device) {
+RunError run_error_of(const vk::SystemError& failure, const std::string& device, std::string_view memory_remedy) {
     const std::string subject = device.empty() ? "The device" : "The device " + device;
     if (is_lost(failure)) {
         return RunError(
@@ -33,9 +33,8 @@ RunError run_error_of(const vk::SystemError& failure, const std::string& device)
     }
     if (lacks_memory(failure)) {
         return RunError(
-            fmt::format("{} has not enough memory ({}). End other programs on it, set a smaller trace.batch, take "
-                        "fewer pixels or a coarser specimen, and run the same command again",
-                        subject, failure.what()));
+            fmt::format("{} has not enough memory ({}). End other programs on it, {}, and run the same command again",
+                        subject, failure.what(), memory_remedy));
     }
     return RunError(
         fmt::format("{} failed: {}. Run the same command again to continue; if it fails again, update the driver "

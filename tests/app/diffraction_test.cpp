@@ -7,6 +7,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <nlohmann/json.hpp>
 #include <numeric>
 
 namespace vkfv::test {
@@ -87,6 +88,27 @@ TEST(Diffraction, AWrongPointSpreadFunctionIsRefused) {
     EXPECT_THAT(run({"diffraction.model=waves", "diffraction.cells=7"}), HasSubstr("even number"));
     EXPECT_THAT(run({"diffraction.model=none", "diffraction.cells=6"}), HasSubstr("cells"));
     EXPECT_THAT(run({"diffraction.model=waves", "trace.mode=nonsequential"}), HasSubstr("nonsequential"));
+}
+
+// With less memory a device sorts light more coarsely: other images, which a stack does not mix.
+TEST(Diffraction, SaysThatMemoryForbidsTheFinePitch) {
+    const auto folder = fresh_folder("waves_memory");
+    write_file(folder / "c.toml", small_configuration);
+    const auto run = [&](const std::string& memory) {
+        return run_program({"--stack", "c.toml", "--out", "out", "--set", "diffraction.most_memory_gib=" + memory},
+                           folder);
+    };
+    const auto coarse = run("0.0005");
+    ASSERT_EQ(coarse.exit_code, 0) << coarse.standard_error;
+    EXPECT_THAT(coarse.standard_error, HasSubstr("finer waves fold back"));
+    const auto results = nlohmann::json::parse(read_file(folder / "out/results.json"));
+    EXPECT_LT(results["waves"]["parts_per_pixel"], results["waves"]["parts_asked_for"]);
+    EXPECT_GT(results["waves"]["folded_contrast"], 0.01);
+    EXPECT_THAT(read_file(folder / "out/report.html"), HasSubstr("finer waves fold back"));
+    EXPECT_THAT(run("0").standard_error, HasSubstr("parts_per_pixel"));
+    const auto none = run("0.00001");
+    EXPECT_NE(none.exit_code, 0);
+    EXPECT_THAT(none.standard_error, HasSubstr("diffraction.cells"));
 }
 
 } // namespace

@@ -3,7 +3,7 @@
 #include "core/error.hpp"
 #include "core/units.hpp"
 #include "optics/first_order.hpp"
-#include "optics/wave_image.hpp"
+#include "optics/point_waves.hpp"
 #include "optics/zernike.hpp"
 #include "parts.hpp"
 
@@ -244,11 +244,11 @@ TEST(BestFocus, IsWhereTheWavefrontVariesLeast) {
     const Instrument instrument = assemble(description);
     const double side = instrument.first_order.field_edge;
     for (const bool corner : {false, true}) {
-        const WaveImage image(instrument, corner ? glm::dvec2(std::sqrt(2.0) * side, 0) : glm::dvec2(0));
+        const PointWaves image(instrument, corner ? glm::dvec2(std::sqrt(2.0) * side, 0) : glm::dvec2(0));
         const double focus = corner ? instrument.first_order.field_curvature_corner : 0;
         const auto variance = [&](double height) {
             double sum = 0;
-            const WaveImage raised = image.at_height(height);
+            const PointWaves raised = image.at_height(height);
             for (const Wavefront& wavefront : raised.wavefronts()) {
                 const auto coefficients = zernike_coefficients(wavefront, 37);
                 for (std::size_t j = 3; j < coefficients.size(); ++j) {

@@ -1,4 +1,5 @@
 // The image that waves make of light sorted by pupil cells.
+#include "core/error.hpp"
 #include "core/units.hpp"
 #include "optics/airy_pattern.hpp"
 #include "optics/ideal_lens.hpp"
@@ -7,6 +8,7 @@
 #include "trace/host_tracer.hpp"
 #include "trace/microscope.hpp"
 #include "trace/wave_image.hpp"
+#include "trace/wave_memory.hpp"
 
 #include <gtest/gtest.h>
 
@@ -178,6 +180,58 @@ TEST(Waves, give_gratings_the_contrast_of_the_debye_integral) {
             }
         }
     }
+}
+
+// H on the axis of the 10x for waves of 2.5 um, of a flat below, at and above best focus: tools/wavefront_reference.py,
+// transfer(). By rays alone it is 0.29, 0.69, 0.29.
+TEST(Waves, give_gratings_the_contrast_of_an_aberrated_objective) {
+    auto description = test::microscope_description();
+    constexpr double period = 2.5e-3;
+    description.detector_pixels = grating_pixels;
+    description.detector_size = grating_pixels * period / 8 * 9.999284;
+    description.turned = true;
+    const auto instrument = optics::assemble(description);
+    specimen::Analytic plane;
+    plane.x_min = plane.y_min = -0.1;
+    plane.x_max = plane.y_max = 0.1;
+    specimen::Specimen specimen{plane, specimen::Material{{{"lambertian", 1, {}}}}};
+    specimen.reflectance = specimen::make_reflectance_map(
+        {.kind = specimen::Reflectance::Kind::grating, .angle = 0, .period = period}, {-0.1, -0.1, 0.1, 0.1}, {});
+    auto options = with_waves(trace::Estimator::backward);
+    options.rays = 128 * grating_pixels * grating_pixels;
+    options.max_bounces = 1;
+    const auto tracer = trace::make_device_tracer(instrument, specimen, options);
+    for (const auto& [height, expected] : {std::pair{-0.004588, 0.2890}, {0.0, 0.4717}, {0.004588, 0.3109}}) {
+        const auto image = tracer->expose(-height, 1);
+        EXPECT_NEAR(grating_contrast(image.flux, period, 0, instrument.first_order.pixel_pitch), expected, 0.03)
+            << height;
+    }
+}
+
+TEST(Waves, take_fewer_parts_where_the_device_cannot_hold_them) {
+    const auto instrument = ideal_microscope(0.28);
+    auto coarse = instrument;
+    coarse.first_order.pixel_pitch *= 6; // of an eighth of the shortest wave: three parts
+    ASSERT_EQ(optics::parts_for_waves(coarse), 3);
+    vulkan::DeviceReport device;
+    device.name = "small";
+    device.memory_bytes = device.max_allocation_bytes = device.max_storage_buffer_bytes = std::uint64_t{1} << 40;
+    const auto parts = [&](const optics::WaveOptions& options) {
+        return trace::waves_on_device(options, coarse, device).parts;
+    };
+    EXPECT_EQ(parts({}), 3);
+    // 8 bytes a cell and part: 64 x 32^2 x 3^2 cells.
+    const auto memory = trace::wave_memory(8, 3, grating_pixels);
+    EXPECT_EQ(memory.light, 8u * 64 * 32 * 32 * 9);
+    EXPECT_EQ(parts({.most_memory = memory.all()}), 3);
+    EXPECT_EQ(parts({.most_memory = memory.all() - 1}), 2);
+    device.max_allocation_bytes = memory.light;
+    EXPECT_EQ(parts({}), 2);
+    // What is asked for is not changed behind the asker's back.
+    EXPECT_THROW(parts({.parts = 3}), InputError);
+    EXPECT_EQ(parts({.parts = 2}), 2);
+    device.memory_bytes = 1000;
+    EXPECT_THROW(parts({}), InputError);
 }
 
 TEST(Waves, keep_the_light_and_do_not_add_noise) {

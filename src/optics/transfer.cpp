@@ -1,11 +1,10 @@
-#include "optics/quadrature.hpp"
-#include "optics/wave_image.hpp"
+#include "optics/transfer.hpp"
 
 #include "core/units.hpp"
+#include "optics/quadrature.hpp"
 
 #include <algorithm>
 #include <cmath>
-#include <numeric>
 
 namespace vkfv::optics {
 
@@ -117,52 +116,6 @@ std::complex<double> transfer(const Wavefront& wavefront, glm::dvec2 frequency) 
         }
     }
     return sum / wavefront.area();
-}
-
-WaveImage::WaveImage(const Instrument& instrument, glm::dvec2 field, int most) {
-    for (const SpectralNode& node : at_most(most, spectral_nodes(instrument, most))) {
-        wavefronts_.emplace_back(instrument, node, field);
-    }
-}
-
-WaveImage WaveImage::at_height(double height) const {
-    WaveImage other = *this;
-    for (Wavefront& wavefront : other.wavefronts_) {
-        wavefront = wavefront.at_height(height);
-    }
-    return other;
-}
-
-const Wavefront& WaveImage::middle() const {
-    double before = 0;
-    for (const Wavefront& wavefront : wavefronts_) {
-        before += wavefront.weight();
-        if (before >= 0.5) {
-            return wavefront;
-        }
-    }
-    return wavefronts_.back();
-}
-
-glm::dvec2 WaveImage::aside(const Wavefront& wavefront) const {
-    return middle().object_point() - wavefront.object_point();
-}
-
-double WaveImage::cutoff() const {
-    double most = 0;
-    for (const Wavefront& wavefront : wavefronts_) {
-        most = std::max(most, 2 * wavefront.largest_rim() / wavefront.wavelength());
-    }
-    return most;
-}
-
-std::complex<double> WaveImage::transfer(glm::dvec2 frequency) const {
-    std::complex<double> sum = 0;
-    for (const Wavefront& wavefront : wavefronts_) {
-        sum += wavefront.weight() * optics::transfer(wavefront, frequency) *
-               std::polar(1.0, -2 * pi * glm::dot(frequency, aside(wavefront)));
-    }
-    return sum;
 }
 
 } // namespace vkfv::optics

@@ -1,8 +1,9 @@
-#include "optics/wave_image.hpp"
+#include "optics/point_waves.hpp"
 
 #include "core/units.hpp"
 #include "optics/airy_pattern.hpp"
 #include "optics/quadrature.hpp"
+#include "optics/transfer.hpp"
 #include "optics/zernike.hpp"
 #include "parts.hpp"
 
@@ -67,10 +68,10 @@ class Debye : public ::testing::TestWithParam<DebyeFigures> {};
 
 TEST_P(Debye, DefocusAtHighAperture) {
     const auto& [aperture, quarter, half, three_quarters, strehl] = GetParam();
-    const WaveImage focused(assemble(test::ideal_microscope(aperture)));
+    const PointWaves focused(assemble(test::ideal_microscope(aperture)));
     const double z = 0.5 * wavelength / (aperture * aperture);
     for (const double height : {z, -z}) {
-        const WaveImage image = focused.at_height(height);
+        const PointWaves image = focused.at_height(height);
         EXPECT_NEAR(image.cutoff(), 2 * aperture / wavelength, 1e-6 * image.cutoff());
         EXPECT_NEAR(image.transfer({0.25 * image.cutoff(), 0}).real(), quarter, 6e-4);
         EXPECT_NEAR(image.transfer({0, 0.5 * image.cutoff()}).real(), half, 6e-4);
@@ -89,7 +90,7 @@ INSTANTIATE_TEST_SUITE_P(Apertures, Debye,
 TEST(PointSpread, OfAnIdealLensIsAirys) {
     for (const double aperture : {0.05, 0.8}) {
         const double unit = wavelength / (2 * pi * aperture);
-        const PointSpread spread = WaveImage(assemble(test::ideal_microscope(aperture))).point_spread(12 * unit);
+        const PointSpread spread = PointWaves(assemble(test::ideal_microscope(aperture))).point_spread(12 * unit);
         const auto rings = spread.dark_rings(3);
         ASSERT_EQ(rings.size(), 3u);
         EXPECT_NEAR(rings[0] / unit, 3.831706, 1e-3);
@@ -104,7 +105,7 @@ TEST(PointSpread, OfAnIdealLensIsAirys) {
     }
     // Paraxial, a quarter of a wave at the rim: (8 / pi^2).
     const double z = 0.5 * wavelength / 1e-4;
-    EXPECT_NEAR(WaveImage(assemble(test::ideal_microscope(0.01))).at_height(z).point_spread(1e-2).strehl(),
+    EXPECT_NEAR(PointWaves(assemble(test::ideal_microscope(0.01))).at_height(z).point_spread(1e-2).strehl(),
                 8 / (pi * pi), 1e-4);
 }
 
@@ -113,7 +114,7 @@ TEST(PointSpread, OfAnIdealLensIsAirys) {
 TEST(PointSpread, HasTheTransferFunctionAsItsSpectrum) {
     const Instrument instrument = assemble(test::microscope("20x_0.41"));
     const double edge = instrument.first_order.field_edge;
-    const WaveImage image = WaveImage(instrument, {edge, -edge}).at_height(-1e-3);
+    const PointWaves image = PointWaves(instrument, {edge, -edge}).at_height(-1e-3);
     const double reach = 10e-3;
     const PointSpread spread = image.point_spread(reach);
     // What lands beyond 14 of the pattern's rings is missing.
@@ -135,7 +136,7 @@ TEST(PointSpread, HasTheTransferFunctionAsItsSpectrum) {
 
 // tools/wavefront_reference.py, which shares no code, prints these, at its least variance: 5.961326 um over the
 // paraxial plane for the 10x, -0.222717 um for the 100x.
-TEST(WaveImage, OfAnIndependentTracer) {
+TEST(PointWaves, OfAnIndependentTracer) {
     struct Figures {
         const char* objective;
         double plane_um, period_um;
@@ -154,7 +155,7 @@ TEST(WaveImage, OfAnIndependentTracer) {
                                         {0.555233, 0.392840, 0.093821}}};
     for (const auto& [objective, plane_um, period_um, zernike, expected] : figures) {
         const Instrument instrument = assemble(test::microscope(objective));
-        const WaveImage at_focus(instrument);
+        const PointWaves at_focus(instrument);
         const double plane = plane_um * mm_per_um - instrument.first_order.best_focus_offset;
         const auto coefficients = zernike_coefficients(at_focus.at_height(plane).middle(), 56);
         EXPECT_NEAR(coefficients[3], zernike[0], 1e-4) << objective;
@@ -174,7 +175,7 @@ TEST(WaveImage, OfAnIndependentTracer) {
 
 // By the same script: where gratings of these periods have their highest contrast, over the paraxial plane. Their mean
 // is about the plane of least variance, 5.96 um for the 10x; the rays' least spot is 0.5 to 1 um off.
-TEST(WaveImage, HasItsBestContrastWhereAnIndependentTracerHasIt) {
+TEST(PointWaves, HasItsBestContrastWhereAnIndependentTracerHasIt) {
     struct Highest {
         const char* objective;
         double period_um, plane_um;
@@ -183,7 +184,7 @@ TEST(WaveImage, HasItsBestContrastWhereAnIndependentTracerHasIt) {
          {Highest{"10x_0.28", 2.5, 6.0957}, Highest{"10x_0.28", 4, 6.1598}, Highest{"10x_0.28", 8, 5.6607},
           Highest{"5x_0.15", 4, -54.1591}}) {
         const Instrument instrument = assemble(test::microscope(objective));
-        const WaveImage image(instrument);
+        const PointWaves image(instrument);
         const double there = plane_um * mm_per_um - instrument.first_order.best_focus_offset;
         const double step = 0.4e-3; // mm
         const auto contrast = [&, period = period_um](double height) {

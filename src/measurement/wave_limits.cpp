@@ -1,0 +1,94 @@
+#include "measurement/wave_limits.hpp"
+
+#include "core/units.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <future>
+
+namespace vkfv::measurement {
+
+namespace {
+
+constexpr double most_error = 0.1;
+constexpr double depths_of_field = 2;
+constexpr int most_wavelengths = 3; // of a continuous spectrum
+
+} // namespace
+
+WaveLimits wave_limits(const optics::PupilFilter& filter, const optics::Instrument& instrument) {
+    WaveLimits limits{.cells = static_cast<int>(filter.cells().side),
+                      .parts = static_cast<int>(filter.cells().parts),
+                      .asked_parts = optics::parts_for_waves(instrument),
+                      .folded_contrast = filter.folded_contrast(),
+                      .points = {}};
+    const double side = instrument.first_order.field_edge;
+    struct Place {
+        const char* name;
+        glm::dvec2 field;
+    };
+    std::vector<std::future<WaveLimits::Point>> points;
+    for (const Place& place :
+         {Place{"axis", glm::dvec2(0)}, Place{"edge", glm::dvec2(side, 0)}, Place{"corner", glm::dvec2(side)}}) {
+        points.push_back(std::async(std::launch::async, [&filter, &instrument, place] {
+            const optics::PointWaves waves(instrument, place.field, most_wavelengths);
+            return WaveLimits::Point{.name = place.name,
+                                     .error = optics::largest_filter_error(
+                                         filter, waves, depths_of_field * instrument.first_order.depth_of_field)};
+        }));
+    }
+    for (auto& point : points) {
+        limits.points.push_back(point.get());
+    }
+    return limits;
+}
+
+std::vector<std::string> warnings_of(const WaveLimits& limits) {
+    std::vector<std::string> warnings;
+    const auto worst =
+        std::ranges::max_element(limits.points, {}, [](const auto& point) { return point.error.difference; });
+    if (worst != limits.points.end() && worst->error.difference > most_error) {
+        const auto& error = worst->error;
+        const bool of_cells = limits.points.front().error.difference > 0.5 * error.difference;
+        warnings.push_back(fmt::format(
+            "Images as waves make them: {} the contrast of waves of {:.3g} um at z = {:.3g} um is off by {:.2g}, phase "
+            "included ({:.2g} instead of {:.2g}). {}",
+            std::string_view(worst->name) == "axis" ? "in the middle of the field"
+                                                    : fmt::format("at the {} of the field", worst->name),
+            um_per_mm / glm::length(error.frequency), error.height * um_per_mm, error.difference,
+            std::abs(error.filtered), std::abs(error.waves),
+            of_cells ? "Take more diffraction.cells." : "The filter is that of the axis: trust what lies near it."));
+    }
+    if (limits.folded_contrast > 0) {
+        warnings.push_back(fmt::format(
+            "Light of waves is sorted in {} parts of a pixel's side, where the numerical aperture asks for {}: finer "
+            "waves fold back, and their contrast is off by up to {:.2g}. Take fewer detector.pixels, fewer "
+            "diffraction.cells, or a device with more memory.",
+            limits.parts, limits.asked_parts, limits.folded_contrast));
+    }
+    return warnings;
+}
+
+nlohmann::ordered_json json_of(const WaveLimits& limits) {
+    nlohmann::ordered_json json = {{"cells", limits.cells},
+                                   {"parts_per_pixel", limits.parts},
+                                   {"parts_asked_for", limits.asked_parts},
+                                   {"folded_contrast", limits.folded_contrast}};
+    for (const auto& [name, error] : limits.points) {
+        json[fmt::format("contrast_error_{}", name)] = error.difference;
+    }
+    return json;
+}
+
+std::string summary(const WaveLimits& limits) {
+    std::string text = "largest error of contrast as the filter of the axis makes it, within two depths of field\n";
+    for (const auto& [name, error] : limits.points) {
+        text += fmt::format("{:8} {:8.4f}  at {:.4g} cycles/mm, z = {:.4g} um: {:.4f} instead of {:.4f}\n", name,
+                            error.difference, glm::length(error.frequency), error.height * um_per_mm,
+                            std::abs(error.filtered), std::abs(error.waves));
+    }
+    return text;
+}
+
+} // namespace vkfv::measurement

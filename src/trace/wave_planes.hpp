@@ -1,0 +1,43 @@
+// The planes of complex floats that a device transforms for the image of waves.
+#pragma once
+
+#include <algorithm>
+#include <cstddef>
+#include <cstdint>
+
+namespace vkfv::trace {
+
+class WavePlanes {
+  public:
+    static constexpr std::uint64_t a_group = 2; // planes, of four cells that are mirror images
+
+    // cells: across the pupil; side: of an image in parts of pixels.
+    WavePlanes(int cells, std::uint64_t side) : plane_(side * side * complex_bytes) {
+        groups_ = static_cast<std::uint32_t>(cells / 2) * static_cast<std::uint32_t>(cells / 2);
+        constexpr std::uint64_t most_bytes = std::uint64_t{1} << 29;
+        const std::uint64_t most = std::max<std::uint64_t>(1, most_bytes / (a_group * plane_));
+        at_once_ = static_cast<std::uint32_t>(std::min<std::uint64_t>(most, groups_));
+        // In equal parts: the transform is made for one number of planes.
+        while (groups_ % at_once_ != 0) {
+            --at_once_;
+        }
+    }
+
+    std::uint32_t groups() const { return groups_; }
+    std::uint32_t groups_at_once() const { return at_once_; }
+    int planes_at_once() const { return static_cast<int>(a_group * at_once_); }
+
+    std::size_t plane_bytes() const { return a_group * at_once_ * plane_; } // of the groups at once
+    std::size_t spectrum_bytes() const { return 2 * plane_; } // of the image with its mirror images, a half
+    std::size_t image_bytes() const { return 4 * plane_; }    // with its mirror images
+    std::size_t largest_bytes() const { return std::max(plane_bytes(), image_bytes()); }
+
+  private:
+    static constexpr std::uint64_t complex_bytes = 2 * sizeof(float);
+
+    std::uint64_t plane_;
+    std::uint32_t groups_ = 0;
+    std::uint32_t at_once_ = 0;
+};
+
+} // namespace vkfv::trace

@@ -1,0 +1,82 @@
+// How far the filter of the axis is from waves, anywhere in the field.
+#include "optics/filter_error.hpp"
+
+#include "core/units.hpp"
+#include "parts.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+namespace vkfv::optics {
+namespace {
+
+PointWaves waves_of(const Instrument& instrument, glm::dvec2 field) {
+    return PointWaves(instrument, field, 3);
+}
+
+// On the axis it is what a grid of 8 x 8 cells leaves: by the wavefront of tools/wavefront_reference.py and sums over
+// another lattice of the pupil in numpy 0.0560 with the 10x, at 3/8 of the cutoff and two depths of field under z = 0.
+TEST(FilterError, OfTheTenfoldObjective) {
+    const Instrument instrument = assemble(test::microscope());
+    const PupilFilter filter(instrument, {});
+    const double reach = 2 * instrument.first_order.depth_of_field;
+    const double side = instrument.first_order.field_edge;
+    double before = 0;
+    for (const glm::dvec2 field : {glm::dvec2(0), glm::dvec2(side, 0), glm::dvec2(8 * side)}) {
+        const PointWaves point = waves_of(instrument, field);
+        const FilterError error = largest_filter_error(filter, point, reach);
+        EXPECT_LE(std::abs(error.height), reach);
+        EXPECT_NEAR(std::abs(error.filtered - error.waves), error.difference, 1e-12);
+        const auto integral = point.at_height(error.height).transfer(error.frequency);
+        EXPECT_NEAR(std::abs(error.waves - integral), 0, 0.006) << field.x;
+        if (field == glm::dvec2(0)) {
+            EXPECT_NEAR(error.difference, 0.0560, 0.002);
+            EXPECT_NEAR(glm::length(error.frequency) / filter.cutoff(), 0.375, 0.02);
+            EXPECT_NEAR(error.height, -reach, 1e-12);
+        } else {
+            // The wavefront differs more and more from the axis'.
+            EXPECT_GT(error.difference, 0.95 * before) << field.x;
+        }
+        before = error.difference;
+    }
+    EXPECT_GT(before, 0.1);
+}
+
+// Without aberration the whole field is as the axis is, but for the cells.
+TEST(FilterError, OfIdealLensesIsThatOfTheAxis) {
+    const Instrument instrument = assemble(test::ideal_microscope(0.28));
+    const PupilFilter filter(instrument, {.cells = 16});
+    const double reach = instrument.first_order.depth_of_field;
+    const double side = instrument.first_order.field_edge;
+    const double on_axis = largest_filter_error(filter, waves_of(instrument, glm::dvec2(0)), reach).difference;
+    const double in_corner = largest_filter_error(filter, waves_of(instrument, glm::dvec2(side)), reach).difference;
+    EXPECT_LT(on_axis, 0.015);
+    EXPECT_NEAR(in_corner, on_axis, 0.004);
+    // Few cells leave more.
+    EXPECT_GT(largest_filter_error(PupilFilter(instrument, {.cells = 2}), waves_of(instrument, glm::dvec2(0)), reach)
+                  .difference,
+              0.15);
+}
+
+// A pupil of one wavelength: at s of the cutoff with half a cycle a part at s_0, waves come out as those of 2 s_0 - s.
+TEST(FilterError, OfPartsThatAreTooCoarse) {
+    auto description = test::ideal_microscope(0.28);
+    const Instrument instrument = assemble(description);
+    const int enough = parts_for_waves(instrument);
+    ASSERT_GE(enough, 2);
+    EXPECT_EQ(PupilFilter(instrument, {.cells = 8, .parts = enough}).folded_contrast(), 0);
+    const PupilFilter coarse(instrument, {.cells = 8, .parts = 1});
+    const double half_cycle = 0.5 / instrument.first_order.pixel_pitch / coarse.cutoff();
+    const auto in_focus = [](double s) { return 2 / pi * (std::acos(s) - s * std::sqrt(1 - s * s)); };
+    double expected = 0;
+    for (double s = half_cycle; s < 1; s += 0.001) {
+        const double folded = std::abs(s - 2 * half_cycle * std::round(0.5 * s / half_cycle));
+        const double pixel = 0.5 * pi * s / half_cycle;
+        expected = std::max(expected, std::abs((in_focus(folded) - in_focus(s)) * std::sin(pixel) / pixel));
+    }
+    EXPECT_NEAR(coarse.folded_contrast(), expected, 0.02);
+}
+
+} // namespace
+} // namespace vkfv::optics
