@@ -9,6 +9,7 @@
 #include <algorithm>
 #include <cmath>
 #include <thread>
+#include <tuple>
 
 namespace vkfv::optics {
 
@@ -188,13 +189,17 @@ PupilFilter::PupilFilter(const Instrument& instrument, const WaveOptions& option
 
 void PupilFilter::fill_dark_cells() {
     const int side = static_cast<int>(cells_.side);
-    const auto middle = [side](int cell) { return glm::dvec2(cell % side, cell / side); };
+    // From the pupil's middle, in cells.
+    const auto middle = [side](int cell) { return glm::dvec2(cell % side, cell / side) - 0.5 * (side - 1); };
+    // Of cells that are equally near, the one nearer to an axis: mirror images have mirror images.
+    const auto order = [&](int lit, int dark) {
+        return std::tuple(glm::length(middle(lit) - middle(dark)), std::abs(middle(lit).y), std::abs(middle(lit).x));
+    };
     const auto plane = static_cast<std::ptrdiff_t>(table_.size() / shares_.size());
     for (int dark = 0; dark < cell_count(); ++dark) {
         int nearest = -1;
         for (int lit = 0; lit < cell_count() && share(dark) == 0; ++lit) {
-            if (share(lit) > 0 && (nearest < 0 || glm::length(middle(lit) - middle(dark)) <
-                                                      glm::length(middle(nearest) - middle(dark)))) {
+            if (share(lit) > 0 && (nearest < 0 || order(lit, dark) < order(nearest, dark))) {
                 nearest = lit;
             }
         }

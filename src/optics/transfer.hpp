@@ -1,5 +1,5 @@
-// The transfer function of waves of one wavelength, integrated over the traced pupil: no transforms, no cells. Incoherent
-// light, scalar waves, a pupil of even radiance in direction cosines (a Lambertian specimen's).
+// The transfer function of waves of one wavelength, integrated over the traced pupil: no transforms, no cells.
+// Incoherent light, scalar waves, a pupil of even radiance in direction cosines (a Lambertian specimen's).
 #pragma once
 
 #include "optics/wavefront.hpp"
