@@ -104,7 +104,7 @@ class Commands {
         submit();
         wait();
     }
-    std::vector<double> seconds() const;     // timestamps since the first, s; waits for them
+    std::vector<double> seconds() const;      // timestamps since the first, s; waits for them
     std::vector<std::uint64_t> ticks() const; // the same on the device's own clock, in its timestamp periods
 
   private:
