@@ -7,6 +7,7 @@
 #include "surface_files/surface_file.hpp"
 #include "topography/device_focus_planes.hpp"
 #include "topography/flatness.hpp"
+#include "vulkan/device.hpp"
 
 #include <fmt/format.h>
 
@@ -105,8 +106,8 @@ topography::FocusPlanesMaker focus_planes_for(EvaluateOn evaluate_on, const std:
         (evaluate_on == EvaluateOn::automatic && (on_host || !vulkan::is_hardware(device_selector)))) {
         return topography::make_host_focus_planes;
     }
-    return topography::device_focus_planes(std::make_shared<const vulkan::Device>(
-        vulkan::DeviceOptions{on_host ? std::string() : device_selector}));
+    return topography::device_focus_planes(
+        std::make_shared<const vulkan::Device>(vulkan::DeviceOptions{on_host ? std::string() : device_selector}));
 }
 
 std::optional<Flat> read_flat(const Configuration& configuration, int columns, int rows, double pitch) {

@@ -5,11 +5,14 @@
 #include "optics/diffraction.hpp"
 #include "topography/compare.hpp"
 #include "topography/topography.hpp"
-#include "vulkan/device.hpp"
 
 #include <filesystem>
 #include <memory>
 #include <optional>
+
+namespace vkfv::vulkan {
+class Device;
+}
 
 namespace vkfv::measurement {
 

@@ -239,9 +239,9 @@ class DeviceFocusPlanes final : public FocusPlanes {
     vulkan::Kernel mean_, add_brightness_, response_, rows_, columns_, single_, follow_, select_;
     vulkan::Buffer mean_image_, responses_, row_sums_, weights_, averaged_, alone_, records_, singles_, places_,
         brightness_, all_in_focus_;
-    std::vector<vulkan::Buffer> images_; // the last few in turn
-    std::vector<vulkan::Buffer> curves_; // likewise
-    bool measured_alone_ = false;        // what was measured last is an image itself
+    std::vector<vulkan::Buffer> images_;   // the last few in turn
+    std::vector<vulkan::Buffer> curves_;   // likewise
+    bool measured_alone_ = false;          // what was measured last is an image itself
     std::vector<vulkan::Buffer> carriers_; // in host memory, in turn
     std::unique_ptr<vulkan::Commands> commands_;
     std::unique_ptr<vulkan::Commands> submitted_;

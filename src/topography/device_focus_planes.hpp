@@ -3,9 +3,12 @@
 #pragma once
 
 #include "topography/focus_planes.hpp"
-#include "vulkan/device.hpp"
 
 #include <memory>
+
+namespace vkfv::vulkan {
+class Device;
+}
 
 namespace vkfv::topography {
 

@@ -1,6 +1,7 @@
 // The evaluation of stacks on a device, against the host's in double.
 #include "topography/device_focus_planes.hpp"
 #include "topography/topography.hpp"
+#include "vulkan/device.hpp"
 
 #include <gtest/gtest.h>
 
