@@ -25,8 +25,8 @@ void parallel_rows(int columns, int rows, const Task& task) {
     task(0, std::min(share, rows));
 }
 
-// The same in bands of so many rows, which threads take one after the other: for rows that differ in their work, and for
-// tasks that take memory a row.
+// The same in bands of so many rows, which threads take one after the other: for rows that differ in their work, and
+// for tasks that take memory a row.
 template <class Task>
 void parallel_bands(int rows, int band, const Task& task) {
     std::atomic<int> next = 0;

@@ -40,9 +40,8 @@ ImageResult measure_image(const Configuration& configuration, double focal_heigh
     const auto specimen = make_specimen(configuration);
     enter_stage("instrument");
     const auto instrument = instrument_for(configuration, specimen, focal_height);
-    ImageResult result{.exposure = expose(configuration, instrument, specimen, focal_height),
-                       .file = file,
-                       .picture = file};
+    ImageResult result{
+        .exposure = expose(configuration, instrument, specimen, focal_height), .file = file, .picture = file};
     enter_stage("files");
     result.picture.replace_extension(".svg");
     const auto& exposure = result.exposure;

@@ -25,7 +25,7 @@ struct StackSummary {
     double trace_seconds = 0;  // wall clock of the traces of this run
     double device_seconds = 0; // of them, the device's work by its own clock
     double device_span = 0;    // on that clock, from the first image's beginning to the last one's end
-    bool complete = false;    // every image of the stack is stored
+    bool complete = false;     // every image of the stack is stored
 };
 
 // Looks at an image of the shard: radiant flux per pixel in W as it is stored.

@@ -1,7 +1,7 @@
 #include "topography/focus_measure.hpp"
 
-#include "topography/names.hpp"
 #include "core/parallel_rows.hpp"
+#include "topography/names.hpp"
 
 #include <algorithm>
 #include <cmath>

@@ -1,8 +1,8 @@
 #include "topography/registration.hpp"
 
 #include "core/fourier.hpp"
-#include "core/units.hpp"
 #include "core/parallel_rows.hpp"
+#include "core/units.hpp"
 
 #include <algorithm>
 #include <array>
