@@ -213,7 +213,7 @@ void read_diffraction(const TomlTable& root, Configuration& configuration) {
         constexpr double bytes_per_gib = 1 << 30;
         waves.most_memory = static_cast<std::uint64_t>(section.number(most_memory) * bytes_per_gib);
         if (waves.cells % 2 != 0) {
-            section.fail(pupil_cells, "an even number, so that opposite points of the pupil share a cell",
+            section.fail(pupil_cells, "an even number, so that every cell has its mirror images",
                          fmt::format("Choose {} or {}.", waves.cells - 1, waves.cells + 1));
         }
         if (configuration.trace.nonsequential) {
