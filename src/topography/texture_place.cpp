@@ -119,13 +119,20 @@ void place_by_texture(Grid<double>& height, const Channels& all_in_focus, FocusM
     if (all_in_focus.empty() || all_in_focus[0].columns != height.columns || all_in_focus[0].rows != height.rows) {
         throw std::invalid_argument("place_by_texture: as many heights as pixels are needed");
     }
-    const Grid<double> responses = focus_responses(all_in_focus, measure, window), found = height;
+    const Grid<double> responses = focus_responses(all_in_focus, measure, window);
+    // From one of them: sums of squares keep no digits of a height that all have in common.
+    Grid<double> found = height;
+    const auto first = std::ranges::find_if(height.values, [](double z) { return std::isfinite(z); });
+    const double common = first == height.values.end() ? 0 : *first;
+    for (double& z : found.values) {
+        z -= common;
+    }
     const int reach = 2 * window.radius();
     const double neighbours = window.pixels(2 * reach + 1, 2 * reach + 1, reach, reach);
-    parallel_rows(height.columns, height.rows, [&](int first, int end) {
+    parallel_rows(height.columns, height.rows, [&](int from, int end) {
         std::vector<TextureColumn> textures(static_cast<std::size_t>(height.columns));
         std::vector<HeightColumn> heights(textures.size());
-        for (int row = first; row < end; ++row) {
+        for (int row = from; row < end; ++row) {
             for (int column = 0; column < height.columns; ++column) {
                 textures[static_cast<std::size_t>(column)] = texture_column(responses, window, column, row);
                 heights[static_cast<std::size_t>(column)] = height_column(found, reach, column, row);
@@ -134,7 +141,7 @@ void place_by_texture(Grid<double>& height, const Channels& all_in_focus, FocusM
                 if (std::isfinite(found(column, row))) {
                     const Vector centre = texture_centre(textures, window, column);
                     const Vector rise = slope(heights, reach, neighbours, column);
-                    height(column, row) = found(column, row) - rise.x * centre.x - rise.y * centre.y;
+                    height(column, row) -= rise.x * centre.x + rise.y * centre.y;
                 }
             }
         }
