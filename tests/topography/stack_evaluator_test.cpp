@@ -368,7 +368,8 @@ TEST(Reconstruct, AnImageAtATimeGivesWhatTheWholeStackGives) {
     const TopographyOptions options{.focus_measure = FocusMeasure::standard_deviation,
                                     .peak = PeakMethod::gaussian_fit,
                                     .peak_range_steps = 2,
-                                    .smoothing_steps = 0.6};
+                                    .smoothing_steps = 0.6,
+                                    .place_by_texture = false};
     const Topography streamed = evaluate(stack, options);
     const int images = static_cast<int>(stack.images.size());
     const auto weights = axial_weights(*options.smoothing_steps);
