@@ -12,6 +12,7 @@ using namespace command_line;
 std::vector<Command> commands();
 
 Command stack_command();
+Command merge_command();
 Command image_command();
 Command sweep_command();
 Command topography_command();
@@ -35,6 +36,8 @@ Command man_command();
 
 // A whole stack with its topography and deviation from truth; continues one that was interrupted.
 void run_stack(const CommandOptions& options);
+// Shards of a stack put together and evaluated, as if one run had traced them.
+void run_merge(const CommandOptions& options);
 // One exposure, as a TIFF and its ledger.
 void run_image(const CommandOptions& options);
 // Images or stacks for every combination of the parameters in [sweep], with a table, charts and a contact sheet;

@@ -21,7 +21,7 @@ StageTimes time_stages(const optics::Instrument& instrument, const specimen::Spe
                        const trace::TraceOptions& options, double focal_height, int runs) {
     trace::DeviceScene scene = trace::make_device_scene(instrument, specimen, options);
     scene.set_exposure(focal_height, 0);
-    const std::uint32_t batch = trace::suitable_batch(scene, options.batch, options.rays);
+    const std::uint32_t batch = trace::suitable_batch(scene, options);
     const trace::ForwardTrace whole(scene, batch);
     const trace::ForwardTrace emission(scene, batch, kernels::STOP_AFTER_SOURCE);
     const trace::ForwardTrace to_specimen(scene, batch, kernels::STOP_AFTER_TRAIN);

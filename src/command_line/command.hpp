@@ -113,11 +113,12 @@ struct Option {
 };
 
 struct Operand {
-    std::string name; // "C.toml"; "MEASURED... TRUTH": two or more
+    std::string name; // "C.toml"; "MEASURED... TRUTH": several
     std::string description;
     std::variant<Take<std::string>, Take<std::vector<std::string>>> target;
     std::vector<std::string> choices{}; // empty: it is a file
     bool needed = true;
+    int least = 2; // of several
 };
 
 struct Command {

@@ -83,7 +83,8 @@ class CommandLine {
                 ->type_name(names.front());
         } else {
             app_.add_option(name, operands)
-                ->expected(2, several ? CLI::detail::expected_max_vector_size : static_cast<int>(names.size()));
+                ->expected(several ? command.operands.front().least : 2,
+                           several ? CLI::detail::expected_max_vector_size : static_cast<int>(names.size()));
         }
     }
 
@@ -91,7 +92,7 @@ class CommandLine {
         for (const auto& operand : command.operands) {
             const std::string name = operand.name.substr(0, operand.name.find(' '));
             if (takes_several(operand)) {
-                app_.add_option(name, operands)->expected(2, CLI::detail::expected_max_vector_size)->required();
+                app_.add_option(name, operands)->expected(operand.least, CLI::detail::expected_max_vector_size)->required();
             } else {
                 app_.add_option_function<std::string>(name, [&](const std::string& one) { operands.push_back(one); })
                     ->required(operand.needed);

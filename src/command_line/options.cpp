@@ -82,7 +82,7 @@ std::vector<Option> configuration_options() {
              .choices_checked = false},
             {.name = "--device",
              .value = "DEVICE",
-             .description = "Index or part of a name; \"host\": the reference in double",
+             .description = "Index or part of a name; \"0,1\" or \"all\": several; \"host\": the reference in double",
              .target = to_key("--device", "trace.device", true)}};
 }
 

@@ -43,7 +43,8 @@ const IntegerKey batch =
     without_influence(IntegerKey("batch", 0, most_rays, 0, "Rays in flight at once; 0: what suits the device."));
 const TextKey device =
     without_influence(TextKey("device", Default::in_words("the best"),
-                              "Index or part of the name of a Vulkan device; \"host\": the reference in double."));
+                              "Index or part of the name of a Vulkan device; \"0,1\": both at a time; \"all\" that "
+                              "are like the best; \"host\": the reference in double."));
 
 } // namespace
 
@@ -59,7 +60,8 @@ const KeyTable& trace_keys() {
 }
 
 void read_trace(const TomlTable& root, Configuration& configuration) {
-    const Section section(root.table_or_empty("trace"), trace_keys(), configuration);
+    const TomlTable table = root.table_or_empty("trace");
+    const Section section(table, trace_keys(), configuration);
     auto& trace = configuration.trace;
     trace.rays = static_cast<std::uint64_t>(section.integer(rays));
     trace.seed = static_cast<std::uint32_t>(section.integer(seed));
@@ -89,8 +91,12 @@ void read_trace(const TomlTable& root, Configuration& configuration) {
                      "Use \"auto\", \"bvh\" or \"ray-query\" with mode = \"nonsequential\".");
     }
     trace.batch = static_cast<std::uint64_t>(section.integer(batch));
-    if (const auto selector = section.text_if_given(device)) {
+    if (const auto selector = table.optional_string(device.name)) {
         trace.device = *selector;
+        // The first alone: how many work at a time is the run's, and the results are those of one.
+        if (*selector != "all") {
+            section.record_reference(device, selector->substr(0, selector->find(',')));
+        }
     }
 }
 

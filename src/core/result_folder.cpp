@@ -22,7 +22,9 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr std::string_view lock_name = ".lock";
+const std::string lock_name = ".lock";
+const std::string part_lock_prefix = ".lock_"; // and the part
+const std::string turn_name = ".lock_turn";
 constexpr std::size_t sum_digits = 64;
 constexpr std::string_view between = "  "; // as sha256sum writes it
 
@@ -65,20 +67,26 @@ std::vector<Entry> entries_of(const fs::path& folder, std::vector<std::string>& 
     return entries;
 }
 
-int lock_folder(const fs::path& folder) {
-    const fs::path path = folder / lock_name;
+int open_lock(const fs::path& folder, const std::string& name) {
+    const fs::path path = folder / name;
     const int file = ::open(path.c_str(), O_RDWR | O_CREAT | O_CLOEXEC | O_NONBLOCK, 0666);
     if (file < 0) {
         throw RunError(fmt::format("{}: cannot be written to: {}. Check its permissions, or give another --out",
                                    folder.string(), reason()));
     }
-    if (::flock(file, LOCK_EX | LOCK_NB) != 0) {
+    return file;
+}
+
+// how: LOCK_EX or LOCK_SH; does not wait.
+int lock_folder(const fs::path& folder, const std::string& name, int how) {
+    const int file = open_lock(folder, name);
+    if (::flock(file, how | LOCK_NB) != 0) {
         if (errno == EWOULDBLOCK) {
             ::close(file);
             throw FolderInUse(
-                fmt::format("{}: another vkfv is writing to this folder. Wait for it to end, or give another "
+                fmt::format("{}: another vkfv is writing {}to this folder. Wait for it to end, or give another "
                             "--out",
-                            folder.string()));
+                            folder.string(), name == lock_name ? "" : "the same part "));
         }
         spdlog::warn("{}: this file system offers no locks ({}): see to it that no second run writes here",
                      folder.string(), reason());
@@ -86,12 +94,31 @@ int lock_folder(const fs::path& folder) {
     return file;
 }
 
+// Of parts, once nobody writes any.
+void remove_part_locks(const fs::path& folder) {
+    std::error_code error;
+    std::vector<fs::path> locks;
+    for (fs::directory_iterator entry(folder, error), end; !error && entry != end; entry.increment(error)) {
+        if (entry->path().filename().string().starts_with(part_lock_prefix)) {
+            locks.push_back(entry->path());
+        }
+    }
+    for (const fs::path& lock : locks) {
+        fs::remove(lock, error);
+    }
+}
+
 } // namespace
 
-ResultFolder::ResultFolder(fs::path folder) : folder_(std::move(folder)) {
+ResultFolder::ResultFolder(fs::path folder, const std::string& part) : folder_(std::move(folder)) {
     make_folder(folder_);
-    lock_ = lock_folder(folder_);
+    lock_ = lock_folder(folder_, lock_name, part.empty() ? LOCK_EX : LOCK_SH);
     try {
+        if (part.empty()) {
+            remove_part_locks(folder_);
+        } else {
+            part_lock_ = lock_folder(folder_, part_lock_prefix + part, LOCK_EX);
+        }
         remove_unfinished_files(folder_);
         std::error_code none;
         if (fs::exists(folder_ / checksums_name, none)) {
@@ -101,12 +128,27 @@ ResultFolder::ResultFolder(fs::path folder) : folder_(std::move(folder)) {
             }
         }
     } catch (...) {
+        if (part_lock_ >= 0) {
+            ::close(part_lock_);
+        }
         ::close(lock_);
         throw;
     }
 }
 
 ResultFolder::~ResultFolder() {
+    if (part_lock_ >= 0) {
+        ::close(part_lock_);
+    }
+    ::close(lock_);
+}
+
+ResultFolder::Turn::Turn(const ResultFolder& folder) : lock_(open_lock(folder.path(), turn_name)) {
+    while (::flock(lock_, LOCK_EX) != 0 && errno == EINTR) {
+    }
+}
+
+ResultFolder::Turn::~Turn() {
     ::close(lock_);
 }
 

@@ -25,8 +25,9 @@ inline constexpr std::string_view checksums_name = "checksums.sha256";
 class ResultFolder {
   public:
     // Makes the folder, keeps it for this program as long as the object lives, also against a kill of others (the
-    // kernel ends the lock), and removes what killed programs left unfinished. Throws FolderInUse, RunError.
-    explicit ResultFolder(std::filesystem::path folder);
+    // kernel ends the lock), and removes what killed programs left unfinished. part: not empty, a word: programs that
+    // each have another part of the results write here at a time. Throws FolderInUse, RunError.
+    explicit ResultFolder(std::filesystem::path folder, const std::string& part = {});
     ~ResultFolder();
     ResultFolder(const ResultFolder&) = delete;
     ResultFolder& operator=(const ResultFolder&) = delete;
@@ -42,12 +43,25 @@ class ResultFolder {
     // Whether an earlier run wrote this file and it is still the same.
     bool holds(const std::filesystem::path& name) const;
 
+    // While it lives, no other part of these results is in a turn; it waits until there is none.
+    class Turn {
+      public:
+        explicit Turn(const ResultFolder& folder);
+        ~Turn();
+        Turn(const Turn&) = delete;
+        Turn& operator=(const Turn&) = delete;
+
+      private:
+        int lock_;
+    };
+
     // Last: the list of what was written and noted, and of what an earlier list has besides that is still there.
     void write_checksums() const;
 
   private:
     std::filesystem::path folder_;
     int lock_ = -1;                              // file descriptor
+    int part_lock_ = -1;                         // of the part; -1: alone
     std::map<std::string, std::string> earlier_; // sums by name, of the list that was there
     std::mutex mutex_;                           // of what follows
     std::map<std::string, std::string> sums_;    // of this run

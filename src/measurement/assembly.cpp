@@ -5,8 +5,6 @@
 #include "core/units.hpp"
 #include "images/image_file.hpp"
 #include "measurement/specimen_view.hpp"
-#include "trace/device_tracer.hpp"
-#include "trace/host_tracer.hpp"
 
 #include <fmt/format.h>
 #include <spdlog/spdlog.h>
@@ -92,14 +90,6 @@ specimen::Specimen make_specimen(const Configuration& configuration) {
     specimen::Specimen specimen;
     at_its_place(configuration, description.where, [&] { specimen = specimen::make(description); });
     return specimen;
-}
-
-std::unique_ptr<trace::Tracer> make_tracer(const optics::Instrument& instrument, const specimen::Specimen& specimen,
-                                           const trace::TraceOptions& options) {
-    auto tracer = options.device == "host" ? trace::make_host_tracer(instrument, specimen, options)
-                                           : trace::make_device_tracer(instrument, specimen, options);
-    spdlog::info("{}", tracer->description());
-    return tracer;
 }
 
 std::string image_identity(const Configuration& configuration, const std::string& surface_digest,

@@ -26,11 +26,6 @@ optics::Instrument assemble_instrument(const Configuration& configuration, const
 // The configured specimen. Throws InputError at the place of the key that does not fit.
 specimen::Specimen make_specimen(const Configuration& configuration);
 
-// On the device that the options ask for; the selector "host" means the reference in double on the host's
-// cores.
-std::unique_ptr<trace::Tracer> make_tracer(const optics::Instrument& instrument, const specimen::Specimen& specimen,
-                                           const trace::TraceOptions& options);
-
 // All that decides the bits of an image but its height: the configuration's part, the surface as made, instrument,
 // program and device, for another device rounds otherwise. TOML lines.
 std::string image_identity(const Configuration& configuration, const std::string& surface_digest,

@@ -6,6 +6,7 @@
 #include "images/image_file.hpp"
 #include "measurement/assembly.hpp"
 #include "measurement/wave_limits.hpp"
+#include "measurement/working_devices.hpp"
 
 #include <fmt/format.h>
 #include <spdlog/spdlog.h>
@@ -42,21 +43,23 @@ Grid<float> in_float(const Grid<double>& image) {
 
 Exposure expose(const Configuration& configuration, const optics::Instrument& instrument,
                 const specimen::Specimen& specimen, double focal_height) {
-    enter_stage("device, kernels");
-    const auto tracer = make_tracer(instrument, specimen, configuration.trace);
-    enter_stage("image");
     const double pitch = instrument.first_order.pixel_pitch;
     const int pixels = configuration.instrument.detector_pixels;
-    Exposure exposure{tracer->expose(focal_height, image_index(configuration, focal_height)),
-                      PixelGrid::centred(pixels, pixels, pitch).x0,
-                      pitch,
-                      tracer->identity(),
-                      {}};
-    if (const auto* filter = tracer->pupil_filter()) {
-        for (const auto& warning : warnings_of(wave_limits(*filter, instrument))) {
-            spdlog::warn(warning);
+    Exposure exposure;
+    exposure.first = PixelGrid::centred(pixels, pixels, pitch).x0;
+    exposure.pitch = pitch;
+    work_with_devices(configuration.trace.device, [&](const WorkingDevices& devices) {
+        enter_stage("device, kernels");
+        const auto tracer = devices.make_tracer(instrument, specimen, configuration.trace);
+        enter_stage("image");
+        exposure.image = tracer->expose(focal_height, image_index(configuration, focal_height));
+        exposure.tracer = tracer->identity();
+        if (const auto* filter = tracer->pupil_filter()) {
+            for (const auto& warning : warnings_of(wave_limits(*filter, instrument))) {
+                spdlog::warn(warning);
+            }
         }
-    }
+    });
     if (const auto diffraction = make_diffraction(configuration, instrument)) {
         exposure.diffracted = diffraction->apply(in_float(exposure.image.flux));
     }

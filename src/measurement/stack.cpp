@@ -1,98 +1,72 @@
 #include "measurement/stack.hpp"
 
-#include "core/digest.hpp"
 #include "core/stages.hpp"
-#include "measurement/assembly.hpp"
-#include "measurement/evaluation_files.hpp"
-#include "measurement/exposure.hpp"
-#include "measurement/wave_limits.hpp"
-#include "specimen/geometry_digest.hpp"
+#include "measurement/stack_parts.hpp"
+#include "measurement/working_devices.hpp"
 
 #include <fmt/format.h>
 #include <spdlog/spdlog.h>
 
-#include <algorithm>
-#include <future>
+#include <utility>
 
 namespace vkfv::measurement {
 
 namespace {
 
-constexpr double most_image_noise = 0.5, good_image_noise = 0.1;
+StackResult trace_and_evaluate(const StackScene& scene, const WorkingDevices& devices, Progress& progress) {
+    const Configuration& configuration = scene.configuration;
+    enter_stage("device, kernels");
+    const auto tracer = devices.make_tracer(scene.instrument, scene.specimen, configuration.trace);
+    enter_stage("folder of the stack");
+    scan::ImageStore store(configuration.output_directory, scene.description(tracer->identity()));
+    // Evaluated as they are traced: no second pass over the disk.
+    GrowingEvaluation evaluation(scene, focus_planes_for(configuration.evaluate_on, tracer->device()),
+                                 tracer->pupil_filter());
+    enter_stage("images");
+    const auto traced = scan::run_stack(*tracer, store, progress,
+                                        [&](int image, Grid<float> flux) { evaluation.add(image, std::move(flux)); });
+    spdlog::info("{} images traced, {} kept from before", traced.traced, traced.kept);
+    if (traced.device_span > 0) {
+        store.append_timing("device at work", traced.device_seconds);
+        store.append_timing("device from first to last image", traced.device_span);
+    }
+    return {.evaluation = evaluation.write(store.results(), store.description(), tracer->identity()),
+            .traced = traced,
+            .rays_per_image = trace::launched_rays(configuration.trace, scene.pixels()),
+            .folder = store.folder()};
+}
 
 } // namespace
 
 StackResult measure_stack(const Configuration& configuration, Progress& progress) {
-    const auto positions = configuration.scan->positions();
-    enter_stage("specimen");
-    const auto specimen = make_specimen(configuration);
-    enter_stage("instrument");
-    const auto instrument = assemble_instrument(configuration, specimen, positions);
-    const int pixels = configuration.instrument.detector_pixels;
-    const auto flat = read_flat(configuration, pixels, pixels, instrument.first_order.pixel_pitch);
-    enter_stage("device, kernels");
-    const auto tracer = make_tracer(instrument, specimen, configuration.trace);
-    const std::string identity = image_identity(configuration, specimen::geometry_digest(specimen), tracer->identity());
-
-    enter_stage("folder of the stack");
-    scan::ImageStore store(configuration.output_directory, {.configuration = configuration.canonical,
-                                                            .identity = identity,
-                                                            .digest = Digest().add(identity).text(),
-                                                            .positions = positions,
-                                                            .columns = pixels,
-                                                            .rows = pixels,
-                                                            .pitch = instrument.first_order.pixel_pitch});
-    // Evaluated as they are traced: no second pass over the disk.
-    StackEvaluation stack_evaluation(evaluation_options(configuration, instrument),
-                                     focus_planes_for(configuration.evaluate_on, tracer->device()),
-                                     make_diffraction(configuration, instrument));
-    enter_stage("images");
-    // What no image is needed for is made beside them.
-    auto truth = std::async(std::launch::async, [&] { return truth_on_pixels(instrument, configuration, specimen); });
-    auto source = std::async(std::launch::async, [&] { return stack_source(configuration, instrument); });
-    bool any_light = false;
-    const auto traced = scan::run_stack(*tracer, store, progress, {}, [&](int image, Grid<float> flux) {
-        any_light = any_light || std::ranges::any_of(flux.values, [](float value) { return value > 0; });
-        stack_evaluation.add({std::move(flux)}, positions[static_cast<std::size_t>(image)]);
+    const StackScene scene(configuration);
+    StackResult result;
+    work_with_devices(configuration.trace.device, [&](const WorkingDevices& devices) {
+        result = trace_and_evaluate(scene, devices, progress);
     });
-    spdlog::info("{} images traced, {} kept from before", traced.traced, traced.kept);
-    if (traced.device_span > 0) {
-        scan::append_timing(store.folder(), "device at work", traced.device_seconds);
-        scan::append_timing(store.folder(), "device from first to last image", traced.device_span);
-    }
-    if (!any_light) {
-        spdlog::warn("No light reaches the detector in any image. vkfv --image of one position tells where it goes");
-    }
+    return result;
+}
 
-    enter_stage("heights and truth");
-    const std::uint64_t rays_per_image = trace::launched_rays(configuration.trace, pixels);
-    EvaluatedStack stack{.evaluation = stack_evaluation.finish(truth.get(), configuration.band, flat),
-                         .origin = {{"device", tracer->identity().text()},
-                                    {"stack_digest", store.description().digest},
-                                    {"seed", configuration.trace.seed},
-                                    {"images", positions.size()},
-                                    {"rays_per_image", rays_per_image}},
-                         .source = source.get(),
-                         .files = topography_files(configuration)};
-    if (const auto* filter = tracer->pupil_filter()) {
-        const WaveLimits limits = wave_limits(*filter, instrument);
-        for (const auto& warning : warnings_of(limits)) {
-            spdlog::warn(warning);
-        }
-        stack.origin["waves"] = json_of(limits);
-        stack.origin["waves"]["warnings"] = warnings_of(limits);
-    }
-    if (const double noise = stack.evaluation.topography.stack.image_noise; noise > most_image_noise) {
-        spdlog::warn("The images' noise is {:.0f} % of their brightness: what is measured is little or rough. {}",
-                     100 * noise, remedy_of_noise(configuration, noise, good_image_noise));
-    }
-    enter_stage("results and report");
-    write_results(store.results(), stack);
+ShardResult trace_shard(const Configuration& configuration, scan::Shard shard, Progress& progress) {
+    const StackScene scene(configuration);
+    ShardResult result{.shard = shard, .traced = {}, .folder = configuration.output_directory};
+    work_with_devices(configuration.trace.device, [&](const WorkingDevices& devices) {
+        enter_stage("device, kernels");
+        const auto tracer = devices.make_tracer(scene.instrument, scene.specimen, configuration.trace);
+        enter_stage("folder of the stack");
+        scan::ImageStore store(configuration.output_directory, scene.description(tracer->identity()), shard);
+        enter_stage("images");
+        result.traced = scan::run_stack(*tracer, store, progress);
+    });
     enter_stage("end");
-    return {.evaluation = std::move(stack.evaluation),
-            .traced = traced,
-            .rays_per_image = rays_per_image,
-            .folder = store.folder()};
+    return result;
+}
+
+std::string summary(const ShardResult& result) {
+    const auto& [shard, traced, folder] = result;
+    return fmt::format("shard {} of {}: {} images traced, {} kept from before, in {}\n"
+                       "vkfv merge puts the shards together when all are there\n",
+                       shard.index + 1, shard.count, traced.traced, traced.kept, folder.string());
 }
 
 std::string summary(const StackResult& stack) {

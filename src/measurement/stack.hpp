@@ -9,6 +9,7 @@
 #include <cstdint>
 #include <filesystem>
 #include <string>
+#include <vector>
 
 namespace vkfv::measurement {
 
@@ -23,6 +24,22 @@ struct StackResult {
 // results there (write_results()). Images kept from an earlier run give the same result as those traced now. Throws
 // InputError, DeviceError, and RunError after which the same call continues.
 StackResult measure_stack(const Configuration& configuration, Progress& progress);
+
+// Traces what the output folder lacks of this shard's images, and evaluates nothing: merge_stack() does when all are
+// there. Throws as measure_stack().
+struct ShardResult {
+    scan::Shard shard;
+    scan::StackSummary traced;
+    std::filesystem::path folder;
+};
+ShardResult trace_shard(const Configuration& configuration, scan::Shard shard, Progress& progress);
+std::string summary(const ShardResult& shard);
+
+// Puts the images of a stack's shards into one folder, which may hold some of them already, and evaluates them as the
+// run that traces all of them would: its bytes. Needs no device. shards: other folders of the same stack; they stay as
+// they are. Throws InputError where one is of another configuration, program or device, an image is not whole, or some
+// are missing.
+StackResult merge_stack(const std::filesystem::path& folder, const std::vector<std::filesystem::path>& shards);
 
 // The figures, times and folder as a text of a few lines.
 std::string summary(const StackResult& stack);

@@ -19,15 +19,13 @@
 
 namespace vkfv::scan {
 
-StackSummary run_stack(const trace::Tracer& tracer, ImageStore& store, Progress& progress, Shard shard,
+StackSummary run_stack(const trace::Tracer& tracer, ImageStore& store, Progress& progress,
                        const ImageVisitor& visit) {
-    if (shard.count < 1 || shard.index < 0 || shard.index >= shard.count) {
-        throw std::invalid_argument("a shard is one of 0 .. count - 1");
-    }
     for (const std::string& sentence : store.damaged()) {
         spdlog::warn("{}; it is traced again", sentence);
     }
     const auto& positions = store.description().positions;
+    const Shard shard = store.shard();
     std::vector<int> of_shard;
     std::vector<int> to_trace;
     StackSummary summary;
@@ -75,7 +73,7 @@ StackSummary run_stack(const trace::Tracer& tracer, ImageStore& store, Progress&
         auto to_begin = to_trace.begin();
         auto to_take = to_trace.begin();
         auto last = std::chrono::steady_clock::now();
-        double device_end = 0; // of the image before
+        std::vector<double> device_ends; // of the image before, of each device
         for (const int image : of_shard) {
             const double z = positions[static_cast<std::size_t>(image)];
             if (to_take == to_trace.end() || *to_take != image) {
@@ -98,8 +96,10 @@ StackSummary run_stack(const trace::Tracer& tracer, ImageStore& store, Progress&
             last = now;
             summary.trace_seconds += exposure->seconds;
             summary.device_seconds += exposure->device_seconds;
-            summary.device_span += std::max(0.0, exposure->device_end - device_end);
-            device_end = exposure->device_end;
+            const auto device = static_cast<std::size_t>(exposure->device);
+            device_ends.resize(std::max(device_ends.size(), device + 1));
+            summary.device_span += std::max(0.0, exposure->device_end - device_ends[device]);
+            device_ends[device] = std::max(device_ends[device], exposure->device_end);
             if (visit) {
                 visiting.add([&visit, image, exposure] { visit(image, as_stored(exposure->flux)); });
             }
@@ -114,7 +114,9 @@ StackSummary run_stack(const trace::Tracer& tracer, ImageStore& store, Progress&
         throw;
     }
     writing.finish();
-    store.write_ledger();
+    if (shard.is_whole()) {
+        store.write_ledger();
+    }
     progress.end();
     summary.complete = store.complete();
     return summary;

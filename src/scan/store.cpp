@@ -23,9 +23,9 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr std::string_view ledger_name = "ledger.csv";
-constexpr std::string_view timings_name = "timings.csv";
+constexpr std::string_view timings_header = "what,seconds,rays_per_s";
 constexpr std::string_view images_name = "images";
-constexpr std::string_view lock_name = ".lock"; // of core/result_folder.hpp
+constexpr std::string_view lock_name = ".lock"; // and .lock_..., of core/result_folder.hpp
 constexpr std::string_view identity_prefix = "#: ";
 constexpr std::string_view digest_label = " (digest ";
 constexpr std::size_t digest_digits = 16;
@@ -76,28 +76,6 @@ std::map<std::string, std::string> values_by_key(std::string_view identity) {
         }
     }
     return values;
-}
-
-// A line for each key whose values differ: "  trace.seed: 1 there, 2 here".
-std::string differences(std::string_view there, std::string_view here) {
-    const auto old_values = values_by_key(there);
-    auto new_values = values_by_key(here);
-    std::string text;
-    for (const auto& [key, old_value] : old_values) {
-        const auto found = new_values.find(key);
-        if (found == new_values.end()) {
-            text += fmt::format("\n  {}: {} there, absent here", key, old_value);
-        } else {
-            if (found->second != old_value) {
-                text += fmt::format("\n  {}: {} there, {} here", key, old_value, found->second);
-            }
-            new_values.erase(found);
-        }
-    }
-    for (const auto& [key, new_value] : new_values) {
-        text += fmt::format("\n  {}: absent there, {} here", key, new_value);
-    }
-    return text;
 }
 
 // Rounded to a femtometre: z = start + i step loses its binary tail in the text and no height its meaning.
@@ -208,7 +186,7 @@ Frame read_whole_frame(const fs::path& folder, int image, double z) {
 bool holds_nothing_but_a_beginning(const fs::path& folder) {
     std::error_code error;
     for (fs::directory_iterator entry(folder, error), end; !error && entry != end; entry.increment(error)) {
-        if (entry->path().filename() != lock_name && !is_unfinished_file(entry->path())) {
+        if (!entry->path().filename().string().starts_with(lock_name) && !is_unfinished_file(entry->path())) {
             return false;
         }
     }
@@ -216,6 +194,37 @@ bool holds_nothing_but_a_beginning(const fs::path& folder) {
 }
 
 } // namespace
+
+std::string identity_differences(std::string_view there, std::string_view here) {
+    const auto old_values = values_by_key(there);
+    auto new_values = values_by_key(here);
+    std::string text;
+    for (const auto& [key, old_value] : old_values) {
+        const auto found = new_values.find(key);
+        if (found == new_values.end()) {
+            text += fmt::format("\n  {}: {} there, absent here", key, old_value);
+        } else {
+            if (found->second != old_value) {
+                text += fmt::format("\n  {}: {} there, {} here", key, old_value, found->second);
+            }
+            new_values.erase(found);
+        }
+    }
+    for (const auto& [key, new_value] : new_values) {
+        text += fmt::format("\n  {}: absent there, {} here", key, new_value);
+    }
+    return text;
+}
+
+std::string stored_identity(const fs::path& folder) {
+    const fs::path path = folder / configuration_name;
+    std::string identity = identity_of(read_file(path, {.expected = "the configuration of a stack"}));
+    if (identity.empty()) {
+        refuse_file(path, "", "a file without the identity of a stack", "the stack.toml of a stack that vkfv traced",
+                    "Give another --out: the configuration belongs outside of the output folder.");
+    }
+    return identity;
+}
 
 fs::path image_path(int image) {
     return fs::path(images_name) / fmt::format("z_{:04}.tif", image);
@@ -267,23 +276,48 @@ Check check_images(const fs::path& folder) {
     return check;
 }
 
-ImageStore::ImageStore(const fs::path& folder, StackDescription description)
-    : description_(std::move(description)), ledger_rows_(description_.positions.size()) {
+namespace {
+
+// In names of files and locks; empty: of the whole stack.
+std::string part_name(const Shard& shard) {
+    return shard.is_whole() ? "" : fmt::format("{}_of_{}", shard.index + 1, shard.count);
+}
+
+fs::path timings_name(const Shard& shard) {
+    return fmt::format("timings{}{}.csv", shard.is_whole() ? "" : "_", part_name(shard));
+}
+
+} // namespace
+
+ImageStore::ImageStore(const fs::path& folder, StackDescription description, Shard shard)
+    : description_(std::move(description)), shard_(shard), ledger_rows_(description_.positions.size()) {
+    if (shard.count < 1 || shard.index < 0 || shard.index >= shard.count) {
+        throw std::invalid_argument("a shard is one of 0 .. count - 1");
+    }
     std::error_code none;
     if (fs::exists(folder, none) && !fs::is_directory(folder, none)) {
         refuse_file(folder, "", "a file", "a folder", "Give another --out.");
     }
     if (fs::exists(folder, none) && !fs::exists(folder / configuration_name, none) &&
-        !holds_nothing_but_a_beginning(folder)) {
+        !holds_nothing_but_a_beginning(folder) && !fs::exists(folder / configuration_name, none)) {
         refuse_file(folder, "", fmt::format("a folder with other files and without {}", configuration_name),
                     "a new folder, an empty one, or that of the same stack", "Give another --out.");
     }
-    results_ = std::make_unique<ResultFolder>(folder);
-    create_or_compare();
+    results_ = std::make_unique<ResultFolder>(folder, part_name(shard_));
+    {
+        std::optional<ResultFolder::Turn> turn; // shards begin a folder together
+        if (!shard_.is_whole()) {
+            turn.emplace(*results_);
+        }
+        create_or_compare();
+    }
     make_folder(folder / images_name);
     remove_unfinished_files(folder / images_name);
     keep_whole_images();
-    write_ledger();
+    if (shard_.is_whole()) {
+        write_ledger();
+        gather_timings();
+    }
 }
 
 void ImageStore::create_or_compare() {
@@ -294,55 +328,81 @@ void ImageStore::create_or_compare() {
         results_->write(configuration_name, text);
         return;
     }
-    const std::string text_there = read_file(path, {.expected = "the configuration of a stack"});
-    const std::string identity_there = identity_of(text_there);
-    if (identity_there.empty()) {
-        refuse_file(path, "", "a file without the identity of a stack", "the stack.toml of a stack that vkfv traced",
-                    "Give another --out: the configuration belongs outside of the output folder.");
-    }
-    const std::string difference = differences(identity_there, description_.identity);
+    const std::string difference = identity_differences(stored_identity(folder()), description_.identity);
     if (!difference.empty()) {
         refuse_file(path, "", "a stack of another configuration", "the configuration of this run",
                     "Give another --out, or remove the folder. What differs:" + difference);
     }
     // What does not touch the images, such as the evaluation, may differ.
-    if (text_there != text) {
+    if (read_file(path) != text) {
         results_->write(configuration_name, text);
     } else {
         results_->note(configuration_name, text);
     }
 }
 
+struct ImageStore::WholeImage {
+    std::string bytes; // of the file
+    std::string ledger_header;
+    std::string ledger_row;
+};
+
+// Throws InputError if it is not whole, or another stack's.
+ImageStore::WholeImage ImageStore::whole_image(const fs::path& folder, int image) const {
+    Frame frame = read_whole_frame(folder, image, description_.positions[static_cast<std::size_t>(image)]);
+    const std::string& text = frame.image.description;
+    const Grid<float>& values = frame.image.values;
+    const auto refuse = [&](const std::string& found) {
+        refuse_file(folder / image_path(image), "", found, "an image of this stack",
+                    "Trace the stack again with the same command: it keeps the other images.");
+    };
+    if (values.columns != description_.columns || values.rows != description_.rows) {
+        refuse(fmt::format("{} x {} pixels where {} x {} belong", values.columns, values.rows, description_.columns,
+                           description_.rows));
+    }
+    if (described(text, "stack") != description_.digest) {
+        refuse("an image of another stack");
+    }
+    WholeImage whole{.bytes = std::move(frame.bytes),
+                     .ledger_header = described(text, "ledger_columns"),
+                     .ledger_row = described(text, "ledger_row")};
+    if (whole.ledger_row.empty() || (!ledger_header_.empty() && whole.ledger_header != ledger_header_)) {
+        refuse("its row of the ledger is missing");
+    }
+    return whole;
+}
+
+void ImageStore::keep(int image, const WholeImage& whole) {
+    ledger_header_ = whole.ledger_header;
+    ledger_rows_[static_cast<std::size_t>(image)] = whole.ledger_row;
+}
+
 void ImageStore::keep_whole_images() {
-    for (std::size_t i = 0; i < ledger_rows_.size(); ++i) {
-        const int image = static_cast<int>(i);
+    for (int image = shard_.index; image < static_cast<int>(ledger_rows_.size()); image += shard_.count) {
         const fs::path path = folder() / image_path(image);
         std::error_code none;
         if (!fs::exists(path, none)) {
             continue;
         }
         try {
-            const Frame frame = read_whole_frame(folder(), image, description_.positions[i]);
-            const std::string& text = frame.image.description;
-            const std::string header = described(text, "ledger_columns");
-            const std::string row = described(text, "ledger_row");
-            const Grid<float>& values = frame.image.values;
-            if (values.columns != description_.columns || values.rows != description_.rows) {
-                damaged_.push_back(fmt::format("{}: {} x {} pixels where {} x {} belong", path.string(), values.columns,
-                                               values.rows, description_.columns, description_.rows));
-            } else if (described(text, "stack") != description_.digest) {
-                damaged_.push_back(fmt::format("{}: an image of another stack", path.string()));
-            } else if (row.empty() || (!ledger_header_.empty() && header != ledger_header_)) {
-                damaged_.push_back(fmt::format("{}: its row of the ledger is missing", path.string()));
-            } else {
-                ledger_header_ = header;
-                ledger_rows_[i] = row;
-                results_->note(image_path(image), frame.bytes);
-            }
+            const WholeImage whole = whole_image(folder(), image);
+            keep(image, whole);
+            results_->note(image_path(image), whole.bytes);
         } catch (const InputError& error) {
             damaged_.push_back(fmt::format("{}: {}", path.string(), error.problem().found));
         }
     }
+}
+
+bool ImageStore::take(int image, const fs::path& from) {
+    std::error_code none;
+    if (!fs::exists(from / image_path(image), none)) {
+        return false;
+    }
+    const WholeImage whole = whole_image(from, image);
+    results_->write(image_path(image), whole.bytes);
+    keep(image, whole);
+    return true;
 }
 
 bool ImageStore::complete() const {
@@ -377,9 +437,11 @@ void ImageStore::store(int image, const trace::Image& exposure) {
     const bool first = ledger_header_.empty();
     ledger_header_ = header;
     ledger_rows_[index] = row;
-    // For those who watch; a row lost here is in its image, and the next opening writes the file anew.
-    append_line(folder() / ledger_name, (first ? header + "\n" : "") + row);
-    append_timing(folder(), fmt::format("image {}", image), exposure.seconds, static_cast<double>(exposure.rays));
+    if (shard_.is_whole()) {
+        // For those who watch; a row lost here is in its image, and the next opening writes the file anew.
+        append_line(folder() / ledger_name, (first ? header + "\n" : "") + row);
+    }
+    append_timing(fmt::format("image {}", image), exposure.seconds, static_cast<double>(exposure.rays));
 }
 
 void ImageStore::write_ledger() {
@@ -390,14 +452,52 @@ void ImageStore::write_ledger() {
     results_->write(ledger_name, text);
 }
 
-void append_timing(const fs::path& folder, const std::string& what, double seconds, double rays) {
-    const fs::path path = folder / timings_name;
+namespace {
+
+void append_timing_to(const fs::path& path, const std::string& what, double seconds, double rays) {
     std::error_code none;
     if (!fs::exists(path, none)) {
-        append_line(path, "what,seconds,rays_per_s");
+        append_line(path, timings_header);
     }
     append_line(path, fmt::format("{},{:.6g},{}", what, seconds,
                                   rays > 0 && seconds > 0 ? fmt::format("{:.6g}", rays / seconds) : ""));
+}
+
+} // namespace
+
+void append_timing(const fs::path& folder, const std::string& what, double seconds, double rays) {
+    append_timing_to(folder / timings_name({}), what, seconds, rays);
+}
+
+void ImageStore::append_timing(const std::string& what, double seconds, double rays) const {
+    append_timing_to(folder() / timings_name(shard_), what, seconds, rays);
+}
+
+// Those of shards, behind the stack's own.
+void ImageStore::gather_timings() {
+    std::vector<fs::path> parts;
+    std::error_code error;
+    for (fs::directory_iterator entry(folder(), error), end; !error && entry != end; entry.increment(error)) {
+        const std::string name = entry->path().filename().string();
+        if (name.starts_with("timings_") && name.ends_with(".csv")) {
+            parts.push_back(entry->path());
+        }
+    }
+    std::ranges::sort(parts);
+    const fs::path path = folder() / timings_name({});
+    for (const fs::path& part : parts) {
+        std::string rows = read_file(part);
+        if (fs::exists(path, error) && rows.starts_with(timings_header)) {
+            rows.erase(0, timings_header.size() + 1);
+        }
+        while (rows.ends_with('\n')) {
+            rows.pop_back();
+        }
+        if (!rows.empty()) {
+            append_line(path, rows);
+        }
+        fs::remove(part, error);
+    }
 }
 
 } // namespace vkfv::scan

@@ -3,7 +3,7 @@
 //   stack.toml              the configuration, and in comments the identity: what the images depend on
 //   images/z_0000.tif ...   one exposure each, float32 W per pixel; the file's first row has the highest y
 //   ledger.csv              a row an image: where its light went
-//   timings.csv             a row an exposure, the device's work and an evaluation, in the order of their making; no
+//   timings.csv             (timings_2_of_8.csv of a shard) a row an exposure, the device's work and an evaluation, in the order of their making; no
 //                           part of the result, since a clock is in it: all others hold the same bytes however often a
 //                           run was interrupted
 //   checksums.sha256, .lock core/result_folder.hpp
@@ -41,20 +41,32 @@ struct StackDescription {
     double pitch = 0; // of the pixels, mm in the object plane
 };
 
+// One of `count` parts of a stack: the images whose number leaves the remainder `index`. Several programs trace theirs
+// at a time, into one folder or into folders of their own; merged they are the stack that one run makes.
+struct Shard {
+    int index = 0; // 0 .. count - 1
+    int count = 1; // 1: the whole stack
+
+    bool holds(int image) const { return image % count == index; }
+    bool is_whole() const { return count == 1; }
+};
+
 class ImageStore {
   public:
     // Creates the folder, or continues the stack in it: keeps its whole images of this identity, counts
     // others (damaged, of the wrong size, without their row) as not stored, and removes what a killed run
     // left half written. Throws InputError if the folder holds something else or a stack of another identity
     // (naming each key that differs); FolderInUse if another program is writing to it, RunError if the disk fails.
-    ImageStore(const std::filesystem::path& folder, StackDescription description);
+    // Of a shard: its images alone, beside other shards; the ledger is written with the whole stack.
+    ImageStore(const std::filesystem::path& folder, StackDescription description, Shard shard = {});
 
     const std::filesystem::path& folder() const { return results_->path(); }
     // For what is made of the images.
     ResultFolder& results() { return *results_; }
     const StackDescription& description() const { return description_; }
+    const Shard& shard() const { return shard_; }
     bool stored(int image) const { return !ledger_rows_[static_cast<std::size_t>(image)].empty(); }
-    bool complete() const;
+    bool complete() const; // all images of the stack; a shard does not look at the others'
     // A sentence on each image file that was there but not whole.
     const std::vector<std::string>& damaged() const { return damaged_; }
 
@@ -63,15 +75,27 @@ class ImageStore {
     // may be asked meanwhile.
     void store(int image, const trace::Image& exposure);
 
+    // An image that another folder of the same stack holds, as it is; false if there is none. Throws InputError if it
+    // is not whole or one of another stack, RunError if the disk fails.
+    bool take(int image, const std::filesystem::path& folder);
+
     // Rewrites ledger.csv in the order of the images. Throws RunError.
     void write_ledger();
+    // A line of timings.csv, or of the shard's: see append_timing().
+    void append_timing(const std::string& what, double seconds, double rays = 0) const;
 
   private:
+    struct WholeImage;
+
     void create_or_compare();
     void keep_whole_images();
+    void gather_timings();
+    WholeImage whole_image(const std::filesystem::path& folder, int image) const;
+    void keep(int image, const WholeImage& whole);
 
     std::unique_ptr<ResultFolder> results_;
     StackDescription description_;
+    Shard shard_;
     std::mutex mutex_;                     // of the ledger
     std::string ledger_header_;            // empty until the first image
     std::vector<std::string> ledger_rows_; // of each image, without line end; empty: not stored
@@ -89,8 +113,14 @@ std::filesystem::path image_path(int image);
 // Flux as it is stored, in float32.
 Grid<float> as_stored(const Grid<double>& flux);
 
-// A line of timings.csv: how long it took, and of what traced rays, how many. Throws RunError.
+// A line of a folder's timings.csv: how long it took, and of what traced rays, how many. Throws RunError.
 void append_timing(const std::filesystem::path& folder, const std::string& what, double seconds, double rays = 0);
+
+// The identity of the stack in a folder, as StackDescription has it. Throws InputError if there is none.
+std::string stored_identity(const std::filesystem::path& folder);
+
+// A line for each key in which two identities differ, "\n  trace.seed: 1 there, 2 here"; empty if they are the same.
+std::string identity_differences(std::string_view there, std::string_view here);
 
 // Radiant flux per pixel in W of a stored image; row 0 at the lowest y. `z` is its focal height (mm) as
 // planned. Throws InputError, with the remedy, if the image is missing, not whole or of another height:

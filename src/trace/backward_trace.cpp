@@ -56,7 +56,7 @@ std::span<const std::uint32_t> variant(const DeviceScene& scene) {
 } // namespace
 
 BackwardTrace::BackwardTrace(const DeviceScene& scene, const physics::f64::BackwardOptics& optics,
-                             const BackwardPlan& plan, std::uint64_t asked_batch)
+                             const BackwardPlan& plan, const TraceOptions& options)
     : scene_(scene), pixels_(pixel_count(scene)), points_per_chunk_(std::min(plan.points, most_points_per_chunk)),
       sums_(*scene.device, std::size_t{pixels_} * sizeof(std::uint64_t)),
       optics_(*scene.device, sizeof(kernels::BackwardBlock)),
@@ -64,9 +64,10 @@ BackwardTrace::BackwardTrace(const DeviceScene& scene, const physics::f64::Backw
               constants(scene, optics)) {
     const kernels::BackwardBlock block{to_float(optics), to_float(plan.lattice())};
     optics_.write_values(std::span<const kernels::BackwardBlock>(&block, 1));
-    const std::uint64_t wanted = asked_batch > 0    ? asked_batch
-                                 : scene.software() ? std::uint64_t{1} << 19
-                                                    : std::uint64_t{1} << 27;
+    const std::uint64_t most = options.batch > 0  ? options.batch
+                               : scene.software() ? std::uint64_t{1} << 19
+                                                  : std::uint64_t{1} << 27;
+    const std::uint64_t wanted = most / options.batch_divisor;
     const std::uint64_t most_chunks = std::uint64_t{vulkan::most_groups_in_a_row} * workgroup / pixels_;
     const std::uint64_t chunks =
         std::clamp<std::uint64_t>(wanted / pixels_ / points_per_chunk_, 1, std::max<std::uint64_t>(1, most_chunks));
@@ -102,7 +103,7 @@ class BackwardTracer final : public DeviceExposures {
         : instrument_(instrument), turned_(optics::turned_round(instrument)),
           plan_(backward_plan(options.rays, instrument.constants.detector_pixels)),
           scene_(make_device_scene(turned_, specimen, options, &instrument_)),
-          trace_(scene_, backward_optics(instrument_, scene_.host_record.material), plan_, options.batch) {
+          trace_(scene_, backward_optics(instrument_, scene_.host_record.material), plan_, options) {
         if (scene_.filter) {
             waves_.emplace(scene_);
         }

@@ -14,7 +14,7 @@ class BackwardTrace {
   public:
     // scene: of turned_round(instrument).
     BackwardTrace(const DeviceScene& scene, const physics::f64::BackwardOptics& optics, const BackwardPlan& plan,
-                  std::uint64_t asked_batch);
+                  const TraceOptions& options);
 
     void clear(vulkan::Commands& commands) const;
     // Points first ... first + count - 1 of every pixel, multiples of points_per_chunk().

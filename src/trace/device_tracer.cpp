@@ -47,7 +47,7 @@ class DeviceTracer final : public DeviceExposures {
     class Exposure;
 
     static std::unique_ptr<PathTrace> make_trace(const DeviceScene& scene, const TraceOptions& options) {
-        const std::uint32_t batch = suitable_batch(scene, options.batch, options.rays);
+        const std::uint32_t batch = suitable_batch(scene, options);
         if (options.nonsequential) {
             return std::make_unique<NonsequentialTrace>(scene, batch);
         }

@@ -57,7 +57,8 @@ class PathTrace {
     vulkan::Buffer fates_;
 };
 
-// Paths in flight at once: software devices like dispatches of about 100 ms, a GPU wants enough rays to fill it.
-std::uint32_t suitable_batch(const DeviceScene& scene, std::uint64_t asked, std::uint64_t rays);
+// Paths in flight at once, as far as the options leave it open: software devices like dispatches of about 100 ms, a GPU
+// wants enough rays to fill it.
+std::uint32_t suitable_batch(const DeviceScene& scene, const TraceOptions& options);
 
 } // namespace vkfv::trace

@@ -32,6 +32,7 @@ struct TraceOptions {
     int max_bounces = 2;
     Traversal traversal = Traversal::automatic;
     std::uint64_t batch = 0;       // rays in flight at once; 0: what suits the device
+    std::uint64_t batch_divisor = 1; // of what `batch` says
     std::string device;            // selector: an index or a part of the name
     bool nonsequential = false;    // light finds its own way, and interfaces split it
     bool directed_scatter = false; // forward, sequential: every bounce also aims at the pupil, and light has weights
@@ -95,6 +96,7 @@ struct Image {
     double device_seconds = 0; // the device's work, by its own clock
     double device_begin = 0;   // on that clock, from the tracer's first exposure on
     double device_end = 0;
+    int device = 0; // place of the device among those that work together
 };
 
 // Constructed for one instrument, specimen and device, then const: exposures are independent of each other.

@@ -10,6 +10,7 @@
 
 #include <fmt/format.h>
 
+#include <limits>
 #include <span>
 #include <vector>
 
@@ -34,6 +35,22 @@ std::string TracerIdentity::toml() const {
     }
     return text +
            fmt::format("kernels_digest = {}\ninstrument_digest = {}\n", toml_quoted(kernels), toml_quoted(instrument));
+}
+
+TracerIdentity TracerIdentity::parse(const TomlTable& table) {
+    const auto text = [&](const char* key) { return table.optional_string(key).value_or(""); };
+    const auto number = [&](const char* key) {
+        return table.optional_integer(key, 0, std::numeric_limits<std::uint32_t>::max()).value_or(0);
+    };
+    return {.device = table.string("device"),
+            .vendor_id = static_cast<std::uint32_t>(number("vendor_id")),
+            .device_id = static_cast<std::uint32_t>(number("device_id")),
+            .driver = text("driver"),
+            .traversal = text("traversal"),
+            .fourier = text("fourier"),
+            .parts_per_pixel = static_cast<int>(number("parts_per_pixel")),
+            .kernels = table.string("kernels_digest"),
+            .instrument = table.string("instrument_digest")};
 }
 
 std::string TracerIdentity::text() const {

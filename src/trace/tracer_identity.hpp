@@ -6,6 +6,9 @@
 #include <cstdint>
 #include <string>
 
+namespace vkfv {
+class TomlTable;
+}
 namespace vkfv::vulkan {
 struct DeviceReport;
 }
@@ -25,6 +28,8 @@ struct TracerIdentity {
     std::string instrument;  // digest of the records that the instrument became
 
     std::string toml() const; // lines `key = value`
+    // Of such lines. Throws InputError.
+    static TracerIdentity parse(const TomlTable& table);
     std::string text() const; // "NVIDIA H100 (NVIDIA 580.159), traversal quadtree"
 };
 

@@ -14,6 +14,7 @@
 #include <charconv>
 #include <cstring>
 #include <mutex>
+#include <sstream>
 #include <string_view>
 
 namespace vkfv::vulkan {
@@ -179,6 +180,46 @@ std::string explain(std::span<const DeviceReport> reports, std::size_t chosen, c
     return fmt::format("{} ({}): {}", report.name, report.driver, reason);
 }
 
+bool is_same_model(const DeviceReport& one, const DeviceReport& other) {
+    return one.name == other.name && one.driver == other.driver && one.vendor_id == other.vendor_id &&
+           one.device_id == other.device_id;
+}
+
+std::size_t one_device(std::span<const DeviceReport> reports, const std::string& selector) {
+    std::optional<std::size_t> best;
+    bool any_match = false;
+    for (std::size_t i = 0; i < reports.size(); ++i) {
+        if (!selector.empty() && !matches(reports[i], selector, reports.size())) {
+            continue;
+        }
+        any_match = true;
+        if (!reports[i].lacking.empty()) {
+            continue;
+        }
+        const auto key = [&](std::size_t k) {
+            return std::pair(type_names.size() - rank_of(reports[k]), reports[k].memory_bytes);
+        };
+        if (!best || key(i) > key(*best)) {
+            best = i;
+        }
+    }
+    if (best) {
+        return *best;
+    }
+    if (!any_match) {
+        throw DeviceError(
+            fmt::format("No Vulkan device matches \"{}\"; there are:{}\nName a device by its index or by a "
+                        "part of its name",
+                        selector, describe(reports)));
+    }
+    const std::string subject = selector.empty()
+                                    ? "No Vulkan device is usable"
+                                    : fmt::format("The Vulkan device \"{}\" is not usable", selector);
+    throw DeviceError(fmt::format("{}; there are:{}\nUpdate the driver of the graphics card, or install the package "
+                                  "mesa-vulkan-drivers, whose lavapipe (Mesa 25 or newer) runs on the CPU.{}",
+                                  subject, describe(reports), driver_selection()));
+}
+
 } // namespace
 
 struct Device::State {
@@ -213,38 +254,39 @@ struct Device::State {
 };
 
 std::size_t choose_device(std::span<const DeviceReport> reports, const DeviceOptions& options) {
-    std::optional<std::size_t> best;
-    bool any_match = false;
-    for (std::size_t i = 0; i < reports.size(); ++i) {
-        if (!options.selector.empty() && !matches(reports[i], options.selector, reports.size())) {
-            continue;
+    return choose_devices(reports, options.selector).front();
+}
+
+std::vector<std::size_t> choose_devices(std::span<const DeviceReport> reports, const std::string& selector) {
+    std::vector<std::size_t> chosen;
+    const auto is_one = [&](const DeviceReport& report) { return matches(report, selector, reports.size()); };
+    if (selector == "all") {
+        const DeviceReport& best = reports[one_device(reports, "")];
+        for (std::size_t i = 0; i < reports.size(); ++i) {
+            if (reports[i].lacking.empty() && is_same_model(reports[i], best)) {
+                chosen.push_back(i);
+            }
         }
-        any_match = true;
-        if (!reports[i].lacking.empty()) {
-            continue;
+        return chosen;
+    }
+    if (selector.find(',') == std::string::npos || std::ranges::any_of(reports, is_one)) {
+        return {one_device(reports, selector)};
+    }
+    std::istringstream names(selector + ","); // the last one too may be missing
+    for (std::string name; std::getline(names, name, ',');) {
+        const auto begin = name.find_first_not_of(' ');
+        name = begin == std::string::npos ? "" : name.substr(begin, name.find_last_not_of(' ') - begin + 1);
+        if (name.empty()) {
+            throw DeviceError(fmt::format("A device without a name in \"{}\". Write a list as \"0,1\"", selector));
         }
-        const auto key = [&](std::size_t k) {
-            return std::pair(type_names.size() - rank_of(reports[k]), reports[k].memory_bytes);
-        };
-        if (!best || key(i) > key(*best)) {
-            best = i;
+        chosen.push_back(one_device(reports, name));
+        if (!is_same_model(reports[chosen.back()], reports[chosen.front()])) {
+            throw DeviceError(fmt::format("The devices of \"{}\" are of different models or drivers, whose images "
+                                          "would differ:{}\nName devices that are alike",
+                                          selector, describe(reports)));
         }
     }
-    if (best) {
-        return *best;
-    }
-    if (!any_match) {
-        throw DeviceError(
-            fmt::format("No Vulkan device matches \"{}\"; there are:{}\nName a device by its index or by a "
-                        "part of its name",
-                        options.selector, describe(reports)));
-    }
-    const std::string subject = options.selector.empty()
-                                    ? "No Vulkan device is usable"
-                                    : fmt::format("The Vulkan device \"{}\" is not usable", options.selector);
-    throw DeviceError(fmt::format("{}; there are:{}\nUpdate the driver of the graphics card, or install the package "
-                                  "mesa-vulkan-drivers, whose lavapipe (Mesa 25 or newer) runs on the CPU.{}",
-                                  subject, describe(reports), driver_selection()));
+    return chosen;
 }
 
 Device::Device(const DeviceOptions& options) : state_(std::make_unique<State>()) {

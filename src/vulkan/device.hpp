@@ -35,13 +35,18 @@ inline bool is_software(const DeviceReport& report) {
 }
 
 struct DeviceOptions {
-    std::string selector; // empty: the best; else an index or a part of the name
+    std::string selector; // empty: the best; else an index or a part of the name, or a list for choose_devices()
 };
 
 // The index into `reports` of the device to use: the selector's, else discrete before integrated before
-// virtual before CPU, and the larger memory among equals. Throws DeviceError that says what each device
-// lacks.
+// virtual before CPU, and the larger memory among equals. Of a list of devices, the first. Throws DeviceError that says
+// what each device lacks.
 std::size_t choose_device(std::span<const DeviceReport> reports, const DeviceOptions& options);
+
+// All that a selector names: one device, "all" that are like the best, or several parted by commas ("0,1"), of which
+// one may be named twice. Throws DeviceError, also where they are of different models or drivers: their images would
+// differ.
+std::vector<std::size_t> choose_devices(std::span<const DeviceReport> reports, const std::string& selector);
 
 // One logical device with one compute queue; those that live at a time share one instance. Move-only; construct valid,
 // then const.

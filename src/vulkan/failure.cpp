@@ -23,23 +23,19 @@ bool lacks_memory(const vk::SystemError& failure) {
 
 } // namespace
 
-RunError run_error_of(const vk::SystemError& failure, const std::string& device, std::string_view memory_remedy) {
+DeviceFailure run_error_of(const vk::SystemError& failure, const std::string& device, std::string_view memory_remedy) {
     const std::string subject = device.empty() ? "The device" : "The device " + device;
     if (is_lost(failure)) {
-        return RunError(
-            fmt::format("{} was lost: its driver gave up, often because one batch took too long. Run the same "
-                        "command again to continue, with a smaller trace.batch",
-                        subject));
+        return {fmt::format("{} was lost: its driver gave up, often because one batch took too long", subject),
+                "Run the same command again to continue, with a smaller trace.batch", true};
     }
     if (lacks_memory(failure)) {
-        return RunError(
-            fmt::format("{} has not enough memory ({}). End other programs on it, {}, and run the same command again",
-                        subject, failure.what(), memory_remedy));
+        return {fmt::format("{} has not enough memory ({})", subject, failure.what()),
+                fmt::format("End other programs on it, {}, and run the same command again", memory_remedy), true};
     }
-    return RunError(
-        fmt::format("{} failed: {}. Run the same command again to continue; if it fails again, update the driver "
-                    "or choose another device",
-                    subject, failure.what()));
+    return {fmt::format("{} failed: {}", subject, failure.what()),
+            "Run the same command again to continue; if it fails again, update the driver or choose another device",
+            false};
 }
 
 bool may_pass_next_time(const vk::SystemError& failure) {

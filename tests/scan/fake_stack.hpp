@@ -77,10 +77,10 @@ inline StackDescription describe(int images = 4, int seed = 1) {
 
 inline StackSummary run(const std::filesystem::path& folder, const trace::Tracer& tracer,
                         const StackDescription& description, Shard shard = {}) {
-    ImageStore store(folder, description);
+    ImageStore store(folder, description, shard);
     std::ostringstream nowhere;
     Progress progress(nowhere, Progress::Style::quiet);
-    return run_stack(tracer, store, progress, shard);
+    return run_stack(tracer, store, progress);
 }
 
 // A folder's path that does not exist, removed with the object.

@@ -177,11 +177,65 @@ TEST(ImageStore, ShardsOfSeparateFoldersMakeOneStack) {
     run(whole.path(), FakeTracer(), describe());
     run(even.path(), FakeTracer(), describe(), {0, 2});
     run(odd.path(), FakeTracer(), describe(), {1, 2});
-    fs::copy(odd.path() / "images", even.path() / "images");
+    {
+        ImageStore merged(even.path(), describe());
+        EXPECT_FALSE(merged.complete());
+        EXPECT_FALSE(merged.take(2, odd.path())); // of the even ones
+        EXPECT_TRUE(merged.take(1, odd.path()));
+        EXPECT_TRUE(merged.take(3, odd.path()));
+        EXPECT_TRUE(merged.complete());
+    }
     const FakeTracer none;
     EXPECT_TRUE(run(even.path(), none, describe()).complete);
     EXPECT_THAT(none.exposed, IsEmpty());
     EXPECT_EQ(differing_files(result_of(even.path()), result_of(whole.path())), "");
+    EXPECT_TRUE(fs::exists(odd.path() / "timings_2_of_2.csv"));
+    EXPECT_FALSE(fs::exists(even.path() / "timings_1_of_2.csv")); // it has become part of timings.csv
+    EXPECT_THAT(bytes_of(even.path() / "timings.csv"), HasSubstr("image 2"));
+}
+
+TEST(ImageStore, ShardsTakeWholeImagesOfTheirStackAlone) {
+    const FreshFolder whole("whole");
+    const FreshFolder odd("odd");
+    const FreshFolder seed("seed");
+    run(odd.path(), FakeTracer(), describe(), {1, 2});
+    run(seed.path(), FakeTracer(2), describe(4, 2));
+    std::string bytes = bytes_of(odd.path() / image_path(3));
+    bytes[bytes.size() / 2] = static_cast<char>(bytes[bytes.size() / 2] ^ 1);
+    write_bytes(odd.path() / image_path(3), bytes);
+    ImageStore merged(whole.path(), describe());
+    EXPECT_TRUE(merged.take(1, odd.path()));
+    EXPECT_THROW(merged.take(3, odd.path()), InputError);
+    EXPECT_THROW(merged.take(2, seed.path()), InputError);
+    EXPECT_NE(identity_differences(stored_identity(seed.path()), describe().identity), "");
+    EXPECT_EQ(identity_differences(stored_identity(odd.path()), describe().identity), "");
+}
+
+TEST(ImageStore, ShardsShareAFolder) {
+    const FreshFolder whole("whole");
+    const FreshFolder shared("shared");
+    run(whole.path(), FakeTracer(), describe(9));
+    {
+        // All of them at a time; nobody else may write, nor the same shard twice.
+        ImageStore first(shared.path(), describe(9), {0, 3});
+        ImageStore second(shared.path(), describe(9), {1, 3});
+        EXPECT_THROW(ImageStore(shared.path(), describe(9)), FolderInUse);
+        EXPECT_THROW(ImageStore(shared.path(), describe(9), {1, 3}), FolderInUse);
+        EXPECT_THROW(ImageStore(shared.path(), describe(9, 2), {2, 3}), InputError);
+        std::vector<std::jthread> threads;
+        for (ImageStore* store : {&first, &second}) {
+            threads.emplace_back([store] {
+                std::ostringstream nowhere;
+                Progress progress(nowhere, Progress::Style::quiet);
+                run_stack(FakeTracer(), *store, progress);
+            });
+        }
+        threads.emplace_back([&] { run(shared.path(), FakeTracer(), describe(9), {2, 3}); });
+    }
+    const FakeTracer none;
+    EXPECT_TRUE(run(shared.path(), none, describe(9)).complete);
+    EXPECT_THAT(none.exposed, IsEmpty());
+    EXPECT_EQ(differing_files(result_of(shared.path()), result_of(whole.path())), "");
 }
 
 TEST(Stack, ShowsEveryImageOnceInOrderAsItIsStored) {
@@ -192,7 +246,7 @@ TEST(Stack, ShowsEveryImageOnceInOrderAsItIsStored) {
         Progress progress(nowhere, Progress::Style::quiet);
         std::vector<int> images;
         std::vector<std::vector<float>> fluxes;
-        run_stack(tracer, store, progress, {}, [&](int image, Grid<float> flux) {
+        run_stack(tracer, store, progress, [&](int image, Grid<float> flux) {
             images.push_back(image);
             fluxes.push_back(std::move(flux.values));
         });
@@ -365,7 +419,7 @@ TEST(RunStack, BeginsAheadAndKeepsTheOrder) {
     std::ostringstream nowhere;
     Progress progress(nowhere, Progress::Style::quiet);
     std::vector<int> visited;
-    const auto summary = run_stack(tracer, store, progress, {}, [&](int image, const Grid<float>& flux) {
+    const auto summary = run_stack(tracer, store, progress, [&](int image, const Grid<float>& flux) {
         visited.push_back(image);
         const double z = description.positions[static_cast<std::size_t>(image)];
         EXPECT_EQ(flux.values, read_frame(one.path(), image, z).values);

@@ -13,6 +13,7 @@ namespace vkfv::vulkan {
 namespace {
 
 using ::testing::AllOf;
+using ::testing::ElementsAre;
 using ::testing::HasSubstr;
 using ::testing::IsEmpty;
 using ::testing::Not;
@@ -101,6 +102,25 @@ TEST(Devices, ASelectorIsAnIndexOrElsePartOfAName) {
     EXPECT_EQ(choose_device(reports, {"geforce"}), 1U);
     EXPECT_EQ(choose_device(reports, {"LLVM"}), 0U);
     EXPECT_THROW(choose_device(reports, {"-1"}), DeviceError);
+}
+
+TEST(Devices, SeveralByAListOrAll) {
+    const std::vector<DeviceReport> reports = {report(0, "llvmpipe (LLVM 15, 256 bits)", "CPU", 1),
+                                               report(1, "H200", "discrete GPU", 140),
+                                               report(2, "H200", "discrete GPU", 140),
+                                               report(3, "H200", "discrete GPU", 140, {"something"}),
+                                               report(4, "A2", "discrete GPU", 16)};
+    EXPECT_THAT(choose_devices(reports, "all"), ElementsAre(1, 2));
+    EXPECT_THAT(choose_devices(reports, "2,1"), ElementsAre(2, 1));
+    EXPECT_THAT(choose_devices(reports, "0, 0"), ElementsAre(0, 0)); // a device twice
+    EXPECT_THAT(choose_devices(reports, "LLVM 15, 256"), ElementsAre(0)); // a comma of the name's own
+    EXPECT_THAT(choose_devices(reports, ""), ElementsAre(1));
+    EXPECT_EQ(choose_device(reports, {"2,1"}), 2U);
+    EXPECT_THROW(choose_devices(reports, "0,1"), DeviceError); // of different models
+    EXPECT_THROW(choose_devices(reports, "1,3"), DeviceError); // unusable
+    EXPECT_THROW(choose_devices(reports, "1,"), DeviceError);
+    EXPECT_THROW(choose_devices(reports, "1,,2"), DeviceError);
+    EXPECT_THROW(choose_devices(reports, "1,host"), DeviceError);
 }
 
 TEST(Devices, AnErrorSaysWhatEachDeviceLacksAndTheRemedy) {

@@ -1,0 +1,96 @@
+#include "measurement/stack_parts.hpp"
+
+#include "core/digest.hpp"
+#include "core/stages.hpp"
+#include "measurement/assembly.hpp"
+#include "measurement/exposure.hpp"
+#include "specimen/geometry_digest.hpp"
+
+#include <spdlog/spdlog.h>
+
+#include <algorithm>
+#include <cstddef>
+#include <utility>
+
+namespace vkfv::measurement {
+
+namespace {
+
+constexpr double most_image_noise = 0.5, good_image_noise = 0.1;
+
+} // namespace
+
+StackScene::StackScene(const Configuration& its_configuration)
+    : configuration(its_configuration), positions(configuration.scan->positions()) {
+    enter_stage("specimen");
+    specimen = make_specimen(configuration);
+    enter_stage("instrument");
+    instrument = assemble_instrument(configuration, specimen, positions);
+}
+
+scan::StackDescription StackScene::description(const trace::TracerIdentity& tracer) const {
+    std::string identity = image_identity(configuration, specimen::geometry_digest(specimen), tracer);
+    std::string digest = Digest().add(identity).text();
+    return {.configuration = configuration.canonical,
+            .identity = std::move(identity),
+            .digest = std::move(digest),
+            .positions = positions,
+            .columns = pixels(),
+            .rows = pixels(),
+            .pitch = instrument.first_order.pixel_pitch};
+}
+
+GrowingEvaluation::GrowingEvaluation(const StackScene& scene, topography::FocusPlanesMaker planes,
+                                     const optics::PupilFilter* filter)
+    : scene_(scene),
+      flat_(read_flat(scene.configuration, scene.pixels(), scene.pixels(), scene.instrument.first_order.pixel_pitch)),
+      evaluation_(evaluation_options(scene.configuration, scene.instrument), std::move(planes),
+                  make_diffraction(scene.configuration, scene.instrument)) {
+    truth_ = std::async(std::launch::async,
+                        [&scene] { return truth_on_pixels(scene.instrument, scene.configuration, scene.specimen); });
+    source_ = std::async(std::launch::async, [&scene] { return stack_source(scene.configuration, scene.instrument); });
+    if (filter != nullptr) {
+        wave_limits_ =
+            std::async(std::launch::async, [&scene, filter] { return wave_limits(*filter, scene.instrument); });
+    }
+}
+
+void GrowingEvaluation::add(int image, Grid<float> flux) {
+    any_light_ = any_light_ || std::ranges::any_of(flux.values, [](float value) { return value > 0; });
+    evaluation_.add({std::move(flux)}, scene_.positions[static_cast<std::size_t>(image)]);
+}
+
+Evaluation GrowingEvaluation::write(ResultFolder& folder, const scan::StackDescription& description,
+                                    const trace::TracerIdentity& tracer) {
+    const Configuration& configuration = scene_.configuration;
+    if (!any_light_) {
+        spdlog::warn("No light reaches the detector in any image. vkfv --image of one position tells where it goes");
+    }
+    enter_stage("heights and truth");
+    EvaluatedStack stack{.evaluation = evaluation_.finish(truth_.get(), configuration.band, flat_),
+                         .origin = {{"device", tracer.text()},
+                                    {"stack_digest", description.digest},
+                                    {"seed", configuration.trace.seed},
+                                    {"images", scene_.positions.size()},
+                                    {"rays_per_image", trace::launched_rays(configuration.trace, scene_.pixels())}},
+                         .source = source_.get(),
+                         .files = topography_files(configuration)};
+    if (wave_limits_) {
+        const WaveLimits limits = wave_limits_->get();
+        for (const auto& warning : warnings_of(limits)) {
+            spdlog::warn(warning);
+        }
+        stack.origin["waves"] = json_of(limits);
+        stack.origin["waves"]["warnings"] = warnings_of(limits);
+    }
+    if (const double noise = stack.evaluation.topography.stack.image_noise; noise > most_image_noise) {
+        spdlog::warn("The images' noise is {:.0f} % of their brightness: what is measured is little or rough. {}",
+                     100 * noise, remedy_of_noise(configuration, noise, good_image_noise));
+    }
+    enter_stage("results and report");
+    write_results(folder, stack);
+    enter_stage("end");
+    return std::move(stack.evaluation);
+}
+
+} // namespace vkfv::measurement

@@ -1,0 +1,57 @@
+// What a stack's images and its results have in common, whoever traced the images: one run, or shards.
+#pragma once
+
+#include "configuration/configuration.hpp"
+#include "core/result_folder.hpp"
+#include "measurement/evaluation.hpp"
+#include "measurement/evaluation_files.hpp"
+#include "measurement/wave_limits.hpp"
+#include "optics/instrument.hpp"
+#include "scan/store.hpp"
+#include "specimen/specimen.hpp"
+#include "trace/tracer_identity.hpp"
+
+#include <future>
+#include <optional>
+#include <vector>
+
+namespace vkfv::measurement {
+
+// Instrument and specimen of a configuration's stack.
+struct StackScene {
+    // Throws InputError. The configuration must outlive it.
+    explicit StackScene(const Configuration& configuration);
+
+    int pixels() const { return configuration.instrument.detector_pixels; } // a side
+    scan::StackDescription description(const trace::TracerIdentity& tracer) const;
+
+    const Configuration& configuration;
+    std::vector<double> positions; // focal heights, mm
+    specimen::Specimen specimen;
+    optics::Instrument instrument;
+};
+
+// A stack that is evaluated while its images come. What no image is needed for is made beside them.
+class GrowingEvaluation {
+  public:
+    // filter: what makes the images as waves do; none: they are as rays make them. Scene and filter must outlive it.
+    GrowingEvaluation(const StackScene& scene, topography::FocusPlanesMaker planes, const optics::PupilFilter* filter);
+
+    // In the images' order.
+    void add(int image, Grid<float> flux);
+
+    // After the last image: heights, their deviations, and the files of all that in the folder. Warnings go to the log.
+    Evaluation write(ResultFolder& folder, const scan::StackDescription& description,
+                     const trace::TracerIdentity& tracer);
+
+  private:
+    const StackScene& scene_;
+    std::optional<Flat> flat_;
+    StackEvaluation evaluation_;
+    bool any_light_ = false;
+    std::future<surface::HeightMap> truth_;
+    std::future<StackSource> source_;
+    std::optional<std::future<WaveLimits>> wave_limits_;
+};
+
+} // namespace vkfv::measurement

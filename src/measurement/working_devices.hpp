@@ -1,0 +1,47 @@
+// The devices of a run, as long as they work.
+#pragma once
+
+#include "optics/instrument.hpp"
+#include "specimen/specimen.hpp"
+#include "trace/tracer.hpp"
+
+#include <cstdint>
+#include <functional>
+#include <memory>
+#include <string>
+#include <vector>
+
+namespace vkfv::vulkan {
+class DeviceFailure;
+}
+
+namespace vkfv::measurement {
+
+// A device that is lost or full is opened again, with half the batch; the next time it is left out.
+class WorkingDevices {
+  public:
+    // Those of trace.device: see vulkan::choose_devices(); "host" means the reference in double on the host's cores.
+    // Throws DeviceError.
+    explicit WorkingDevices(const std::string& selector);
+
+    // On all of them; what the options say of devices and batches' divisor does not count.
+    std::unique_ptr<trace::Tracer> make_tracer(const optics::Instrument& instrument,
+                                               const specimen::Specimen& specimen,
+                                               const trace::TraceOptions& options) const;
+
+    // With a warning. Throws the failure where no device is left, or where it would not pass.
+    void take_note(const vulkan::DeviceFailure& failure);
+
+  private:
+    struct Member {
+        std::string selector;
+        std::uint64_t batch_divisor = 1;
+    };
+    std::vector<Member> members_;
+};
+
+// Does the work with the devices of trace.device, again from its beginning where one of them has failed. What is stored
+// meanwhile is to be kept by the work itself.
+void work_with_devices(const std::string& selector, const std::function<void(const WorkingDevices&)>& work);
+
+} // namespace vkfv::measurement
