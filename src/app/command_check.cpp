@@ -1,26 +1,60 @@
 #include "app/commands.hpp"
+#include "core/error.hpp"
+#include "measurement/forecast.hpp"
 #include "measurement/instrument_figures.hpp"
 
 #include <fmt/format.h>
 
 #include <cstdio>
+#include <optional>
 
 namespace vkfv::app {
 
+namespace {
+
+struct CheckOptions {
+    bool forecast = false;
+};
+
+} // namespace
+
 Command check_command() {
+    const Option forecast = {.name = "--forecast",
+                             .value = "",
+                             .description = "Light, noise, time, memory and disk that it will take, by a probe on the "
+                                            "device",
+                             .target = into(&CheckOptions::forecast)};
     return {.name = "check",
-            .summary = "Validate and print first-order data; needs no device",
+            .summary = "Validate and print first-order data; needs no device but for --forecast",
             .operands = {{"C.toml", "Configuration", into(&CommandOptions::file)}},
-            .options = together({configuration_options(), {json_option()}}),
+            .options = together({configuration_options(), {json_option(), out_option("Output folder"), forecast}}),
             .run = run_check,
-            .example = "vkfv check assets/stacks/demo.toml --json"};
+            .example = "vkfv check assets/stacks/demo.toml --forecast"};
 }
 
 void run_check(const CommandOptions& options) {
-    const auto figures =
-        measurement::instrument_figures(load_configuration(options.file, options.overrides, Needs::instrument));
-    fmt::print("{}", options.json ? measurement::instrument_json(figures, options.file).dump(2) + "\n"
-                                  : measurement::instrument_text(figures, options.file));
+    const bool with_forecast = options.of<CheckOptions>().forecast;
+    const auto configuration =
+        load_configuration(options.file, options.overrides, with_forecast ? Needs::exposure : Needs::instrument);
+    const auto figures = measurement::instrument_figures(configuration);
+    std::optional<measurement::Forecast> forecast;
+    if (with_forecast) {
+        forecast = measurement::forecast(configuration);
+    }
+    if (options.json) {
+        auto all = measurement::instrument_json(figures, options.file);
+        if (forecast) {
+            all["forecast"] = measurement::json_of(*forecast);
+        }
+        fmt::print("{}\n", all.dump(2));
+    } else {
+        fmt::print("{}{}", measurement::instrument_text(figures, options.file),
+                   forecast ? measurement::summary(*forecast) : "");
+    }
+    if (forecast && !forecast->fits()) {
+        throw RunError("This stack does not fit on the host's memory or the disk. Take fewer images or pixels, another "
+                       "machine, or another --out");
+    }
 }
 
 } // namespace vkfv::app

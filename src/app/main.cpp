@@ -4,6 +4,7 @@
 
 #include "core/error.hpp"
 #include "core/interruption.hpp"
+#include "core/log.hpp"
 #include "core/result_folder.hpp"
 #include "core/stages.hpp"
 #include "vulkan/device.hpp"
@@ -11,8 +12,6 @@
 
 #include <CLI/Error.hpp>
 #include <fmt/format.h>
-#include <spdlog/sinks/stdout_color_sinks.h>
-#include <spdlog/spdlog.h>
 
 #include <cstdio>
 #include <iostream>
@@ -23,7 +22,7 @@ namespace {
 enum ExitCode { done = 0, wrong_input = 2, no_device = 3, run_failed = 4, in_use = 5 };
 
 int report(const std::string& message, ExitCode code) {
-    fmt::print(stderr, "vkfv: {}\n", message);
+    vkfv::log_failure(message, code);
     return code;
 }
 
@@ -45,8 +44,7 @@ int main(int argument_count, char** argument_values) {
     vkfv::explain_interruptions();
     const vkfv::vulkan::DriverScope drivers;
     try {
-        spdlog::set_default_logger(spdlog::stderr_color_mt("vkfv"));
-        spdlog::set_pattern("%^%l%$: %v");
+        vkfv::open_log();
         vkfv::command_line::declare_commands(vkfv::app::commands());
         vkfv::command_line::run_command_line(argument_count, argument_values);
         return standard_output_is_whole() ? done : report_lost_output();

@@ -28,6 +28,7 @@ struct CommandOptions {
     std::optional<std::filesystem::path> out;
     bool quiet = false;
     bool timings = false;
+    bool log_json = false;
     bool json = false;
     bool markdown = false;
 

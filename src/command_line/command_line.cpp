@@ -2,6 +2,7 @@
 
 #include "command_line/command.hpp"
 #include "command_line/reference.hpp"
+#include "core/log.hpp"
 #include "core/stages.hpp"
 
 #include <CLI/CLI.hpp>
@@ -52,6 +53,9 @@ class CommandLine {
         refuse_leftovers();
         for (const auto& take : taken_) {
             take();
+        }
+        if (options_.log_json) {
+            log_as_json();
         }
         const Command& command = named_ != nullptr ? *named_ : chosen();
         for (const auto& option : all_options()) {
@@ -280,6 +284,10 @@ void declare_commands(std::vector<Command> commands) {
                                    .value = "",
                                    .description = "Only warnings and errors, no progress",
                                    .target = into(&CommandOptions::quiet)});
+        command.options.push_back({.name = "--log-json",
+                                   .value = "",
+                                   .description = "Messages and progress as JSON, an object a line",
+                                   .target = into(&CommandOptions::log_json)});
         command.options.push_back({.name = "--timings",
                                    .value = "",
                                    .description = "At the end, where the command's time went",

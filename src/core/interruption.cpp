@@ -1,5 +1,7 @@
 #include "core/interruption.hpp"
 
+#include "core/log.hpp"
+
 #include <unistd.h>
 
 #include <algorithm>
@@ -7,14 +9,17 @@
 #include <atomic>
 #include <csignal>
 #include <cstddef>
-#include <cstring>
+#include <string>
+#include <string_view>
 
 namespace vkfv {
 
 namespace {
 
+constexpr std::size_t most_bytes = 500;
+
 struct Sentence {
-    std::array<char, 500> text;
+    std::array<char, 6 * most_bytes + 2> text; // in JSON a byte may take six
     std::size_t bytes;
 };
 
@@ -22,35 +27,37 @@ struct Sentence {
 // text.
 std::array<Sentence, 2> sentences{};
 std::atomic<std::size_t> at_hand{0};
+std::atomic<bool> as_json{false};
 static_assert(std::atomic<std::size_t>::is_always_lock_free, "a signal handler may not wait");
 
 // Calls nothing but what POSIX allows in a handler.
-void say(const char* text, std::size_t bytes) {
-    while (bytes > 0) {
-        const ssize_t written = ::write(STDERR_FILENO, text, bytes);
+void say(std::string_view text) {
+    while (!text.empty()) {
+        const ssize_t written = ::write(STDERR_FILENO, text.data(), text.size());
         if (written <= 0) {
             return;
         }
-        text += written;
-        bytes -= static_cast<std::size_t>(written);
+        text.remove_prefix(static_cast<std::size_t>(written));
     }
 }
 
+constexpr std::string_view first_sentence = "Give the same command again.";
+
 extern "C" void on_interruption(int signal) {
-    const char* name = signal == SIGINT ? "SIGINT" : signal == SIGTERM ? "SIGTERM" : "SIGHUP";
+    const std::string_view name = signal == SIGINT ? "SIGINT" : signal == SIGTERM ? "SIGTERM" : "SIGHUP";
     const Sentence& sentence = sentences[at_hand.load()];
-    say("\nvkfv: ended by ", 16);
-    say(name, std::strlen(name));
-    say(". ", 2);
-    say(sentence.text.data(), sentence.bytes);
-    say("\n", 1);
+    say(as_json ? "{\"level\":\"error\",\"signal\":\"" : "\nvkfv: ended by ");
+    say(name);
+    say(as_json ? "\",\"text\":" : ". ");
+    say({sentence.text.data(), sentence.bytes});
+    say(as_json ? "}\n" : "\n");
     ::raise(signal); // its handler is the default again
 }
 
 } // namespace
 
 void explain_interruptions() {
-    say_when_interrupted("Give the same command again.");
+    say_when_interrupted(first_sentence);
     for (const int signal : {SIGINT, SIGTERM, SIGHUP}) {
         struct sigaction before {};
         if (::sigaction(signal, nullptr, &before) == 0 && before.sa_handler == SIG_IGN) {
@@ -63,11 +70,18 @@ void explain_interruptions() {
     }
 }
 
+void interruptions_as_json() {
+    as_json = true;
+    say_when_interrupted(first_sentence);
+}
+
 void say_when_interrupted(std::string_view sentence) {
+    sentence = sentence.substr(0, most_bytes);
+    const std::string quoted = as_json ? json_quoted(sentence) : std::string(sentence);
     const std::size_t next = 1 - at_hand.load();
     Sentence& into = sentences[next];
-    into.bytes = std::min(sentence.size(), into.text.size());
-    std::copy_n(sentence.begin(), into.bytes, into.text.begin());
+    into.bytes = std::min(quoted.size(), into.text.size());
+    std::copy_n(quoted.begin(), into.bytes, into.text.begin());
     at_hand.store(next);
 }
 

@@ -13,4 +13,8 @@ void explain_interruptions();
 // The sentence from now on; at most 500 bytes of it are said.
 void say_when_interrupted(std::string_view sentence);
 
+// From now on as a line of JSON: {"level":"error","signal":"SIGTERM","text":"..."}. Threads that say sentences start
+// later.
+void interruptions_as_json();
+
 } // namespace vkfv

@@ -54,8 +54,8 @@ Progress::Progress(std::ostream& stream, Style style, Clock clock)
     : stream_(&stream), style_(style), clock_(std::move(clock)) {}
 
 Progress Progress::on_standard_error(bool quiet) {
-    const Style style = quiet ? Style::quiet : isatty(STDERR_FILENO) == 1 ? Style::bar : Style::lines;
-    return Progress(std::cerr, style);
+    const Style loud = logs_json() ? Style::json : isatty(STDERR_FILENO) == 1 ? Style::bar : Style::lines;
+    return Progress(std::cerr, quiet ? Style::quiet : loud);
 }
 
 Progress::~Progress() {
@@ -71,20 +71,31 @@ void Progress::begin(int total, int done) {
     started_ = clock_();
     window_ = {{started_, 0, done}};
     shown_.reset();
-    if (style_ == Style::bar && done < total) {
+    if (style_ == Style::json) {
+        tell("begin", {{"images", std::int64_t{total}}, {"stored", std::int64_t{done}}});
+    } else if (style_ == Style::bar && done < total) {
         show("", false);
     } else if (style_ == Style::lines && done > 0) {
         *stream_ << fmt::format("images {}/{} stored before\n", done, total) << std::flush;
     }
 }
 
-void Progress::advance(std::uint64_t rays) {
+void Progress::advance(std::uint64_t rays, const LogFields& fields) {
     ++done_;
     rays_ += rays;
     const auto now = clock_();
     window_.push_back({now, rays_, done_});
     while (window_.size() > 2 && now - window_.front().time > rate_window) {
         window_.pop_front();
+    }
+    if (style_ == Style::json) {
+        LogFields all = fields;
+        all.insert(all.end(), {{"done", std::int64_t{done_}},
+                               {"images", std::int64_t{total_}},
+                               {"rays_per_s", rays_per_second()},
+                               {"seconds_left", seconds_left()}});
+        tell("image", all);
+        return;
     }
     const auto interval = style_ == Style::bar ? std::chrono::steady_clock::duration(bar_interval)
                                                : std::chrono::steady_clock::duration(line_interval);
@@ -99,19 +110,36 @@ void Progress::end() {
         return;
     }
     const double elapsed = seconds_between(started_, clock_());
+    if (style_ == Style::json) {
+        tell("end", {{"done", std::int64_t{done_}},
+                     {"images", std::int64_t{total_}},
+                     {"rays_per_s", static_cast<double>(rays_) / elapsed},
+                     {"seconds", elapsed}});
+        return;
+    }
     show(fmt::format("{}  {} in all", ray_rate_text(static_cast<double>(rays_) / elapsed), duration_text(elapsed)),
          true);
     window_.clear();
     rays_ = 0;
 }
 
-std::string Progress::figures() const {
+double Progress::rays_per_second() const {
+    return static_cast<double>(window_.back().rays - window_.front().rays) /
+           seconds_between(window_.front().time, window_.back().time);
+}
+
+double Progress::seconds_left() const {
     const Mark& first = window_.front();
     const Mark& last = window_.back();
-    const double elapsed = seconds_between(first.time, last.time);
-    const double seconds_per_image = elapsed / (last.images - first.images);
-    return fmt::format("{}  {} left", ray_rate_text(static_cast<double>(last.rays - first.rays) / elapsed),
-                       duration_text((total_ - done_) * seconds_per_image));
+    return (total_ - done_) * seconds_between(first.time, last.time) / (last.images - first.images);
+}
+
+std::string Progress::figures() const {
+    return fmt::format("{}  {} left", ray_rate_text(rays_per_second()), duration_text(seconds_left()));
+}
+
+void Progress::tell(const char* event, const LogFields& fields) {
+    *stream_ << json_line("event", event, fields) + "\n" << std::flush;
 }
 
 void Progress::show(const std::string& text, bool last) {

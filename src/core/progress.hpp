@@ -1,6 +1,8 @@
 // How far a run of many images has come: one line that renews itself on a terminal, plain lines elsewhere.
 #pragma once
 
+#include "core/log.hpp"
+
 #include <chrono>
 #include <cstdint>
 #include <deque>
@@ -17,13 +19,14 @@ class Progress {
     enum class Style {
         quiet, // nothing at all
         lines, // a line at most every two seconds, and one at the end: for log files
+        json,  // core/log.hpp: a line at the beginning, for each image and at the end
         bar,   // one line of at most 79 characters, renewed at most ten times a second: for terminals
     };
     using Clock = std::function<std::chrono::steady_clock::time_point()>;
 
     // The stream must outlive the object.
     Progress(std::ostream& stream, Style style, Clock clock = std::chrono::steady_clock::now);
-    // Standard error: a bar if it is a terminal, lines otherwise.
+    // Standard error: JSON if the log is, a bar if it is a terminal, lines otherwise.
     static Progress on_standard_error(bool quiet);
     ~Progress(); // leaves an open bar's line, so that an error message starts on its own
 
@@ -32,8 +35,8 @@ class Progress {
 
     // `done` of `total` images exist before the job starts; they enter neither rate nor time left.
     void begin(int total, int done);
-    // One more image is done; `rays` were launched for it.
-    void advance(std::uint64_t rays);
+    // One more image is done; `rays` were launched for it. fields: what JSON tells of it besides.
+    void advance(std::uint64_t rays, const LogFields& fields = {});
     // Reports the time the job took. Does nothing for a job without a single advance.
     void end();
 
@@ -44,7 +47,10 @@ class Progress {
         int images;
     };
 
-    std::string figures() const; // "8.1 Mray/s  1:07 left" over the window
+    double rays_per_second() const; // over the window
+    double seconds_left() const;
+    std::string figures() const; // "8.1 Mray/s  1:07 left"
+    void tell(const char* event, const LogFields& fields);
     void show(const std::string& text, bool last);
 
     std::ostream* stream_;

@@ -3,6 +3,7 @@
 #include "core/interruption.hpp"
 #include "core/stages.hpp"
 #include "core/toml_reader.hpp"
+#include "measurement/disk_space.hpp"
 #include "measurement/stack.hpp"
 #include "measurement/stack_parts.hpp"
 
@@ -96,6 +97,7 @@ StackResult merge_stack(const fs::path& folder, const std::vector<fs::path>& sha
     say_when_interrupted(fmt::format("What was merged is in {}: give the same command again to continue.",
                                      folder.string()));
     scan::ImageStore store(folder, description);
+    require_space(store, results_bytes(configuration));
     gather_images(store, shards);
     store.write_ledger();
 

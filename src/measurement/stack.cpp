@@ -1,6 +1,7 @@
 #include "measurement/stack.hpp"
 
 #include "core/stages.hpp"
+#include "measurement/disk_space.hpp"
 #include "measurement/stack_parts.hpp"
 #include "measurement/working_devices.hpp"
 
@@ -19,6 +20,7 @@ StackResult trace_and_evaluate(const StackScene& scene, const WorkingDevices& de
     const auto tracer = devices.make_tracer(scene.instrument, scene.specimen, configuration.trace);
     enter_stage("folder of the stack");
     scan::ImageStore store(configuration.output_directory, scene.description(tracer->identity()));
+    require_space(store, results_bytes(configuration));
     // Evaluated as they are traced: no second pass over the disk.
     GrowingEvaluation evaluation(scene, focus_planes_for(configuration.evaluate_on, tracer->device()),
                                  tracer->pupil_filter());
@@ -55,6 +57,7 @@ ShardResult trace_shard(const Configuration& configuration, scan::Shard shard, P
         const auto tracer = devices.make_tracer(scene.instrument, scene.specimen, configuration.trace);
         enter_stage("folder of the stack");
         scan::ImageStore store(configuration.output_directory, scene.description(tracer->identity()), shard);
+        require_space(store, 0);
         enter_stage("images");
         result.traced = scan::run_stack(*tracer, store, progress);
     });

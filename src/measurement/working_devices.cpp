@@ -60,6 +60,10 @@ std::unique_ptr<trace::Tracer> WorkingDevices::make_tracer(const optics::Instrum
     return tracer;
 }
 
+WorkingDevices WorkingDevices::first() const {
+    return WorkingDevices({members_.front()});
+}
+
 void WorkingDevices::take_note(const vulkan::DeviceFailure& failure) {
     Member& member = members_.at(static_cast<std::size_t>(failure.place));
     if (!failure.may_pass() || (member.batch_divisor > 1 && members_.size() == 1)) {

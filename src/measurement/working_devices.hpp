@@ -9,6 +9,7 @@
 #include <functional>
 #include <memory>
 #include <string>
+#include <utility>
 #include <vector>
 
 namespace vkfv::vulkan {
@@ -29,6 +30,9 @@ class WorkingDevices {
                                                const specimen::Specimen& specimen,
                                                const trace::TraceOptions& options) const;
 
+    int size() const { return static_cast<int>(members_.size()); }
+    WorkingDevices first() const; // alone
+
     // With a warning. Throws the failure where no device is left, or where it would not pass.
     void take_note(const vulkan::DeviceFailure& failure);
 
@@ -37,6 +41,8 @@ class WorkingDevices {
         std::string selector;
         std::uint64_t batch_divisor = 1;
     };
+    explicit WorkingDevices(std::vector<Member> members) : members_(std::move(members)) {}
+
     std::vector<Member> members_;
 };
 

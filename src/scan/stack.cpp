@@ -3,6 +3,7 @@
 #include "core/error.hpp"
 #include "core/interruption.hpp"
 #include "core/job_queue.hpp"
+#include "core/units.hpp"
 
 #include <fmt/format.h>
 #include <spdlog/spdlog.h>
@@ -18,6 +19,28 @@
 #include <vector>
 
 namespace vkfv::scan {
+
+namespace {
+
+// Of an image, for programs that watch.
+LogFields fields_of(int image, double z, const trace::Image& exposure) {
+    double detected = 0, lost = 0;
+    for (const auto& entry : exposure.ledger.entries) {
+        (entry.status == trace::Ledger::Status::detected ? detected : lost) += entry.power;
+    }
+    return {{"image", std::int64_t{image}},
+            {"z_um", z * um_per_mm},
+            {"device", std::int64_t{exposure.device}},
+            {"rays", static_cast<std::int64_t>(exposure.rays)},
+            {"detected_rays", static_cast<std::int64_t>(exposure.detected)},
+            {"seconds", exposure.seconds},
+            {"emitted_W", exposure.ledger.emitted},
+            {"detected_W", detected},
+            {"lost_W", lost},
+            {"residual_W", exposure.ledger.residual()}};
+}
+
+} // namespace
 
 StackSummary run_stack(const trace::Tracer& tracer, ImageStore& store, Progress& progress,
                        const ImageVisitor& visit) {
@@ -60,7 +83,7 @@ StackSummary run_stack(const trace::Tracer& tracer, ImageStore& store, Progress&
         ++summary.traced;
         summary.rays += exposure.rays;
         tell_what_is_stored();
-        progress.advance(exposure.rays);
+        progress.advance(exposure.rays, fields_of(image, positions[static_cast<std::size_t>(image)], exposure));
     };
     // No more images wait to be written than threads write: they would only hold memory while the disk is the slower
     // part.

@@ -68,6 +68,9 @@ Buffer::Buffer(const Device& device, std::size_t bytes, Memory memory, std::stri
         }
         const vk::MemoryAllocateFlagsInfo flags(vk::MemoryAllocateFlagBits::eDeviceAddress);
         allocation_ = vk::raii::DeviceMemory(device.handle(), vk::MemoryAllocateInfo(needed.size, type, &flags));
+        const auto taken = static_cast<std::int64_t>(needed.size);
+        device.count_memory(taken);
+        counted_ = {&device, GiveBackMemory{taken}};
         buffer_.bindMemory(*allocation_, 0);
         if (memory == Memory::host) {
             mapped_ = static_cast<std::byte*>(allocation_.mapMemory(0, VK_WHOLE_SIZE, {}));

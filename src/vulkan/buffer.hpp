@@ -5,11 +5,18 @@
 #include "vulkan/failure.hpp"
 
 #include <cstddef>
+#include <cstdint>
+#include <memory>
 #include <span>
 #include <string_view>
 #include <vector>
 
 namespace vkfv::vulkan {
+
+struct GiveBackMemory {
+    std::int64_t bytes = 0;
+    void operator()(const Device* device) const { device->count_memory(-bytes); }
+};
 
 // Storage buffer (also uniform, transfer, device address, build input). Bytes; move-only.
 class Buffer {
@@ -59,6 +66,7 @@ class Buffer {
     Memory memory_;
     vk::raii::Buffer buffer_{nullptr};
     vk::raii::DeviceMemory allocation_{nullptr};
+    std::unique_ptr<const Device, GiveBackMemory> counted_;
     std::byte* mapped_ = nullptr;
 };
 

@@ -10,6 +10,7 @@
 
 #include <algorithm>
 #include <array>
+#include <atomic>
 #include <cctype>
 #include <charconv>
 #include <cstring>
@@ -249,6 +250,8 @@ struct Device::State {
     double timestamp_period = 0; // s
     std::uint32_t timestamp_bits = 64;
     vk::PhysicalDeviceMemoryProperties memory;
+    std::atomic<std::int64_t> taken{0}; // bytes, by buffers
+    std::atomic<std::int64_t> most_taken{0};
     DeviceReport report;
     std::string choice;
 };
@@ -389,6 +392,16 @@ double Device::seconds_between(std::uint64_t first, std::uint64_t second) const 
     const std::uint32_t unused = 64U - state_->timestamp_bits;
     const auto ticks = static_cast<std::int64_t>((second - first) << unused) >> unused;
     return static_cast<double>(ticks) * state_->timestamp_period;
+}
+
+std::uint64_t Device::peak_memory() const {
+    return static_cast<std::uint64_t>(state_->most_taken.load());
+}
+
+void Device::count_memory(std::int64_t bytes) const {
+    const std::int64_t now = state_->taken += bytes;
+    for (std::int64_t most = state_->most_taken; now > most && !state_->most_taken.compare_exchange_weak(most, now);) {
+    }
 }
 
 std::uint32_t Device::memory_type(std::uint32_t type_bits, vk::MemoryPropertyFlags properties) const {

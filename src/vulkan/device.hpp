@@ -78,6 +78,9 @@ class Device {
     std::uint32_t queue_family() const;
     // s, between two timestamps, whose counter may wrap; less than half of its range apart, either may be the later.
     double seconds_between(std::uint64_t first, std::uint64_t second) const;
+    // Bytes that its buffers have taken at a time, at most so far.
+    std::uint64_t peak_memory() const;
+    void count_memory(std::int64_t bytes) const; // taken, or given back; any thread
     // Index of a memory type among `type_bits` with the properties; throws DeviceError when there is none.
     std::uint32_t memory_type(std::uint32_t type_bits, vk::MemoryPropertyFlags properties) const;
 

@@ -8,7 +8,8 @@
 namespace vkfv::test {
 
 std::string text_of(const Fault& fault) {
-    return fmt::format("{} {} {} {}", fault.call, fault.number, fault.effect, fault.subject);
+    return fmt::format("{} {}{} {} {}", fault.call, fault.number, fault.lasts ? " and on" : "", fault.effect,
+                       fault.subject);
 }
 
 std::vector<Fault> counted_calls(const std::filesystem::path& log) {
@@ -18,7 +19,7 @@ std::vector<Fault> counted_calls(const std::filesystem::path& log) {
     for (std::string line; std::getline(lines, line);) {
         const auto space = line.find(' ');
         const std::string call = line.substr(0, space);
-        calls.push_back({.call = call, .number = ++counts[call], .effect = {}, .subject = line.substr(space + 1)});
+        calls.push_back({.call = call, .number = ++counts[call], .effect = {}, .lasts = false, .subject = line.substr(space + 1)});
     }
     return calls;
 }
@@ -30,6 +31,7 @@ bool every_fault() {
 void add(Environment& environment, const Fault& fault) {
     environment["VKFV_FAULT_CALL"] = fault.call;
     environment["VKFV_FAULT_NUMBER"] = std::to_string(fault.number);
+    environment["VKFV_FAULT_LASTS"] = fault.lasts ? "1" : "";
     environment["VKFV_FAULT_EFFECT"] = fault.effect;
 }
 
@@ -37,7 +39,7 @@ Files files_below(const std::filesystem::path& folder) {
     Files files;
     for (const auto& entry : std::filesystem::recursive_directory_iterator(folder)) {
         const auto name = entry.path().filename();
-        if (entry.is_regular_file() && name != "timings.csv" && name != ".lock") {
+        if (entry.is_regular_file() && name != "timings.csv" && !name.string().starts_with(".lock")) {
             files[entry.path().lexically_relative(folder).generic_string()] = read_file(entry.path());
         }
     }

@@ -14,6 +14,7 @@ struct Fault {
     std::string call;
     int number = 0; // of the calls of this name, from 1
     std::string effect;
+    bool lasts = false;    // and those of the name that follow it
     std::string subject{}; // the file that the call concerned, as far as it concerned one
 };
 

@@ -2,6 +2,7 @@
 //
 //   VKFV_FAULT_CALL     name of the call, "write", "vkQueueSubmit"; without it nothing fails
 //   VKFV_FAULT_NUMBER   which of the calls of that name, from 1
+//   VKFV_FAULT_LASTS    not empty: of those that follow it too
 //   VKFV_FAULT_EFFECT   what becomes of it: see the libraries
 //   VKFV_FAULT_LOG      a file to which each counted call is appended, a line of its name and what it concerns
 #pragma once
@@ -44,7 +45,9 @@ inline void log_call(const char* call, const char* subject) {
 inline bool is_due(const char* call, const char* subject, std::atomic<long>& count) {
     log_call(call, subject);
     const long number = ++count;
-    return std::strcmp(setting("VKFV_FAULT_CALL"), call) == 0 && number == std::atol(setting("VKFV_FAULT_NUMBER"));
+    const long due = std::atol(setting("VKFV_FAULT_NUMBER"));
+    const bool lasts = *setting("VKFV_FAULT_LASTS") != '\0';
+    return std::strcmp(setting("VKFV_FAULT_CALL"), call) == 0 && (number == due || (lasts && number > due));
 }
 
 } // namespace vkfv::faults

@@ -134,6 +134,7 @@ VKAPI_ATTR VkResult VKAPI_CALL create_device(VkPhysicalDevice physical, const Vk
     link->u.pLayerInfo = link->u.pLayerInfo->pNext;
     const VkResult result = Call<CreateDevice, PFN_vkCreateDevice>::make(physical, info, allocator, device);
     if (result == VK_SUCCESS) {
+        lost = false; // a device that is opened again works
 #define LOOK_UP(name) next_functions[name] = next_device_function.load()(*device, "vk" #name);
         DEVICE_FUNCTIONS(LOOK_UP)
 #undef LOOK_UP

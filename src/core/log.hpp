@@ -1,0 +1,33 @@
+// What a program says on standard error: lines for people, or a JSON object a line for programs that watch it.
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <variant>
+#include <vector>
+
+namespace vkfv {
+
+// Opens the program's log, for people at first.
+void open_log();
+
+// From now on each line is an object with "time" (ISO 8601, UTC) and "level" or "event": messages of the log with
+// "text", and what log_event() is given. Interruptions too.
+void log_as_json();
+bool logs_json();
+
+using LogValue = std::variant<std::int64_t, double, std::string>;
+using LogFields = std::vector<std::pair<std::string, LogValue>>;
+
+// A line of JSON without its end; values that are not finite become null.
+std::string json_line(std::string_view kind, std::string_view name, const LogFields& fields);
+
+// A text as JSON has it, quotes included.
+std::string json_quoted(std::string_view text);
+
+// The message that a program ends with, with its exit code.
+void log_failure(const std::string& message, int exit_code);
+
+} // namespace vkfv

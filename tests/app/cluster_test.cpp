@@ -1,0 +1,287 @@
+// Several devices at a time, shards and their merge, what a scheduler watches, and what a stack will take.
+#include "app/program.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <nlohmann/json.hpp>
+
+#include <chrono>
+#include <csignal>
+#include <filesystem>
+#include <map>
+#include <random>
+#include <sstream>
+#include <string>
+#include <thread>
+#include <vector>
+
+#include <sys/wait.h>
+#include <unistd.h>
+
+namespace vkfv::test {
+namespace {
+
+namespace fs = std::filesystem;
+using nlohmann::json;
+using testing::AllOf;
+using testing::HasSubstr;
+
+using Words = std::vector<std::string>;
+
+// Every file but clocks and locks.
+std::map<std::string, std::string> result_bytes(const fs::path& folder) {
+    std::map<std::string, std::string> bytes;
+    for (const auto& entry : fs::recursive_directory_iterator(folder)) {
+        const std::string name = entry.path().filename().string();
+        if (entry.is_regular_file() && !name.starts_with("timings") && !name.starts_with(".lock")) {
+            bytes[entry.path().lexically_relative(folder).string()] = read_file(entry.path());
+        }
+    }
+    return bytes;
+}
+
+void expect_same_results(const fs::path& one, const fs::path& other) {
+    const auto bytes = result_bytes(one), others = result_bytes(other);
+    for (const auto& [name, content] : bytes) {
+        EXPECT_TRUE(others.contains(name) && others.at(name) == content) << name;
+    }
+    EXPECT_EQ(bytes.size(), others.size());
+}
+
+class Cluster : public testing::Test {
+  protected:
+    Cluster() : folder_(fresh_folder("work")) {
+        write_file(folder_ / "c.toml", replaced(small_configuration, "rays = 2000", "rays = 200000"));
+    }
+
+    // Results show the last part of their folder's name, which is "out" of all of them.
+    ProgramResult stack(const std::string& out, Words further = {}) const {
+        Words words = {"stack", "c.toml", "--out", out + "/out"};
+        words.insert(words.end(), further.begin(), further.end());
+        return run_program(words, folder_);
+    }
+    fs::path out(const std::string& name) const { return folder_ / name / "out"; }
+
+    fs::path folder_;
+};
+
+TEST_F(Cluster, SeveralDevicesGiveTheBytesOfOne) {
+    for (const Words& further : {Words{}, Words{"--estimator", "backward"}, Words{"--set", "diffraction.model=none"}}) {
+        fs::remove_all(folder_ / "one");
+        fs::remove_all(folder_ / "two");
+        Words one = further, two = further;
+        one.insert(one.end(), {"--device", "0"});
+        two.insert(two.end(), {"--device", "0,0"});
+        ASSERT_EQ(stack("one", one).exit_code, 0);
+        const auto by_two = stack("two", two);
+        ASSERT_EQ(by_two.exit_code, 0) << by_two.standard_error;
+        EXPECT_THAT(by_two.standard_error, HasSubstr("2 devices at a time"));
+        expect_same_results(out("one"), out("two"));
+    }
+    const auto refused = stack("three", {"--device", "0,nobody"});
+    EXPECT_EQ(refused.exit_code, 3);
+    EXPECT_THAT(refused.standard_error, HasSubstr("No Vulkan device matches \"nobody\""));
+}
+
+TEST_F(Cluster, ShardsMergeToTheBytesOfOneRun) {
+    for (const Words& further : {Words{}, Words{"--set", "diffraction.model=airy", "--estimator", "backward"}}) {
+        for (const char* name : {"one", "shared", "apart-1", "apart-2", "merged"}) {
+            fs::remove_all(folder_ / name);
+        }
+        ASSERT_EQ(stack("one", further).exit_code, 0);
+        for (const auto& [shard, apart] : {std::pair{"1/2", "apart-1"}, {"2/2", "apart-2"}}) {
+            Words words = further;
+            words.insert(words.end(), {"--shard", shard});
+            EXPECT_THAT(stack("shared", words).standard_output, HasSubstr("images traced"));
+            ASSERT_EQ(stack(apart, words).exit_code, 0);
+            EXPECT_FALSE(fs::exists(out(apart) / "results.json"));
+        }
+        EXPECT_EQ(run_program({"merge", out("shared")}, folder_).exit_code, 0);
+        expect_same_results(out("one"), out("shared"));
+        const auto merged = run_program({"merge", out("merged"), out("apart-1"), out("apart-2")}, folder_);
+        EXPECT_EQ(merged.exit_code, 0) << merged.standard_error;
+        expect_same_results(out("one"), out("merged"));
+        EXPECT_EQ(run_program({"verify", out("merged")}, folder_).exit_code, 0);
+    }
+}
+
+TEST_F(Cluster, MergeNamesWhatIsMissingAndRefusesWhatDoesNotBelong) {
+    ASSERT_EQ(stack("first", {"--shard", "1/3", "--quiet"}).exit_code, 0);
+    ASSERT_EQ(stack("seed", {"--shard", "2/3", "--seed", "5", "--quiet"}).exit_code, 0);
+    const auto missing = run_program({"merge", out("m"), out("first")}, folder_);
+    EXPECT_EQ(missing.exit_code, 2);
+    EXPECT_THAT(missing.standard_error, HasSubstr("no image 1 to 2, 4"));
+    const auto other = run_program({"merge", out("m"), out("first"), out("seed")}, folder_);
+    EXPECT_EQ(other.exit_code, 2);
+    EXPECT_THAT(other.standard_error, HasSubstr("trace.seed: 5 there, 1 here"));
+    // Another program or device: by the identity that it left.
+    for (const auto& [from, to] : {std::pair{"kernels_digest = \"", "kernels_digest = \"0"},
+                                   {"device = \"", "device = \"another "}}) {
+        ASSERT_EQ(stack("second", {"--shard", "2/3", "--quiet"}).exit_code, 0);
+        const auto toml = out("second") / "stack.toml";
+        write_file(toml, replaced(read_file(toml), from, to));
+        EXPECT_EQ(run_program({"merge", out("m"), out("second"), out("first")}, folder_).exit_code, 2);
+        fs::remove_all(folder_ / "second");
+    }
+    const auto nothing = run_program({"merge", "nowhere"}, folder_);
+    EXPECT_EQ(nothing.exit_code, 2);
+    EXPECT_THAT(nothing.standard_error, HasSubstr("stack.toml"));
+    // A flipped bit of a shard's image.
+    ASSERT_EQ(stack("second", {"--shard", "2/3", "--quiet"}).exit_code, 0);
+    const auto image = out("second") / "images/z_0001.tif";
+    std::string bytes = read_file(image);
+    bytes[bytes.size() / 2] ^= 1;
+    write_file(image, bytes);
+    const auto flipped = run_program({"merge", out("n"), out("first"), out("second")}, folder_);
+    EXPECT_EQ(flipped.exit_code, 2);
+    EXPECT_THAT(flipped.standard_error, HasSubstr("z_0001.tif"));
+    for (const char* shard : {"0/3", "4/3", "1", "1/0", "a/b", "1/3x", "-1/3"}) {
+        EXPECT_EQ(stack("bad", {"--shard", shard}).exit_code, 2) << shard;
+    }
+}
+
+// A process of the program, for signals.
+pid_t start(const Words& words, const fs::path& folder) {
+    const pid_t child = fork();
+    if (child == 0) {
+        Words all = words;
+        all.insert(all.begin(), VKFV_BINARY_DIR "/vkfv");
+        std::vector<char*> arguments;
+        for (auto& word : all) {
+            arguments.push_back(word.data());
+        }
+        arguments.push_back(nullptr);
+        const bool ready = chdir(folder.c_str()) == 0 && freopen("/dev/null", "w", stdout) != nullptr &&
+                           freopen("/dev/null", "w", stderr) != nullptr;
+        if (ready) {
+            execv(arguments[0], arguments.data());
+        }
+        _exit(127);
+    }
+    return child;
+}
+
+// VKFV_EVERY_FAULT: a hundred kills. Shards of one folder, each on a device that is opened twice.
+TEST_F(Cluster, KilledShardsEndInTheBytesOfOneRun) {
+    const int kills = std::getenv("VKFV_EVERY_FAULT") != nullptr ? 100 : 5;
+    ASSERT_EQ(stack("one", {"--quiet", "--device", "0"}).exit_code, 0);
+    std::mt19937 random(5);
+    int unfinished = 0;
+    for (int round = 0; round < kills; ++round) {
+        std::vector<pid_t> children;
+        for (const char* shard : {"1/2", "2/2"}) {
+            children.push_back(
+                start({"stack", "c.toml", "--out", "killed/out", "--device", "0,0", "--shard", shard}, folder_));
+        }
+        std::this_thread::sleep_for(std::chrono::milliseconds(200 + random() % 3000));
+        for (const pid_t child : children) {
+            int status = 0;
+            kill(child, SIGKILL);
+            waitpid(child, &status, 0);
+            unfinished += WIFSIGNALED(status) ? 1 : 0;
+            EXPECT_TRUE(WIFSIGNALED(status) || WEXITSTATUS(status) == 0);
+        }
+        if (round % 5 == 4) { // a stack that is whole is no victim any more
+            fs::remove(out("killed") / "images/z_0001.tif");
+            fs::remove(out("killed") / "images/z_0002.tif");
+        }
+    }
+    EXPECT_GT(unfinished, kills / 2);
+    for (const char* shard : {"1/2", "2/2"}) {
+        const auto last = stack("killed", {"--device", "0,0", "--shard", shard});
+        ASSERT_EQ(last.exit_code, 0) << last.standard_error;
+    }
+    ASSERT_EQ(run_program({"merge", out("killed")}, folder_).exit_code, 0);
+    expect_same_results(out("one"), out("killed"));
+}
+
+TEST_F(Cluster, TheLogTellsOfEachImageInJson) {
+    const auto result = stack("out", {"--log-json"});
+    ASSERT_EQ(result.exit_code, 0);
+    std::istringstream lines(result.standard_error);
+    std::map<std::string, std::vector<json>> events;
+    for (std::string line; std::getline(lines, line);) {
+        const json event = json::parse(line);
+        EXPECT_TRUE(event.contains("time")) << line;
+        events[event.contains("event") ? event["event"].get<std::string>() : "message"].push_back(event);
+    }
+    EXPECT_EQ(events["begin"].size(), 1u);
+    EXPECT_EQ(events["end"].size(), 1u);
+    EXPECT_GE(events["message"].size(), 1u);
+    ASSERT_EQ(events["image"].size(), 5u);
+    for (const json& image : events["image"]) {
+        EXPECT_EQ(image["z_um"].get<double>(), image["image"].get<int>() - 2);
+        EXPECT_EQ(image["rays"], 200000);
+        EXPECT_EQ(image["images"], 5);
+        EXPECT_EQ(image["device"], 0);
+        EXPECT_GT(image["rays_per_s"].get<double>(), 0);
+        EXPECT_GE(image["seconds_left"].get<double>(), 0);
+        const double sum = image["detected_W"].get<double>() + image["lost_W"].get<double>();
+        EXPECT_NEAR(sum + image["residual_W"].get<double>(), image["emitted_W"].get<double>(), 1e-12);
+        EXPECT_GT(image["detected_W"].get<double>(), 0);
+    }
+    EXPECT_EQ(events["image"].back()["done"], 5);
+    // What a command ends with, too.
+    const auto failed = stack("out", {"--log-json", "--seed", "9"});
+    EXPECT_EQ(failed.exit_code, 2);
+    const auto last = failed.standard_error.rfind('{');
+    ASSERT_NE(last, std::string::npos);
+    const json error = json::parse(failed.standard_error.substr(last));
+    EXPECT_EQ(error["exit_code"], 2);
+    EXPECT_THAT(error["text"].get<std::string>(), HasSubstr("trace.seed"));
+}
+
+TEST_F(Cluster, AForecastTellsWhatTheStackThenTakes) {
+    const auto result = run_program({"check", "c.toml", "--forecast", "--json", "--set", "detector.pixels=64", "--rays",
+                                     "2e6", "--out", "f/out"},
+                                    folder_);
+    ASSERT_EQ(result.exit_code, 0) << result.standard_error;
+    const json forecast = json::parse(result.standard_output)["forecast"];
+    const auto traced = stack("f", {"--set", "detector.pixels=64", "--rays", "2e6", "--log-json"});
+    ASSERT_EQ(traced.exit_code, 0);
+    EXPECT_EQ(forecast["images"], 5);
+    EXPECT_EQ(forecast["rays_per_image"], 2000000);
+    std::istringstream lines(traced.standard_error);
+    double seconds = 0, detected_rays = 0, light = 0;
+    for (std::string line; std::getline(lines, line);) {
+        const json event = json::parse(line);
+        if (event.contains("image")) {
+            seconds += event["seconds"].get<double>();
+            detected_rays += event["detected_rays"].get<double>() / 5 / (64 * 64);
+            light += event["detected_W"].get<double>() / 5 / (64 * 64);
+        }
+    }
+    // A machine at other work takes its time.
+    EXPECT_GT(forecast["seconds"].get<double>(), seconds / 4);
+    EXPECT_LT(forecast["seconds"].get<double>(), seconds * 4);
+    EXPECT_NEAR(forecast["detected_rays_per_pixel"].get<double>(), detected_rays, 0.05 * detected_rays);
+    EXPECT_NEAR(forecast["light_per_pixel_W"].get<double>(), light, 0.05 * light);
+    EXPECT_NEAR(forecast["noise"].get<double>(), 1 / std::sqrt(detected_rays), 0.3 / std::sqrt(detected_rays));
+    EXPECT_GT(forecast["device_memory_bytes"].get<double>(), 1e6);
+    std::uintmax_t bytes = 0;
+    for (const auto& entry : fs::recursive_directory_iterator(out("f"))) {
+        bytes += entry.is_regular_file() ? entry.file_size() : 0;
+    }
+    EXPECT_GT(forecast["disk_bytes"].get<double>(), static_cast<double>(bytes));
+    EXPECT_TRUE(forecast["fits"].get<bool>());
+    const auto text = run_program({"check", "c.toml", "--forecast"}, folder_);
+    EXPECT_THAT(text.standard_output, AllOf(HasSubstr("forecast"), HasSubstr("s an image"), HasSubstr("disk")));
+    // Plain check opens no device.
+    EXPECT_EQ(run_program({"check", "c.toml"}, folder_, {{"VK_DRIVER_FILES", "/nowhere"}}).exit_code, 0);
+}
+
+TEST_F(Cluster, WhatCannotFitOnTheDiskIsRefusedFirst) {
+    const auto result =
+        stack("large", {"--set", "detector.pixels=4096", "--set", "scan.z_step_um=0.0005", "--set",
+                        "diffraction.model=none", "--estimator", "forward"}); // 8001 images of 67 MB
+    const auto free = fs::space(folder_).available;
+    if (free > 600'000'000'000) {
+        GTEST_SKIP() << "a disk of " << free << " bytes";
+    }
+    EXPECT_EQ(result.exit_code, 4);
+    EXPECT_THAT(result.standard_error, AllOf(HasSubstr("8001 images and the results take 53"), HasSubstr("has ")));
+    EXPECT_FALSE(fs::exists(out("large") / "images/z_0000.tif"));
+}
+
+} // namespace
+} // namespace vkfv::test
