@@ -64,7 +64,7 @@ class HostBackwardTracer final : public Tracer {
     }
 
     TracerIdentity identity() const override {
-        return host_identity(turned_, filter_ ? static_cast<int>(filter_->cells().parts) : 0);
+        return host_identity(turned_, LightSorting::of(filter_));
     }
     const optics::PupilFilter* pupil_filter() const override { return filter_ ? &*filter_ : nullptr; }
 

@@ -106,7 +106,7 @@ class HostTracer final : public Tracer {
     }
 
     TracerIdentity identity() const override {
-        return host_identity(instrument_, filter_ ? static_cast<int>(filter_->cells().parts) : 0);
+        return host_identity(instrument_, LightSorting::of(filter_));
     }
     const optics::PupilFilter* pupil_filter() const override { return filter_ ? &*filter_ : nullptr; }
 
