@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <limits>
 #include <vector>
 
 namespace vkfv::optics {
@@ -186,17 +185,15 @@ FilterError largest_filter_error(const PupilFilter& filter, const Instrument& in
 }
 
 int cells_for_waves(const Instrument& instrument) {
-    int best = fewest_cells;
-    double least = std::numeric_limits<double>::infinity();
-    for (int cells = fewest_cells; cells <= most_cells && least > most_error_of_cells; cells += 2) {
+    int cells = fewest_cells;
+    const auto leave_too_much = [&] {
         const PupilFilter filter(instrument, {.cells = cells, .parts = 1});
-        const double error = largest_filter_error(filter, instrument, glm::dvec2(0)).difference;
-        if (error < least) {
-            least = error;
-            best = cells;
-        }
+        return largest_filter_error(filter, instrument, glm::dvec2(0)).difference > most_error_of_cells;
+    };
+    while (cells < most_cells && leave_too_much()) {
+        cells += 2;
     }
-    return best;
+    return cells;
 }
 
 } // namespace vkfv::optics

@@ -25,8 +25,7 @@ FilterError largest_filter_error(const PupilFilter& filter, const Instrument& in
 
 // What the cells may leave of that on the axis where their number is not asked for.
 inline constexpr double most_error_of_cells = 0.07;
-// Across the pupil: the fewest of 8, 10 ... 16 that leave no more; where none do, those that leave least. Throws as
-// PupilFilter.
+// Across the pupil: the fewest of 8, 10 ... 16 that leave no more, or 16. Throws as PupilFilter.
 int cells_for_waves(const Instrument& instrument);
 
 } // namespace vkfv::optics
