@@ -27,12 +27,12 @@ struct TracerIdentity {
     std::string device;          // name; "host": the reference in double
     std::uint32_t vendor_id = 0; // PCI's; 0: the host
     std::uint32_t device_id = 0;
-    std::string driver;      // with its version
-    std::string traversal;   // "quadtree", "bvh", "ray-query"; empty: the host
-    std::string fourier;     // the library that transforms images for waves; empty: the host, or images of rays
+    std::string driver;    // with its version
+    std::string traversal; // "quadtree", "bvh", "ray-query"; empty: the host
+    std::string fourier;   // the library that transforms images for waves; empty: the host, or images of rays
     LightSorting sorting;
-    std::string kernels;     // digest of the SPIR-V, whose source is that of the host's physics too
-    std::string instrument;  // digest of the records that the instrument became
+    std::string kernels;    // digest of the SPIR-V, whose source is that of the host's physics too
+    std::string instrument; // digest of the records that the instrument became
 
     std::string toml() const; // lines `key = value`
     std::string text() const; // "NVIDIA H100 (NVIDIA 580.159), traversal quadtree"
