@@ -116,8 +116,9 @@ const NumberKey point_spread_pitch =
     of_kinds({"file"}, without_influence(NumberKey("pitch_um", NumberRange::positive(), needed,
                                                    "Distance of that image's pixels in the object.")));
 const IntegerKey pupil_cells =
-    of_kinds({"waves"}, IntegerKey("cells", 2, most_pupil_cells, optics::WaveOptions{}.cells,
-                                   "Cells across the pupil that light is sorted by, an even number."));
+    of_kinds({"waves"}, IntegerKey("cells", 0, most_pupil_cells, 0,
+                                   "Cells across the pupil that light is sorted by, an even number; 0: as many as the "
+                                   "aberrations on the axis ask for, 8 to 16."));
 const IntegerKey parts = of_kinds(
     {"waves"}, IntegerKey("parts_per_pixel", 0, most_parts, 0,
                           "Parts of a pixel's side in which light is sorted; 0: as many as waves of the instrument's "

@@ -110,7 +110,8 @@ FigureGroup figures_of_waves(const optics::WaveOptions& options, const optics::I
     const auto memory = trace::wave_memory(limits.cells, limits.parts, instrument.constants.detector_pixels);
     const auto error_of = [&](std::size_t point) { return limits.points[point].error.difference; };
     return {"Images as waves make them, within two depths of field",
-            {{"wave_parts_per_pixel", static_cast<double>(limits.parts), "of a pixel's side that light is sorted in"},
+            {{"wave_cells", static_cast<double>(limits.cells), "across the pupil that light is sorted by"},
+             {"wave_parts_per_pixel", static_cast<double>(limits.parts), "of a pixel's side that light is sorted in"},
              {"wave_memory_gib", static_cast<double>(memory.all()) / bytes_per_gib, "that a GPU needs, at most"},
              {"wave_folded_contrast", limits.folded_contrast, "what waves too fine for the parts are off by"},
              {"wave_contrast_error_axis", error_of(0), "of the pupil's cells against Hopkins' integral"},

@@ -12,8 +12,6 @@ namespace vkfv::measurement {
 namespace {
 
 constexpr double most_error = 0.1;
-constexpr double depths_of_field = 2;
-constexpr int most_wavelengths = 3; // of a continuous spectrum
 
 } // namespace
 
@@ -32,10 +30,8 @@ WaveLimits wave_limits(const optics::PupilFilter& filter, const optics::Instrume
     for (const Place& place :
          {Place{"axis", glm::dvec2(0)}, Place{"edge", glm::dvec2(side, 0)}, Place{"corner", glm::dvec2(side)}}) {
         points.push_back(std::async(std::launch::async, [&filter, &instrument, place] {
-            const optics::PointWaves waves(instrument, place.field, most_wavelengths);
             return WaveLimits::Point{.name = place.name,
-                                     .error = optics::largest_filter_error(
-                                         filter, waves, depths_of_field * instrument.first_order.depth_of_field)};
+                                     .error = optics::largest_filter_error(filter, instrument, place.field)};
         }));
     }
     for (auto& point : points) {

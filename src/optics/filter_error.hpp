@@ -20,5 +20,12 @@ struct FilterError {
 // Lambertian surface that stands level. All of the point's own counts: wavefront, pupil, vignetting, lateral colour.
 // A point that no light comes from has none.
 FilterError largest_filter_error(const PupilFilter& filter, const PointWaves& point, double reach);
+// The same of a point of the instrument's field (mm in the object), within two depths of field.
+FilterError largest_filter_error(const PupilFilter& filter, const Instrument& instrument, glm::dvec2 field);
+
+// What the cells may leave of that on the axis where their number is not asked for.
+inline constexpr double most_error_of_cells = 0.07;
+// Across the pupil: the fewest of 8, 10 ... 16 that leave no more, or 16. Throws as PupilFilter.
+int cells_for_waves(const Instrument& instrument);
 
 } // namespace vkfv::optics

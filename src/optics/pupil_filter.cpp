@@ -3,6 +3,7 @@
 #include "core/error.hpp"
 #include "core/units.hpp"
 #include "optics/apertures.hpp"
+#include "optics/filter_error.hpp"
 #include "optics/image_quality.hpp"
 #include "optics/wavefront.hpp"
 
@@ -152,10 +153,15 @@ int parts_of(const WaveOptions& options, const Instrument& instrument) {
     return options.parts > 0 ? options.parts : parts_for_waves(instrument);
 }
 
-PupilFilter::PupilFilter(const Instrument& instrument, const WaveOptions& options)
-    : steps_(std::max(32, points_a_cell * options.cells / 2)) {
+int cells_of(const WaveOptions& options, const Instrument& instrument) {
+    return options.cells > 0 ? options.cells : cells_for_waves(instrument);
+}
+
+PupilFilter::PupilFilter(const Instrument& instrument, const WaveOptions& options) {
     const auto nodes = at_most(most_wavelengths, spectral_nodes(instrument));
-    cells_.side = static_cast<std::uint32_t>(options.cells);
+    const int cells = cells_of(options, instrument);
+    steps_ = std::max(32, points_a_cell * cells / 2);
+    cells_.side = static_cast<std::uint32_t>(cells);
     cells_.parts = static_cast<std::uint32_t>(parts_of(options, instrument));
     part_pitch_ = instrument.first_order.pixel_pitch / cells_.parts;
     cells_.chief_position = chief_slope_per_position(instrument);

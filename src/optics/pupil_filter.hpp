@@ -14,7 +14,7 @@
 namespace vkfv::optics {
 
 struct WaveOptions {
-    int cells = 8;                 // across the pupil, even
+    int cells = 0;                 // across the pupil, even; 0: as many as the axis' aberrations ask for
     int parts = 0;                 // of a pixel's side in which light is sorted; 0: as fine as waves ask for
     std::uint64_t most_memory = 0; // bytes that this may take of a device; 0: what the device has
 };
@@ -24,6 +24,8 @@ struct WaveOptions {
 int parts_for_waves(const Instrument& instrument);
 // Those asked for, else these.
 int parts_of(const WaveOptions& options, const Instrument& instrument);
+// Those asked for, else cells_for_waves() (optics/filter_error.hpp), for which filters are made and compared.
+int cells_of(const WaveOptions& options, const Instrument& instrument);
 
 // Of an instrument's axis. The image has the spectrum  sum over the cells c of  w_c(f) I_c(f)  with
 //   w_c(f) = mean over p in c of  1{p + lambda f / 2 and p - lambda f / 2 in the pupil}
@@ -72,9 +74,9 @@ class PupilFilter {
     double noise_of_pixels() const;
 
     physics::f64::PupilCells cells_{};
-    int steps_;
+    int steps_ = 0;
     double cutoff_ = 0;
-    double part_pitch_;
+    double part_pitch_ = 0;
     double noise_ = 1;
     std::vector<double> shares_;
     std::vector<std::complex<float>> table_;

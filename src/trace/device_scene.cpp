@@ -196,8 +196,7 @@ std::span<const std::uint32_t> DeviceScene::variant(std::span<const std::uint32_
 }
 
 TracerIdentity DeviceScene::identity() const {
-    return device_identity(device->report(), traversal_name(traversal.traversal), instrument,
-                           filter ? static_cast<int>(filter->cells().parts) : 0);
+    return device_identity(device->report(), traversal_name(traversal.traversal), instrument, LightSorting::of(filter));
 }
 
 } // namespace vkfv::trace

@@ -136,13 +136,19 @@ TracerIdentity expected_identity(const optics::Instrument& instrument, const spe
         options.estimator == Estimator::backward ? optics::turned_round(instrument) : instrument;
     const auto& waves = options.nonsequential ? std::nullopt : options.waves;
     if (options.device == "host") {
-        return host_identity(traced, waves ? optics::parts_of(*waves, instrument) : 0);
+        return host_identity(traced, waves ? LightSorting{.pupil_cells = optics::cells_of(*waves, instrument),
+                                                          .parts_per_pixel = optics::parts_of(*waves, instrument)}
+                                           : LightSorting());
     }
     const auto reports = vulkan::list_devices();
     const auto& report = reports[vulkan::choose_device(reports, {options.device})];
     const auto traversal = choose_traversal(report, specimen, options.traversal, options.nonsequential).traversal;
-    return device_identity(report, traversal_name(traversal), traced,
-                           waves ? waves_on_device(*waves, instrument, report).parts : 0);
+    LightSorting sorting;
+    if (waves) {
+        const auto fitted = waves_on_device(*waves, instrument, report);
+        sorting = {.pupil_cells = fitted.cells, .parts_per_pixel = fitted.parts};
+    }
+    return device_identity(report, traversal_name(traversal), traced, sorting);
 }
 
 std::vector<PathEnd> device_paths(const optics::Instrument& instrument, const specimen::Specimen& specimen,

@@ -63,9 +63,7 @@ class HostBackwardTracer final : public Tracer {
         return fmt::format("host reference in double on {} threads; backward", std::thread::hardware_concurrency());
     }
 
-    TracerIdentity identity() const override {
-        return host_identity(turned_, filter_ ? static_cast<int>(filter_->cells().parts) : 0);
-    }
+    TracerIdentity identity() const override { return host_identity(turned_, LightSorting::of(filter_)); }
     const optics::PupilFilter* pupil_filter() const override { return filter_ ? &*filter_ : nullptr; }
 
   private:

@@ -105,9 +105,7 @@ class HostTracer final : public Tracer {
         return fmt::format("host reference in double on {} threads", std::thread::hardware_concurrency());
     }
 
-    TracerIdentity identity() const override {
-        return host_identity(instrument_, filter_ ? static_cast<int>(filter_->cells().parts) : 0);
-    }
+    TracerIdentity identity() const override { return host_identity(instrument_, LightSorting::of(filter_)); }
     const optics::PupilFilter* pupil_filter() const override { return filter_ ? &*filter_ : nullptr; }
 
   private:

@@ -16,6 +16,12 @@
 
 namespace vkfv::trace {
 
+LightSorting LightSorting::of(const std::optional<optics::PupilFilter>& filter) {
+    return filter ? LightSorting{.pupil_cells = static_cast<int>(filter->cells().side),
+                                 .parts_per_pixel = static_cast<int>(filter->cells().parts)}
+                  : LightSorting();
+}
+
 std::string TracerIdentity::toml() const {
     std::string text = fmt::format("device = {}\n", toml_quoted(device));
     if (vendor_id != 0) {
@@ -30,8 +36,8 @@ std::string TracerIdentity::toml() const {
     if (!fourier.empty()) {
         text += fmt::format("fourier = {}\n", toml_quoted(fourier));
     }
-    if (parts_per_pixel != 0) {
-        text += fmt::format("parts_per_pixel = {}\n", parts_per_pixel);
+    if (sorting.pupil_cells != 0) {
+        text += fmt::format("pupil_cells = {}\nparts_per_pixel = {}\n", sorting.pupil_cells, sorting.parts_per_pixel);
     }
     return text +
            fmt::format("kernels_digest = {}\ninstrument_digest = {}\n", toml_quoted(kernels), toml_quoted(instrument));
@@ -76,24 +82,24 @@ std::string kernels_digest() {
     return spirv_digest;
 }
 
-TracerIdentity host_identity(const optics::Instrument& instrument, int parts_per_pixel) {
+TracerIdentity host_identity(const optics::Instrument& instrument, LightSorting sorting) {
     TracerIdentity identity;
     identity.device = "host";
-    identity.parts_per_pixel = parts_per_pixel;
+    identity.sorting = sorting;
     identity.kernels = kernels_digest();
     identity.instrument = instrument_digest(instrument);
     return identity;
 }
 
 TracerIdentity device_identity(const vulkan::DeviceReport& device, const std::string& traversal,
-                               const optics::Instrument& instrument, int parts_per_pixel) {
+                               const optics::Instrument& instrument, LightSorting sorting) {
     return {.device = device.name,
             .vendor_id = device.vendor_id,
             .device_id = device.device_id,
             .driver = device.driver,
             .traversal = traversal,
-            .fourier = parts_per_pixel != 0 && !vulkan::is_software(device) ? vulkan::fourier_library() : "",
-            .parts_per_pixel = parts_per_pixel,
+            .fourier = sorting.pupil_cells != 0 && !vulkan::is_software(device) ? vulkan::fourier_library() : "",
+            .sorting = sorting,
             .kernels = kernels_digest(),
             .instrument = instrument_digest(instrument)};
 }

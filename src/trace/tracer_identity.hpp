@@ -2,8 +2,10 @@
 #pragma once
 
 #include "optics/instrument.hpp"
+#include "optics/pupil_filter.hpp"
 
 #include <cstdint>
+#include <optional>
 #include <string>
 
 namespace vkfv {
@@ -15,17 +17,25 @@ struct DeviceReport;
 
 namespace vkfv::trace {
 
+// How light of waves is sorted; 0: images of rays.
+struct LightSorting {
+    int pupil_cells = 0;     // across the pupil
+    int parts_per_pixel = 0; // of its side
+
+    static LightSorting of(const std::optional<optics::PupilFilter>& filter);
+};
+
 // Facts alone: nothing of why a device was chosen or what else stands beside it.
 struct TracerIdentity {
     std::string device;          // name; "host": the reference in double
     std::uint32_t vendor_id = 0; // PCI's; 0: the host
     std::uint32_t device_id = 0;
-    std::string driver;      // with its version
-    std::string traversal;   // "quadtree", "bvh", "ray-query"; empty: the host
-    std::string fourier;     // the library that transforms images for waves; empty: the host, or images of rays
-    int parts_per_pixel = 0; // a pixel's side that light of waves is sorted in; 0: images of rays
-    std::string kernels;     // digest of the SPIR-V, whose source is that of the host's physics too
-    std::string instrument;  // digest of the records that the instrument became
+    std::string driver;    // with its version
+    std::string traversal; // "quadtree", "bvh", "ray-query"; empty: the host
+    std::string fourier;   // the library that transforms images for waves; empty: the host, or images of rays
+    LightSorting sorting;
+    std::string kernels;    // digest of the SPIR-V, whose source is that of the host's physics too
+    std::string instrument; // digest of the records that the instrument became
 
     std::string toml() const; // lines `key = value`
     // Of such lines. Throws InputError.
@@ -40,9 +50,9 @@ std::string instrument_digest(const optics::Instrument& instrument);
 std::string kernels_digest();
 
 // Of the reference in double.
-TracerIdentity host_identity(const optics::Instrument& instrument, int parts_per_pixel);
+TracerIdentity host_identity(const optics::Instrument& instrument, LightSorting sorting);
 // Of a device by its report. `instrument`: as the paths run through it.
 TracerIdentity device_identity(const vulkan::DeviceReport& device, const std::string& traversal,
-                               const optics::Instrument& instrument, int parts_per_pixel);
+                               const optics::Instrument& instrument, LightSorting sorting);
 
 } // namespace vkfv::trace

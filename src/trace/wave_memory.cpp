@@ -49,17 +49,18 @@ optics::WaveOptions waves_on_device(const optics::WaveOptions& options, const op
     const int pixels = instrument.constants.detector_pixels;
     const Limits limits = limits_of(options, device);
     optics::WaveOptions fitted = options;
+    fitted.cells = optics::cells_of(options, instrument);
     fitted.parts = optics::parts_of(options, instrument);
     const int least = options.parts > 0 ? options.parts : 1;
-    while (fitted.parts >= least && !fits(options.cells, fitted.parts, pixels, limits)) {
+    while (fitted.parts >= least && !fits(fitted.cells, fitted.parts, pixels, limits)) {
         --fitted.parts;
     }
     if (fitted.parts < least) {
         throw InputError({.where = {},
                           .key = options.parts > 0 ? "diffraction.parts_per_pixel" : "diffraction.cells",
                           .found = fmt::format("{} x {} cells, {} x {} parts of {} x {} pixels: {} bytes of light",
-                                               options.cells, options.cells, least, least, pixels, pixels,
-                                               wave_memory(options.cells, least, pixels).all()),
+                                               fitted.cells, fitted.cells, least, least, pixels, pixels,
+                                               wave_memory(fitted.cells, least, pixels).all()),
                           .expected = fmt::format("at most {} bytes on {}, {} in one buffer", limits.memory,
                                                   device.name, limits.buffer),
                           .remedy = "Take fewer detector.pixels, fewer diffraction.cells or diffraction."

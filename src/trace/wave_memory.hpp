@@ -23,9 +23,9 @@ struct WaveMemory {
 // On a GPU, of a square detector of so many pixels a side. cells: across the pupil; parts: of a pixel's side.
 WaveMemory wave_memory(int cells, int parts, int pixels);
 
-// The options with the parts of a pixel that light is sorted in: those asked for, or as many as waves ask for, or where
-// these are too many for the device, as many as it can hold. Throws InputError where it holds not even one, or not what
-// was asked for.
+// The options with the pupil cells and the parts of a pixel that light is sorted in: those asked for, or as many as
+// waves ask for, or where these are too many parts for the device, as many as it can hold. Throws InputError where it
+// holds not even one, or not what was asked for.
 optics::WaveOptions waves_on_device(const optics::WaveOptions& options, const optics::Instrument& instrument,
                                     const vulkan::DeviceReport& device);
 

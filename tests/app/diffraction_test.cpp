@@ -90,6 +90,25 @@ TEST(Diffraction, AWrongPointSpreadFunctionIsRefused) {
     EXPECT_THAT(run({"diffraction.model=waves", "trace.mode=nonsequential"}), HasSubstr("nonsequential"));
 }
 
+TEST(Diffraction, TakesTheCellsThatTheInstrumentAsksForOrThoseGiven) {
+    const auto folder = fresh_folder("waves_cells");
+    write_file(folder / "c.toml", small_configuration);
+    const auto figures = [&](const std::vector<std::string>& settings) {
+        std::vector<std::string> command = {"check", "c.toml", "--json"};
+        command.insert(command.end(), settings.begin(), settings.end());
+        const auto result = run_program(command, folder);
+        EXPECT_EQ(result.exit_code, 0) << result.standard_error;
+        return nlohmann::json::parse(result.standard_output);
+    };
+    const auto asked_for = figures({});
+    EXPECT_EQ(asked_for["wave_cells"], 8);
+    EXPECT_EQ(figures({"--set", "diffraction.cells=0"}), asked_for);
+    const auto given = figures({"--set", "diffraction.cells=4"});
+    EXPECT_EQ(given["wave_cells"], 4);
+    EXPECT_NEAR(given["wave_memory_gib"].get<double>() / asked_for["wave_memory_gib"].get<double>(), 0.25, 0.05);
+    EXPECT_GT(given["wave_contrast_error_axis"], asked_for["wave_contrast_error_axis"]);
+}
+
 // With less memory a device sorts light more coarsely: other images, which a stack does not mix.
 TEST(Diffraction, SaysThatMemoryForbidsTheFinePitch) {
     const auto folder = fresh_folder("waves_memory");
@@ -102,6 +121,7 @@ TEST(Diffraction, SaysThatMemoryForbidsTheFinePitch) {
     ASSERT_EQ(coarse.exit_code, 0) << coarse.standard_error;
     EXPECT_THAT(coarse.standard_error, HasSubstr("finer waves fold back"));
     const auto results = nlohmann::json::parse(read_file(folder / "out/results.json"));
+    EXPECT_EQ(results["waves"]["cells"], 8);
     EXPECT_LT(results["waves"]["parts_per_pixel"], results["waves"]["parts_asked_for"]);
     EXPECT_GT(results["waves"]["folded_contrast"], 0.01);
     EXPECT_THAT(read_file(folder / "out/report.html"), HasSubstr("finer waves fold back"));

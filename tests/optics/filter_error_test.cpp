@@ -20,6 +20,7 @@ PointWaves waves_of(const Instrument& instrument, glm::dvec2 field) {
 TEST(FilterError, OfTheTenfoldObjective) {
     const Instrument instrument = assemble(test::microscope());
     const PupilFilter filter(instrument, {});
+    EXPECT_EQ(filter.cells().side, 8u);
     const double reach = 2 * instrument.first_order.depth_of_field;
     const double side = instrument.first_order.field_edge;
     double before = 0;
@@ -41,6 +42,20 @@ TEST(FilterError, OfTheTenfoldObjective) {
         before = error.difference;
     }
     EXPECT_GT(before, 0.1);
+}
+
+// The spherical aberration of the 5x asks for more cells than the 10x has; what is asked for is not changed.
+TEST(FilterError, DecidesHowManyCellsThereAre) {
+    const Instrument instrument = assemble(test::microscope("5x_0.15"));
+    const auto error = [&](const PupilFilter& filter) {
+        return largest_filter_error(filter, instrument, glm::dvec2(0)).difference;
+    };
+    const PupilFilter filter(instrument, {});
+    EXPECT_EQ(filter.cells().side, 14u);
+    EXPECT_LE(error(filter), most_error_of_cells);
+    const PupilFilter fewer(instrument, {.cells = 12});
+    EXPECT_EQ(fewer.cells().side, 12u);
+    EXPECT_GT(error(fewer), most_error_of_cells);
 }
 
 // Without aberration the whole field is as the axis is, but for the cells.

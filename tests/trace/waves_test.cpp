@@ -220,6 +220,8 @@ TEST(Waves, take_fewer_parts_where_the_device_cannot_hold_them) {
         return trace::waves_on_device(options, coarse, device).parts;
     };
     EXPECT_EQ(parts({}), 3);
+    EXPECT_EQ(trace::waves_on_device({}, coarse, device).cells, 8);
+    EXPECT_EQ(trace::waves_on_device({.cells = 10}, coarse, device).cells, 10);
     // 8 bytes a cell and part: 64 x 32^2 x 3^2 cells.
     const auto memory = trace::wave_memory(8, 3, grating_pixels);
     EXPECT_EQ(memory.light, 8u * 64 * 32 * 32 * 9);
@@ -232,6 +234,29 @@ TEST(Waves, take_fewer_parts_where_the_device_cannot_hold_them) {
     EXPECT_EQ(parts({.parts = 2}), 2);
     device.memory_bytes = 1000;
     EXPECT_THROW(parts({}), InputError);
+}
+
+// How light is sorted is known before a tracer is made, and is that of the tracer's filter.
+TEST(Waves, are_told_apart_by_how_their_light_is_sorted) {
+    const auto instrument = turned_microscope();
+    const auto specimen = test::rough_specimen();
+    for (const auto estimator : {trace::Estimator::forward, trace::Estimator::backward}) {
+        for (const std::string device : {"", "host"}) {
+            std::string identity;
+            for (const int cells : {0, 6}) {
+                auto options = with_waves(estimator);
+                options.device = device;
+                options.waves->cells = cells;
+                const auto tracer = device == "host" ? trace::make_host_tracer(instrument, specimen, options)
+                                                     : trace::make_device_tracer(instrument, specimen, options);
+                EXPECT_NE(tracer->identity().toml(), identity);
+                identity = tracer->identity().toml();
+                EXPECT_EQ(identity, trace::expected_identity(instrument, specimen, options).toml());
+                EXPECT_EQ(tracer->pupil_filter()->cells().side, cells == 0 ? 8u : 6u);
+                EXPECT_NE(identity.find(cells == 0 ? "\npupil_cells = 8\n" : "\npupil_cells = 6\n"), std::string::npos);
+            }
+        }
+    }
 }
 
 TEST(Waves, keep_the_light_and_do_not_add_noise) {
