@@ -30,8 +30,8 @@ Command merge_command() {
 
 void run_merge(const CommandOptions& options) {
     const auto folders = options.of<MergeOptions>().folders;
-    fmt::print("{}", measurement::summary(
-                         measurement::merge_stack(folders.front(), {folders.begin() + 1, folders.end()})));
+    fmt::print("{}",
+               measurement::summary(measurement::merge_stack(folders.front(), {folders.begin() + 1, folders.end()})));
 }
 
 } // namespace vkfv::app

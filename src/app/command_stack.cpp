@@ -26,7 +26,8 @@ void take_shard(CommandOptions& options, const std::string& text) {
     const auto second = parted ? std::from_chars(first.ptr + 1, end, count) : first;
     if (!parted || second.ec != std::errc() || second.ptr != end || number < 1 || number > count ||
         count > scan::most_positions) {
-        refuse_argument("--shard " + text, fmt::format("I/N with I from 1 to N, and N at most {}", scan::most_positions),
+        refuse_argument("--shard " + text,
+                        fmt::format("I/N with I from 1 to N, and N at most {}", scan::most_positions),
                         "Write for example --shard 2/8 for the second of eight.");
     }
     options.of<StackOptions>().shard = scan::Shard{number - 1, count};
@@ -37,7 +38,8 @@ void take_shard(CommandOptions& options, const std::string& text) {
 Command stack_command() {
     const Option shard = {.name = "--shard",
                           .value = "I/N",
-                          .description = "Of N shards of the stack, trace the images of number I alone; merge evaluates",
+                          .description =
+                              "Of N shards of the stack, trace the images of number I alone; merge evaluates",
                           .target = Take<std::string>(take_shard)};
     return {.name = "stack",
             .summary =

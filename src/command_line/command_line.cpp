@@ -96,7 +96,9 @@ class CommandLine {
         for (const auto& operand : command.operands) {
             const std::string name = operand.name.substr(0, operand.name.find(' '));
             if (takes_several(operand)) {
-                app_.add_option(name, operands)->expected(operand.least, CLI::detail::expected_max_vector_size)->required();
+                app_.add_option(name, operands)
+                    ->expected(operand.least, CLI::detail::expected_max_vector_size)
+                    ->required();
             } else {
                 app_.add_option_function<std::string>(name, [&](const std::string& one) { operands.push_back(one); })
                     ->required(operand.needed);

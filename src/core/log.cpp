@@ -34,10 +34,9 @@ class JsonFormatter final : public spdlog::formatter {
   public:
     void format(const spdlog::details::log_msg& message, spdlog::memory_buf_t& line) override {
         const auto level = spdlog::level::to_string_view(message.level);
-        const std::string text =
-            json_line("level", {level.data(), level.size()},
-                      {{"text", std::string(message.payload.data(), message.payload.size())}}) +
-            "\n";
+        const std::string text = json_line("level", {level.data(), level.size()},
+                                           {{"text", std::string(message.payload.data(), message.payload.size())}}) +
+                                 "\n";
         line.append(text.data(), text.data() + text.size());
     }
     std::unique_ptr<formatter> clone() const override { return std::make_unique<JsonFormatter>(); }
@@ -74,8 +73,9 @@ std::string json_quoted(std::string_view text) {
 
 void log_failure(const std::string& message, int exit_code) {
     if (as_json) {
-        std::fputs((json_line("level", "error", {{"text", message}, {"exit_code", std::int64_t{exit_code}}}) + "\n").c_str(),
-                   stderr);
+        std::fputs(
+            (json_line("level", "error", {{"text", message}, {"exit_code", std::int64_t{exit_code}}}) + "\n").c_str(),
+            stderr);
     } else {
         std::fputs(("vkfv: " + message + "\n").c_str(), stderr);
     }

@@ -17,7 +17,8 @@ std::uint64_t results_bytes(const Configuration& configuration);
 // Of the disk that the folder is or will be on, for this user.
 std::uint64_t free_bytes(const std::filesystem::path& folder);
 
-// Throws RunError, with the numbers, where the images that the store lacks, or the results, will not fit. results: bytes.
+// Throws RunError, with the numbers, where the images that the store lacks, or the results, will not fit. results:
+// bytes.
 void require_space(const scan::ImageStore& store, std::uint64_t results);
 
 // "3.2 GB": decimal, as disks are sold.

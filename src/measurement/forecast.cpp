@@ -56,8 +56,7 @@ class Prober {
   public:
     Prober(const Configuration& configuration, double focal_height)
         : configuration_(configuration), focal_height_(focal_height), specimen_(make_specimen(configuration)),
-          instrument_(instrument_for(configuration, specimen_, focal_height)),
-          devices_(configuration.trace.device) {}
+          instrument_(instrument_for(configuration, specimen_, focal_height)), devices_(configuration.trace.device) {}
 
     // The second of two exposures: the first one warms up.
     Probe expose(std::uint64_t rays) const {
@@ -101,8 +100,7 @@ Forecast forecast(const Configuration& configuration) {
     const Prober prober(configuration, positions[positions.size() / 2]);
     const Probe first = prober.expose(first_rays);
     const double first_rate = static_cast<double>(first.image.rays) / first.image.seconds;
-    const Probe probe = prober.expose(
-        std::max(2 * first_rays, static_cast<std::uint64_t>(first_rate * probe_seconds)));
+    const Probe probe = prober.expose(std::max(2 * first_rays, static_cast<std::uint64_t>(first_rate * probe_seconds)));
 
     Forecast result;
     result.devices = prober.devices();
@@ -118,8 +116,7 @@ Forecast forecast(const Configuration& configuration) {
     result.noise = 1 / signal_to_noise(probe.image) / std::sqrt(more);
     // Beside the rays an image takes a time that does not depend on their number.
     const double between = tried - static_cast<double>(first.image.rays);
-    const double seconds_a_ray =
-        between > 0 ? std::max(0.0, probe.image.seconds - first.image.seconds) / between : 0;
+    const double seconds_a_ray = between > 0 ? std::max(0.0, probe.image.seconds - first.image.seconds) / between : 0;
     result.seconds_per_image = probe.image.seconds + (rays - tried) * seconds_a_ray;
     result.seconds = result.seconds_per_image * result.images / result.devices;
     result.device = probe.device;
@@ -168,11 +165,11 @@ std::string summary(const Forecast& forecast) {
     add("time", fmt::format("{:.3g} s an image, {} in all, without start and evaluation", forecast.seconds_per_image,
                             duration_text(forecast.seconds)));
     if (forecast.device_memory_there > 0) {
-        add("memory of the device", fmt::format("{} of {}", bytes_text(forecast.device_memory),
-                                                bytes_text(forecast.device_memory_there)));
+        add("memory of the device",
+            fmt::format("{} of {}", bytes_text(forecast.device_memory), bytes_text(forecast.device_memory_there)));
     }
-    add("memory of the host", fmt::format("about {} of {}", bytes_text(forecast.host_memory),
-                                          bytes_text(forecast.host_memory_there)));
+    add("memory of the host",
+        fmt::format("about {} of {}", bytes_text(forecast.host_memory), bytes_text(forecast.host_memory_there)));
     add("disk", fmt::format("{} of {} that are free", bytes_text(forecast.disk), bytes_text(forecast.disk_there)));
     return text;
 }

@@ -24,7 +24,7 @@ struct Forecast {
     double seconds = 0;                 // of all images
 
     // Bytes: at most at a time, and what there is.
-    std::uint64_t device_memory = 0; // without what the library of Fourier transforms keeps for itself
+    std::uint64_t device_memory = 0;       // without what the library of Fourier transforms keeps for itself
     std::uint64_t device_memory_there = 0; // 0: the host's
     std::uint64_t host_memory = 0;         // estimated
     std::uint64_t host_memory_there = 0;

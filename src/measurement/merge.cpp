@@ -37,7 +37,8 @@ std::string ranges_text(const std::vector<int>& numbers) {
 // That traced the images of this identity, and would trace them now: the device stays, kernels and instrument are those
 // that this program has.
 trace::TracerIdentity tracer_of(const std::string& identity, const StackScene& scene, const fs::path& folder) {
-    auto tracer = trace::TracerIdentity::parse(TomlTable::parse(identity, folder / scan::configuration_name).table("made"));
+    auto tracer =
+        trace::TracerIdentity::parse(TomlTable::parse(identity, folder / scan::configuration_name).table("made"));
     const auto& traced = scene.configuration.trace;
     const optics::Instrument through =
         traced.estimator == trace::Estimator::backward ? optics::turned_round(scene.instrument) : scene.instrument;
@@ -94,25 +95,26 @@ StackResult merge_stack(const fs::path& folder, const std::vector<fs::path>& sha
     }
 
     enter_stage("folder of the stack");
-    say_when_interrupted(fmt::format("What was merged is in {}: give the same command again to continue.",
-                                     folder.string()));
+    say_when_interrupted(
+        fmt::format("What was merged is in {}: give the same command again to continue.", folder.string()));
     scan::ImageStore store(folder, description);
     require_space(store, results_bytes(configuration));
     gather_images(store, shards);
     store.write_ledger();
 
     std::optional<optics::PupilFilter> filter;
-    if (configuration.trace.waves && !configuration.trace.nonsequential) {
-        auto waves = *configuration.trace.waves;
-        waves.parts = tracer.parts_per_pixel;
+    if (tracer.sorting.pupil_cells != 0) {
+        auto waves = configuration.trace.waves.value_or(optics::WaveOptions());
+        waves.cells = tracer.sorting.pupil_cells;
+        waves.parts = tracer.sorting.parts_per_pixel;
         filter.emplace(scene.instrument, waves);
     }
     enter_stage("images");
-    GrowingEvaluation evaluation(scene, focus_planes_for(configuration.evaluate_on == EvaluateOn::device
-                                                             ? EvaluateOn::device
-                                                             : EvaluateOn::host,
-                                                         configuration.trace.device),
-                                 filter ? &*filter : nullptr);
+    GrowingEvaluation evaluation(
+        scene,
+        focus_planes_for(configuration.evaluate_on == EvaluateOn::device ? EvaluateOn::device : EvaluateOn::host,
+                         configuration.trace.device),
+        filter ? &*filter : nullptr);
     for (std::size_t image = 0; image < scene.positions.size(); ++image) {
         evaluation.add(static_cast<int>(image),
                        scan::read_frame(folder, static_cast<int>(image), scene.positions[image]));

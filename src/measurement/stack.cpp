@@ -43,9 +43,8 @@ StackResult trace_and_evaluate(const StackScene& scene, const WorkingDevices& de
 StackResult measure_stack(const Configuration& configuration, Progress& progress) {
     const StackScene scene(configuration);
     StackResult result;
-    work_with_devices(configuration.trace.device, [&](const WorkingDevices& devices) {
-        result = trace_and_evaluate(scene, devices, progress);
-    });
+    work_with_devices(configuration.trace.device,
+                      [&](const WorkingDevices& devices) { result = trace_and_evaluate(scene, devices, progress); });
     return result;
 }
 

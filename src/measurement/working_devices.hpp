@@ -26,8 +26,7 @@ class WorkingDevices {
     explicit WorkingDevices(const std::string& selector);
 
     // On all of them; what the options say of devices and batches' divisor does not count.
-    std::unique_ptr<trace::Tracer> make_tracer(const optics::Instrument& instrument,
-                                               const specimen::Specimen& specimen,
+    std::unique_ptr<trace::Tracer> make_tracer(const optics::Instrument& instrument, const specimen::Specimen& specimen,
                                                const trace::TraceOptions& options) const;
 
     int size() const { return static_cast<int>(members_.size()); }

@@ -42,8 +42,7 @@ LogFields fields_of(int image, double z, const trace::Image& exposure) {
 
 } // namespace
 
-StackSummary run_stack(const trace::Tracer& tracer, ImageStore& store, Progress& progress,
-                       const ImageVisitor& visit) {
+StackSummary run_stack(const trace::Tracer& tracer, ImageStore& store, Progress& progress, const ImageVisitor& visit) {
     for (const std::string& sentence : store.damaged()) {
         spdlog::warn("{}; it is traced again", sentence);
     }

@@ -3,7 +3,8 @@
 //   stack.toml              the configuration, and in comments the identity: what the images depend on
 //   images/z_0000.tif ...   one exposure each, float32 W per pixel; the file's first row has the highest y
 //   ledger.csv              a row an image: where its light went
-//   timings.csv             (timings_2_of_8.csv of a shard) a row an exposure, the device's work and an evaluation, in the order of their making; no
+//   timings.csv             (timings_2_of_8.csv of a shard) a row an exposure, the device's work and an evaluation, in
+//   the order of their making; no
 //                           part of the result, since a clock is in it: all others hold the same bytes however often a
 //                           run was interrupted
 //   checksums.sha256, .lock core/result_folder.hpp

@@ -54,7 +54,8 @@ TracerIdentity TracerIdentity::parse(const TomlTable& table) {
             .driver = text("driver"),
             .traversal = text("traversal"),
             .fourier = text("fourier"),
-            .parts_per_pixel = static_cast<int>(number("parts_per_pixel")),
+            .sorting = {.pupil_cells = static_cast<int>(number("pupil_cells")),
+                        .parts_per_pixel = static_cast<int>(number("parts_per_pixel"))},
             .kernels = table.string("kernels_digest"),
             .instrument = table.string("instrument_digest")};
 }

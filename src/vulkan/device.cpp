@@ -213,9 +213,8 @@ std::size_t one_device(std::span<const DeviceReport> reports, const std::string&
                         "part of its name",
                         selector, describe(reports)));
     }
-    const std::string subject = selector.empty()
-                                    ? "No Vulkan device is usable"
-                                    : fmt::format("The Vulkan device \"{}\" is not usable", selector);
+    const std::string subject = selector.empty() ? "No Vulkan device is usable"
+                                                 : fmt::format("The Vulkan device \"{}\" is not usable", selector);
     throw DeviceError(fmt::format("{}; there are:{}\nUpdate the driver of the graphics card, or install the package "
                                   "mesa-vulkan-drivers, whose lavapipe (Mesa 25 or newer) runs on the CPU.{}",
                                   subject, describe(reports), driver_selection()));

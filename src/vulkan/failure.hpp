@@ -31,7 +31,7 @@ class DeviceFailure : public RunError {
 
 // A lost device, exhausted memory or another failure, each with its remedy. device: its name; empty: not known.
 DeviceFailure run_error_of(const vk::SystemError& failure, const std::string& device = {},
-                      std::string_view memory_remedy = usual_memory_remedy);
+                           std::string_view memory_remedy = usual_memory_remedy);
 
 // Whether the same call may succeed when the command is run again: the device was lost, or has not enough memory.
 // Others tell of a device or a driver that cannot do what is asked.

@@ -115,8 +115,8 @@ TEST_F(Cluster, MergeNamesWhatIsMissingAndRefusesWhatDoesNotBelong) {
     EXPECT_EQ(other.exit_code, 2);
     EXPECT_THAT(other.standard_error, HasSubstr("trace.seed: 5 there, 1 here"));
     // Another program or device: by the identity that it left.
-    for (const auto& [from, to] : {std::pair{"kernels_digest = \"", "kernels_digest = \"0"},
-                                   {"device = \"", "device = \"another "}}) {
+    for (const auto& [from, to] :
+         {std::pair{"kernels_digest = \"", "kernels_digest = \"0"}, {"device = \"", "device = \"another "}}) {
         ASSERT_EQ(stack("second", {"--shard", "2/3", "--quiet"}).exit_code, 0);
         const auto toml = out("second") / "stack.toml";
         write_file(toml, replaced(read_file(toml), from, to));
@@ -275,9 +275,8 @@ TEST_F(Cluster, AForecastTellsWhatTheStackThenTakes) {
 }
 
 TEST_F(Cluster, WhatCannotFitOnTheDiskIsRefusedFirst) {
-    const auto result =
-        stack("large", {"--set", "detector.pixels=4096", "--set", "scan.z_step_um=0.0005", "--set",
-                        "diffraction.model=none", "--estimator", "forward"}); // 8001 images of 67 MB
+    const auto result = stack("large", {"--set", "detector.pixels=4096", "--set", "scan.z_step_um=0.0005", "--set",
+                                        "diffraction.model=none", "--estimator", "forward"}); // 8001 images of 67 MB
     const auto free = fs::space(folder_).available;
     if (free > 600'000'000'000) {
         GTEST_SKIP() << "a disk of " << free << " bytes";

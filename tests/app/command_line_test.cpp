@@ -64,6 +64,8 @@ TEST(CommandLine, ACommandIsItsOption) {
                                       {"surface", "out/truth.tif", "--form", "none", "--s_filter_um", "3"},
                                       {"surface", "part.x3p", "--filter", "median"},
                                       {"surface", "part.x3p", "--s_filter_um", "80", "--l_filter_um", "5"},
+                                      {"merge", "out"},
+                                      {"merge", "nowhere"},
                                       {"verify", "out"},
                                       {"verify", "nowhere"},
                                       {"check", "c.toml"},
@@ -141,7 +143,7 @@ Words needed_by(const app::Command& command) {
 
 std::string good_value(const app::Option& option) {
     static const std::map<std::string, std::string> values = {
-        {"--set", "a=1"}, {"--form", "none"}, {"--profile", "1,2,3,4"}};
+        {"--set", "a=1"}, {"--form", "none"}, {"--profile", "1,2,3,4"}, {"--shard", "1/2"}};
     const auto found = values.find(option.name);
     return found != values.end() ? found->second : option.choices.empty() ? "1" : option.choices.front();
 }

@@ -19,7 +19,8 @@ std::vector<Fault> counted_calls(const std::filesystem::path& log) {
     for (std::string line; std::getline(lines, line);) {
         const auto space = line.find(' ');
         const std::string call = line.substr(0, space);
-        calls.push_back({.call = call, .number = ++counts[call], .effect = {}, .lasts = false, .subject = line.substr(space + 1)});
+        calls.push_back(
+            {.call = call, .number = ++counts[call], .effect = {}, .lasts = false, .subject = line.substr(space + 1)});
     }
     return calls;
 }

@@ -105,14 +105,13 @@ TEST(Devices, ASelectorIsAnIndexOrElsePartOfAName) {
 }
 
 TEST(Devices, SeveralByAListOrAll) {
-    const std::vector<DeviceReport> reports = {report(0, "llvmpipe (LLVM 15, 256 bits)", "CPU", 1),
-                                               report(1, "H200", "discrete GPU", 140),
-                                               report(2, "H200", "discrete GPU", 140),
-                                               report(3, "H200", "discrete GPU", 140, {"something"}),
-                                               report(4, "A2", "discrete GPU", 16)};
+    const std::vector<DeviceReport> reports = {
+        report(0, "llvmpipe (LLVM 15, 256 bits)", "CPU", 1), report(1, "H200", "discrete GPU", 140),
+        report(2, "H200", "discrete GPU", 140), report(3, "H200", "discrete GPU", 140, {"something"}),
+        report(4, "A2", "discrete GPU", 16)};
     EXPECT_THAT(choose_devices(reports, "all"), ElementsAre(1, 2));
     EXPECT_THAT(choose_devices(reports, "2,1"), ElementsAre(2, 1));
-    EXPECT_THAT(choose_devices(reports, "0, 0"), ElementsAre(0, 0)); // a device twice
+    EXPECT_THAT(choose_devices(reports, "0, 0"), ElementsAre(0, 0));      // a device twice
     EXPECT_THAT(choose_devices(reports, "LLVM 15, 256"), ElementsAre(0)); // a comma of the name's own
     EXPECT_THAT(choose_devices(reports, ""), ElementsAre(1));
     EXPECT_EQ(choose_device(reports, {"2,1"}), 2U);
