@@ -6,6 +6,7 @@
 #include "measurement/disk_space.hpp"
 #include "measurement/stack.hpp"
 #include "measurement/stack_parts.hpp"
+#include "vulkan/device.hpp"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -45,6 +46,29 @@ trace::TracerIdentity tracer_of(const std::string& identity, const StackScene& s
     tracer.kernels = trace::kernels_digest();
     tracer.instrument = trace::instrument_digest(through);
     return tracer;
+}
+
+// Where the run that traces all would evaluate: its device's rounding is the results'. Elsewhere they are not its
+// bytes.
+topography::FocusPlanesMaker planes_of_run(const Configuration& configuration, const trace::TracerIdentity& tracer) {
+    if (configuration.evaluate_on == EvaluateOn::host || tracer.device == "host") {
+        return focus_planes_for(configuration.evaluate_on, std::string("host"));
+    }
+    std::vector<vulkan::DeviceReport> devices;
+    try {
+        devices = vulkan::list_devices();
+    } catch (const DeviceError&) { // none here
+    }
+    for (const auto& device : devices) {
+        if (device.name == tracer.device && device.driver == tracer.driver && device.lacking.empty()) {
+            return focus_planes_for(configuration.evaluate_on, fmt::format("{}", device.index));
+        }
+    }
+    spdlog::warn(
+        "{} is not here: the heights are found on the host, and may differ from a single run's by some tenths of "
+        "a nanometre",
+        tracer.device);
+    return focus_planes_for(EvaluateOn::host, std::string("host"));
 }
 
 void require_same_stack(const fs::path& folder, const std::string& identity) {
@@ -110,11 +134,7 @@ StackResult merge_stack(const fs::path& folder, const std::vector<fs::path>& sha
         filter.emplace(scene.instrument, waves);
     }
     enter_stage("images");
-    GrowingEvaluation evaluation(
-        scene,
-        focus_planes_for(configuration.evaluate_on == EvaluateOn::device ? EvaluateOn::device : EvaluateOn::host,
-                         configuration.trace.device),
-        filter ? &*filter : nullptr);
+    GrowingEvaluation evaluation(scene, planes_of_run(configuration, tracer), filter ? &*filter : nullptr);
     for (std::size_t image = 0; image < scene.positions.size(); ++image) {
         evaluation.add(static_cast<int>(image),
                        scan::read_frame(folder, static_cast<int>(image), scene.positions[image]));

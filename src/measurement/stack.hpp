@@ -36,7 +36,8 @@ ShardResult trace_shard(const Configuration& configuration, scan::Shard shard, P
 std::string summary(const ShardResult& shard);
 
 // Puts the images of a stack's shards into one folder, which may hold some of them already, and evaluates them as the
-// run that traces all of them would: its bytes. Needs no device. shards: other folders of the same stack; they stay as
+// run that traces all of them would: its bytes. Needs no device; without the one that traced, a warning tells that the
+// heights of a GPU may differ in their last digits. shards: other folders of the same stack; they stay as
 // they are. Throws InputError where one is of another configuration, program or device, an image is not whole, or some
 // are missing.
 StackResult merge_stack(const std::filesystem::path& folder, const std::vector<std::filesystem::path>& shards);
