@@ -362,6 +362,6 @@ VKFV_FUNCTION CellPlace detection_place(Instrument instrument, PupilCells cells,
     CellPlace place;
     place.column = detection.column * int(cells.parts) + pixel_part(cells, column);
     place.row = detection.row * int(cells.parts) + pixel_part(cells, row);
-    place.cell = pupil_cell(cells, detection.slope - real2(detection.x, detection.y) * cells.chief_position);
+    place.cell = pupil_cell(cells, detection.slope - chief_slope(cells, real2(detection.x, detection.y)));
     return place;
 }

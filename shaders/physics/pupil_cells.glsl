@@ -6,7 +6,9 @@
 #define VKFV_PUPIL_CELLS_FIELDS(FIELD) \
     FIELD(uint, side)             /* cells across the pupil, an even number; 0: light is not sorted */ \
     FIELD(uint, parts)            /* of a pixel's side */ \
-    FIELD(real, chief_position)   /* 1/mm: the chief ray's slope at the detector over its position there */ \
+    FIELD(real, chief_x)          /* slope of the chief ray that lands on the detector's middle */ \
+    FIELD(real, chief_y) \
+    FIELD(real, chief_position)   /* 1/mm: how the chief ray's slope grows with its position there */ \
     FIELD(real, per_slope)        /* 1 over the largest slope about the chief ray */
 struct PupilCells {
     VKFV_PUPIL_CELLS_FIELDS(VKFV_DECLARE)
@@ -23,6 +25,11 @@ VKFV_FUNCTION uint pupil_cell(PupilCells cells, real2 about_chief) {
     int column = clamp(int(floor((about_chief.x * cells.per_slope + real(1.0)) * half_side)), 0, last);
     int row = clamp(int(floor((about_chief.y * cells.per_slope + real(1.0)) * half_side)), 0, last);
     return uint(row) * cells.side + uint(column);
+}
+
+// slope: of the chief ray that lands on this position of the detector, mm.
+VKFV_FUNCTION real2 chief_slope(PupilCells cells, real2 position) {
+    return real2(cells.chief_x, cells.chief_y) + position * cells.chief_position;
 }
 
 // Which part of a pixel: of a coordinate in pixels.

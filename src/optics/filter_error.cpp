@@ -44,7 +44,8 @@ class PupilLattice {
           displacement_(cell_.size()), spread_(cell_.size()) {
         const double wave_number = 2 * pi / wavefront.wavelength();
         const Wavefront raised = wavefront.at_height(wavefront.height() + 1);
-        const glm::dvec2 chief_slope = wavefront.chief_slope() - cells.chief_position * wavefront.detector_point();
+        const glm::dvec2 chief_slope =
+            wavefront.chief_slope() - physics::f64::chief_slope(cells, wavefront.detector_point());
         for (int j = -half_; j < half_; ++j) {
             for (int i = -half_; i < half_; ++i) {
                 const glm::dvec2 p = wavefront.chief() + wavefront.wavelength() * unit * glm::dvec2(i + 0.5, j + 0.5);

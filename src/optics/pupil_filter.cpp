@@ -120,13 +120,16 @@ Complex interpolated(const Value* values, int steps, double x, double y) {
     return row(corner) * (1 - v) + row(corner + 2 * steps + 1) * v;
 }
 
-// The chief ray's slope at the detector over its position there, 1/mm, at the field's edge.
+// How the chief ray's slope at the detector grows with its position there, 1/mm: from the axis to the field's edge.
 double chief_slope_per_position(const Instrument& instrument) {
     const Imaging imaging = imaging_of(instrument);
-    const glm::dvec2 field(instrument.first_order.field_edge, 0);
-    const auto landing =
-        imaging.trace(field, instrument.first_order.best_focus_offset, imaging.chief_cosines(field), 0);
-    return landing && landing->position.x != 0 ? landing->direction.x / landing->direction.z / landing->position.x : 0;
+    const auto land = [&](glm::dvec2 field) {
+        return imaging.trace(field, instrument.first_order.best_focus_offset, imaging.chief_cosines(field), 0);
+    };
+    const auto axis = land(glm::dvec2(0));
+    const auto edge = land(glm::dvec2(instrument.first_order.field_edge, 0));
+    const double apart = axis && edge ? edge->position.x - axis->position.x : 0;
+    return apart != 0 ? (edge->direction.x / edge->direction.z - axis->direction.x / axis->direction.z) / apart : 0;
 }
 
 // What turns the rays' into the waves', as far as it does not amplify.
@@ -166,8 +169,12 @@ PupilFilter::PupilFilter(const Instrument& instrument, const WaveOptions& option
     part_pitch_ = instrument.first_order.pixel_pitch / cells_.parts;
     cells_.chief_position = chief_slope_per_position(instrument);
     double largest = 0;
+    double weight = 0;
+    glm::dvec2 chief(0);
     for (const SpectralNode& node : nodes) {
         const Wavefront wavefront(instrument, node);
+        weight += node.weight;
+        chief += node.weight * wavefront.chief_slope();
         cutoff_ = std::max(cutoff_, 2 * wavefront.largest_rim() / wavefront.wavelength());
         constexpr int azimuths = 64;
         for (int k = 0; k < azimuths; ++k) {
@@ -184,6 +191,8 @@ PupilFilter::PupilFilter(const Instrument& instrument, const WaveOptions& option
                           .remedy = "See by vkfv layout what stops the light, or set diffraction.model = \"none\"."});
     }
     cells_.per_slope = 1 / largest;
+    cells_.chief_x = chief.x / weight;
+    cells_.chief_y = chief.y / weight;
     shares_.resize(static_cast<std::size_t>(cell_count()));
     table_.resize(shares_.size() * static_cast<std::size_t>((2 * steps_ + 1) * (steps_ + 1)));
     for (const SpectralNode& node : nodes) {

@@ -58,6 +58,18 @@ TEST(FilterError, DecidesHowManyCellsThereAre) {
     EXPECT_GT(error(fewer), most_error_of_cells);
 }
 
+// Cells are those of the pupil, wherever the detector sees it.
+TEST(FilterError, OfATiltedDetectorIsThatOfAnUprightOne) {
+    auto description = test::microscope();
+    const auto on_axis = [&] {
+        const Instrument instrument = assemble(description);
+        return largest_filter_error(PupilFilter(instrument, {.cells = 8}), instrument, glm::dvec2(0)).difference;
+    };
+    const double upright = on_axis();
+    description.detector_placement.change.tilt_y = 5 * pi / 180;
+    EXPECT_NEAR(on_axis(), upright, 0.01); // before the chief ray's slope was taken off: 0.7
+}
+
 // Without aberration the whole field is as the axis is, but for the cells.
 TEST(FilterError, OfIdealLensesIsThatOfTheAxis) {
     const Instrument instrument = assemble(test::ideal_microscope(0.28));

@@ -99,7 +99,8 @@ constexpr double grating_wavelength = 0.55e-3;
 constexpr int grating_pixels = 32;
 
 // An ideal lens, pixels of an eighth of the shortest wave that it passes.
-optics::Instrument ideal_microscope(double aperture) {
+// tilt: of the detector, rad.
+optics::Instrument ideal_microscope(double aperture, double tilt = 0) {
     auto description = test::microscope_description();
     const double focal_length = aperture > 0.5 ? 4 : 20;
     description.spectrum = optics::Spectrum::line(grating_wavelength * um_per_mm);
@@ -109,6 +110,7 @@ optics::Instrument ideal_microscope(double aperture) {
     description.detector_pixels = grating_pixels;
     description.detector_size = grating_pixels * grating_wavelength / (8 * aperture) * 200 / focal_length;
     description.field_stop_radius = 0.1;
+    description.detector_placement.change.tilt_y = tilt;
     description.turned = true;
     return optics::assemble(description);
 }
@@ -179,6 +181,29 @@ TEST(Waves, give_gratings_the_contrast_of_the_debye_integral) {
                 }
             }
         }
+    }
+}
+
+// A detector that stands askew sees the whole pupil from aside: by 5 degrees, three times the pupil's own half width.
+TEST(Waves, follow_a_detector_that_is_tilted) {
+    constexpr double aperture = 0.28, s = 0.5, waves = 0.25, angle = 0.39, degrees = 5;
+    const auto instrument = ideal_microscope(aperture, degrees * pi / 180);
+    const double period = grating_wavelength / (2 * aperture * s);
+    specimen::Analytic plane;
+    plane.x_min = plane.y_min = -0.1;
+    plane.x_max = plane.y_max = 0.1;
+    specimen::Specimen specimen{plane, specimen::Material{{{"lambertian", 1, {}}}}};
+    specimen.reflectance = specimen::make_reflectance_map(
+        {.kind = specimen::Reflectance::Kind::grating, .angle = angle, .period = period}, {-0.1, -0.1, 0.1, 0.1}, {});
+    const double z = 2 * waves * grating_wavelength / (aperture * aperture);
+    const double expected = debye_transfer(aperture, grating_wavelength, s, z);
+    for (const auto estimator : {trace::Estimator::forward, trace::Estimator::backward}) {
+        auto options = with_waves(estimator);
+        options.rays = (estimator == trace::Estimator::forward ? 4096 : 128) * grating_pixels * grating_pixels;
+        options.max_bounces = 1;
+        const auto image = trace::make_device_tracer(instrument, specimen, options)->expose(z, 1);
+        EXPECT_NEAR(grating_contrast(image.flux, period, angle, instrument.first_order.pixel_pitch), expected, 0.05)
+            << static_cast<int>(estimator);
     }
 }
 
