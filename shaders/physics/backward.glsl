@@ -233,14 +233,14 @@ VKFV_FUNCTION BackwardStart backward_start(Lattice lattice, LatticeShift shift, 
 }
 
 // Where the light of a path is sorted to. In the detector's frame light arrives with the slope
-// (-pupil_radius pupil.x, pupil_radius pupil.y) about the chief ray's.
+// (-pupil_radius pupil.x, pupil_radius pupil.y) about what the chief ray's is where one lands upright on its middle.
 VKFV_FUNCTION CellPlace backward_place(BackwardOptics backward, PupilCells cells, int column, int row,
                                        BackwardStart start) {
     CellPlace place;
     place.column = column * int(cells.parts) + pixel_part(cells, start.column);
     place.row = row * int(cells.parts) + pixel_part(cells, start.row);
-    place.cell =
-        pupil_cell(cells, real2(-backward.pupil_radius * start.pupil.x, backward.pupil_radius * start.pupil.y));
+    real2 slope = real2(-backward.pupil_radius * start.pupil.x, backward.pupil_radius * start.pupil.y);
+    place.cell = pupil_cell(cells, slope - chief_slope(cells, real2(0.0, 0.0)));
     return place;
 }
 
