@@ -240,7 +240,7 @@ VKFV_FUNCTION CellPlace backward_place(BackwardOptics backward, PupilCells cells
     place.column = column * int(cells.parts) + pixel_part(cells, start.column);
     place.row = row * int(cells.parts) + pixel_part(cells, start.row);
     real2 slope = real2(-backward.pupil_radius * start.pupil.x, backward.pupil_radius * start.pupil.y);
-    place.cell = pupil_cell(cells, slope - chief_slope(cells, real2(0.0, 0.0)));
+    place.cell = pupil_cell(cells, slope - real2(cells.chief_x, cells.chief_y));
     return place;
 }
 
