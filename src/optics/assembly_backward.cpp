@@ -60,16 +60,22 @@ std::pair<double, double> crossings(const Outline& outline, double curvature) {
 
 // The exit pupil as the detector sees it: where chief rays come from, and the widest cone about them.
 struct ExitPupil {
-    double per_position = 0; // slope of the chief ray over its position on the detector, 1/mm
-    double radius = 0;       // of slopes about it
+    double per_position = 0; // how the chief ray's slope grows with its position on the detector, 1/mm
+    double radius = 0;       // of slopes about per_position times the position
 };
 
 ExitPupil exit_pupil(const Imaging& imaging, double field_half_side, double field_radius) {
     glm::dvec2 mean_position(0);
     glm::dvec2 mean_slope(0);
-    for (const Rim& rim : rims_at_detector(imaging, outline_at(imaging, {field_half_side, 0}))) {
-        mean_position += rim.position;
-        mean_slope += rim.slope;
+    const auto add = [&](glm::dvec2 field, double times) {
+        for (const Rim& rim : rims_at_detector(imaging, outline_at(imaging, field))) {
+            mean_position += times * rim.position;
+            mean_slope += times * rim.slope;
+        }
+    };
+    add({field_half_side, 0}, 1);
+    if (!imaging.symmetric) {
+        add({0, 0}, -1); // a tilted detector sees all pupils from aside
     }
     ExitPupil pupil;
     pupil.per_position = glm::dot(mean_slope, mean_position) / glm::dot(mean_position, mean_position);
