@@ -177,10 +177,6 @@ TEST_F(VulkanFaults, OfAStack) {
     fail_every_call_of(traced("--stack", {"--set", "topography.evaluate_on=device"}));
 }
 
-TEST_F(VulkanFaults, OfDevicesAtATime) {
-    fail_every_call_of(traced("--stack", {"--device", "0,0"}), 3);
-}
-
 TEST_F(VulkanFaults, OfAnImageTracedBackward) {
     fail_every_call_of(traced("--image", {"--z", "0", "--estimator", "backward"}), 2);
 }
