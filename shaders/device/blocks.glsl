@@ -31,10 +31,11 @@ struct BackwardBlock {
     Lattice lattice;
 };
 
-// Pushed: some points of every pixel's lattice.
+// Pushed: chunks of the pixels' lattices, those of one number after another, each in the order of the pixels.
 struct BackwardBatch {
     uint first_chunk;
-    uint chunks; // for each pixel
+    uint first_pixel; // whose first_chunk is the first
+    uint chunks;      // pixels and numbers together
     uint chunk_points;
     uint randomisation;
 };

@@ -45,9 +45,9 @@ void main() {
     // Workgroups stand in rows: a large detector has more than one row may hold.
     uint group = gl_WorkGroupID.y * gl_NumWorkGroups.x + gl_WorkGroupID.x;
     uint index = group * gl_WorkGroupSize.x + gl_LocalInvocationIndex;
-    if (index < pixel_count * batch.chunks) {
-        uint pixel = index % pixel_count;
-        uint chunk = batch.first_chunk + index / pixel_count;
+    if (index < batch.chunks) {
+        uint pixel = (batch.first_pixel + index) % pixel_count;
+        uint chunk = batch.first_chunk + (batch.first_pixel + index) / pixel_count;
         LatticeShift shift = lattice_shift(exposure.seed, exposure.image, pixel, batch.randomisation);
         int row = int(pixel) / instrument.detector_pixels;
         int column = int(pixel) - row * instrument.detector_pixels;

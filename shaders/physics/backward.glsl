@@ -233,7 +233,8 @@ VKFV_FUNCTION BackwardStart backward_start(Lattice lattice, LatticeShift shift, 
 }
 
 // Where the light of a path is sorted to. In the detector's frame light arrives with the slope
-// (-pupil_radius pupil.x, pupil_radius pupil.y) about what the chief ray's is where one lands upright on its middle.
+// (-pupil_radius pupil.x, pupil_radius pupil.y) over pupil_position times its place; a tilted detector's chief ray has
+// one of its own besides.
 VKFV_FUNCTION CellPlace backward_place(BackwardOptics backward, PupilCells cells, int column, int row,
                                        BackwardStart start) {
     CellPlace place;

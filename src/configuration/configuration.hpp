@@ -68,8 +68,10 @@ struct Configuration : ReadKeys {
     std::filesystem::path flatness_file; // a flat measured by the same instrument; empty: no correction
     topography::Band band;               // of the second comparison with the truth; unlimited: there is none
     std::filesystem::path output_directory;
-    std::vector<std::string> topography_files; // names under which the topography is written
-    std::optional<Sweep> sweep;                // belongs to no image: neither in `canonical` nor in `identity`
+    static constexpr double usual_checkpoint_interval = 60; // s
+    double checkpoint_interval = usual_checkpoint_interval; // of an exposure that takes longer; 0: none are kept
+    std::vector<std::string> topography_files;              // names under which the topography is written
+    std::optional<Sweep> sweep; // belongs to no image: neither in `canonical` nor in `identity`
 };
 
 // Throws InputError.

@@ -41,6 +41,8 @@ std::filesystem::path without_dots(const std::filesystem::path& path) {
     return normal.has_filename() || normal == normal.root_path() ? normal : normal.parent_path();
 }
 
+constexpr double longest_checkpoint_interval = 1e6; // s
+
 enum class ImageFormat { float32, uint16 };
 
 const FileKey directory = without_influence(
@@ -52,6 +54,9 @@ const ChoiceKey<ImageFormat> images("images",
                                     {{ImageFormat::float32, "float32", "radiant flux in W"},
                                      {ImageFormat::uint16, "uint16", "not available yet"}},
                                     ImageFormat::float32, "Values of the images' pixels.");
+const NumberKey checkpoint = without_influence(NumberKey(
+    "checkpoint_s", NumberRange::within(0, longest_checkpoint_interval), Configuration::usual_checkpoint_interval,
+    "An exposure that takes longer is kept half done, so often; 0: never."));
 
 const ChoiceKey<bool> of =
     without_influence(ChoiceKey<bool>("of", {{false, "images", "at one height"}, {true, "stacks", "each evaluated"}},
@@ -78,7 +83,7 @@ const KeyTable& output_keys() {
                                 .meaning = "Where results go, and in which formats.",
                                 .subject = "an output",
                                 .kind = "",
-                                .keys = {&directory, &surfaces, &images}};
+                                .keys = {&directory, &surfaces, &images, &checkpoint}};
     return table;
 }
 
@@ -121,6 +126,7 @@ void read_output(const TomlTable& root, Configuration& configuration) {
         configuration.topography_files.emplace_back(format->file);
     }
     section.record(surfaces, fmt::format("[{}]", fmt::join(formats, ", ")));
+    configuration.checkpoint_interval = section.number(checkpoint);
     if (section.choice(images) != ImageFormat::float32) {
         section.note(images, "\"float32\"; 16-bit counts are not available yet", "Choose images = \"float32\".");
     }

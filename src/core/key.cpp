@@ -25,7 +25,7 @@ std::string Key::unit() const {
     if (type != Type::number && type != Type::numbers) {
         return {};
     }
-    constexpr std::array units = {"mm", "um", "deg", "W"};
+    constexpr std::array units = {"mm", "um", "deg", "W", "s"};
     for (const char* unit : units) {
         if (name.ends_with(std::string("_") + unit)) {
             return unit;

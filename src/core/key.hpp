@@ -50,7 +50,7 @@ class Key {
     std::vector<std::string> kinds{}; // of its table that have it, by the table's `kind` key; empty: all
     Influence influence = Influence::images;
 
-    // "mm", "um", "deg", "W"; empty: a number without a unit, or no number.
+    // "mm", "um", "deg", "W", "s"; empty: a number without a unit, or no number.
     std::string unit() const;
     // "> 0", "1 to 64", "\"disc\" or \"ring\""; empty: every value of the type.
     std::string allowed() const;

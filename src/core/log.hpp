@@ -14,7 +14,7 @@ namespace vkfv {
 void open_log();
 
 // From now on each line is an object with "time" (ISO 8601, UTC) and "level" or "event": messages of the log with
-// "text", and what log_event() is given. Interruptions too.
+// "text", and what core/progress.hpp tells. Interruptions too, without a time, which a signal handler cannot tell.
 void log_as_json();
 bool logs_json();
 

@@ -1,5 +1,6 @@
 #include "measurement/exposure.hpp"
 
+#include "core/digest.hpp"
 #include "core/pixel_grid.hpp"
 #include "core/stages.hpp"
 #include "core/units.hpp"
@@ -7,12 +8,16 @@
 #include "measurement/assembly.hpp"
 #include "measurement/wave_limits.hpp"
 #include "measurement/working_devices.hpp"
+#include "scan/checkpoint_files.hpp"
+#include "specimen/geometry_digest.hpp"
 
 #include <fmt/format.h>
 #include <spdlog/spdlog.h>
 
 #include <algorithm>
 #include <cmath>
+#include <memory>
+#include <utility>
 
 namespace vkfv::measurement {
 
@@ -42,7 +47,7 @@ Grid<float> in_float(const Grid<double>& image) {
 } // namespace
 
 Exposure expose(const Configuration& configuration, const optics::Instrument& instrument,
-                const specimen::Specimen& specimen, double focal_height) {
+                const specimen::Specimen& specimen, double focal_height, const std::filesystem::path& checkpoint) {
     const double pitch = instrument.first_order.pixel_pitch;
     const int pixels = configuration.instrument.detector_pixels;
     Exposure exposure;
@@ -52,8 +57,18 @@ Exposure expose(const Configuration& configuration, const optics::Instrument& in
         enter_stage("device, kernels");
         const auto tracer = devices.make_tracer(instrument, specimen, configuration.trace);
         enter_stage("image");
-        exposure.image = tracer->expose(focal_height, image_index(configuration, focal_height));
         exposure.tracer = tracer->identity();
+        const auto image = image_index(configuration, focal_height);
+        if (checkpoint.empty() || configuration.checkpoint_interval == 0) {
+            exposure.image = tracer->expose(focal_height, image);
+        } else {
+            const auto identity = image_identity(configuration, specimen::geometry_digest(specimen), exposure.tracer);
+            auto kept = std::make_shared<const scan::CheckpointFiles>(
+                [checkpoint](std::uint32_t) { return checkpoint; },
+                Digest().add(fmt::format("{}z = {}\n", identity, focal_height)).text(),
+                configuration.checkpoint_interval);
+            exposure.image = tracer->begin(focal_height, image, std::move(kept)).get();
+        }
         if (const auto* filter = tracer->pupil_filter()) {
             for (const auto& warning : warnings_of(wave_limits(*filter, instrument))) {
                 spdlog::warn(warning);

@@ -17,7 +17,7 @@
 namespace vkfv::measurement {
 
 // One exposure at a height of the focal plane (mm), as an image of the configuration's stack if its scan has that
-// height.
+// height. checkpoint: the file in which a long one is kept half done; empty: none is.
 struct Exposure {
     trace::Image image;
     double first = 0; // of the pixels in the object plane, mm: x and y of pixel (0, 0)
@@ -26,7 +26,7 @@ struct Exposure {
     std::optional<Grid<float>> diffracted; // its light after diffraction, if the configuration has one
 };
 Exposure expose(const Configuration& configuration, const optics::Instrument& instrument,
-                const specimen::Specimen& specimen, double focal_height);
+                const specimen::Specimen& specimen, double focal_height, const std::filesystem::path& checkpoint = {});
 // The pixels' mean over the root mean square of their standard errors.
 double signal_to_noise(const trace::Image& image);
 

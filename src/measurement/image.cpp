@@ -40,8 +40,11 @@ ImageResult measure_image(const Configuration& configuration, double focal_heigh
     const auto specimen = make_specimen(configuration);
     enter_stage("instrument");
     const auto instrument = instrument_for(configuration, specimen, focal_height);
-    ImageResult result{
-        .exposure = expose(configuration, instrument, specimen, focal_height), .file = file, .picture = file};
+    auto checkpoint = file;
+    checkpoint += ".partial";
+    ImageResult result{.exposure = expose(configuration, instrument, specimen, focal_height, checkpoint),
+                       .file = file,
+                       .picture = file};
     enter_stage("files");
     result.picture.replace_extension(".svg");
     const auto& exposure = result.exposure;
@@ -54,6 +57,8 @@ ImageResult measure_image(const Configuration& configuration, double focal_heigh
     for (const auto& [name, bytes] : files) {
         write_file(name, bytes);
     }
+    std::error_code none;
+    std::filesystem::remove(checkpoint, none);
     enter_stage("end");
     for (const auto& warning : warning_of_lost_light(exposure.image)) {
         spdlog::warn(warning);

@@ -25,8 +25,9 @@ StackResult trace_and_evaluate(const StackScene& scene, const WorkingDevices& de
     GrowingEvaluation evaluation(scene, focus_planes_for(configuration.evaluate_on, tracer->device()),
                                  tracer->pupil_filter());
     enter_stage("images");
-    const auto traced = scan::run_stack(*tracer, store, progress,
-                                        [&](int image, Grid<float> flux) { evaluation.add(image, std::move(flux)); });
+    const auto traced = scan::run_stack(
+        *tracer, store, progress, [&](int image, Grid<float> flux) { evaluation.add(image, std::move(flux)); },
+        configuration.checkpoint_interval);
     spdlog::info("{} images traced, {} kept from before", traced.traced, traced.kept);
     if (traced.device_span > 0) {
         store.append_timing("device at work", traced.device_seconds);
@@ -58,7 +59,7 @@ ShardResult trace_shard(const Configuration& configuration, scan::Shard shard, P
         scan::ImageStore store(configuration.output_directory, scene.description(tracer->identity()), shard);
         require_space(store, 0);
         enter_stage("images");
-        result.traced = scan::run_stack(*tracer, store, progress);
+        result.traced = scan::run_stack(*tracer, store, progress, {}, configuration.checkpoint_interval);
     });
     enter_stage("end");
     return result;

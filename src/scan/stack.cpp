@@ -4,6 +4,7 @@
 #include "core/interruption.hpp"
 #include "core/job_queue.hpp"
 #include "core/units.hpp"
+#include "scan/checkpoint_files.hpp"
 
 #include <fmt/format.h>
 #include <spdlog/spdlog.h>
@@ -34,6 +35,7 @@ LogFields fields_of(int image, double z, const trace::Image& exposure) {
             {"rays", static_cast<std::int64_t>(exposure.rays)},
             {"detected_rays", static_cast<std::int64_t>(exposure.detected)},
             {"seconds", exposure.seconds},
+            {"longest_submission_s", exposure.longest_submission},
             {"emitted_W", exposure.ledger.emitted},
             {"detected_W", detected},
             {"lost_W", lost},
@@ -42,7 +44,8 @@ LogFields fields_of(int image, double z, const trace::Image& exposure) {
 
 } // namespace
 
-StackSummary run_stack(const trace::Tracer& tracer, ImageStore& store, Progress& progress, const ImageVisitor& visit) {
+StackSummary run_stack(const trace::Tracer& tracer, ImageStore& store, Progress& progress, const ImageVisitor& visit,
+                       double checkpoint_interval) {
     for (const std::string& sentence : store.damaged()) {
         spdlog::warn("{}; it is traced again", sentence);
     }
@@ -51,10 +54,14 @@ StackSummary run_stack(const trace::Tracer& tracer, ImageStore& store, Progress&
     std::vector<int> of_shard;
     std::vector<int> to_trace;
     StackSummary summary;
+    const auto checkpoints = std::make_shared<const CheckpointFiles>(
+        [folder = store.folder()](std::uint32_t image) { return folder / checkpoint_path(static_cast<int>(image)); },
+        store.description().digest, checkpoint_interval);
     for (int image = shard.index; image < static_cast<int>(positions.size()); image += shard.count) {
         of_shard.push_back(image);
         if (store.stored(image)) {
             ++summary.kept;
+            checkpoints->drop(static_cast<std::uint32_t>(image)); // of a run that was killed between the two
         } else {
             to_trace.push_back(image);
         }
@@ -78,6 +85,7 @@ StackSummary run_stack(const trace::Tracer& tracer, ImageStore& store, Progress&
                                        "command again to continue",
                                        error.what(), summary.kept + summary.traced, images, store.folder().string()));
         }
+        checkpoints->drop(static_cast<std::uint32_t>(image));
         const std::scoped_lock lock(counting);
         ++summary.traced;
         summary.rays += exposure.rays;
@@ -108,7 +116,8 @@ StackSummary run_stack(const trace::Tracer& tracer, ImageStore& store, Progress&
             for (; to_begin != to_trace.end() && static_cast<int>(under_way.size()) < tracer.most_under_way();
                  ++to_begin) {
                 under_way.push_back(tracer.begin(positions[static_cast<std::size_t>(*to_begin)],
-                                                 static_cast<std::uint32_t>(*to_begin)));
+                                                 static_cast<std::uint32_t>(*to_begin),
+                                                 checkpoint_interval > 0 ? checkpoints : nullptr));
             }
             auto exposure = std::make_shared<trace::Image>(under_way.front().get());
             under_way.pop_front();

@@ -28,8 +28,9 @@ using ImageVisitor = std::function<void(int image, Grid<float> flux)>;
 // The image's number keys its random numbers, so an image does not depend on which run traced it. Reports the
 // images of the shard. `visit` sees every image of the shard once, in their order: those stored before from
 // the disk, the others when they have been traced. Throws what the tracer throws, and RunError if an image cannot be
-// stored: what is stored stays, and the same call continues.
+// stored: what is stored stays, and the same call continues. checkpoint_interval: s, after which a long exposure is
+// kept half done; 0: none is.
 StackSummary run_stack(const trace::Tracer& tracer, ImageStore& store, Progress& progress,
-                       const ImageVisitor& visit = {});
+                       const ImageVisitor& visit = {}, double checkpoint_interval = 0);
 
 } // namespace vkfv::scan

@@ -230,6 +230,10 @@ fs::path image_path(int image) {
     return fs::path(images_name) / fmt::format("z_{:04}.tif", image);
 }
 
+fs::path checkpoint_path(int image) {
+    return fmt::format("partial_{:04}", image);
+}
+
 Grid<float> as_stored(const Grid<double>& flux) {
     Grid<float> stored(flux.columns, flux.rows);
     std::transform(flux.values.begin(), flux.values.end(), stored.values.begin(),

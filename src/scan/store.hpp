@@ -2,11 +2,11 @@
 //
 //   stack.toml              the configuration, and in comments the identity: what the images depend on
 //   images/z_0000.tif ...   one exposure each, float32 W per pixel; the file's first row has the highest y
+//   partial_0007            an exposure that was ended before its time, if it is a long one: checkpoint_files.hpp
 //   ledger.csv              a row an image: where its light went
 //   timings.csv             (timings_2_of_8.csv of a shard) a row an exposure, the device's work and an evaluation, in
-//   the order of their making; no
-//                           part of the result, since a clock is in it: all others hold the same bytes however often a
-//                           run was interrupted
+//                           the order of their making; no part of the result, since a clock is in it: all others hold
+//                           the same bytes however often a run was interrupted
 //   checksums.sha256, .lock core/result_folder.hpp
 //
 // Every image carries its row of the ledger and the checksum of its whole file in its ImageDescription, so that
@@ -110,6 +110,8 @@ Check check_images(const std::filesystem::path& folder);
 
 // The file of an image, relative to the stack's folder: "images/z_0007.tif".
 std::filesystem::path image_path(int image);
+// Of its exposure as long as it is half done: "partial_0007".
+std::filesystem::path checkpoint_path(int image);
 
 // Flux as it is stored, in float32.
 Grid<float> as_stored(const Grid<double>& flux);

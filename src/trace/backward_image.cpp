@@ -7,6 +7,9 @@
 #include <algorithm>
 #include <bit>
 #include <cmath>
+#include <functional>
+#include <iterator>
+#include <ranges>
 
 namespace vkfv::trace {
 
@@ -57,8 +60,9 @@ physics::f64::BackwardOptics backward_optics(const optics::Instrument& instrumen
 }
 
 BackwardImage::BackwardImage(const optics::Instrument& instrument, const BackwardPlan& plan)
-    : plan_(plan), flux_(instrument.flux), pixels_(instrument.constants.detector_pixels), sum_(pixels_, pixels_),
-      squares_(pixels_, pixels_) {
+    : plan_(plan), flux_(instrument.flux), pixels_(instrument.constants.detector_pixels) {
+    const auto side = static_cast<std::size_t>(pixels_);
+    sums_.resize(plan.randomisations * side * side);
     const auto& constants = instrument.constants;
     const double radiance = instrument.flux / (pi * pi * constants.source_radius * constants.source_radius);
     const double pitch = 2 * constants.detector_half_size / pixels_;
@@ -67,13 +71,9 @@ BackwardImage::BackwardImage(const optics::Instrument& instrument, const Backwar
     scale_ = radiance * pitch * pitch * pupil * instrument.splitter_reflectance * instrument.splitter_transmittance;
 }
 
-void BackwardImage::add(std::span<const std::uint64_t> sums) {
-    const double unit = 1.0 / (static_cast<double>(physics::f64::BACKWARD_UNIT) * plan_.points);
-    for (std::size_t pixel = 0; pixel < sums.size(); ++pixel) {
-        const double mean = unit * static_cast<double>(sums[pixel]);
-        sum_.values[pixel] += mean;
-        squares_.values[pixel] += mean * mean;
-    }
+void BackwardImage::add(std::uint32_t randomisation, std::span<const std::uint64_t> sums) {
+    const auto begin = sums_.begin() + static_cast<std::ptrdiff_t>(randomisation * sums.size());
+    std::ranges::transform(sums, std::ranges::subrange(begin, begin + std::ssize(sums)), begin, std::plus<>());
 }
 
 double BackwardImage::power_per_number() const {
@@ -85,15 +85,23 @@ Image BackwardImage::image() const {
     image.flux = Grid<double>(pixels_, pixels_);
     image.standard_error = Grid<double>(pixels_, pixels_);
     const double count = plan_.randomisations;
+    const double unit = 1.0 / (static_cast<double>(physics::f64::BACKWARD_UNIT) * plan_.points);
+    const std::size_t pixels = image.flux.values.size();
     double detected = 0;
-    for (std::size_t pixel = 0; pixel < sum_.values.size(); ++pixel) {
-        const double mean = sum_.values[pixel] / count;
-        const double variance = std::max(0.0, squares_.values[pixel] / count - mean * mean) / (count - 1);
+    for (std::size_t pixel = 0; pixel < pixels; ++pixel) {
+        double sum = 0, squares = 0; // of the randomisations' means
+        for (std::size_t k = pixel; k < sums_.size(); k += pixels) {
+            const double of_one = unit * static_cast<double>(sums_[k]);
+            sum += of_one;
+            squares += of_one * of_one;
+        }
+        const double mean = sum / count;
+        const double variance = std::max(0.0, squares / count - mean * mean) / (count - 1);
         image.flux.values[pixel] = scale_ * mean;
         image.standard_error.values[pixel] = scale_ * std::sqrt(variance);
         detected += image.flux.values[pixel];
     }
-    image.rays = plan_.rays_per_pixel() * sum_.values.size();
+    image.rays = plan_.rays_per_pixel() * pixels;
     image.detected = image.rays;
     image.ledger.emitted = flux_;
     image.ledger.entries = {plain_entry(Ledger::Status::detected, detected, image.rays),

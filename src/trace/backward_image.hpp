@@ -26,13 +26,16 @@ BackwardPlan backward_plan(std::uint64_t rays, int detector_pixels);
 physics::f64::BackwardOptics backward_optics(const optics::Instrument& instrument,
                                              const physics::f64::Material& material);
 
-// Gathers the pixels' sums of one randomisation after another.
+// Gathers the pixels' sums of all randomisations.
 class BackwardImage {
   public:
     BackwardImage(const optics::Instrument& instrument, const BackwardPlan& plan);
 
-    // sums: of the values of all points, in 1 / BACKWARD_UNIT.
-    void add(std::span<const std::uint64_t> sums);
+    // sums: of the values of some points, in 1 / BACKWARD_UNIT.
+    void add(std::uint32_t randomisation, std::span<const std::uint64_t> sums);
+    // The sums, a randomisation after the other.
+    const std::vector<std::uint64_t>& numbers() const { return sums_; }
+    void set(std::span<const std::uint64_t> numbers) { sums_.assign(numbers.begin(), numbers.end()); }
     // W on the detector for each unit of the sums of all randomisations.
     double power_per_number() const;
     // Detected power alone stands in its ledger: what becomes of the rest, backward paths do not see.
@@ -43,8 +46,7 @@ class BackwardImage {
     double flux_;  // W, emitted
     double scale_; // W, of a pixel whose values' mean is 1
     int pixels_;
-    Grid<double> sum_; // of the randomisations' means
-    Grid<double> squares_;
+    std::vector<std::uint64_t> sums_;
 };
 
 } // namespace vkfv::trace

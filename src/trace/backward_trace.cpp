@@ -7,12 +7,14 @@
 #include "spirv/backward_specialised_quadtree.h"
 #include "spirv/backward_specialised_ray_query.h"
 #include "trace/device_exposures.hpp"
+#include "trace/device_numbers.hpp"
 #include "trace/scene_waves.hpp"
 
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <array>
+#include <deque>
 
 namespace vkfv::trace {
 
@@ -20,6 +22,7 @@ namespace {
 
 constexpr std::uint32_t most_points_per_chunk = 32;
 constexpr std::uint32_t workgroup = 128;
+constexpr std::uint64_t most_paths = std::uint64_t{1} << 27; // a submission's; on slower devices its time decides
 
 std::uint32_t pixel_count(const DeviceScene& scene) {
     const auto side = static_cast<std::uint32_t>(scene.instrument.constants.detector_pixels);
@@ -64,14 +67,10 @@ BackwardTrace::BackwardTrace(const DeviceScene& scene, const physics::f64::Backw
               constants(scene, optics)) {
     const kernels::BackwardBlock block{to_float(optics), to_float(plan.lattice())};
     optics_.write_values(std::span<const kernels::BackwardBlock>(&block, 1));
-    const std::uint64_t most = options.batch > 0  ? options.batch
-                               : scene.software() ? std::uint64_t{1} << 19
-                                                  : std::uint64_t{1} << 27;
-    const std::uint64_t wanted = most / options.batch_divisor;
-    const std::uint64_t most_chunks = std::uint64_t{vulkan::most_groups_in_a_row} * workgroup / pixels_;
-    const std::uint64_t chunks =
-        std::clamp<std::uint64_t>(wanted / pixels_ / points_per_chunk_, 1, std::max<std::uint64_t>(1, most_chunks));
-    points_per_batch_ = static_cast<std::uint32_t>(std::min<std::uint64_t>(plan.points, chunks * points_per_chunk_));
+    chunks_ = std::uint64_t{plan.points / points_per_chunk_} * pixels_;
+    const std::uint64_t most = (options.batch > 0 ? options.batch : most_paths) / options.batch_divisor;
+    most_chunks_at_a_time_ =
+        static_cast<std::uint32_t>(std::clamp<std::uint64_t>(most / points_per_chunk_, 1, chunks_));
 }
 
 void BackwardTrace::clear(vulkan::Commands& commands) const {
@@ -79,12 +78,13 @@ void BackwardTrace::clear(vulkan::Commands& commands) const {
     commands.barrier();
 }
 
-void BackwardTrace::record(vulkan::Commands& commands, std::uint32_t randomisation, std::uint32_t first,
+void BackwardTrace::record(vulkan::Commands& commands, std::uint32_t randomisation, std::uint64_t first,
                            std::uint32_t count) const {
     auto bindings = scene_.bindings({{kernels::BINDING_PIXELS, &sums_}, {kernels::BINDING_BACKWARD, &optics_}});
-    const kernels::BackwardBatch batch{first / points_per_chunk_, count / points_per_chunk_, points_per_chunk_,
+    const kernels::BackwardBatch batch{static_cast<std::uint32_t>(first / pixels_),
+                                       static_cast<std::uint32_t>(first % pixels_), count, points_per_chunk_,
                                        randomisation};
-    const auto groups = vulkan::groups_of(std::uint64_t{batch.chunks} * pixels_, workgroup);
+    const auto groups = vulkan::groups_of(count, workgroup);
     commands.dispatch(kernel_, bindings, batch, groups.x, groups.y);
     commands.barrier();
 }
@@ -103,7 +103,9 @@ class BackwardTracer final : public DeviceExposures {
         : instrument_(instrument), turned_(optics::turned_round(instrument)),
           plan_(backward_plan(options.rays, instrument.constants.detector_pixels)),
           scene_(make_device_scene(turned_, specimen, options, &instrument_)),
-          trace_(scene_, backward_optics(instrument_, scene_.host_record.material), plan_, options) {
+          trace_(scene_, backward_optics(instrument_, scene_.host_record.material), plan_, options),
+          light_(*scene_.device, scene_.light_buffers()),
+          pace_(std::uint64_t{trace_.most_chunks_at_a_time()} * trace_.points_per_chunk()) {
         if (scene_.filter) {
             waves_.emplace(scene_);
         }
@@ -116,11 +118,13 @@ class BackwardTracer final : public DeviceExposures {
     TracerIdentity identity() const override { return scene_.identity(); }
     std::shared_ptr<const vulkan::Device> device() const override { return scene_.device; }
     const optics::PupilFilter* pupil_filter() const override { return scene_.filter ? &*scene_.filter : nullptr; }
+    std::uint64_t units() const override { return plan_.randomisations * trace_.chunks(); }
+    std::uint64_t rays_per_unit() const override { return trace_.points_per_chunk(); }
 
   private:
     class Exposure;
 
-    std::unique_ptr<DeviceExposure> start(double focal_height, std::uint32_t image, std::size_t slot) const override;
+    std::unique_ptr<DeviceExposure> prepare(double focal_height, std::uint32_t image, std::size_t slot) const override;
     std::size_t slots() const override { return waves_ ? waves_->exposures_at_a_time() : most_exposures; }
 
     std::size_t pixels() const { return pixel_count(scene_); }
@@ -132,49 +136,69 @@ class BackwardTracer final : public DeviceExposures {
     BackwardPlan plan_;
     mutable DeviceScene scene_;
     BackwardTrace trace_;
+    DeviceNumbers light_; // that is sorted for waves
+    mutable DispatchPace pace_;
     std::optional<SceneWaves> waves_;
     mutable std::array<std::optional<vulkan::Buffer>, most_exposures> for_host_; // sums, then the light of waves
 };
 
+// Its units are the chunks of one randomisation after the other.
 class BackwardTracer::Exposure final : public DeviceExposure {
   public:
     Exposure(const BackwardTracer& tracer, const vulkan::Buffer& for_host)
-        : DeviceExposure(*tracer.scene_.device), tracer_(tracer), for_host_(for_host),
-          sums_(tracer.instrument_, tracer.plan_) {
-        const BackwardPlan& plan = tracer.plan_;
-        const std::uint32_t most = tracer.trace_.points_per_batch();
-        for (std::uint32_t randomisation = 0; randomisation < plan.randomisations; ++randomisation) {
-            if (randomisation >= tracer.randomisations_kept()) {
-                take_sums();
-            }
-            for (std::uint32_t first = 0; first < plan.points; first += most) {
-                vulkan::Commands& commands = work.open();
-                if (first == 0) {
-                    tracer.trace_.clear(commands);
-                    if (randomisation == 0) {
-                        tracer.scene_.clear_cell_light(commands);
-                    }
-                }
-                tracer.trace_.record(commands, randomisation, first, std::min(most, plan.points - first));
-                if (first + most >= plan.points) {
-                    tracer.trace_.copy_sums(commands, for_host_, place_of(randomisation));
-                }
-                work.submit();
-            }
-            last_submissions_.push_back(work.submissions() - 1);
+        : DeviceExposure(*tracer.scene_.device, tracer.pace_), tracer_(tracer), for_host_(for_host),
+          sums_(tracer.instrument_, tracer.plan_) {}
+
+    void set_out(std::span<const std::uint64_t> numbers) override {
+        if (!numbers.empty()) {
+            sums_.set(numbers.first(sums_.numbers().size()));
+            tracer_.light_.write(work, numbers.subspan(sums_.numbers().size()));
+            return;
         }
-        if (tracer.waves_) {
-            tracer.waves_->hand_over(work, for_host_, place_of_light());
+        tracer_.scene_.clear_cell_light(work.open());
+        work.submit();
+    }
+
+    std::size_t number_count() const override { return sums_.numbers().size() + tracer_.light_.count(); }
+    std::vector<std::uint64_t> numbers() override {
+        take_from_device();
+        take_all();
+        auto numbers = sums_.numbers();
+        const auto light = tracer_.light_.read(work);
+        numbers.insert(numbers.end(), light.begin(), light.end());
+        return numbers;
+    }
+
+    std::uint64_t submit(std::uint64_t first, std::uint64_t end) override {
+        const BackwardTrace& trace = tracer_.trace_;
+        const auto randomisation = static_cast<std::uint32_t>(first / trace.chunks());
+        const std::uint64_t begin = randomisation * trace.chunks();
+        const std::uint64_t most = std::max<std::uint64_t>(1, tracer_.pace_.paths() / trace.points_per_chunk());
+        end = std::min({end, begin + trace.chunks(), first + most});
+        vulkan::Commands& commands = work.open();
+        if (!on_device_) {
+            trace.clear(commands);
+            on_device_ = randomisation;
+        }
+        trace.record(commands, randomisation, first - begin, static_cast<std::uint32_t>(end - first));
+        work.submit((end - first) * trace.points_per_chunk());
+        if (end == begin + trace.chunks()) {
+            take_from_device();
+        }
+        return end;
+    }
+
+    void hand_over() override {
+        if (tracer_.waves_) {
+            tracer_.waves_->hand_over(work, for_host_, place_of_light());
         }
     }
 
     Image finish() override {
-        while (taken_ < last_submissions_.size()) {
-            take_sums();
-        }
+        take_all();
+        work.wait();
         Image image = sums_.image();
         if (tracer_.waves_) {
-            work.wait(work.submissions() - 1);
             image = with_waves(std::move(image), tracer_.waves_->light(for_host_, place_of_light()),
                                sums_.power_per_number(), *tracer_.scene_.filter);
         }
@@ -184,28 +208,51 @@ class BackwardTracer::Exposure final : public DeviceExposure {
     }
 
   private:
-    std::size_t place_of(std::size_t randomisation) const {
-        return randomisation % tracer_.randomisations_kept() * tracer_.pixels() * sizeof(std::uint64_t);
+    // Sums on their way to the host.
+    struct Taken {
+        std::uint32_t randomisation;
+        std::size_t place; // of those that are kept
+        std::size_t submission;
+    };
+
+    std::size_t byte_of(std::size_t place) const { return place * tracer_.pixels() * sizeof(std::uint64_t); }
+    std::size_t place_of_light() const { return byte_of(tracer_.randomisations_kept()); }
+    // What the device has of a randomisation, whole or not.
+    void take_from_device() {
+        if (!on_device_) {
+            return;
+        }
+        if (taken_.size() == tracer_.randomisations_kept()) {
+            take_first();
+        }
+        tracer_.trace_.copy_sums(work.open(), for_host_, byte_of(next_place_));
+        work.submit();
+        taken_.push_back({*on_device_, next_place_, work.submissions() - 1});
+        next_place_ = (next_place_ + 1) % tracer_.randomisations_kept();
+        on_device_.reset();
     }
-    std::size_t place_of_light() const {
-        return tracer_.randomisations_kept() * tracer_.pixels() * sizeof(std::uint64_t);
+    void take_first() {
+        const Taken first = taken_.front();
+        taken_.pop_front();
+        work.wait(first.submission);
+        sums_.add(first.randomisation, for_host_.values<std::uint64_t>(tracer_.pixels(), byte_of(first.place)));
     }
-    // Of the first randomisation that has not been taken.
-    void take_sums() {
-        work.wait(last_submissions_[taken_]);
-        sums_.add(for_host_.values<std::uint64_t>(tracer_.pixels(), place_of(taken_)));
-        ++taken_;
+    void take_all() {
+        while (!taken_.empty()) {
+            take_first();
+        }
     }
 
     const BackwardTracer& tracer_;
     const vulkan::Buffer& for_host_;
     BackwardImage sums_;
-    std::vector<std::size_t> last_submissions_; // of each randomisation
-    std::size_t taken_ = 0;                     // randomisations
+    std::optional<std::uint32_t> on_device_; // the randomisation whose sums it adds up
+    std::deque<Taken> taken_;
+    std::size_t next_place_ = 0;
 };
 
-std::unique_ptr<DeviceExposure> BackwardTracer::start(double focal_height, std::uint32_t image,
-                                                      std::size_t slot) const {
+std::unique_ptr<DeviceExposure> BackwardTracer::prepare(double focal_height, std::uint32_t image,
+                                                        std::size_t slot) const {
     auto& for_host = for_host_.at(slot);
     if (!for_host) {
         const std::size_t numbers = randomisations_kept() * pixels();

@@ -17,19 +17,22 @@ class BackwardTrace {
                   const TraceOptions& options);
 
     void clear(vulkan::Commands& commands) const;
-    // Points first ... first + count - 1 of every pixel, multiples of points_per_chunk().
-    void record(vulkan::Commands& commands, std::uint32_t randomisation, std::uint32_t first,
+    // Chunks first ... first + count - 1 of a randomisation, count at most most_chunks_at_a_time().
+    void record(vulkan::Commands& commands, std::uint32_t randomisation, std::uint64_t first,
                 std::uint32_t count) const;
     void copy_sums(vulkan::Commands& commands, const vulkan::Buffer& to, std::size_t to_byte) const;
 
+    // Of all pixels, of one randomisation.
+    std::uint64_t chunks() const { return chunks_; }
     std::uint32_t points_per_chunk() const { return points_per_chunk_; }
-    std::uint32_t points_per_batch() const { return points_per_batch_; }
+    std::uint32_t most_chunks_at_a_time() const { return most_chunks_at_a_time_; }
 
   private:
     const DeviceScene& scene_;
     std::uint32_t pixels_;
     std::uint32_t points_per_chunk_; // of one invocation; the plan's alone, as it decides what floats are added up
-    std::uint32_t points_per_batch_;
+    std::uint64_t chunks_;
+    std::uint32_t most_chunks_at_a_time_;
     vulkan::Buffer sums_;
     vulkan::Buffer optics_;
     vulkan::Kernel kernel_;

@@ -39,18 +39,59 @@ void DeviceExposures::give_back(std::size_t slot) const {
     given_back_.notify_one();
 }
 
-std::future<Image> DeviceExposures::begin(double focal_height, std::uint32_t image) const {
+void DeviceExposures::trace(DeviceExposure& exposure, std::uint32_t image, const Checkpoints* checkpoints) const {
+    std::uint64_t done = 0;
+    auto found = checkpoints != nullptr ? checkpoints->load(image) : std::nullopt;
+    if (found && found->done <= units() && found->numbers.size() == exposure.number_count()) {
+        done = found->done;
+        exposure.set_out(found->numbers);
+    } else {
+        exposure.set_out({});
+    }
+    found.reset();
+    CheckpointClock clock(checkpoints);
+    while (done < units()) {
+        done = exposure.submit(done, units());
+        if (done < units() && clock.due()) {
+            const auto begun = CheckpointClock::Clock::now();
+            checkpoints->save(image, {done, exposure.numbers()});
+            clock.kept(begun);
+        }
+    }
+    exposure.hand_over();
+}
+
+std::future<Image> DeviceExposures::begin(double focal_height, std::uint32_t image,
+                                          std::shared_ptr<const Checkpoints> checkpoints) const {
     auto under_way = std::make_unique<UnderWay>(*this, take_slot());
     {
         const std::scoped_lock lock(starting_);
-        under_way->exposure = start(focal_height, image, under_way->slot);
+        under_way->exposure = prepare(focal_height, image, under_way->slot);
+        trace(*under_way->exposure, image, checkpoints.get());
     }
     return std::async(std::launch::deferred, [this, exposure = std::move(under_way)] { return finished(*exposure); });
 }
 
+ExposurePart DeviceExposures::count(double focal_height, std::uint32_t image, std::uint64_t first,
+                                    std::uint64_t end) const {
+    UnderWay under_way(*this, take_slot());
+    const std::scoped_lock lock(starting_);
+    under_way.exposure = prepare(focal_height, image, under_way.slot);
+    DeviceExposure& exposure = *under_way.exposure;
+    exposure.set_out({});
+    while (first < end) {
+        first = exposure.submit(first, end);
+    }
+    auto numbers = exposure.numbers();
+    return {.numbers = std::move(numbers),
+            .device_seconds = exposure.work.seconds(),
+            .longest_submission = exposure.work.longest()};
+}
+
 Image DeviceExposures::finished(UnderWay& under_way) const {
     Image image = under_way.exposure->finish();
-    const ExposureWork& work = under_way.exposure->work;
+    ExposureWork& work = under_way.exposure->work;
+    work.wait();
     {
         const std::scoped_lock lock(mutex_);
         first_tick_ = first_tick_.value_or(work.first_tick());
@@ -58,6 +99,7 @@ Image DeviceExposures::finished(UnderWay& under_way) const {
         image.device_end = device()->seconds_between(*first_tick_, work.last_tick());
     }
     image.device_seconds = work.seconds();
+    image.longest_submission = work.longest();
     image.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - under_way.begun).count();
     return image;
 }

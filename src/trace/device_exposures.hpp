@@ -13,14 +13,27 @@
 #include <memory>
 #include <mutex>
 #include <optional>
+#include <span>
+#include <vector>
 
 namespace vkfv::trace {
 
-// One that is under way.
+// One that is under way, in this order: set_out(), submit() until it is counted, hand_over(), finish().
 class DeviceExposure {
   public:
-    explicit DeviceExposure(const vulkan::Device& device) : work(device) {}
+    DeviceExposure(const vulkan::Device& device, DispatchPace& pace) : work(device, pace) {}
     virtual ~DeviceExposure() = default;
+
+    // From the numbers that were counted before; none: from nothing.
+    virtual void set_out(std::span<const std::uint64_t> numbers) = 0;
+    virtual std::size_t number_count() const = 0;
+    // Submits as much of the units first ... end - 1 as the device may be given at a time, in their order, and says
+    // where that ends.
+    virtual std::uint64_t submit(std::uint64_t first, std::uint64_t end) = 0;
+    // All that was counted. Waits for it.
+    virtual std::vector<std::uint64_t> numbers() = 0;
+    // Submits what brings it to the host.
+    virtual void hand_over() = 0;
     // Waits for the device and makes the image; once.
     virtual Image finish() = 0;
 
@@ -30,20 +43,25 @@ class DeviceExposure {
 class DeviceExposures : public Tracer {
   public:
     Image expose(double focal_height, std::uint32_t image) const final { return begin(focal_height, image).get(); }
-    std::future<Image> begin(double focal_height, std::uint32_t image) const final;
+    std::future<Image> begin(double focal_height, std::uint32_t image,
+                             std::shared_ptr<const Checkpoints> checkpoints = nullptr) const final;
     int most_under_way() const final { return static_cast<int>(slots()); }
+    ExposurePart count(double focal_height, std::uint32_t image, std::uint64_t first, std::uint64_t end) const final;
 
   protected:
     // How many may be under way, at most most_exposures; who begins another waits.
     virtual std::size_t slots() const = 0;
-    // Hands its work over to the device, with what belongs to the slot alone. Not called by two threads at a time.
-    virtual std::unique_ptr<DeviceExposure> start(double focal_height, std::uint32_t image, std::size_t slot) const = 0;
+    // One that has nothing to do yet. Not called by two threads at a time, nor are others begun before this one has
+    // been handed over: they share the device's memory but for what belongs to the slot.
+    virtual std::unique_ptr<DeviceExposure> prepare(double focal_height, std::uint32_t image,
+                                                    std::size_t slot) const = 0;
 
   private:
     struct UnderWay;
 
     std::size_t take_slot() const;
     void give_back(std::size_t slot) const;
+    void trace(DeviceExposure& exposure, std::uint32_t image, const Checkpoints* checkpoints) const;
     Image finished(UnderWay& exposure) const;
 
     mutable std::mutex starting_;

@@ -110,6 +110,10 @@ void DeviceScene::set_exposure(double focal_height, std::uint32_t image, std::si
     parameters.at(slot).write_values(std::span<const kernels::Parameters>(&constants, 1));
 }
 
+std::vector<const vulkan::Buffer*> DeviceScene::light_buffers() const {
+    return cell_light ? std::vector{&*cell_light} : std::vector<const vulkan::Buffer*>{};
+}
+
 void DeviceScene::clear_cell_light(vulkan::Commands& commands) const {
     if (cell_light) {
         commands.fill_zero(*cell_light);

@@ -37,6 +37,8 @@ struct DeviceScene {
     void set_exposure(double focal_height, std::uint32_t image, std::size_t slot = 0);
     // Of an image before its first path.
     void clear_cell_light(vulkan::Commands& commands) const;
+    // Where light is sorted for waves; none: it is not.
+    std::vector<const vulkan::Buffer*> light_buffers() const;
 
     // The scene's bindings and those given.
     std::vector<vulkan::Binding> bindings(std::initializer_list<vulkan::Binding> further) const;

@@ -2,6 +2,7 @@
 
 #include "trace/backward_trace.hpp"
 #include "trace/device_exposures.hpp"
+#include "trace/device_numbers.hpp"
 #include "trace/forward_trace.hpp"
 #include "trace/nonsequential_trace.hpp"
 #include "trace/scene_waves.hpp"
@@ -22,14 +23,16 @@ namespace vkfv::trace {
 
 namespace {
 
-// Batches a submission: waiting for each costs a GPU 60 us, and a software device's dispatch is long enough.
+// Batches a submission at most: waiting for each costs a GPU 60 us, and a software device's dispatch is long enough.
 constexpr std::uint32_t batches_per_submission_gpu = 8;
 
 class DeviceTracer final : public DeviceExposures {
   public:
     DeviceTracer(const optics::Instrument& instrument, const specimen::Specimen& specimen, const TraceOptions& options)
         : instrument_(instrument), rays_(options.rays),
-          scene_(make_device_scene(instrument_, specimen, options, &instrument_)), trace_(make_trace(scene_, options)) {
+          scene_(make_device_scene(instrument_, specimen, options, &instrument_)), trace_(make_trace(scene_, options)),
+          numbers_(*scene_.device, trace_->counted()),
+          pace_(std::uint64_t{trace_->batch()} * (scene_.software() ? 1 : batches_per_submission_gpu)) {
         if (scene_.filter) {
             waves_.emplace(scene_);
         }
@@ -42,6 +45,7 @@ class DeviceTracer final : public DeviceExposures {
     TracerIdentity identity() const override { return scene_.identity(); }
     std::shared_ptr<const vulkan::Device> device() const override { return scene_.device; }
     const optics::PupilFilter* pupil_filter() const override { return scene_.filter ? &*scene_.filter : nullptr; }
+    std::uint64_t units() const override { return rays_; }
 
   private:
     class Exposure;
@@ -54,13 +58,15 @@ class DeviceTracer final : public DeviceExposures {
         return std::make_unique<ForwardTrace>(scene, batch);
     }
 
-    std::unique_ptr<DeviceExposure> start(double focal_height, std::uint32_t image, std::size_t slot) const override;
+    std::unique_ptr<DeviceExposure> prepare(double focal_height, std::uint32_t image, std::size_t slot) const override;
     std::size_t slots() const override { return waves_ ? waves_->exposures_at_a_time() : most_exposures; }
 
     optics::Instrument instrument_;
     std::uint64_t rays_;
     mutable DeviceScene scene_;
     std::unique_ptr<PathTrace> trace_;
+    DeviceNumbers numbers_;
+    mutable DispatchPace pace_;
     std::optional<SceneWaves> waves_;
     mutable std::array<std::optional<vulkan::Buffer>, most_exposures> for_host_; // counts, then the light of waves
 };
@@ -68,33 +74,44 @@ class DeviceTracer final : public DeviceExposures {
 class DeviceTracer::Exposure final : public DeviceExposure {
   public:
     Exposure(const DeviceTracer& tracer, const vulkan::Buffer& for_host)
-        : DeviceExposure(*tracer.scene_.device), tracer_(tracer), for_host_(for_host) {
-        const PathTrace& trace = *tracer.trace_;
-        const std::uint64_t per_submission =
-            std::uint64_t{trace.batch()} * (tracer.scene_.software() ? 1 : batches_per_submission_gpu);
-        for (std::uint64_t first = 0; first < tracer.rays_; first += per_submission) {
-            vulkan::Commands& commands = work.open();
-            if (first == 0) {
-                trace.clear(commands);
-                tracer.scene_.clear_cell_light(commands);
-            }
-            const std::uint64_t end = std::min(tracer.rays_, first + per_submission);
-            for (std::uint64_t path = first; path < end; path += trace.batch()) {
-                trace.record(commands, path,
-                             static_cast<std::uint32_t>(std::min<std::uint64_t>(trace.batch(), end - path)));
-            }
-            if (end == tracer.rays_) {
-                trace.copy_counts(commands, for_host_);
-            }
-            work.submit();
+        : DeviceExposure(*tracer.scene_.device, tracer.pace_), tracer_(tracer), for_host_(for_host) {}
+
+    void set_out(std::span<const std::uint64_t> numbers) override {
+        if (!numbers.empty()) {
+            tracer_.numbers_.write(work, numbers);
+            return;
         }
-        if (tracer.waves_) {
-            tracer.waves_->hand_over(work, for_host_, trace.bytes_for_host());
+        vulkan::Commands& commands = work.open();
+        tracer_.trace_->clear(commands);
+        tracer_.scene_.clear_cell_light(commands);
+        work.submit();
+    }
+
+    std::size_t number_count() const override { return tracer_.numbers_.count(); }
+    std::vector<std::uint64_t> numbers() override { return tracer_.numbers_.read(work); }
+
+    std::uint64_t submit(std::uint64_t first, std::uint64_t end) override {
+        const PathTrace& trace = *tracer_.trace_;
+        vulkan::Commands& commands = work.open();
+        end = std::min(end, first + tracer_.pace_.paths());
+        for (std::uint64_t path = first; path < end; path += trace.batch()) {
+            trace.record(commands, path,
+                         static_cast<std::uint32_t>(std::min<std::uint64_t>(trace.batch(), end - path)));
+        }
+        work.submit(end - first);
+        return end;
+    }
+
+    void hand_over() override {
+        tracer_.trace_->copy_counts(work.open(), for_host_);
+        work.submit();
+        if (tracer_.waves_) {
+            tracer_.waves_->hand_over(work, for_host_, tracer_.trace_->bytes_for_host());
         }
     }
 
     Image finish() override {
-        work.wait(work.submissions() - 1);
+        work.wait();
         const PathTrace& trace = *tracer_.trace_;
         const Accounts& accounts = tracer_.scene_.accounts;
         Image image = accounts.image(trace.pixels(for_host_), trace.fates(for_host_), tracer_.rays_);
@@ -110,7 +127,8 @@ class DeviceTracer::Exposure final : public DeviceExposure {
     const vulkan::Buffer& for_host_;
 };
 
-std::unique_ptr<DeviceExposure> DeviceTracer::start(double focal_height, std::uint32_t image, std::size_t slot) const {
+std::unique_ptr<DeviceExposure> DeviceTracer::prepare(double focal_height, std::uint32_t image,
+                                                      std::size_t slot) const {
     auto& for_host = for_host_.at(slot);
     if (!for_host) {
         for_host.emplace(*scene_.device, trace_->bytes_for_host() + (waves_ ? waves_->bytes_for_host() : 0),

@@ -49,7 +49,7 @@ class HostBackwardTracer final : public Tracer {
                 });
             }
             threads.clear();
-            result.add(sums);
+            result.add(randomisation, sums);
         }
         Image exposed = result.image();
         if (filter_) {

@@ -6,6 +6,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <span>
+#include <vector>
 
 namespace vkfv::trace {
 
@@ -49,6 +50,13 @@ class PathTrace {
         return for_host.values<std::uint64_t>(scene_.accounts.ledger_numbers(), pixels_.bytes());
     }
     std::uint32_t batch() const { return batch_; }
+
+    // All that an exposure counts, with the light that is sorted for waves.
+    std::vector<const vulkan::Buffer*> counted() const {
+        std::vector<const vulkan::Buffer*> buffers = scene_.light_buffers();
+        buffers.insert(buffers.end(), {&pixels_, &fates_});
+        return buffers;
+    }
 
   protected:
     const DeviceScene& scene_;

@@ -5,6 +5,7 @@
 #include "optics/instrument.hpp"
 #include "optics/pupil_filter.hpp"
 #include "specimen/specimen.hpp"
+#include "trace/checkpoint.hpp"
 #include "trace/tracer_identity.hpp"
 
 #include <cstdint>
@@ -92,11 +93,19 @@ struct Image {
     std::uint64_t detected = 0; // rays
     double crossings = 0;       // of surfaces in sequence, of all rays together
     // The rest enters no image; s. Exposures that are under way at a time share the wall clock.
-    double seconds = 0;        // wall clock, from beginning to end
-    double device_seconds = 0; // the device's work, by its own clock
-    double device_begin = 0;   // on that clock, from the tracer's first exposure on
+    double seconds = 0;            // wall clock, from beginning to end
+    double device_seconds = 0;     // the device's work, by its own clock
+    double longest_submission = 0; // of that work
+    double device_begin = 0;       // on that clock, from the tracer's first exposure on
     double device_end = 0;
     int device = 0; // place of the device among those that work together
+};
+
+// What a part of an exposure counted: integers, which of all parts together, added up, make the image.
+struct ExposurePart {
+    std::vector<std::uint64_t> numbers;
+    double device_seconds = 0;     // s, as Image has it
+    double longest_submission = 0; // s
 };
 
 // Constructed for one instrument, specimen and device, then const: exposures are independent of each other.
@@ -108,10 +117,21 @@ class Tracer {
     virtual Image expose(double focal_height, std::uint32_t image) const = 0;
     // The same image, later: a device works on it from now on, and the host takes what came of it when the future is
     // asked (or dropped). At most most_under_way() futures may be neither. The tracer must outlive them.
-    virtual std::future<Image> begin(double focal_height, std::uint32_t image) const {
+    // checkpoints: from where it goes on, and where a long one is kept meanwhile; the bits are the same. The host
+    // keeps none.
+    virtual std::future<Image> begin(double focal_height, std::uint32_t image,
+                                     std::shared_ptr<const Checkpoints> /*checkpoints*/ = nullptr) const {
         return std::async(std::launch::deferred, [this, focal_height, image] { return expose(focal_height, image); });
     }
     virtual int most_under_way() const { return 1; }
+    // Units of work of an exposure, of which some tracers count parts: first ... end - 1. The image comes of a
+    // checkpoint with all units done and the parts' sum. 0: these do not.
+    virtual std::uint64_t units() const { return 0; }
+    virtual std::uint64_t rays_per_unit() const { return 1; }
+    virtual ExposurePart count(double /*focal_height*/, std::uint32_t /*image*/, std::uint64_t /*first*/,
+                               std::uint64_t /*end*/) const {
+        return {};
+    }
     virtual std::string description() const = 0; // device, traversal and the reason for both
     virtual TracerIdentity identity() const = 0;
     // That it works on, for further work there; none: the host.

@@ -4,10 +4,15 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <condition_variable>
 #include <cstddef>
 #include <deque>
+#include <functional>
+#include <iterator>
+#include <limits>
 #include <mutex>
+#include <optional>
 #include <thread>
 #include <utility>
 
@@ -28,9 +33,31 @@ void rethrow_as_failure_of(int place) {
 
 namespace {
 
+// The sum of an exposure's parts, where a checkpoint is looked for.
+class Counted final : public Checkpoints {
+  public:
+    explicit Counted(Checkpoint checkpoint) : checkpoint_(std::move(checkpoint)) {}
+    double interval() const override { return std::numeric_limits<double>::infinity(); }
+    std::optional<Checkpoint> load(std::uint32_t /*image*/) const override { return checkpoint_; }
+    void save(std::uint32_t /*image*/, const Checkpoint& /*checkpoint*/) const override {}
+
+  private:
+    Checkpoint checkpoint_;
+};
+
+// An exposure whose parts several devices count.
+struct Parted {
+    std::promise<Image> done;
+    std::mutex mutex; // of what follows
+    ExposurePart sum;
+    std::size_t missing = 0; // parts
+    bool failed = false;
+};
+
 class TracerPool final : public Tracer {
   public:
-    explicit TracerPool(std::vector<std::unique_ptr<Tracer>> tracers) : tracers_(std::move(tracers)) {
+    TracerPool(std::vector<std::unique_ptr<Tracer>> tracers, std::uint64_t least_parted)
+        : tracers_(std::move(tracers)), least_parted_(least_parted) {
         for (std::size_t place = 0; place < tracers_.size(); ++place) {
             threads_.emplace_back([this, place] { work(place); });
         }
@@ -45,12 +72,31 @@ class TracerPool final : public Tracer {
 
     Image expose(double focal_height, std::uint32_t image) const override { return begin(focal_height, image).get(); }
 
-    std::future<Image> begin(double focal_height, std::uint32_t image) const override {
-        Job job{focal_height, image, {}};
-        auto future = job.done.get_future();
+    std::future<Image> begin(double focal_height, std::uint32_t image,
+                             std::shared_ptr<const Checkpoints> checkpoints = nullptr) const override {
+        std::vector<Job> jobs;
+        std::future<Image> future;
+        if (const Tracer& any = *tracers_.front();
+            any.units() > 0 && any.units() * any.rays_per_unit() >= least_parted_) {
+            const std::uint64_t units = any.units();
+            auto parted = std::make_shared<Parted>();
+            future = parted->done.get_future();
+            const std::uint64_t parts = std::min<std::uint64_t>(units, tracers_.size());
+            parted->missing = parts;
+            for (std::uint64_t part = 0; part < parts; ++part) {
+                jobs.push_back({.focal_height = focal_height,
+                                .image = image,
+                                .parted = parted,
+                                .first = units / parts * part + std::min(part, units % parts),
+                                .end = units / parts * (part + 1) + std::min(part + 1, units % parts)});
+            }
+        } else {
+            jobs.push_back({.focal_height = focal_height, .image = image, .checkpoints = std::move(checkpoints)});
+            future = jobs.back().done.get_future();
+        }
         {
             const std::scoped_lock lock(mutex_);
-            waiting_.push_back(std::move(job));
+            std::ranges::move(jobs, std::back_inserter(waiting_));
         }
         changed_.notify_all();
         return future;
@@ -73,14 +119,20 @@ class TracerPool final : public Tracer {
     const optics::PupilFilter* pupil_filter() const override { return tracers_.front()->pupil_filter(); }
 
   private:
+    // An exposure, or one of its parts.
     struct Job {
-        double focal_height;
-        std::uint32_t image;
-        std::promise<Image> done;
+        double focal_height = 0;
+        std::uint32_t image = 0;
+        std::shared_ptr<const Checkpoints> checkpoints{};
+        std::promise<Image> done{};
+        std::shared_ptr<Parted> parted{};
+        std::uint64_t first = 0;
+        std::uint64_t end = 0;
     };
     struct Begun {
         std::promise<Image> done;
         std::future<Image> image;
+        ExposurePart parts{}; // that it was made of
     };
 
     // None: the pool ends, or the device has begun others and may finish them meanwhile.
@@ -102,6 +154,33 @@ class TracerPool final : public Tracer {
         return ends_;
     }
 
+    // Who counts the last part makes the image.
+    static std::optional<Begun> count(const Tracer& tracer, const Job& job) {
+        Parted& parted = *job.parted;
+        {
+            const std::scoped_lock lock(parted.mutex);
+            if (parted.failed) {
+                return std::nullopt;
+            }
+        }
+        auto part = tracer.count(job.focal_height, job.image, job.first, job.end);
+        const std::scoped_lock lock(parted.mutex);
+        ExposurePart& sum = parted.sum;
+        if (sum.numbers.empty()) {
+            sum.numbers = std::move(part.numbers);
+        } else {
+            std::ranges::transform(sum.numbers, part.numbers, sum.numbers.begin(), std::plus<>());
+        }
+        sum.device_seconds += part.device_seconds;
+        sum.longest_submission = std::max(sum.longest_submission, part.longest_submission);
+        if (parted.failed || --parted.missing > 0) {
+            return std::nullopt;
+        }
+        auto counted = std::make_shared<const Counted>(Checkpoint{tracer.units(), std::move(sum.numbers)});
+        auto image = tracer.begin(job.focal_height, job.image, std::move(counted));
+        return Begun{.done = std::move(parted.done), .image = std::move(image), .parts = std::move(sum)};
+    }
+
     // A device's thread.
     void work(std::size_t place) const {
         const Tracer& tracer = *tracers_[place];
@@ -120,10 +199,19 @@ class TracerPool final : public Tracer {
                     break;
                 }
                 try {
-                    auto image = tracer.begin(job->focal_height, job->image);
-                    begun.push_back({std::move(job->done), std::move(image)});
+                    if (!job->parted) {
+                        auto image = tracer.begin(job->focal_height, job->image, std::move(job->checkpoints));
+                        begun.push_back({.done = std::move(job->done), .image = std::move(image)});
+                    } else if (auto last = count(tracer, *job)) {
+                        begun.push_back(std::move(*last));
+                    }
                 } catch (...) {
-                    fail(job->done);
+                    if (!job->parted) {
+                        fail(job->done);
+                    } else if (const std::scoped_lock lock(job->parted->mutex);
+                               !std::exchange(job->parted->failed, true)) {
+                        fail(job->parted->done);
+                    }
                 }
             }
             if (begun.empty()) {
@@ -134,6 +222,8 @@ class TracerPool final : public Tracer {
             try {
                 Image image = first.image.get();
                 image.device = static_cast<int>(place);
+                image.device_seconds += first.parts.device_seconds;
+                image.longest_submission = std::max(image.longest_submission, first.parts.longest_submission);
                 first.done.set_value(std::move(image));
             } catch (...) {
                 fail(first.done);
@@ -142,6 +232,7 @@ class TracerPool final : public Tracer {
     }
 
     std::vector<std::unique_ptr<Tracer>> tracers_;
+    std::uint64_t least_parted_;
     mutable std::mutex mutex_; // of what follows
     mutable std::condition_variable changed_;
     mutable std::deque<Job> waiting_;
@@ -151,8 +242,8 @@ class TracerPool final : public Tracer {
 
 } // namespace
 
-std::unique_ptr<Tracer> make_tracer_pool(std::vector<std::unique_ptr<Tracer>> tracers) {
-    return std::make_unique<TracerPool>(std::move(tracers));
+std::unique_ptr<Tracer> make_tracer_pool(std::vector<std::unique_ptr<Tracer>> tracers, std::uint64_t least_parted) {
+    return std::make_unique<TracerPool>(std::move(tracers), least_parted);
 }
 
 } // namespace vkfv::trace

@@ -198,6 +198,65 @@ TEST_F(Cluster, KilledShardsEndInTheBytesOfOneRun) {
     expect_same_results(out("one"), out("killed"));
 }
 
+// Until the file is there, a minute at most.
+bool appears(const fs::path& file) {
+    for (int k = 0; k < 6000 && !fs::exists(file); ++k) {
+        std::this_thread::sleep_for(std::chrono::milliseconds(10));
+    }
+    return fs::exists(file);
+}
+
+TEST_F(Cluster, AKilledExposureGoesOnFromItsCheckpoint) {
+    // Of the stack two images.
+    const Words often = {"--rays", "3000000", "--set", "output.checkpoint_s=0.1", "--set", "scan.z_stop_um=-1"};
+    const auto with = [&](Words words) {
+        words.insert(words.end(), often.begin(), often.end());
+        return words;
+    };
+    for (const int signal : {SIGKILL, SIGTERM}) {
+        const pid_t child = start(with({"stack", "c.toml", "--out", "killed/out"}), folder_);
+        const bool kept = appears(out("killed") / "partial_0000") || appears(out("killed") / "partial_0001");
+        int status = 0;
+        kill(child, signal);
+        waitpid(child, &status, 0);
+        EXPECT_TRUE(kept);
+        EXPECT_TRUE(WIFSIGNALED(status) && WTERMSIG(status) == signal);
+    }
+    const auto last = stack("killed", often);
+    ASSERT_EQ(last.exit_code, 0) << last.standard_error;
+    EXPECT_THAT(last.standard_error, HasSubstr("goes on from"));
+    ASSERT_EQ(stack("one", often).exit_code, 0);
+    expect_same_results(out("one"), out("killed"));
+
+    // A single image.
+    const Words image = with({"image", "c.toml", "--z", "0.3", "--estimator", "backward"});
+    const auto to = [&](const char* file) {
+        Words words = image;
+        words.insert(words.end(), {"--out", file});
+        return words;
+    };
+    const pid_t child = start(to("killed.tif"), folder_);
+    EXPECT_TRUE(appears(folder_ / "killed.tif.partial"));
+    int status = 0;
+    kill(child, SIGKILL);
+    waitpid(child, &status, 0);
+    EXPECT_FALSE(fs::exists(folder_ / "killed.tif"));
+    // Another exposure does not take it up.
+    Words other = to("killed.tif");
+    other.insert(other.end(), {"--seed", "9"});
+    EXPECT_THAT(run_program(other, folder_).standard_error, HasSubstr("a checkpoint of another exposure"));
+    EXPECT_FALSE(fs::exists(folder_ / "killed.tif.partial"));
+    const pid_t again = start(to("killed.tif"), folder_);
+    EXPECT_TRUE(appears(folder_ / "killed.tif.partial"));
+    kill(again, SIGKILL);
+    waitpid(again, &status, 0);
+    const auto finished = run_program(to("killed.tif"), folder_);
+    EXPECT_THAT(finished.standard_error, HasSubstr("goes on from"));
+    ASSERT_EQ(run_program(to("one.tif"), folder_).exit_code, 0);
+    EXPECT_EQ(read_file(folder_ / "killed.tif"), read_file(folder_ / "one.tif"));
+    EXPECT_FALSE(fs::exists(folder_ / "killed.tif.partial"));
+}
+
 TEST_F(Cluster, TheLogTellsOfEachImageInJson) {
     const auto result = stack("out", {"--log-json"});
     ASSERT_EQ(result.exit_code, 0);
@@ -218,6 +277,7 @@ TEST_F(Cluster, TheLogTellsOfEachImageInJson) {
         EXPECT_EQ(image["images"], 5);
         EXPECT_EQ(image["device"], 0);
         EXPECT_GT(image["rays_per_s"].get<double>(), 0);
+        EXPECT_GT(image["longest_submission_s"].get<double>(), 0);
         EXPECT_GE(image["seconds_left"].get<double>(), 0);
         const double sum = image["detected_W"].get<double>() + image["lost_W"].get<double>();
         EXPECT_NEAR(sum + image["residual_W"].get<double>(), image["emitted_W"].get<double>(), 1e-12);

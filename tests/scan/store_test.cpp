@@ -393,7 +393,9 @@ TEST(ImageStore, OneProgramAtATime) {
 // Of images that a device has at a time; those that are stored are not begun again.
 class AheadTracer final : public FakeTracer {
   public:
-    std::future<trace::Image> begin(double focal_height, std::uint32_t image) const override {
+    std::future<trace::Image>
+    begin(double focal_height, std::uint32_t image,
+          std::shared_ptr<const trace::Checkpoints> /*checkpoints*/ = nullptr) const override {
         ++under_way_;
         most = std::max(most, under_way_);
         return std::async(std::launch::deferred, [this, focal_height, image] {

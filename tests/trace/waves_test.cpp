@@ -115,6 +115,17 @@ optics::Instrument ideal_microscope(double aperture, double tilt = 0) {
     return optics::assemble(description);
 }
 
+// A level Lambertian flat with a grating of reflectance; period: mm, angle: rad.
+specimen::Specimen flat_with_grating(double period, double angle) {
+    specimen::Analytic plane;
+    plane.x_min = plane.y_min = -0.1;
+    plane.x_max = plane.y_max = 0.1;
+    specimen::Specimen specimen{plane, specimen::Material{{{"lambertian", 1, {}}}}};
+    specimen.reflectance = specimen::make_reflectance_map(
+        {.kind = specimen::Reflectance::Kind::grating, .angle = angle, .period = period}, {-0.1, -0.1, 0.1, 0.1}, {});
+    return specimen;
+}
+
 // The amplitude of a grating at this angle over its mean, in phase with it, without the pixels' own transfer.
 double grating_contrast(const Grid<double>& image, double period, double angle, double pitch) {
     double mean = 0;
@@ -155,13 +166,7 @@ TEST(Waves, give_gratings_the_contrast_of_the_debye_integral) {
         const double pitch = instrument.first_order.pixel_pitch;
         for (const double s : {0.25, 0.5}) {
             const double period = grating_wavelength / (2 * aperture * s);
-            specimen::Analytic plane;
-            plane.x_min = plane.y_min = -0.1;
-            plane.x_max = plane.y_max = 0.1;
-            specimen::Specimen specimen{plane, specimen::Material{{{"lambertian", 1, {}}}}};
-            specimen.reflectance = specimen::make_reflectance_map(
-                {.kind = specimen::Reflectance::Kind::grating, .angle = angle, .period = period},
-                {-0.1, -0.1, 0.1, 0.1}, {});
+            const auto specimen = flat_with_grating(period, angle);
             for (const double waves : {0.0, 0.25}) {
                 const double z = 2 * waves * grating_wavelength / (aperture * aperture);
                 auto options = with_waves(trace::Estimator::backward);
@@ -189,12 +194,7 @@ TEST(Waves, follow_a_detector_that_is_tilted) {
     constexpr double aperture = 0.28, s = 0.5, waves = 0.25, angle = 0.39, degrees = 5;
     const auto instrument = ideal_microscope(aperture, degrees * pi / 180);
     const double period = grating_wavelength / (2 * aperture * s);
-    specimen::Analytic plane;
-    plane.x_min = plane.y_min = -0.1;
-    plane.x_max = plane.y_max = 0.1;
-    specimen::Specimen specimen{plane, specimen::Material{{{"lambertian", 1, {}}}}};
-    specimen.reflectance = specimen::make_reflectance_map(
-        {.kind = specimen::Reflectance::Kind::grating, .angle = angle, .period = period}, {-0.1, -0.1, 0.1, 0.1}, {});
+    const auto specimen = flat_with_grating(period, angle);
     const double z = 2 * waves * grating_wavelength / (aperture * aperture);
     const double expected = debye_transfer(aperture, grating_wavelength, s, z);
     for (const auto estimator : {trace::Estimator::forward, trace::Estimator::backward}) {
@@ -216,12 +216,7 @@ TEST(Waves, give_gratings_the_contrast_of_an_aberrated_objective) {
     description.detector_size = grating_pixels * period / 8 * 9.999284;
     description.turned = true;
     const auto instrument = optics::assemble(description);
-    specimen::Analytic plane;
-    plane.x_min = plane.y_min = -0.1;
-    plane.x_max = plane.y_max = 0.1;
-    specimen::Specimen specimen{plane, specimen::Material{{{"lambertian", 1, {}}}}};
-    specimen.reflectance = specimen::make_reflectance_map(
-        {.kind = specimen::Reflectance::Kind::grating, .angle = 0, .period = period}, {-0.1, -0.1, 0.1, 0.1}, {});
+    const auto specimen = flat_with_grating(period, 0);
     auto options = with_waves(trace::Estimator::backward);
     options.rays = 128 * grating_pixels * grating_pixels;
     options.max_bounces = 1;
