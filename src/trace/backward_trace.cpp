@@ -15,6 +15,8 @@
 #include <algorithm>
 #include <array>
 #include <deque>
+#include <optional>
+#include <utility>
 
 namespace vkfv::trace {
 
@@ -153,15 +155,16 @@ class BackwardTracer::Exposure final : public DeviceExposure {
         if (!numbers.empty()) {
             sums_.set(numbers.first(sums_.numbers().size()));
             tracer_.light_.write(work, numbers.subspan(sums_.numbers().size()));
-            return;
+            clears_light_ = false;
         }
-        tracer_.scene_.clear_cell_light(work.open());
-        work.submit();
     }
 
     std::size_t number_count() const override { return sums_.numbers().size() + tracer_.light_.count(); }
     std::vector<std::uint64_t> numbers() override {
-        take_from_device();
+        if (on_device_) {
+            take_from_device(work.open());
+            work.submit();
+        }
         take_all();
         auto numbers = sums_.numbers();
         const auto light = tracer_.light_.read(work);
@@ -176,15 +179,18 @@ class BackwardTracer::Exposure final : public DeviceExposure {
         const std::uint64_t most = std::max<std::uint64_t>(1, tracer_.pace_.paths() / trace.points_per_chunk());
         end = std::min({end, begin + trace.chunks(), first + most});
         vulkan::Commands& commands = work.open();
+        if (std::exchange(clears_light_, false)) {
+            tracer_.scene_.clear_cell_light(commands);
+        }
         if (!on_device_) {
             trace.clear(commands);
             on_device_ = randomisation;
         }
         trace.record(commands, randomisation, first - begin, static_cast<std::uint32_t>(end - first));
-        work.submit((end - first) * trace.points_per_chunk());
         if (end == begin + trace.chunks()) {
-            take_from_device();
+            take_from_device(commands);
         }
+        work.submit((end - first) * trace.points_per_chunk());
         return end;
     }
 
@@ -217,16 +223,12 @@ class BackwardTracer::Exposure final : public DeviceExposure {
 
     std::size_t byte_of(std::size_t place) const { return place * tracer_.pixels() * sizeof(std::uint64_t); }
     std::size_t place_of_light() const { return byte_of(tracer_.randomisations_kept()); }
-    // What the device has of a randomisation, whole or not.
-    void take_from_device() {
-        if (!on_device_) {
-            return;
-        }
+    // What the device has of a randomisation, whole or not, with the submission that is open.
+    void take_from_device(vulkan::Commands& commands) {
         if (taken_.size() == tracer_.randomisations_kept()) {
             take_first();
         }
-        tracer_.trace_.copy_sums(work.open(), for_host_, byte_of(next_place_));
-        work.submit();
+        tracer_.trace_.copy_sums(commands, for_host_, byte_of(next_place_));
         taken_.push_back({*on_device_, next_place_, work.submissions() - 1});
         next_place_ = (next_place_ + 1) % tracer_.randomisations_kept();
         on_device_.reset();
@@ -246,6 +248,7 @@ class BackwardTracer::Exposure final : public DeviceExposure {
     const BackwardTracer& tracer_;
     const vulkan::Buffer& for_host_;
     BackwardImage sums_;
+    bool clears_light_ = true;
     std::optional<std::uint32_t> on_device_; // the randomisation whose sums it adds up
     std::deque<Taken> taken_;
     std::size_t next_place_ = 0;

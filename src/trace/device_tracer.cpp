@@ -18,6 +18,7 @@
 
 #include <algorithm>
 #include <array>
+#include <utility>
 
 namespace vkfv::trace {
 
@@ -77,14 +78,10 @@ class DeviceTracer::Exposure final : public DeviceExposure {
         : DeviceExposure(*tracer.scene_.device, tracer.pace_), tracer_(tracer), for_host_(for_host) {}
 
     void set_out(std::span<const std::uint64_t> numbers) override {
-        if (!numbers.empty()) {
+        clears_ = numbers.empty();
+        if (!clears_) {
             tracer_.numbers_.write(work, numbers);
-            return;
         }
-        vulkan::Commands& commands = work.open();
-        tracer_.trace_->clear(commands);
-        tracer_.scene_.clear_cell_light(commands);
-        work.submit();
     }
 
     std::size_t number_count() const override { return tracer_.numbers_.count(); }
@@ -93,6 +90,10 @@ class DeviceTracer::Exposure final : public DeviceExposure {
     std::uint64_t submit(std::uint64_t first, std::uint64_t end) override {
         const PathTrace& trace = *tracer_.trace_;
         vulkan::Commands& commands = work.open();
+        if (std::exchange(clears_, false)) {
+            trace.clear(commands);
+            tracer_.scene_.clear_cell_light(commands);
+        }
         end = std::min(end, first + tracer_.pace_.paths());
         for (std::uint64_t path = first; path < end; path += trace.batch()) {
             trace.record(commands, path,
@@ -125,6 +126,7 @@ class DeviceTracer::Exposure final : public DeviceExposure {
   private:
     const DeviceTracer& tracer_;
     const vulkan::Buffer& for_host_;
+    bool clears_ = true;
 };
 
 std::unique_ptr<DeviceExposure> DeviceTracer::prepare(double focal_height, std::uint32_t image,

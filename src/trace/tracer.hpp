@@ -94,7 +94,7 @@ struct Image {
     double crossings = 0;       // of surfaces in sequence, of all rays together
     // The rest enters no image; s. Exposures that are under way at a time share the wall clock.
     double seconds = 0;            // wall clock, from beginning to end
-    double device_seconds = 0;     // the device's work, by its own clock
+    double device_seconds = 0;     // the device's work, by its own clock; parted: the devices' mean
     double longest_submission = 0; // of that work
     double device_begin = 0;       // on that clock, from the tracer's first exposure on
     double device_end = 0;

@@ -222,7 +222,7 @@ class TracerPool final : public Tracer {
             try {
                 Image image = first.image.get();
                 image.device = static_cast<int>(place);
-                image.device_seconds += first.parts.device_seconds;
+                image.device_seconds += first.parts.device_seconds / static_cast<double>(tracers_.size());
                 image.longest_submission = std::max(image.longest_submission, first.parts.longest_submission);
                 first.done.set_value(std::move(image));
             } catch (...) {
