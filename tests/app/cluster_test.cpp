@@ -210,14 +210,16 @@ bool appears(const std::vector<fs::path>& files) {
 }
 
 TEST_F(Cluster, AKilledExposureGoesOnFromItsCheckpoint) {
-    // Of the stack three images.
-    const Words often = {"--rays", "3000000", "--set", "output.checkpoint_s=0.1", "--set", "scan.z_stop_um=0"};
-    const auto with = [&](Words words) {
-        words.insert(words.end(), often.begin(), often.end());
+    // Light for some seconds an image, so that a fast machine too is met half-way.
+    const auto often = [](const char* rays, Words words = {}) {
+        words.insert(words.end(), {"--rays", rays, "--set", "output.checkpoint_s=0.02"});
         return words;
     };
+    const Words stack_often = often("6000000", {"--set", "scan.z_stop_um=0"}); // three images
     for (const int signal : {SIGKILL, SIGTERM}) {
-        const pid_t child = start(with({"stack", "c.toml", "--out", "killed/out"}), folder_);
+        Words words = {"stack", "c.toml", "--out", "killed/out"};
+        words.insert(words.end(), stack_often.begin(), stack_often.end());
+        const pid_t child = start(words, folder_);
         const bool kept = appears({out("killed") / "partial_0000", out("killed") / "partial_0001"});
         int status = 0;
         kill(child, signal);
@@ -225,14 +227,14 @@ TEST_F(Cluster, AKilledExposureGoesOnFromItsCheckpoint) {
         EXPECT_TRUE(kept);
         EXPECT_TRUE(WIFSIGNALED(status) && WTERMSIG(status) == signal);
     }
-    const auto last = stack("killed", often);
+    const auto last = stack("killed", stack_often);
     ASSERT_EQ(last.exit_code, 0) << last.standard_error;
     EXPECT_THAT(last.standard_error, HasSubstr("goes on from"));
-    ASSERT_EQ(stack("one", often).exit_code, 0);
+    ASSERT_EQ(stack("one", stack_often).exit_code, 0);
     expect_same_results(out("one"), out("killed"));
 
     // A single image.
-    const Words image = with({"image", "c.toml", "--z", "0.3", "--estimator", "backward"});
+    const Words image = often("10000000", {"image", "c.toml", "--z", "0.3", "--estimator", "backward"});
     const auto to = [&](const char* file) {
         Words words = image;
         words.insert(words.end(), {"--out", file});
