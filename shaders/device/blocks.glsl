@@ -59,6 +59,7 @@ struct CeilingsHeader {
 struct TrainPassage {
     uint count; // rays
     uint apertures;
+    uint form; // SHORT_TRAIN_*, with apertures; 0: trace_train()
     int first_surface;
     int surfaces;
     real index;

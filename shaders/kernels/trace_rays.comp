@@ -22,8 +22,14 @@ void main() {
     uint index = gl_GlobalInvocationID.x;
     if (index < passage.count) {
         Light light = light_of_spectral(instrument, real(0.0));
-        TrainResult train = trace_train(passage.first_surface, passage.surfaces, rays[index], passage.index,
-                                        passage.apertures != 0u, light);
+        TrainResult train;
+        if (passage.form == 0u) {
+            train = trace_train(passage.first_surface, passage.surfaces, rays[index], passage.index,
+                                passage.apertures != 0u, light);
+        } else {
+            train = trace_short_train(passage.first_surface, passage.surfaces, rays[index], passage.index, light,
+                                      passage.form);
+        }
         Ray arrived = fly_to_plane(train.ray, passage.plane, train.index);
         TracedRay traced;
         traced.position = arrived.position;

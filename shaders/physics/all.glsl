@@ -12,6 +12,7 @@
 #include "physics/fresnel.glsl"
 #include "physics/ideal_lens.glsl"
 #include "physics/train.glsl"
+#include "physics/short_train.glsl"
 #include "physics/scatter_basis.glsl"
 #include "physics/scatter_models.glsl"
 #include "physics/scatter.glsl"

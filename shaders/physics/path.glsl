@@ -103,8 +103,8 @@ VKFV_SCENE_FUNCTION VKFV_FUNCTION Arrival illuminate(VKFV_SCENE_PARAMETER Instru
     real specimen_index = specimen_medium_index(instrument, arrival.light);
     real index = is_ring ? specimen_index : real(1.0);
     ray.direction = ray.direction * index;
-    TrainResult train = trace_train(VKFV_SCENE instrument.illumination_first, instrument.illumination_count, ray, index,
-                                    true, arrival.light);
+    TrainResult train = trace_short_train(VKFV_SCENE instrument.illumination_first, instrument.illumination_count, ray,
+                                          index, arrival.light, SHORT_TRAIN_PLAIN);
     Ray down = fly_to_top(train.ray, exposure, specimen_index);
     arrival.fate = make_fate(train.status, train.surface);
     // The specimen frame is the illumination's turned half a turn about x.
@@ -161,6 +161,35 @@ VKFV_FUNCTION real density_ratio(Lobe lobe, Incidence incidence, GateDisc disc, 
            (direction.z * direction.z * direction.z);
 }
 
+// The last scatter of a path, of whose light only what passes the gate is seen: instead of a direction drawn from the
+// lobe by rejection, one uniform in the slopes of the gate's disc, of density q, kept with the chance p / q. Where that
+// is nowhere above 1 it is exact: the light passes with the chance of the integral of p over the gate, and those
+// directions that do have the density p. All other light has escaped; mostly that is known from a bound of p alone.
+struct GatedScatter {
+    bool applies; // else the bound exceeds 1, or the model knows none
+    bool passes;
+    real3 direction;
+};
+
+VKFV_FUNCTION GatedScatter scatter_into_gate(Lobe lobe, Incidence incidence, GateDisc disc, real u0, real u1, real u2) {
+    // Unit directions are no further apart than their slopes.
+    real scale = inversesqrt(real(1.0) + disc.centre.x * disc.centre.x + disc.centre.y * disc.centre.y);
+    real3 off = real3(disc.centre.x * scale, disc.centre.y * scale, scale) - incidence.mirror;
+    real apart = max(sqrt(dot(off, off)) - disc.radius, real(0.0));
+    real area = real(3.14159265358979324) * disc.radius * disc.radius;
+    real ceiling = lobe_ceiling(lobe, incidence, apart) * area;
+    GatedScatter result;
+    bool from_above = dot(incidence.incoming, incidence.normal) < real(0.0);
+    result.applies = from_above && ceiling > real(0.0) && ceiling <= real(1.0);
+    result.passes = false;
+    result.direction = incidence.mirror;
+    if (result.applies && u2 < ceiling) {
+        result.direction = direction_in_disc(disc, u0, u1);
+        result.passes = u2 < density_ratio(lobe, incidence, disc, result.direction);
+    }
+    return result;
+}
+
 struct Selection {
     real weight; // of all samples so far
     Survivor survivor;
@@ -211,12 +240,23 @@ VKFV_SCENE_FUNCTION VKFV_FUNCTION Departure scatter_at_specimen(VKFV_SCENE_PARAM
         uint first_block = 1u + uint(bounce) * SCATTER_BLOCKS;
         bool last = bounce + 1 == specimen.max_bounces;
         Incidence incidence = make_incidence(direction, hit.normal);
-        Scattered scattered = scatter(material_at(VKFV_SCENE specimen, hit.position), direction, hit.normal,
-                                      exposure.seed, exposure.image, path, first_block);
-        direction = scattered.direction;
+        Material material = material_at(VKFV_SCENE specimen, hit.position);
         origin = scatter_origin(hit);
-        under_way = scattered.accepted;
-        status = under_way ? PATH_ALIVE : scattered.absorbed ? PATH_ABSORBED : PATH_NUMERICAL;
+        GatedScatter gated;
+        gated.applies = false;
+        if (last && !directed) {
+            Draws draws = draw(exposure.seed, exposure.image, path, first_block);
+            gated = scatter_into_gate(scattering_lobe(material, draws), incidence,
+                                      gate_disc(instrument, specimen.top, origin), draws.u0, draws.u1, draws.u2);
+        }
+        Scattered scattered = scatter_by_tries(material, incidence, exposure.seed, exposure.image, path, first_block,
+                                               gated.applies ? 0u : SCATTER_BLOCKS - 1u);
+        direction = gated.applies ? gated.direction : scattered.direction;
+        under_way = gated.applies ? gated.passes : scattered.accepted;
+        status = under_way            ? PATH_ALIVE
+                 : gated.applies      ? PATH_ESCAPED
+                 : scattered.absorbed ? PATH_ABSORBED
+                                      : PATH_NUMERICAL;
         // What a lossy lobe absorbs is of its own direction alone.
         bool lobe_lost = scattered.absorbed && scattered.lobe.model != SCATTER_NONE;
         if (directed && (under_way || lobe_lost)) {
@@ -341,8 +381,8 @@ VKFV_SCENE_FUNCTION VKFV_FUNCTION Detection image_survivor(VKFV_SCENE_PARAMETER 
     real index = specimen_medium_index(instrument, light);
     ray.direction = direction * index;
     ray.path_length = real(0.0);
-    TrainResult train =
-        trace_train(VKFV_SCENE instrument.imaging_first, instrument.imaging_count, ray, index, true, light);
+    TrainResult train = trace_short_train(VKFV_SCENE instrument.imaging_first, instrument.imaging_count, ray, index,
+                                          light, SHORT_TRAIN_FINE);
     Ray arrived = fly_to_plane(train.ray, instrument.detector_distance, train.index);
     Detection detection = detect(instrument, arrived.position.x, arrived.position.y);
     detection.slope = real2(arrived.direction.x, arrived.direction.y) / arrived.direction.z;

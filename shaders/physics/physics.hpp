@@ -37,6 +37,7 @@
     using glm::exp; \
     using glm::floor; \
     using glm::fract; \
+    using glm::inversesqrt; \
     using glm::isinf; \
     using glm::isnan; \
     using glm::log; \

@@ -54,7 +54,8 @@ VKFV_FUNCTION real scatter_density(Material material, real3 incoming, real3 norm
 // Henyey-Greenstein's acceptance is no less than about cos(theta_i) for sharp lobes with g > 0, and about 0.01 for
 // g = -0.9, the least that a configuration may ask for: 2048 tries fail less than once in 1e8 for incidence up to 89.4
 // degrees. What fails is counted as numerical.
-const uint SCATTER_BLOCKS = 2048u; // blocks of random numbers a scatter event owns; a try each, and directed scatter's
+const uint SCATTER_BLOCKS =
+    2048u; // blocks of random numbers a scatter event owns; two tries each, the last directed scatter's
 
 struct Scattered {
     bool accepted; // else absorbed, or tries exhausted
@@ -63,28 +64,47 @@ struct Scattered {
     Lobe lobe; // that was chosen; if none was, its model is SCATTER_NONE
 };
 
-// incoming: unit, towards the surface; normal: unit, on the incoming side.
-VKFV_FUNCTION Scattered scatter(Material material, real3 incoming, real3 normal, uint seed, uint image, uvec2 path,
-                                uint first_block) {
-    Incidence incidence = make_incidence(incoming, normal);
+// Of the first block of a scatter event.
+VKFV_FUNCTION Lobe scattering_lobe(Material material, Draws draws) {
+    Lobe lobe = material.lobe_0;
+    if ((scatter_models & SCATTER_CHOICE) != 0u) {
+        lobe = choose_lobe(material, draws.u5);
+    }
+    return lobe;
+}
+
+// blocks: of random numbers at most, two tries each; the first block's second try where its numbers choose no lobe.
+VKFV_FUNCTION Scattered scatter_by_tries(Material material, Incidence incidence, uint seed, uint image, uvec2 path,
+                                         uint first_block, uint most_blocks) {
     Lobe lobe = material.lobe_0;
     Scattered result;
     result.accepted = false;
     result.absorbed = false;
     result.direction = incidence.mirror;
     // Light from behind the surface is a rounding fault (it slipped between facets): not scattered, but counted.
-    uint blocks = dot(incoming, normal) < real(0.0) ? SCATTER_BLOCKS - 1u : 0u;
+    uint blocks = dot(incidence.incoming, incidence.normal) < real(0.0) ? most_blocks : 0u;
     for (uint block = 0u; block < blocks && !result.accepted && !result.absorbed; ++block) {
         Draws draws = draw(seed, image, path, first_block + block);
-        if ((scatter_models & SCATTER_CHOICE) != 0u && block == 0u) {
-            lobe = choose_lobe(material, draws.u5);
+        bool chooses = (scatter_models & SCATTER_CHOICE) != 0u && block == 0u;
+        if (chooses) {
+            lobe = scattering_lobe(material, draws);
             result.absorbed = lobe.model == SCATTER_NONE;
         }
         ScatterTry attempt = lobe_try(lobe, incidence, draws.u0, draws.u1, draws.u2);
-        result.accepted = attempt.accepted;
         result.absorbed = result.absorbed || (!attempt.accepted && lobe_is_lossy(lobe));
+        if (!attempt.accepted && !result.absorbed && !chooses) {
+            attempt = lobe_try(lobe, incidence, draws.u3, draws.u4, draws.u5);
+        }
+        result.accepted = attempt.accepted;
         result.direction = attempt.direction;
     }
     result.lobe = lobe;
     return result;
+}
+
+// incoming: unit, towards the surface; normal: unit, on the incoming side.
+VKFV_FUNCTION Scattered scatter(Material material, real3 incoming, real3 normal, uint seed, uint image, uvec2 path,
+                                uint first_block) {
+    return scatter_by_tries(material, make_incidence(incoming, normal), seed, image, path, first_block,
+                            SCATTER_BLOCKS - 1u);
 }

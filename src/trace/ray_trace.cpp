@@ -105,7 +105,7 @@ std::vector<TracedRay> trace_train_on_host(const optics::Instrument& instrument,
 
 std::vector<TracedRay> trace_train_on_device(const optics::Instrument& instrument, Train train,
                                              std::span<const physics::f64::Ray> rays, bool apertures,
-                                             const std::string& device_selector) {
+                                             const std::string& device_selector, std::uint32_t form) {
     if (rays.empty()) {
         return {};
     }
@@ -148,6 +148,7 @@ std::vector<TracedRay> trace_train_on_device(const optics::Instrument& instrumen
     const TrainEnds ends = ends_of(instrument, train);
     const kernels::TrainPassage push{.count = static_cast<std::uint32_t>(rays.size()),
                                      .apertures = apertures ? 1u : 0u,
+                                     .form = form,
                                      .first_surface = ends.first_surface,
                                      .surfaces = ends.surfaces,
                                      .index = static_cast<float>(ends.index),

@@ -36,11 +36,12 @@ std::vector<TracedRay> trace_rays_on_device(const optics::Instrument& instrument
                                             bool apertures, const std::string& device);
 
 // The same for rays in the frame of a train's first vertex, directions scaled by the index. The illumination's end on
-// the plane of best focus, in the frame of its last vertex.
+// the plane of best focus, in the frame of its last vertex. form: SHORT_TRAIN_* (shaders/physics/short_train.glsl),
+// always with apertures and without path lengths; 0: the long form.
 std::vector<TracedRay> trace_train_on_host(const optics::Instrument& instrument, Train train,
                                            std::span<const physics::f64::Ray> rays, bool apertures);
 std::vector<TracedRay> trace_train_on_device(const optics::Instrument& instrument, Train train,
                                              std::span<const physics::f64::Ray> rays, bool apertures,
-                                             const std::string& device);
+                                             const std::string& device, std::uint32_t form = 0);
 
 } // namespace vkfv::trace

@@ -8,6 +8,7 @@
 // Sharper backward lobes than g = -0.9 lie all but wholly below the surface: scatter() would run out of tries.
 // parameter: g, -0.9, 1, 0, asymmetry: 0 is Lambertian and 1 the mirror
 // table
+// ceiling
 
 // 1 - cos(alpha) of a Henyey-Greenstein draw. The usual inversion, rearranged so that neither g -> 0 nor alpha -> 0
 // cancels: 2 (1 - g)^2 (1 - u) (1 + g u) / (1 - g + 2 g u)^2, with cos(alpha) ascending in u.
@@ -70,15 +71,23 @@ VKFV_FUNCTION real henyey_greenstein_norm(real g, real table[LOBE_TABLE_SIZE], r
     return place.linear + above / below;
 }
 
+// p / N of 1 + g^2 - 2 g cos(alpha) = base.
+VKFV_FUNCTION real henyey_greenstein_of_base(real g, real table[LOBE_TABLE_SIZE], Incidence incidence, real base) {
+    real phase = real(0.0795774715459476679) * (real(1.0) - g) * (real(1.0) + g) / (base * sqrt(base));
+    return phase / henyey_greenstein_norm(g, table, -dot(incidence.incoming, incidence.normal));
+}
+
 VKFV_FUNCTION real henyey_greenstein_bsdf(real g, real table[LOBE_TABLE_SIZE], Incidence incidence, real3 outgoing) {
     real3 apart = outgoing - incidence.mirror;
-    // 1 + g^2 - 2 g cos(alpha) without its cancellation.
+    // Without the cancellation.
     real base = (real(1.0) - g) * (real(1.0) - g) + g * dot(apart, apart);
-    real bsdf = real(0.0);
     // At g = 1 it is a delta.
-    if (g < real(1.0)) {
-        real phase = real(0.0795774715459476679) * (real(1.0) - g) * (real(1.0) + g) / (base * sqrt(base));
-        bsdf = phase / henyey_greenstein_norm(g, table, -dot(incidence.incoming, incidence.normal));
-    }
-    return bsdf;
+    return g < real(1.0) ? henyey_greenstein_of_base(g, table, incidence, base) : real(0.0);
+}
+
+// For g < 0 the base is least at 180 degrees.
+VKFV_FUNCTION real henyey_greenstein_ceiling(real g, real table[LOBE_TABLE_SIZE], Incidence incidence, real apart) {
+    real least = real(1.0) - abs(g);
+    real base = least * least + max(g, real(0.0)) * apart * apart;
+    return g < real(1.0) ? henyey_greenstein_of_base(g, table, incidence, base) : real(0.0);
 }

@@ -1,4 +1,5 @@
 // Lambert's cosine law, J. H. Lambert, Photometria (1760): the same radiance in every direction, cos(theta_o) / pi.
+// ceiling
 
 // cos^2(theta_o) is uniform; 1 - sqrt(u) without its cancellation.
 VKFV_FUNCTION ScatterTry lambertian_try(Incidence incidence, real u0, real u1, real) {
@@ -9,3 +10,5 @@ VKFV_FUNCTION ScatterTry lambertian_try(Incidence incidence, real u0, real u1, r
 }
 
 VKFV_FUNCTION real lambertian_bsdf(Incidence, real3) { return real(0.318309886183790672); }
+
+VKFV_FUNCTION real lambertian_ceiling(Incidence, real) { return real(0.318309886183790672); }
