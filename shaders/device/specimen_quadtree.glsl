@@ -15,6 +15,10 @@ layout(set = 0, binding = BINDING_CEILINGS, scalar) readonly buffer Ceilings {
 // Of a height field two points of a column a step, so that a cell takes two neighbouring loads: (i, j) and (i, j+1).
 layout(set = 0, binding = BINDING_HEIGHTS, scalar) readonly buffer Columns { real2 column_steps[]; };
 
+// Whether some cells are split from (i+1, j) to (i, j+1) instead of from (i, j) to (i+1, j+1): those of which the last
+// bit of (i, j)'s height is set. Such a cell is met as its mirror image in x.
+layout(constant_id = CONSTANT_FALLING_CELLS) const bool has_falling_cells = false;
+
 // Cells walked before jumps are tried again.
 const int CELLS_AHEAD = 16;
 
@@ -35,16 +39,17 @@ real facet_height(vec4 corners, real2 fraction, bool lower_right) {
 
 // A ray over the grid of cells, by its distance t in mm.
 struct GridRay {
-    ivec2 cells;         // of the grid
-    real2 per_mm;        // cells
-    real2 place;         // cells
-    real2 speed;         // cells/mm
-    real2 slowness;      // mm/cell, finite
-    real to_next_cell;   // mm, at least, to be one cell further along x or y
-    real drift_slowness; // mm, to be one cell further across the diagonals
-    ivec2 forward;       // 1: towards larger columns, larger rows
-    real height;         // mm
-    real rise;           // mm/mm
+    ivec2 cells;                 // of the grid
+    real2 per_mm;                // cells
+    real2 place;                 // cells
+    real2 speed;                 // cells/mm
+    real2 slowness;              // mm/cell, finite
+    real to_next_cell;           // mm, at least, to be one cell further along x or y
+    real drift_slowness;         // mm, to be one cell further across the diagonals
+    real falling_drift_slowness; // the same of a mirrored cell
+    ivec2 forward;               // 1: towards larger columns, larger rows
+    real height;                 // mm
+    real rise;                   // mm/mm
     real inverse_rise;
 };
 
@@ -60,6 +65,8 @@ GridRay grid_ray(real3 start, real3 direction, real inverse_rise) {
     ray.forward = ivec2(ray.slowness.x >= real(0.0) ? 1 : 0, ray.slowness.y >= real(0.0) ? 1 : 0);
     real drift = ray.speed.x - ray.speed.y;
     ray.drift_slowness = real(1.0) / (abs(drift) > real(1e-9) ? drift : real(1e-9));
+    real falling_drift = -ray.speed.x - ray.speed.y;
+    ray.falling_drift_slowness = real(1.0) / (abs(falling_drift) > real(1e-9) ? falling_drift : real(1e-9));
     ray.height = start.z;
     ray.rise = direction.z;
     ray.inverse_rise = inverse_rise;
@@ -88,6 +95,37 @@ Jump jump_over(GridRay ray, real t, int level, int columns, int first) {
     return jump;
 }
 
+// A ray over one cell, in cells from its corner, and the cell's corners; both mirrored in x if the cell falls.
+struct CellRay {
+    vec4 corners;
+    real2 place;
+    real2 speed;
+    real2 slowness;
+    ivec2 forward;
+    real drift_slowness;
+    bool mirrored;
+};
+
+CellRay ray_over_cell(GridRay ray, ivec2 cell) {
+    CellRay over;
+    over.corners = cell_corners(cell);
+    over.place = ray.place - real2(cell);
+    over.speed = ray.speed;
+    over.slowness = ray.slowness;
+    over.forward = ray.forward;
+    over.drift_slowness = ray.drift_slowness;
+    over.mirrored = has_falling_cells && (floatBitsToUint(over.corners.x) & 1u) != 0u;
+    if (over.mirrored) {
+        over.corners = over.corners.yxwz;
+        over.place.x = real(1.0) - over.place.x;
+        over.speed.x = -over.speed.x;
+        over.slowness.x = -over.slowness.x;
+        over.forward.x = 1 - over.forward.x;
+        over.drift_slowness = ray.falling_drift_slowness;
+    }
+    return over;
+}
+
 // Where a ray is on its way from cell to cell.
 struct CellWalk {
     real t;
@@ -102,25 +140,26 @@ struct CellWalk {
 // Along the facets of at most CELLS_AHEAD cells.
 void walk_cells(inout CellWalk walk, GridRay ray, real stop) {
     for (int k = 0; k < CELLS_AHEAD && walk.under_way; ++k) {
-        vec4 corners = cell_corners(walk.cell);
-        real2 local = ray.place - real2(walk.cell);
+        CellRay over = ray_over_cell(ray, walk.cell);
+        vec4 corners = over.corners;
+        real2 local = over.place;
         if (walk.side == real(0.0)) {
-            real2 at = local + walk.t * ray.speed;
+            real2 at = local + walk.t * over.speed;
             bool above = ray.height + walk.t * ray.rise > facet_height(corners, at, at.x >= at.y);
             walk.side = above ? real(1.0) : real(-1.0);
         }
-        real2 to_border = (real2(ray.forward) - local) * ray.slowness;
+        real2 to_border = (real2(over.forward) - local) * over.slowness;
         bool cross_x = to_border.x <= to_border.y;
         real leave = clamp(min(to_border.x, to_border.y), walk.t, stop);
         // On the diagonal, where both facets have the same height.
-        real middle = (local.y - local.x) * ray.drift_slowness;
+        real middle = (local.y - local.x) * over.drift_slowness;
         bool crosses = middle > walk.t && middle < leave;
-        real along = clamp(local.x + middle * ray.speed.x, real(0.0), real(1.0));
+        real along = clamp(local.x + middle * over.speed.x, real(0.0), real(1.0));
         real gap_middle = ray.height + middle * ray.rise - (corners.x + along * (corners.w - corners.x));
         // On the border, which the next cell sees alike. A ray that stops short of it does so above or below all.
         real2 ends =
-            cross_x ? (ray.forward.x == 1 ? corners.yw : corners.xz) : (ray.forward.y == 1 ? corners.zw : corners.xy);
-        along = clamp(cross_x ? local.y + leave * ray.speed.y : local.x + leave * ray.speed.x, real(0.0), real(1.0));
+            cross_x ? (over.forward.x == 1 ? corners.yw : corners.xz) : (over.forward.y == 1 ? corners.zw : corners.xy);
+        along = clamp(cross_x ? local.y + leave * over.speed.y : local.x + leave * over.speed.x, real(0.0), real(1.0));
         real gap_leave = ray.height + leave * ray.rise - (ends.x + along * (ends.y - ends.x));
         bool in_first = crosses && walk.side * gap_middle <= real(0.0);
         walk.found = in_first || walk.side * gap_leave <= real(0.0);
@@ -137,22 +176,24 @@ void walk_cells(inout CellWalk walk, GridRay ray, real stop) {
 // On the facet that the walk has found.
 Hit facet_hit(CellWalk walk, GridRay ray, real3 start, real3 direction) {
     Hit hit;
-    vec4 corners = cell_corners(walk.cell);
-    real2 local = ray.place - real2(walk.cell);
-    real2 centre = local + real(0.5) * (walk.from + walk.to) * ray.speed;
+    CellRay over = ray_over_cell(ray, walk.cell);
+    vec4 corners = over.corners;
+    real2 local = over.place;
+    real2 centre = local + real(0.5) * (walk.from + walk.to) * over.speed;
     bool lower_right = centre.x >= centre.y;
     real gap_from = walk.side * (ray.height + walk.from * ray.rise -
-                                 facet_height(corners, local + walk.from * ray.speed, lower_right));
-    real gap_to =
-        walk.side * (ray.height + walk.to * ray.rise - facet_height(corners, local + walk.to * ray.speed, lower_right));
+                                 facet_height(corners, local + walk.from * over.speed, lower_right));
+    real gap_to = walk.side *
+                  (ray.height + walk.to * ray.rise - facet_height(corners, local + walk.to * over.speed, lower_right));
     gap_from = max(gap_from, real(0.0));
     real total = gap_from + max(-gap_to, real(0.0));
     real meeting = total > real(0.0) ? walk.from + (walk.to - walk.from) * (gap_from / total) : walk.from;
     hit.found = 1u;
     hit.position = real3(start.x + meeting * direction.x, start.y + meeting * direction.y,
-                         facet_height(corners, local + meeting * ray.speed, lower_right));
+                         facet_height(corners, local + meeting * over.speed, lower_right));
     real2 rise = lower_right ? real2(corners.y - corners.x, corners.w - corners.y)
                              : real2(corners.w - corners.z, corners.z - corners.x);
+    rise.x = over.mirrored ? -rise.x : rise.x;
     hit.normal = normalize(real3(-rise * ray.per_mm, real(1.0)));
     hit.distance = meeting;
     return hit;

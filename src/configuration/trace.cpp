@@ -36,7 +36,7 @@ const ChoiceKey<Traversal> traversal =
     without_influence(ChoiceKey<Traversal>("traversal",
                                            {{Traversal::automatic, "auto", "the fastest that the device has"},
                                             {Traversal::ray_query, "ray-query", "VK_KHR_ray_query"},
-                                            {Traversal::quadtree, "quadtree", "a pyramid of a height field"},
+                                            {Traversal::quadtree, "quadtree", "a pyramid of a height field, or of a mesh that is one"},
                                             {Traversal::bvh, "bvh", "a bounding volume hierarchy"}},
                                            Traversal::automatic, "How rays find the specimen."));
 const IntegerKey batch =

@@ -4,12 +4,14 @@
 #include "specimen/description.hpp"
 #include "trace/bounding_volume_hierarchy.hpp"
 #include "trace/device_records.hpp"
+#include "trace/mesh_lattice.hpp"
 #include "trace/pyramid.hpp"
 #include "trace/triangle_pairs.hpp"
 
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
 #include <limits>
 #include <numeric>
@@ -244,10 +246,24 @@ Hierarchy upload(Uploader& uploader, const specimen::Specimen& specimen, const s
 
 Hierarchy upload(Uploader& uploader, const specimen::Specimen&, const specimen::Mesh& mesh, Traversal traversal,
                  double) {
-    if (traversal == Traversal::quadtree) {
-        throw std::logic_error("a mesh is not traced by the quadtree");
-    }
     return over_triangles(uploader, mesh.vertices, mesh.triangles, traversal);
+}
+
+// The height field that a mesh is, each cell's way of being split in the last bit of its first height: the walk over
+// the cells reads it there (shaders/device/specimen_quadtree.glsl). A height is changed by a rounding step at most.
+specimen::HeightField marked_field(MeshLattice lattice) {
+    Grid<float>& heights = lattice.field.heights;
+    for (int row = 0; row < heights.rows; ++row) {
+        for (int column = 0; column < heights.columns; ++column) {
+            const bool has_cell = column + 1 < heights.columns && row + 1 < heights.rows;
+            const std::size_t cell = static_cast<std::size_t>(row) * static_cast<std::size_t>(heights.columns - 1) +
+                                     static_cast<std::size_t>(column);
+            const std::uint32_t mark = has_cell && lattice.falling[cell] ? 1U : 0U;
+            const auto bits = std::bit_cast<std::uint32_t>(heights(column, row));
+            heights(column, row) = std::bit_cast<float>((bits & ~1U) | mark);
+        }
+    }
+    return std::move(lattice.field);
 }
 
 // A tree behind another in one buffer; gives the index of its root there.
@@ -272,12 +288,17 @@ ChosenTraversal choose_traversal(const vulkan::DeviceReport& device, const speci
     if (nonsequential && asked == Traversal::quadtree) {
         throw std::logic_error("elements are traced by ray query or bvh");
     }
-    if (mesh && asked == Traversal::quadtree) {
+    const bool may_take_ray_query = asked == Traversal::automatic && device.ray_query && !vulkan::is_software(device);
+    // A mesh is looked at only where it matters.
+    const bool lattice = mesh && !nonsequential && !may_take_ray_query &&
+                         (asked == Traversal::quadtree || asked == Traversal::automatic) &&
+                         lattice_of(std::get<specimen::Mesh>(specimen.geometry)).has_value();
+    if (mesh && !lattice && asked == Traversal::quadtree) {
         throw InputError(
             {{},
              "trace.traversal",
              "quadtree",
-             "a specimen that is a height field; this one is a mesh of any triangles",
+             "a specimen that is a height field; this one is a mesh whose points are not those of a regular grid",
              "Use traversal = \"auto\", \"bvh\" or \"ray-query\", or give the specimen as a height map image."});
     }
     if (asked == Traversal::ray_query && !device.ray_query) {
@@ -288,7 +309,10 @@ ChosenTraversal choose_traversal(const vulkan::DeviceReport& device, const speci
     if (asked != Traversal::automatic) {
         return {asked, fmt::format("{} (as asked)", traversal_name(asked))};
     }
-    const Traversal own = mesh || nonsequential ? Traversal::bvh : Traversal::quadtree;
+    const Traversal own = (mesh && !lattice) || nonsequential ? Traversal::bvh : Traversal::quadtree;
+    if (lattice) {
+        return {own, "quadtree (the mesh is a height field)"};
+    }
     if (!device.ray_query) {
         return {own, fmt::format("{} (the device has no ray query)", traversal_name(own))};
     }
@@ -308,11 +332,27 @@ DeviceSpecimen::DeviceSpecimen(const vulkan::Device& device, const specimen::Spe
         throw std::logic_error("elements are traced by ray query or bvh");
     }
     Uploader uploader(device, buffers_);
-    Hierarchy hierarchy = std::visit(
-        [&](const auto& geometry) {
-            return upload(uploader, specimen, geometry, traversal, record_.top - record_.bottom);
-        },
-        specimen.geometry);
+    const auto upload_as = [&](const specimen::Specimen& whole) {
+        return std::visit(
+            [&](const auto& geometry) {
+                return upload(uploader, whole, geometry, traversal, record_.top - record_.bottom);
+            },
+            whole.geometry);
+    };
+    Hierarchy hierarchy;
+    const auto* mesh = std::get_if<specimen::Mesh>(&specimen.geometry);
+    if (mesh != nullptr && traversal == Traversal::quadtree) {
+        auto lattice = lattice_of(*mesh);
+        if (!lattice) {
+            throw std::logic_error("a mesh that is no height field is not traced by the quadtree");
+        }
+        has_falling_cells_ = std::ranges::find(lattice->falling, true) != lattice->falling.end();
+        const specimen::Specimen as_field{marked_field(*std::move(lattice)), specimen.material, specimen.reflectance};
+        record_ = to_float(specimen::record(as_field, 0));
+        hierarchy = upload_as(as_field);
+    } else {
+        hierarchy = upload_as(specimen);
+    }
     if (!elements.empty() && traversal == Traversal::ray_query) {
         std::vector<vulkan::AccelerationStructure> parts;
         parts.push_back(std::move(*hierarchy.structure));
@@ -372,7 +412,9 @@ std::vector<vulkan::SpecializationConstant> DeviceSpecimen::constants() const {
         models |= lobe.weight > 0 ? 1u << lobe.model : 0u;
         models |= lobe.weight > 0 && physics::f32::lobe_is_delta(lobe) ? physics::f32::SCATTER_DELTA : 0u;
     }
-    return {{kernels::CONSTANT_SPECIMEN_KIND, record_.kind}, {kernels::CONSTANT_SCATTER_MODELS, models}};
+    return {{kernels::CONSTANT_SPECIMEN_KIND, record_.kind},
+            {kernels::CONSTANT_SCATTER_MODELS, models},
+            {kernels::CONSTANT_FALLING_CELLS, has_falling_cells_ ? 1U : 0U}};
 }
 
 physics::f32::SpecimenRecord DeviceSpecimen::record(int max_bounces) const {

@@ -22,7 +22,8 @@ struct ChosenTraversal {
 };
 
 // The traversal for a specimen on a device: the one asked for, or the faster one if automatic. Throws InputError (the
-// quadtree needs a height field) or DeviceError (ray query asked for or needed where the device has none).
+// quadtree needs a height field, or a mesh that is one) or DeviceError (ray query asked for or needed where the device
+// has none).
 ChosenTraversal choose_traversal(const vulkan::DeviceReport& device, const specimen::Specimen& specimen,
                                  Traversal asked, bool nonsequential = false);
 
@@ -47,6 +48,7 @@ class DeviceSpecimen {
   private:
     physics::f32::SpecimenRecord record_{};
     bool has_reflectance_map_ = false;
+    bool has_falling_cells_ = false;                  // of a mesh that is a height field: mesh_lattice.hpp
     std::map<std::uint32_t, vulkan::Buffer> buffers_; // by slot
     std::unique_ptr<vulkan::AccelerationStructure> structure_;
     std::uint32_t elements_root_ = 0;

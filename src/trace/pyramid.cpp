@@ -217,8 +217,9 @@ Ceilings make_ceilings(const specimen::HeightField& field) {
                 const double y = rise_y / field.pitch_y;
                 return x * x + y * y;
             };
-            steepest = std::max({steepest, squared_slope(right - corner, across - right),
-                                 squared_slope(across - above, above - corner)});
+            steepest = std::max(
+                {steepest, squared_slope(right - corner, across - right), squared_slope(across - above, above - corner),
+                 squared_slope(right - corner, above - corner), squared_slope(across - above, across - right)});
             highest(column, row) =
                 std::nextafter(static_cast<float>(std::max({corner, right, above, across}) + rounding),
                                std::numeric_limits<float>::infinity());

@@ -48,6 +48,7 @@ struct Ceilings {
     std::vector<float> heights;
 };
 
+// Whichever way its cells are split.
 Ceilings make_ceilings(const specimen::HeightField& field);
 // relief: highest less lowest height of the surface, mm.
 Ceilings make_ceilings(const Pyramid& pyramid, double relief);
