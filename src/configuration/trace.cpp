@@ -32,13 +32,13 @@ const ChoiceKey<bool> scattering("scattering",
                                  {{false, "analog", "by the material's lobe alone"},
                                   {true, "directed", "every bounce also aims at the pupil, with weights"}},
                                  false, "Where the specimen sends rays.");
-const ChoiceKey<Traversal> traversal =
-    without_influence(ChoiceKey<Traversal>("traversal",
-                                           {{Traversal::automatic, "auto", "the fastest that the device has"},
-                                            {Traversal::ray_query, "ray-query", "VK_KHR_ray_query"},
-                                            {Traversal::quadtree, "quadtree", "a pyramid of a height field, or of a mesh that is one"},
-                                            {Traversal::bvh, "bvh", "a bounding volume hierarchy"}},
-                                           Traversal::automatic, "How rays find the specimen."));
+const ChoiceKey<Traversal> traversal = without_influence(
+    ChoiceKey<Traversal>("traversal",
+                         {{Traversal::automatic, "auto", "the fastest that the device has"},
+                          {Traversal::ray_query, "ray-query", "VK_KHR_ray_query"},
+                          {Traversal::quadtree, "quadtree", "a pyramid of a height field, or of a mesh that is one"},
+                          {Traversal::bvh, "bvh", "a bounding volume hierarchy"}},
+                         Traversal::automatic, "How rays find the specimen."));
 const IntegerKey batch =
     without_influence(IntegerKey("batch", 0, most_rays, 0, "Rays in flight at once; 0: what suits the device."));
 const TextKey device =
