@@ -85,7 +85,8 @@ VKFV_FUNCTION Scattered scatter_by_tries(Material material, Incidence incidence,
     uint blocks = dot(incidence.incoming, incidence.normal) < real(0.0) ? most_blocks : 0u;
     for (uint block = 0u; block < blocks && !result.accepted && !result.absorbed; ++block) {
         Draws draws = draw(seed, image, path, first_block + block);
-        bool chooses = (scatter_models & SCATTER_CHOICE) != 0u && block == 0u;
+        // Of the material, so that host and device ask alike.
+        bool chooses = (scatter_models & SCATTER_CHOICE) != 0u && block == 0u && material.lobe_0.weight < real(1.0);
         if (chooses) {
             lobe = scattering_lobe(material, draws);
             result.absorbed = lobe.model == SCATTER_NONE;
