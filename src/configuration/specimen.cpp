@@ -63,10 +63,22 @@ const SpecimenKeys& specimen_keys() {
 }
 
 struct RoughnessKeys {
-    NumberKey noise = for_example("0.1", NumberKey("noise_um", NumberRange::at_least(0), needed,
+    NumberKey noise = for_example("0.1", NumberKey("noise_um", NumberRange::at_least(0),
+                                                   Default::in_words("none: noise_um, sq_um or ra_um is needed"),
                                                    "Standard deviation of the white noise that is filtered."));
+    NumberKey sq{"sq_um", NumberRange::at_least(0), Default::in_words("what the filter leaves of the noise"),
+                 "Root mean square height (Sq) of what is made, instead of noise_um."};
+    NumberKey ra{
+        "ra_um", NumberRange::at_least(0), Default::in_words("what the filter leaves of the noise"),
+        "Arithmetic mean deviation (Ra) of its rows and columns over their whole length, in the mean, instead of "
+        "noise_um."};
+    NumberKey shortest{"shortest_wavelength_um", NumberRange::positive(), Default::in_words("the kernel's"),
+                       "Shorter wavelengths are taken out of the noise's spectrum; at least 2 pitch_um."};
+    NumberKey longest{"longest_wavelength_um", NumberRange::positive(), Default::in_words("the specimen's"),
+                      "Longer wavelengths are taken out of the noise's spectrum."};
     NumberKey kernel =
-        for_example("1.0", NumberKey("kernel_um", NumberRange::positive(), needed,
+        for_example("1.0", NumberKey("kernel_um", NumberRange::positive(),
+                                     Default::in_words("none: it is needed where shortest_wavelength_um is not given"),
                                      "Standard deviation of the Gaussian that filters it; what remains is about "
                                      "noise_um * pitch_um / (2 sqrt(pi) kernel_um) high, as the log says."));
     NumberKey pitch = for_example(
@@ -77,7 +89,7 @@ struct RoughnessKeys {
                    .meaning = "Roughness over a specimen of any kind but a mesh: filtered noise.",
                    .subject = {},
                    .kind = {},
-                   .keys = {&noise, &kernel, &pitch, &seed}};
+                   .keys = {&noise, &sq, &ra, &kernel, &shortest, &longest, &pitch, &seed}};
 };
 
 const RoughnessKeys& roughness_keys() {
@@ -234,8 +246,24 @@ specimen::Roughness read_roughness(const TomlTable& table, const TomlTable& spec
     const auto& keys = roughness_keys();
     const Section section(table, keys.table, read);
     specimen::Roughness roughness;
-    roughness.noise = from_um(section.number(keys.noise));
-    roughness.kernel = from_um(section.number(keys.kernel));
+    const auto length = [&](const NumberKey& key) {
+        const auto value = section.number_if_given(key);
+        return value ? std::optional(from_um(*value)) : std::nullopt;
+    };
+    roughness.sq = length(keys.sq);
+    roughness.ra = length(keys.ra);
+    if (section.has(keys.noise) + section.has(keys.sq) + section.has(keys.ra) > 1) {
+        section.fail(section.has(keys.sq) ? keys.sq : keys.ra, "one of noise_um, sq_um and ra_um",
+                     "Keep one of them; each says how high the roughness is.");
+    }
+    if (!roughness.sq && !roughness.ra) {
+        roughness.noise = from_um(section.number(keys.noise));
+    }
+    roughness.shortest = length(keys.shortest);
+    roughness.longest = length(keys.longest);
+    if (section.has(keys.kernel) || !roughness.shortest) {
+        roughness.kernel = from_um(section.number(keys.kernel));
+    }
     roughness.pitch = from_um(section.number(keys.pitch));
     roughness.seed = static_cast<std::uint32_t>(section.integer(keys.seed));
     return roughness;

@@ -1,5 +1,6 @@
 #include "specimen/roughness.hpp"
 
+#include "core/fourier.hpp"
 #include "specimen/analytic.hpp"
 #include "specimen/description.hpp"
 #include "specimen/random_heights.hpp"
@@ -9,10 +10,86 @@
 
 #include <algorithm>
 #include <cmath>
+#include <complex>
+#include <numeric>
+#include <span>
 
 namespace vkfv::specimen {
 
 using physics::f64::surface_height;
+
+namespace {
+
+// Takes the wavelengths out of a periodic grid's spectrum that are shorter or longer; in points.
+void keep_wavelengths(Grid<double>& grid, double shortest, double longest) {
+    Grid<std::complex<double>> spectrum(grid.columns, grid.rows);
+    std::ranges::copy(grid.values, spectrum.values.begin());
+    fourier_transform(spectrum);
+    for (int row = 0; row < grid.rows; ++row) {
+        for (int column = 0; column < grid.columns; ++column) {
+            const double frequency =
+                std::hypot(fourier_frequency(column, grid.columns), fourier_frequency(row, grid.rows));
+            if (frequency * longest < 1 || frequency * shortest > 1) {
+                spectrum(column, row) = 0;
+            }
+        }
+    }
+    inverse_fourier_transform(spectrum);
+    std::ranges::transform(spectrum.values, grid.values.begin(), [](const auto& value) { return value.real(); });
+}
+
+// The noise of one unit, filtered.
+Grid<double> unit_roughness(int columns, int rows, const Roughness& roughness) {
+    const double kernel = roughness.kernel / roughness.pitch;
+    if (!roughness.shortest && !roughness.longest) {
+        return filtered_noise(columns, rows, kernel, roughness.seed);
+    }
+    Grid<double> whole = filtered_noise(convenient_length(columns), convenient_length(rows), kernel, roughness.seed);
+    keep_wavelengths(whole, roughness.shortest.value_or(0) / roughness.pitch,
+                     roughness.longest ? *roughness.longest / roughness.pitch : 1e300);
+    Grid<double> part(columns, rows);
+    for (int row = 0; row < rows; ++row) {
+        for (int column = 0; column < columns; ++column) {
+            part(column, row) = whole(column, row);
+        }
+    }
+    return part;
+}
+
+// The mean of |value - mean|.
+double mean_deviation(std::span<const double> line) {
+    const auto count = static_cast<double>(line.size());
+    const double mean = std::reduce(line.begin(), line.end(), 0.0) / count;
+    return std::accumulate(line.begin(), line.end(), 0.0,
+                           [&](double sum, double value) { return sum + std::abs(value - mean); }) /
+           count;
+}
+
+} // namespace
+
+RoughnessHeights roughness_heights(const Grid<double>& heights) {
+    RoughnessHeights result;
+    Grid<double> about_mean = heights;
+    subtract_mean(about_mean);
+    result.sq = root_mean_square(about_mean);
+    result.sa = mean_deviation(heights.values);
+    std::vector<double> column(static_cast<std::size_t>(heights.rows));
+    double rows = 0, columns = 0;
+    for (int i = 0; i < heights.columns; ++i) {
+        for (int row = 0; row < heights.rows; ++row) {
+            column[static_cast<std::size_t>(row)] = heights(i, row);
+        }
+        columns += mean_deviation(column) / heights.columns;
+    }
+    for (int row = 0; row < heights.rows; ++row) {
+        rows +=
+            mean_deviation(
+                std::span(heights.values).subspan(heights.index(0, row), static_cast<std::size_t>(heights.columns))) /
+            heights.rows;
+    }
+    result.ra = 0.5 * (rows + columns);
+    return result;
+}
 
 void check_roughness(double width, double height, const Roughness& roughness, const SourceLocation& where) {
     const auto fail = [&](const std::string& key, double found, const std::string& expected) {
@@ -28,6 +105,20 @@ void check_roughness(double width, double height, const Roughness& roughness, co
     }
     if (!positive(roughness.pitch)) {
         fail("pitch_um", roughness.pitch, positive_um());
+    }
+    for (const auto& [key, value] : {std::pair("sq_um", roughness.sq), std::pair("ra_um", roughness.ra)}) {
+        if (value && !(std::isfinite(*value) && *value >= 0)) {
+            fail(key, *value, "a length, 0 or more");
+        }
+    }
+    if (roughness.shortest && !(*roughness.shortest >= 2 * roughness.pitch * (1 - 1e-9))) {
+        fail("shortest_wavelength_um", *roughness.shortest,
+             fmt::format("at least two pitches, {:.6g} um", 2 * roughness.pitch * um_per_mm));
+    }
+    if (roughness.longest &&
+        !(*roughness.longest > roughness.shortest.value_or(2 * roughness.pitch) && *roughness.longest <= extent)) {
+        fail("longest_wavelength_um", *roughness.longest,
+             fmt::format("more than the shortest wavelength and at most the specimen's {:.6g} um", extent * um_per_mm));
     }
     check_work_of_noise(width, height, roughness.pitch, roughness.kernel, where, "roughness.pitch_um");
 }
@@ -49,13 +140,24 @@ void add_roughness(HeightField& field, const Roughness& roughness, const SourceL
         return static_cast<int>(std::ceil((count - 1) * pitch / roughness.pitch * (1 - 1e-9))) + 1;
     };
     own.heights = Grid<float>(points(field.heights.columns, field.pitch_x), points(field.heights.rows, field.pitch_y));
-    const Grid<double> noise =
-        filtered_noise(own.heights.columns, own.heights.rows, roughness.kernel / roughness.pitch, roughness.seed);
+    Grid<double> noise = unit_roughness(own.heights.columns, own.heights.rows, roughness);
+    double scale = roughness.noise;
+    const RoughnessHeights unit = roughness_heights(noise);
+    if (roughness.sq || roughness.ra) {
+        if (!(unit.sq > 1e-12)) {
+            throw InputError({where, "specimen.roughness.longest_wavelength_um", "no wavelength that fits",
+                              "a band with wavelengths that the specimen's size has: its size over 1, 2, 3, ...",
+                              "Widen the band of wavelengths."});
+        }
+        subtract_mean(noise);
+        scale = roughness.sq ? *roughness.sq / unit.sq : *roughness.ra / unit.ra;
+    }
     std::transform(noise.values.begin(), noise.values.end(), own.heights.values.begin(),
-                   [&](double value) { return static_cast<float>(roughness.noise * value); });
-    spdlog::info("roughness: Sq {:.4g} um of noise {:.4g} um, kernel {:.4g} um, pitch {:.4g} um",
-                 roughness.noise * root_mean_square(noise) * um_per_mm, roughness.noise * um_per_mm,
-                 roughness.kernel * um_per_mm, roughness.pitch * um_per_mm);
+                   [&](double value) { return static_cast<float>(scale * value); });
+    spdlog::info("roughness: Sq {:.4g} um, Sa {:.4g} um, Ra {:.4g} um of noise {:.4g} um, kernel {:.4g} um, pitch "
+                 "{:.4g} um",
+                 scale * unit.sq * um_per_mm, scale * unit.sa * um_per_mm, scale * unit.ra * um_per_mm,
+                 scale * um_per_mm, roughness.kernel * um_per_mm, roughness.pitch * um_per_mm);
 
     const bool same_grid = std::abs(roughness.pitch - field.pitch_x) <= 1e-9 * roughness.pitch &&
                            std::abs(roughness.pitch - field.pitch_y) <= 1e-9 * roughness.pitch;

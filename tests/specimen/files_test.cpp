@@ -371,6 +371,17 @@ TEST(Descriptions, ImpossibleMaterialsAndRoughnessAreRefused) {
         d.roughness = bad.roughness;
         EXPECT_THAT(message_of(d), HasSubstr(bad.key));
     }
+    const auto refused = [&](double shortest, double longest, const char* key) {
+        d = plane;
+        d.roughness = Roughness{0, 0.002, 0.001, 1};
+        d.roughness->sq = 0.001;
+        d.roughness->shortest = shortest;
+        d.roughness->longest = longest;
+        EXPECT_THAT(message_of(d), HasSubstr(key));
+    };
+    refused(0.001, 0.01, "specimen.roughness.shortest_wavelength_um");
+    refused(0.004, 0.003, "specimen.roughness.longest_wavelength_um");
+    refused(0.004, 1e9, "specimen.roughness.longest_wavelength_um");
     d.shape = specimen::Stl();
     d.roughness = std::nullopt;
     EXPECT_THAT(message_of(d), HasSubstr("specimen.file"));

@@ -1,4 +1,5 @@
 // Generated specimens: statistics of the irregular ones, and facets against the continuous function.
+#include "core/fourier.hpp"
 #include "specimen/analytic.hpp"
 #include "specimen/intersector.hpp"
 #include "specimen/kinds.hpp"
@@ -7,7 +8,9 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
+#include <complex>
 
 namespace vkfv::specimen {
 namespace {
@@ -89,6 +92,81 @@ TEST(Roughness, LeavesWhatTheFilterLeavesOfTheNoise) {
     const auto expected = [](double kernel) { return std::pow(0.0002 * 0.0005 / (2 * std::sqrt(pi) * kernel), 2); };
     EXPECT_LT(t_value(remaining, expected(0.001)), 4.44);
     EXPECT_GT(t_value(remaining, expected(0.00105)), 4.44);
+}
+
+// Heights of a waved lattice, whose mean deviations are known.
+TEST(Roughness, IsToldByItsHeights) {
+    constexpr int points = 720;
+    Grid<double> waves(points, points);
+    for (int row = 0; row < points; ++row) {
+        for (int column = 0; column < points; ++column) {
+            waves(column, row) = 3 + std::sin(2 * pi * 5 * column / points);
+        }
+    }
+    const RoughnessHeights told = roughness_heights(waves);
+    EXPECT_NEAR(told.sq, std::sqrt(0.5), 1e-12);
+    EXPECT_NEAR(told.sa, 2 / pi, 2e-4);
+    EXPECT_NEAR(told.ra, 1 / pi, 2e-4); // the columns are straight
+}
+
+TEST(Roughness, IsAsHighAsItIsAskedFor) {
+    const auto made = [](const Roughness& roughness) {
+        const Specimen specimen = make({.shape = over<Plane>(0.1, 0.0005), .roughness = roughness});
+        const auto& field = std::get<HeightField>(specimen.geometry);
+        Grid<double> heights(field.heights.columns, field.heights.rows);
+        std::ranges::copy(field.heights.values, heights.values.begin());
+        return heights;
+    };
+    Roughness roughness{0, 0.002, 0.0005, 7};
+    roughness.sq = 0.0005;
+    EXPECT_NEAR(roughness_heights(made(roughness)).sq, 0.0005, 1e-9);
+    const Grid<double> by_sq = made(roughness);
+    roughness.sq.reset();
+    roughness.ra = 0.00005;
+    const RoughnessHeights told = roughness_heights(made(roughness));
+    EXPECT_NEAR(told.ra, 0.00005, 1e-10);
+    // Of normal heights sqrt(2 / pi) of Sq; rows of 100 um lose little of their own means.
+    EXPECT_NEAR(told.sa / told.sq, std::sqrt(2 / pi), 0.02);
+    EXPECT_NEAR(told.ra / told.sa, 1, 0.1);
+    // The same surface, of another scale.
+    const Grid<double> by_ra = made(roughness);
+    const double factor = by_sq.values[0] / by_ra.values[0];
+    EXPECT_NEAR(by_sq.values[12345], factor * by_ra.values[12345], 1e-9);
+}
+
+TEST(Roughness, HasTheWavelengthsOfItsBandAlone) {
+    Roughness roughness{0, 0, 0.0005, 8};
+    roughness.sq = 0.0002;
+    roughness.shortest = 0.005;
+    roughness.longest = 0.02;
+    // 200 points of 0.5 um: a length of small factors, so that the made field is all of the periodic one.
+    auto plane = over<Plane>(0.0995, 0.0005);
+    const auto power_outside = [&](double shortest, double longest) {
+        const Specimen specimen = make({.shape = plane, .roughness = roughness});
+        const auto& field = std::get<HeightField>(specimen.geometry);
+        EXPECT_EQ(field.heights.columns, 200);
+        Grid<std::complex<double>> spectrum(field.heights.columns, field.heights.rows);
+        std::ranges::copy(field.heights.values, spectrum.values.begin());
+        fourier_transform(spectrum);
+        double outside = 0, all = 0;
+        for (int row = 0; row < spectrum.rows; ++row) {
+            for (int column = 0; column < spectrum.columns; ++column) {
+                const double per_mm =
+                    std::hypot(fourier_frequency(column, spectrum.columns), fourier_frequency(row, spectrum.rows)) /
+                    0.0005;
+                const double power = std::norm(spectrum(column, row));
+                all += power;
+                outside += per_mm * longest < 1 - 1e-9 || per_mm * shortest > 1 + 1e-9 ? power : 0;
+            }
+        }
+        return outside / all;
+    };
+    EXPECT_LT(power_outside(0.005, 0.02), 1e-8);
+    EXPECT_GT(power_outside(0.006, 0.02), 0.1); // wrong twins
+    EXPECT_GT(power_outside(0.005, 0.016), 0.01);
+    roughness.shortest.reset();
+    roughness.kernel = 0.001;
+    EXPECT_LT(power_outside(0, 0.02), 1e-8);
 }
 
 TEST(Roughness, IsInterpolatedToFinerFacetsAndRefinesCoarserOnes) {
