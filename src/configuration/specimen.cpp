@@ -72,10 +72,10 @@ struct RoughnessKeys {
         "ra_um", NumberRange::at_least(0), Default::in_words("what the filter leaves of the noise"),
         "Arithmetic mean deviation (Ra) of its rows and columns over their whole length, in the mean, instead of "
         "noise_um."};
-    NumberKey shortest{"shortest_wavelength_um", NumberRange::positive(), Default::in_words("the kernel's"),
-                       "Shorter wavelengths are taken out of the noise's spectrum; at least 2 pitch_um."};
-    NumberKey longest{"longest_wavelength_um", NumberRange::positive(), Default::in_words("the specimen's"),
-                      "Longer wavelengths are taken out of the noise's spectrum."};
+    NumberKey shortest{"shortest_wavelength_um", NumberRange::positive(), Default::in_words("none is taken out"),
+                       "Shorter wavelengths of the noise are taken out; at least 2 pitch_um."};
+    NumberKey longest{"longest_wavelength_um", NumberRange::positive(), Default::in_words("none is taken out"),
+                      "Longer wavelengths of the noise are taken out."};
     NumberKey kernel =
         for_example("1.0", NumberKey("kernel_um", NumberRange::positive(),
                                      Default::in_words("none: it is needed where shortest_wavelength_um is not given"),
