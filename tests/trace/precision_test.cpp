@@ -132,9 +132,10 @@ void expect_precise(const optics::Instrument& instrument, Train train, const std
         EXPECT_TRUE(passes_within_rounding(instrument, train, rays[ray], rounded[ray])) << "ray " << ray;
     }
     // Wrong twin: light that lands a little to the side in the object is seen.
+    const double aside = bounds.rms < 2 * nm ? 2 * nm : 2 * bounds.rms;
     auto beside = exact;
     for (trace::TracedRay& ray : beside) {
-        ray.x += 2 * bounds.rms / scale;
+        ray.x += aside / scale;
     }
     EXPECT_GT(deviation(beside, rounded, scale).rms, bounds.rms);
 }
