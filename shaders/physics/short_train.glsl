@@ -77,7 +77,8 @@ const int PLAIN_NEWTON_STEPS = ASPHERE_NEWTON_STEPS;
 #else
 const int PLAIN_NEWTON_STEPS = 2;
 #endif
-const real PLAIN_NEWTON_LAST = real(0.01); // mm, the last step at most
+// mm, the last step at most: its square over a radius of 1 mm is a tenth of a micrometre.
+const real PLAIN_NEWTON_LAST = real(0.01);
 
 VKFV_FUNCTION ShortTrain pass_asphere_plainly(Surface surface, ShortTrain before, real index_after) {
     real3 d = before.direction;

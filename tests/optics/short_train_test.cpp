@@ -3,9 +3,11 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <map>
 #include <random>
+#include <vector>
 
 using namespace vkfv;
 using namespace vkfv::physics::f64;
