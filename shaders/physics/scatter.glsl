@@ -52,10 +52,10 @@ VKFV_FUNCTION real scatter_density(Material material, real3 incoming, real3 norm
 }
 
 // Henyey-Greenstein's acceptance is no less than about cos(theta_i) for sharp lobes with g > 0, and about 0.01 for
-// g = -0.9, the least that a configuration may ask for: 2048 tries fail less than once in 1e8 for incidence up to 89.4
-// degrees. What fails is counted as numerical.
-const uint SCATTER_BLOCKS =
-    2048u; // blocks of random numbers a scatter event owns; two tries each, the last directed scatter's
+// g = -0.9, the least that a configuration may ask for: 2048 tries, half of those that there are, fail less than once
+// in 1e8 for incidence up to 89.4 degrees. What fails is counted as numerical. A scatter event owns so many blocks of
+// random numbers: two tries each, the last one directed scatter's.
+const uint SCATTER_BLOCKS = 2048u;
 
 struct Scattered {
     bool accepted; // else absorbed, or tries exhausted
