@@ -41,7 +41,7 @@ real ask_source(Instrument, SpecimenRecord, Exposure, SourceQuery query) {
 uint64_t in_units(real value) { return uint64_t(value * BACKWARD_UNIT + real(0.5)); }
 
 void main() {
-    uint pixel_count = uint(instrument.detector_pixels * instrument.detector_pixels);
+    uint pixel_count = uint(instrument.detector_columns * instrument.detector_rows);
     // Workgroups stand in rows: a large detector has more than one row may hold.
     uint group = gl_WorkGroupID.y * gl_NumWorkGroups.x + gl_WorkGroupID.x;
     uint index = group * gl_WorkGroupSize.x + gl_LocalInvocationIndex;
@@ -49,8 +49,8 @@ void main() {
         uint pixel = (batch.first_pixel + index) % pixel_count;
         uint chunk = batch.first_chunk + (batch.first_pixel + index) / pixel_count;
         LatticeShift shift = lattice_shift(exposure.seed, exposure.image, pixel, batch.randomisation);
-        int row = int(pixel) / instrument.detector_pixels;
-        int column = int(pixel) - row * instrument.detector_pixels;
+        int row = int(pixel) / instrument.detector_columns;
+        int column = int(pixel) - row * instrument.detector_columns;
         BackwardOptics known = backward.optics;
         known.cone_candidates = cone_candidates;
         known.lobe_candidates = lobe_candidates;

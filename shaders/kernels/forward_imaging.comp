@@ -19,13 +19,14 @@ void main() {
     for (uint index = gl_GlobalInvocationID.x; index < survivor_count; index += stride) {
         Detection detection;
         if (stop_after == STOP_AFTER_SPECIMEN) {
-            detection.fate = make_fate(survivor_occluded(survivors[index]) ? PATH_BOUNCE_LIMIT : PATH_OFF_DETECTOR, -1);
+            detection.fate =
+                make_fate(survivor_occluded(exposure, survivors[index]) ? PATH_BOUNCE_LIMIT : PATH_OFF_DETECTOR, -1);
         } else {
             detection = image_survivor(known_instrument(), known_specimen(), exposure, survivors[index]);
         }
         bool counted =
             detection.fate.status == PATH_DETECTED && (stop_after == STOP_NOWHERE || detection.x > real(1e30));
-        int pixel = detection.row * instrument.detector_pixels + detection.column;
+        int pixel = detection.row * instrument.detector_columns + detection.column;
         uint weight = survivor_weight(survivors[index]);
         if (counted && weighted) {
             // Beside the sum that of the squares, in 2^-24: both hold 1e11 rays of weight 1 on one pixel.

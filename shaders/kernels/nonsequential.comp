@@ -18,7 +18,7 @@ void main() {
         Detection detection = trace_nonsequential(instrument, specimen, exposure, batch.source_frame,
                                                   uvec2(low, batch.paths.first_path.y + carry));
         if (detection.fate.status == PATH_DETECTED) {
-            atomicAdd(pixels[detection.row * instrument.detector_pixels + detection.column], uint64_t(1));
+            atomicAdd(pixels[detection.row * instrument.detector_columns + detection.column], uint64_t(1));
         }
         tally_fate(detection.fate, WEIGHT_ONE);
     }

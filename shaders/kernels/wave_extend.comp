@@ -11,24 +11,26 @@ layout(push_constant, scalar) uniform Push { WaveSize size; };
 
 void main() {
     uint place = invocation();
-    uint period = 2u * size.side;
-    if (place < size.side * period) {
+    uint period = 2u * size.columns;
+    if (place < size.rows * period) {
         uint column = place % period;
         uint row = place / period; // the lower half; the rest are the conjugates of the opposite frequencies
-        uint nearest = column < size.side ? column : period - column;
+        uint nearest = column < size.columns ? column : period - column;
         vec2 value = vec2(0.0);
-        if (nearest < size.side) {
-            vec4 both = spectrum[row * size.side + nearest];
-            bool behind = column > size.side;
-            float half_turns = (behind ? float(row) - float(nearest) : float(row + nearest)) / float(period);
+        if (nearest < size.columns) {
+            vec4 both = spectrum[row * size.columns + nearest];
+            bool behind = column > size.columns;
+            float along = float(nearest) / float(period);
+            float across = float(row) / float(2u * size.rows);
+            float half_turns = behind ? across - along : across + along;
             value = times(turned(half_turns), behind ? both.zw : both.xy);
         }
         image[row * period + column] = value;
         if (row > 0u) {
             uint opposite = column == 0u ? 0u : period - column;
-            image[(period - row) * period + opposite] = vec2(value.x, -value.y);
+            image[(2u * size.rows - row) * period + opposite] = vec2(value.x, -value.y);
         } else {
-            image[size.side * period + column] = vec2(0.0); // the frequency of a half, which no pupil passes
+            image[size.rows * period + column] = vec2(0.0); // the frequency of a half, which no pupil passes
         }
     }
 }

@@ -29,20 +29,20 @@ vec4 parted(vec2 z, vec2 opposite) {
 
 void main() {
     uint place = invocation();
-    uint plane = groups.side * groups.side;
+    uint plane = groups.columns * groups.rows;
     if (place >= plane) {
         return;
     }
-    uint column = place % groups.side;
-    uint row = place / groups.side;
-    vec2 at = vec2(column, row) * groups.steps_a_line;
+    uint column = place % groups.columns;
+    uint row = place / groups.columns;
+    vec2 at = vec2(column, row) * vec2(groups.steps_a_column, groups.steps_a_row);
     vec4 sum = groups.first == 0u ? vec4(0.0) : spectrum[place];
     if (dot(at, at) < float(groups.steps * groups.steps)) {
-        uint left = column == 0u ? 0u : groups.side - column;
-        uint low = row == 0u ? 0u : groups.side - row;
+        uint left = column == 0u ? 0u : groups.columns - column;
+        uint low = row == 0u ? 0u : groups.rows - row;
         // From the first value's middle to the border.
-        vec2 turn_column = turned(-0.5 * float(column) / float(groups.side));
-        vec2 turn_row = turned(-0.5 * float(row) / float(groups.side));
+        vec2 turn_column = turned(-0.5 * float(column) / float(groups.columns));
+        vec2 turn_row = turned(-0.5 * float(row) / float(groups.rows));
         vec2 both = times(turn_column, turn_row);
         vec2 against = times(turn_column, vec2(turn_row.x, -turn_row.y));
         for (uint k = 0u; k < groups.count; ++k) {
@@ -51,9 +51,9 @@ void main() {
             for (uint which = 0u; which < 2u; ++which) {
                 uint first = (2u * k + which) * plane;
                 ahead[which] =
-                    parted(planes[first + row * groups.side + column], planes[first + low * groups.side + left]);
+                    parted(planes[first + row * groups.columns + column], planes[first + low * groups.columns + left]);
                 across[which] =
-                    parted(planes[first + low * groups.side + column], planes[first + row * groups.side + left]);
+                    parted(planes[first + low * groups.columns + column], planes[first + row * groups.columns + left]);
             }
             // Cosines along rows and columns are real parts of the turned transforms, sines minus the imaginary ones.
             float even = 0.5 * (times(both, ahead[0].xy).x + times(against, across[0].xy).x);

@@ -1,6 +1,6 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
-// The light of each pixel: the sum of its parts.
+// The light of each pixel: the sum of its parts, as far as they are sensitive.
 layout(local_size_x = 128) in;
 
 #include "waves/device.glsl"
@@ -11,17 +11,19 @@ layout(push_constant, scalar) uniform Push { WaveSize size; };
 
 void main() {
     uint place = invocation();
-    uint pixels_side = size.side / size.parts;
-    if (place < pixels_side * pixels_side) {
-        uint column = place % pixels_side * size.parts;
-        uint row = place / pixels_side * size.parts;
+    uint parts = size.cells.parts;
+    uint columns = size.columns / parts;
+    if (place < columns * (size.rows / parts)) {
+        uint column = place % columns * parts;
+        uint row = place / columns * parts;
         float sum = 0.0;
-        for (uint j = 0u; j < size.parts; ++j) {
-            for (uint i = 0u; i < size.parts; ++i) {
-                sum += image[(row + j) * 2u * size.side + column + i].x;
+        for (uint j = 0u; j < parts; ++j) {
+            for (uint i = 0u; i < parts; ++i) {
+                sum += sensitive_share(size.cells, i) * sensitive_share(size.cells, j) *
+                       image[(row + j) * 2u * size.columns + column + i].x;
             }
         }
-        // A cosine stands at four frequencies, and a transform there and back counts (2 side)^2 times.
-        pixels[place] = sum / (float(size.side) * float(size.side));
+        // A cosine stands at four frequencies, and a transform there and back counts 4 columns rows times.
+        pixels[place] = sum / (float(size.columns) * float(size.rows));
     }
 }

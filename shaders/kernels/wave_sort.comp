@@ -15,24 +15,24 @@ layout(push_constant, scalar) uniform Push { WaveGroups groups; };
 layout(buffer_reference, scalar, buffer_reference_align = 8) readonly buffer Light { uint64_t light; };
 
 float light_at(uint cell, uint column, uint row) {
-    uint64_t index = (uint64_t(cell) * groups.side + row) * groups.side + column;
+    uint64_t index = (uint64_t(cell) * groups.rows + row) * groups.columns + column;
     return float(Light(packUint2x32(groups.light) + uint64_t(8) * index).light);
 }
 
-// Where the k-th value of a transform comes from.
-uint source_of(uint k) {
-    uint from_front = (groups.side + 1u) / 2u;
-    return k < from_front ? 2u * k : 2u * (groups.side - k) - 1u;
+// Where the k-th value of a transform of so many comes from.
+uint source_of(uint k, uint length) {
+    uint from_front = (length + 1u) / 2u;
+    return k < from_front ? 2u * k : 2u * (length - k) - 1u;
 }
 
 void main() {
     uint place = invocation();
-    uint plane = groups.side * groups.side;
+    uint plane = groups.columns * groups.rows;
     if (place < plane) {
-        uint column = place % groups.side;
-        uint row = place / groups.side;
-        uint from_column = source_of(column);
-        uint from_row = source_of(row);
+        uint column = place % groups.columns;
+        uint row = place / groups.columns;
+        uint from_column = source_of(column, groups.columns);
+        uint from_row = source_of(row, groups.rows);
         float along = from_column % 2u == 0u ? 0.25 : -0.25;
         float across = from_row % 2u == 0u ? 1.0 : -1.0;
         for (uint k = 0u; k < groups.count; ++k) {

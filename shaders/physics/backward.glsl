@@ -14,6 +14,8 @@
 // in the reversed frame holds for all light from the specimen, and of one through the plane of the paraxial object
 //   |source_position * (x, y) + (dx/dz, dy/dz)| <= source_outer
 // for all light from the source. What is within source_inner, from points within inner_field, is from it for sure.
+// A ring light's points are chosen themselves, as seen without a cover glass; over a glass the ring that is drawn is a
+// little larger, and only tracing tells what met the real one.
 // clang-format off
 #define VKFV_BACKWARD_OPTICS_FIELDS(FIELD) \
     FIELD(real, pupil_position) \
@@ -22,7 +24,12 @@
     FIELD(real, source_outer) \
     FIELD(real, source_inner)    /* 0: nothing is sure */ \
     FIELD(real, inner_field)     /* mm */ \
-    FIELD(real, object_distance) /* mm, from the objective's front vertex or cover glass to the paraxial object */ \
+    /* mm, from the objective's front vertex or cover glass to the paraxial object; of a ring light: to its aim */ \
+    FIELD(real, object_distance) \
+    FIELD(RingLight, ring)       /* as it is drawn */ \
+    FIELD(real, ring_area)       /* mm^2, of it */ \
+    FIELD(real, ring_cosine)     /* between light and the band's normal, at least */ \
+    FIELD(uint, ring_is_bare)    /* 1: what is drawn is what shines */ \
     FIELD(uint, cone_candidates) /* directions towards the source that each scatter event weighs against each other */ \
     FIELD(uint, lobe_candidates) /* directions of the lobe besides, 0 or 1 */
 struct BackwardOptics {
@@ -70,7 +77,7 @@ VKFV_SCENE_FUNCTION VKFV_FUNCTION BackwardArrival look_from_detector(VKFV_SCENE_
     return arrival;
 }
 
-// Height of the paraxial object plane in the specimen frame, mm.
+// Height of the paraxial object plane, or of what a ring light aims at, in the specimen frame, mm.
 VKFV_FUNCTION real object_plane(BackwardOptics backward, SpecimenRecord specimen, Exposure exposure) {
     return specimen.top + exposure.top_distance - backward.object_distance;
 }
@@ -87,7 +94,19 @@ const uint SOURCE_HIDDEN = 0u;
 const uint SOURCE_SEEN = 1u;
 const uint SOURCE_UNKNOWN = 2u; // only tracing can tell
 
-VKFV_FUNCTION uint source_certainty(BackwardOptics backward, real plane, SourceQuery query) {
+// What of a ring light a ray meets, as it is drawn.
+VKFV_FUNCTION RingMeeting meet_drawn_ring(BackwardOptics backward, real plane, real3 position, real3 direction) {
+    RingMeeting meeting = meet_ring(backward.ring, real3(position.x, position.y, position.z - plane), direction);
+    meeting.found = meeting.found && meeting.cosine >= backward.ring_cosine;
+    return meeting;
+}
+
+VKFV_SCENE_FUNCTION VKFV_FUNCTION uint source_certainty(VKFV_SCENE_PARAMETER BackwardOptics backward, real plane,
+                                                        SourceQuery query) {
+    if ((features(VKFV_SCENE_ALONE) & FEATURE_RING) != 0u) {
+        bool possible = meet_drawn_ring(backward, plane, query.position, query.direction).found;
+        return !possible ? SOURCE_HIDDEN : backward.ring_is_bare != 0u ? SOURCE_SEEN : SOURCE_UNKNOWN;
+    }
     real2 slope = real2(query.direction.x, query.direction.y) / query.direction.z;
     real2 field = real2(query.position.x, query.position.y) + slope * (plane - query.position.z);
     real2 crossing = field * backward.source_position + slope;
@@ -110,7 +129,15 @@ VKFV_SCENE_FUNCTION VKFV_FUNCTION real trace_to_source(VKFV_SCENE_PARAMETER Inst
     ray.path_length = real(0.0);
     TrainResult train = trace_train_by_loop(VKFV_SCENE instrument.imaging_first, instrument.imaging_count, ray, index,
                                             true, query.light);
-    return train.status == PATH_ALIVE ? query.weight * train.transmitted : real(0.0);
+    bool arrives = train.status == PATH_ALIVE;
+    if (arrives && (features(VKFV_SCENE_ALONE) & FEATURE_RING) != 0u) {
+        real3 from_aim =
+            real3(train.ray.position.x, train.ray.position.y, train.ray.position.z + instrument.ring.aim_distance);
+        RingMeeting meeting = meet_ring(instrument.ring, from_aim, train.ray.direction / index);
+        real emission_cosine = sqrt(max(real(1.0) - instrument.emission_sine * instrument.emission_sine, real(0.0)));
+        arrives = meeting.found && meeting.cosine >= emission_cosine;
+    }
+    return arrives ? query.weight * train.transmitted : real(0.0);
 }
 
 // What is unknown may be traced at once or kept for later, when more of it is at hand: gives what is added now.
@@ -127,12 +154,70 @@ real ask_source(Instrument instrument, SpecimenRecord specimen, Exposure exposur
 VKFV_SCENE_FUNCTION VKFV_FUNCTION real collect(VKFV_SCENE_PARAMETER Instrument instrument, BackwardOptics backward,
                                                real plane, SpecimenRecord specimen, Exposure exposure,
                                                SourceQuery query) {
-    uint certainty = source_certainty(backward, plane, query);
+    uint certainty = source_certainty(VKFV_SCENE backward, plane, query);
     real value = certainty == SOURCE_SEEN ? query.weight : real(0.0);
     if (certainty == SOURCE_UNKNOWN) {
         value = ask_source(VKFV_SCENE instrument, specimen, exposure, query);
     }
     return value;
+}
+
+// A candidate for a connection: a direction towards the source, and how densely such are drawn over solid angle.
+struct Candidate {
+    bool usable;
+    real3 direction;
+    real density; // of one of the candidates of the source
+};
+
+// The paraxial source as a point sees it: a disc of slopes.
+struct SeenDisc {
+    real2 centre;
+    real radius;
+};
+VKFV_FUNCTION SeenDisc seen_disc(BackwardOptics backward, real plane, real3 position) {
+    real factor = real(1.0) / (real(1.0) + backward.source_position * (plane - position.z));
+    SeenDisc disc;
+    disc.centre = real2(position.x, position.y) * (-backward.source_position * factor);
+    disc.radius = backward.source_outer * factor;
+    return disc;
+}
+
+VKFV_FUNCTION Candidate in_disc(SeenDisc disc, real3 direction) {
+    real2 from_centre = real2(direction.x, direction.y) / direction.z - disc.centre;
+    Candidate candidate;
+    candidate.direction = direction;
+    candidate.usable = direction.z > real(0.0) && dot(from_centre, from_centre) <= disc.radius * disc.radius;
+    // domega = cos^3 of the slopes' area.
+    candidate.density =
+        real(1.0) / (real(3.14159265358979324) * disc.radius * disc.radius * direction.z * direction.z * direction.z);
+    return candidate;
+}
+
+VKFV_FUNCTION Candidate draw_in_disc(SeenDisc disc, real u0, real u1) {
+    real rho = disc.radius * sqrt(u0);
+    Turn turn = turn_of(u1);
+    real2 slope = disc.centre + real2(turn.cosine, turn.sine) * rho;
+    return in_disc(disc, real3(slope.x, slope.y, real(1.0)) * (real(1.0) / sqrt(real(1.0) + dot(slope, slope))));
+}
+
+VKFV_FUNCTION Candidate on_ring(BackwardOptics backward, real3 direction, RingMeeting meeting) {
+    Candidate candidate;
+    candidate.direction = direction;
+    candidate.usable = meeting.found;
+    candidate.density = meeting.distance * meeting.distance / (meeting.cosine * backward.ring_area);
+    return candidate;
+}
+
+VKFV_FUNCTION Candidate draw_on_ring(BackwardOptics backward, real plane, real3 position, real u0, real u1) {
+    RingPoint point = ring_point(backward.ring, u0, u1);
+    real3 way =
+        real3(point.position.x - position.x, -point.position.y - position.y, plane - point.position.z - position.z);
+    RingMeeting meeting;
+    meeting.distance = sqrt(dot(way, way));
+    real3 direction = way / meeting.distance;
+    meeting.cosine = -dot(direction, real3(point.normal.x, -point.normal.y, -point.normal.z));
+    meeting.found = meeting.cosine > real(0.0) && meeting.cosine >= backward.ring_cosine;
+    return on_ring(backward, direction, meeting);
 }
 
 // A direction towards the source, chosen in proportion to the light it would scatter towards the detector, and the
@@ -143,38 +228,42 @@ struct Connection {
 };
 
 // Resampled importance sampling (J. Talbot, D. Cline, P. Egbert, EGSR 2005) from stratified candidates: uniform over
-// the source's disc, and of the lobe seen backward. Each weighs f / (sum of all candidates' densities): the balance
-// heuristic.
-VKFV_FUNCTION Connection connect(Material material, BackwardOptics backward, real plane, Hit hit, real3 outgoing,
-                                 real u0, real u1, real choice, Scattered of_lobe) {
-    real factor = real(1.0) / (real(1.0) + backward.source_position * (plane - hit.position.z));
-    real2 centre = real2(hit.position.x, hit.position.y) * (-backward.source_position * factor);
-    real radius = backward.source_outer * factor;
-    real radius_squared = radius * radius;
-    real of_disc = real(backward.cone_candidates) / (real(3.14159265358979324) * radius_squared); // density in slopes
+// the source's disc or ring, and of the lobe seen backward. Each weighs f / (sum of all candidates' densities): the
+// balance heuristic.
+VKFV_SCENE_FUNCTION VKFV_FUNCTION Connection connect(VKFV_SCENE_PARAMETER Material material, BackwardOptics backward,
+                                                     real plane, Hit hit, real3 outgoing, real u0, real u1, real choice,
+                                                     Scattered of_lobe) {
+    bool is_ring = (features(VKFV_SCENE_ALONE) & FEATURE_RING) != 0u;
+    SeenDisc disc = seen_disc(backward, plane, hit.position);
     Connection connection;
     connection.weight = real(0.0);
     connection.direction = real3(real(0.0), real(0.0), real(1.0));
     real u = choice;
     for (uint k = 0u; k < backward.cone_candidates + backward.lobe_candidates; ++k) {
-        real3 direction = of_lobe.direction;
-        bool usable = of_lobe.accepted;
+        Candidate candidate;
         if (k < backward.cone_candidates) {
-            // Rings of equal area, each turned by the golden angle against the one before.
-            real rho = radius * sqrt((real(k) + u0) / real(backward.cone_candidates));
-            Turn turn = turn_of(fract(u1 + real(k) * real(0.61803398874989485)));
-            real2 slope = centre + real2(turn.cosine, turn.sine) * rho;
-            direction = real3(slope.x, slope.y, real(1.0)) * (real(1.0) / sqrt(real(1.0) + dot(slope, slope)));
-            usable = true;
+            // Parts of equal area, each turned by the golden angle against the one before.
+            real first = (real(k) + u0) / real(backward.cone_candidates);
+            real second = fract(u1 + real(k) * real(0.61803398874989485));
+            if (is_ring) {
+                candidate = draw_on_ring(backward, plane, hit.position, first, second);
+            } else {
+                candidate = draw_in_disc(disc, first, second);
+            }
+        } else {
+            if (is_ring) {
+                candidate = on_ring(backward, of_lobe.direction,
+                                    meet_drawn_ring(backward, plane, hit.position, of_lobe.direction));
+            } else {
+                candidate = in_disc(disc, of_lobe.direction);
+            }
+            candidate.usable = candidate.usable && of_lobe.accepted;
         }
+        real3 direction = candidate.direction;
         real cosine = dot(direction, hit.normal);
-        real2 from_centre = real2(direction.x, direction.y) / direction.z - centre;
-        usable =
-            usable && cosine > real(0.0) && direction.z > real(0.0) && dot(from_centre, from_centre) <= radius_squared;
-        if (usable) {
+        if (candidate.usable && cosine > real(0.0)) {
             real flux = scatter_bsdf(material, -direction, hit.normal, outgoing) * cosine;
-            // domega = cos^3 of the slopes' area.
-            real density = of_disc / (direction.z * direction.z * direction.z);
+            real density = real(backward.cone_candidates) * candidate.density;
             if (backward.lobe_candidates != 0u) {
                 density = density +
                           real(backward.lobe_candidates) * scatter_density(material, -outgoing, hit.normal, direction);
@@ -232,6 +321,14 @@ VKFV_FUNCTION BackwardStart backward_start(Lattice lattice, LatticeShift shift, 
     return start;
 }
 
+// The same where not all of a pixel is sensitive.
+VKFV_FUNCTION BackwardStart on_sensitive(Instrument instrument, BackwardStart start) {
+    real side = min(real(2.0) * instrument.pixel_reach, real(1.0));
+    start.column = real(0.5) + (start.column - real(0.5)) * side;
+    start.row = real(0.5) + (start.row - real(0.5)) * side;
+    return start;
+}
+
 // Where the light of a path is sorted to. In the detector's frame light arrives with the slope
 // (-pupil_radius pupil.x, pupil_radius pupil.y) over pupil_position times its place; a tilted detector's chief ray has
 // one of its own besides.
@@ -251,10 +348,11 @@ VKFV_SCENE_FUNCTION VKFV_FUNCTION real trace_backward(VKFV_SCENE_PARAMETER Instr
                                                       Exposure exposure, int column, int row, uint randomisation,
                                                       Lattice lattice, LatticeShift shift, uint point) {
     real turn = instrument.magnification < real(0.0) ? real(-1.0) : real(1.0);
-    real pitch = real(2.0) * instrument.detector_half_size / real(instrument.detector_pixels);
+    real pitch = real(2.0) * instrument.detector_half_width / real(instrument.detector_columns);
     BackwardStart start = backward_start(lattice, shift, point);
-    real x = turn * ((real(column) + start.column) * pitch - instrument.detector_half_size);
-    real y = turn * ((real(row) + start.row) * pitch - instrument.detector_half_size);
+    start = on_sensitive(instrument, start);
+    real x = turn * ((real(column) + start.column) * pitch - instrument.detector_half_width);
+    real y = turn * ((real(row) + start.row) * pitch - instrument.detector_half_height);
     Light light = light_of_spectral(instrument, real(0.0));
     if ((features(VKFV_SCENE_ALONE) & FEATURE_SPECTRUM) != 0u) {
         light = draw_light(VKFV_SCENE instrument, lattice_coordinate(lattice, point, lattice.z_7, shift.second.w));
@@ -263,24 +361,29 @@ VKFV_SCENE_FUNCTION VKFV_FUNCTION real trace_backward(VKFV_SCENE_PARAMETER Instr
         look_from_detector(VKFV_SCENE instrument, backward, specimen, exposure, x, y, start.pupil, light);
     real value = real(0.0);
     real throughput = arrival.weight;
+    if ((features(VKFV_SCENE_ALONE) & FEATURE_RING) != 0u) {
+        // The ring stands in the specimen's medium, where radiance is the index' square times that in air.
+        real index = specimen_medium_index(instrument, light);
+        throughput = throughput / (index * index);
+    }
     real3 direction = arrival.direction;
     real plane = object_plane(backward, specimen, exposure);
     // Counters that no forward path has; a lattice has fewer than 2^15 points.
-    uvec2 path = uvec2(uint(row * instrument.detector_pixels + column), 0x80000000u + (randomisation << 15) + point);
+    uvec2 path = uvec2(uint(row * instrument.detector_columns + column), 0x80000000u + (randomisation << 15) + point);
     SourceQuery query;
     query.light = light;
     bool under_way = arrival.status == PATH_ALIVE;
     Hit hit;
     hit.found = 0u;
     if (under_way) {
-        hit = specimen_hit(VKFV_SCENE arrival.position, direction);
+        hit = displaced_hit(VKFV_SCENE exposure, arrival.position, direction);
         under_way = hit.found == 1u && dot(direction, hit.normal) < real(0.0);
     }
     for (int bounce = 0; bounce < specimen.max_bounces && under_way; ++bounce) {
         uint block = 1u + uint(bounce) * (SCATTER_BLOCKS + 2u);
         real3 outgoing = -direction;
         real3 origin = scatter_origin(hit);
-        throughput = throughput * reflectance_share(VKFV_SCENE specimen, hit.position);
+        throughput = throughput * reflectance_share(VKFV_SCENE specimen, hit.position - displacement(exposure));
         Draws draws;
         draws.u0 = lattice_coordinate(lattice, point, lattice.z_4, shift.second.x);
         draws.u1 = lattice_coordinate(lattice, point, lattice.z_5, shift.second.y);
@@ -309,10 +412,10 @@ VKFV_SCENE_FUNCTION VKFV_FUNCTION real trace_backward(VKFV_SCENE_PARAMETER Instr
         }
         under_way = under_way && scattered.accepted;
         scattered.accepted = scattered.accepted && !delta;
-        Connection connection =
-            connect(specimen.material, backward, plane, hit, outgoing, draws.u0, draws.u1, draws.u2, scattered);
+        Connection connection = connect(VKFV_SCENE specimen.material, backward, plane, hit, outgoing, draws.u0,
+                                        draws.u1, draws.u2, scattered);
         if (connection.weight > real(0.0)) {
-            Hit blocker = specimen_hit(VKFV_SCENE origin, connection.direction);
+            Hit blocker = displaced_hit(VKFV_SCENE exposure, origin, connection.direction);
             if (blocker.found == 0u) {
                 query.position = origin;
                 query.direction = connection.direction;
@@ -327,7 +430,7 @@ VKFV_SCENE_FUNCTION VKFV_FUNCTION real trace_backward(VKFV_SCENE_PARAMETER Instr
                              scatter_density(alone, direction, hit.normal, scattered.direction);
             }
             direction = scattered.direction;
-            hit = specimen_hit(VKFV_SCENE origin, direction);
+            hit = displaced_hit(VKFV_SCENE exposure, origin, direction);
             if (hit.found == 0u && delta) {
                 query.position = origin;
                 query.direction = direction;

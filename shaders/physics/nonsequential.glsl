@@ -213,7 +213,7 @@ VKFV_SCENE_FUNCTION VKFV_FUNCTION Detection trace_nonsequential(VKFV_SCENE_PARAM
     detection.row = 0;
     detection.x = real(0.0);
     detection.y = real(0.0);
-    real3 to_specimen = real3(real(0.0), real(0.0), exposure.focal_height);
+    real3 to_specimen = real3(real(0.0), real(0.0), exposure.focal_height) - displacement(exposure);
     int left = -1;
     int bounces = 0;
     for (int k = 0; k < MOST_INTERACTIONS && detection.fate.status == PATH_ALIVE; ++k) {

@@ -9,6 +9,16 @@ Hit specimen_hit(const Scene& scene, real3 origin, real3 direction) {
 Hit specimen_hit(real3 origin, real3 direction); // device/specimen_hit.glsl
 #endif
 
+// How far the stage holds the specimen beside its place. Rays keep to the specimen frame of a true stage.
+VKFV_FUNCTION real3 displacement(Exposure exposure) { return real3(exposure.beside_x, exposure.beside_y, real(0.0)); }
+
+VKFV_SCENE_FUNCTION VKFV_FUNCTION Hit displaced_hit(VKFV_SCENE_PARAMETER Exposure exposure, real3 origin,
+                                                    real3 direction) {
+    Hit hit = specimen_hit(VKFV_SCENE origin - displacement(exposure), direction);
+    hit.position = hit.position + displacement(exposure);
+    return hit;
+}
+
 VKFV_FUNCTION Fate make_fate(uint status, int surface) {
     Fate fate;
     fate.status = status;
@@ -233,14 +243,14 @@ VKFV_SCENE_FUNCTION VKFV_FUNCTION Departure scatter_at_specimen(VKFV_SCENE_PARAM
     selection.survivor.mark = 0u;
     real own_share = real(1.0);
     real own_choice = real(0.0);
-    Hit hit = specimen_hit(VKFV_SCENE origin, direction);
+    Hit hit = displaced_hit(VKFV_SCENE exposure, origin, direction);
     status = hit.found == 1u ? PATH_ALIVE : PATH_OFF_SPECIMEN;
     bool under_way = hit.found == 1u;
     for (int bounce = 0; bounce < specimen.max_bounces && under_way; ++bounce) {
         uint first_block = 1u + uint(bounce) * SCATTER_BLOCKS;
         bool last = bounce + 1 == specimen.max_bounces;
         Incidence incidence = make_incidence(direction, hit.normal);
-        Material material = material_at(VKFV_SCENE specimen, hit.position);
+        Material material = material_at(VKFV_SCENE specimen, hit.position - displacement(exposure));
         origin = scatter_origin(hit);
         GatedScatter gated;
         gated.applies = false;
@@ -274,7 +284,7 @@ VKFV_SCENE_FUNCTION VKFV_FUNCTION Departure scatter_at_specimen(VKFV_SCENE_PARAM
             mark = SURVIVOR_TO_TEST;
             under_way = false;
         } else if (under_way) {
-            hit = specimen_hit(VKFV_SCENE origin, direction);
+            hit = displaced_hit(VKFV_SCENE exposure, origin, direction);
             under_way = hit.found == 1u;
         }
     }
@@ -338,10 +348,10 @@ VKFV_FUNCTION real3 survivor_direction(Survivor survivor) {
 }
 
 // Whether the light meets the specimen again: the test that the first half left.
-VKFV_SCENE_FUNCTION VKFV_FUNCTION bool survivor_occluded(VKFV_SCENE_PARAMETER Survivor survivor) {
+VKFV_SCENE_FUNCTION VKFV_FUNCTION bool survivor_occluded(VKFV_SCENE_PARAMETER Exposure exposure, Survivor survivor) {
     bool occluded = false;
     if ((survivor.mark & SURVIVOR_TO_TEST) != 0u) {
-        Hit hit = specimen_hit(VKFV_SCENE survivor.position, survivor_direction(survivor));
+        Hit hit = displaced_hit(VKFV_SCENE exposure, survivor.position, survivor_direction(survivor));
         occluded = hit.found == 1u;
     }
     return occluded;
@@ -349,19 +359,24 @@ VKFV_SCENE_FUNCTION VKFV_FUNCTION bool survivor_occluded(VKFV_SCENE_PARAMETER Su
 
 // A landing on the detector's plane, mm, axes parallel to the specimen's, inversion not removed.
 VKFV_FUNCTION Detection detect(Instrument instrument, real x, real y) {
-    real half_size = instrument.detector_half_size;
+    real half_width = instrument.detector_half_width;
+    real half_height = instrument.detector_half_height;
     // Removing the inversion: a negative magnification turns the image half a turn.
     real turn = instrument.magnification < real(0.0) ? real(-1.0) : real(1.0);
-    real scale = real(instrument.detector_pixels) / (real(2.0) * half_size);
-    bool on_detector = abs(x) < half_size && abs(y) < half_size;
+    real scale = real(instrument.detector_columns) / (real(2.0) * half_width);
+    bool on_detector = abs(x) < half_width && abs(y) < half_height;
     bool finite = !(isnan(x) || isinf(x) || isnan(y) || isinf(y));
-    int last = instrument.detector_pixels - 1;
     Detection detection;
     detection.x = x;
     detection.y = y;
     detection.slope = real2(real(0.0), real(0.0));
-    detection.column = on_detector ? clamp(int(floor((turn * x + half_size) * scale)), 0, last) : 0;
-    detection.row = on_detector ? clamp(int(floor((turn * y + half_size) * scale)), 0, last) : 0;
+    real column = (turn * x + half_width) * scale;
+    real row = (turn * y + half_height) * scale;
+    detection.column = on_detector ? clamp(int(floor(column)), 0, instrument.detector_columns - 1) : 0;
+    detection.row = on_detector ? clamp(int(floor(row)), 0, instrument.detector_rows - 1) : 0;
+    // Between what is sensitive of the pixels: beside the detector too.
+    on_detector = on_detector && abs(column - real(detection.column) - real(0.5)) <= instrument.pixel_reach &&
+                  abs(row - real(detection.row) - real(0.5)) <= instrument.pixel_reach;
     detection.fate = make_fate(!finite ? PATH_NUMERICAL : on_detector ? PATH_DETECTED : PATH_OFF_DETECTOR, -1);
     return detection;
 }
@@ -370,7 +385,7 @@ VKFV_SCENE_FUNCTION VKFV_FUNCTION Detection image_survivor(VKFV_SCENE_PARAMETER 
                                                            SpecimenRecord specimen, Exposure exposure,
                                                            Survivor survivor) {
     real3 direction = survivor_direction(survivor);
-    bool occluded = survivor_occluded(VKFV_SCENE survivor);
+    bool occluded = survivor_occluded(VKFV_SCENE exposure, survivor);
     // Re-based: on the top plane, whose distance to the front vertex is known in double.
     real rise = rise_to_top(specimen, exposure, survivor.position.z) / direction.z;
     Ray ray;
@@ -396,9 +411,9 @@ VKFV_SCENE_FUNCTION VKFV_FUNCTION Detection image_survivor(VKFV_SCENE_PARAMETER 
 // Where light that was detected is sorted to.
 VKFV_FUNCTION CellPlace detection_place(Instrument instrument, PupilCells cells, Detection detection) {
     real turn = instrument.magnification < real(0.0) ? real(-1.0) : real(1.0);
-    real scale = real(instrument.detector_pixels) / (real(2.0) * instrument.detector_half_size);
-    real column = (turn * detection.x + instrument.detector_half_size) * scale - real(detection.column);
-    real row = (turn * detection.y + instrument.detector_half_size) * scale - real(detection.row);
+    real scale = real(instrument.detector_columns) / (real(2.0) * instrument.detector_half_width);
+    real column = (turn * detection.x + instrument.detector_half_width) * scale - real(detection.column);
+    real row = (turn * detection.y + instrument.detector_half_height) * scale - real(detection.row);
     CellPlace place;
     place.column = detection.column * int(cells.parts) + pixel_part(cells, column);
     place.row = detection.row * int(cells.parts) + pixel_part(cells, row);

@@ -31,6 +31,7 @@
 
 #define VKFV_PHYSICS_LANGUAGE \
     using glm::abs; \
+    using glm::atan; \
     using glm::ceil; \
     using glm::clamp; \
     using glm::cos; \

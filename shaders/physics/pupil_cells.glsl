@@ -6,6 +6,7 @@
 #define VKFV_PUPIL_CELLS_FIELDS(FIELD) \
     FIELD(uint, side)             /* cells across the pupil, an even number; 0: light is not sorted */ \
     FIELD(uint, parts)            /* of a pixel's side */ \
+    FIELD(real, sensitive_side)   /* share of a pixel's side; the parts' light is taken as even over each */ \
     FIELD(real, chief_x)          /* slope of the chief ray that lands on the detector's middle */ \
     FIELD(real, chief_y) \
     FIELD(real, chief_position)   /* 1/mm: how the chief ray's slope grows with its position there */ \
@@ -35,6 +36,13 @@ VKFV_FUNCTION real2 chief_slope(PupilCells cells, real2 position) {
 // Which part of a pixel: of a coordinate in pixels.
 VKFV_FUNCTION int pixel_part(PupilCells cells, real within) {
     return clamp(int(floor(within * real(cells.parts))), 0, int(cells.parts) - 1);
+}
+
+// The share of a part's width that is sensitive, where the pixel is sensitive on this share of its side, in its middle.
+VKFV_FUNCTION real sensitive_share(PupilCells cells, uint part) {
+    real from = real(0.5) * (real(1.0) - cells.sensitive_side) * real(cells.parts);
+    real to = real(0.5) * (real(1.0) + cells.sensitive_side) * real(cells.parts);
+    return clamp(min(to, real(part) + real(1.0)) - max(from, real(part)), real(0.0), real(1.0));
 }
 
 // A cell, and the part of a pixel in its image.

@@ -191,7 +191,8 @@ struct SourceFrame {
     FIELD(real, emission_sine)       /* sine of the half-angle of the cone aimed into; 1 is the whole hemisphere */ \
     FIELD(real, magnification)       /* lateral, signed: detector over object */ \
     FIELD(real, detector_distance)   /* mm, from the last vertex of the imaging train to the detector */ \
-    FIELD(real, detector_half_size)  /* mm */ \
+    FIELD(real, detector_half_width)  /* mm, along x */ \
+    FIELD(real, detector_half_height) /* mm, along y */ \
     FIELD(real, gate_position) \
     FIELD(real, gate_slope) \
     FIELD(real, gate_radius) \
@@ -205,7 +206,9 @@ struct SourceFrame {
     FIELD(int, illumination_count) \
     FIELD(int, imaging_first) \
     FIELD(int, imaging_count) \
-    FIELD(int, detector_pixels)      /* along one side */
+    FIELD(real, pixel_reach)         /* half the side of what is sensitive of a pixel, in pixels; 1: all of it */ \
+    FIELD(int, detector_columns)     /* pixels, which are square */ \
+    FIELD(int, detector_rows)
 struct Instrument {
     VKFV_INSTRUMENT_FIELDS(VKFV_DECLARE)
 };
@@ -302,7 +305,9 @@ struct SpecimenRecord {
     FIELD(uint, seed) \
     FIELD(uint, image) \
     FIELD(real, focal_height)          /* mm, of the focal plane in the specimen frame: z of the image */ \
-    FIELD(real, top_distance_residual) /* mm, what rounding took from top_distance; 0 in double */
+    FIELD(real, top_distance_residual) /* mm, what rounding took from top_distance; 0 in double */ \
+    FIELD(real, beside_x)              /* mm, where the specimen stands beside its place on the axis */ \
+    FIELD(real, beside_y)
 struct Exposure {
     VKFV_EXPOSURE_FIELDS(VKFV_DECLARE)
 };

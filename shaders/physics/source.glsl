@@ -56,11 +56,24 @@ VKFV_FUNCTION Ray emit_from_disc(real radius, real emission_sine, real u0, real 
 
 // A ring light about the z axis that shines on the origin from z < 0. Its band lies on a cone: at w across the band,
 // from the ring's inside, its radius is r - w sin(elevation), and so is its share of the area.
-VKFV_FUNCTION Ray emit_from_ring(RingLight ring, real emission_sine, real u0, real u1, real u2, real u3) {
+struct RingPoint {
+    real3 position;
+    real3 normal; // towards the light's way
+    real3 across; // the band, inwards
+    real3 around;
+};
+
+VKFV_FUNCTION int segments_on(RingLight ring) {
     int on = 0;
     for (int segment = 0; segment < ring.segments; ++segment) {
         on += int((ring.switched_on >> segment) & 1u);
     }
+    return on;
+}
+
+// Uniform over the area that shines.
+VKFV_FUNCTION RingPoint ring_point(RingLight ring, real u0, real u1) {
+    int on = segments_on(ring);
     real scaled = u0 * real(on);
     int wanted = min(int(scaled), on - 1);
     int chosen = 0;
@@ -82,14 +95,72 @@ VKFV_FUNCTION Ray emit_from_ring(RingLight ring, real emission_sine, real u0, re
     real rho = radius - w * ring.elevation_sine;
     // This frame is the specimen's turned half a turn about x: y and z change sign.
     real3 outward = real3(azimuth.cosine, -azimuth.sine, real(0.0));
-    real3 around = real3(-azimuth.sine, -azimuth.cosine, real(0.0));
     real3 axis = real3(real(0.0), real(0.0), real(1.0));
-    real3 normal = axis * ring.elevation_sine - outward * ring.elevation_cosine;
-    real3 across = outward * (-ring.elevation_sine) - axis * ring.elevation_cosine;
+    RingPoint point;
+    point.position = outward * rho - axis * (ring.distance * ring.elevation_sine + w * ring.elevation_cosine);
+    point.normal = axis * ring.elevation_sine - outward * ring.elevation_cosine;
+    point.across = outward * (-ring.elevation_sine) - axis * ring.elevation_cosine;
+    point.around = real3(-azimuth.sine, -azimuth.cosine, real(0.0));
+    return point;
+}
+
+VKFV_FUNCTION Ray emit_from_ring(RingLight ring, real emission_sine, real u0, real u1, real u2, real u3) {
+    RingPoint point = ring_point(ring, u0, u1);
     real3 direction = lambertian_direction(emission_sine, u2, u3);
     Ray ray;
-    ray.position = outward * rho - axis * (ring.distance * ring.elevation_sine + w * ring.elevation_cosine);
-    ray.direction = normal * direction.z + across * direction.x + around * direction.y;
+    ray.position = point.position;
+    ray.direction = point.normal * direction.z + point.across * direction.x + point.around * direction.y;
     ray.path_length = real(0.0);
     return ray;
+}
+
+// mm^2, of all that shines.
+VKFV_FUNCTION real ring_area(RingLight ring) {
+    real all = real(4.0) * real(3.14159265358979324) * ring.distance * ring.elevation_cosine * ring.half_width;
+    return all * ring.fill * real(segments_on(ring)) / real(ring.segments);
+}
+
+// Where a ray meets what shines of a ring light, from its inside.
+struct RingMeeting {
+    bool found;
+    real distance; // along the unit direction
+    real cosine;   // between the ray and the band's normal
+};
+
+// In the specimen's sense, the ring's aim at the origin: z up. direction: unit.
+VKFV_FUNCTION RingMeeting meet_ring(RingLight ring, real3 position, real3 direction) {
+    // On the cone: rho = r - (z - z_0) tan(elevation). A t^2 + 2 B t + C = 0.
+    real tangent = ring.elevation_sine / ring.elevation_cosine;
+    real lift = position.z - ring.distance * ring.elevation_sine;
+    real start = ring.distance * ring.elevation_cosine - lift * tangent; // the cone's radius at the ray's height
+    real growth = -tangent * direction.z;
+    real2 aside = real2(position.x, position.y);
+    real2 along = real2(direction.x, direction.y);
+    real a = dot(along, along) - growth * growth;
+    real b = dot(aside, along) - start * growth;
+    real c = dot(aside, aside) - start * start;
+    real q = b + (b < real(0.0) ? real(-1.0) : real(1.0)) * sqrt(max(b * b - a * c, real(0.0)));
+    RingMeeting meeting;
+    meeting.found = false;
+    meeting.distance = real(0.0);
+    meeting.cosine = real(0.0);
+    for (int k = 0; k < 2; ++k) {
+        real t = k == 0 ? -q / a : -c / q;
+        real radius = start + growth * t;
+        real w = (lift + t * direction.z) / ring.elevation_cosine;
+        real2 outward = (aside + along * t) / radius;
+        real cosine = dot(outward, along) * ring.elevation_cosine + direction.z * ring.elevation_sine;
+        bool on_band = t > real(0.0) && radius > real(0.0) && abs(w) <= ring.half_width && cosine > real(0.0);
+        real turns = atan(outward.y, outward.x) * real(0.15915494309189534);
+        real place = (turns < real(0.0) ? turns + real(1.0) : turns) * real(ring.segments);
+        int segment = clamp(int(place), 0, ring.segments - 1);
+        bool shines = ((ring.switched_on >> segment) & 1u) != 0u &&
+                      abs(place - real(segment) - real(0.5)) <= real(0.5) * ring.fill;
+        if (on_band && shines && !meeting.found) {
+            meeting.found = true;
+            meeting.distance = t;
+            meeting.cosine = cosine;
+        }
+    }
+    return meeting;
 }

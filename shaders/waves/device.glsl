@@ -5,6 +5,7 @@
 #extension GL_EXT_shader_explicit_arithmetic_types_int64 : require
 #extension GL_EXT_buffer_reference : require
 #include "physics/lang.glsl"
+#include "physics/pupil_cells.glsl"
 #include "waves/interface.glsl"
 
 uint invocation() {

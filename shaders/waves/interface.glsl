@@ -9,16 +9,19 @@ const uint WAVES_BINDING_PIXELS = 4u;
 
 // Some groups of cells, each of four that are mirror images.
 struct WaveGroups {
-    uvec2 light;     // address of the sorted light
-    uint side;       // parts of pixels
+    uvec2 light;  // address of the sorted light
+    uint columns; // parts of pixels
+    uint rows;
     uint cells_side; // cells across the pupil
     uint first;      // group
     uint count;
-    uint steps;        // of the table, from 0 to the cutoff
-    real steps_a_line; // the table's for each 1 / (2 side) cycles a part
+    uint steps;          // of the table, from 0 to the cutoff
+    real steps_a_column; // the table's for each 1 / (2 columns) cycles a part
+    real steps_a_row;    // for each 1 / (2 rows)
 };
 
 struct WaveSize {
-    uint side;  // parts of pixels
-    uint parts; // of a pixel's side
+    uint columns; // parts of pixels
+    uint rows;
+    PupilCells cells;
 };

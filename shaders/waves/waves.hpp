@@ -3,6 +3,8 @@
 
 #include <cstdint>
 
+#include "physics/physics.hpp"
+
 #include <glm/glm.hpp>
 
 namespace vkfv::waves {
@@ -10,6 +12,7 @@ namespace vkfv::waves {
 using glm::uvec2;
 using uint = std::uint32_t;
 using real = float;
+using physics::f32::PupilCells;
 #include "waves/interface.glsl"
 
 } // namespace vkfv::waves

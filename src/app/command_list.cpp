@@ -1,5 +1,6 @@
 #include "app/commands.hpp"
 
+#include "core/toml_reader.hpp"
 #include "optics/prescription.hpp"
 #include "physics/scatter_registry.hpp"
 #include "specimen/kinds.hpp"
@@ -29,6 +30,16 @@ std::vector<Listed> prescriptions(const char* folder) {
     std::vector<Listed> list;
     for (const auto& name : optics::prescription_names(folder, here)) {
         list.push_back({name, optics::load_prescription(name, folder, here).title});
+    }
+    return list;
+}
+
+std::vector<Listed> standards() {
+    constexpr const char* folder = "specimens";
+    const auto here = std::filesystem::current_path();
+    std::vector<Listed> list;
+    for (const auto& name : optics::prescription_names(folder, here)) {
+        list.push_back({name, TomlTable::open(*optics::find_prescription(name, folder, here)).string("title")});
     }
     return list;
 }
@@ -77,6 +88,7 @@ const std::vector<std::pair<std::string, Lister>>& listers() {
         {"illuminators", [] { return prescriptions("illuminators"); }},
         {"glasses", glasses},
         {"specimens", specimens},
+        {"standards", standards},
         {"scatter", scatter_models}};
     return all;
 }

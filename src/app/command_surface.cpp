@@ -5,6 +5,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <array>
 #include <charconv>
 #include <cmath>
@@ -18,6 +19,7 @@ struct SurfaceOptions {
     std::optional<double> unit;               // mm per unit of an image's value
     std::optional<surface::ProfileLine> line; // none: the middle row
     surface::ProfileSetting setting;
+    std::optional<dimensions::Sought> sought;
 };
 
 void take_profile_filter(CommandOptions& options, double um) {
@@ -69,6 +71,12 @@ void take_profile(CommandOptions& options, const std::string& text) {
     options.of<SurfaceOptions>().line = surface::ProfileLine{ends[0], ends[1], ends[2], ends[3]};
 }
 
+void take_sought(CommandOptions& options, const std::string& name) {
+    const auto& names = dimensions::sought_names;
+    options.of<SurfaceOptions>().sought =
+        static_cast<dimensions::Sought>(std::ranges::find(names, name) - names.begin());
+}
+
 } // namespace
 
 Command surface_command() {
@@ -95,6 +103,14 @@ Command surface_command() {
         .target = Take<std::string>(take_profile_setting),
         .fallback = "fifth",
         .choices = {"fifth", "by-Ra", "Sc1", "Sc2", "Sc3", "Sc4", "Sc5"}};
+    const Option sought = {.name = "--dimensions",
+                           .value = "NAME",
+                           .description =
+                               "Dimensions of a standard, wherever it lies: step height, groove depth and width, "
+                               "amplitude and period, pitch and depth, pitches and angle, radius and form "
+                               "deviation, flatness; of the heights as they were read",
+                           .target = Take<std::string>(take_sought),
+                           .choices = {dimensions::sought_names.begin(), dimensions::sought_names.end()}};
     return {.name = "surface",
             .summary = "A surface file (X3P, SUR, SDF, AL3D, GWY, GSF, PLU, OPD, DAT, NMS, NPY, CSV, XYZ, TIFF, EXR): "
                        "form removed and filtered, its ISO 25178-2 "
@@ -103,7 +119,7 @@ Command surface_command() {
             .options =
                 together({{out_option("A .x3p, .sur, .sdf, .gwy, .gsf, .csv, .npy, .tif or .ply file"), json_option()},
                           band_options(),
-                          {pitch_option(), unit, profile, profile_filter, profile_setting}}),
+                          {pitch_option(), unit, profile, profile_filter, profile_setting, sought}}),
             .run = run_surface,
             .example = "vkfv surface measured.x3p --form polynomial-2 --s_filter_um 5 --out treated.sur"};
 }
@@ -116,6 +132,7 @@ void run_surface(const CommandOptions& options) {
                                       .band = options.of<surface::Band>(),
                                       .line = own.line,
                                       .setting = own.setting,
+                                      .sought = own.sought,
                                       .out = options.out});
     fmt::print("{}", options.json ? measurement::surface_json(figures, options.file).dump(2) + "\n"
                                   : measurement::surface_text(figures));

@@ -23,6 +23,7 @@ Command check_command();
 Command trace_rays_command();
 Command layout_command();
 Command optics_command();
+Command camera_command();
 Command devices_command();
 Command bench_command();
 Command import_command();
@@ -51,6 +52,8 @@ void run_trace_rays(const CommandOptions& options);
 void run_layout(const CommandOptions& options);
 // What waves make of points of the field, as pictures, tables and optics.json in a folder.
 void run_optics(const CommandOptions& options);
+// The configured camera measured on images that it takes of uniform light: figures, charts and camera.json in a folder.
+void run_camera(const CommandOptions& options);
 // The devices at hand, what each lacks and which would be used.
 void run_devices(const CommandOptions& options);
 // Rays per second of the configuration's chain, by stages and whatever else bench.hpp tells of; with `out`, also as

@@ -105,7 +105,7 @@ Json over_pixels(const BenchScene& scene) {
     for (const int pixels : {64, 256, 1024, 4096}) {
         spdlog::info("{} x {} pixels", pixels, pixels);
         auto configuration = scene.configuration();
-        configuration.instrument.detector_pixels = pixels;
+        configuration.instrument.detector_pixels = ImageSize::square(pixels);
         const auto instrument = instrument_of(configuration, scene.specimen());
         auto options = scene.configuration().trace;
         options.rays = scene.rays();

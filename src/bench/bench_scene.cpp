@@ -135,10 +135,10 @@ std::vector<Way> BenchScene::estimators() const {
     if (instrument_.turned) {
         auto backward = configuration_.trace;
         backward.estimator = trace::Estimator::backward;
-        const auto side = static_cast<std::uint64_t>(instrument_.constants.detector_pixels);
+        const std::uint64_t pixels = instrument_.detector_pixels().count();
         for (const std::uint64_t paths : {32, 1024}) {
             if (paths == 32 || !software()) {
-                ways.push_back({fmt::format("backward, {} paths a pixel", paths), backward, paths * side * side});
+                ways.push_back({fmt::format("backward, {} paths a pixel", paths), backward, paths * pixels});
             }
         }
     }
@@ -147,7 +147,7 @@ std::vector<Way> BenchScene::estimators() const {
 
 optics::Instrument instrument_of(const Configuration& configuration, const specimen::Specimen& specimen) {
     auto turned = configuration; // for the backward estimator
-    turned.instrument.turned = !configuration.instrument.ring;
+    turned.instrument.turned = true;
     return measurement::assemble_instrument(turned, specimen, std::span(&in_focus, 1));
 }
 

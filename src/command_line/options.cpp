@@ -49,7 +49,7 @@ double nesting_index(double um) {
 void take_form(CommandOptions& options, const std::string& name) {
     const auto form = surface::parse_form(name);
     if (!form) {
-        refuse_argument("--form " + name, "none, plane, polynomial-1 to polynomial-20 or sphere",
+        refuse_argument("--form " + name, "none, plane, polynomial-1 to polynomial-20, sphere or truth",
                         "Name one of these, or leave it out for a plane.");
     }
     options.of<surface::Band>().form = *form;
@@ -135,7 +135,9 @@ std::vector<Option> band_options() {
     std::vector<Option> options = {
         {.name = "--form",
          .value = "NAME",
-         .description = "Removed first: none, plane, polynomial-1 to polynomial-20, sphere",
+         .description =
+             "Removed first: none, plane, polynomial-1 to polynomial-20, sphere; of what is compared also truth: "
+             "the plane of the deviation",
          .target = Take<std::string>(take_form),
          .fallback = "plane"},
         {.name = "--s_filter_um,--s-filter-um",

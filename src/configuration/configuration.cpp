@@ -73,10 +73,9 @@ void read_instrument(const TomlTable& root, Configuration& configuration) {
     std::string wavelength_key;
     root.attempt("source", [&] { wavelength_key = read_source(root, configuration); });
     const std::pair<const char*, void (*)(const TomlTable&, Configuration&)> parts[] = {
-        {"illumination", read_illumination}, {"beam_splitter", read_beam_splitter},
-        {"fold_mirror", read_fold_mirrors},  {"interfaces", read_interfaces},
-        {"objective", read_objective},       {"cover_glass", read_cover_glass},
-        {"tube_lens", read_tube_lens},       {"detector", read_detector}};
+        {"illumination", read_illumination}, {"beam_splitter", read_beam_splitter}, {"fold_mirror", read_fold_mirrors},
+        {"interfaces", read_interfaces},     {"objective", read_objective},         {"cover_glass", read_cover_glass},
+        {"tube_lens", read_tube_lens},       {"detector", read_detector},           {"camera", read_camera}};
     for (const auto& [key, read] : parts) {
         root.attempt(key, [&, read = read] { read(root, configuration); }); // clang 14 captures no binding by name
     }
@@ -106,6 +105,7 @@ Configuration read_configuration(const TomlTable& root, Needs needs) {
     if (needs == Needs::stack || root.has("scan")) {
         root.attempt("scan", [&] { read_scan(root, configuration); });
     }
+    root.attempt("stage", [&] { read_stage(root, configuration); });
     root.attempt("trace", [&] { read_trace(root, configuration); });
     root.attempt("diffraction", [&] { read_diffraction(root, configuration); });
     root.attempt("topography", [&] { read_topography(root, configuration, needs); });

@@ -1,9 +1,12 @@
 // What the user asks for: a TOML file and the command line's overrides, checked and in the units of the inside.
 #pragma once
 
+#include "camera/camera.hpp"
 #include "core/section.hpp"
 #include "optics/instrument.hpp"
 #include "scan/plan.hpp"
+#include "scan/stage.hpp"
+#include "scan/store.hpp"
 #include "specimen/description.hpp"
 #include "topography/compare.hpp"
 #include "topography/registration.hpp"
@@ -49,7 +52,8 @@ enum class EvaluateOn { automatic, host, device };
 // Of the texts in ReadKeys, `canonical` is TOML that load_configuration() takes, and `identity` is what the images
 // depend on, a line a key, for telling one stack from another. Of the keys of `canonical` the identity leaves out, with
 // the reason:
-//   diffraction.* but for waves', topography.*, output.directory   blur, evaluate or place the images
+//   diffraction.* but for waves', topography.*, output.directory   blur, evaluate or place the images (a blur that
+//                                    comes before a camera is in it)
 //   trace.batch                      the same bits for any batch size
 //   trace.device, trace.traversal    requests; what they resolve to is in the tracer's description
 //   file paths                       the content counts, and stands in its place as a digest
@@ -58,18 +62,22 @@ struct Configuration : ReadKeys {
     std::filesystem::path file;
     optics::GlassCatalog glasses = optics::GlassCatalog::builtin(); // with the file's glass_catalogs
     optics::InstrumentDescription instrument;
+    std::optional<camera::CameraOptions> camera; // none: images are light
     std::optional<specimen::Description> specimen;
     std::optional<scan::ScanPlan> scan;
+    std::optional<scan::Stage> stage;
     trace::TraceOptions trace;
     DiffractionOptions diffraction;
     topography::TopographyOptions topography;
     EvaluateOn evaluate_on = EvaluateOn::automatic;
     topography::Registration registration = topography::Registration::none; // of images of another instrument
     std::filesystem::path flatness_file; // a flat measured by the same instrument; empty: no correction
-    topography::Band band;               // of the second comparison with the truth; unlimited: there is none
+    topography::Band band;               // form of both comparisons with the truth; filters of the second; unlimited:
+                                         // there is only one
     std::filesystem::path output_directory;
     static constexpr double usual_checkpoint_interval = 60; // s
     double checkpoint_interval = usual_checkpoint_interval; // of an exposure that takes longer; 0: none are kept
+    scan::PixelType pixel_type = scan::PixelType::float32;  // of the images
     std::vector<std::string> topography_files;              // names under which the topography is written
     std::optional<Sweep> sweep; // belongs to no image: neither in `canonical` nor in `identity`
 };

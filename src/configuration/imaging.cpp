@@ -47,9 +47,17 @@ const TextKey tube_prescription = of_kinds(
 const NumberKey tube_distance("distance_mm", NumberRange::at_least(0), default_tube_lens_distance,
                               "From the objective's back vertex to the tube lens's first.");
 
-const NumberKey detector_size = for_example(
-    "1.28", NumberKey("size_mm", NumberRange::positive(), needed, "Side of the square detector, in its own plane."));
-const IntegerKey detector_pixels = for_example("64", IntegerKey("pixels", 1, most_pixels, {}, "Pixels along a side."));
+const NumberKey detector_size =
+    for_example("1.28", NumberKey("size_mm", NumberRange::positive(), needed,
+                                  "Width of the detector, in its own plane, where pixel_um is not given; its height "
+                                  "follows, as pixels are square."));
+const NumberKey pixel_pitch("pixel_um", NumberRange::positive(), Default::in_words("size_mm over its columns"),
+                            "Side of a pixel, in the detector's plane, in place of size_mm.");
+const NumberKey fill_factor("fill_factor", NumberRange::share(), 1.0,
+                            "Share of a pixel's area that is sensitive: a square in its middle. A camera's quantum "
+                            "efficiency by EMVA 1288 contains it.");
+const IntegerPairKey detector_pixels =
+    for_example("64", IntegerPairKey("pixels", 1, most_pixels, "Columns and rows; one number: both."));
 
 } // namespace
 
@@ -91,7 +99,7 @@ const KeyTable& detector_keys() {
                                 .meaning = "The camera's chip, in the plane where the specimen's best focus is imaged.",
                                 .subject = "a detector",
                                 .kind = "",
-                                .keys = with_placement({&detector_size, &detector_pixels})};
+                                .keys = with_placement({&detector_size, &pixel_pitch, &detector_pixels, &fill_factor})};
     return table;
 }
 
@@ -138,8 +146,19 @@ void read_cover_glass(const TomlTable& root, Configuration& configuration) {
 void read_detector(const TomlTable& root, Configuration& configuration) {
     auto& instrument = configuration.instrument;
     const Section section(root.table("detector"), detector_keys(), configuration);
-    instrument.detector_size = section.number(detector_size);
-    instrument.detector_pixels = static_cast<int>(section.integer(detector_pixels));
+    const auto pixels = section.integer_pair(detector_pixels);
+    instrument.detector_pixels = {static_cast<int>(pixels[0]), static_cast<int>(pixels[1])};
+    if (section.has(pixel_pitch) && section.has(detector_size)) {
+        section.fail(pixel_pitch, "either size_mm or pixel_um", "Remove one of them.");
+    }
+    if (section.has(pixel_pitch)) {
+        constexpr double harmless = 1; // where the value is none
+        const double pitch = section.number_if_given(pixel_pitch).value_or(harmless);
+        instrument.detector_width = pitch * mm_per_um * instrument.detector_pixels.columns;
+    } else {
+        instrument.detector_width = section.number(detector_size);
+    }
+    instrument.fill_factor = section.number(fill_factor);
     instrument.detector_placement = read_placement(section);
 }
 

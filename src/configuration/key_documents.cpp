@@ -22,6 +22,8 @@ const char* type_text(const Key& key) {
         return "number";
     case Key::Type::integer:
         return "integer";
+    case Key::Type::integer_pair:
+        return "integer, or two in brackets,";
     case Key::Type::boolean:
         return "true or false";
     case Key::Type::text:
@@ -113,6 +115,12 @@ Json schema_of(const Key& key) {
     case Key::Type::integer: // 1e9 is one too
         numbers(schema);
         break;
+    case Key::Type::integer_pair: {
+        Json one;
+        numbers(one);
+        schema["anyOf"] = {one, {{"type", "array"}, {"items", one}, {"minItems", 2}, {"maxItems", 2}}};
+        break;
+    }
     case Key::Type::boolean:
         schema["type"] = "boolean";
         break;
@@ -177,11 +185,11 @@ const std::vector<const KeyTable*>& key_tables() {
         std::vector<const KeyTable*> all = {&root_keys(),         &source_keys(),        &spectrum_keys(),
                                             &illumination_keys(), &beam_splitter_keys(), &fold_mirror_keys(),
                                             &interfaces_keys(),   &objective_keys(),     &cover_glass_keys(),
-                                            &tube_lens_keys(),    &detector_keys()};
+                                            &tube_lens_keys(),    &detector_keys(),      &camera_keys()};
         const auto specimens = specimen_key_tables();
         all.insert(all.end(), specimens.begin(), specimens.end());
-        all.insert(all.end(), {&scan_keys(), &trace_keys(), &topography_keys(), &diffraction_keys(), &output_keys(),
-                               &sweep_keys(), &sweep_parameter_keys()});
+        all.insert(all.end(), {&scan_keys(), &stage_keys(), &trace_keys(), &topography_keys(), &diffraction_keys(),
+                               &output_keys(), &sweep_keys(), &sweep_parameter_keys()});
         return all;
     }();
     return tables;

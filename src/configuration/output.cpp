@@ -41,19 +41,22 @@ std::filesystem::path without_dots(const std::filesystem::path& path) {
     return normal.has_filename() || normal == normal.root_path() ? normal : normal.parent_path();
 }
 
-constexpr double longest_checkpoint_interval = 1e6; // s
+using scan::PixelType;
 
-enum class ImageFormat { float32, uint16 };
+constexpr double longest_checkpoint_interval = 1e6; // s
+constexpr int bits_of_bytes = 8;
 
 const FileKey directory = without_influence(
     FileKey("directory", Default::in_words("vkfv-out beside the configuration"), "Folder of the results."));
 const TextsKey surfaces = without_influence(TextsKey("surfaces", choices_of_formats(),
                                                      {.toml = "[\"tiff\", \"x3p\"]", .text = {}, .needed = false},
                                                      "Formats of the measured surface."));
-const ChoiceKey<ImageFormat> images("images",
-                                    {{ImageFormat::float32, "float32", "radiant flux in W"},
-                                     {ImageFormat::uint16, "uint16", "not available yet"}},
-                                    ImageFormat::float32, "Values of the images' pixels.");
+const ChoiceKey<PixelType>
+    images("images",
+           {{PixelType::float32, "float32", "radiant flux in W, or a camera's grey values"},
+            {PixelType::uint16, "uint16", "a camera's grey values, those of averaged frames rounded"},
+            {PixelType::uint8, "uint8", "the same, with camera.bit_depth of at most 8"}},
+           PixelType::float32, "Values of the images' pixels.");
 const NumberKey checkpoint = without_influence(NumberKey(
     "checkpoint_s", NumberRange::within(0, longest_checkpoint_interval), Configuration::usual_checkpoint_interval,
     "An exposure that takes longer is kept half done, so often; 0: never."));
@@ -127,8 +130,16 @@ void read_output(const TomlTable& root, Configuration& configuration) {
     }
     section.record(surfaces, fmt::format("[{}]", fmt::join(formats, ", ")));
     configuration.checkpoint_interval = section.number(checkpoint);
-    if (section.choice(images) != ImageFormat::float32) {
-        section.note(images, "\"float32\"; 16-bit counts are not available yet", "Choose images = \"float32\".");
+    configuration.pixel_type = section.choice(images);
+    if (configuration.pixel_type != PixelType::float32 && !configuration.camera && root.sound("camera")) {
+        section.note(images, "\"float32\" without a [camera]: light in W has no whole numbers",
+                     "Choose images = \"float32\", or add a [camera].");
+    } else if (configuration.pixel_type == PixelType::uint8 && configuration.camera &&
+               configuration.camera->bit_depth > bits_of_bytes) {
+        section.note(
+            images,
+            fmt::format("\"uint16\" or \"float32\" for grey values of {} bits", configuration.camera->bit_depth),
+            "Choose one of these, or camera.bit_depth = 8 with a gain that suits it.");
     }
 }
 

@@ -1,6 +1,7 @@
 // [specimen], [specimen.roughness], [specimen.material] and [[specimen.material.lobe]]; reflectance.cpp has its map.
 #include "configuration/ranges.hpp"
 #include "configuration/tables.hpp"
+#include "optics/prescription.hpp"
 #include "physics/scatter_registry.hpp"
 #include "specimen/kinds.hpp"
 
@@ -19,7 +20,7 @@ namespace {
 // [specimen]: the kind, and all keys of the kinds. Keys that kinds share are here once, with the names of all of them.
 class SpecimenKeys {
   public:
-    SpecimenKeys() : kind("kind", options(), needed, "What the specimen is.") {
+    SpecimenKeys() : kind("kind", options(), needed, "What the specimen is, unless standard says it.") {
         kind.example = "\"plane\"";
         std::map<const Key*, Key*> copies;
         for (const auto& one : specimen::kinds()) {
@@ -32,12 +33,17 @@ class SpecimenKeys {
             }
         }
         table.keys.push_back(&kind);
+        table.keys.push_back(&standard);
         for (const Key& key : keys_) {
             table.keys.push_back(&key);
         }
     }
 
     ChoiceKey<const specimen::Kind*> kind;
+    TextKey standard{
+        "standard", Default::in_words("none"),
+        "A standard in place of kind: a name in assets/specimens, or a file (.toml) with a table [specimen]. "
+        "Keys beside it hold instead of its own; stack.toml has its keys written out."};
     KeyTable table{.path = "specimen",
                    .meaning = "The object under the microscope, around x = y = 0; its height 0 is the focal height 0.",
                    .subject = "a specimen",
@@ -269,6 +275,34 @@ specimen::Roughness read_roughness(const TomlTable& table, const TomlTable& spec
     return roughness;
 }
 
+// What [specimen] has not itself, of the standard that it names. The canonical text and the identity have the
+// standard's own keys, so that neither depends on where it was found.
+void take_standard(const TomlTable& table, const Configuration& configuration) {
+    constexpr const char* folder = "specimens";
+    const std::string& key = specimen_keys().standard.name;
+    const auto name = table.optional_string(key);
+    if (!name) {
+        return;
+    }
+    if (table.has(specimen_keys().kind.name)) {
+        table.fail(key, "no such key beside kind", "Remove one of them; a standard has its kind.");
+    }
+    const auto base = absolute_path(configuration.file).parent_path();
+    const bool is_path = name->ends_with(".toml");
+    const std::string wanted = is_path ? absolute_path(table.file_path(key)).string() : *name;
+    const auto file = optics::find_prescription(wanted, folder, base); // finds any asset
+    if (!file) {
+        const auto meant = nearest_word(*name, optics::prescription_names(folder, base));
+        table.fail(key,
+                   fmt::format("{}; {}",
+                               is_path ? "an existing file" : "the name of a file in assets/specimens, without .toml",
+                               optics::searched_for_prescription(wanted, folder, base)),
+                   fmt::format("{}Correct the name (vkfv list standards), or give the path of a file (.toml).",
+                               meant ? fmt::format("Did you mean \"{}\"? ", *meant) : ""));
+    }
+    table.complete_from(*file);
+}
+
 } // namespace
 
 std::vector<const KeyTable*> specimen_key_tables() {
@@ -279,6 +313,7 @@ std::vector<const KeyTable*> specimen_key_tables() {
 void read_specimen(const TomlTable& root, Configuration& configuration) {
     const TomlTable table = root.table("specimen");
     ReadKeys& read = configuration;
+    take_standard(table, configuration);
     const Section section(table, specimen_keys().table, read);
     const specimen::Kind& kind = *section.kind(specimen_keys().kind);
     const auto roughness_table = table.optional_table("roughness");

@@ -1,6 +1,9 @@
 // [topography] and [diffraction].
 #include "configuration/ranges.hpp"
 #include "configuration/tables.hpp"
+#include "core/digest.hpp"
+#include "core/file.hpp"
+#include "specimen/kinds.hpp"
 #include "topography/focus_measure.hpp"
 #include "topography/peak_method.hpp"
 
@@ -95,6 +98,36 @@ const NumberKey l_filter =
     without_influence(NumberKey("l_filter_um", NumberRange::at_least(0), 0.0,
                                 "Nesting index of the L-filter of a second comparison with the truth; 0: none."));
 
+const TextKey form = without_influence(
+    TextKey("form",
+            Default::in_words(
+                "\"truth\" for kinds of specimens with steps, waves, a prism or a sphere; \"plane\" for all others"),
+            "Removed before heights and truth are compared and their parameters found: \"none\", \"plane\", "
+            "\"polynomial-1\" to "
+            "\"polynomial-20\", \"sphere\", or \"truth\": nothing off the truth, and off the measured heights the "
+            "plane of their "
+            "deviation."));
+
+// The specimen's kind chooses, unless the form is given.
+surface::Form read_form(const Section& section, const Configuration& configuration) {
+    const auto& specimen = configuration.specimen;
+    const auto name = section.text_if_given(form);
+    if (!name) {
+        return specimen ? specimen::usual_form(specimen->shape) : surface::Form();
+    }
+    const auto parsed = surface::parse_form(*name);
+    if (!parsed) {
+        section.note(form, "\"none\", \"plane\", \"polynomial-1\" to \"polynomial-20\", \"sphere\" or \"truth\"",
+                     "Name one of these, or leave it out.");
+        return {};
+    }
+    if (parsed->kind == surface::Form::Kind::truth && !specimen) {
+        section.note(form, "a form of the measured heights alone: without [specimen] there is no truth",
+                     "Choose \"plane\", or leave it out.");
+    }
+    return *parsed;
+}
+
 enum class DiffractionModel { none, airy, file, waves };
 
 // What images depend on is the key `cells`, which waves alone have.
@@ -131,15 +164,16 @@ const NumberKey most_memory = of_kinds(
 } // namespace
 
 const KeyTable& topography_keys() {
-    static const KeyTable table{.path = "topography",
-                                .presence = KeyTable::Presence::optional,
-                                .meaning = "How heights are found in the images.",
-                                .subject = "a topography",
-                                .kind = "",
-                                .keys = {&focus_measure, &window, &window_shape, &smoothing, &false_peak_rate,
-                                         &most_rival, &peak, &peak_range, &least_contrast, &most_fit_residual,
-                                         &most_peaks, &registration, &place_by_texture, &repair_outliers, &evaluate_on,
-                                         &flatness_file, &filter, &s_filter, &l_filter}};
+    static const KeyTable table{
+        .path = "topography",
+        .presence = KeyTable::Presence::optional,
+        .meaning = "How heights are found in the images.",
+        .subject = "a topography",
+        .kind = "",
+        .keys = {&focus_measure, &window,       &window_shape,     &smoothing,       &false_peak_rate,
+                 &most_rival,    &peak,         &peak_range,       &least_contrast,  &most_fit_residual,
+                 &most_peaks,    &registration, &place_by_texture, &repair_outliers, &evaluate_on,
+                 &flatness_file, &form,         &filter,           &s_filter,        &l_filter}};
     return table;
 }
 
@@ -164,11 +198,12 @@ void read_topography(const TomlTable& root, Configuration& configuration, Needs 
         section.fail(window, "an odd integer, so that the window has a central pixel",
                      fmt::format("Choose {} or {}.", options.window_px - 1, options.window_px + 1));
     }
-    if (needs == Needs::stack && table.sound("detector") &&
-        options.window_px > configuration.instrument.detector_pixels) {
-        section.fail(window,
-                     fmt::format("an integer <= detector.pixels = {}", configuration.instrument.detector_pixels),
-                     "Choose a smaller window or more pixels.");
+    const ImageSize& pixels = configuration.instrument.detector_pixels;
+    if (needs == Needs::stack && table.sound("detector") && options.window_px > std::min(pixels.columns, pixels.rows)) {
+        section.fail(
+            window,
+            fmt::format("an integer <= {}, the least of detector.pixels", std::min(pixels.columns, pixels.rows)),
+            "Choose a smaller window or more pixels.");
     }
     options.window_shape = section.choice(window_shape);
     options.smoothing_steps = section.number_if_given(smoothing);
@@ -187,6 +222,7 @@ void read_topography(const TomlTable& root, Configuration& configuration, Needs 
     if (const auto name = table.optional_string(flatness_file.name); name && *name != "none") {
         configuration.flatness_file = section.file(flatness_file);
     }
+    configuration.band.form = read_form(section, configuration);
     surface::take_filter(configuration.band, surface::filter_names[static_cast<std::size_t>(section.choice(filter))]);
     configuration.band.s_filter = from_um(section.number(s_filter));
     configuration.band.l_filter = from_um(section.number(l_filter));
@@ -206,6 +242,15 @@ void read_diffraction(const TomlTable& root, Configuration& configuration) {
     if (what == DiffractionModel::file) {
         configuration.diffraction.file = section.file(point_spread_file);
         configuration.diffraction.pitch = from_um(section.number(point_spread_pitch));
+    }
+    if (configuration.camera && configuration.diffraction.any()) { // whose images it is part of
+        configuration.identity += fmt::format("{} = {}\n", model.name, toml_quoted(model.name_of(what)));
+        if (what == DiffractionModel::file) {
+            configuration.identity += fmt::format(
+                "{} = {}\n{}_digest = \"{}\"\n", point_spread_pitch.name,
+                shortest_toml(section.number(point_spread_pitch)), point_spread_file.name,
+                Digest().add(read_file(configuration.diffraction.file, {.key = "diffraction.file"})).text());
+        }
     }
     if (what == DiffractionModel::waves) {
         optics::WaveOptions& waves = configuration.trace.waves.emplace();

@@ -65,6 +65,10 @@ void read_trace(const TomlTable& root, Configuration& configuration) {
     auto& trace = configuration.trace;
     trace.rays = static_cast<std::uint64_t>(section.integer(rays));
     trace.seed = static_cast<std::uint32_t>(section.integer(seed));
+    if (auto& camera = configuration.camera) {        // repeats with other seeds of the trace have the same patterns
+        constexpr std::uint32_t golden = 0x9E3779B9u; // no small seeds make the same sum
+        camera->noise_seed = camera->seed + golden * trace.seed;
+    }
     trace.max_bounces = static_cast<int>(section.integer(max_bounces));
     trace.nonsequential = section.choice(mode);
     trace.estimator = section.choice(estimator);

@@ -25,9 +25,22 @@ std::string Key::unit() const {
     if (type != Type::number && type != Type::numbers) {
         return {};
     }
-    constexpr std::array units = {"mm", "um", "deg", "W", "s"};
-    for (const char* unit : units) {
-        if (name.ends_with(std::string("_") + unit)) {
+    // How a name ends, and what is said of it; the longer endings first.
+    constexpr std::array<std::pair<const char*, const char*>, 13> units = {{{"_e_per_s", "e-/s"},
+                                                                            {"_um_per_s", "um/s"},
+                                                                            {"_hz", "Hz"},
+                                                                            {"_dn_per_e", "DN/e-"},
+                                                                            {"_percent", "%"},
+                                                                            {"_mm", "mm"},
+                                                                            {"_um", "um"},
+                                                                            {"_deg", "deg"},
+                                                                            {"_ms", "ms"},
+                                                                            {"_dn", "DN"},
+                                                                            {"_e", "e-"},
+                                                                            {"_W", "W"},
+                                                                            {"_s", "s"}}};
+    for (const auto& [ending, unit] : units) {
+        if (name.ends_with(ending)) {
             return unit;
         }
     }
@@ -55,7 +68,7 @@ std::string Key::allowed() const {
         }
         return text;
     }
-    if (type == Type::integer) {
+    if (type == Type::integer || type == Type::integer_pair) {
         return fmt::format("{} to {}", static_cast<std::int64_t>(range.minimum),
                            static_cast<std::int64_t>(range.maximum));
     }
@@ -94,6 +107,14 @@ IntegerKey::IntegerKey(std::string key_name, std::int64_t least, std::int64_t mo
           .fallback = key_fallback ? Default::of(*key_fallback) : Default::none(),
           .range = NumberRange::within(static_cast<double>(least), static_cast<double>(most))},
       minimum(least), maximum(most), value(key_fallback) {}
+
+IntegerPairKey::IntegerPairKey(std::string key_name, std::int64_t least, std::int64_t most, std::string key_meaning)
+    : Key{.name = std::move(key_name),
+          .type = Type::integer_pair,
+          .meaning = std::move(key_meaning),
+          .fallback = Default::none(),
+          .range = NumberRange::within(static_cast<double>(least), static_cast<double>(most))},
+      minimum(least), maximum(most) {}
 
 BooleanKey::BooleanKey(std::string key_name, bool key_fallback, std::string key_meaning)
     : Key{.name = std::move(key_name),

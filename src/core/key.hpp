@@ -34,7 +34,7 @@ inline constexpr std::nullopt_t needed = std::nullopt;
 // Common to keys of all types. The name ends in the unit where there is one: "radius_mm".
 class Key {
   public:
-    enum class Type { number, integer, boolean, text, choice, file, numbers, booleans, texts };
+    enum class Type { number, integer, integer_pair, boolean, text, choice, file, numbers, booleans, texts };
     struct Choice {
         std::string name;
         std::string meaning; // a sentence; empty: the name says it
@@ -74,6 +74,14 @@ class IntegerKey : public Key {
                std::string meaning);
     std::int64_t minimum, maximum;
     std::optional<std::int64_t> value;
+};
+
+// Two integers in brackets, or one for both.
+class IntegerPairKey : public Key {
+  public:
+    // Must be given.
+    IntegerPairKey(std::string name, std::int64_t minimum, std::int64_t maximum, std::string meaning);
+    std::int64_t minimum, maximum;
 };
 
 class BooleanKey : public Key {
@@ -160,6 +168,11 @@ AnyKey of_kinds(std::vector<std::string> kinds, AnyKey key) {
 template <class AnyKey>
 AnyKey without_influence(AnyKey key) {
     key.influence = Influence::nothing;
+    return key;
+}
+template <class AnyKey>
+AnyKey with_default(Default fallback, AnyKey key) {
+    key.fallback = std::move(fallback);
     return key;
 }
 template <class AnyKey>

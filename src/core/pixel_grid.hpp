@@ -1,7 +1,19 @@
 // Points at regular distances, as pixels and heights stand.
 #pragma once
 
+#include <cstddef>
+
 namespace vkfv {
+
+// How many pixels an image has.
+struct ImageSize {
+    int columns = 0;
+    int rows = 0;
+
+    static constexpr ImageSize square(int side) { return {side, side}; }
+    constexpr std::size_t count() const { return static_cast<std::size_t>(columns) * static_cast<std::size_t>(rows); }
+    constexpr bool operator==(const ImageSize&) const = default;
+};
 
 // Column i and row j stand at (x0 + i * pitch_x, y0 + j * pitch_y), in mm.
 struct PixelGrid {
@@ -22,6 +34,7 @@ struct PixelGrid {
                 .pitch_y = pitch_y};
     }
     static PixelGrid centred(int columns, int rows, double pitch) { return centred(columns, rows, pitch, pitch); }
+    static PixelGrid centred(ImageSize size, double pitch) { return centred(size.columns, size.rows, pitch); }
 };
 
 } // namespace vkfv

@@ -57,6 +57,17 @@ std::int64_t Section::integer(const IntegerKey& key) const {
     return record(key, fmt::format("{}", value)), value;
 }
 
+std::int64_t Section::integer(const IntegerKey& key, std::int64_t fallback) const {
+    const std::int64_t value = table_.optional_integer(key.name, key.minimum, key.maximum).value_or(fallback);
+    return record(key, fmt::format("{}", value)), value;
+}
+
+std::array<std::int64_t, 2> Section::integer_pair(const IntegerPairKey& key) const {
+    const auto values = table_.integer_pair(key.name, key.minimum, key.maximum);
+    record(key, values[0] == values[1] ? fmt::format("{}", values[0]) : fmt::format("[{}, {}]", values[0], values[1]));
+    return values;
+}
+
 bool Section::boolean(const BooleanKey& key) const {
     const bool value = table_.optional_boolean(key.name).value_or(key.value);
     return record(key, value ? "true" : "false"), value;

@@ -4,6 +4,7 @@
 
 #include "core/key.hpp"
 
+#include <array>
 #include <filesystem>
 #include <functional>
 #include <map>
@@ -44,6 +45,8 @@ class Section {
     std::optional<double> number_if_given(const NumberKey& key) const;
     std::vector<double> numbers(const NumbersKey& key) const;
     std::int64_t integer(const IntegerKey& key) const;
+    std::array<std::int64_t, 2> integer_pair(const IntegerPairKey& key) const;
+    std::int64_t integer(const IntegerKey& key, std::int64_t fallback) const;
     bool boolean(const BooleanKey& key) const;
     std::vector<bool> booleans(const BooleansKey& key, const std::vector<bool>& fallback) const;
     std::string text(const TextKey& key) const;

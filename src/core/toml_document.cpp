@@ -1,5 +1,6 @@
 #include "core/toml_document.hpp"
 
+#include "core/file.hpp"
 #include "core/toml_nesting.hpp"
 
 #include <fmt/format.h>
@@ -63,6 +64,18 @@ void merge(toml::table& into, toml::table&& from) {
             merge(*present->as_table(), std::move(*node.as_table()));
         } else {
             into.insert_or_assign(toml::key(key), std::move(node));
+        }
+    }
+}
+
+// The same, but what is there stays.
+void add_missing(toml::table& into, toml::table&& from) {
+    for (auto&& [key, node] : from) {
+        toml::node* present = into.get(key.str());
+        if (!present) {
+            into.insert(toml::key(key), std::move(node));
+        } else if (present->is_table() && node.is_table()) {
+            add_missing(*present->as_table(), std::move(*node.as_table()));
         }
     }
 }
@@ -145,10 +158,29 @@ TomlDocument::TomlDocument(std::string_view text, std::filesystem::path name,
     }
 }
 
+void TomlDocument::complete(const std::string& path, const std::filesystem::path& other_file) {
+    toml::table other = parse_text(read_file(other_file), other_file);
+    toml::table* from = other.at_path(path).as_table();
+    const auto refuse = [&](std::string found) {
+        refuse_file(other_file, path, std::move(found), fmt::format("a title and a table [{}]", path),
+                    "Correct the file, or name another.");
+    };
+    if (!from) {
+        refuse("no such table");
+    }
+    for (auto&& [key, node] : other) {
+        if (key.str() != path && key.str() != "title") {
+            refuse(fmt::format("{} beside it", key.str()));
+        }
+    }
+    completed_from.insert(other_file);
+    add_missing(*root.at_path(path).as_table(), std::move(*from));
+}
+
 SourceLocation TomlDocument::place(const toml::source_region& region) const {
     SourceLocation where;
-    const bool overridden = region.path && *region.path != file.string();
-    where.file = overridden ? std::filesystem::path(*region.path) : file;
+    const bool overridden = region.path && *region.path != file.string() && !completed_from.contains(*region.path);
+    where.file = region.path ? std::filesystem::path(*region.path) : file;
     if (!overridden) {
         where.line = static_cast<int>(region.begin.line);
         where.column = static_cast<int>(region.begin.column);

@@ -28,6 +28,9 @@ struct TomlDocument {
     // than deepest_toml_nesting.
     TomlDocument(std::string_view text, std::filesystem::path name, const std::vector<TomlOverride>& overrides);
 
+    // What another file has in the table of this dotted key, where this document has nothing.
+    void complete(const std::string& path, const std::filesystem::path& other_file);
+
     SourceLocation place(const toml::source_region& region) const;
 
     struct Noted {
@@ -47,6 +50,7 @@ struct TomlDocument {
 
     toml::table root;
     std::filesystem::path file;
+    std::set<std::filesystem::path> completed_from;
     bool collecting = false;
     std::vector<Noted> noted;
     std::vector<std::string> abandoned_paths; // reading ended early: their other keys are neither known nor unknown

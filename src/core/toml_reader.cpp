@@ -105,6 +105,10 @@ std::vector<std::string> TomlTable::keys() const {
     return names;
 }
 
+void TomlTable::complete_from(const std::filesystem::path& file) const {
+    state_->document->complete(state_->path, file);
+}
+
 std::optional<double> TomlTable::optional_number(std::string_view key, const NumberRange& range) const {
     const toml::node* node = state_->find(key);
     if (!node) {
@@ -134,23 +138,26 @@ std::string integer_expected(std::int64_t minimum, std::int64_t maximum) {
                ? fmt::format("an integer >= {}", minimum)
                : fmt::format("an integer in [{}, {}]", minimum, maximum);
 }
+
+std::optional<std::int64_t> as_integer(const toml::node& node, std::int64_t minimum, std::int64_t maximum) {
+    std::optional<std::int64_t> value;
+    if (const auto* integer = node.as_integer()) {
+        value = integer->get();
+    } else if (const auto* real = node.as_floating_point()) {
+        constexpr double exact = 9007199254740992.0; // 2^53: beyond, doubles skip integers
+        const double number = real->get();
+        if (std::abs(number) <= exact && number == std::trunc(number)) {
+            value = static_cast<std::int64_t>(number);
+        }
+    }
+    return value && *value >= minimum && *value <= maximum ? value : std::nullopt;
+}
 } // namespace
 
 std::optional<std::int64_t> TomlTable::optional_integer(std::string_view key, std::int64_t minimum,
                                                         std::int64_t maximum) const {
-    return get(key, integer_expected(minimum, maximum), [&](const toml::node& node) -> std::optional<std::int64_t> {
-        std::optional<std::int64_t> value;
-        if (const auto* integer = node.as_integer()) {
-            value = integer->get();
-        } else if (const auto* real = node.as_floating_point()) {
-            constexpr double exact = 9007199254740992.0; // 2^53: beyond, doubles skip integers
-            const double number = real->get();
-            if (std::abs(number) <= exact && number == std::trunc(number)) {
-                value = static_cast<std::int64_t>(number);
-            }
-        }
-        return value && *value >= minimum && *value <= maximum ? value : std::nullopt;
-    });
+    return get(key, integer_expected(minimum, maximum),
+               [&](const toml::node& node) { return as_integer(node, minimum, maximum); });
 }
 
 std::int64_t TomlTable::integer(std::string_view key, std::int64_t minimum, std::int64_t maximum) const {
@@ -159,6 +166,26 @@ std::int64_t TomlTable::integer(std::string_view key, std::int64_t minimum, std:
         state_->note_missing(key, integer_expected(minimum, maximum));
     }
     return value.value_or(std::clamp<std::int64_t>(1, minimum, maximum));
+}
+
+std::array<std::int64_t, 2> TomlTable::integer_pair(std::string_view key, std::int64_t minimum,
+                                                    std::int64_t maximum) const {
+    using Pair = std::array<std::int64_t, 2>;
+    const std::string expected = integer_expected(minimum, maximum) + ", or two of them in brackets";
+    const auto value = get(key, expected, [&](const toml::node& node) -> std::optional<Pair> {
+        const auto* array = node.as_array();
+        if (array != nullptr && array->size() != 2) {
+            return std::nullopt;
+        }
+        const auto first = as_integer(array != nullptr ? *array->get(0) : node, minimum, maximum);
+        const auto second = as_integer(array != nullptr ? *array->get(1) : node, minimum, maximum);
+        return first && second ? std::optional(Pair{*first, *second}) : std::nullopt;
+    });
+    if (!value) {
+        state_->note_missing(key, expected);
+    }
+    const auto harmless = std::clamp<std::int64_t>(1, minimum, maximum);
+    return value.value_or(Pair{harmless, harmless});
 }
 
 std::optional<bool> TomlTable::optional_boolean(std::string_view key) const {
@@ -240,8 +267,10 @@ std::optional<std::filesystem::path> TomlTable::optional_file_path(std::string_v
     if (!value) {
         return std::nullopt;
     }
-    const bool overridden = where(key).file != state_->document->file;
-    return overridden ? std::filesystem::path(*value) : state_->document->file.parent_path() / *value;
+    const auto& document = *state_->document;
+    const auto file = where(key).file;
+    const bool in_file = file == document.file || document.completed_from.contains(file);
+    return in_file ? file.parent_path() / *value : std::filesystem::path(*value);
 }
 
 std::vector<std::filesystem::path> TomlTable::optional_file_paths(std::string_view key) const {

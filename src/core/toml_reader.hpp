@@ -4,6 +4,7 @@
 
 #include "core/error.hpp"
 
+#include <array>
 #include <cstdint>
 #include <filesystem>
 #include <functional>
@@ -70,6 +71,11 @@ class TomlTable {
     // Keys in the order of the alphabet, for tables whose keys are data; they count as asked for.
     std::vector<std::string> keys() const;
 
+    // Takes over what the table of this name in another file has and this one has not: as if it stood here, but
+    // messages name that file, and relative paths start there. Throws InputError for a file without such a table, and
+    // for one that has more than it and a `title`.
+    void complete_from(const std::filesystem::path& file) const;
+
     // Integers and floats alike.
     double number(std::string_view key, const NumberRange& range = NumberRange::finite()) const;
     std::optional<double> optional_number(std::string_view key, const NumberRange& range = NumberRange::finite()) const;
@@ -77,6 +83,8 @@ class TomlTable {
     std::int64_t integer(std::string_view key, std::int64_t minimum, std::int64_t maximum) const;
     std::optional<std::int64_t> optional_integer(std::string_view key, std::int64_t minimum,
                                                  std::int64_t maximum) const;
+    // [first, second], or one integer for both.
+    std::array<std::int64_t, 2> integer_pair(std::string_view key, std::int64_t minimum, std::int64_t maximum) const;
     bool boolean(std::string_view key) const;
     std::optional<bool> optional_boolean(std::string_view key) const;
     std::optional<std::vector<bool>> optional_booleans(std::string_view key) const;

@@ -30,6 +30,10 @@ std::string tiff_bytes(const Grid<std::uint16_t>& image, const ImageTags& tags) 
     return tiff_of_integers(image, tags);
 }
 
+std::string tiff_bytes(const Grid<std::uint8_t>& image, const ImageTags& tags) {
+    return tiff_of_integers(image, tags);
+}
+
 int page_count(const std::filesystem::path& path) {
     return plain_file(path, TiffPart::header) ? 1 : codec().page_count(path);
 }

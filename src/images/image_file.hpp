@@ -29,8 +29,9 @@ struct ImageTags {
 std::string tiff_bytes(const Grid<float>& image, const ImageTags& tags = {});
 // The same with several channels a pixel, as many as there are images; all of one size.
 std::string tiff_bytes(const std::vector<Grid<float>>& channels, const ImageTags& tags = {});
-// uint16, one page.
+// uint16 or uint8, one page.
 std::string tiff_bytes(const Grid<std::uint16_t>& image, const ImageTags& tags = {});
+std::string tiff_bytes(const Grid<std::uint8_t>& image, const ImageTags& tags = {});
 
 // Number of pages (TIFF directories) of an image file.
 int page_count(const std::filesystem::path& path);

@@ -277,7 +277,7 @@ std::optional<PlainTiff> read_plain(TiffBytes& bytes, TiffPart part) {
     const int channels = number(TIFFTAG_SAMPLESPERPIXEL);
     const int format = number(TIFFTAG_SAMPLEFORMAT), bits = number(TIFFTAG_BITSPERSAMPLE);
     const bool floats = format == SAMPLEFORMAT_IEEEFP && bits == 32;
-    const bool integers = format == SAMPLEFORMAT_UINT && bits == 16;
+    const bool integers = format == SAMPLEFORMAT_UINT && (bits == 16 || bits == 8);
     if (columns < 1 || columns > longest_side || rows < 1 || rows > longest_side ||
         std::uint64_t{columns} * rows > most_pixels || channels < 1 || channels > most_channels ||
         (!floats && !integers) || number(TIFFTAG_COMPRESSION) != COMPRESSION_NONE ||
@@ -287,7 +287,7 @@ std::optional<PlainTiff> read_plain(TiffBytes& bytes, TiffPart part) {
         return std::nullopt;
     }
     const std::uint64_t count = std::uint64_t{columns} * rows * static_cast<std::uint64_t>(channels);
-    const std::uint64_t strip = TIFFGetStrileOffset(tiff, 0), length = count * (floats ? 4 : 2);
+    const std::uint64_t strip = TIFFGetStrileOffset(tiff, 0), length = count * static_cast<unsigned>(bits / 8);
     if (TIFFGetStrileByteCount(tiff, 0) != length || strip > bytes.size || length > bytes.size - strip ||
         !known_tags_only(tiff, bytes)) {
         return std::nullopt;
@@ -301,9 +301,14 @@ std::optional<PlainTiff> read_plain(TiffBytes& bytes, TiffPart part) {
                     .channels = channels,
                     .integers = integers,
                     .description = std::move(*description)};
-    if (part == TiffPart::all &&
-        !(floats ? read_strip(tiff, image.floats, count) : read_strip(tiff, image.counts, count))) {
-        return std::nullopt;
+    if (part == TiffPart::all) {
+        std::vector<std::uint8_t> small;
+        if (!(floats       ? read_strip(tiff, image.floats, count)
+              : bits == 16 ? read_strip(tiff, image.counts, count)
+                           : read_strip(tiff, small, count))) {
+            return std::nullopt;
+        }
+        image.counts.insert(image.counts.end(), small.begin(), small.end());
     }
     return bytes.message.empty() ? std::optional(std::move(image)) : std::nullopt;
 }
@@ -315,6 +320,10 @@ std::string tiff_of_floats(std::span<const Grid<float>> channels, const ImageTag
 }
 
 std::string tiff_of_integers(const Grid<std::uint16_t>& image, const ImageTags& tags) {
+    return single_page(std::span(&image, 1), tags);
+}
+
+std::string tiff_of_integers(const Grid<std::uint8_t>& image, const ImageTags& tags) {
     return single_page(std::span(&image, 1), tags);
 }
 

@@ -16,13 +16,14 @@ namespace vkfv::images {
 // At least one channel, all of one size. RunError where there is no pixel, or libtiff cannot.
 std::string tiff_of_floats(std::span<const Grid<float>> channels, const ImageTags& tags);
 std::string tiff_of_integers(const Grid<std::uint16_t>& image, const ImageTags& tags);
+std::string tiff_of_integers(const Grid<std::uint8_t>& image, const ImageTags& tags);
 
-// One page of float32 or uint16 in one uncompressed strip, with the tags that vkfv writes and no other.
+// One page of float32, uint16 or uint8 in one uncompressed strip, with the tags that vkfv writes and no other.
 struct PlainTiff {
     int columns = 0;
     int rows = 0;
     int channels = 0;
-    bool integers = false;       // uint16, else float32
+    bool integers = false;       // uint16 or uint8, else float32
     std::string description{};   // ImageDescription; empty without one
     std::vector<float> floats{}; // all channels of a pixel, then the next pixel; the first row has the highest y
     std::vector<std::uint16_t> counts{}; // the same of integers

@@ -52,14 +52,25 @@ optics::Instrument assemble_instrument(const Configuration& configuration) {
     return assemble_at_its_place(configuration, configuration.instrument);
 }
 
+std::optional<scan::StageMotion> stage_motion(const Configuration& configuration) {
+    if (!configuration.stage) {
+        return std::nullopt;
+    }
+    return scan::StageMotion(*configuration.stage,
+                             configuration.scan ? configuration.scan->positions() : std::vector<double>());
+}
+
 optics::Instrument assemble_instrument(const Configuration& configuration, const specimen::Specimen& specimen,
                                        std::span<const double> focal_heights) {
     auto description = configuration.instrument;
     const auto record = specimen::record(specimen, configuration.trace.max_bounces);
     description.greatest_defocus = 0;
+    const auto stage = stage_motion(configuration);
+    const double astray = stage ? stage->farthest() : 0;
     for (const double focal_height : focal_heights) {
         for (const double height : {record.top, record.bottom}) {
-            description.greatest_defocus = std::max(description.greatest_defocus, std::abs(height - focal_height));
+            description.greatest_defocus =
+                std::max(description.greatest_defocus, std::abs(height - focal_height) + astray);
         }
     }
     if (description.ring) {
@@ -70,8 +81,8 @@ optics::Instrument assemble_instrument(const Configuration& configuration, const
     for (const auto& warning : instrument.warnings) {
         spdlog::warn(warning);
     }
-    const int pixels = configuration.instrument.detector_pixels;
-    const auto relief = relief_of(specimen, instrument.first_order.pixel_pitch * pixels, pixels);
+    const auto relief =
+        relief_of(specimen, configuration.instrument.detector_pixels, instrument.first_order.pixel_pitch);
     for (const auto& warning : warning_of_sparse_field(specimen, relief)) {
         spdlog::warn(warning);
     }
@@ -101,19 +112,19 @@ std::string image_identity(const Configuration& configuration, const std::string
 std::optional<optics::Diffraction> make_diffraction(const Configuration& configuration,
                                                     const optics::Instrument& instrument) {
     const auto& options = configuration.diffraction;
-    const int pixels = configuration.instrument.detector_pixels;
+    const ImageSize pixels = configuration.instrument.detector_pixels;
     const double pitch = instrument.first_order.pixel_pitch;
     if (options.airy) {
         return optics::Diffraction(
-            optics::AiryPattern(instrument.first_order.numerical_aperture, configuration.instrument.spectrum), pixels,
-            pixels, pitch);
+            optics::AiryPattern(instrument.first_order.numerical_aperture, configuration.instrument.spectrum),
+            pixels.columns, pixels.rows, pitch);
     }
     if (options.file.empty()) {
         return std::nullopt;
     }
     const Grid<float> point_spread = images::read_image(options.file);
     try {
-        return optics::Diffraction(point_spread, options.pitch, pixels, pixels, pitch);
+        return optics::Diffraction(point_spread, options.pitch, pixels.columns, pixels.rows, pitch);
     } catch (const std::invalid_argument& error) {
         throw InputError({configuration.places.at("diffraction.file"), "diffraction.file",
                           fmt::format("{} of {} x {} pixels of {} um", options.file.string(), point_spread.columns,
@@ -121,6 +132,11 @@ std::optional<optics::Diffraction> make_diffraction(const Configuration& configu
                           fmt::format("light whose sum is positive, on pixels of at most {:.4g} um", pitch * um_per_mm),
                           "Correct the file, or the pitch of its pixels in the object plane."});
     }
+}
+
+std::optional<optics::Diffraction> diffraction_of_evaluation(const Configuration& configuration,
+                                                             const optics::Instrument& instrument) {
+    return configuration.camera ? std::nullopt : make_diffraction(configuration, instrument);
 }
 
 topography::TopographyOptions evaluation_options(const Configuration& configuration,
@@ -143,9 +159,8 @@ topography::TopographyOptions evaluation_options(const Configuration& configurat
 
 surface::HeightMap truth_on_pixels(const optics::Instrument& instrument, const Configuration& configuration,
                                    const specimen::Specimen& specimen) {
-    const int pixels = configuration.instrument.detector_pixels;
-    const auto grid = PixelGrid::centred(pixels, pixels, instrument.first_order.pixel_pitch);
-    return specimen::truth(specimen, pixels, pixels, grid.x0, grid.y0, grid.pitch_x, grid.pitch_y);
+    const auto grid = PixelGrid::centred(configuration.instrument.detector_pixels, instrument.first_order.pixel_pitch);
+    return specimen::truth(specimen, grid.columns, grid.rows, grid.x0, grid.y0, grid.pitch_x, grid.pitch_y);
 }
 
 } // namespace vkfv::measurement

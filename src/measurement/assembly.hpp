@@ -4,6 +4,7 @@
 #include "configuration/configuration.hpp"
 #include "optics/diffraction.hpp"
 #include "optics/instrument.hpp"
+#include "scan/stage.hpp"
 #include "specimen/specimen.hpp"
 #include "surface/height_map.hpp"
 #include "trace/tracer.hpp"
@@ -23,6 +24,9 @@ optics::Instrument assemble_instrument(const Configuration& configuration);
 optics::Instrument assemble_instrument(const Configuration& configuration, const specimen::Specimen& specimen,
                                        std::span<const double> focal_heights);
 
+// Where the configuration's images are really taken; none: at their nominal positions.
+std::optional<scan::StageMotion> stage_motion(const Configuration& configuration);
+
 // The configured specimen. Throws InputError at the place of the key that does not fit.
 specimen::Specimen make_specimen(const Configuration& configuration);
 
@@ -39,6 +43,10 @@ optics::Instrument instrument_for(const Configuration& configuration, const spec
 // point spread function is at fault.
 std::optional<optics::Diffraction> make_diffraction(const Configuration& configuration,
                                                     const optics::Instrument& instrument);
+
+// That of an evaluation: none with a camera, which sees blurred light already.
+std::optional<optics::Diffraction> diffraction_of_evaluation(const Configuration& configuration,
+                                                             const optics::Instrument& instrument);
 
 // How the configuration asks for its own stack to be evaluated, with the average along z that suits its instrument
 // where none is given: a defocus that blurs waves of four pixels to half their contrast, with [diffraction] model =

@@ -18,15 +18,13 @@ constexpr std::uint64_t report_bytes = 4'000'000;
 
 } // namespace
 
-std::uint64_t image_bytes(int pixels) {
-    const auto side = static_cast<std::uint64_t>(pixels);
-    return side * side * sizeof(float) + bytes_around_pixels;
+std::uint64_t image_bytes(ImageSize pixels) {
+    return pixels.count() * sizeof(float) + bytes_around_pixels;
 }
 
 std::uint64_t results_bytes(const Configuration& configuration) {
-    const auto side = static_cast<std::uint64_t>(configuration.instrument.detector_pixels);
-    const std::uint64_t once = side * side * bytes_a_point + report_bytes;
-    return configuration.diffraction.any() ? 2 * once : once;
+    const std::uint64_t once = configuration.instrument.detector_pixels.count() * bytes_a_point + report_bytes;
+    return configuration.diffraction.any() && !configuration.camera ? 2 * once : once;
 }
 
 std::uint64_t free_bytes(const std::filesystem::path& folder) {
@@ -46,7 +44,7 @@ void require_space(const scan::ImageStore& store, std::uint64_t results) {
     for (int image = 0; image < images; ++image) {
         missing += store.shard().holds(image) && !store.stored(image) ? 1 : 0;
     }
-    const std::uint64_t images_bytes = missing * image_bytes(store.description().columns);
+    const std::uint64_t images_bytes = missing * image_bytes({store.description().columns, store.description().rows});
     const std::uint64_t available = free_bytes(store.folder());
     if (images_bytes + results > available) {
         throw RunError(fmt::format("{}: {} images and the results take {}, but the disk has {} left. Free space, give "

@@ -11,7 +11,7 @@
 namespace vkfv::measurement {
 
 // Bytes, of one image and of all that its evaluation writes; the report's and pictures' share is an estimate.
-std::uint64_t image_bytes(int pixels);
+std::uint64_t image_bytes(ImageSize pixels);
 std::uint64_t results_bytes(const Configuration& configuration);
 
 // Of the disk that the folder is or will be on, for this user.

@@ -76,9 +76,12 @@ std::string reasons_text(const Evaluation& evaluation) {
                                            options.most_fit_residual)},
         {PointState::many_peaks,
          fmt::format(
-             "have a second maximum above topography.most_rival = {:g} of the first, or more than "
+             "have a second maximum above topography.most_rival = {:g} of the first{}, or more than "
              "topography.most_peaks = {}: a larger topography.window_px helps, or texture that light can resolve",
-             options.most_rival, options.most_peaks)}};
+             options.most_rival,
+             evaluation.topography.stack.rivalled() ? ", as most of this stack's curves, or noise that could hide it"
+                                                    : "",
+             options.most_peaks)}};
     constexpr double least_share = 0.05;
     std::string text;
     for (const auto& [which, sentence] : reasons) {
@@ -110,21 +113,21 @@ topography::FocusPlanesMaker focus_planes_for(EvaluateOn evaluate_on, const std:
         std::make_shared<const vulkan::Device>(vulkan::DeviceOptions{on_host ? std::string() : device_selector}));
 }
 
-std::optional<Flat> read_flat(const Configuration& configuration, int columns, int rows, double pitch) {
+std::optional<Flat> read_flat(const Configuration& configuration, ImageSize pixels, double pitch) {
     const auto& file = configuration.flatness_file;
     if (file.empty()) {
         return std::nullopt;
     }
     constexpr double tolerance = 1e-3; // of a pitch: files round theirs
     auto flat = surface::read_surface(file).map;
-    if (flat.columns() != columns || flat.rows() != rows || std::abs(flat.pitch_x - pitch) > tolerance * pitch ||
-        std::abs(flat.pitch_y - pitch) > tolerance * pitch) {
-        throw InputError(
-            {configuration.places.at("topography.flatness_file"), "topography.flatness_file",
-             fmt::format("{}: {} x {} points, {:.6g} x {:.6g} um apart", file.string(), flat.columns(), flat.rows(),
-                         flat.pitch_x * um_per_mm, flat.pitch_y * um_per_mm),
-             fmt::format("the stack's grid, {} x {} points, {:.6g} um apart", columns, rows, pitch * um_per_mm),
-             "Measure the flat with the same instrument."});
+    if (flat.columns() != pixels.columns || flat.rows() != pixels.rows ||
+        std::abs(flat.pitch_x - pitch) > tolerance * pitch || std::abs(flat.pitch_y - pitch) > tolerance * pitch) {
+        throw InputError({configuration.places.at("topography.flatness_file"), "topography.flatness_file",
+                          fmt::format("{}: {} x {} points, {:.6g} x {:.6g} um apart", file.string(), flat.columns(),
+                                      flat.rows(), flat.pitch_x * um_per_mm, flat.pitch_y * um_per_mm),
+                          fmt::format("the stack's grid, {} x {} points, {:.6g} um apart", pixels.columns, pixels.rows,
+                                      pitch * um_per_mm),
+                          "Measure the flat with the same instrument."});
     }
     // A polynomial knows nothing of places where nothing was measured.
     constexpr double least_share = 0.9;
@@ -151,16 +154,16 @@ StackEvaluation::StackEvaluation(const topography::TopographyOptions& options, t
     }
 }
 
-void StackEvaluation::add(topography::Channels image, double z) {
+void StackEvaluation::add(topography::Channels image, double z, std::optional<double> reading) {
     const Stopwatch stopwatch(evaluation_.seconds);
     if (!image.empty()) {
         columns_ = image.front().columns;
         rows_ = image.front().rows;
     }
     if (diffraction_) {
-        diffracted_->add({diffraction_->apply(image.front())}, z);
+        diffracted_->add({diffraction_->apply(image.front())}, z, reading);
     }
-    evaluator_.add(std::move(image), z);
+    evaluator_.add(std::move(image), z, reading);
 }
 
 void StackEvaluation::reconstruct(double x0, double y0, double pitch, const std::optional<Flat>& flat) {
@@ -176,25 +179,29 @@ void StackEvaluation::reconstruct(double x0, double y0, double pitch, const std:
 }
 
 Evaluation StackEvaluation::finish(surface::HeightMap truth, const topography::Band& band,
-                                   const std::optional<Flat>& flat) {
+                                   const std::optional<Flat>& flat, const std::optional<dimensions::Feature>& feature) {
     if (diffracted_) {
-        evaluation_.diffracted = std::make_shared<Evaluation>(diffracted_->finish(truth, band, flat));
+        evaluation_.diffracted = std::make_shared<Evaluation>(diffracted_->finish(truth, band, flat, feature));
     }
     {
         const Stopwatch stopwatch(evaluation_.seconds);
         reconstruct(truth.x0, truth.y0, truth.pitch_x, flat);
         const auto& measured = evaluation_.topography.height;
-        evaluation_.deviation = topography::compare(measured, truth);
+        evaluation_.deviation = topography::compare(measured, truth, {.form = band.form});
         evaluation_.band = band;
         if (band.limited()) {
             evaluation_.filtered_deviation = topography::compare(measured, truth, band);
+        }
+        if (feature) {
+            evaluation_.dimensions = standard_dimensions(*feature, measured, truth);
         }
         evaluation_.truth = std::move(truth);
     }
     return std::move(evaluation_);
 }
 
-Evaluation StackEvaluation::finish(double pitch, const std::optional<Flat>& flat) {
+Evaluation StackEvaluation::finish(double pitch, const surface::Form& form, const std::optional<Flat>& flat) {
+    evaluation_.band.form = form;
     {
         const Stopwatch stopwatch(evaluation_.seconds);
         const auto grid = PixelGrid::centred(columns_, rows_, pitch);
@@ -222,11 +229,15 @@ std::string summary(const Evaluation& evaluation) {
                         evaluation.flatness->deviation * um_per_mm, evaluation.flatness->s_filter * um_per_mm);
     }
     if (evaluation.deviation) {
-        text += text_of("levelled:", *evaluation.deviation);
+        text +=
+            text_of(evaluation.band.form == surface::Form() ? "levelled:"
+                                                            : ("form " + form_name(evaluation.band.form) + ":").c_str(),
+                    *evaluation.deviation);
     }
     if (evaluation.filtered_deviation) {
         text += text_of(band_text(evaluation.band).c_str(), *evaluation.filtered_deviation);
     }
+    text += dimensions_text(evaluation.dimensions);
     if (evaluation.diffracted) {
         text += "with diffraction: " + summary(*evaluation.diffracted);
     }

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "configuration/configuration.hpp"
+#include "measurement/standard.hpp"
 #include "optics/diffraction.hpp"
 #include "topography/compare.hpp"
 #include "topography/topography.hpp"
@@ -9,6 +10,7 @@
 #include <filesystem>
 #include <memory>
 #include <optional>
+#include <vector>
 
 namespace vkfv::vulkan {
 class Device;
@@ -28,7 +30,7 @@ struct Flat {
 // its grid is another, since it must have been measured by the same instrument, or where too little of it was measured.
 // The S-filter is that of topography.s_filter_um; where that is none, as long as the focus window is wide, since
 // shorter waves of heights are no instrument's form.
-std::optional<Flat> read_flat(const Configuration& configuration, int columns, int rows, double pitch);
+std::optional<Flat> read_flat(const Configuration& configuration, ImageSize pixels, double pitch);
 
 // What it tells, and what it took off.
 struct Flatness {
@@ -45,8 +47,9 @@ struct Evaluation {
     std::optional<surface::HeightMap> truth;        // none of a stack that another instrument took; nor deviations
     std::optional<topography::Deviation> deviation; // levelled
     std::optional<topography::Deviation> filtered_deviation; // and filtered; none if the band has no limit
-    topography::Band band;
-    double seconds = 0;                     // wall clock
+    topography::Band band;                                   // its form holds for the levelled one too
+    std::vector<StandardDimension> dimensions;               // of a standard; none of other specimens
+    double seconds = 0;                                      // wall clock
     std::shared_ptr<Evaluation> diffracted; // the same of the images after diffraction; none without [diffraction]
 };
 
@@ -65,12 +68,14 @@ class StackEvaluation {
     StackEvaluation(const topography::TopographyOptions& options, topography::FocusPlanesMaker make_planes,
                     std::optional<optics::Diffraction> diffraction = {});
 
-    // z: mm.
-    void add(topography::Channels image, double z);
-    // On the truth's grid, with the deviation from it. Flat: topography/flatness.hpp; none: no correction.
-    Evaluation finish(surface::HeightMap truth, const topography::Band& band, const std::optional<Flat>& flat = {});
+    // As StackEvaluator::add().
+    void add(topography::Channels image, double z, std::optional<double> reading = {});
+    // On the truth's grid, with the deviation from it. Flat: topography/flatness.hpp; none: no correction. Feature:
+    // what is measured on the specimen.
+    Evaluation finish(surface::HeightMap truth, const topography::Band& band, const std::optional<Flat>& flat = {},
+                      const std::optional<dimensions::Feature>& feature = {});
     // Without a truth; the grid's middle is the origin, pitch in mm.
-    Evaluation finish(double pitch, const std::optional<Flat>& flat = {});
+    Evaluation finish(double pitch, const surface::Form& form, const std::optional<Flat>& flat = {});
 
   private:
     void reconstruct(double x0, double y0, double pitch, const std::optional<Flat>& flat);

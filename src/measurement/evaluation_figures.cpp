@@ -38,7 +38,7 @@ Figures figures_in(const topography::Band& band, const Evaluation& evaluation,
 } // namespace
 
 std::vector<Figures> figures_of(const Evaluation& evaluation) {
-    std::vector<Figures> figures{figures_in({}, evaluation, evaluation.deviation)};
+    std::vector<Figures> figures{figures_in({.form = evaluation.band.form}, evaluation, evaluation.deviation)};
     if (evaluation.filtered_deviation) {
         figures.push_back(figures_in(evaluation.band, evaluation, evaluation.filtered_deviation));
     }

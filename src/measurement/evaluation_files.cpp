@@ -92,17 +92,19 @@ std::string name_of(const std::filesystem::path& folder) {
     return (whole.has_filename() ? whole : whole.parent_path()).filename().string();
 }
 
-std::string picture_of(const std::filesystem::path& folder, const Evaluation& evaluation) {
-    const auto level = [](const surface::HeightMap& map) {
-        return surface::remove_plane(map, surface::least_squares_plane(map));
-    };
+std::string picture_of(const std::filesystem::path& folder, const Evaluation& evaluation,
+                       const std::string& image_unit) {
+    const surface::Form& form = evaluation.band.form;
     report::TopographyPicture picture;
     picture.title = name_of(folder);
-    picture.measured = level(evaluation.topography.height);
+    picture.measured = surface::remove_form(evaluation.topography.height, form);
     if (evaluation.truth) {
-        picture.truth = level(*evaluation.truth);
-        picture.deviation = topography::deviation_map(evaluation.topography.height, *evaluation.truth);
+        auto pair = topography::levelled_pair(evaluation.topography.height, *evaluation.truth, {.form = form});
+        picture.deviation = topography::deviation_map(pair);
+        picture.measured = std::move(pair.measured);
+        picture.truth = surface::remove_form(*evaluation.truth, form); // of points that were not measured too
     }
+    picture.image_unit = image_unit;
     picture.all_in_focus = topography::grey(evaluation.topography.all_in_focus);
     return report::topography_picture(picture);
 }
@@ -146,7 +148,7 @@ std::string write_maps(ResultFolder& results, const std::filesystem::path& folde
         jobs.add([&results, path = folder / name, bytes_of] { results.write(path, bytes_of()); });
     };
     jobs.add([&] {
-        picture = picture_of(results.path() / folder, evaluation);
+        picture = picture_of(results.path() / folder, evaluation, files.image_unit);
         results.write(folder / "topography.svg", picture);
     });
     if (evaluation.truth) {
@@ -173,7 +175,9 @@ std::string write_maps(ResultFolder& results, const std::filesystem::path& folde
 } // namespace
 
 TopographyFiles topography_files(const Configuration& configuration) {
-    TopographyFiles files{.names = configuration.topography_files};
+    TopographyFiles files;
+    files.names = configuration.topography_files;
+    files.image_unit = configuration.camera ? "DN" : "W";
     files.provenance.comment = fmt::format("configuration digest {}", Digest().add(configuration.identity).text());
     return files;
 }
@@ -194,10 +198,14 @@ void write_results(ResultFolder& folder, const EvaluatedStack& stack) {
                    .layout = stack.source.layout,
                    .configuration = stack.source.configuration};
     auto results = json_of(page.plain.figures);
+    page.plain.dimensions = evaluation.dimensions;
+    add_dimensions(results, evaluation.dimensions);
     if (evaluation.diffracted) {
         page.diffracted = {.figures = figures_of(*evaluation.diffracted),
                            .svg = write_maps(folder, "diffracted", *evaluation.diffracted, stack.files)};
+        page.diffracted->dimensions = evaluation.diffracted->dimensions;
         results["diffracted"] = json_of(page.diffracted->figures);
+        add_dimensions(results["diffracted"], evaluation.diffracted->dimensions);
     }
     results["topography"] = json_of(evaluation.options);
     if (evaluation.flatness) {
@@ -212,6 +220,11 @@ void write_results(ResultFolder& folder, const EvaluatedStack& stack) {
                          {"least_unimodality", whole.limit.least.unimodality},
                          {"least_order", whole.limit.least.order},
                          {"chance_rate", whole.limit.rate},
+                         {"stack_unimodality", whole.whole.unimodality},
+                         {"stack_order", whole.whole.order},
+                         {"least_stack_unimodality", whole.limit_of_whole.least.unimodality},
+                         {"least_stack_order", whole.limit_of_whole.least.order},
+                         {"rivalled_share", whole.rivalled_share},
                          {"image_noise", whole.image_noise},
                          {"noise_correlation", {whole.noise_correlation(1, 0), whole.noise_correlation(0, 1)}},
                          {"height_noise_um", median_of(evaluation.topography.height_noise) * um_per_mm}};
@@ -234,7 +247,7 @@ nlohmann::ordered_json run_of(const std::filesystem::path& folder) {
     const std::string text = read_file(folder / "results.json");
     check_json_depth(text, folder / "results.json");
     const auto results = nlohmann::ordered_json::parse(text, nullptr, false);
-    for (const char* key : {"device", "stack_digest", "seed", "images", "rays_per_image", "waves"}) {
+    for (const char* key : {"device", "stack_digest", "seed", "images", "rays_per_image", "waves", "stage", "camera"}) {
         if (results.is_object() && results.contains(key)) {
             run[key] = results.at(key);
         }

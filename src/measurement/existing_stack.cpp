@@ -2,7 +2,9 @@
 
 #include "core/units.hpp"
 #include "measurement/assembly.hpp"
+#include "measurement/stage_figures.hpp"
 #include "scan/store.hpp"
+#include "specimen/kinds.hpp"
 
 #include <spdlog/spdlog.h>
 
@@ -141,15 +143,15 @@ EvaluatedStack evaluate_own_stack(const OwnStack& stack) {
     const auto positions = configuration.scan->positions();
     const auto specimen = make_specimen(configuration);
     const auto instrument = assemble_instrument(configuration, specimen, positions);
-    const int pixels = configuration.instrument.detector_pixels;
-    const auto flat = read_flat(configuration, pixels, pixels, instrument.first_order.pixel_pitch);
+    const ImageSize pixels = configuration.instrument.detector_pixels;
+    const auto flat = read_flat(configuration, pixels, instrument.first_order.pixel_pitch);
     const auto order = order_of_images(positions.size(), stack.shuffle);
     StackEvaluation evaluation(evaluation_options(configuration, instrument), planes_for(configuration),
-                               make_diffraction(configuration, instrument));
+                               diffraction_of_evaluation(configuration, instrument));
     for (std::size_t place = 0; place < positions.size(); ++place) {
         const int image = order[place];
         evaluation.add({scan::read_frame(stack.folder, image, positions[static_cast<std::size_t>(image)])},
-                       positions[place]);
+                       positions[place], reading_of(configuration, positions[place], static_cast<int>(place)));
     }
     auto origin = run_of(stack.folder);
     std::error_code none; // a folder to be made is another
@@ -159,8 +161,8 @@ EvaluatedStack evaluate_own_stack(const OwnStack& stack) {
                   {"rays_per_image", trace::launched_rays(configuration.trace, pixels)},
                   {"seed", configuration.trace.seed}};
     }
-    return {.evaluation =
-                evaluation.finish(truth_on_pixels(instrument, configuration, specimen), configuration.band, flat),
+    return {.evaluation = evaluation.finish(truth_on_pixels(instrument, configuration, specimen), configuration.band,
+                                            flat, specimen::feature_of(configuration.specimen->shape)),
             .origin = std::move(origin),
             .source = stack_source(configuration, instrument),
             .files = topography_files(configuration)};
@@ -186,7 +188,7 @@ EvaluatedStack evaluate_images(const scan::ImageSeries& series, const ForeignSta
         const int image = at_place(place);
         auto channels = images.read(order[static_cast<std::size_t>(image)]);
         if (place == 0) {
-            flat = read_flat(configuration, channels.front().columns, channels.front().rows, stack.pitch);
+            flat = read_flat(configuration, {channels.front().columns, channels.front().rows}, stack.pitch);
         }
         negative = negative || any_negative(channels);
         evaluation.add(std::move(channels), stack.z_start + image * stack.z_step);
@@ -205,7 +207,10 @@ EvaluatedStack evaluate_images(const scan::ImageSeries& series, const ForeignSta
     if (configuration.registration != topography::Registration::none) {
         origin["registration"] = images.json();
     }
-    return {.evaluation = evaluation.finish(stack.pitch, flat), .origin = std::move(origin), .source = {}, .files = {}};
+    return {.evaluation = evaluation.finish(stack.pitch, configuration.band.form, flat),
+            .origin = std::move(origin),
+            .source = {},
+            .files = {}};
 }
 
 } // namespace vkfv::measurement

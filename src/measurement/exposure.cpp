@@ -6,6 +6,7 @@
 #include "core/units.hpp"
 #include "images/image_file.hpp"
 #include "measurement/assembly.hpp"
+#include "measurement/camera_images.hpp"
 #include "measurement/wave_limits.hpp"
 #include "measurement/working_devices.hpp"
 #include "scan/checkpoint_files.hpp"
@@ -48,14 +49,12 @@ Grid<float> in_float(const Grid<double>& image) {
 
 Exposure expose(const Configuration& configuration, const optics::Instrument& instrument,
                 const specimen::Specimen& specimen, double focal_height, const std::filesystem::path& checkpoint) {
-    const double pitch = instrument.first_order.pixel_pitch;
-    const int pixels = configuration.instrument.detector_pixels;
     Exposure exposure;
-    exposure.first = PixelGrid::centred(pixels, pixels, pitch).x0;
-    exposure.pitch = pitch;
+    exposure.grid = PixelGrid::centred(configuration.instrument.detector_pixels, instrument.first_order.pixel_pitch);
+    exposure.type = configuration.pixel_type;
     work_with_devices(configuration.trace.device, [&](const WorkingDevices& devices) {
         enter_stage("device, kernels");
-        const auto tracer = devices.make_tracer(instrument, specimen, configuration.trace);
+        const auto tracer = make_tracer(devices, configuration, instrument, specimen);
         enter_stage("image");
         exposure.tracer = tracer->identity();
         const auto image = image_index(configuration, focal_height);
@@ -69,13 +68,19 @@ Exposure expose(const Configuration& configuration, const optics::Instrument& in
                 configuration.checkpoint_interval);
             exposure.image = tracer->begin(focal_height, image, std::move(kept)).get();
         }
+        if (configuration.camera) {
+            const auto heights = configuration.scan ? configuration.scan->positions() : std::vector{focal_height};
+            const double seconds = exposure_time(configuration, instrument, specimen, heights, devices);
+            exposure.taken =
+                ImagingCamera(configuration, instrument, seconds).develop(static_cast<int>(image), exposure.image);
+        }
         if (const auto* filter = tracer->pupil_filter()) {
             for (const auto& warning : warnings_of(wave_limits(*filter, instrument))) {
                 spdlog::warn(warning);
             }
         }
     });
-    if (const auto diffraction = make_diffraction(configuration, instrument)) {
+    if (const auto diffraction = diffraction_of_evaluation(configuration, instrument)) {
         exposure.diffracted = diffraction->apply(in_float(exposure.image.flux));
     }
     return exposure;
@@ -83,8 +88,13 @@ Exposure expose(const Configuration& configuration, const optics::Instrument& in
 
 std::vector<std::pair<std::filesystem::path, std::string>> image_files(const std::filesystem::path& name,
                                                                        const Exposure& exposure, double focal_height) {
-    const images::ImageTags tags{.pitch_x = exposure.pitch,
-                                 .pitch_y = exposure.pitch,
+    if (exposure.taken) {
+        return {{name, scan::frame_bytes(exposure.taken->values, exposure.type, exposure.grid.pitch_x,
+                                         fmt::format("grey values in DN at z = {} um\ncamera={}",
+                                                     focal_height * um_per_mm, exposure.taken->note))}};
+    }
+    const images::ImageTags tags{.pitch_x = exposure.grid.pitch_x,
+                                 .pitch_y = exposure.grid.pitch_x,
                                  .description =
                                      fmt::format("radiant flux in W at z = {} um", focal_height * um_per_mm)};
     std::vector<std::pair<std::filesystem::path, std::string>> files;
@@ -112,7 +122,7 @@ std::string remedy_of_noise(const Configuration& configuration, double share, do
                                    times * static_cast<double>(configuration.trace.rays));
     if (configuration.trace.estimator == trace::Estimator::forward) {
         text += ", or close the field stop to the field of view";
-        if (!configuration.instrument.ring && !configuration.trace.nonsequential) {
+        if (!configuration.trace.nonsequential) {
             text += ", or take --estimator backward";
         }
     }

@@ -18,6 +18,7 @@
 #include <cmath>
 #include <fstream>
 #include <optional>
+#include <span>
 #include <string>
 
 namespace vkfv::measurement {
@@ -69,7 +70,7 @@ class Prober {
             // What an evaluation keeps does not grow with the number of images.
             StackEvaluation evaluation(evaluation_options(configuration_, instrument_),
                                        focus_planes_for(configuration_.evaluate_on, tracer->device()),
-                                       make_diffraction(configuration_, instrument_));
+                                       diffraction_of_evaluation(configuration_, instrument_));
             const auto positions = configuration_.scan->positions();
             for (std::size_t k = 0; k < std::min<std::size_t>(3, positions.size()); ++k) {
                 evaluation.add({scan::as_stored(probe.image.flux)}, positions[k]);
@@ -92,10 +93,22 @@ class Prober {
     WorkingDevices devices_;
 };
 
+// What the camera makes of light like the probe's, of so many times as many rays.
+CameraFigures camera_of_probe(const Configuration& configuration, const trace::Image& image, double more) {
+    const camera::Camera camera(configuration.camera.value(), configuration.instrument.spectrum);
+    const auto& options = camera.options();
+    const double seconds = options.control == camera::ExposureControl::time
+                               ? options.exposure_time
+                               : camera.time_to(options.saturation, brightest_flux(image.flux, image.standard_error));
+    CameraNote note{.exposure_time = seconds, .light = camera.light_of(image.flux, image.standard_error, seconds)};
+    note.light.ray_noise /= std::sqrt(more);
+    return camera_figures(std::span(&note, 1));
+}
+
 } // namespace
 
 Forecast forecast(const Configuration& configuration) {
-    const int pixels = configuration.instrument.detector_pixels;
+    const ImageSize pixels = configuration.instrument.detector_pixels;
     const auto positions = configuration.scan ? configuration.scan->positions() : std::vector<double>{0};
     const Prober prober(configuration, positions[positions.size() / 2]);
     const Probe first = prober.expose(first_rays);
@@ -114,6 +127,13 @@ Forecast forecast(const Configuration& configuration) {
     }
     result.detected_rays_per_pixel = more * static_cast<double>(probe.image.detected) / count;
     result.noise = 1 / signal_to_noise(probe.image) / std::sqrt(more);
+    if (configuration.camera && result.light_per_pixel > 0) {
+        result.camera = camera_of_probe(configuration, probe.image, more);
+        // Of pixels the few rays' noise would tell: their mean alone.
+        const bool saturated = result.camera->light.mean > configuration.camera->full_well;
+        result.camera->light.saturated_share = result.camera->largest_saturated_share = saturated ? 1 : 0;
+        result.warnings = camera_warnings(configuration, *result.camera);
+    }
     // Beside the rays an image takes a time that does not depend on their number.
     const double between = tried - static_cast<double>(first.image.rays);
     const double seconds_a_ray = between > 0 ? std::max(0.0, probe.image.seconds - first.image.seconds) / between : 0;
@@ -122,8 +142,7 @@ Forecast forecast(const Configuration& configuration) {
     result.device = probe.device;
     result.device_memory = probe.device_memory;
     result.device_memory_there = probe.device_memory_there;
-    const auto side = static_cast<std::uint64_t>(pixels);
-    result.host_memory = peak_memory() + (configuration.scan ? bytes_a_pixel_of_run * side * side : 0);
+    result.host_memory = peak_memory() + (configuration.scan ? bytes_a_pixel_of_run * pixels.count() : 0);
     result.host_memory_there = memory_there();
     result.disk = static_cast<std::uint64_t>(result.images) * image_bytes(pixels) +
                   (configuration.scan ? results_bytes(configuration) : 0);
@@ -132,6 +151,14 @@ Forecast forecast(const Configuration& configuration) {
 }
 
 nlohmann::ordered_json json_of(const Forecast& forecast) {
+    nlohmann::ordered_json camera;
+    if (forecast.camera) {
+        camera = {{"exposure_s", forecast.camera->exposure_time},
+                  {"light_e", forecast.camera->light.mean},
+                  {"camera_noise_e", forecast.camera->light.camera_noise},
+                  {"ray_noise_e", forecast.camera->light.ray_noise},
+                  {"ray_over_camera_noise", forecast.camera->ray_over_camera()}};
+    }
     return {{"device", forecast.device},
             {"devices", forecast.devices},
             {"images", forecast.images},
@@ -139,6 +166,8 @@ nlohmann::ordered_json json_of(const Forecast& forecast) {
             {"light_per_pixel_W", forecast.light_per_pixel},
             {"detected_rays_per_pixel", forecast.detected_rays_per_pixel},
             {"noise", std::isfinite(forecast.noise) ? nlohmann::ordered_json(forecast.noise) : nullptr},
+            {"camera", std::move(camera)},
+            {"warnings", forecast.warnings},
             {"seconds_per_image", forecast.seconds_per_image},
             {"seconds", forecast.seconds},
             {"device_memory_bytes", forecast.device_memory},
@@ -162,6 +191,12 @@ std::string summary(const Forecast& forecast) {
                                      forecast.detected_rays_per_pixel));
     add("noise", std::isfinite(forecast.noise) ? fmt::format("{:.3g} % of a pixel's mean light", 100 * forecast.noise)
                                                : "no light");
+    if (const auto& camera = forecast.camera) {
+        add("camera",
+            fmt::format("{:.4g} e- a pixel in {:.4g} ms; noise of the camera {:.3g} e-, of the rays {:.3g} e-",
+                        camera->light.mean, 1e3 * camera->exposure_time, camera->light.camera_noise,
+                        camera->light.ray_noise));
+    }
     add("time", fmt::format("{:.3g} s an image, {} in all, without start and evaluation", forecast.seconds_per_image,
                             duration_text(forecast.seconds)));
     if (forecast.device_memory_there > 0) {
@@ -171,6 +206,9 @@ std::string summary(const Forecast& forecast) {
     add("memory of the host",
         fmt::format("about {} of {}", bytes_text(forecast.host_memory), bytes_text(forecast.host_memory_there)));
     add("disk", fmt::format("{} of {} that are free", bytes_text(forecast.disk), bytes_text(forecast.disk_there)));
+    for (const auto& warning : forecast.warnings) {
+        text += "  warning: " + warning + "\n";
+    }
     return text;
 }
 

@@ -2,10 +2,12 @@
 #pragma once
 
 #include "configuration/configuration.hpp"
+#include "measurement/camera_images.hpp"
 
 #include <nlohmann/json.hpp>
 
 #include <cstdint>
+#include <optional>
 #include <string>
 
 namespace vkfv::measurement {
@@ -17,11 +19,13 @@ struct Forecast {
     std::uint64_t rays_per_image = 0; // launched
 
     // By the probe, in the middle of the scan. Of an image with all its rays:
-    double light_per_pixel = 0;         // W, mean
-    double detected_rays_per_pixel = 0; // mean
-    double noise = 0;                   // root mean square of the pixels' standard errors over their mean light
-    double seconds_per_image = 0;       // wall clock
-    double seconds = 0;                 // of all images
+    double light_per_pixel = 0;          // W, mean
+    double detected_rays_per_pixel = 0;  // mean
+    double noise = 0;                    // root mean square of the pixels' standard errors over their mean light
+    std::optional<CameraFigures> camera; // of the camera's image of it; its exposure time is the probe's own
+    std::vector<std::string> warnings;
+    double seconds_per_image = 0; // wall clock
+    double seconds = 0;           // of all images
 
     // Bytes: at most at a time, and what there is.
     std::uint64_t device_memory = 0;       // without what the library of Fourier transforms keeps for itself

@@ -4,11 +4,15 @@
 #include "core/stages.hpp"
 #include "core/units.hpp"
 #include "measurement/assembly.hpp"
+#include "measurement/camera_images.hpp"
 #include "measurement/specimen_view.hpp"
 #include "report/topography_picture.hpp"
 
 #include <fmt/format.h>
 #include <spdlog/spdlog.h>
+
+#include <algorithm>
+#include <array>
 
 namespace vkfv::measurement {
 
@@ -33,6 +37,25 @@ std::string text_of(const trace::Ledger& ledger) {
     return text;
 }
 
+std::string picture_of(const Exposure& exposure, const std::string& title) {
+    if (!exposure.taken) {
+        return report::image_picture(title, exposure.image.flux, exposure.grid.x0, exposure.grid.y0,
+                                     exposure.grid.pitch_x, report::light_of_pixels);
+    }
+    Grid<double> values(exposure.taken->values.columns, exposure.taken->values.rows);
+    std::ranges::copy(exposure.taken->values.values, values.values.begin());
+    return report::image_picture(title, values, exposure.grid.x0, exposure.grid.y0, exposure.grid.pitch_x,
+                                 report::grey_values_of_pixels);
+}
+
+std::string text_of(const CameraNote& note) {
+    const auto& light = note.light;
+    return fmt::format(
+        "exposed for {:.4g} ms: {:.4g} e- a pixel in the mean; noise of the camera {:.4g} e-, of the rays "
+        "{:.4g} e-; {:.2g} % saturated\n",
+        1e3 * note.exposure_time, light.mean, light.camera_noise, light.ray_noise, 100 * light.saturated_share);
+}
+
 } // namespace
 
 ImageResult measure_image(const Configuration& configuration, double focal_height, const std::filesystem::path& file) {
@@ -49,10 +72,8 @@ ImageResult measure_image(const Configuration& configuration, double focal_heigh
     result.picture.replace_extension(".svg");
     const auto& exposure = result.exposure;
     auto files = image_files(file, exposure, focal_height);
-    files.emplace_back(result.picture,
-                       report::image_picture(
-                           fmt::format("{}, z = {:g} um", configuration.file.stem().string(), focal_height * um_per_mm),
-                           exposure.image.flux, exposure.first, exposure.first, exposure.pitch));
+    const auto title = fmt::format("{}, z = {:g} um", configuration.file.stem().string(), focal_height * um_per_mm);
+    files.emplace_back(result.picture, picture_of(exposure, title));
     make_folder(file.parent_path());
     for (const auto& [name, bytes] : files) {
         write_file(name, bytes);
@@ -63,7 +84,12 @@ ImageResult measure_image(const Configuration& configuration, double focal_heigh
     for (const auto& warning : warning_of_lost_light(exposure.image)) {
         spdlog::warn(warning);
     }
-    if (const double ratio = signal_to_noise(exposure.image); ratio < least_signal_to_noise) {
+    if (exposure.taken) {
+        const auto figures = camera_figures(std::array{CameraNote::parse(exposure.taken->note).value()});
+        for (const auto& warning : camera_warnings(configuration, figures)) {
+            spdlog::warn(warning);
+        }
+    } else if (const double ratio = signal_to_noise(exposure.image); ratio < least_signal_to_noise) {
         spdlog::warn("noise is {:.0f} % of a pixel's mean light. {}", 100 / ratio,
                      remedy_of_noise(configuration, 1 / ratio, 1 / least_signal_to_noise));
     }
@@ -72,9 +98,11 @@ ImageResult measure_image(const Configuration& configuration, double focal_heigh
 
 std::string summary(const ImageResult& result) {
     const auto& image = result.exposure.image;
-    return text_of(image.ledger) + fmt::format("{} rays, {} detected, {:.3g} rays/s, {:.3g} s\n{}\n{}\n", image.rays,
-                                               image.detected, static_cast<double>(image.rays) / image.seconds,
-                                               image.seconds, result.file.string(), result.picture.string());
+    const auto note = result.exposure.taken ? CameraNote::parse(result.exposure.taken->note) : std::nullopt;
+    return text_of(image.ledger) + (note ? text_of(*note) : std::string()) +
+           fmt::format("{} rays, {} detected, {:.3g} rays/s, {:.3g} s\n{}\n{}\n", image.rays, image.detected,
+                       static_cast<double>(image.rays) / image.seconds, image.seconds, result.file.string(),
+                       result.picture.string());
 }
 
 } // namespace vkfv::measurement

@@ -2,6 +2,7 @@
 
 #include "core/units.hpp"
 #include "measurement/assembly.hpp"
+#include "measurement/camera_report.hpp"
 #include "measurement/wave_limits.hpp"
 #include "optics/image_quality.hpp"
 #include "trace/wave_memory.hpp"
@@ -10,6 +11,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 namespace vkfv::measurement {
 
@@ -56,7 +58,8 @@ std::vector<FigureGroup> groups_of(const Configuration& configuration, const opt
           {"real_magnification", quality.magnification, "of the light from near the axis, at best focus"},
           {"detector_numerical_aperture", quality.image_aperture, "of the cone that falls on the detector"},
           {"f_number", quality.f_number, "1 / (2 NA) of that cone"},
-          {"field_of_view_um", quality.field_side * um_per_mm, "side of the square that the detector sees"},
+          {"field_of_view_um", quality.field.x * um_per_mm, "width of what the detector sees"},
+          {"field_of_view_height_um", quality.field.y * um_per_mm, "its height"},
           {"field_diagonal_um", quality.field_diagonal * um_per_mm, "its diagonal"},
           {"pixel_pitch_um", first_order.pixel_pitch * um_per_mm, "in the object plane"}}},
         {"Resolution",
@@ -107,7 +110,7 @@ FigureGroup figures_of_waves(const optics::WaveOptions& options, const optics::I
     const WaveLimits limits = wave_limits(filter, instrument);
     const auto further = warnings_of(limits);
     warnings.insert(warnings.end(), further.begin(), further.end());
-    const auto memory = trace::wave_memory(limits.cells, limits.parts, instrument.constants.detector_pixels);
+    const auto memory = trace::wave_memory(limits.cells, limits.parts, instrument.detector_pixels());
     const auto error_of = [&](std::size_t point) { return limits.points[point].error.difference; };
     return {"Images as waves make them, within two depths of field",
             {{"wave_cells", static_cast<double>(limits.cells), "across the pupil that light is sorted by"},
@@ -117,6 +120,31 @@ FigureGroup figures_of_waves(const optics::WaveOptions& options, const optics::I
              {"wave_contrast_error_axis", error_of(0), "of the pupil's cells against Hopkins' integral"},
              {"wave_contrast_error_edge", error_of(1), "the same at the edge, by the filter of the axis"},
              {"wave_contrast_error_corner", error_of(2), "the same in the corner"}}};
+}
+
+FigureGroup figures_of_camera(const camera::Camera& camera) {
+    constexpr double decibels = 20, percent = 100;
+    const auto& options = camera.options();
+    const double given_time = options.control == camera::ExposureControl::time
+                                  ? options.exposure_time
+                                  : std::numeric_limits<double>::quiet_NaN();
+    return {"Camera",
+            {{"camera_quantum_efficiency_percent", percent * camera.quantum_efficiency(), "over the source's spectrum"},
+             {"camera_electrons_per_joule", camera.electrons_per_joule(), "of light on a pixel"},
+             {"camera_exposure_s", given_time, "-: by the light, see camera.exposure"},
+             {"camera_full_well_e", options.full_well, "saturation capacity"},
+             {"camera_clip_e", camera.clip(), "at which a pixel's charge ends"},
+             {"camera_converter_end_e", camera.converter_end(), "at which grey values end"},
+             {"camera_gain_dn_per_e", options.gain, "K"},
+             {"camera_read_noise_e", options.read_noise, "temporal, in the dark"},
+             {"camera_quantisation_noise_e", camera.quantisation_noise(), "of grey values that are whole"},
+             {"camera_noise_at_half_e", camera.temporal_noise(options.full_well / 2), "temporal, at half saturation"},
+             {"camera_dsnu_e", options.dark_signal, "of the pixels' dark signals"},
+             {"camera_prnu_percent", percent * options.photo_response, "of the pixels' responses"},
+             {"camera_largest_signal_to_noise_db", decibels * std::log10(camera.largest_signal_to_noise()),
+              "of one frame, at saturation"},
+             {"camera_dynamic_range_db", decibels * std::log10(camera.dynamic_range()),
+              "saturation over the light whose signal to noise ratio is 1"}}};
 }
 
 ScanFigures figures_of_scan(const Configuration& configuration) {
@@ -130,12 +158,12 @@ ScanFigures figures_of_scan(const Configuration& configuration) {
 SpecimenFigures figures_of_specimen(const Configuration& configuration, const optics::Instrument& instrument,
                                     std::vector<std::string>& warnings) {
     const auto specimen = make_specimen(configuration);
-    const int pixels = configuration.instrument.detector_pixels;
-    const auto relief = relief_of(specimen, instrument.first_order.pixel_pitch * pixels, pixels);
+    const auto relief =
+        relief_of(specimen, configuration.instrument.detector_pixels, instrument.first_order.pixel_pitch);
     const auto sparse = warning_of_sparse_field(specimen, relief);
     warnings.insert(warnings.end(), sparse.begin(), sparse.end());
     const auto record = specimen::record(specimen, configuration.trace.max_bounces);
-    return {.side = std::max<double>(record.x_max - record.x_min, record.y_max - record.y_min), .relief = relief};
+    return {.sides = {record.x_max - record.x_min, record.y_max - record.y_min}, .relief = relief};
 }
 
 void warn_of_step(const Configuration& configuration, const ScanFigures& scan, const optics::FirstOrder& first_order,
@@ -152,10 +180,13 @@ void warn_of_step(const Configuration& configuration, const ScanFigures& scan, c
 void warn_of_size(const SpecimenFigures& specimen, const optics::FirstOrder& first_order,
                   const optics::ImageQuality& quality, std::vector<std::string>& warnings) {
     // A pixel more is its border, not its form.
-    if (specimen.side > quality.field_side + first_order.pixel_pitch) {
-        warnings.push_back(fmt::format("The specimen, {:.4g} um across, is larger than the field of view, {:.4g} um: "
-                                       "what lies outside is not measured.",
-                                       specimen.side * um_per_mm, quality.field_side * um_per_mm));
+    for (const int axis : {0, 1}) {
+        if (specimen.sides[axis] > quality.field[axis] + first_order.pixel_pitch) {
+            warnings.push_back(fmt::format("The specimen, {:.4g} um across, is larger than the field of view, {:.4g} "
+                                           "um: what lies outside is not measured.",
+                                           specimen.sides[axis] * um_per_mm, quality.field[axis] * um_per_mm));
+            break;
+        }
     }
 }
 
@@ -202,6 +233,12 @@ InstrumentFigures instrument_figures(const Configuration& configuration) {
     if (configuration.trace.waves) {
         figures.groups.push_back(figures_of_waves(*configuration.trace.waves, instrument, warnings));
     }
+    if (configuration.camera) {
+        const camera::Camera camera(*configuration.camera, configuration.instrument.spectrum);
+        figures.groups.push_back(figures_of_camera(camera));
+        const auto further = warnings_of(camera);
+        warnings.insert(warnings.end(), further.begin(), further.end());
+    }
     if (configuration.scan) {
         figures.scan = figures_of_scan(configuration);
         warn_of_step(configuration, *figures.scan, first_order, warnings);
@@ -231,7 +268,7 @@ nlohmann::ordered_json instrument_json(const InstrumentFigures& figures, const s
     if (const auto& specimen = figures.specimen) {
         const auto& relief = specimen->relief;
         report["specimen_seen_share"] = relief.seen_share;
-        report["specimen_side_um"] = specimen->side * um_per_mm;
+        report["specimen_side_um"] = std::max(specimen->sides.x, specimen->sides.y) * um_per_mm;
         if (relief.seen_share > 0) {
             report["specimen_lowest_um"] = relief.lowest * um_per_mm;
             report["specimen_highest_um"] = relief.highest * um_per_mm;
@@ -259,7 +296,8 @@ std::string instrument_text(const InstrumentFigures& figures, const std::filesys
     }
     if (const auto& specimen = figures.specimen) {
         const auto& relief = specimen->relief;
-        text += line_of("specimen_side_um", value_text(specimen->side * um_per_mm), "the longer side of its footprint");
+        text += line_of("specimen_side_um", value_text(std::max(specimen->sides.x, specimen->sides.y) * um_per_mm),
+                        "the longer side of its footprint");
         if (relief.seen_share > 0) {
             text += line_of("specimen_lowest_um", value_text(relief.lowest * um_per_mm),
                             fmt::format("highest {:.6g} um, on {:.1f} % of the field", relief.highest * um_per_mm,

@@ -35,7 +35,7 @@ struct ScanFigures {
 };
 
 struct SpecimenFigures {
-    double side = 0; // the longer one of its footprint
+    glm::dvec2 sides{0}; // of its footprint
     Relief relief;
 };
 

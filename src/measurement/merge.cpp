@@ -139,7 +139,7 @@ StackResult merge_stack(const fs::path& folder, const std::vector<fs::path>& sha
         evaluation.add(static_cast<int>(image),
                        scan::read_frame(folder, static_cast<int>(image), scene.positions[image]));
     }
-    return {.evaluation = evaluation.write(store.results(), description, tracer),
+    return {.evaluation = evaluation.write(store, tracer),
             .traced = {.kept = static_cast<int>(scene.positions.size()), .complete = true},
             .rays_per_image = trace::launched_rays(configuration.trace, scene.pixels()),
             .folder = folder};

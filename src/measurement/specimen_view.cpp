@@ -31,10 +31,11 @@ std::string percent(double share) {
 
 } // namespace
 
-Relief relief_of(const specimen::Specimen& specimen, double field, int pixels) {
-    const int points = std::min(pixels, most_relief_points);
-    const auto grid = PixelGrid::centred(points, points, field / points);
-    const auto truth = specimen::truth(specimen, points, points, grid.x0, grid.y0, grid.pitch_x, grid.pitch_y);
+Relief relief_of(const specimen::Specimen& specimen, ImageSize pixels, double pitch) {
+    const int columns = std::min(pixels.columns, most_relief_points);
+    const int rows = std::min(pixels.rows, most_relief_points);
+    const auto grid = PixelGrid::centred(columns, rows, pitch * pixels.columns / columns, pitch * pixels.rows / rows);
+    const auto truth = specimen::truth(specimen, columns, rows, grid.x0, grid.y0, grid.pitch_x, grid.pitch_y);
     Relief relief;
     std::size_t seen = 0;
     for (const double height : truth.height.values) {

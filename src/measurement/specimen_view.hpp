@@ -18,8 +18,8 @@ struct Relief {
     double seen_share = 0;
 };
 
-// field: the side of the square that the detector of so many pixels a side sees around the axis, mm.
-Relief relief_of(const specimen::Specimen& specimen, double field, int pixels);
+// pixels: of the detector, whose middle sees the axis; pitch: of the pixels in the object plane, mm.
+Relief relief_of(const specimen::Specimen& specimen, ImageSize pixels, double pitch);
 
 // A sentence where the specimen fills less than half of the field.
 std::vector<std::string> warning_of_sparse_field(const specimen::Specimen& specimen, const Relief& relief);

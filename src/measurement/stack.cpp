@@ -1,6 +1,7 @@
 #include "measurement/stack.hpp"
 
 #include "core/stages.hpp"
+#include "measurement/camera_images.hpp"
 #include "measurement/disk_space.hpp"
 #include "measurement/stack_parts.hpp"
 #include "measurement/working_devices.hpp"
@@ -8,32 +9,47 @@
 #include <fmt/format.h>
 #include <spdlog/spdlog.h>
 
+#include <memory>
 #include <utility>
 
 namespace vkfv::measurement {
 
 namespace {
 
+// What images are made of their light by: the camera, if there is one.
+scan::ImageDeveloper developer_of(const StackScene& scene, const scan::ImageStore& store,
+                                  const WorkingDevices& devices) {
+    const Configuration& configuration = scene.configuration;
+    if (!configuration.camera) {
+        return scan::light_itself;
+    }
+    enter_stage("exposure time");
+    const double seconds = exposure_time(store, configuration, scene.instrument, scene.specimen, devices);
+    const auto camera = std::make_shared<const ImagingCamera>(configuration, scene.instrument, seconds);
+    return [camera](int image, const trace::Image& exposure) { return camera->develop(image, exposure); };
+}
+
 StackResult trace_and_evaluate(const StackScene& scene, const WorkingDevices& devices, Progress& progress) {
     const Configuration& configuration = scene.configuration;
     enter_stage("device, kernels");
-    const auto tracer = devices.make_tracer(scene.instrument, scene.specimen, configuration.trace);
+    const auto tracer = make_tracer(devices, configuration, scene.instrument, scene.specimen);
     enter_stage("folder of the stack");
     scan::ImageStore store(configuration.output_directory, scene.description(tracer->identity()));
     require_space(store, results_bytes(configuration));
+    const auto developer = developer_of(scene, store, devices);
     // Evaluated as they are traced: no second pass over the disk.
     GrowingEvaluation evaluation(scene, focus_planes_for(configuration.evaluate_on, tracer->device()),
                                  tracer->pupil_filter());
     enter_stage("images");
     const auto traced = scan::run_stack(
-        *tracer, store, progress, [&](int image, Grid<float> flux) { evaluation.add(image, std::move(flux)); },
-        configuration.checkpoint_interval);
+        *tracer, store, progress, [&](int image, Grid<float> values) { evaluation.add(image, std::move(values)); },
+        configuration.checkpoint_interval, developer);
     spdlog::info("{} images traced, {} kept from before", traced.traced, traced.kept);
     if (traced.device_span > 0) {
         store.append_timing("device at work", traced.device_seconds);
         store.append_timing("device from first to last image", traced.device_span);
     }
-    return {.evaluation = evaluation.write(store.results(), store.description(), tracer->identity()),
+    return {.evaluation = evaluation.write(store, tracer->identity()),
             .traced = traced,
             .rays_per_image = trace::launched_rays(configuration.trace, scene.pixels()),
             .folder = store.folder()};
@@ -54,12 +70,13 @@ ShardResult trace_shard(const Configuration& configuration, scan::Shard shard, P
     ShardResult result{.shard = shard, .traced = {}, .folder = configuration.output_directory};
     work_with_devices(configuration.trace.device, [&](const WorkingDevices& devices) {
         enter_stage("device, kernels");
-        const auto tracer = devices.make_tracer(scene.instrument, scene.specimen, configuration.trace);
+        const auto tracer = make_tracer(devices, configuration, scene.instrument, scene.specimen);
         enter_stage("folder of the stack");
         scan::ImageStore store(configuration.output_directory, scene.description(tracer->identity()), shard);
         require_space(store, 0);
         enter_stage("images");
-        result.traced = scan::run_stack(*tracer, store, progress, {}, configuration.checkpoint_interval);
+        result.traced = scan::run_stack(*tracer, store, progress, {}, configuration.checkpoint_interval,
+                                        developer_of(scene, store, devices));
     });
     enter_stage("end");
     return result;

@@ -36,6 +36,25 @@ void add_deviations(Rows& rows, const std::string& prefix, const std::vector<Fig
     }
 }
 
+void add_dimensions(report::Page& page, const char* heading, const std::vector<StandardDimension>& dimensions) {
+    if (dimensions.empty()) {
+        return;
+    }
+    page.heading(heading);
+    Rows rows{{"", "rule", "unit", "nominal", "true", "measured", "deviation", "error", "standard deviation",
+               "standard error"}};
+    for (const auto& one : dimensions) {
+        const auto row = one.in_unit();
+        std::vector<std::string> cells{row.name, row.rule, row.unit};
+        for (const double value : {row.nominal, row.truth, row.measured, row.deviation, row.error,
+                                   row.standard_deviation, row.standard_error}) {
+            cells.push_back(report::number_text(value));
+        }
+        rows.push_back(cells);
+    }
+    page.table(rows);
+}
+
 // Of all treatments side by side; those that have none (nothing was measured) are left out.
 void add_parameters(report::Page& page, const std::string& prefix, const std::vector<Figures>& all) {
     Rows rows;
@@ -105,6 +124,10 @@ std::string stack_page(const StackPage& content) {
         }
         page.table(rows);
     }
+    add_dimensions(page, "Dimensions", content.plain.dimensions);
+    if (content.diffracted) {
+        add_dimensions(page, "Dimensions with diffraction", content.diffracted->dimensions);
+    }
     page.heading("Points");
     add_members(page, points);
     page.heading("ISO 25178-2");
@@ -127,6 +150,11 @@ std::string stack_page(const StackPage& content) {
     if (const auto waves = content.results.find("waves"); waves != content.results.end()) {
         page.paragraph("How far they are from what waves make (contrast, within two depths of field):");
         add_members(page, *waves);
+    }
+    if (const auto camera = content.results.find("camera"); camera != content.results.end()) {
+        page.paragraph("How the camera took them; noise is the root mean square over all pixels and images, of the "
+                       "camera temporal, of the rays the Monte Carlo standard error of the light:");
+        add_members(page, *camera);
     }
     if (!content.layout.empty()) {
         page.heading("Instrument");

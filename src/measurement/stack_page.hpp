@@ -14,6 +14,7 @@ namespace vkfv::measurement {
 struct EvaluationPicture {
     std::vector<Figures> figures;
     std::string svg; // heights, truth and deviation
+    std::vector<StandardDimension> dimensions{};
 };
 
 struct StackPage {

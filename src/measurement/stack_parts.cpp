@@ -3,8 +3,11 @@
 #include "core/digest.hpp"
 #include "core/stages.hpp"
 #include "measurement/assembly.hpp"
+#include "measurement/camera_images.hpp"
 #include "measurement/exposure.hpp"
+#include "measurement/stage_figures.hpp"
 #include "specimen/geometry_digest.hpp"
+#include "specimen/kinds.hpp"
 
 #include <spdlog/spdlog.h>
 
@@ -35,17 +38,18 @@ scan::StackDescription StackScene::description(const trace::TracerIdentity& trac
             .identity = std::move(identity),
             .digest = std::move(digest),
             .positions = positions,
-            .columns = pixels(),
-            .rows = pixels(),
-            .pitch = instrument.first_order.pixel_pitch};
+            .columns = pixels().columns,
+            .rows = pixels().rows,
+            .pitch = instrument.first_order.pixel_pitch,
+            .type = configuration.pixel_type,
+            .quantity = configuration.camera ? "grey values in DN" : scan::StackDescription().quantity};
 }
 
 GrowingEvaluation::GrowingEvaluation(const StackScene& scene, topography::FocusPlanesMaker planes,
                                      const optics::PupilFilter* filter)
-    : scene_(scene),
-      flat_(read_flat(scene.configuration, scene.pixels(), scene.pixels(), scene.instrument.first_order.pixel_pitch)),
+    : scene_(scene), flat_(read_flat(scene.configuration, scene.pixels(), scene.instrument.first_order.pixel_pitch)),
       evaluation_(evaluation_options(scene.configuration, scene.instrument), std::move(planes),
-                  make_diffraction(scene.configuration, scene.instrument)) {
+                  diffraction_of_evaluation(scene.configuration, scene.instrument)) {
     truth_ = std::async(std::launch::async,
                         [&scene] { return truth_on_pixels(scene.instrument, scene.configuration, scene.specimen); });
     source_ = std::async(std::launch::async, [&scene] { return stack_source(scene.configuration, scene.instrument); });
@@ -55,21 +59,23 @@ GrowingEvaluation::GrowingEvaluation(const StackScene& scene, topography::FocusP
     }
 }
 
-void GrowingEvaluation::add(int image, Grid<float> flux) {
-    any_light_ = any_light_ || std::ranges::any_of(flux.values, [](float value) { return value > 0; });
-    evaluation_.add({std::move(flux)}, scene_.positions[static_cast<std::size_t>(image)]);
+void GrowingEvaluation::add(int image, Grid<float> values) {
+    any_light_ = any_light_ || std::ranges::any_of(values.values, [](float value) { return value > 0; });
+    const double z = scene_.positions[static_cast<std::size_t>(image)];
+    evaluation_.add({std::move(values)}, z, reading_of(scene_.configuration, z, image));
 }
 
-Evaluation GrowingEvaluation::write(ResultFolder& folder, const scan::StackDescription& description,
-                                    const trace::TracerIdentity& tracer) {
+Evaluation GrowingEvaluation::write(scan::ImageStore& store, const trace::TracerIdentity& tracer) {
     const Configuration& configuration = scene_.configuration;
-    if (!any_light_) {
+    const auto camera = camera_figures(store);
+    if (!any_light_ || (camera && !(camera->light.mean > 0))) {
         spdlog::warn("No light reaches the detector in any image. vkfv --image of one position tells where it goes");
     }
     enter_stage("heights and truth");
-    EvaluatedStack stack{.evaluation = evaluation_.finish(truth_.get(), configuration.band, flat_),
+    EvaluatedStack stack{.evaluation = evaluation_.finish(truth_.get(), configuration.band, flat_,
+                                                          specimen::feature_of(configuration.specimen->shape)),
                          .origin = {{"device", tracer.text()},
-                                    {"stack_digest", description.digest},
+                                    {"stack_digest", store.description().digest},
                                     {"seed", configuration.trace.seed},
                                     {"images", scene_.positions.size()},
                                     {"rays_per_image", trace::launched_rays(configuration.trace, scene_.pixels())}},
@@ -83,12 +89,23 @@ Evaluation GrowingEvaluation::write(ResultFolder& folder, const scan::StackDescr
         stack.origin["waves"] = json_of(limits);
         stack.origin["waves"]["warnings"] = warnings_of(limits);
     }
+    if (camera) {
+        stack.origin["camera"] = camera_json(*configuration.camera, *camera);
+        stack.origin["camera"]["warnings"] = camera_warnings(configuration, *camera);
+        for (const auto& warning : camera_warnings(configuration, *camera)) {
+            spdlog::warn(warning);
+        }
+    }
     if (const double noise = stack.evaluation.topography.stack.image_noise; noise > most_image_noise) {
         spdlog::warn("The images' noise is {:.0f} % of their brightness: what is measured is little or rough. {}",
                      100 * noise, remedy_of_noise(configuration, noise, good_image_noise));
     }
+    if (configuration.stage) {
+        stack.origin["stage"] = stage_figures(configuration);
+        store.results().write(stage_file, stage_table(configuration));
+    }
     enter_stage("results and report");
-    write_results(folder, stack);
+    write_results(store.results(), stack);
     enter_stage("end");
     return std::move(stack.evaluation);
 }

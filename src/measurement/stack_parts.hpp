@@ -2,7 +2,6 @@
 #pragma once
 
 #include "configuration/configuration.hpp"
-#include "core/result_folder.hpp"
 #include "measurement/evaluation.hpp"
 #include "measurement/evaluation_files.hpp"
 #include "measurement/wave_limits.hpp"
@@ -22,7 +21,7 @@ struct StackScene {
     // Throws InputError. The configuration must outlive it.
     explicit StackScene(const Configuration& configuration);
 
-    int pixels() const { return configuration.instrument.detector_pixels; } // a side
+    ImageSize pixels() const { return configuration.instrument.detector_pixels; }
     scan::StackDescription description(const trace::TracerIdentity& tracer) const;
 
     const Configuration& configuration;
@@ -38,11 +37,11 @@ class GrowingEvaluation {
     GrowingEvaluation(const StackScene& scene, topography::FocusPlanesMaker planes, const optics::PupilFilter* filter);
 
     // In the images' order.
-    void add(int image, Grid<float> flux);
+    void add(int image, Grid<float> values);
 
-    // After the last image: heights, their deviations, and the files of all that in the folder. Warnings go to the log.
-    Evaluation write(ResultFolder& folder, const scan::StackDescription& description,
-                     const trace::TracerIdentity& tracer);
+    // After the last image: heights, their deviations, and the files of all that in the store's folder. Warnings go to
+    // the log.
+    Evaluation write(scan::ImageStore& store, const trace::TracerIdentity& tracer);
 
   private:
     const StackScene& scene_;

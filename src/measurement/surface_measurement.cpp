@@ -38,6 +38,10 @@ surface::SurfaceFile requested_surface(const SurfaceRequest& request) {
 }
 
 HeightMap treated(const SurfaceRequest& request, const HeightMap& map) {
+    if (request.band.form.kind == surface::Form::Kind::truth) {
+        refuse_file(request.file, "--form", "truth", "a form of one surface",
+                    "Choose --form plane; vkfv compare has the truth beside it.");
+    }
     if (!any_height(map)) {
         refuse_file(request.file, "", "no measured point", "a surface with heights", "Measure again.");
     }
@@ -94,6 +98,20 @@ void check_class(const SurfaceRequest& request, const surface::RoughnessProfile&
     }
 }
 
+// Throws where there is nothing of what is sought.
+std::vector<StandardDimension> sought_dimensions(const SurfaceRequest& request, const HeightMap& original) {
+    std::vector<StandardDimension> result;
+    for (auto& one : dimensions::evaluate_found(original, *request.sought)) {
+        result.push_back({.measured = std::move(one)});
+    }
+    if (std::ranges::none_of(result, [](const auto& one) { return std::isfinite(one.measured.value); })) {
+        const std::string name = dimensions::sought_names[static_cast<std::size_t>(*request.sought)];
+        refuse_file(request.file, "--dimensions", name, "a surface that shows one, with the levels or waves beside it",
+                    "Seek what is there, or measure a larger field.");
+    }
+    return result;
+}
+
 } // namespace
 
 SurfaceFigures measure_surface(const SurfaceRequest& request) {
@@ -112,6 +130,9 @@ SurfaceFigures measure_surface(const SurfaceRequest& request) {
     }
     auto figures = surface_figures(map, line, request.setting, request.band);
     check_class(request, figures.profile);
+    if (request.sought) {
+        figures.dimensions = sought_dimensions(request, original);
+    }
     return figures;
 }
 

@@ -1,6 +1,7 @@
 // A surface file, treated and evaluated.
 #pragma once
 
+#include "dimensions/find.hpp"
 #include "measurement/surface_report.hpp"
 #include "surface_files/surface_file.hpp"
 
@@ -15,6 +16,7 @@ struct SurfaceRequest {
     surface::Band band;                       // what is done to the surface
     std::optional<surface::ProfileLine> line; // none: the middle row
     surface::ProfileSetting setting;          // the profile's own filters
+    std::optional<dimensions::Sought> sought; // whose dimensions are found in the heights as they were read
     std::optional<std::filesystem::path> out; // where the treated surface is written; its name tells the format
 };
 

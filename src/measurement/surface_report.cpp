@@ -73,6 +73,7 @@ nlohmann::ordered_json surface_json(const SurfaceFigures& figures, const std::fi
                          {"end_um", {line.x_end * um_per_mm, line.y_end * um_per_mm}}};
     report["profile"].update(profile_filter_json(figures.profile));
     report["profile"].update(report::json_of(report::parameter_rows(figures.profile.parameters)));
+    add_dimensions(report, figures.dimensions);
     report["evaluated_by"] = fmt::format("vkfv {}", VKFV_VERSION);
     return report;
 }
@@ -100,7 +101,7 @@ std::string surface_text(const SurfaceFigures& figures) {
                         line.x_start * um_per_mm, line.y_start * um_per_mm, line.x_end * um_per_mm,
                         line.y_end * um_per_mm, profile_filter_text(figures.profile));
     table(report::parameter_rows(figures.profile.parameters));
-    return text;
+    return figures.dimensions.empty() ? text : text + "\nDimensions\n" + dimensions_text(figures.dimensions);
 }
 
 } // namespace vkfv::measurement

@@ -1,6 +1,7 @@
 // What is said of one surface: its parameters and a profile's.
 #pragma once
 
+#include "measurement/standard.hpp"
 #include "report/parameter_table.hpp"
 #include "surface/height_map.hpp"
 #include "surface/roughness_profile.hpp"
@@ -27,6 +28,7 @@ struct SurfaceFigures {
     std::vector<report::ParameterRow> parameters; // ISO 25178-2
     surface::ProfileLine line;
     surface::RoughnessProfile profile;
+    std::vector<StandardDimension> dimensions{}; // of what was sought
 };
 
 // Of a surface that was treated by `band`, and of the profile along the line.

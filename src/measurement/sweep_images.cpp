@@ -86,8 +86,9 @@ SweepRow image_row(const Configuration& configuration, ResultFolder& results, co
     const std::string digest =
         image_digest(configuration, image_identity(configuration, surface.digest, tracer), focal_height);
     SweepRow row;
-    const bool whole = results.holds(image_name) && results.holds(figures_name) &&
-                       (!configuration.diffraction.any() || results.holds(name / "image_diffracted.tif"));
+    const bool whole =
+        results.holds(image_name) && results.holds(figures_name) &&
+        (!configuration.diffraction.any() || configuration.camera || results.holds(name / "image_diffracted.tif"));
     const Json earlier = whole ? read_json(results.path() / figures_name) : Json::object();
     if (earlier.value("digest", "") == digest) {
         row.figures = earlier.at("figures");

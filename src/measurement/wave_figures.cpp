@@ -126,14 +126,14 @@ void measure_through_focus(WavePoint& point, const WaveAxes& axes, const optics:
 } // namespace
 
 WaveFigures wave_figures(const optics::Instrument& instrument, double reach) {
-    const double side = instrument.first_order.field_edge;
-    const double diagonal = std::sqrt(0.5);
+    const double edge = instrument.first_order.field_edge;
+    const glm::dvec2 corner = instrument.first_order.field_corner;
     const bool symmetric = optics::imaging_of(instrument).symmetric;
     WaveFigures figures;
     std::vector<std::future<WavePoint>> points;
     for (const auto& [name, field, radial] : {std::tuple{"axis", glm::dvec2(0), glm::dvec2(1, 0)},
-                                              std::tuple{"edge", glm::dvec2(side, 0), glm::dvec2(1, 0)},
-                                              std::tuple{"corner", glm::dvec2(side), glm::dvec2(diagonal)}}) {
+                                              std::tuple{"edge", glm::dvec2(edge, 0), glm::dvec2(1, 0)},
+                                              std::tuple{"corner", corner, glm::normalize(corner)}}) {
         const optics::PointWaves image(instrument, field, wavelengths);
         if (image.middle().largest_rim() == 0) {
             continue;

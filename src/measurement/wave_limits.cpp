@@ -21,14 +21,14 @@ WaveLimits wave_limits(const optics::PupilFilter& filter, const optics::Instrume
                       .asked_parts = optics::parts_for_waves(instrument),
                       .folded_contrast = filter.folded_contrast(),
                       .points = {}};
-    const double side = instrument.first_order.field_edge;
+    const optics::FirstOrder& first_order = instrument.first_order;
     struct Place {
         const char* name;
         glm::dvec2 field;
     };
     std::vector<std::future<WaveLimits::Point>> points;
-    for (const Place& place :
-         {Place{"axis", glm::dvec2(0)}, Place{"edge", glm::dvec2(side, 0)}, Place{"corner", glm::dvec2(side)}}) {
+    for (const Place& place : {Place{"axis", glm::dvec2(0)}, Place{"edge", glm::dvec2(first_order.field_edge, 0)},
+                               Place{"corner", first_order.field_corner}}) {
         points.push_back(std::async(std::launch::async, [&filter, &instrument, place] {
             return WaveLimits::Point{.name = place.name,
                                      .error = optics::largest_filter_error(filter, instrument, place.field)};

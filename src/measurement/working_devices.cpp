@@ -1,5 +1,7 @@
 #include "measurement/working_devices.hpp"
 
+#include "measurement/assembly.hpp"
+#include "scan/staged_tracer.hpp"
 #include "trace/device_tracer.hpp"
 #include "trace/host_tracer.hpp"
 #include "trace/tracer_pool.hpp"
@@ -9,6 +11,7 @@
 #include <fmt/format.h>
 #include <spdlog/spdlog.h>
 
+#include <algorithm>
 #include <cstddef>
 #include <future>
 
@@ -58,6 +61,17 @@ std::unique_ptr<trace::Tracer> WorkingDevices::make_tracer(const optics::Instrum
     auto tracer = tracers.size() == 1 ? std::move(tracers.front()) : trace::make_tracer_pool(std::move(tracers));
     spdlog::info("{}", tracer->description());
     return tracer;
+}
+
+std::unique_ptr<trace::Tracer> make_tracer(const WorkingDevices& devices, const Configuration& configuration,
+                                           const optics::Instrument& instrument, const specimen::Specimen& specimen) {
+    auto motion = stage_motion(configuration);
+    if (!motion) {
+        return devices.make_tracer(instrument, specimen, configuration.trace);
+    }
+    auto options = configuration.trace;
+    options.rays = std::max<std::uint64_t>(1, options.rays / static_cast<std::uint64_t>(motion->moments()));
+    return scan::make_staged_tracer(devices.make_tracer(instrument, specimen, options), std::move(*motion));
 }
 
 WorkingDevices WorkingDevices::first() const {

@@ -1,6 +1,7 @@
 // The devices of a run, as long as they work.
 #pragma once
 
+#include "configuration/configuration.hpp"
 #include "optics/instrument.hpp"
 #include "specimen/specimen.hpp"
 #include "trace/tracer.hpp"
@@ -44,6 +45,10 @@ class WorkingDevices {
 
     std::vector<Member> members_;
 };
+
+// What takes the configuration's images, where its stage really stands.
+std::unique_ptr<trace::Tracer> make_tracer(const WorkingDevices& devices, const Configuration& configuration,
+                                           const optics::Instrument& instrument, const specimen::Specimen& specimen);
 
 // Does the work with the devices of trace.device, again from its beginning where one of them has failed. What is stored
 // meanwhile is to be kept by the work itself.

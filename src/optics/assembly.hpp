@@ -29,7 +29,7 @@ struct AxialLayout {
     double efl_tube_lens = 0;
     double magnification = 0; // signed
     double working_distance = 0;
-    double field_half_side = 0; // of the detector, in the object
+    glm::dvec2 field_corner{0}; // of the detector, in the object
     double field_half_diagonal = 0;
     double detector_distance = 0; // from the tube lens' last vertex
     double objective_front = 0;   // heights of its vertices

@@ -64,7 +64,7 @@ struct ExitPupil {
     double radius = 0;       // of slopes about per_position times the position
 };
 
-ExitPupil exit_pupil(const Imaging& imaging, double field_half_side, double field_radius) {
+ExitPupil exit_pupil(const Imaging& imaging, double field_half_width, double field_radius) {
     glm::dvec2 mean_position(0);
     glm::dvec2 mean_slope(0);
     const auto add = [&](glm::dvec2 field, double times) {
@@ -73,7 +73,7 @@ ExitPupil exit_pupil(const Imaging& imaging, double field_half_side, double fiel
             mean_slope += times * rim.slope;
         }
     };
-    add({field_half_side, 0}, 1);
+    add({field_half_width, 0}, 1);
     if (!imaging.symmetric) {
         add({0, 0}, -1); // a tilted detector sees all pupils from aside
     }
@@ -129,16 +129,52 @@ PlacedSurfaces detector_to_specimen(const AxialLayout& layout, const ImagingTrai
     return train;
 }
 
-// The source's outline is the last surface.
+// The outline of a disc is the last surface; a ring light stands behind its cover glass, if there is one.
 PlacedSurfaces specimen_to_source(const InstrumentDescription& description, const AxialLayout& layout,
                                   const Illumination& illumination) {
     PlacedSurfaces train = reversed(illumination.train);
+    if (description.ring) {
+        link(train, layout.front);
+        return train;
+    }
     PlacedSurface source = dummy_plane(layout.air, illumination.source_pose.half_turn(), "source");
     source.surface.flags |= physics::f64::SURFACE_CLIPPED;
     source.surface.semi_diameter_squared = description.source_radius * description.source_radius;
     train.push_back(source);
     link(train, layout.front);
     return train;
+}
+
+// The ring light as backward paths draw points of it. A cover glass moves light sideways by less than its thickness
+// where it is the denser medium: a ring wider by that, all round, has all that shines.
+void draw_ring(physics::f64::BackwardOptics& optics, const InstrumentDescription& description,
+               const AxialLayout& layout, const physics::f64::Instrument& constants,
+               const std::vector<Surface>& to_source) {
+    double from_front = 0; // to where the light enters the train
+    for (std::size_t i = 1; i < to_source.size(); ++i) {
+        from_front += to_source[i].distance;
+    }
+    optics.object_distance = constants.ring.aim_distance - from_front;
+    optics.ring = constants.ring;
+    optics.ring_is_bare = to_source.empty() ? 1u : 0u;
+    optics.ring_cosine = std::sqrt(1 - constants.emission_sine * constants.emission_sine);
+    if (!to_source.empty()) {
+        const Spectrum& spectrum = description.spectrum;
+        for (const double wavelength_um : {spectrum.shortest_um, spectrum.longest_um}) {
+            if (description.cover_glass->glass.index(wavelength_um) <
+                layout.objective_lens.medium_before.index(wavelength_um)) {
+                refuse("trace.estimator", "\"backward\"", "a cover glass denser than the immersion, under a ring light",
+                       "Use estimator = \"forward\", or another glass.");
+            }
+        }
+        constexpr double aslant = 2; // light meets the band within 60 degrees of its normal
+        optics.ring.half_width += aslant * description.cover_glass->thickness;
+        optics.ring.fill = 1;
+        optics.ring.segments = 1;
+        optics.ring.switched_on = 1;
+        optics.ring_cosine = 0;
+    }
+    optics.ring_area = physics::f64::ring_area(optics.ring);
 }
 
 } // namespace
@@ -157,13 +193,17 @@ TurnedInstrument turn_round(const InstrumentDescription& description, const Axia
     turned.constants.imaging_count = static_cast<int>(to_source.size());
 
     const double field_radius = 1.05 * layout.field_half_diagonal;
-    const ExitPupil pupil = exit_pupil(imaging.imaging, layout.field_half_side, field_radius);
+    const ExitPupil pupil = exit_pupil(imaging.imaging, layout.field_corner.x, field_radius);
     auto& optics = turned.optics;
     optics.pupil_radius = pupil.radius;
     // Half a turn about x and light the other way turn (x, y) into (x, -y) and slopes (s, t) into (-s, t): the pupil's
     // crossing, slope - per_position * position, changes its sign alone.
     optics.pupil_position = pupil.per_position;
 
+    if (description.ring) {
+        draw_ring(optics, description, layout, turned.constants, to_source);
+        return turned;
+    }
     const RayTransfer whole = free_space(layout.working_distance, layout.object_index.centre)
                                   .then(free_space(to_source.front().distance))
                                   .then(transfer_of_train(to_source));

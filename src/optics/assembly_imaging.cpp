@@ -148,7 +148,8 @@ MeasuredImaging measure_imaging(const InstrumentDescription& description, const 
     };
     measured.best_focus_offset = focus(on_axis);
     measured.least_spot_offset = least_spot(imaging, on_axis);
-    measured.field_curvature = focus(outline_at(imaging, {layout.field_half_side, 0})) - measured.best_focus_offset;
+    measured.field_curvature = focus(outline_at(imaging, {std::max(layout.field_corner.x, layout.field_corner.y), 0})) -
+                               measured.best_focus_offset;
     const Outline at_corner = outline_at(imaging, {layout.field_half_diagonal, 0});
     measured.field_curvature_corner = focus(at_corner) - measured.best_focus_offset;
     const double relative_light = at_corner.area() / on_axis.area();

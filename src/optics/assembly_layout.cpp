@@ -58,8 +58,10 @@ AxialLayout lay_out(const InstrumentDescription& description) {
                "Correct it.");
     }
     layout.magnification = -layout.efl_tube_lens / layout.efl_objective;
-    layout.field_half_side = 0.5 * description.detector_size / std::abs(layout.magnification);
-    layout.field_half_diagonal = std::sqrt(2.0) * layout.field_half_side;
+    const double half_width = 0.5 * description.detector_width / std::abs(layout.magnification);
+    const ImageSize& pixels = description.detector_pixels;
+    layout.field_corner = {half_width, half_width * pixels.rows / pixels.columns};
+    layout.field_half_diagonal = glm::length(layout.field_corner);
 
     // A plate of thickness t shortens the way by t (1 - n0 / n).
     const double free_distance = layout.working_distance;

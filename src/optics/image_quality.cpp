@@ -383,8 +383,8 @@ ImageQuality image_quality(const InstrumentDescription& description, const Instr
     quality.detector_airy_radius = quality.airy_radius * std::abs(first_order.magnification);
     quality.detector_depth_of_field =
         first_order.object_index * first_order.pixel_pitch / first_order.numerical_aperture;
-    quality.field_side = first_order.pixel_pitch * description.detector_pixels;
-    quality.field_diagonal = std::sqrt(2.0) * quality.field_side;
+    quality.field = 2.0 * first_order.field_corner;
+    quality.field_diagonal = glm::length(quality.field);
 
     measure_axial_cone(quality, setting);
     quality.axis = point_image(imaging, setting.on_axis, setting.height, setting.nodes);
@@ -393,13 +393,12 @@ ImageQuality image_quality(const InstrumentDescription& description, const Instr
     const double near_axis = 0.01 * first_order.field_edge; // distortion is 1e-4 of the edge's there
     quality.magnification = real_magnification(setting, imaging, outline_at(imaging, {near_axis, 0}), axis_centroid);
 
-    const double side = first_order.field_edge;
-    const double diagonal = std::sqrt(2.0) * side;
-    std::vector<glm::dvec2> edges = {{side, 0}};
-    std::vector<glm::dvec2> corners = {{diagonal, 0}};
+    const glm::dvec2 far = first_order.field_corner;
+    std::vector<glm::dvec2> edges = {{first_order.field_edge, 0}};
+    std::vector<glm::dvec2> corners = {{glm::length(far), 0}};
     if (!imaging.symmetric) {
-        edges = {{side, 0}, {0, side}, {-side, 0}, {0, -side}};
-        corners = {{side, side}, {-side, side}, {-side, -side}, {side, -side}};
+        edges = {{far.x, 0}, {0, far.y}, {-far.x, 0}, {0, -far.y}};
+        corners = {far, {-far.x, far.y}, -far, {far.x, -far.y}};
     }
     const Worst edge = worst_of(setting, edges, axis_centroid);
     const Worst corner = worst_of(setting, corners, axis_centroid);

@@ -75,10 +75,11 @@ struct ImageQuality {
     double airy_radius = 0;    // in the object: first zero, 0.6098 lambda / NA
     double detector_airy_radius = 0;
     double detector_depth_of_field = 0; // n e / NA with the pixel pitch e in the object: what one pixel blurs
-    double field_side = 0;              // of the square that the detector sees
+    glm::dvec2 field{0};                // sides of the rectangle that the detector sees
     double field_diagonal = 0;
 
-    // At z = 0. Edge: the middle of a side; corner. Of several sides (a displaced train) the one with the largest spot.
+    // At z = 0. Edge: the middle of a longer side; corner. Of several sides (a displaced train) the one with the
+    // largest spot.
     PointImage axis;
     PointImage edge;
     PointImage corner;

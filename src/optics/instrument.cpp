@@ -30,12 +30,14 @@ FirstOrder first_order_of(const InstrumentDescription& description, const AxialL
             .working_distance = layout.working_distance,
             .magnification = layout.magnification,
             .depth_of_field = measured.depth_of_field,
-            .pixel_pitch = description.detector_size / description.detector_pixels / std::abs(layout.magnification),
+            .pixel_pitch =
+                description.detector_width / description.detector_pixels.columns / std::abs(layout.magnification),
             .best_focus_offset = measured.best_focus_offset,
             .least_spot_offset = measured.least_spot_offset,
             .field_curvature = measured.field_curvature,
             .field_curvature_corner = measured.field_curvature_corner,
-            .field_edge = layout.field_half_side,
+            .field_edge = std::max(layout.field_corner.x, layout.field_corner.y),
+            .field_corner = layout.field_corner,
             .pupil_radius_in_source = illumination.pupil_radius_in_source,
             .illumination_to_objective = illumination.to_objective,
             .source_magnification = illumination.source_magnification};
@@ -52,8 +54,12 @@ physics::f64::Instrument constants_of(const InstrumentDescription& description, 
     constants.emission_sine = description.directed_emission ? illumination.aimed_sine : 1;
     constants.magnification = layout.magnification;
     constants.detector_distance = imaging.imaging.detector_distance;
-    constants.detector_half_size = 0.5 * description.detector_size;
-    constants.detector_pixels = description.detector_pixels;
+    const ImageSize& pixels = description.detector_pixels;
+    constants.detector_half_width = 0.5 * description.detector_width;
+    constants.detector_half_height = constants.detector_half_width * pixels.rows / pixels.columns;
+    constants.pixel_reach = description.fill_factor < 1 ? 0.5 * std::sqrt(description.fill_factor) : 1;
+    constants.detector_columns = pixels.columns;
+    constants.detector_rows = pixels.rows;
     constants.gate_position = imaging.imaging.pupil_curvature;
     constants.gate_slope = 1;
     // A little more than the field: aberrations let the detector see past its paraxial edge.
@@ -91,8 +97,9 @@ void check(const InstrumentDescription& description) {
     }
     require_positive(description.flux, "source.flux_W");
     require_positive(description.spectrum.reference_um, "source.wavelength_um");
-    require_positive(description.detector_size, "detector.size_mm");
-    require_positive(description.detector_pixels, "detector.pixels");
+    require_positive(description.detector_width, "detector.size_mm");
+    require_positive(std::min(description.detector_pixels.columns, description.detector_pixels.rows),
+                     "detector.pixels");
     require_surfaces(description.objective, "objective.prescription");
     require_surfaces(description.tube_lens, "tube_lens.prescription");
 }
@@ -110,6 +117,7 @@ Instrument reduce(const InstrumentDescription& description, const AxialLayout& l
     instrument.features = features_of(description, instrument.surfaces);
     instrument.first_order = first_order_of(description, layout, measured, illumination);
     instrument.flux = description.flux;
+    instrument.fill_factor = description.fill_factor;
     instrument.splitter_reflectance = description.ring ? 1 : description.splitter.reflectance;
     instrument.splitter_transmittance = description.splitter.transmittance;
     instrument.illumination_surfaces_before_splitter = illumination.surfaces_before_splitter;
@@ -142,6 +150,14 @@ const char* name_of(Part part) {
     return "detector";
 }
 
+Instrument with_whole_pixels(Instrument instrument) {
+    instrument.constants.pixel_reach = 1;
+    if (instrument.turned) {
+        instrument.turned->constants.pixel_reach = 1;
+    }
+    return instrument;
+}
+
 Instrument assemble(const InstrumentDescription& description) {
     check(description);
     const AxialLayout layout = lay_out(description);
@@ -151,11 +167,6 @@ Instrument assemble(const InstrumentDescription& description) {
         description.ring ? place_ring(description, layout, measured) : place_illuminator(description, layout, imaging);
     Instrument instrument = reduce(description, layout, imaging, measured, illumination);
     if (description.turned) {
-        if (description.ring) {
-            refuse("trace.estimator", "\"backward\"",
-                   "a disc source; the backward estimator does not know the ring light",
-                   "Use estimator = \"forward\".");
-        }
         instrument.turned = turn_round(description, layout, imaging, illumination, instrument);
     }
     FoldedElements folded = fold(description, layout, imaging, measured, illumination);

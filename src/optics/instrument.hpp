@@ -1,6 +1,7 @@
 // The instrument, assembled from its parts and reduced to what the trace needs.
 #pragma once
 
+#include "core/pixel_grid.hpp"
 #include "optics/prescription.hpp"
 #include "optics/spectrum.hpp"
 #include "optics/train.hpp"
@@ -81,11 +82,12 @@ struct InstrumentDescription {
     Prescription tube_lens; // from the objective to the detector
     Placement tube_lens_placement;
     double objective_to_tube_lens = 100;
-    double detector_size = 0; // of the square, in the detector's plane
-    int detector_pixels = 0;
+    double detector_width = 0; // along the rows, in the detector's plane; its pixels are square
+    ImageSize detector_pixels;
+    double fill_factor = 1; // share of a pixel's area, a square in its middle, that is sensitive
     Placement detector_placement;
     bool directed_emission = true; // aim the source at the cone that can pass the illumination train
-    bool turned = false;           // the backward estimator's form is wanted too; not with a ring light
+    bool turned = false;           // the backward estimator's form is wanted too
     double greatest_defocus = 0.2; // of the specimen's top plane from the plane of best focus, for the gate
 };
 
@@ -105,7 +107,8 @@ struct FirstOrder {
     double least_spot_offset = 0;         // its rays have the least RMS distance from their centroid on the detector
     double field_curvature = 0;           // the same at the field's edge, from the on-axis best focus (+z)
     double field_curvature_corner = 0;    // in the field's corners
-    double field_edge = 0;                // the field height that belongs to it: half the detector's side in the object
+    double field_edge = 0;                // the field height that belongs to it: half the longer side in the object
+    glm::dvec2 field_corner{0};           // half of both sides of the field, in the object
     double pupil_radius_in_source = 0;    // radius of source that fills the objective's pupil; 0: a ring light
     double illumination_to_objective = 0; // as resolved
     double source_magnification = 0;      // paraxial, of the source's image in the objective's pupil
@@ -145,6 +148,7 @@ struct Instrument {
     std::uint32_t features = 0; // physics::FEATURE_*
     FirstOrder first_order;
     double flux = 1;                     // W, emitted over the hemisphere
+    double fill_factor = 1;              // of the pixels
     double splitter_reflectance = 0.5;   // for the illumination; 1 for a ring light, which does not meet it
     double splitter_transmittance = 0.5; // for the imaging
     // Surfaces of each train that light meets before the beam splitter's mirror.
@@ -160,10 +164,14 @@ struct Instrument {
     std::vector<std::string> warnings;
 
     TrainScene scene() const { return {surfaces, features, spectral_bins}; }
+    ImageSize detector_pixels() const { return {constants.detector_columns, constants.detector_rows}; }
 };
 
 // With the trains and constants of the turned form.
 Instrument turned_round(const Instrument& instrument);
+
+// With pixels that count all of their light, for images that the waves' filter shares out (PupilFilter).
+Instrument with_whole_pixels(Instrument instrument);
 
 // Throws InputError where parts do not fit together (no real image, illumination too long to fit, ...).
 Instrument assemble(const InstrumentDescription& description);

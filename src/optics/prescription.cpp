@@ -278,8 +278,10 @@ std::vector<std::string> prescription_names(const std::filesystem::path& folder,
     for (const auto& assets : asset_folders(base)) {
         for (std::filesystem::directory_iterator entry(assets / folder, code), end; !code && entry != end;
              entry.increment(code)) {
-            if (entry->path().extension() == ".toml") {
-                names.push_back(entry->path().stem().string());
+            const auto name = entry->path().stem().string();
+            // Those beside the working directory may be the installed ones.
+            if (entry->path().extension() == ".toml" && std::ranges::find(names, name) == names.end()) {
+                names.push_back(name);
             }
         }
     }

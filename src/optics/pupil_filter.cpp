@@ -166,6 +166,7 @@ PupilFilter::PupilFilter(const Instrument& instrument, const WaveOptions& option
     steps_ = std::max(32, points_a_cell * cells / 2);
     cells_.side = static_cast<std::uint32_t>(cells);
     cells_.parts = static_cast<std::uint32_t>(parts_of(options, instrument));
+    cells_.sensitive_side = std::sqrt(instrument.fill_factor);
     part_pitch_ = instrument.first_order.pixel_pitch / cells_.parts;
     cells_.chief_position = chief_slope_per_position(instrument);
     double largest = 0;
@@ -314,12 +315,16 @@ double PupilFilter::folded_contrast() const {
 }
 
 double PupilFilter::noise_of_pixels() const {
-    // White noise on the parts of pixels, filtered and added up over the pixel's.
+    // White noise on the parts of pixels, filtered and added up over what is sensitive; before, over the whole pixel.
     constexpr int samples = 48; // of half the band
     const int parts = static_cast<int>(cells_.parts);
-    const auto added_up = [parts](double f) { // cycles per part
-        const double part = std::sin(pi * f);
-        return part == 0 ? 1.0 : std::pow(std::sin(pi * f * parts) / (parts * part), 2);
+    const auto added_up = [&](double f, bool all) { // cycles per part
+        Complex sum = 0;
+        for (int part = 0; part < parts; ++part) {
+            const double share = all ? 1 : physics::f64::sensitive_share(cells_, static_cast<std::uint32_t>(part));
+            sum += std::polar(share, 2 * pi * f * part);
+        }
+        return std::norm(sum);
     };
     double before = 0;
     double after = 0;
@@ -327,8 +332,8 @@ double PupilFilter::noise_of_pixels() const {
         for (int i = -samples; i < samples; ++i) {
             const double fx = 0.5 * (i + 0.5) / samples;
             const double fy = 0.5 * (j + 0.5) / samples;
-            const double pixel = added_up(fx) * added_up(fy);
-            before += pixel;
+            before += added_up(fx, true) * added_up(fy, true);
+            const double pixel = added_up(fx, false) * added_up(fy, false);
             for (int cell = 0; cell < cell_count(); ++cell) {
                 if (share(cell) > 0) {
                     after += pixel * share(cell) * std::norm(transfer(cell, fx / part_pitch_, fy / part_pitch_));

@@ -50,9 +50,9 @@ double reach(const Surface& surface) {
     return root > 0 ? short_of_equator / root : std::numeric_limits<double>::infinity();
 }
 
-double free_radius(const Element& element, double detector_half_size) {
+double free_radius(const Element& element, const physics::f64::Instrument& constants) {
     if (element.kind == Kind::detector) {
-        return std::sqrt(2.0) * detector_half_size;
+        return std::hypot(constants.detector_half_width, constants.detector_half_height);
     }
     const double limit =
         is_limited(element.surface) ? std::sqrt(element.surface.semi_diameter_squared) : unlimited_radius;
@@ -80,7 +80,7 @@ Room furnish(const Instrument& instrument) {
     std::map<Part, double> widest; // free radius of each part
     for (const optics::Element& element : instrument.elements) {
         double& radius = widest[element.part];
-        radius = std::max(radius, free_radius(element, instrument.constants.detector_half_size));
+        radius = std::max(radius, free_radius(element, instrument.constants));
     }
     for (const optics::Element& placed : instrument.elements) {
         if (placed.kind == Kind::stop && !is_limited(placed.surface)) {
@@ -89,7 +89,7 @@ Room furnish(const Instrument& instrument) {
         physics::f64::Element element{};
         element.surface = placed.surface;
         element.kind = kind_of(placed.kind);
-        const double radius = free_radius(placed, instrument.constants.detector_half_size);
+        const double radius = free_radius(placed, instrument.constants);
         element.surface.semi_diameter_squared = radius * radius;
         stand(element, placed.pose);
         const bool mounted = is_limited(placed.surface) || has_barrel(placed.part);

@@ -61,7 +61,7 @@ ElementSections::ElementSections(const optics::Instrument& instrument, const std
         const double equator = std::sqrt(std::max(0.0, 1 + surface.conic)) * std::abs(surface.curvature);
         double radius = is_limited(elements_[i]) ? std::sqrt(surface.semi_diameter_squared) : spare * lit[i];
         if (elements_[i].kind == Kind::detector) {
-            radius = instrument.constants.detector_half_size;
+            radius = instrument.constants.detector_half_height;
         }
         radii_.push_back(equator > 0 ? std::min(radius, 0.999 / equator) : radius);
     }

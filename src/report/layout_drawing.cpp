@@ -349,7 +349,7 @@ Drawing draw_instrument(const optics::Instrument& instrument) {
     add_rays(shapes, drawing.rays);
     add_flat_elements(shapes, sections);
     boxes.specimen = add_specimen(shapes, sections, instrument.first_order.field_edge);
-    add_detector(shapes, instrument.elements.back().pose, constants.detector_half_size);
+    add_detector(shapes, instrument.elements.back().pose, constants.detector_half_height);
     if (!drawing.is_ring) {
         boxes.source = add_source(shapes, instrument.source_pose, constants.source_radius, sections.extent());
     }

@@ -33,8 +33,9 @@ Map map_of(const std::string& title, const surface::HeightMap& heights, double l
 
 // The axis of brightness runs from black to all but the brightest thousandth.
 template <class Value>
-Map map_of_image(const std::string& title, const Grid<Value>& image, const surface::HeightMap& place) {
-    Map map{.title = title, .unit = "W", .values = Grid<double>(image.columns, image.rows)};
+Map map_of_image(const std::string& title, const Grid<Value>& image, const surface::HeightMap& place,
+                 const std::string& unit) {
+    Map map{.title = title, .unit = unit, .values = Grid<double>(image.columns, image.rows)};
     std::copy(image.values.begin(), image.values.end(), map.values.values.begin());
     map.x0 = place.x0 * um_per_mm;
     map.y0 = place.y0 * um_per_mm;
@@ -81,10 +82,11 @@ std::string topography_picture(const TopographyPicture& picture) {
                  map_of("Deviation, measured less true", *picture.deviation, -end, end, Palette::signed_deviation));
     }
     if (picture.all_in_focus) {
-        draw_map(svg, next(), panel, map_of_image("All in focus", *picture.all_in_focus, picture.measured));
+        draw_map(svg, next(), panel,
+                 map_of_image("All in focus", *picture.all_in_focus, picture.measured, picture.image_unit));
         // The heights' colours, as bright as the image.
         Map overlay = map_of("Heights over the image", picture.measured, low, high, Palette::height);
-        const Map image = map_of_image("", *picture.all_in_focus, picture.measured);
+        const Map image = map_of_image("", *picture.all_in_focus, picture.measured, picture.image_unit);
         overlay.brightness = image.values;
         for (double& value : overlay.brightness->values)
             value = std::clamp(value / image.high, 0.0, 1.0);
@@ -103,9 +105,10 @@ std::string topography_picture(const TopographyPicture& picture) {
     return svg.document(page, picture.title);
 }
 
-std::string image_picture(const std::string& title, const Grid<double>& image, double x0, double y0, double pitch) {
+std::string image_picture(const std::string& title, const Grid<double>& image, double x0, double y0, double pitch,
+                          const PixelQuantity& quantity) {
     const surface::HeightMap place{.height = {}, .x0 = x0, .y0 = y0, .pitch_x = pitch, .pitch_y = pitch};
-    const Map map = map_of_image("Image", image, place);
+    const Map map = map_of_image("Image", image, place, quantity.unit);
     double sum = 0, square = 0;
     for (const double value : image.values) {
         sum += value;
@@ -125,8 +128,8 @@ std::string image_picture(const std::string& title, const Grid<double>& image, d
     svg.text({margin, 34}, title, "font-size=\"19\" fill=\"#111111\"");
     draw_map(svg, {margin, head}, panel, map);
     draw_histogram(svg, {margin + panel.x + margin, head}, panel,
-                   fmt::format("Mean {:.4g} W, contrast {:.4f}", mean, deviation / mean),
-                   {0, top, "radiant flux of a pixel / W", false}, counts);
+                   fmt::format("Mean {:.4g} {}, contrast {:.4f}", mean, quantity.unit, deviation / mean),
+                   {0, top, quantity.label, false}, counts);
     return svg.document(dvec2(3 * margin, head + margin) + dvec2(2 * panel.x, panel.y), title);
 }
 

@@ -44,8 +44,12 @@ LogFields fields_of(int image, double z, const trace::Image& exposure) {
 
 } // namespace
 
+Frame light_itself(int /*image*/, const trace::Image& exposure) {
+    return {.values = as_stored(exposure.flux)};
+}
+
 StackSummary run_stack(const trace::Tracer& tracer, ImageStore& store, Progress& progress, const ImageVisitor& visit,
-                       double checkpoint_interval) {
+                       double checkpoint_interval, const ImageDeveloper& develop) {
     for (const std::string& sentence : store.damaged()) {
         spdlog::warn("{}; it is traced again", sentence);
     }
@@ -76,9 +80,9 @@ StackSummary run_stack(const trace::Tracer& tracer, ImageStore& store, Progress&
     tell_what_is_stored();
 
     std::mutex counting; // of the summary
-    const auto write = [&](int image, const trace::Image& exposure) {
+    const auto write = [&](int image, const trace::Image& exposure, const Frame& frame) {
         try {
-            store.store(image, exposure);
+            store.store(image, exposure, frame);
         } catch (const std::runtime_error& error) {
             const std::scoped_lock lock(counting);
             throw RunError(fmt::format("{}. {} of {} images are stored in {}: free the disk, then give the same "
@@ -131,10 +135,11 @@ StackSummary run_stack(const trace::Tracer& tracer, ImageStore& store, Progress&
             device_ends.resize(std::max(device_ends.size(), device + 1));
             summary.device_span += std::max(0.0, exposure->device_end - device_ends[device]);
             device_ends[device] = std::max(device_ends[device], exposure->device_end);
+            const auto frame = std::make_shared<const Frame>(develop(image, *exposure));
             if (visit) {
-                visiting.add([&visit, image, exposure] { visit(image, as_stored(exposure->flux)); });
+                visiting.add([&visit, image, frame] { visit(image, frame->values); });
             }
-            writing.add([&write, image, exposure] { write(image, *exposure); });
+            writing.add([&write, image, exposure, frame] { write(image, *exposure, *frame); });
         }
     };
     try {

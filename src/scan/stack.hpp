@@ -20,8 +20,13 @@ struct StackSummary {
     bool complete = false;     // every image of the stack is stored, as far as the store looks
 };
 
-// Looks at an image of the shard: radiant flux per pixel in W as it is stored.
-using ImageVisitor = std::function<void(int image, Grid<float> flux)>;
+// Looks at an image of the shard, as it is stored.
+using ImageVisitor = std::function<void(int image, Grid<float> values)>;
+// Makes of an exposure what is stored: see light_itself().
+using ImageDeveloper = std::function<Frame(int image, const trace::Image& exposure)>;
+
+// Radiant flux per pixel in W.
+Frame light_itself(int image, const trace::Image& exposure);
 
 // Exposes and stores all images of the store's shard that it lacks. While the tracer works on the next ones, images are
 // written and visited by other threads, visited by one.
@@ -29,8 +34,9 @@ using ImageVisitor = std::function<void(int image, Grid<float> flux)>;
 // images of the shard. `visit` sees every image of the shard once, in their order: those stored before from
 // the disk, the others when they have been traced. Throws what the tracer throws, and RunError if an image cannot be
 // stored: what is stored stays, and the same call continues. checkpoint_interval: s, after which a long exposure is
-// kept half done; 0: none is.
+// kept half done; 0: none is. develop: of what is traced now; its values must be as the store's pixels give them back.
 StackSummary run_stack(const trace::Tracer& tracer, ImageStore& store, Progress& progress,
-                       const ImageVisitor& visit = {}, double checkpoint_interval = 0);
+                       const ImageVisitor& visit = {}, double checkpoint_interval = 0,
+                       const ImageDeveloper& develop = light_itself);
 
 } // namespace vkfv::scan

@@ -10,6 +10,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
+#include <limits>
 #include <map>
 #include <optional>
 #include <sstream>
@@ -158,14 +160,14 @@ bool seal_is_whole(const std::string& bytes) {
     return sum == all.substr(*place, unsealed.size());
 }
 
-struct Frame {
+struct FrameFile {
     std::string bytes; // of the file
     images::StoredImage image;
 };
 
-Frame read_whole_frame(const fs::path& folder, int image, double z) {
+FrameFile read_whole_frame(const fs::path& folder, int image, double z) {
     const fs::path path = folder / image_path(image);
-    Frame frame{
+    FrameFile frame{
         .bytes = read_file(path, {.expected = "an image of the stack",
                                   .remedy = "Trace the stack again with the same command: it keeps the other images."}),
         .image = {}};
@@ -241,6 +243,41 @@ Grid<float> as_stored(const Grid<double>& flux) {
     return stored;
 }
 
+namespace {
+
+template <class Integer>
+Grid<Integer> rounded(const Grid<float>& values) {
+    Grid<Integer> result(values.columns, values.rows);
+    constexpr double highest = std::numeric_limits<Integer>::max();
+    std::ranges::transform(values.values, result.values.begin(), [&](double value) {
+        return static_cast<Integer>(std::clamp(std::floor(value + 0.5), 0.0, highest));
+    });
+    return result;
+}
+
+template <class Integer>
+Grid<float> rounded_floats(const Grid<float>& values) {
+    const auto integers = rounded<Integer>(values);
+    Grid<float> result(values.columns, values.rows);
+    std::ranges::copy(integers.values, result.values.begin());
+    return result;
+}
+
+} // namespace
+
+Grid<float> as_stored(Grid<float> values, PixelType type) {
+    return type == PixelType::uint16  ? rounded_floats<std::uint16_t>(values)
+           : type == PixelType::uint8 ? rounded_floats<std::uint8_t>(values)
+                                      : std::move(values);
+}
+
+std::string frame_bytes(const Grid<float>& values, PixelType type, double pitch, const std::string& description) {
+    const images::ImageTags tags{.pitch_x = pitch, .pitch_y = pitch, .description = description};
+    return type == PixelType::uint16  ? images::tiff_bytes(rounded<std::uint16_t>(values), tags)
+           : type == PixelType::uint8 ? images::tiff_bytes(rounded<std::uint8_t>(values), tags)
+                                      : images::tiff_bytes(values, tags);
+}
+
 Grid<float> read_frame(const fs::path& folder, int image, double z) {
     return std::move(read_whole_frame(folder, image, z).image.values);
 }
@@ -294,7 +331,8 @@ fs::path timings_name(const Shard& shard) {
 } // namespace
 
 ImageStore::ImageStore(const fs::path& folder, StackDescription description, Shard shard)
-    : description_(std::move(description)), shard_(shard), ledger_rows_(description_.positions.size()) {
+    : description_(std::move(description)), shard_(shard), ledger_rows_(description_.positions.size()),
+      notes_(description_.positions.size()) {
     if (shard.count < 1 || shard.index < 0 || shard.index >= shard.count) {
         throw std::invalid_argument("a shard is one of 0 .. count - 1");
     }
@@ -349,11 +387,12 @@ struct ImageStore::WholeImage {
     std::string bytes; // of the file
     std::string ledger_header;
     std::string ledger_row;
+    std::string note;
 };
 
 // Throws InputError if it is not whole, or another stack's.
 ImageStore::WholeImage ImageStore::whole_image(const fs::path& folder, int image) const {
-    Frame frame = read_whole_frame(folder, image, description_.positions[static_cast<std::size_t>(image)]);
+    FrameFile frame = read_whole_frame(folder, image, description_.positions[static_cast<std::size_t>(image)]);
     const std::string& text = frame.image.description;
     const Grid<float>& values = frame.image.values;
     const auto refuse = [&](const std::string& found) {
@@ -369,7 +408,8 @@ ImageStore::WholeImage ImageStore::whole_image(const fs::path& folder, int image
     }
     WholeImage whole{.bytes = std::move(frame.bytes),
                      .ledger_header = described(text, "ledger_columns"),
-                     .ledger_row = described(text, "ledger_row")};
+                     .ledger_row = described(text, "ledger_row"),
+                     .note = described(text, "camera")};
     if (whole.ledger_row.empty() || (!ledger_header_.empty() && whole.ledger_header != ledger_header_)) {
         refuse("its row of the ledger is missing");
     }
@@ -379,6 +419,7 @@ ImageStore::WholeImage ImageStore::whole_image(const fs::path& folder, int image
 void ImageStore::keep(int image, const WholeImage& whole) {
     ledger_header_ = whole.ledger_header;
     ledger_rows_[static_cast<std::size_t>(image)] = whole.ledger_row;
+    notes_[static_cast<std::size_t>(image)] = whole.note;
 }
 
 void ImageStore::keep_whole_images() {
@@ -413,16 +454,15 @@ bool ImageStore::complete() const {
     return std::none_of(ledger_rows_.begin(), ledger_rows_.end(), [](const std::string& row) { return row.empty(); });
 }
 
-void ImageStore::store(int image, const trace::Image& exposure) {
+void ImageStore::store(int image, const trace::Image& exposure, const Frame& frame) {
     const auto index = static_cast<std::size_t>(image);
-    if (exposure.flux.columns != description_.columns || exposure.flux.rows != description_.rows) {
+    if (frame.values.columns != description_.columns || frame.values.rows != description_.rows) {
         throw std::logic_error("an exposure of another size than the stack's");
     }
     const double z = description_.positions.at(index);
     const std::string header = ledger_header(exposure.ledger);
     const std::string row = ledger_row(image, z, exposure);
 
-    const Grid<float> flux = as_stored(exposure.flux);
     // The first lines are what ImageJ and Fiji take the distance of the images from; it is in the unit of the
     // resolution tags. A stack of one image has none.
     std::string text = "ImageJ=1.11a\nunit=cm\n";
@@ -430,17 +470,18 @@ void ImageStore::store(int image, const trace::Image& exposure) {
         text += fmt::format("spacing={:.12g}\n",
                             (description_.positions[1] - description_.positions[0]) * um_per_mm * cm_per_um);
     }
-    text += fmt::format("image={}\nz_um={}\nvalues=radiant flux per pixel in W\nfirst_row=highest y\nstack={}\n"
+    text += fmt::format("image={}\nz_um={}\nvalues={}\n{}first_row=highest y\nstack={}\n"
                         "ledger_columns={}\nledger_row={}{}{}\n",
-                        image, micrometres_text(z), description_.digest, header, row, seal_label, unsealed);
-    results_->write(image_path(image),
-                    sealed(images::tiff_bytes(
-                        flux, {.pitch_x = description_.pitch, .pitch_y = description_.pitch, .description = text})));
+                        image, micrometres_text(z), description_.quantity,
+                        frame.note.empty() ? "" : fmt::format("camera={}\n", frame.note), description_.digest, header,
+                        row, seal_label, unsealed);
+    results_->write(image_path(image), sealed(frame_bytes(frame.values, description_.type, description_.pitch, text)));
 
     const std::scoped_lock lock(mutex_);
     const bool first = ledger_header_.empty();
     ledger_header_ = header;
     ledger_rows_[index] = row;
+    notes_[index] = frame.note;
     if (shard_.is_whole()) {
         // For those who watch; a row lost here is in its image, and the next opening writes the file anew.
         append_line(folder() / ledger_name, (first ? header + "\n" : "") + row);

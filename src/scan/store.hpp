@@ -1,7 +1,8 @@
 // The folder of one stack, from the first image to the last, over as many runs as it takes.
 //
 //   stack.toml              the configuration, and in comments the identity: what the images depend on
-//   images/z_0000.tif ...   one exposure each, float32 W per pixel; the file's first row has the highest y
+//   images/z_0000.tif ...   one exposure each, float32 W per pixel, or a camera's grey values; the file's first row has
+//                           the highest y
 //   partial_0007            an exposure that was ended before its time, if it is a long one: checkpoint_files.hpp
 //   ledger.csv              a row an image: where its light went
 //   timings.csv             (timings_2_of_8.csv of a shard) a row an exposure, the device's work and an evaluation, in
@@ -26,6 +27,18 @@
 
 namespace vkfv::scan {
 
+// Of images in files. Integers are those of a camera.
+enum class PixelType { float32, uint16, uint8 };
+
+// An image as it is stored and evaluated.
+struct Frame {
+    Grid<float> values;
+    std::string note{}; // what a camera did with it: a line that is kept with the image; empty: it is light
+};
+
+// A TIFF of these values: integers are rounded, and end where their type does.
+std::string frame_bytes(const Grid<float>& values, PixelType type, double pitch, const std::string& description);
+
 // What a stack is of.
 struct StackDescription {
     // TOML that `vkfv --stack` takes; becomes stack.toml. May change between runs as long as the identity
@@ -40,6 +53,8 @@ struct StackDescription {
     int columns = 0; // pixels of an image
     int rows = 0;
     double pitch = 0; // of the pixels, mm in the object plane
+    PixelType type = PixelType::float32;
+    std::string quantity = "radiant flux per pixel in W"; // of the values
 };
 
 // One of `count` parts of a stack: the images whose number leaves the remainder `index`. Several programs trace theirs
@@ -74,7 +89,9 @@ class ImageStore {
     // Makes one exposure durable; its pixels must be those of the description. Replaces an image stored
     // before. Throws RunError if the disk fails. Several threads may store different images; stored() of others
     // may be asked meanwhile.
-    void store(int image, const trace::Image& exposure);
+    void store(int image, const trace::Image& exposure, const Frame& frame);
+    // Of an image that is stored.
+    const std::string& note(int image) const { return notes_[static_cast<std::size_t>(image)]; }
 
     // An image that another folder of the same stack holds, as it is; false if there is none. Throws InputError if it
     // is not whole or one of another stack, RunError if the disk fails.
@@ -100,6 +117,7 @@ class ImageStore {
     std::mutex mutex_;                     // of the ledger
     std::string ledger_header_;            // empty until the first image
     std::vector<std::string> ledger_rows_; // of each image, without line end; empty: not stored
+    std::vector<std::string> notes_;       // of each image
     std::vector<std::string> damaged_;
 };
 
@@ -113,8 +131,10 @@ std::filesystem::path image_path(int image);
 // Of its exposure as long as it is half done: "partial_0007".
 std::filesystem::path checkpoint_path(int image);
 
-// Flux as it is stored, in float32.
+// Light as it is stored, in float32.
 Grid<float> as_stored(const Grid<double>& flux);
+// Values as a file of this type gives them back.
+Grid<float> as_stored(Grid<float> values, PixelType type);
 
 // A line of a folder's timings.csv: how long it took, and of what traced rays, how many. Throws RunError.
 void append_timing(const std::filesystem::path& folder, const std::string& what, double seconds, double rays = 0);
@@ -125,9 +145,9 @@ std::string stored_identity(const std::filesystem::path& folder);
 // A line for each key in which two identities differ, "\n  trace.seed: 1 there, 2 here"; empty if they are the same.
 std::string identity_differences(std::string_view there, std::string_view here);
 
-// Radiant flux per pixel in W of a stored image; row 0 at the lowest y. `z` is its focal height (mm) as
-// planned. Throws InputError, with the remedy, if the image is missing, not whole or of another height:
-// frames are read from finished stacks, one at a time, without a store.
+// Values of a stored image, radiant flux per pixel in W or grey values; row 0 at the lowest y. `z` is its focal height
+// (mm) as planned. Throws InputError, with the remedy, if the image is missing, not whole or of another height: frames
+// are read from finished stacks, one at a time, without a store.
 Grid<float> read_frame(const std::filesystem::path& folder, int image, double z);
 
 } // namespace vkfv::scan

@@ -2,6 +2,7 @@
 
 #include "core/section.hpp"
 
+#include <type_traits>
 #include <utility>
 #include <variant>
 
@@ -51,6 +52,31 @@ double size_of(const Shape& shape) {
             }
         },
         shape);
+}
+
+std::optional<dimensions::Feature> feature_of(const Shape& shape) {
+    return std::visit(
+        [](const auto& kind) -> std::optional<dimensions::Feature> {
+            if constexpr (requires { kind.feature(); }) {
+                return kind.feature();
+            } else {
+                return std::nullopt;
+            }
+        },
+        shape);
+}
+
+surface::Form usual_form(const Shape& shape) {
+    const bool has_heights = std::visit(
+        [](const auto& kind) {
+            if constexpr (requires { kind.feature(); }) {
+                return !std::is_same_v<decltype(kind.feature()), dimensions::Flat>;
+            } else {
+                return false;
+            }
+        },
+        shape);
+    return {.kind = has_heights ? surface::Form::Kind::truth : surface::Form::Kind::plane};
 }
 
 Shape with_pitch(Shape shape, double pitch) {

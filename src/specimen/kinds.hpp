@@ -8,14 +8,19 @@
 //   raise(field, pitch, where)  heights on the level field of a square (Square)
 //   HeightField heights(where)  of a file
 //   Mesh mesh(where)            of a file; takes no roughness
-// and random_heights(), if it has some. where: of the [specimen] table, or of its `file`. A line "// place: 3" says
-// where the kind comes among the others; without one it comes last.
+// and random_heights(), if it has some, and feature(), what is measured on it, if it is a standard. where: of the
+// [specimen] table, or of its `file`. A line "// place: 3" says where the kind comes among the others; without one it
+// comes last.
 #pragma once
 
 #include "specimen/shape.hpp"
 
+#include "dimensions/feature.hpp"
+#include "surface/form.hpp"
+
 #include <concepts>
 #include <filesystem>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -56,6 +61,14 @@ std::filesystem::path file_of(const Shape& shape);
 
 // Side of the square that it covers or takes of its file, mm; 0: it has none.
 double size_of(const Shape& shape);
+
+// What is measured on it; none of kinds that are no standards.
+std::optional<dimensions::Feature> feature_of(const Shape& shape);
+
+// What is removed from its heights before they are compared with the true ones, unless the user says otherwise: of a
+// standard with steps, waves or a sphere nothing but the plane of the deviation ("truth"), since a plane through a step
+// takes a part of it, and through a broken number of waves too; of all others the least-squares plane.
+surface::Form usual_form(const Shape& shape);
 
 // The same with another pitch, mm, if it has one.
 Shape with_pitch(Shape shape, double pitch);

@@ -18,7 +18,7 @@ constexpr int largest_degree = 20; // of least_squares_polynomial()
 
 std::optional<Form> parse_form(std::string_view text) {
     using enum Form::Kind;
-    for (const Form::Kind kind : {none, plane, sphere})
+    for (const Form::Kind kind : {none, plane, sphere, truth})
         if (const Form form{.kind = kind}; text == form_name(form))
             return form;
     for (int degree = 1; degree <= largest_degree; ++degree)
@@ -32,6 +32,7 @@ std::string form_name(const Form& form) {
     return form.kind == none     ? "none"
            : form.kind == plane  ? "plane"
            : form.kind == sphere ? "sphere"
+           : form.kind == truth  ? "truth"
                                  : "polynomial-" + std::to_string(form.degree);
 }
 
@@ -55,7 +56,7 @@ HeightMap without_rounding(HeightMap rest, double greatest) {
 
 HeightMap remove_form(HeightMap map, const Form& form) {
     using enum Form::Kind;
-    if (form.kind == none)
+    if (form.kind == none || form.kind == truth)
         return map;
     const double greatest = greatest_height(map);
     if (form.kind == plane) {

@@ -11,14 +11,16 @@ namespace vkfv::surface {
 
 // What is taken for the form of a surface, fitted by least squares: the F-operator of ISO 25178-2.
 struct Form {
-    enum class Kind { none, plane, polynomial, sphere };
+    // truth: nothing. Where a surface is compared with its truth (topography/compare.hpp) it is brought to it by offset
+    // and tilt; of one alone there is none to remove.
+    enum class Kind { none, plane, polynomial, sphere, truth };
     Kind kind = Kind::plane;
     int degree = 0; // of the polynomial
 
     bool operator==(const Form&) const = default;
 };
 
-// "none", "plane", "polynomial-1" to "polynomial-20" or "sphere"; nothing for any other text.
+// "none", "plane", "polynomial-1" to "polynomial-20", "sphere" or "truth"; nothing for any other text.
 std::optional<Form> parse_form(std::string_view text);
 // The text that parse_form() reads.
 std::string form_name(const Form& form);

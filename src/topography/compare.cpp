@@ -23,15 +23,25 @@ void keep_common_points(HeightMap& measured, HeightMap& truth) {
     }
 }
 
+HeightMap difference_of(HeightMap measured, const HeightMap& truth) {
+    for (std::size_t k = 0; k < measured.height.values.size(); ++k)
+        measured.height.values[k] -= truth.height.values[k];
+    return measured;
+}
+
 } // namespace
 
 LevelledPair levelled_pair(HeightMap measured, HeightMap truth, const Band& band) {
     if (measured.columns() != truth.columns() || measured.rows() != truth.rows())
         throw std::invalid_argument("compare: both height maps must stand on the same grid");
     keep_common_points(measured, truth);
-    measured = remove_form(std::move(measured), band.form);
-    truth = remove_form(std::move(truth), band.form);
-    keep_common_points(measured, truth); // a sphere ends
+    if (band.form.kind == surface::Form::Kind::truth) {
+        measured = remove_plane(std::move(measured), least_squares_plane(difference_of(measured, truth)));
+    } else {
+        measured = remove_form(std::move(measured), band.form);
+        truth = remove_form(std::move(truth), band.form);
+        keep_common_points(measured, truth); // a sphere ends
+    }
     return {.measured = filtered(std::move(measured), band),
             .truth = filtered(std::move(truth), band),
             .form_removed = band.form.kind != surface::Form::Kind::none};
@@ -65,9 +75,7 @@ Deviation compare(const HeightMap& measured, const HeightMap& truth, const Band&
 }
 
 HeightMap deviation_map(const LevelledPair& treated) {
-    HeightMap result = treated.measured;
-    for (std::size_t k = 0; k < result.height.values.size(); ++k)
-        result.height.values[k] -= treated.truth.height.values[k];
+    const HeightMap result = difference_of(treated.measured, treated.truth);
     // Levelled maps differ by a levelled map; after other forms or an L-filter a rest of offset and tilt may remain.
     return treated.form_removed ? surface::remove_plane(result, surface::least_squares_plane(result)) : result;
 }

@@ -18,7 +18,8 @@ struct Deviation {
 };
 
 // The treatment itself: what is not measured in one is so in both; the form of each is removed (unless told otherwise,
-// its least-squares plane), then the filters are applied.
+// its least-squares plane), then the filters are applied. With the form "truth" nothing is taken off the truth, and off
+// the measured heights the least-squares plane of their deviation from it: no step or slope of the truth's is lost.
 struct LevelledPair {
     surface::HeightMap measured;
     surface::HeightMap truth;

@@ -1,68 +1,18 @@
 #include "topography/focus_probes.hpp"
 
-#include "core/units.hpp"
+#include "topography/in_parallel.hpp"
 
 #include <algorithm>
-#include <atomic>
 #include <cmath>
 #include <cstdint>
-#include <functional>
-#include <iterator>
 #include <limits>
 #include <numeric>
-#include <random>
-#include <thread>
 
 namespace vkfv::topography {
 namespace {
 
-constexpr int probes_a_side = 16;
 constexpr int reach = 2; // of the measures' masks beyond the window
 constexpr std::size_t most_values = std::size_t{1} << 25;
-
-// Calls task(k) for 0 .. count - 1, on all cores; tasks are of unequal length.
-template <class Task>
-void in_parallel(int count, const Task& task) {
-    std::atomic<int> next = 0;
-    const auto work = [&] {
-        for (int k = next++; k < count; k = next++) {
-            task(k);
-        }
-    };
-    const int threads = std::min(count, static_cast<int>(std::max(1u, std::thread::hardware_concurrency())));
-    std::vector<std::jthread> others;
-    for (int k = 1; k < threads; ++k) {
-        others.emplace_back(work);
-    }
-    work();
-}
-
-// singles: of single images in the same order. Nothing where the largest value stands at an end.
-Evidence evidence_of(const std::vector<double>& values, const focus::f64::SingleRecord& singles) {
-    auto curve = focus::f64::empty_curve();
-    for (std::size_t k = 0; k < values.size(); ++k) {
-        curve = focus::f64::follow_shape(curve, values[k], static_cast<int>(k));
-    }
-    const bool inside = curve.highest > values.front() && curve.highest > values.back();
-    return inside ? evidence(curve, singles, static_cast<int>(values.size())) : Evidence{};
-}
-
-focus::f64::SingleRecord single_record(const std::vector<double>& values) {
-    focus::f64::SingleRecord record{};
-    for (std::size_t k = 0; k < values.size(); ++k) {
-        record = focus::f64::follow_single(record, values[k], static_cast<int>(k));
-    }
-    return record;
-}
-
-// Beyond the largest of n values the next one lies with the probability 1 / (n + 1), give or take as much: a few more
-// of them where the limit is near what curves of few images have.
-int random_orders(double rate, bool cheap, int images) {
-    constexpr int many_images = 64;
-    constexpr double most = 100000;
-    const double times = cheap ? 32 : images <= many_images ? 4 : 1;
-    return static_cast<int>(std::clamp(std::ceil(times / rate), 250.0, most));
-}
 
 std::vector<std::vector<Share>> means_of(const std::vector<double>& axial_weights, int images) {
     std::vector<std::vector<Share>> means;
@@ -85,9 +35,9 @@ std::vector<double> averaged(const std::vector<double>& values, const std::vecto
 }
 
 // Evenly over a side, each with its window and the masks' reach inside the image where it is large enough.
-std::vector<int> middles(int count, int margin) {
+std::vector<int> middles(int count, int margin, int most) {
     const int first = std::min(margin, (count - 1) / 2), last = std::max(count - 1 - margin, count / 2);
-    const int places = std::min(probes_a_side, last - first + 1);
+    const int places = std::min(most, last - first + 1);
     std::vector<int> result;
     for (int k = 0; k < places; ++k) {
         result.push_back(places == 1 ? (first + last) / 2 : first + (last - first) * k / (places - 1));
@@ -162,11 +112,11 @@ void add_products(const std::vector<double>& values, int columns, int rows, Grid
 
 } // namespace
 
-FocusProbes::FocusProbes(int columns, int rows, FocusMeasure measure, const FocusWindow& window)
+FocusProbes::FocusProbes(int columns, int rows, FocusMeasure measure, const FocusWindow& window, int most_a_side)
     : measure_(measure), window_(window), pixels_(static_cast<std::size_t>(columns) * static_cast<std::size_t>(rows)) {
     const int margin = window.radius() + reach;
-    for (const int row : middles(rows, margin)) {
-        for (const int column : middles(columns, margin)) {
+    for (const int row : middles(rows, margin, most_a_side)) {
+        for (const int column : middles(columns, margin, most_a_side)) {
             Probe& probe = probes_.emplace_back();
             probe.column = std::max(0, column - margin);
             probe.row = std::max(0, row - margin);
@@ -227,8 +177,7 @@ std::vector<double> FocusProbes::curve(const Probe& probe, const std::vector<int
 }
 
 std::vector<std::vector<double>> FocusProbes::curves_in_order(const Means& means) const {
-    std::vector<int> order(static_cast<std::size_t>(images_));
-    std::iota(order.begin(), order.end(), 0);
+    const std::vector<int> order = images_in_order(images_);
     std::vector<std::vector<double>> curves(probes_.size());
     in_parallel(static_cast<int>(probes_.size()), [&](int k) {
         curves[static_cast<std::size_t>(k)] = curve(probes_[static_cast<std::size_t>(k)], order, means);
@@ -254,12 +203,13 @@ double FocusProbes::curve_width() const {
         const double weight = variance > 0 ? std::max(0.0, 1 - steps / (2 * variance)) / variance : 0;
         for (int lag = 1; weight > 0 && lag <= lags; ++lag) {
             double sum = 0;
-            for (int k = 0; k + lag < images_; ++k) {
-                const double step = values[static_cast<std::size_t>(k + lag)] - values[static_cast<std::size_t>(k)];
+            for (int k = 0; k < images_; ++k) {
+                // On from the last image to the first: noise and peak have as many pairs at every lag.
+                const auto later = static_cast<std::size_t>((k + lag) % images_);
+                const double step = values[later] - values[static_cast<std::size_t>(k)];
                 sum += step * step;
             }
-            structure[static_cast<std::size_t>(lag - 1)] +=
-                weight * sum / images_; // a peak has as many pairs at every lag
+            structure[static_cast<std::size_t>(lag - 1)] += weight * sum / images_;
         }
     }
     // Noise and rise follow by linear least squares for every width; the width is tried.
@@ -268,7 +218,9 @@ double FocusProbes::curve_width() const {
     for (double width = finest; width < images_; width *= ratio) {
         std::vector<double> form;
         for (int lag = 1; lag <= lags; ++lag) {
-            form.push_back(1 - std::exp(-lag * lag / (4 * width * width)));
+            const int back = images_ - lag;
+            form.push_back(1 - std::exp(-lag * lag / (4 * width * width)) -
+                           std::exp(-back * back / (4 * width * width)));
         }
         const NoiseModel line = fitted(form, structure);
         double distance = 0;
@@ -388,33 +340,55 @@ std::vector<Evidence> FocusProbes::by_chance(const std::vector<double>& axial_we
     std::vector<Evidence> result(static_cast<std::size_t>(random_orders(rate, alone, images_)));
     in_parallel(static_cast<int>(result.size()), [&](int sample) {
         const auto probe = static_cast<std::size_t>(sample) % probes_.size();
-        std::vector<int> order(static_cast<std::size_t>(images_));
-        std::iota(order.begin(), order.end(), 0);
-        std::mt19937_64 random(static_cast<std::uint64_t>(sample));
-        for (std::size_t last = order.size(); last > 1; --last) {
-            std::swap(order[last - 1], order[random() % last]);
-        }
+        const std::vector<int> order = random_order(images_, static_cast<std::uint64_t>(sample));
         std::vector<double> singles;
         for (const int image : order) {
             singles.push_back(in_order[probe][static_cast<std::size_t>(image)]);
         }
         result[static_cast<std::size_t>(sample)] =
-            evidence_of(alone ? singles : curve(probes_[probe], order, means), single_record(singles));
+            evidence_of(alone ? singles : curve(probes_[probe], order, means), singles);
     });
     return result;
 }
 
-namespace {
-
-// Another value exceeds the k-th largest of n with the probability k / (n + 1).
-double exceeded_by(std::vector<double> values, double rate) {
-    const double count = static_cast<double>(values.size());
-    const auto place = static_cast<std::ptrdiff_t>(std::clamp(std::floor(rate * (count + 1)), 1.0, count)) - 1;
-    std::ranges::nth_element(values, values.begin() + place, std::greater<>());
-    return values[static_cast<std::size_t>(place)];
+double FocusProbes::share_with_rival(const std::vector<double>& axial_weights, double most_rival) const {
+    const auto singles = curves_in_order(means_of({1}, images_));
+    const auto curves = curves_in_order(means_of(axial_weights, images_));
+    // Of the averaged noise over a single image's, and how many values of it are independent.
+    const double variance = averaged_points(axial_weights, images_)[static_cast<std::size_t>(images_ / 2)].variance;
+    const double independent = std::max(2.0, images_ * variance);
+    // Twice the range of that many normal values: where noise exceeds texture the measure is not linear, and averages
+    // leave up to twice as much.
+    const double by_noise = 4 * std::sqrt(2 * std::log(independent) * variance);
+    int rivalled = 0;
+    for (std::size_t probe = 0; probe < curves.size(); ++probe) {
+        auto curve = focus::f64::empty_curve();
+        for (std::size_t k = 0; k < curves[probe].size(); ++k) {
+            curve = focus::f64::follow_shape(curve, curves[probe][k], static_cast<int>(k));
+        }
+        const std::vector<double>& single = singles[probe];
+        double differences = 0;
+        for (std::size_t k = 2; k < single.size(); ++k) {
+            const double second = single[k - 2] - 2 * single[k - 1] + single[k];
+            differences += second * second;
+        }
+        const double noise = std::sqrt(differences / (6.0 * std::max(1, images_ - 2)));
+        rivalled +=
+            curve.rival > std::max(most_rival * (curve.highest - curve.sum / images_), by_noise * noise) ? 1 : 0;
+    }
+    return static_cast<double>(rivalled) / static_cast<double>(curves.size());
 }
 
-} // namespace
+std::vector<std::vector<double>> FocusProbes::some_curves() const {
+    constexpr std::size_t every = 7; // in another column each row
+    const Means alone = means_of({1}, images_);
+    std::vector<std::vector<double>> curves((probes_.size() + every - 1) / every);
+    in_parallel(static_cast<int>(curves.size()), [&](int k) {
+        const auto at = static_cast<std::size_t>(k);
+        curves[at] = curve(probes_[every * at], images_in_order(images_), alone);
+    });
+    return curves;
+}
 
 double FocusProbes::suitable_smoothing() const {
     return images_ <= few_images ? 0 : topography::suitable_smoothing(curve_width(), images_);
@@ -425,32 +399,6 @@ double suitable_smoothing(double curve_width, int images) {
     constexpr double least = 1; // less averages little, but makes three images of curves as narrow as one unimodal
     const double smoothing = std::min(most_smoothing_of_width * curve_width, most_of_the_scan * (images - 1));
     return smoothing >= least ? smoothing : 0;
-}
-
-// Unimodality has half of the rate; the order shown what is left of it by those random orders that exceed the limit of
-// unimodality: all of it where averages along z make every curve unimodal.
-ChanceLimit limit_of(const std::vector<Evidence>& by_chance, double rate, int images) {
-    std::vector<double> unimodality, order;
-    std::ranges::transform(by_chance, std::back_inserter(unimodality), &Evidence::unimodality);
-    ChanceLimit limit{.least = {.unimodality = exceeded_by(unimodality, rate / 2)}};
-    if (images <= few_images) {
-        limit.least.unimodality = std::min(limit.least.unimodality, most_unimodality_asked);
-    }
-    double above = 0;
-    for (const Evidence& found : by_chance) {
-        const bool unimodal = found.unimodality > limit.least.unimodality;
-        above += unimodal ? 1 : 0;
-        order.push_back(unimodal ? 0 : found.order);
-    }
-    const auto orders = static_cast<double>(by_chance.size());
-    limit.least.order = exceeded_by(order, std::max(rate / 2, rate - above / orders));
-    above += static_cast<double>(std::ranges::count_if(order, [&](double found) { return found > limit.least.order; }));
-    limit.rate = (above + 1) / (orders + 1); // the next one may be
-    return limit;
-}
-
-Evidence evidence(const focus::f64::CurveRecord& curve, const focus::f64::SingleRecord& single, int images) {
-    return {.unimodality = focus::f64::unimodality(curve), .order = focus::f64::order_shown(curve, single, images)};
 }
 
 } // namespace vkfv::topography

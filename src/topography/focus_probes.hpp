@@ -4,6 +4,7 @@
 #pragma once
 
 #include "topography/axial_average.hpp"
+#include "topography/chance.hpp"
 #include "topography/focus_measure.hpp"
 #include "topography/noise_gain.hpp"
 
@@ -12,34 +13,12 @@
 
 namespace vkfv::topography {
 
-// Curves of few images are often as unimodal as a curve can be by chance: no more than this is asked of them.
-inline constexpr int few_images = 14;
-inline constexpr double most_unimodality_asked = 0.8;
-
 // Of fewer a quarter of the second differences along z is too few to be without texture.
 inline constexpr int least_images_for_correlation = 10;
 
 // The widest average along z over the standard deviation of the focus curves: two thirds of a Gaussian's half width.
 // Heights are best at 0.6 to 1, of stacks full of noise at 1; the wider, the more of a short scan is blurred.
 inline constexpr double most_smoothing_of_width = 0.8;
-
-// What tells a curve from chance (curve.glsl): unimodality best where there are few images or little noise, the order
-// shown elsewhere.
-struct Evidence {
-    double unimodality = 0;
-    double order = 0;
-};
-
-Evidence evidence(const focus::f64::CurveRecord& curve, const focus::f64::SingleRecord& single, int images);
-
-// A curve is no matter of chance that exceeds one or the other.
-struct ChanceLimit {
-    Evidence least;
-    double rate = 1; // of the random orders that do
-};
-
-// by_chance: of curves in random order. This share of them exceeds the limit, but for most_unimodality_asked.
-ChanceLimit limit_of(const std::vector<Evidence>& by_chance, double rate, int images);
 
 // Of single images: variance = constant + slope * value, in the images' unit squared.
 struct NoiseModel {
@@ -50,14 +29,15 @@ struct NoiseModel {
 
 class FocusProbes {
   public:
-    // At most 256 of them on a regular grid, fewer once they hold 128 MB.
-    FocusProbes(int columns, int rows, FocusMeasure measure, const FocusWindow& window);
+    // On a regular grid, fewer once they hold 128 MB.
+    FocusProbes(int columns, int rows, FocusMeasure measure, const FocusWindow& window, int most_a_side = 16);
 
     void add(const Channels& image);
 
     // Standard deviation, in images, of the Gaussian that the focus curves resemble; 0: they have no form that
-    // outlasts an image. From their structure function D(l) = mean of (F[k] - F[k+l])^2 = 2 noise^2 +
-    // 2 S (1 - exp(-l^2 / (4 width^2))), whose first term alone is noise's. At least 4 images; else 0.
+    // outlasts an image. From their structure function, around the ends of the n images: D(l) = mean of
+    // (F[k] - F[k+l])^2 = 2 noise^2 + 2 S (1 - exp(-l^2 / (4 width^2)) - exp(-(n - l)^2 / (4 width^2))), whose first
+    // term alone is noise's. At least 4 images; else 0.
     double curve_width() const;
 
     // By least squares over all probes, from those second differences along z that are the smallest quarter of each:
@@ -73,6 +53,14 @@ class FocusProbes {
     // axial_weights: of both averages (axial_average.hpp). Of as many orders as tell what a share of `rate` exceeds,
     // the better the less an order costs.
     std::vector<Evidence> by_chance(const std::vector<double>& axial_weights, double rate) const;
+
+    // Share of the probes whose curves have a second maximum of this prominence over the first's height above the mean,
+    // and more than noise brings. Noise is what second differences of single images' curves tell, which narrow peaks
+    // make larger: fewer are found then. axial_weights: of both averages.
+    double share_with_rival(const std::vector<double>& axial_weights, double most_rival) const;
+
+    // Of single images at every seventh probe: what the stack as a whole is judged by (chance.hpp).
+    std::vector<std::vector<double>> some_curves() const;
 
     // Standard deviation of the average along z, in images, that suits these curves. None of few_images.
     double suitable_smoothing() const;

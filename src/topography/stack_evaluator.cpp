@@ -16,6 +16,7 @@ namespace {
 
 constexpr int most_peak_range_steps = 100; // 202 curves in memory
 constexpr double dark = 0.01;              // of the stack's mean brightness
+constexpr int wide_places_a_side = 8;
 
 void require(bool good, std::string key, std::string found, std::string expected, std::string remedy) {
     if (!good)
@@ -60,19 +61,29 @@ double relative_noise(double brightness, const NoiseModel& model) {
     return brightness > 0 ? std::sqrt(model.variance(brightness)) / brightness : 0;
 }
 
+// Five windows wide, for a fifth of the noise; but not so wide that a single step of the specimen's would lie in most
+// of them. 0: there is no room for one at least twice as wide.
+int wide_window(int window_px, int columns, int rows) {
+    constexpr int widening = 5, most_of_the_image = 6;
+    const int most = std::min(widening * window_px, std::min(columns, rows) / most_of_the_image);
+    return most >= 2 * window_px ? most - (most + 1) % 2 : 0;
+}
+
 double mean_of(const Grid<float>& grid) {
     return std::accumulate(grid.values.begin(), grid.values.end(), 0.0) / static_cast<double>(grid.values.size());
 }
 
-// If a twenty-fifth or more of the measured points would be so by chance, none is measured: those that are not cannot
-// be told from them. Who asks for a high rate accepts twice as much.
-void leave_out_chance(Topography& topography, double chance_rate, double accepted_rate) {
+// A twenty-fifth or more of the measured points would be so by chance: those that are not cannot be told from them. Who
+// asks for a high rate accepts twice as much.
+bool mostly_by_chance(const Topography& topography, double chance_rate, double accepted_rate) {
     const double most = std::max(0.04, 2 * accepted_rate);
-    auto& states = topography.state.values;
+    const auto& states = topography.state.values;
     const auto measured = static_cast<double>(std::ranges::count(states, PointState::measured));
-    if (chance_rate * static_cast<double>(states.size()) < most * measured) {
-        return;
-    }
+    return chance_rate * static_cast<double>(states.size()) >= most * measured;
+}
+
+void leave_out_chance(Topography& topography) {
+    auto& states = topography.state.values;
     for (std::size_t k = 0; k < states.size(); ++k) {
         if (states[k] == PointState::measured) {
             states[k] = PointState::by_chance;
@@ -110,6 +121,17 @@ double place_noise(double bend, double image_noise, const SmoothedNoise& smoothe
     const double by_noise = image_noise * smoothed.bend;
     const double without = std::sqrt(std::max(bend * bend - by_noise * by_noise, bend * bend / 4));
     return image_noise * smoothed.difference / (2 * std::max(without, 1e-30));
+}
+
+// What the averages of images and curve make of the places that the images were taken at.
+std::vector<double> averaged(const std::vector<double>& readings, const std::vector<double>& weights) {
+    const auto images = static_cast<int>(readings.size());
+    std::vector<double> result;
+    for (int at = 0; at < images; ++at) {
+        const auto shares = twice_averaged(weights, at, images);
+        result.push_back(std::inner_product(shares.begin(), shares.end(), readings.begin(), 0.0));
+    }
+    return result;
 }
 
 } // namespace
@@ -162,6 +184,8 @@ void StackEvaluator::begin(const Channels& first) {
     plan.peak = static_cast<int>(options_.peak);
     plan.peak_range = options_.peak_range_steps;
     probes_.emplace(columns_, rows_, measure_, window_);
+    if (const int wide = wide_window(options_.window_px, columns_, rows_); wide > 0 && options_.most_rival < 1)
+        wide_.emplace(columns_, rows_, measure_, FocusWindow(wide, options_.window_shape), wide_places_a_side);
     // An image is judged once the curve's average has passed it by the range: its own neighbours are asked for then.
     planes_ = make_planes_({.plan = plan,
                             .window = window_,
@@ -170,7 +194,7 @@ void StackEvaluator::begin(const Channels& first) {
                             .averaged_curves_kept = 2 * plan.peak_range + 1});
 }
 
-void StackEvaluator::add(Channels image, double z) {
+void StackEvaluator::add(Channels image, double z, std::optional<double> reading) {
     check(image, z);
     if (z_.empty())
         begin(image);
@@ -178,8 +202,13 @@ void StackEvaluator::add(Channels image, double z) {
         for (float& value : channel.values)
             value *= scale_;
     probes_->add(image);
+    if (wide_)
+        wide_->add(image);
     planes_->take(static_cast<int>(z_.size()), std::move(image));
     z_.push_back(z);
+    if (reading) {
+        readings_.push_back(*reading);
+    }
     advance(false);
 }
 
@@ -213,12 +242,20 @@ void StackEvaluator::advance(bool all_taken) {
 
 // What a curve must have to be no matter of chance.
 StackFigures StackEvaluator::judge_stack() const {
-    StackFigures figures{.smoothing_steps = options_.smoothing_steps.value_or(0),
-                         .curve_width_steps = probes_->curve_width(),
-                         .limit = {}};
+    const int images = static_cast<int>(z_.size());
+    StackFigures figures;
+    figures.smoothing_steps = options_.smoothing_steps.value_or(0);
+    figures.curve_width_steps = probes_->curve_width();
+    if (wide_)
+        figures.rivalled_share = wide_->share_with_rival(axial_weights_, options_.most_rival);
     if (options_.false_peak_rate < 1) {
-        figures.limit = limit_of(probes_->by_chance(axial_weights_, options_.false_peak_rate), options_.false_peak_rate,
-                                 static_cast<int>(z_.size()));
+        figures.limit =
+            limit_of(probes_->by_chance(axial_weights_, options_.false_peak_rate), options_.false_peak_rate, images);
+    }
+    if (options_.false_peak_rate < 1 && images > few_images) {
+        const auto curves = probes_->some_curves();
+        figures.whole = mean_evidence(curves, images_in_order(images));
+        figures.limit_of_whole = limit_of_stack(curves, options_.false_peak_rate);
     }
     return figures;
 }
@@ -229,9 +266,7 @@ PointState StackEvaluator::judge(const focus::f64::CurveRecord& curve, const foc
         return PointState::no_peak;
     }
     const int images = static_cast<int>(z_.size());
-    const Evidence found = evidence(curve, single, images);
-    const Evidence& least = figures.limit.least;
-    if (options_.false_peak_rate < 1 && !(found.unimodality > least.unimodality || found.order > least.order)) {
+    if (options_.false_peak_rate < 1 && !figures.limit.exceeded_by(evidence(curve, single, images))) {
         return PointState::by_chance;
     }
     const double rise = curve.largest - curve.sum / images;
@@ -244,9 +279,11 @@ PointState StackEvaluator::judge(const focus::f64::CurveRecord& curve, const foc
     // Noise has maxima too: how prominent the largest of many are, as the range of normal values. Averages fill the
     // valley between two maxima, single images hide it in their noise: either may show it.
     const double by_noise = 2 * noise * std::sqrt(2 * std::log(static_cast<double>(images)));
+    // Where most wider windows, of less noise, have a second maximum, a point must be able to show that it has none.
+    const bool hidden = figures.rivalled() && by_noise * averaging > options_.most_rival * rise;
     const bool rivalled =
         options_.most_rival < 1 &&
-        (curve.rival > std::max(options_.most_rival * rise, by_noise * averaging) ||
+        (hidden || curve.rival > std::max(options_.most_rival * rise, by_noise * averaging) ||
          single.rival > std::max(options_.most_rival * focus::f64::single_rise(single, images), by_noise));
     return rivalled || focus::f64::count_peaks(curve, images) > options_.most_peaks ? PointState::many_peaks
                                                                                     : PointState::measured;
@@ -266,6 +303,7 @@ Topography StackEvaluator::finish(double x0, double y0, double pitch) {
     StackFigures figures = judge_stack();
     const SmoothedNoise smoothed = smoothed_noise(axial_weights_);
     const std::vector<AveragedPoint> points = averaged_points(axial_weights_, images);
+    const std::vector<double> read = averaged(readings_, axial_weights_);
     // Of a place between the curve's points.
     const auto position = [&](double at) {
         const int before = std::clamp(static_cast<int>(std::floor(at)), 0, images - 2);
@@ -275,6 +313,14 @@ Topography StackEvaluator::finish(double x0, double y0, double pitch) {
     const double brightness = mean_of(stack.brightness) / images;
     const Grid<float> brightness_around = window_mean(stack.brightness, window_); // of all images together
     const double step = (z_.back() - z_.front()) / (images - 1);
+    const auto height_at = [&](double at) {
+        if (read.empty()) {
+            return z_.front() + step * position(at);
+        }
+        const int before = std::clamp(static_cast<int>(std::floor(at)), 0, images - 2);
+        const double here = read[static_cast<std::size_t>(before)];
+        return here + (at - before) * (read[static_cast<std::size_t>(before + 1)] - here);
+    };
     Topography result;
     result.height = {.height = Grid<double>(columns_, rows_, std::numeric_limits<double>::quiet_NaN()),
                      .x0 = x0,
@@ -300,7 +346,7 @@ Topography StackEvaluator::finish(double x0, double y0, double pitch) {
         state = here > dark * brightness ? judge(curve, stack.singles(column, row), image_noise, averaging, figures)
                                          : PointState::dark;
         if (state == PointState::measured) {
-            result.height.height(column, row) = z_.front() + step * position(curve.at + curve.offset);
+            result.height.height(column, row) = height_at(curve.at + curve.offset);
             result.height_noise(column, row) = step * place_noise(curve.bend, image_noise, smoothed);
         }
     };
@@ -313,8 +359,11 @@ Topography StackEvaluator::finish(double x0, double y0, double pitch) {
         for (float& value : channel.values)
             value /= scale_;
     result.all_in_focus = std::move(stack.all_in_focus);
-    if (figures.limit.rate < 1 && images > few_images)
-        leave_out_chance(result, std::max(options_.false_peak_rate, figures.limit.rate), options_.false_peak_rate);
+    const double rate = options_.false_peak_rate;
+    if (rate < 1 && images > few_images &&
+        (mostly_by_chance(result, std::max(rate, figures.limit.rate), rate) ||
+         !figures.limit_of_whole.exceeded_by(figures.whole)))
+        leave_out_chance(result);
     if (options_.place_by_texture)
         place_by_texture(result.height.height, result.all_in_focus, measure_, window_);
     if (options_.repair_outliers)

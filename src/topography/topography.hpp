@@ -17,7 +17,8 @@
 //   order it shows (curve.glsl). How large they are by chance is found by shuffling the stack at some hundred places
 //   (focus_probes.hpp), so no noise need be known, and it holds for few images and many, for light of few rays and for
 //   texture that a coarse scan jumps over. Nor is a point measured whose curve, averaged or not, has a second maximum
-//   that stands out almost as the first. Further limits of quality can be set.
+//   that stands out almost as the first; nor one whose noise could hide a second maximum, where most curves of wider
+//   windows, which have less noise, show one. Further limits of quality can be set.
 //
 // - The height is that of the window's texture, wherever in the window this lies: it is carried to the window's middle
 //   along the surface's slope (texture_place.hpp).
@@ -85,8 +86,13 @@ struct StackFigures {
     double smoothing_steps = 0;           // that were used
     double curve_width_steps = 0;         // standard deviation of its focus curves, FocusProbes::curve_width()
     ChanceLimit limit;                    // that a measured point exceeds
+    Evidence whole;                       // mean of single images' curves at some places
+    double rivalled_share = 0;            // of wide windows' curves that have a second maximum above most_rival
+    ChanceLimit limit_of_whole;           // that it exceeds where anything is measured, but for few_images
     double image_noise = 0;               // standard deviation of a pixel over its brightness, at the mean brightness
     NoiseCorrelation noise_correlation{}; // of neighbouring pixels' noise, FocusProbes::noise_correlation()
+
+    bool rivalled() const { return rivalled_share > 0.5; }
 };
 
 struct Topography {
@@ -111,7 +117,7 @@ struct Topography {
 // Evaluates a stack whose images come one at a time, in one pass. With r = ceil(3 smoothing_steps), R =
 // peak_range_steps and C channels it holds, however long the stack, for every pixel about 4 bytes for each of
 // C (2r + 2R + 2) values of images and 2r + 2R + 2 of curves, and 240 + 50 C bytes besides: 500 MB for 1000 x 1000
-// grey pixels with smoothing_steps = 3, 1.3 GB with 20; and 128 MB at most for its probes.
+// grey pixels with smoothing_steps = 3, 1.3 GB with 20; and 256 MB at most for its probes.
 class StackEvaluator {
   public:
     // `make_planes` makes what does the work: the host's cores unless a device is given. Throws InputError where an
@@ -120,8 +126,10 @@ class StackEvaluator {
 
     // The image at height z (mm). Images come in ascending z, equidistant to a hundredth of a step and all of
     // one size and number of channels, with finite values: InputError otherwise.
+    // reading: where a scale says that the image was really taken, mm, by which heights are told then; of all images,
+    // or of none. Curves are followed as if the steps were equal.
     void add(const Grid<float>& image, double z) { add(Channels{image}, z); }
-    void add(Channels image, double z);
+    void add(Channels image, double z, std::optional<double> reading = {});
 
     // The heights of all images added; pixel (0, 0) stands at (x0, y0), pitch in mm. At least three images:
     // InputError otherwise. Ends the evaluation: call it once.
@@ -142,12 +150,14 @@ class StackEvaluator {
     std::vector<double> axial_weights_;
     FocusPlanesMaker make_planes_;
     std::optional<FocusProbes> probes_;   // from the first image on
+    std::optional<FocusProbes> wide_;     // likewise, by a window several times as wide
     std::unique_ptr<FocusPlanes> planes_; // from the first image on
     int columns_ = 0;
     int rows_ = 0;
     std::size_t channels_ = 0;
     float scale_ = 1; // a power of two that brings the images near 1: squares of fluxes would leave a float's range
     std::vector<double> z_;
+    std::vector<double> readings_;
     int measured_ = 0; // images
     int averaged_ = 0;
     int followed_ = 0;

@@ -13,8 +13,8 @@
 
 namespace vkfv::trace {
 
-BackwardPlan backward_plan(std::uint64_t rays, int detector_pixels) {
-    const auto pixels = static_cast<std::uint64_t>(detector_pixels) * static_cast<std::uint64_t>(detector_pixels);
+BackwardPlan backward_plan(std::uint64_t rays, ImageSize detector_pixels) {
+    const std::uint64_t pixels = detector_pixels.count();
     const std::uint64_t per_pixel = (rays + pixels - 1) / pixels;
     BackwardPlan plan;
     const std::uint64_t most = std::uint64_t{1} << (lattice_generators.size() - 1);
@@ -25,10 +25,9 @@ BackwardPlan backward_plan(std::uint64_t rays, int detector_pixels) {
     return plan;
 }
 
-std::uint64_t launched_rays(const TraceOptions& options, int detector_pixels) {
-    const auto side = static_cast<std::uint64_t>(detector_pixels);
+std::uint64_t launched_rays(const TraceOptions& options, ImageSize detector_pixels) {
     return options.estimator == Estimator::backward
-               ? backward_plan(options.rays, detector_pixels).rays_per_pixel() * side * side
+               ? backward_plan(options.rays, detector_pixels).rays_per_pixel() * detector_pixels.count()
                : options.rays;
 }
 
@@ -44,11 +43,13 @@ physics::f64::BackwardOptics backward_optics(const optics::Instrument& instrumen
     BackwardOptics optics = instrument.turned.value().optics;
     // What the sharpest lobe sends into the source's cone along its mirror direction, were it flat over the cone.
     double peak = 0;
+    const bool is_ring = (instrument.features & FEATURE_RING) != 0;
+    const double solid_angle = is_ring ? optics.ring_area / (optics.ring.distance * optics.ring.distance)
+                                       : pi * optics.source_outer * optics.source_outer;
     for (const Lobe& lobe : {material.lobe_0, material.lobe_1, material.lobe_2, material.lobe_3}) {
         if (lobe.weight > 0) {
             const real3 up(0, 0, 1);
-            peak = std::max(peak, scatter_bsdf(material_of_lobe(lobe), -up, up, up) * pi * optics.source_outer *
-                                      optics.source_outer);
+            peak = std::max(peak, scatter_bsdf(material_of_lobe(lobe), -up, up, up) * solid_angle);
         }
     }
     // Where a lobe changes little over the cone, one direction keeps the lattice whole, which a choice among several
@@ -60,15 +61,20 @@ physics::f64::BackwardOptics backward_optics(const optics::Instrument& instrumen
 }
 
 BackwardImage::BackwardImage(const optics::Instrument& instrument, const BackwardPlan& plan)
-    : plan_(plan), flux_(instrument.flux), pixels_(instrument.constants.detector_pixels) {
-    const auto side = static_cast<std::size_t>(pixels_);
-    sums_.resize(plan.randomisations * side * side);
+    : plan_(plan), flux_(instrument.flux), pixels_(instrument.detector_pixels()) {
+    sums_.resize(plan.randomisations * pixels_.count());
     const auto& constants = instrument.constants;
-    const double radiance = instrument.flux / (pi * pi * constants.source_radius * constants.source_radius);
-    const double pitch = 2 * constants.detector_half_size / pixels_;
+    const bool is_ring = (instrument.features & physics::f64::FEATURE_RING) != 0;
+    const double area =
+        is_ring ? physics::f64::ring_area(constants.ring) : pi * constants.source_radius * constants.source_radius;
+    const double radiance = instrument.flux / (pi * area);
+    const double pitch = 2 * constants.detector_half_width / pixels_.columns;
+    const double side = std::min(2 * constants.pixel_reach, 1.0);
+    const double sensitive = side * side; // share of a pixel
     const double pupil =
         pi * instrument.turned.value().optics.pupil_radius * instrument.turned.value().optics.pupil_radius;
-    scale_ = radiance * pitch * pitch * pupil * instrument.splitter_reflectance * instrument.splitter_transmittance;
+    scale_ = radiance * pitch * pitch * sensitive * pupil * instrument.splitter_reflectance *
+             instrument.splitter_transmittance;
 }
 
 void BackwardImage::add(std::uint32_t randomisation, std::span<const std::uint64_t> sums) {
@@ -82,8 +88,8 @@ double BackwardImage::power_per_number() const {
 
 Image BackwardImage::image() const {
     Image image;
-    image.flux = Grid<double>(pixels_, pixels_);
-    image.standard_error = Grid<double>(pixels_, pixels_);
+    image.flux = Grid<double>(pixels_.columns, pixels_.rows);
+    image.standard_error = Grid<double>(pixels_.columns, pixels_.rows);
     const double count = plan_.randomisations;
     const double unit = 1.0 / (static_cast<double>(physics::f64::BACKWARD_UNIT) * plan_.points);
     const std::size_t pixels = image.flux.values.size();

@@ -20,7 +20,7 @@ struct BackwardPlan {
 };
 
 // No fewer than `rays` in all.
-BackwardPlan backward_plan(std::uint64_t rays, int detector_pixels);
+BackwardPlan backward_plan(std::uint64_t rays, ImageSize detector_pixels);
 
 // Of an instrument that was turned round, with the numbers of candidates that suit a material.
 physics::f64::BackwardOptics backward_optics(const optics::Instrument& instrument,
@@ -45,7 +45,7 @@ class BackwardImage {
     BackwardPlan plan_;
     double flux_;  // W, emitted
     double scale_; // W, of a pixel whose values' mean is 1
-    int pixels_;
+    ImageSize pixels_;
     std::vector<std::uint64_t> sums_;
 };
 

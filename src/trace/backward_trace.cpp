@@ -27,8 +27,7 @@ constexpr std::uint32_t workgroup = 128;
 constexpr std::uint64_t most_paths = std::uint64_t{1} << 27; // a submission's; on slower devices its time decides
 
 std::uint32_t pixel_count(const DeviceScene& scene) {
-    const auto side = static_cast<std::uint32_t>(scene.instrument.constants.detector_pixels);
-    return side * side;
+    return static_cast<std::uint32_t>(scene.instrument.detector_pixels().count());
 }
 
 std::vector<vulkan::BindingDeclaration> declarations(const DeviceScene& scene) {
@@ -103,7 +102,7 @@ class BackwardTracer final : public DeviceExposures {
     BackwardTracer(const optics::Instrument& instrument, const specimen::Specimen& specimen,
                    const TraceOptions& options)
         : instrument_(instrument), turned_(optics::turned_round(instrument)),
-          plan_(backward_plan(options.rays, instrument.constants.detector_pixels)),
+          plan_(backward_plan(options.rays, instrument.detector_pixels())),
           scene_(make_device_scene(turned_, specimen, options, &instrument_)),
           trace_(scene_, backward_optics(instrument_, scene_.host_record.material), plan_, options),
           light_(*scene_.device, scene_.light_buffers()),
@@ -126,7 +125,8 @@ class BackwardTracer final : public DeviceExposures {
   private:
     class Exposure;
 
-    std::unique_ptr<DeviceExposure> prepare(double focal_height, std::uint32_t image, std::size_t slot) const override;
+    std::unique_ptr<DeviceExposure> prepare(FocalPosition position, std::uint32_t image,
+                                            std::size_t slot) const override;
     std::size_t slots() const override { return waves_ ? waves_->exposures_at_a_time() : most_exposures; }
 
     std::size_t pixels() const { return pixel_count(scene_); }
@@ -254,7 +254,7 @@ class BackwardTracer::Exposure final : public DeviceExposure {
     std::size_t next_place_ = 0;
 };
 
-std::unique_ptr<DeviceExposure> BackwardTracer::prepare(double focal_height, std::uint32_t image,
+std::unique_ptr<DeviceExposure> BackwardTracer::prepare(FocalPosition position, std::uint32_t image,
                                                         std::size_t slot) const {
     auto& for_host = for_host_.at(slot);
     if (!for_host) {
@@ -262,7 +262,7 @@ std::unique_ptr<DeviceExposure> BackwardTracer::prepare(double focal_height, std
         for_host.emplace(*scene_.device, numbers * sizeof(std::uint64_t) + (waves_ ? waves_->bytes_for_host() : 0),
                          vulkan::Buffer::Memory::host);
     }
-    scene_.set_exposure(focal_height, image, slot);
+    scene_.set_exposure(position, image, slot);
     return std::make_unique<Exposure>(*this, *for_host);
 }
 

@@ -61,22 +61,22 @@ void DeviceExposures::trace(DeviceExposure& exposure, std::uint32_t image, const
     exposure.hand_over();
 }
 
-std::future<Image> DeviceExposures::begin(double focal_height, std::uint32_t image,
+std::future<Image> DeviceExposures::begin(FocalPosition position, std::uint32_t image,
                                           std::shared_ptr<const Checkpoints> checkpoints) const {
     auto under_way = std::make_unique<UnderWay>(*this, take_slot());
     {
         const std::scoped_lock lock(starting_);
-        under_way->exposure = prepare(focal_height, image, under_way->slot);
+        under_way->exposure = prepare(position, image, under_way->slot);
         trace(*under_way->exposure, image, checkpoints.get());
     }
     return std::async(std::launch::deferred, [this, exposure = std::move(under_way)] { return finished(*exposure); });
 }
 
-ExposurePart DeviceExposures::count(double focal_height, std::uint32_t image, std::uint64_t first,
+ExposurePart DeviceExposures::count(FocalPosition position, std::uint32_t image, std::uint64_t first,
                                     std::uint64_t end) const {
     UnderWay under_way(*this, take_slot());
     const std::scoped_lock lock(starting_);
-    under_way.exposure = prepare(focal_height, image, under_way.slot);
+    under_way.exposure = prepare(position, image, under_way.slot);
     DeviceExposure& exposure = *under_way.exposure;
     exposure.set_out({});
     while (first < end) {

@@ -42,18 +42,18 @@ class DeviceExposure {
 
 class DeviceExposures : public Tracer {
   public:
-    Image expose(double focal_height, std::uint32_t image) const final { return begin(focal_height, image).get(); }
-    std::future<Image> begin(double focal_height, std::uint32_t image,
+    Image expose(FocalPosition position, std::uint32_t image) const final { return begin(position, image).get(); }
+    std::future<Image> begin(FocalPosition position, std::uint32_t image,
                              std::shared_ptr<const Checkpoints> checkpoints = nullptr) const final;
     int most_under_way() const final { return static_cast<int>(slots()); }
-    ExposurePart count(double focal_height, std::uint32_t image, std::uint64_t first, std::uint64_t end) const final;
+    ExposurePart count(FocalPosition position, std::uint32_t image, std::uint64_t first, std::uint64_t end) const final;
 
   protected:
     // How many may be under way, at most most_exposures; who begins another waits.
     virtual std::size_t slots() const = 0;
     // One that has nothing to do yet. Not called by two threads at a time, nor are others begun before this one has
     // been handed over: they share the device's memory but for what belongs to the slot.
-    virtual std::unique_ptr<DeviceExposure> prepare(double focal_height, std::uint32_t image,
+    virtual std::unique_ptr<DeviceExposure> prepare(FocalPosition position, std::uint32_t image,
                                                     std::size_t slot) const = 0;
 
   private:

@@ -69,8 +69,7 @@ DeviceScene make_device_scene(const optics::Instrument& instrument, const specim
     std::optional<vulkan::Buffer> cell_light;
     if (seen != nullptr && options.waves && !options.nonsequential) {
         filter.emplace(*seen, waves_on_device(*options.waves, *seen, device->report()));
-        cell_light.emplace(*device,
-                           WaveImage(*filter, instrument.constants.detector_pixels).numbers() * sizeof(std::uint64_t),
+        cell_light.emplace(*device, WaveImage(*filter, instrument.detector_pixels()).numbers() * sizeof(std::uint64_t),
                            vulkan::Buffer::Memory::device, wave_memory_remedy);
         constants.pupil_cells = to_float(filter->cells());
         const vk::DeviceAddress address = cell_light->address();
@@ -104,8 +103,8 @@ DeviceScene make_device_scene(const optics::Instrument& instrument, const specim
             .cell_light = std::move(cell_light)};
 }
 
-void DeviceScene::set_exposure(double focal_height, std::uint32_t image, std::size_t for_slot) {
-    constants.exposure = to_float(make_exposure(instrument, host_record, focal_height, seed, image));
+void DeviceScene::set_exposure(FocalPosition position, std::uint32_t image, std::size_t for_slot) {
+    constants.exposure = to_float(make_exposure(instrument, host_record, position, seed, image));
     slot = for_slot;
     parameters.at(slot).write_values(std::span<const kernels::Parameters>(&constants, 1));
 }

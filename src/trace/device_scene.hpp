@@ -34,7 +34,7 @@ inline constexpr std::size_t most_exposures = 3;
 struct DeviceScene {
     // For what is recorded from now on. slot: of those under way at a time, below most_exposures; what was recorded for
     // the slot before must have been done.
-    void set_exposure(double focal_height, std::uint32_t image, std::size_t slot = 0);
+    void set_exposure(FocalPosition position, std::uint32_t image, std::size_t slot = 0);
     // Of an image before its first path.
     void clear_cell_light(vulkan::Commands& commands) const;
     // Where light is sorted for waves; none: it is not.

@@ -6,6 +6,7 @@
 #include "trace/forward_trace.hpp"
 #include "trace/nonsequential_trace.hpp"
 #include "trace/scene_waves.hpp"
+#include "trace/wave_image.hpp"
 #include "trace/wave_memory.hpp"
 
 #include "spirv/probe_nonsequential_bvh.h"
@@ -59,7 +60,8 @@ class DeviceTracer final : public DeviceExposures {
         return std::make_unique<ForwardTrace>(scene, batch);
     }
 
-    std::unique_ptr<DeviceExposure> prepare(double focal_height, std::uint32_t image, std::size_t slot) const override;
+    std::unique_ptr<DeviceExposure> prepare(FocalPosition position, std::uint32_t image,
+                                            std::size_t slot) const override;
     std::size_t slots() const override { return waves_ ? waves_->exposures_at_a_time() : most_exposures; }
 
     optics::Instrument instrument_;
@@ -129,29 +131,31 @@ class DeviceTracer::Exposure final : public DeviceExposure {
     bool clears_ = true;
 };
 
-std::unique_ptr<DeviceExposure> DeviceTracer::prepare(double focal_height, std::uint32_t image,
+std::unique_ptr<DeviceExposure> DeviceTracer::prepare(FocalPosition position, std::uint32_t image,
                                                       std::size_t slot) const {
     auto& for_host = for_host_.at(slot);
     if (!for_host) {
         for_host.emplace(*scene_.device, trace_->bytes_for_host() + (waves_ ? waves_->bytes_for_host() : 0),
                          vulkan::Buffer::Memory::host);
     }
-    scene_.set_exposure(focal_height, image, slot);
+    scene_.set_exposure(position, image, slot);
     return std::make_unique<Exposure>(*this, *for_host);
 }
 
 } // namespace
 
-std::unique_ptr<Tracer> make_device_tracer(const optics::Instrument& instrument, const specimen::Specimen& specimen,
+std::unique_ptr<Tracer> make_device_tracer(const optics::Instrument& described, const specimen::Specimen& specimen,
                                            const TraceOptions& options) {
+    const optics::Instrument instrument = as_traced(described, options);
     if (options.estimator == Estimator::backward) {
         return make_backward_tracer(instrument, specimen, options);
     }
     return std::make_unique<DeviceTracer>(instrument, specimen, options);
 }
 
-TracerIdentity expected_identity(const optics::Instrument& instrument, const specimen::Specimen& specimen,
+TracerIdentity expected_identity(const optics::Instrument& described, const specimen::Specimen& specimen,
                                  const TraceOptions& options) {
+    const optics::Instrument instrument = as_traced(described, options);
     const optics::Instrument traced =
         options.estimator == Estimator::backward ? optics::turned_round(instrument) : instrument;
     const auto& waves = options.nonsequential ? std::nullopt : options.waves;
@@ -172,10 +176,10 @@ TracerIdentity expected_identity(const optics::Instrument& instrument, const spe
 }
 
 std::vector<PathEnd> device_paths(const optics::Instrument& instrument, const specimen::Specimen& specimen,
-                                  const TraceOptions& options, double focal_height, std::uint32_t image,
+                                  const TraceOptions& options, FocalPosition position, std::uint32_t image,
                                   std::uint64_t first, std::uint32_t count) {
     DeviceScene scene = make_device_scene(instrument, specimen, options);
-    scene.set_exposure(focal_height, image);
+    scene.set_exposure(position, image);
     const vulkan::Buffer ends(*scene.device, count * sizeof(kernels::PathEnd));
     const bool nonsequential = options.nonsequential;
     const vulkan::Kernel kernel(

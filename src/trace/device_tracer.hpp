@@ -14,9 +14,9 @@ namespace vkfv::trace {
 std::unique_ptr<Tracer> make_device_tracer(const optics::Instrument& instrument, const specimen::Specimen& specimen,
                                            const TraceOptions& options);
 
-// Paths one by one, as host_paths(); for tests. focal_height: mm, as Tracer::expose().
+// Paths one by one, as host_paths(); for tests.
 std::vector<PathEnd> device_paths(const optics::Instrument& instrument, const specimen::Specimen& specimen,
-                                  const TraceOptions& options, double focal_height, std::uint32_t image,
+                                  const TraceOptions& options, FocalPosition position, std::uint32_t image,
                                   std::uint64_t first, std::uint32_t count);
 
 } // namespace vkfv::trace

@@ -1,5 +1,6 @@
 #include "trace/device_wave_image.hpp"
 
+#include "trace/device_records.hpp"
 #include "trace/wave_memory.hpp"
 #include "waves/waves.hpp"
 
@@ -28,6 +29,11 @@ vulkan::Buffer table_of(const vulkan::Device& device, const optics::PupilFilter&
     return buffer;
 }
 
+// Of the filter's table, from one frequency to the next of an image of so many parts, which goes on mirrored.
+float steps_a_line(const optics::PupilFilter& filter, int parts) {
+    return static_cast<float>(0.5 / parts / filter.part_pitch() / filter.cutoff() * filter.steps());
+}
+
 vulkan::Kernel kernel_of(const vulkan::Device& device, const char* name, std::span<const std::uint32_t> code,
                          std::initializer_list<std::uint32_t> slots, std::uint32_t push_bytes) {
     std::vector<vulkan::BindingDeclaration> declarations;
@@ -39,19 +45,19 @@ vulkan::Kernel kernel_of(const vulkan::Device& device, const char* name, std::sp
 
 } // namespace
 
-DeviceWaveImage::DeviceWaveImage(const vulkan::Device& device, const optics::PupilFilter& filter, int pixels,
+DeviceWaveImage::DeviceWaveImage(const vulkan::Device& device, const optics::PupilFilter& filter, ImageSize pixels,
                                  const vulkan::Buffer& light)
-    : light_(light), pixels_(pixels), side_(static_cast<std::uint32_t>(pixels) * filter.cells().parts),
-      parts_(filter.cells().parts), cells_side_(filter.cells().side), sizes_(static_cast<int>(cells_side_), side_),
-      steps_(static_cast<std::uint32_t>(filter.steps())),
-      steps_a_line_(static_cast<float>(0.5 / side_ / filter.part_pitch() / filter.cutoff() * filter.steps())),
+    : light_(light), pixels_(pixels),
+      cells_(to_float(filter.cells())), size_{pixels.columns * static_cast<int>(cells_.parts),
+                                              pixels.rows * static_cast<int>(cells_.parts)},
+      sizes_(static_cast<int>(cells_.side), size_), steps_(static_cast<std::uint32_t>(filter.steps())),
+      steps_a_column_(steps_a_line(filter, size_.columns)), steps_a_row_(steps_a_line(filter, size_.rows)),
       planes_(buffer_of(device, sizes_.plane_bytes())), table_(table_of(device, filter)),
       spectrum_(buffer_of(device, sizes_.spectrum_bytes())), image_(buffer_of(device, sizes_.image_bytes())),
-      result_(device, static_cast<std::size_t>(pixels) * static_cast<std::size_t>(pixels) * sizeof(float)),
-      forward_(device, planes_, static_cast<int>(side_), static_cast<int>(side_), sizes_.planes_at_once(),
+      result_(device, pixels.count() * sizeof(float)),
+      forward_(device, planes_, size_.columns, size_.rows, sizes_.planes_at_once(),
                vulkan::FourierPlanes::Direction::forward),
-      inverse_(device, image_, 2 * static_cast<int>(side_), 2 * static_cast<int>(side_), 1,
-               vulkan::FourierPlanes::Direction::inverse),
+      inverse_(device, image_, 2 * size_.columns, 2 * size_.rows, 1, vulkan::FourierPlanes::Direction::inverse),
       sort_(kernel_of(device, "wave_sort", wave_sort, {WAVES_BINDING_PLANES}, sizeof(WaveGroups))),
       filter_(kernel_of(device, "wave_filter", wave_filter,
                         {WAVES_BINDING_PLANES, WAVES_BINDING_TABLE, WAVES_BINDING_SPECTRUM}, sizeof(WaveGroups))),
@@ -71,12 +77,14 @@ void DeviceWaveImage::dispatch(vulkan::Commands& commands, const vulkan::Kernel&
 void DeviceWaveImage::record(vulkan::Commands& commands, const vulkan::Buffer& for_host, std::size_t to_byte) const {
     const vk::DeviceAddress address = light_.address();
     WaveGroups groups{.light = {static_cast<std::uint32_t>(address), static_cast<std::uint32_t>(address >> 32)},
-                      .side = side_,
-                      .cells_side = cells_side_,
+                      .columns = static_cast<std::uint32_t>(size_.columns),
+                      .rows = static_cast<std::uint32_t>(size_.rows),
+                      .cells_side = cells_.side,
                       .first = 0,
                       .count = sizes_.groups_at_once(),
                       .steps = steps_,
-                      .steps_a_line = steps_a_line_};
+                      .steps_a_column = steps_a_column_,
+                      .steps_a_row = steps_a_row_};
     const std::array<vulkan::Binding, 1> to_planes = {{{WAVES_BINDING_PLANES, &planes_}}};
     const std::array<vulkan::Binding, 3> to_spectrum = {
         {{WAVES_BINDING_PLANES, &planes_}, {WAVES_BINDING_TABLE, &table_}, {WAVES_BINDING_SPECTRUM, &spectrum_}}};
@@ -84,23 +92,23 @@ void DeviceWaveImage::record(vulkan::Commands& commands, const vulkan::Buffer& f
         {{WAVES_BINDING_SPECTRUM, &spectrum_}, {WAVES_BINDING_IMAGE, &image_}}};
     const std::array<vulkan::Binding, 2> to_pixels = {
         {{WAVES_BINDING_IMAGE, &image_}, {WAVES_BINDING_PIXELS, &result_}}};
-    const std::size_t places = std::size_t{side_} * side_;
+    const std::size_t places = size_.count();
     for (; groups.first < sizes_.groups(); groups.first += sizes_.groups_at_once()) {
         const auto push = std::as_bytes(std::span(&groups, 1));
         dispatch(commands, sort_, to_planes, push, places);
         forward_.record(commands);
         dispatch(commands, filter_, to_spectrum, push, places);
     }
-    const WaveSize size{.side = side_, .parts = parts_};
+    const WaveSize size{.columns = groups.columns, .rows = groups.rows, .cells = cells_};
     const auto push = std::as_bytes(std::span(&size, 1));
     dispatch(commands, extend_, to_image, push, 2 * places);
     inverse_.record(commands);
-    dispatch(commands, add_up_, to_pixels, push, static_cast<std::size_t>(pixels_) * static_cast<std::size_t>(pixels_));
+    dispatch(commands, add_up_, to_pixels, push, pixels_.count());
     commands.copy(result_, for_host, result_.bytes(), 0, to_byte);
 }
 
 Grid<double> DeviceWaveImage::image(const vulkan::Buffer& for_host, std::size_t from_byte) const {
-    Grid<double> image(pixels_, pixels_);
+    Grid<double> image(pixels_.columns, pixels_.rows);
     const auto values = for_host.values<float>(image.values.size(), from_byte);
     std::copy(values.begin(), values.end(), image.values.begin());
     return image;

@@ -13,7 +13,7 @@ namespace vkfv::trace {
 class DeviceWaveImage {
   public:
     // light: as WaveImage::numbers() of 64 bits. Device, filter and light must outlive it.
-    DeviceWaveImage(const vulkan::Device& device, const optics::PupilFilter& filter, int pixels,
+    DeviceWaveImage(const vulkan::Device& device, const optics::PupilFilter& filter, ImageSize pixels,
                     const vulkan::Buffer& light);
 
     // Of the light as it is when the commands run; the result goes to bytes() of memory that the host sees.
@@ -27,13 +27,13 @@ class DeviceWaveImage {
                   std::span<const std::byte> push, std::size_t places) const;
 
     const vulkan::Buffer& light_;
-    int pixels_;
-    std::uint32_t side_; // in parts of pixels
-    std::uint32_t parts_;
-    std::uint32_t cells_side_;
+    ImageSize pixels_;
+    physics::f32::PupilCells cells_;
+    ImageSize size_; // in parts of pixels
     WavePlanes sizes_;
     std::uint32_t steps_;
-    float steps_a_line_;
+    float steps_a_column_;
+    float steps_a_row_;
     vulkan::Buffer planes_;
     vulkan::Buffer table_;
     vulkan::Buffer spectrum_;

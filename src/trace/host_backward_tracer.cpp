@@ -26,19 +26,19 @@ class HostBackwardTracer final : public Tracer {
                        const TraceOptions& options)
         : instrument_(instrument), turned_(optics::turned_round(instrument)),
           record_(specimen::record(specimen, options.max_bounces)), intersector_(specimen), seed_(options.seed),
-          plan_(backward_plan(options.rays, instrument.constants.detector_pixels)),
+          plan_(backward_plan(options.rays, instrument.detector_pixels())),
           filter_(filter_for_waves(instrument, options)) {}
 
-    Image expose(double focal_height, std::uint32_t image) const override {
+    Image expose(FocalPosition position, std::uint32_t image) const override {
         const auto start = std::chrono::steady_clock::now();
-        const Exposure exposure = make_exposure(instrument_, record_, focal_height, seed_, image);
+        const Exposure exposure = make_exposure(instrument_, record_, position, seed_, image);
         const HostScene scene{turned_.scene(), &intersector_};
-        const int pixels = turned_.constants.detector_pixels;
+        const ImageSize pixels = turned_.detector_pixels();
         const unsigned workers = std::max(1u, std::thread::hardware_concurrency());
         BackwardImage result(instrument_, plan_);
         CellLight light(filter_, pixels);
         for (std::uint32_t randomisation = 0; randomisation < plan_.randomisations; ++randomisation) {
-            std::vector<std::uint64_t> sums(static_cast<std::size_t>(pixels) * static_cast<std::size_t>(pixels));
+            std::vector<std::uint64_t> sums(pixels.count());
             std::vector<std::jthread> threads;
             for (unsigned worker = 0; worker < workers; ++worker) {
                 threads.emplace_back([&, worker] {
@@ -69,10 +69,10 @@ class HostBackwardTracer final : public Tracer {
   private:
     std::uint64_t sum_of_pixel(const HostScene& scene, const Exposure& exposure, std::uint32_t pixel,
                                std::uint32_t randomisation, CellLight& light) const {
-        const auto side = static_cast<std::uint32_t>(turned_.constants.detector_pixels);
+        const auto columns = static_cast<std::uint32_t>(turned_.constants.detector_columns);
         const LatticeShift shift = lattice_shift(exposure.seed, exposure.image, pixel, randomisation);
-        const int column = static_cast<int>(pixel % side);
-        const int row = static_cast<int>(pixel / side);
+        const int column = static_cast<int>(pixel % columns);
+        const int row = static_cast<int>(pixel / columns);
         double sum = 0;
         for (std::uint32_t point = 0; point < plan_.points; ++point) {
             const double value = trace_backward(scene, turned_.constants, optics_, record_, exposure, column, row,

@@ -71,14 +71,14 @@ class HostTracer final : public Tracer {
         }
     }
 
-    Image expose(double focal_height, std::uint32_t image) const override {
+    Image expose(FocalPosition position, std::uint32_t image) const override {
         const auto start = std::chrono::steady_clock::now();
-        const Exposure exposure = make_exposure(instrument_, record_, focal_height, options_.seed, image);
+        const Exposure exposure = make_exposure(instrument_, record_, position, options_.seed, image);
         const HostScene scene{trains_of(instrument_, options_), &intersector_, &room_};
         const unsigned workers = std::max(1u, std::thread::hardware_concurrency());
         std::vector<std::vector<std::uint64_t>> counts(workers, std::vector<std::uint64_t>(accounts_.pixel_numbers()));
         std::vector<std::vector<std::uint64_t>> fates(workers, std::vector<std::uint64_t>(accounts_.ledger_numbers()));
-        CellLight light(filter_, instrument_.constants.detector_pixels);
+        CellLight light(filter_, instrument_.detector_pixels());
         {
             std::vector<std::jthread> threads;
             for (unsigned worker = 0; worker < workers; ++worker) {
@@ -115,7 +115,7 @@ class HostTracer final : public Tracer {
             trace_host_path(scene, instrument_.constants, record_, exposure, room_, options_.nonsequential, index);
         const Fate fate = path.end.fate;
         const auto pixel =
-            static_cast<std::size_t>(path.end.row * instrument_.constants.detector_pixels + path.end.column);
+            static_cast<std::size_t>(path.end.row * instrument_.constants.detector_columns + path.end.column);
         if (filter_ && fate.status == PATH_DETECTED) {
             light.add(detection_place(instrument_.constants, filter_->cells(), path.end),
                       options_.directed_scatter ? survivor_weight(path.survivor) : 1u);
@@ -157,19 +157,22 @@ class HostTracer final : public Tracer {
 
 } // namespace
 
-Exposure make_exposure(const optics::Instrument& instrument, const SpecimenRecord& specimen, double focal_height,
+Exposure make_exposure(const optics::Instrument& instrument, const SpecimenRecord& specimen, FocalPosition position,
                        std::uint32_t seed, std::uint32_t image) {
     Exposure exposure{};
-    // In the specimen's frame the plane of best focus stands at focal_height and carries the objective along.
-    exposure.top_distance = focal_height + instrument.front_vertex_height - specimen.top;
+    // In the specimen's frame the plane of best focus stands at the focal height and carries the objective along.
+    exposure.top_distance = position.height + instrument.front_vertex_height - specimen.top;
     exposure.seed = seed;
     exposure.image = image;
-    exposure.focal_height = focal_height;
+    exposure.focal_height = position.height;
+    exposure.beside_x = position.beside.x;
+    exposure.beside_y = position.beside.y;
     return exposure;
 }
 
-std::unique_ptr<Tracer> make_host_tracer(const optics::Instrument& instrument, const specimen::Specimen& specimen,
+std::unique_ptr<Tracer> make_host_tracer(const optics::Instrument& described, const specimen::Specimen& specimen,
                                          const TraceOptions& options) {
+    const optics::Instrument instrument = as_traced(described, options);
     if (options.estimator == Estimator::backward) {
         return make_host_backward_tracer(instrument, specimen, options);
     }
@@ -177,7 +180,7 @@ std::unique_ptr<Tracer> make_host_tracer(const optics::Instrument& instrument, c
 }
 
 std::vector<PathEnd> host_paths(const optics::Instrument& instrument, const specimen::Specimen& specimen,
-                                const TraceOptions& options, double focal_height, std::uint32_t image,
+                                const TraceOptions& options, FocalPosition position, std::uint32_t image,
                                 std::uint64_t first, std::uint64_t count, double source_scale) {
     const specimen::Intersector intersector(specimen);
     optics::Room room;
@@ -186,7 +189,7 @@ std::vector<PathEnd> host_paths(const optics::Instrument& instrument, const spec
     }
     const HostScene scene{trains_of(instrument, options), &intersector, &room};
     const SpecimenRecord record = specimen::record(specimen, options.max_bounces);
-    const Exposure exposure = make_exposure(instrument, record, focal_height, options.seed, image);
+    const Exposure exposure = make_exposure(instrument, record, position, options.seed, image);
     physics::f64::Instrument constants = instrument.constants;
     constants.source_radius *= source_scale;
     constants.emission_sine = std::min(1.0, constants.emission_sine * source_scale);

@@ -23,14 +23,14 @@ struct PathEnd {
     double weight = 1; // of the light there; with directed scatter of a path's survivor, if it has one
 };
 
-// Paths first ... first + count - 1 of one exposure at focal_height (mm), one by one. source_scale (about 1) scales the
+// Paths first ... first + count - 1 of one exposure, one by one. source_scale (about 1) scales the
 // source's radius and emission: a test asks by it whether a path lies within rounding of an edge.
 std::vector<PathEnd> host_paths(const optics::Instrument& instrument, const specimen::Specimen& specimen,
-                                const TraceOptions& options, double focal_height, std::uint32_t image,
+                                const TraceOptions& options, FocalPosition position, std::uint32_t image,
                                 std::uint64_t first, std::uint64_t count, double source_scale = 1.0);
 
 // Record of an exposure at the focal height z (mm), for the specimen's record.
 physics::f64::Exposure make_exposure(const optics::Instrument& instrument, const physics::f64::SpecimenRecord& specimen,
-                                     double focal_height, std::uint32_t seed, std::uint32_t image);
+                                     FocalPosition position, std::uint32_t seed, std::uint32_t image);
 
 } // namespace vkfv::trace

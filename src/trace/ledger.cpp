@@ -87,7 +87,7 @@ double Ledger::residual() const {
 Accounts::Accounts(const optics::Instrument& instrument, bool directed_scatter)
     : flux_(instrument.flux), aimed_(instrument.constants.emission_sine * instrument.constants.emission_sine),
       left_{1.0, instrument.splitter_reflectance, instrument.splitter_reflectance * instrument.splitter_transmittance},
-      pixels_(instrument.constants.detector_pixels), weighted_(directed_scatter) {
+      pixels_(instrument.detector_pixels()), weighted_(directed_scatter) {
     const auto& constants = instrument.constants;
     add_slots(surfaces_of(instrument), constants.illumination_count,
               constants.illumination_count + constants.imaging_count);
@@ -95,7 +95,7 @@ Accounts::Accounts(const optics::Instrument& instrument, bool directed_scatter)
 
 Accounts::Accounts(const optics::Instrument& instrument, const std::vector<std::string>& element_names)
     : flux_(instrument.flux), aimed_(instrument.constants.emission_sine * instrument.constants.emission_sine),
-      pixels_(instrument.constants.detector_pixels) {
+      pixels_(instrument.detector_pixels()) {
     std::vector<Surface> elements;
     for (const std::string& name : element_names) {
         elements.push_back({.name = name, .index = static_cast<int>(elements.size())});
@@ -205,8 +205,8 @@ Image Accounts::image(std::span<const std::uint64_t> pixel_numbers, std::span<co
                       std::uint64_t rays) const {
     const double per_ray = flux_ * aimed_ * left_[2] / static_cast<double>(rays);
     Image image;
-    image.flux = Grid<double>(pixels_, pixels_);
-    image.standard_error = Grid<double>(pixels_, pixels_);
+    image.flux = Grid<double>(pixels_.columns, pixels_.rows);
+    image.standard_error = Grid<double>(pixels_.columns, pixels_.rows);
     for (std::size_t pixel = 0; pixel < image.flux.values.size(); ++pixel) {
         // In rays of weight 1; the square of a count's weight is the weight.
         const double sum = weighted_ ? static_cast<double>(pixel_numbers[2 * pixel]) / WEIGHT_ONE

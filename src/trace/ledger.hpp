@@ -36,9 +36,7 @@ class Accounts {
     // 1 / WEIGHT_ONE) and the sum over the paths of physics::weight_square() of what each adds; a pixel has its sum of
     // weights and the sum of their squares (units of 2^-24).
     std::size_t ledger_numbers() const { return weighted_ ? 2 * slots_.size() + 1 : slots_.size(); }
-    std::size_t pixel_numbers() const {
-        return static_cast<std::size_t>(pixels_) * static_cast<std::size_t>(pixels_) * (weighted_ ? 2 : 1);
-    }
+    std::size_t pixel_numbers() const { return pixels_.count() * (weighted_ ? 2 : 1); }
 
     // Image in W from the numbers of the pixels and of the ledger, with the standard error of each pixel. What was not
     // aimed at and what the splitter turns away in the sequential trace is added analytically, so the ledger closes
@@ -73,7 +71,7 @@ class Accounts {
     double aimed_; // share of it
     // Of the power a ray starts with: what is left after 0, 1 and 2 passes of the splitter.
     std::array<double, 3> left_ = {1.0, 1.0, 1.0};
-    int pixels_; // along one side
+    ImageSize pixels_;
     bool weighted_ = false;
     std::vector<Slot> slots_;
 };

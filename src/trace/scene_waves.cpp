@@ -4,7 +4,7 @@ namespace vkfv::trace {
 
 SceneWaves::SceneWaves(const DeviceScene& scene) : scene_(scene) {
     if (!scene.software()) {
-        on_device_.emplace(*scene.device, scene.filter.value(), scene.instrument.constants.detector_pixels,
+        on_device_.emplace(*scene.device, scene.filter.value(), scene.instrument.detector_pixels(),
                            scene.cell_light.value());
     }
 }
@@ -21,7 +21,7 @@ Grid<double> SceneWaves::light(const vulkan::Buffer& for_host, std::size_t from_
     if (on_device_) {
         return on_device_->image(for_host, from_byte);
     }
-    const WaveImage image(scene_.filter.value(), scene_.instrument.constants.detector_pixels);
+    const WaveImage image(scene_.filter.value(), scene_.instrument.detector_pixels());
     return image.apply(scene_.cell_light.value().read_values<std::uint64_t>(image.numbers()));
 }
 

@@ -42,7 +42,7 @@ struct TraceOptions {
 };
 
 // How many rays an exposure launches: those asked for, or what each pixel's share is rounded up to backward.
-std::uint64_t launched_rays(const TraceOptions& options, int detector_pixels);
+std::uint64_t launched_rays(const TraceOptions& options, ImageSize detector_pixels);
 
 enum class Train { none, illumination, imaging };
 
@@ -108,27 +108,34 @@ struct ExposurePart {
     double longest_submission = 0; // s
 };
 
+// Where the stage holds the focal plane for an exposure.
+struct FocalPosition {
+    double height = 0;    // of the focal plane in the specimen frame, mm: z of the image
+    glm::dvec2 beside{0}; // the specimen's displacement at right angles to the axis, mm
+    FocalPosition() = default;
+    FocalPosition(double z, glm::dvec2 displacement = glm::dvec2(0)) : height(z), beside(displacement) {}
+};
+
 // Constructed for one instrument, specimen and device, then const: exposures are independent of each other.
 class Tracer {
   public:
     virtual ~Tracer() = default;
-    // focal_height: z of the image, height of the focal plane in the specimen frame, mm. image: the index that keys
-    // the random numbers. The same arguments give the same bits whatever the batch size.
-    virtual Image expose(double focal_height, std::uint32_t image) const = 0;
+    // image: the index that keys the random numbers. The same arguments give the same bits whatever the batch size.
+    virtual Image expose(FocalPosition position, std::uint32_t image) const = 0;
     // The same image, later: a device works on it from now on, and the host takes what came of it when the future is
     // asked (or dropped). At most most_under_way() futures may be neither. The tracer must outlive them.
     // checkpoints: from where it goes on, and where a long one is kept meanwhile; the bits are the same. The host
     // keeps none.
-    virtual std::future<Image> begin(double focal_height, std::uint32_t image,
+    virtual std::future<Image> begin(FocalPosition position, std::uint32_t image,
                                      std::shared_ptr<const Checkpoints> /*checkpoints*/ = nullptr) const {
-        return std::async(std::launch::deferred, [this, focal_height, image] { return expose(focal_height, image); });
+        return std::async(std::launch::deferred, [this, position, image] { return expose(position, image); });
     }
     virtual int most_under_way() const { return 1; }
     // Units of work of an exposure, of which some tracers count parts: first ... end - 1. The image comes of a
     // checkpoint with all units done and the parts' sum. 0: these do not.
     virtual std::uint64_t units() const { return 0; }
     virtual std::uint64_t rays_per_unit() const { return 1; }
-    virtual ExposurePart count(double /*focal_height*/, std::uint32_t /*image*/, std::uint64_t /*first*/,
+    virtual ExposurePart count(FocalPosition /*position*/, std::uint32_t /*image*/, std::uint64_t /*first*/,
                                std::uint64_t /*end*/) const {
         return {};
     }

@@ -70,9 +70,9 @@ class TracerPool final : public Tracer {
         changed_.notify_all();
     }
 
-    Image expose(double focal_height, std::uint32_t image) const override { return begin(focal_height, image).get(); }
+    Image expose(FocalPosition position, std::uint32_t image) const override { return begin(position, image).get(); }
 
-    std::future<Image> begin(double focal_height, std::uint32_t image,
+    std::future<Image> begin(FocalPosition position, std::uint32_t image,
                              std::shared_ptr<const Checkpoints> checkpoints = nullptr) const override {
         std::vector<Job> jobs;
         std::future<Image> future;
@@ -84,14 +84,14 @@ class TracerPool final : public Tracer {
             const std::uint64_t parts = std::min<std::uint64_t>(units, tracers_.size());
             parted->missing = parts;
             for (std::uint64_t part = 0; part < parts; ++part) {
-                jobs.push_back({.focal_height = focal_height,
+                jobs.push_back({.position = position,
                                 .image = image,
                                 .parted = parted,
                                 .first = units / parts * part + std::min(part, units % parts),
                                 .end = units / parts * (part + 1) + std::min(part + 1, units % parts)});
             }
         } else {
-            jobs.push_back({.focal_height = focal_height, .image = image, .checkpoints = std::move(checkpoints)});
+            jobs.push_back({.position = position, .image = image, .checkpoints = std::move(checkpoints)});
             future = jobs.back().done.get_future();
         }
         {
@@ -121,7 +121,7 @@ class TracerPool final : public Tracer {
   private:
     // An exposure, or one of its parts.
     struct Job {
-        double focal_height = 0;
+        FocalPosition position;
         std::uint32_t image = 0;
         std::shared_ptr<const Checkpoints> checkpoints{};
         std::promise<Image> done{};
@@ -163,7 +163,7 @@ class TracerPool final : public Tracer {
                 return std::nullopt;
             }
         }
-        auto part = tracer.count(job.focal_height, job.image, job.first, job.end);
+        auto part = tracer.count(job.position, job.image, job.first, job.end);
         const std::scoped_lock lock(parted.mutex);
         ExposurePart& sum = parted.sum;
         if (sum.numbers.empty()) {
@@ -177,7 +177,7 @@ class TracerPool final : public Tracer {
             return std::nullopt;
         }
         auto counted = std::make_shared<const Counted>(Checkpoint{tracer.units(), std::move(sum.numbers)});
-        auto image = tracer.begin(job.focal_height, job.image, std::move(counted));
+        auto image = tracer.begin(job.position, job.image, std::move(counted));
         return Begun{.done = std::move(parted.done), .image = std::move(image), .parts = std::move(sum)};
     }
 
@@ -200,7 +200,7 @@ class TracerPool final : public Tracer {
                 }
                 try {
                     if (!job->parted) {
-                        auto image = tracer.begin(job->focal_height, job->image, std::move(job->checkpoints));
+                        auto image = tracer.begin(job->position, job->image, std::move(job->checkpoints));
                         begun.push_back({.done = std::move(job->done), .image = std::move(image)});
                     } else if (auto last = count(tracer, *job)) {
                         begun.push_back(std::move(*last));

@@ -12,19 +12,27 @@ namespace vkfv::trace {
 
 using Complex = std::complex<double>;
 
-// Of the extended image, whose period is twice the image's side: at (l, m) and (-l, m) / (2 side) cycles a part, as
-// seen from the middle of its first part's lower left corner, over 4.
+// Of the extended image, whose periods are twice the image's sides: at l / (2 columns) and -l / (2 columns) cycles a
+// part along x, m / (2 rows) along y, as seen from the lower left corner of its first part, over 4.
 struct WaveImage::Spectrum {
     Grid<Complex> ahead;
     Grid<Complex> behind;
 };
 
-WaveImage::WaveImage(const optics::PupilFilter& filter, int pixels)
-    : filter_(filter), pixels_(pixels), side_(pixels * static_cast<int>(filter.cells().parts)) {}
+namespace {
+
+ImageSize in_parts(ImageSize pixels, const optics::PupilFilter& filter) {
+    const auto parts = static_cast<int>(filter.cells().parts);
+    return {pixels.columns * parts, pixels.rows * parts};
+}
+
+} // namespace
+
+WaveImage::WaveImage(const optics::PupilFilter& filter, ImageSize pixels)
+    : filter_(filter), pixels_(pixels), size_(in_parts(pixels, filter)) {}
 
 std::size_t WaveImage::numbers() const {
-    return static_cast<std::size_t>(filter_.cell_count()) * static_cast<std::size_t>(side_) *
-           static_cast<std::size_t>(side_);
+    return static_cast<std::size_t>(filter_.cell_count()) * size_.count();
 }
 
 std::array<int, 4> WaveImage::mirror_images(int cell) const {
@@ -33,15 +41,15 @@ std::array<int, 4> WaveImage::mirror_images(int cell) const {
 }
 
 WaveImage::Parts WaveImage::transform(std::span<const std::uint64_t> light, const std::array<int, 4>& cells) const {
-    const std::size_t count = static_cast<std::size_t>(side_) * static_cast<std::size_t>(side_);
+    const std::size_t count = size_.count();
     const auto image = [&](std::size_t k) { return light.subspan(static_cast<std::size_t>(cells[k]) * count, count); };
     const std::array images = {image(0), image(1), image(2), image(3)};
     Parts parts;
-    parts.fill(Grid<double>(side_, side_));
-    for (int row = 0; row < side_; ++row) {
-        for (int column = 0; column < side_; ++column) {
-            const std::size_t k =
-                static_cast<std::size_t>(row) * static_cast<std::size_t>(side_) + static_cast<std::size_t>(column);
+    parts.fill(Grid<double>(size_.columns, size_.rows));
+    for (int row = 0; row < size_.rows; ++row) {
+        for (int column = 0; column < size_.columns; ++column) {
+            const std::size_t k = static_cast<std::size_t>(row) * static_cast<std::size_t>(size_.columns) +
+                                  static_cast<std::size_t>(column);
             const auto own = static_cast<double>(images[0][k]);
             const auto sideways = static_cast<double>(images[1][k]);
             const auto upright = static_cast<double>(images[2][k]);
@@ -62,16 +70,17 @@ WaveImage::Parts WaveImage::transform(std::span<const std::uint64_t> light, cons
 }
 
 void WaveImage::add(Spectrum& sum, const Parts& parts, const std::array<int, 4>& cells) const {
-    const double step = 0.5 / side_ / filter_.part_pitch();
-    for (int row = 0; row < side_; ++row) {
-        for (int column = 0; column < side_; ++column) {
-            const double fx = column * step;
-            const double fy = row * step;
+    const double step_x = 0.5 / size_.columns / filter_.part_pitch();
+    const double step_y = 0.5 / size_.rows / filter_.part_pitch();
+    for (int row = 0; row < size_.rows; ++row) {
+        for (int column = 0; column < size_.columns; ++column) {
+            const double fx = column * step_x;
+            const double fy = row * step_y;
             if (fx * fx + fy * fy < filter_.cutoff() * filter_.cutoff()) {
                 const double cosines = parts[even](column, row);
-                const double sine_along = column > 0 ? parts[odd_along](side_ - column, row) : 0.0;
-                const double sine_across = row > 0 ? parts[odd_across](column, side_ - row) : 0.0;
-                const double sines = column > 0 && row > 0 ? parts[odd](side_ - column, side_ - row) : 0.0;
+                const double sine_along = column > 0 ? parts[odd_along](size_.columns - column, row) : 0.0;
+                const double sine_across = row > 0 ? parts[odd_across](column, size_.rows - row) : 0.0;
+                const double sines = column > 0 && row > 0 ? parts[odd](size_.columns - column, size_.rows - row) : 0.0;
                 // A sine changes its sign where its frequency does; mirrored light has it reversed.
                 const Complex same(cosines - sines, -sine_along - sine_across);
                 const Complex sideways(cosines + sines, sine_along - sine_across);
@@ -87,15 +96,18 @@ void WaveImage::add(Spectrum& sum, const Parts& parts, const std::array<int, 4>&
 }
 
 Grid<double> WaveImage::pixels_of(const Spectrum& sum) const {
-    const int period = 2 * side_;
-    Grid<Complex> whole(period, period);
-    for (int row = 0; row < side_; ++row) {
-        for (int column = 0; column < side_; ++column) {
+    const int period_x = 2 * size_.columns;
+    const int period_y = 2 * size_.rows;
+    Grid<Complex> whole(period_x, period_y);
+    for (int row = 0; row < size_.rows; ++row) {
+        for (int column = 0; column < size_.columns; ++column) {
             // From the corner to the middle of the first part; what cosines count once stands at two frequencies.
-            const Complex ahead = 4.0 * std::polar(1.0, pi * (column + row) / period) * sum.ahead(column, row);
-            const Complex behind = 4.0 * std::polar(1.0, pi * (row - column) / period) * sum.behind(column, row);
-            const int left = (period - column) % period;
-            const int low = (period - row) % period;
+            const double along = pi * column / period_x;
+            const double across = pi * row / period_y;
+            const Complex ahead = 4.0 * std::polar(1.0, across + along) * sum.ahead(column, row);
+            const Complex behind = 4.0 * std::polar(1.0, across - along) * sum.behind(column, row);
+            const int left = (period_x - column) % period_x;
+            const int low = (period_y - row) % period_y;
             whole(column, row) = ahead;
             whole(left, row) = column > 0 ? behind : ahead;
             if (row > 0) {
@@ -105,11 +117,14 @@ Grid<double> WaveImage::pixels_of(const Spectrum& sum) const {
         }
     }
     inverse_fourier_transform(whole);
-    const int parts = side_ / pixels_;
-    Grid<double> result(pixels_, pixels_);
-    for (int row = 0; row < side_; ++row) {
-        for (int column = 0; column < side_; ++column) {
-            result(column / parts, row / parts) += whole(column, row).real();
+    const auto parts = static_cast<int>(filter_.cells().parts);
+    Grid<double> result(pixels_.columns, pixels_.rows);
+    for (int row = 0; row < size_.rows; ++row) {
+        for (int column = 0; column < size_.columns; ++column) {
+            const double sensitive =
+                physics::f64::sensitive_share(filter_.cells(), static_cast<std::uint32_t>(column % parts)) *
+                physics::f64::sensitive_share(filter_.cells(), static_cast<std::uint32_t>(row % parts));
+            result(column / parts, row / parts) += sensitive * whole(column, row).real();
         }
     }
     return result;
@@ -122,7 +137,7 @@ Grid<double> WaveImage::apply(std::span<const std::uint64_t> light) const {
             groups.push_back(mirror_images(cell));
         }
     }
-    Spectrum sum{Grid<Complex>(side_, side_), Grid<Complex>(side_, side_)};
+    Spectrum sum{Grid<Complex>(size_.columns, size_.rows), Grid<Complex>(size_.columns, size_.rows)};
     // Transformed side by side, added up in their order: the same bits on any number of cores.
     const std::size_t workers = std::max(1u, std::thread::hardware_concurrency());
     for (std::size_t first = 0; first < groups.size(); first += workers) {
@@ -141,16 +156,17 @@ Grid<double> WaveImage::apply(std::span<const std::uint64_t> light) const {
     return pixels_of(sum);
 }
 
-CellLight::CellLight(const std::optional<optics::PupilFilter>& filter, int pixels) {
+CellLight::CellLight(const std::optional<optics::PupilFilter>& filter, ImageSize pixels) {
     if (filter) {
         image_.emplace(*filter, pixels);
-        side_ = static_cast<std::size_t>(pixels) * filter->cells().parts;
+        size_ = in_parts(pixels, *filter);
         numbers_.resize(image_->numbers());
     }
 }
 
 void CellLight::add(const physics::f64::CellPlace& place, std::uint64_t light) {
-    std::uint64_t& number = numbers_[(place.cell * side_ + static_cast<std::size_t>(place.row)) * side_ +
+    std::uint64_t& number = numbers_[place.cell * size_.count() +
+                                     static_cast<std::size_t>(place.row) * static_cast<std::size_t>(size_.columns) +
                                      static_cast<std::size_t>(place.column)];
     std::atomic_ref(number).fetch_add(light, std::memory_order_relaxed);
 }
@@ -159,6 +175,10 @@ std::optional<optics::PupilFilter> filter_for_waves(const optics::Instrument& in
     return options.waves && !options.nonsequential
                ? std::optional<optics::PupilFilter>(std::in_place, instrument, *options.waves)
                : std::nullopt;
+}
+
+optics::Instrument as_traced(const optics::Instrument& instrument, const TraceOptions& options) {
+    return options.waves && !options.nonsequential ? optics::with_whole_pixels(instrument) : instrument;
 }
 
 Image with_waves(Image image, const Grid<double>& light, double power_per_number, const optics::PupilFilter& filter) {

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "core/grid.hpp"
+#include "core/pixel_grid.hpp"
 #include "optics/pupil_filter.hpp"
 #include "trace/tracer.hpp"
 
@@ -18,8 +19,8 @@ namespace vkfv::trace {
 // asymmetry of the point spread carries over the border.
 class WaveImage {
   public:
-    // Of a square detector of so many pixels a side. The filter must outlive it.
-    WaveImage(const optics::PupilFilter& filter, int pixels);
+    // pixels: the detector's. The filter must outlive it.
+    WaveImage(const optics::PupilFilter& filter, ImageSize pixels);
 
     // How many numbers the sorted light has: cell after cell, row after row of parts of pixels.
     std::size_t numbers() const;
@@ -38,26 +39,30 @@ class WaveImage {
     Grid<double> pixels_of(const Spectrum& sum) const;
 
     const optics::PupilFilter& filter_;
-    int pixels_;
-    int side_; // in parts of pixels
+    ImageSize pixels_;
+    ImageSize size_; // in parts of pixels
 };
 
 // Light that the host sorts; many may add to it at a time. Without a filter nothing is kept.
 class CellLight {
   public:
-    CellLight(const std::optional<optics::PupilFilter>& filter, int pixels);
+    CellLight(const std::optional<optics::PupilFilter>& filter, ImageSize pixels);
 
     void add(const physics::f64::CellPlace& place, std::uint64_t light);
     Grid<double> image() const { return image_.value().apply(numbers_); }
 
   private:
     std::optional<WaveImage> image_;
-    std::size_t side_ = 0; // in parts of pixels
+    ImageSize size_; // in parts of pixels
     std::vector<std::uint64_t> numbers_;
 };
 
 // The filter that the options ask for, of an instrument that is not turned round; none: images as rays make them.
 std::optional<optics::PupilFilter> filter_for_waves(const optics::Instrument& instrument, const TraceOptions& options);
+
+// The instrument as its light is traced: where waves come after, its pixels count all of their light, and the filter
+// tells what of it falls on what is sensitive.
+optics::Instrument as_traced(const optics::Instrument& instrument, const TraceOptions& options);
 
 // The same exposure with its light as waves make it, in W, from that of WaveImage::apply().
 Image with_waves(Image image, const Grid<double>& light, double power_per_number, const optics::PupilFilter& filter);

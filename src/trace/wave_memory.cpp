@@ -27,26 +27,29 @@ Limits limits_of(const optics::WaveOptions& options, const vulkan::DeviceReport&
             .binding = std::min(device.max_storage_buffer_bytes, device.max_allocation_bytes - padding)};
 }
 
-bool fits(int cells, int parts, int pixels, const Limits& limits) {
+WavePlanes planes_of(int cells, int parts, ImageSize pixels) {
+    return {cells, {pixels.columns * parts, pixels.rows * parts}};
+}
+
+bool fits(int cells, int parts, ImageSize pixels, const Limits& limits) {
     const WaveMemory memory = wave_memory(cells, parts, pixels);
-    const auto side = static_cast<std::uint64_t>(pixels) * static_cast<std::uint64_t>(parts);
     return memory.all() <= limits.memory && memory.light <= limits.buffer &&
-           WavePlanes(cells, side).largest_bytes() <= limits.binding;
+           planes_of(cells, parts, pixels).largest_bytes() <= limits.binding;
 }
 
 } // namespace
 
-WaveMemory wave_memory(int cells, int parts, int pixels) {
-    const auto side = static_cast<std::uint64_t>(pixels) * static_cast<std::uint64_t>(parts);
+WaveMemory wave_memory(int cells, int parts, ImageSize pixels) {
+    const auto in_a_pixel = static_cast<std::uint64_t>(parts) * static_cast<std::uint64_t>(parts);
     const auto count = static_cast<std::uint64_t>(cells) * static_cast<std::uint64_t>(cells);
-    const WavePlanes planes(cells, side);
-    return {.light = count * side * side * sizeof(std::uint64_t),
+    const WavePlanes planes = planes_of(cells, parts, pixels);
+    return {.light = count * in_a_pixel * pixels.count() * sizeof(std::uint64_t),
             .transforms = 2 * (planes.plane_bytes() + planes.image_bytes()) + planes.spectrum_bytes()};
 }
 
 optics::WaveOptions waves_on_device(const optics::WaveOptions& options, const optics::Instrument& instrument,
                                     const vulkan::DeviceReport& device) {
-    const int pixels = instrument.constants.detector_pixels;
+    const ImageSize pixels = instrument.detector_pixels();
     const Limits limits = limits_of(options, device);
     optics::WaveOptions fitted = options;
     fitted.cells = optics::cells_of(options, instrument);
@@ -59,7 +62,7 @@ optics::WaveOptions waves_on_device(const optics::WaveOptions& options, const op
         throw InputError({.where = {},
                           .key = options.parts > 0 ? "diffraction.parts_per_pixel" : "diffraction.cells",
                           .found = fmt::format("{} x {} cells, {} x {} parts of {} x {} pixels: {} bytes of light",
-                                               fitted.cells, fitted.cells, least, least, pixels, pixels,
+                                               fitted.cells, fitted.cells, least, least, pixels.columns, pixels.rows,
                                                wave_memory(fitted.cells, least, pixels).all()),
                           .expected = fmt::format("at most {} bytes on {}, {} in one buffer", limits.memory,
                                                   device.name, limits.buffer),

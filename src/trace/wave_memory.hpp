@@ -20,8 +20,8 @@ struct WaveMemory {
     std::uint64_t all() const { return light + transforms; }
 };
 
-// On a GPU, of a square detector of so many pixels a side. cells: across the pupil; parts: of a pixel's side.
-WaveMemory wave_memory(int cells, int parts, int pixels);
+// On a GPU. cells: across the pupil; parts: of a pixel's side; pixels: of the detector.
+WaveMemory wave_memory(int cells, int parts, ImageSize pixels);
 
 // The options with the pupil cells and the parts of a pixel that light is sorted in: those asked for, or as many as
 // waves ask for, or where these are too many parts for the device, as many as it can hold. Throws InputError where it

@@ -1,6 +1,8 @@
 // The planes of complex floats that a device transforms for the image of waves.
 #pragma once
 
+#include "core/pixel_grid.hpp"
+
 #include <algorithm>
 #include <cstddef>
 #include <cstdint>
@@ -11,8 +13,8 @@ class WavePlanes {
   public:
     static constexpr std::uint64_t a_group = 2; // planes, of four cells that are mirror images
 
-    // cells: across the pupil; side: of an image in parts of pixels.
-    WavePlanes(int cells, std::uint64_t side) : plane_(side * side * complex_bytes) {
+    // cells: across the pupil; image: in parts of pixels.
+    WavePlanes(int cells, ImageSize image) : plane_(image.count() * complex_bytes) {
         groups_ = static_cast<std::uint32_t>(cells / 2) * static_cast<std::uint32_t>(cells / 2);
         constexpr std::uint64_t most_bytes = std::uint64_t{1} << 29;
         const std::uint64_t most = std::max<std::uint64_t>(1, most_bytes / (a_group * plane_));

@@ -76,6 +76,7 @@ TEST(CommandLine, ACommandIsItsOption) {
                                       {"check", "c.toml", "--rasy"},
                                       {"check", "c.toml", "another.toml"},
                                       {"check", "missing.toml"},
+                                      {"camera", "c.toml"},
                                       {"trace-rays", "c.toml", "rays.csv", "--apertures", "off"},
                                       {"trace-rays", "c.toml", "rays.csv", "--precision", "half"},
                                       {"layout", "c.toml", "layout.svg"},
@@ -145,7 +146,9 @@ std::string good_value(const app::Option& option) {
     static const std::map<std::string, std::string> values = {
         {"--set", "a=1"}, {"--form", "none"}, {"--profile", "1,2,3,4"}, {"--shard", "1/2"}};
     const auto found = values.find(option.name);
-    return found != values.end() ? found->second : option.choices.empty() ? "1" : option.choices.front();
+    return found != values.end()     ? found->second
+           : !option.choices.empty() ? option.choices.front()
+                                     : fmt::format("{}", std::max(1, option.range.first));
 }
 
 // In this process: there are hundreds.

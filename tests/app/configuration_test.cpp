@@ -31,7 +31,7 @@ TEST(Configuration, ConvertsUnitsOnceAtTheBorder) {
     const auto configuration = load("units", small_configuration);
     EXPECT_EQ(configuration.instrument.source_radius, 0.96);
     EXPECT_EQ(configuration.instrument.spectrum.reference_um, 0.5876);
-    EXPECT_EQ(configuration.instrument.detector_pixels, 8);
+    EXPECT_EQ(configuration.instrument.detector_pixels, ImageSize::square(8));
     EXPECT_EQ(std::get<specimen::Step>(configuration.specimen->shape).height, 0.002);
     EXPECT_EQ(configuration.specimen->roughness->noise, 0.0001);
     EXPECT_EQ(configuration.specimen->material.lobes[0].parameters[0], 0.8);

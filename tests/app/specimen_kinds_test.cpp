@@ -1,5 +1,6 @@
 // Every kind of specimen is read by its keys, and by no others.
 #include "configuration/tables.hpp"
+#include "core/file.hpp"
 #include "specimen/kinds.hpp"
 
 #include <fmt/format.h>
@@ -7,6 +8,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <filesystem>
 #include <set>
 
 namespace vkfv {
@@ -48,6 +50,7 @@ std::string table_of(const specimen::Kind& kind) {
 Configuration read(const std::string& text) {
     const auto root = TomlTable::parse(text, "test.toml");
     Configuration configuration;
+    configuration.file = root.where().file;
     read_specimen(root, configuration);
     root.reject_unknown_keys();
     return configuration;
@@ -108,9 +111,32 @@ TEST(SpecimenKinds, TakeRoughnessUnlessTheyAreMeshes) {
 TEST(SpecimenKinds, SayWhatTheirKeysAreFor) {
     for (const Key* key : (*specimen_key_tables().front()).keys) {
         EXPECT_FALSE(key->meaning.empty()) << key->name;
-        EXPECT_TRUE(key->name == "kind" || !key->kinds.empty()) << key->name;
+        EXPECT_TRUE(key->name == "kind" || key->name == "standard" || !key->kinds.empty()) << key->name;
     }
     EXPECT_EQ((*specimen_key_tables().front()).kinds().size(), specimen::kinds().size());
+}
+
+// Whatever is in assets/specimens: as if its keys stood in the configuration, and some of them may.
+TEST(Standards, AreReadAsTheirKeysAreAndLeaveNoNameBehind) {
+    int found = 0;
+    for (const auto& entry : std::filesystem::directory_iterator(VKFV_SOURCE_DIR "/assets/specimens")) {
+        if (entry.path().extension() != ".toml") {
+            continue;
+        }
+        ++found;
+        const std::string file = read_file(entry.path()), name = entry.path().stem().string();
+        EXPECT_THAT(file, testing::StartsWith("title = \"Type ")) << name;
+        const auto keys = read(file.substr(file.find("[specimen]")));
+        const auto named = read(fmt::format("[specimen]\nstandard = \"{}\"\n", name));
+        EXPECT_EQ(named.canonical, keys.canonical);
+        EXPECT_EQ(named.identity, keys.identity);
+        EXPECT_THAT(named.canonical, testing::Not(HasSubstr("standard")));
+        EXPECT_TRUE(named.specimen->shape == keys.specimen->shape) << name;
+        EXPECT_THAT(read(fmt::format("[specimen]\nstandard = \"{}\"\npitch_um = 0.25\n", name)).canonical,
+                    HasSubstr("pitch_um = 0.25\n"))
+            << name;
+    }
+    EXPECT_GE(found, 13);
 }
 
 } // namespace

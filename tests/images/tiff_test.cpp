@@ -221,6 +221,19 @@ TEST_F(PlainTiffs, WhatOpenImageIOWroteIsRead) {
     EXPECT_EQ(read->channel<double>(0).values, std::vector<double>(image.values.begin(), image.values.end()));
 }
 
+TEST_F(PlainTiffs, BytesAreReadAsWritten) {
+    Grid<std::uint8_t> image(5, 3);
+    for (std::size_t k = 0; k < image.values.size(); ++k) {
+        image.values[k] = static_cast<std::uint8_t>(255 - 17 * k);
+    }
+    const std::string bytes = tiff_bytes(image, tags);
+    const auto read = plain_tiff(bytes, TiffPart::all);
+    ASSERT_TRUE(read);
+    EXPECT_TRUE(read->integers);
+    EXPECT_EQ(read->channel<std::uint8_t>(0).values, image.values);
+    expect_as_the_module(bytes, "bytes");
+}
+
 TEST_F(PlainTiffs, OtherKindsAreLeftToOpenImageIO) {
     const auto image = all_kinds(40, 36, 1);
     const auto float_type = OIIO::TypeDesc::FLOAT;
@@ -238,7 +251,7 @@ TEST_F(PlainTiffs, OtherKindsAreLeftToOpenImageIO) {
         {"a tag more", encoded(std::span(image), float_type, set("Copyright", "somebody"))},
         {"digest", encoded(std::span(image), float_type, set("ImageDescription", "a oiio:SHA-1=12ab b"))},
         {"double", encoded(std::span(image), OIIO::TypeDesc::DOUBLE, none)},
-        {"bytes", encoded(std::span(image), OIIO::TypeDesc::UINT8, none)},
+        {"signed", encoded(std::span(image), OIIO::TypeDesc::INT16, none)},
         {"no image", "not an image at all"},
         {"empty", ""}};
     for (const auto& [what, bytes] : files) {

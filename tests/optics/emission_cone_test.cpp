@@ -304,7 +304,9 @@ TEST(EmissionCone, HoldsThinConesOfAnAssembledIlluminator) {
                                           .seed = 43,
                                           .image = 0,
                                           .focal_height = 0,
-                                          .top_distance_residual = 0};
+                                          .top_distance_residual = 0,
+                                          .beside_x = 0,
+                                          .beside_y = 0};
     const auto arrived = [&](const Instrument& instrument, auto&& each) {
         int count = 0;
         for (std::uint32_t k = 0; k < rays; ++k) {

@@ -198,7 +198,7 @@ TEST(PointImage, OverASpectrum) {
 // wavefront is 0.4 % more.
 TEST(ImageQuality, OfAnIndependentTracer) {
     auto description = test::microscope();
-    description.detector_size = 1.28;
+    description.detector_width = 1.28;
     const auto quality = image_quality(description, assemble(description));
     EXPECT_NEAR(quality.axis.rms_spot * um_per_mm, 7.808412, 1e-3 * 7.808412);
     EXPECT_NEAR(quality.axis.wavefront_rms, 0.0164877, 1e-3 * 0.0164877);
@@ -296,20 +296,20 @@ TEST(ImageQuality, OfASpectrum) {
 
 TEST(Warnings, OfPixelsCoarserAndFinerThanTheOptics) {
     auto description = test::microscope();
-    description.detector_size = 1.28; // 2 um a pixel in the object; lambda / NA is 2.12 um
+    description.detector_width = 1.28; // 2 um a pixel in the object; lambda / NA is 2.12 um
     EXPECT_THAT(image_quality(description, assemble(description)).warnings, IsEmpty());
-    description.detector_pixels = 60;
+    description.detector_pixels = ImageSize::square(60);
     EXPECT_THAT(image_quality(description, assemble(description)).warnings,
                 Contains(HasSubstr("coarser than the optics")));
-    description.detector_pixels = 980; // 0.1306 um; a tenth of Airy's radius is 0.1293 um
+    description.detector_pixels = ImageSize::square(980); // 0.1306 um; a tenth of Airy's radius is 0.1293 um
     EXPECT_THAT(image_quality(description, assemble(description)).warnings, IsEmpty());
-    description.detector_pixels = 1000;
+    description.detector_pixels = ImageSize::square(1000);
     EXPECT_THAT(image_quality(description, assemble(description)).warnings, Contains(HasSubstr("far finer")));
 }
 
 TEST(Warnings, NameWhatClipsTheCone) {
     auto description = test::microscope();
-    description.detector_size = 1.28;
+    description.detector_width = 1.28;
     auto narrowed = description;
     // On the axis the beam fills 5.56 mm behind the objective.
     narrowed.tube_lens.surfaces.front().semi_diameter = 5;
@@ -317,8 +317,8 @@ TEST(Warnings, NameWhatClipsTheCone) {
                 Contains(::testing::AllOf(HasSubstr("on the axis"), HasSubstr("(200mm 1) (100 % of the rim)"))));
     // Far out the front of the tube lens cuts one side.
     auto wide = description;
-    wide.detector_size = 22;
-    wide.detector_pixels = 1100;
+    wide.detector_width = 22;
+    wide.detector_pixels = ImageSize::square(1100);
     wide.tube_lens.surfaces.front().semi_diameter = 7;
     const auto quality = image_quality(wide, assemble(wide));
     EXPECT_THAT(quality.warnings, Contains(::testing::AllOf(HasSubstr("field's corner"), HasSubstr("200mm 1"))));
@@ -329,7 +329,7 @@ TEST(Warnings, NameWhatClipsTheCone) {
 // No light from the corner: its figures are undefined, not zero, and the axis' stay.
 TEST(ImageQuality, OfADarkCorner) {
     auto description = test::microscope();
-    description.detector_size = 60;
+    description.detector_width = 60;
     const auto quality = image_quality(description, assemble(description));
     EXPECT_EQ(quality.corner.relative_light, 0);
     EXPECT_TRUE(std::isnan(quality.corner.rms_spot));

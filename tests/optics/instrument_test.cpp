@@ -293,8 +293,8 @@ TEST(Gate, HoldsAllThatIsDetected) {
             const auto result =
                 test::trace(train, position - glm::dvec3(0, 0, instrument.front_vertex_height), direction, 1u);
             const auto landed = physics::f64::fly_to_plane(result.ray, constants.detector_distance, 1.0);
-            if (result.status != PATH_ALIVE || std::abs(landed.position.x) >= constants.detector_half_size ||
-                std::abs(landed.position.y) >= constants.detector_half_size) {
+            if (result.status != PATH_ALIVE || std::abs(landed.position.x) >= constants.detector_half_width ||
+                std::abs(landed.position.y) >= constants.detector_half_height) {
                 continue;
             }
             ++detected;
@@ -424,7 +424,7 @@ TEST(Instrument, Warns) {
     description.illumination_to_objective = 100;
     EXPECT_THAT(assemble(description).warnings, ::testing::ElementsAre(HasSubstr("instead of into it")));
     description = test::microscope();
-    description.detector_size = 40;
+    description.detector_width = 40;
     description.field_stop_radius.reset();
     EXPECT_THAT(assemble(description).warnings, ::testing::ElementsAre(HasSubstr("clip their cones")));
 }

@@ -33,7 +33,9 @@ std::vector<double> arrivals(const Instrument& instrument, std::uint32_t paths) 
                                           .seed = 41,
                                           .image = 0,
                                           .focal_height = 0,
-                                          .top_distance_residual = 0};
+                                          .top_distance_residual = 0,
+                                          .beside_x = 0,
+                                          .beside_y = 0};
     std::vector<double> cells(rings * sectors);
     for (std::uint32_t k = 0; k < paths; ++k) {
         const auto arrival =

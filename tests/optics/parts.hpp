@@ -29,8 +29,8 @@ inline optics::InstrumentDescription microscope(const std::string& objective = "
     description.field_stop_radius = 0.85;
     description.objective = optics::load_prescription(objective, "objectives", base);
     description.tube_lens = optics::load_prescription("200mm", "tube_lenses", base);
-    description.detector_size = 1.3;
-    description.detector_pixels = 64;
+    description.detector_width = 1.3;
+    description.detector_pixels = ImageSize::square(64);
     return description;
 }
 

@@ -162,8 +162,8 @@ TEST(Wavefront, OfAnotherWavelength) {
 
 TEST(Wavefront, EndsWhereAnEdgeClips) {
     auto description = test::microscope();
-    description.detector_size = 22;
-    description.detector_pixels = 1100;
+    description.detector_width = 22;
+    description.detector_pixels = ImageSize::square(1100);
     description.tube_lens.surfaces.front().semi_diameter = 7;
     const Instrument instrument = assemble(description);
     for (const double x : {0.8, 1.1}) { // the second one's paraxial chief ray is stopped

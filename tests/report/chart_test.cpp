@@ -206,7 +206,7 @@ TEST(ImagePicture, states_mean_and_contrast) {
     Grid<double> image(4, 2, 1.0);
     for (int column = 0; column < 4; ++column)
         image(column, 1) = 3.0;
-    const auto svg = image_picture("t", image, 0, 0, 0.001);
+    const auto svg = image_picture("t", image, 0, 0, 0.001, light_of_pixels);
     EXPECT_NE(svg.find("Mean 2 W, contrast 0.5000"), std::string::npos);
 }
 

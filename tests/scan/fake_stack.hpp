@@ -32,14 +32,14 @@ inline double flux(int column, int row, double z, std::uint32_t image, int seed)
 class FakeTracer : public trace::Tracer {
   public:
     explicit FakeTracer(int seed = 1, std::chrono::microseconds duration = {}) : seed_(seed), duration_(duration) {}
-    trace::Image expose(double focal_height, std::uint32_t image) const override {
+    trace::Image expose(trace::FocalPosition position, std::uint32_t image) const override {
         std::this_thread::sleep_for(duration_);
         exposed.push_back(static_cast<int>(image));
         trace::Image exposure;
         exposure.flux = Grid<double>(columns, rows);
         for (int row = 0; row < rows; ++row) {
             for (int column = 0; column < columns; ++column) {
-                exposure.flux(column, row) = flux(column, row, focal_height, image, seed_);
+                exposure.flux(column, row) = flux(column, row, position.height, image, seed_);
             }
         }
         exposure.ledger.emitted = 1;

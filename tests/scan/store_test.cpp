@@ -394,13 +394,13 @@ TEST(ImageStore, OneProgramAtATime) {
 class AheadTracer final : public FakeTracer {
   public:
     std::future<trace::Image>
-    begin(double focal_height, std::uint32_t image,
+    begin(trace::FocalPosition position, std::uint32_t image,
           std::shared_ptr<const trace::Checkpoints> /*checkpoints*/ = nullptr) const override {
         ++under_way_;
         most = std::max(most, under_way_);
-        return std::async(std::launch::deferred, [this, focal_height, image] {
+        return std::async(std::launch::deferred, [this, position, image] {
             --under_way_;
-            return expose(focal_height, image);
+            return expose(position, image);
         });
     }
     int most_under_way() const override { return 3; }
@@ -440,7 +440,7 @@ TEST(RunStack, BeginsAheadAndKeepsTheOrder) {
 
 TEST(RunStack, AnExceptionOfTheTraceLeavesWhatIsStored) {
     class Failing : public FakeTracer {
-        trace::Image expose(double z, std::uint32_t image) const override {
+        trace::Image expose(trace::FocalPosition z, std::uint32_t image) const override {
             return image == 2 ? throw RunError("device lost") : FakeTracer::expose(z, image);
         }
     };

@@ -67,6 +67,27 @@ TEST(Comparison, WithoutFormKeepsTheOffset) {
     EXPECT_NEAR(deviation_map(measured, truth, {.form = {.kind = Form::Kind::none}}).height(30, 30), 3 * um, um);
 }
 
+// A plane through a step of height h takes three quarters of its mean square, h^2 / 4: slope 3 h / (2 L) over the
+// length L.
+TEST(Comparison, InTheTruthsPlaneKeepsAStep) {
+    const auto of_slope = [](double slope) {
+        HeightMap map{.height = Grid<double>(200, 20), .x0 = -99.5 * um, .y0 = 0, .pitch_x = um, .pitch_y = um};
+        for (int row = 0; row < map.rows(); ++row)
+            for (int column = 0; column < map.columns(); ++column)
+                map.height(column, row) =
+                    (map.x(column) > 0 ? 4 * um : 0) + slope * map.x(column) + 2 * slope * map.y(row);
+        return map;
+    };
+    const Band as_true{.form = {.kind = Form::Kind::truth}};
+    const Deviation kept = compare(of_slope(0.03), of_slope(0), as_true);
+    EXPECT_NEAR(kept.sq_measured, 2 * um, 1e-9 * um);
+    EXPECT_NEAR(kept.sq_true, 2 * um, 1e-9 * um);
+    EXPECT_LT(kept.rms, 1e-9 * um);
+    EXPECT_NEAR(compare(of_slope(0.03), of_slope(0)).sq_true, um, 1e-3 * um);
+    // What is no plane stays in the deviation.
+    EXPECT_NEAR(deviation_map(of_slope(0.03), of_slope(0), as_true).height(3, 3), 0, 1e-9 * um);
+}
+
 TEST(Comparison, OfFlatMapsHasNeitherCorrelationNorShift) {
     HeightMap tilted = truth_map(), other = truth_map(), constant = truth_map(), high = truth_map();
     for (int row = 0; row < tilted.rows(); ++row)

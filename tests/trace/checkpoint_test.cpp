@@ -47,7 +47,7 @@ void PrintTo(const Form& form, std::ostream* to) {
 
 std::unique_ptr<trace::Tracer> tracer_of(const Form& form) {
     auto description = microscope_description();
-    description.detector_pixels = 32;
+    description.detector_pixels = ImageSize::square(32);
     description.turned = form.backward;
     static std::vector<std::unique_ptr<optics::Instrument>> instruments;
     instruments.push_back(std::make_unique<optics::Instrument>(optics::assemble(description)));

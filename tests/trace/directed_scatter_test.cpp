@@ -28,7 +28,7 @@ trace::TraceOptions options(bool directed, int max_bounces = 2) {
 // Few pixels, so that each has hundreds of detections and its mean is normally distributed.
 optics::Instrument coarse_microscope() {
     auto description = test::microscope_description();
-    description.detector_pixels = 8;
+    description.detector_pixels = ImageSize::square(8);
     return optics::assemble(description);
 }
 

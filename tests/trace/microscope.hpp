@@ -17,8 +17,8 @@ inline optics::InstrumentDescription microscope_description() {
     description.field_stop_radius = 0.85;
     description.objective = optics::load_prescription("10x_0.28", "objectives", base);
     description.tube_lens = optics::load_prescription("200mm", "tube_lenses", base);
-    description.detector_size = 1.28;
-    description.detector_pixels = 64;
+    description.detector_width = 1.28;
+    description.detector_pixels = ImageSize::square(64);
     return description;
 }
 

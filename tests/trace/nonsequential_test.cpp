@@ -29,7 +29,7 @@ trace::TraceOptions options(trace::Traversal traversal, bool nonsequential = tru
 // Few pixels, so that few rays make a sharp test.
 optics::InstrumentDescription coarse_microscope() {
     auto description = test::microscope_description();
-    description.detector_pixels = 8;
+    description.detector_pixels = ImageSize::square(8);
     return description;
 }
 
@@ -96,8 +96,11 @@ physics::f64::Instrument pencil(double half_size, int pixels) {
     instrument.source_radius = 0.01;
     instrument.emission_sine = 1e-5;
     instrument.magnification = 1;
-    instrument.detector_half_size = half_size;
-    instrument.detector_pixels = pixels;
+    instrument.detector_half_width = half_size;
+    instrument.detector_half_height = half_size;
+    instrument.detector_columns = pixels;
+    instrument.detector_rows = pixels;
+    instrument.pixel_reach = 1;
     instrument.spectrum_centre = 4;
     instrument.spectrum_half_width = 1;
     return instrument;
@@ -111,7 +114,13 @@ std::vector<Detection> trace_bench(const Bench& bench, const physics::f64::Instr
                                    std::uint32_t paths) {
     std::vector<Detection> ends;
     ends.reserve(paths);
-    const Exposure exposure{.top_distance = 0, .seed = 5, .image = 1, .focal_height = 0, .top_distance_residual = 0};
+    const Exposure exposure{.top_distance = 0,
+                            .seed = 5,
+                            .image = 1,
+                            .focal_height = 0,
+                            .top_distance_residual = 0,
+                            .beside_x = 0,
+                            .beside_y = 0};
     for (std::uint32_t path = 0; path < paths; ++path) {
         ends.push_back(
             trace_nonsequential(bench, instrument, SpecimenRecord{}, exposure, below_the_axis(), uvec2(path, 0)));

@@ -31,7 +31,7 @@ optics::InstrumentDescription described(const std::string& objective, const std:
     description.splitter.distance = 50;
     description.objective = optics::load_prescription(objective, "objectives", base);
     description.tube_lens = optics::load_prescription(tube_lens, "tube_lenses", base);
-    description.detector_size = 8;
+    description.detector_width = 8;
     return description;
 }
 

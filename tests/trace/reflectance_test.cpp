@@ -25,8 +25,8 @@ constexpr double level = 1e-3; // false-positive rate of each chi-square test he
 optics::InstrumentDescription small_description() {
     auto description = test::microscope_description();
     description.field_stop_radius = 0.18;
-    description.detector_size = 0.32;
-    description.detector_pixels = 16;
+    description.detector_width = 0.32;
+    description.detector_pixels = ImageSize::square(16);
     description.turned = true;
     return description;
 }

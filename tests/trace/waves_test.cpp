@@ -100,19 +100,22 @@ constexpr int grating_pixels = 32;
 
 // An ideal lens, pixels of an eighth of the shortest wave that it passes.
 // tilt: of the detector, rad.
-optics::Instrument ideal_microscope(double aperture, double tilt = 0) {
+optics::InstrumentDescription ideal_description(double aperture, double tilt = 0) {
     auto description = test::microscope_description();
     const double focal_length = aperture > 0.5 ? 4 : 20;
     description.spectrum = optics::Spectrum::line(grating_wavelength * um_per_mm);
     description.source_radius = 0.5;
     description.objective = optics::ideal_objective(focal_length, aperture);
     description.tube_lens = optics::ideal_lens(200);
-    description.detector_pixels = grating_pixels;
-    description.detector_size = grating_pixels * grating_wavelength / (8 * aperture) * 200 / focal_length;
+    description.detector_pixels = ImageSize::square(grating_pixels);
+    description.detector_width = grating_pixels * grating_wavelength / (8 * aperture) * 200 / focal_length;
     description.field_stop_radius = 0.1;
     description.detector_placement.change.tilt_y = tilt;
     description.turned = true;
-    return optics::assemble(description);
+    return description;
+}
+optics::Instrument ideal_microscope(double aperture, double tilt = 0) {
+    return optics::assemble(ideal_description(aperture, tilt));
 }
 
 // A level Lambertian flat with a grating of reflectance; period: mm, angle: rad.
@@ -212,8 +215,8 @@ TEST(Waves, follow_a_detector_that_is_tilted) {
 TEST(Waves, give_gratings_the_contrast_of_an_aberrated_objective) {
     auto description = test::microscope_description();
     constexpr double period = 2.5e-3;
-    description.detector_pixels = grating_pixels;
-    description.detector_size = grating_pixels * period / 8 * 9.999284;
+    description.detector_pixels = ImageSize::square(grating_pixels);
+    description.detector_width = grating_pixels * period / 8 * 9.999284;
     description.turned = true;
     const auto instrument = optics::assemble(description);
     const auto specimen = flat_with_grating(period, 0);
@@ -243,7 +246,7 @@ TEST(Waves, take_fewer_parts_where_the_device_cannot_hold_them) {
     EXPECT_EQ(trace::waves_on_device({}, coarse, device).cells, 8);
     EXPECT_EQ(trace::waves_on_device({.cells = 10}, coarse, device).cells, 10);
     // 8 bytes a cell and part: 64 x 32^2 x 3^2 cells.
-    const auto memory = trace::wave_memory(8, 3, grating_pixels);
+    const auto memory = trace::wave_memory(8, 3, ImageSize::square(grating_pixels));
     EXPECT_EQ(memory.light, 8u * 64 * 32 * 32 * 9);
     EXPECT_EQ(parts({.most_memory = memory.all()}), 3);
     EXPECT_EQ(parts({.most_memory = memory.all() - 1}), 2);
@@ -284,7 +287,7 @@ TEST(Waves, keep_the_light_and_do_not_add_noise) {
     for (const int parts : {1, 3}) {
         const optics::PupilFilter filter(instrument, {.cells = 8, .parts = parts});
         constexpr int pixels = 21;
-        const trace::WaveImage waves(filter, pixels);
+        const trace::WaveImage waves(filter, ImageSize::square(pixels));
         const auto light = noisy_light(waves.numbers(), 30);
         const auto before = unfiltered(light, pixels, parts, filter.cell_count());
         const auto after = waves.apply(light);
@@ -294,6 +297,38 @@ TEST(Waves, keep_the_light_and_do_not_add_noise) {
         EXPECT_NEAR(noise, filter.noise(), 0.12);
         EXPECT_LT(noise, 0.95);
     }
+}
+
+// A grating along either side of a rectangle, and light that only a part of each pixel takes.
+TEST(Waves, of_rectangular_detectors_with_gaps) {
+    constexpr double aperture = 0.28, s = 0.5;
+    constexpr double period = grating_wavelength / (2 * aperture * s);
+    auto description = ideal_description(aperture);
+    description.detector_pixels = {40, 24};
+    description.detector_width *= 2 * 40.0 / grating_pixels;
+    std::vector<double> light;
+    for (const double fill : {1.0, 0.3}) {
+        description.fill_factor = fill;
+        const auto instrument = optics::assemble(description);
+        const double pitch = instrument.first_order.pixel_pitch;
+        for (const double angle : {0.0, 0.5 * pi}) {
+            auto options = with_waves(trace::Estimator::backward);
+            options.rays = 256 * 40 * 24;
+            options.max_bounces = 1;
+            options.waves->parts = 5; // of which a gap takes whole ones and shares
+            const auto image =
+                trace::make_device_tracer(instrument, flat_with_grating(period, angle), options)->expose(0, 1);
+            ASSERT_EQ(image.flux.columns, 40);
+            ASSERT_EQ(image.flux.rows, 24);
+            light.push_back(sum(image.flux.values));
+            // The contrast is told without the transfer of whole pixels; sensitive ones are narrower.
+            const auto sinc = [&](double side) { return std::sin(pi * side / period) / (pi * side / period); };
+            const double expected =
+                debye_transfer(aperture, grating_wavelength, s, 0) * sinc(std::sqrt(fill) * pitch) / sinc(pitch);
+            EXPECT_NEAR(grating_contrast(image.flux, period, angle, pitch), expected, 0.02) << angle;
+        }
+    }
+    EXPECT_NEAR(light[2] / light[0], 0.3, 0.003);
 }
 
 TEST(Waves, of_a_single_cell_in_focus_are_the_airy_transfer) {
@@ -317,7 +352,8 @@ TEST(Waves, are_the_same_on_the_device_and_on_the_host) {
     const auto instrument = test::microscope();
     const vulkan::Device device;
     // Sizes with other primes than two; light that lies on one side only, to tell left from right.
-    for (const auto& [pixels, parts, cells] : {std::tuple{20, 2, 8}, {7, 5, 2}}) {
+    for (const auto& [pixels, parts, cells] :
+         {std::tuple{ImageSize{20, 20}, 2, 8}, {ImageSize{7, 7}, 5, 2}, {ImageSize{11, 6}, 3, 2}}) {
         const optics::PupilFilter filter(instrument, {.cells = cells, .parts = parts});
         const trace::WaveImage on_host(filter, pixels);
         auto light = noisy_light(on_host.numbers(), 50);
@@ -335,7 +371,7 @@ TEST(Waves, are_the_same_on_the_device_and_on_the_host) {
         const auto expected = on_host.apply(light);
         const double mean = sum(expected.values) / static_cast<double>(expected.values.size());
         for (std::size_t pixel = 0; pixel < found.values.size(); ++pixel) {
-            ASSERT_NEAR(found.values[pixel], expected.values[pixel], 2e-6 * mean) << pixels << ' ' << pixel;
+            ASSERT_NEAR(found.values[pixel], expected.values[pixel], 2e-6 * mean) << pixels.columns << ' ' << pixel;
         }
         EXPECT_NEAR(sum(found.values) / sum(expected.values), 1, 1e-6);
     }

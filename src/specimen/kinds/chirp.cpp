@@ -36,4 +36,13 @@ Analytic Chirp::function(const SourceLocation& where) const {
     return function_of(physics::f64::SHAPE_CHIRP, {amplitude, period, period_stop});
 }
 
+dimensions::Chirp Chirp::feature() const {
+    return {.frame = {},
+            .amplitude = amplitude,
+            .start = -0.5 * size,
+            .length = size,
+            .period_start = period,
+            .period_stop = period_stop};
+}
+
 } // namespace vkfv::specimen

@@ -1,6 +1,7 @@
 // place: 5
 #pragma once
 
+#include "dimensions/feature.hpp"
 #include "specimen/square.hpp"
 
 namespace vkfv::specimen {
@@ -16,6 +17,7 @@ struct Chirp : Continuous {
     static std::vector<const Key*> keys();
     static Chirp read(const Section& section);
     Analytic function(const SourceLocation& where) const;
+    dimensions::Chirp feature() const;
     bool operator==(const Chirp&) const = default;
 };
 

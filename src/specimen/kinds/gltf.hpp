@@ -1,4 +1,4 @@
-// place: 14
+// place: 20
 #pragma once
 
 #include "specimen/mesh_file.hpp"

@@ -48,4 +48,8 @@ void Groove::raise(HeightField& field, double, const SourceLocation& where) cons
     }
 }
 
+dimensions::Groove Groove::feature() const {
+    return {.frame = {}, .width = width, .depth = depth};
+}
+
 } // namespace vkfv::specimen

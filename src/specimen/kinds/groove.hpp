@@ -1,6 +1,7 @@
 // place: 10
 #pragma once
 
+#include "dimensions/feature.hpp"
 #include "specimen/square.hpp"
 
 namespace vkfv::specimen {
@@ -16,6 +17,7 @@ struct Groove : Square {
     static std::vector<const Key*> keys();
     static Groove read(const Section& section);
     void raise(HeightField& field, double asked_pitch, const SourceLocation& where) const;
+    dimensions::Groove feature() const;
     bool operator==(const Groove&) const = default;
 };
 

@@ -1,4 +1,4 @@
-// place: 11
+// place: 17
 #pragma once
 
 #include "specimen/specimen.hpp"

@@ -33,4 +33,8 @@ Analytic Plane::function(const SourceLocation& where) const {
     return function_of(physics::f64::SHAPE_PLANE, {std::tan(tilt_x), std::tan(tilt_y)});
 }
 
+dimensions::Flat Plane::feature() const {
+    return {};
+}
+
 } // namespace vkfv::specimen

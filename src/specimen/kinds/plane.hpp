@@ -1,6 +1,7 @@
 // place: 1
 #pragma once
 
+#include "dimensions/feature.hpp"
 #include "specimen/square.hpp"
 
 namespace vkfv::specimen {
@@ -14,6 +15,7 @@ struct Plane : Continuous {
     static std::vector<const Key*> keys();
     static Plane read(const Section& section);
     Analytic function(const SourceLocation& where) const;
+    dimensions::Flat feature() const;
     bool operator==(const Plane&) const = default;
 };
 

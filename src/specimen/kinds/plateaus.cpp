@@ -4,6 +4,7 @@
 #include "core/section.hpp"
 #include "images/picture.hpp"
 #include "specimen/files.hpp"
+#include "specimen/generated.hpp"
 
 #include <fmt/format.h>
 
@@ -206,6 +207,24 @@ void Plateaus::raise(HeightField& field, double, const SourceLocation& where) co
 
 std::optional<RandomHeights> Plateaus::random_heights() const {
     return random.sq > 0 ? std::optional(random) : std::nullopt;
+}
+
+dimensions::Plateaus Plateaus::feature() const {
+    // Fine enough for the outlines' middles; a large field's distances would take gigabytes.
+    constexpr double most_points = 1000;
+    Plateaus bare = *this;
+    bare.pitch = std::max(pitch, size / most_points);
+    const auto made =
+        generate({.square = bare, .raise = [&](HeightField& field, double asked) { bare.raise(field, asked, {}); }},
+                 std::nullopt, {});
+    const auto& field = std::get<HeightField>(made);
+    dimensions::Plateaus feature{.nominal = {.height = Grid<double>(field.heights.columns, field.heights.rows),
+                                             .x0 = field.x_min,
+                                             .y0 = field.y_min,
+                                             .pitch_x = field.pitch_x,
+                                             .pitch_y = field.pitch_y}};
+    std::ranges::copy(field.heights.values, feature.nominal.height.values.begin());
+    return feature;
 }
 
 } // namespace vkfv::specimen

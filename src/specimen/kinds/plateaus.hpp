@@ -1,6 +1,7 @@
 // place: 7
 #pragma once
 
+#include "dimensions/feature.hpp"
 #include "specimen/random_heights.hpp"
 #include "specimen/square.hpp"
 
@@ -27,6 +28,7 @@ struct Plateaus : Square {
     static Plateaus read(const Section& section);
     void raise(HeightField& field, double asked_pitch, const SourceLocation& where) const;
     std::optional<RandomHeights> random_heights() const;
+    dimensions::Plateaus feature() const;
     bool operator==(const Plateaus&) const = default;
 };
 

@@ -33,4 +33,8 @@ Analytic Sinusoid::function(const SourceLocation& where) const {
     return function_of(physics::f64::SHAPE_SINUSOID, {amplitude, period});
 }
 
+dimensions::Sinusoid Sinusoid::feature() const {
+    return {.frame = {}, .amplitude = amplitude, .period = period};
+}
+
 } // namespace vkfv::specimen

@@ -1,6 +1,7 @@
 // place: 4
 #pragma once
 
+#include "dimensions/feature.hpp"
 #include "specimen/square.hpp"
 
 namespace vkfv::specimen {
@@ -15,6 +16,7 @@ struct Sinusoid : Continuous {
     static std::vector<const Key*> keys();
     static Sinusoid read(const Section& section);
     Analytic function(const SourceLocation& where) const;
+    dimensions::Sinusoid feature() const;
     bool operator==(const Sinusoid&) const = default;
 };
 

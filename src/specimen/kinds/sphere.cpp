@@ -33,4 +33,8 @@ Analytic Sphere::function(const SourceLocation& where) const {
     return function_of(physics::f64::SHAPE_SPHERE, {radius, height});
 }
 
+dimensions::SphereCap Sphere::feature() const {
+    return {.frame = {}, .radius = radius, .height = height};
+}
+
 } // namespace vkfv::specimen

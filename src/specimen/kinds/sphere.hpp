@@ -1,6 +1,7 @@
 // place: 3
 #pragma once
 
+#include "dimensions/feature.hpp"
 #include "specimen/square.hpp"
 
 namespace vkfv::specimen {
@@ -15,6 +16,7 @@ struct Sphere : Continuous {
     static std::vector<const Key*> keys();
     static Sphere read(const Section& section);
     Analytic function(const SourceLocation& where) const;
+    dimensions::SphereCap feature() const;
     bool operator==(const Sphere&) const = default;
 };
 

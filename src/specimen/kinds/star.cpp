@@ -40,4 +40,8 @@ void Star::raise(HeightField& field, double, const SourceLocation&) const {
     }
 }
 
+dimensions::Star Star::feature() const {
+    return {.frame = {}, .petals = petals, .radius = radius, .height = height};
+}
+
 } // namespace vkfv::specimen

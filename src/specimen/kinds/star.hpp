@@ -1,6 +1,7 @@
 // place: 9
 #pragma once
 
+#include "dimensions/feature.hpp"
 #include "specimen/square.hpp"
 
 namespace vkfv::specimen {
@@ -17,6 +18,7 @@ struct Star : Square {
     static std::vector<const Key*> keys();
     static Star read(const Section& section);
     void raise(HeightField& field, double asked_pitch, const SourceLocation& where) const;
+    dimensions::Star feature() const;
     bool operator==(const Star&) const = default;
 };
 

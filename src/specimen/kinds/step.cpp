@@ -32,4 +32,8 @@ Analytic Step::function(const SourceLocation& where) const {
     return function_of(physics::f64::SHAPE_STEP, {height, flank});
 }
 
+dimensions::Step Step::feature() const {
+    return {.frame = {}, .height = height};
+}
+
 } // namespace vkfv::specimen

@@ -1,6 +1,7 @@
 // place: 2
 #pragma once
 
+#include "dimensions/feature.hpp"
 #include "specimen/square.hpp"
 
 namespace vkfv::specimen {
@@ -15,6 +16,7 @@ struct Step : Continuous {
     static std::vector<const Key*> keys();
     static Step read(const Section& section);
     Analytic function(const SourceLocation& where) const;
+    dimensions::Step feature() const;
     bool operator==(const Step&) const = default;
 };
 

@@ -1,4 +1,4 @@
-// place: 13
+// place: 19
 #pragma once
 
 #include "specimen/mesh_file.hpp"

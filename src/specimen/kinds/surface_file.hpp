@@ -1,4 +1,4 @@
-// place: 12
+// place: 18
 #pragma once
 
 #include "specimen/specimen.hpp"

@@ -1,0 +1,93 @@
+#include "app/commands.hpp"
+#include "core/error.hpp"
+#include "core/result_folder.hpp"
+#include "measurement/camera_report.hpp"
+#include "scan/store.hpp"
+
+#include <fmt/format.h>
+#include <spdlog/spdlog.h>
+
+namespace vkfv::app {
+
+namespace {
+
+struct CameraCommandOptions {
+    int pixels = camera::PhotonTransferOptions().columns;
+    int averaged = camera::PhotonTransferOptions().averaged;
+    bool images = false;
+};
+
+constexpr int fewest_pixels = 32, most_pixels = 4096; // a side
+constexpr int fewest_averaged = 2, most_averaged = 1000;
+
+} // namespace
+
+Command camera_command() {
+    const Option pixels = {.name = "--pixels",
+                           .value = "N",
+                           .description = "Columns and rows of the images",
+                           .target = into(&CameraCommandOptions::pixels),
+                           .fallback = fmt::format("{}", CameraCommandOptions().pixels),
+                           .range = {fewest_pixels, most_pixels}};
+    const Option averaged = {.name = "--averaged",
+                             .value = "N",
+                             .description = "Images in the dark, and at half saturation, for nonuniformity",
+                             .target = into(&CameraCommandOptions::averaged),
+                             .fallback = fmt::format("{}", CameraCommandOptions().averaged),
+                             .range = {fewest_averaged, most_averaged}};
+    const Option images = {.name = "--images",
+                           .value = "",
+                           .description = "Write the images too, with their list images.csv",
+                           .target = into(&CameraCommandOptions::images)};
+    return {.name = "camera",
+            .summary =
+                "Measure the configured camera as EMVA 1288 does, on simulated dark and flat images: gain, quantum "
+                "efficiency, noise, saturation, nonuniformity, with charts; needs no device",
+            .operands = {{"C.toml", "Configuration with a [camera]", into(&CommandOptions::file)}},
+            .options = together(
+                {configuration_options(), {out_option("Output folder (default: C-camera)"), pixels, averaged, images}}),
+            .run = run_camera,
+            .example = "vkfv camera assets/stacks/camera.toml --out camera"};
+}
+
+void run_camera(const CommandOptions& options) {
+    const auto own = options.of<CameraCommandOptions>();
+    const auto configuration = load_configuration(options.file, options.overrides, Needs::instrument);
+    if (!configuration.camera) {
+        throw InputError({.where = {.file = configuration.file},
+                          .key = "camera",
+                          .found = "no table",
+                          .expected = "a camera to measure",
+                          .remedy = "Add [camera] with preset = \"IMX250\", or with values of your own."});
+    }
+    const camera::Camera camera(*configuration.camera, configuration.instrument.spectrum);
+    ResultFolder results(options.out.value_or(options.file.stem().string() + "-camera"));
+    std::string list = "file,series,photons,exposure_s\n";
+    camera::ImageTaker take;
+    if (own.images) {
+        constexpr int bits_of_bytes = 8;
+        const auto type = camera.options().bit_depth > bits_of_bytes ? scan::PixelType::uint16 : scan::PixelType::uint8;
+        take = [&results, &list, type](const camera::TakenImage& what, const Grid<float>& image) {
+            const std::string file = "images/" + what.file + ".tif";
+            results.write(file, scan::frame_bytes(image, type, 0, "grey values in DN"));
+            list += fmt::format("{},{},{},{}\n", file, what.series, what.photons, what.exposure_time);
+        };
+    }
+    const auto measurement = measurement::measure_camera(
+        camera, {.columns = own.pixels, .rows = own.pixels, .averaged = own.averaged}, take);
+    results.write("camera.json", measurement::camera_json(measurement).dump(2) + "\n");
+    results.write("transfer.csv", measurement::transfer_table(measurement));
+    results.write("photon_transfer.svg", measurement::transfer_chart(measurement));
+    results.write("signal_to_noise.svg", measurement::signal_to_noise_chart(measurement));
+    results.write("linearity.svg", measurement::linearity_chart(measurement));
+    if (own.images) {
+        results.write("images.csv", list);
+    }
+    results.write_checksums();
+    for (const auto& warning : measurement::warnings_of(camera)) {
+        spdlog::warn(warning);
+    }
+    fmt::print("{}", measurement::summary(measurement));
+}
+
+} // namespace vkfv::app

@@ -1,0 +1,22 @@
+// What a stage did to a stack's positions, for its results.
+#pragma once
+
+#include "configuration/configuration.hpp"
+
+#include <nlohmann/json.hpp>
+
+#include <optional>
+#include <string>
+
+namespace vkfv::measurement {
+
+// What the scale reads of an image of the configuration's stack, where heights are told by that, mm; none: they are by
+// the nominal positions.
+std::optional<double> reading_of(const Configuration& configuration, double position, int image);
+
+// Of a stack with a stage: for results.json, and its file beside the heights, a line an image.
+inline constexpr const char* stage_file = "stage.csv";
+nlohmann::ordered_json stage_figures(const Configuration& configuration);
+std::string stage_table(const Configuration& configuration);
+
+} // namespace vkfv::measurement

@@ -1,0 +1,45 @@
+// The dimensions of a standard: nominal, true and measured.
+#pragma once
+
+#include "dimensions/evaluate.hpp"
+
+#include <nlohmann/json.hpp>
+
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace vkfv::measurement {
+
+// One dimension on the measured heights and on the true ones, found on either by the same rule.
+struct StandardDimension {
+    dimensions::Dimension measured;
+    double truth = surface::undefined; // in the unit of the measured one; NaN without a truth
+
+    // In the units of results: um, degrees, or none.
+    struct Row {
+        std::string name, rule, unit;
+        double nominal, truth, measured;
+        double deviation; // measured less nominal
+        double error;     // measured less true
+        double standard_deviation, standard_error;
+        int profiles;
+    };
+    Row in_unit() const;
+};
+
+// truth: on the same grid.
+std::vector<StandardDimension> standard_dimensions(const dimensions::Feature& feature,
+                                                   const surface::HeightMap& measured,
+                                                   const std::optional<surface::HeightMap>& truth);
+
+// A list of objects; NaN (not measured, not known) becomes null.
+nlohmann::ordered_json json_of(const std::vector<StandardDimension>& dimensions);
+
+// As the member "dimensions", if there are any.
+void add_dimensions(nlohmann::ordered_json& results, const std::vector<StandardDimension>& dimensions);
+
+// A line each.
+std::string dimensions_text(const std::vector<StandardDimension>& dimensions);
+
+} // namespace vkfv::measurement

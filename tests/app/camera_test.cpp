@@ -1,0 +1,143 @@
+// A camera's stack through the real program: the same bytes however it was taken, and grey values all the way.
+#include "app/program.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <nlohmann/json.hpp>
+
+#include <filesystem>
+
+namespace vkfv::test {
+namespace {
+
+namespace fs = std::filesystem;
+using testing::HasSubstr;
+using testing::Not;
+
+std::string with_camera() {
+    return replaced(small_configuration, "[output]\n",
+                    "[camera]\npreset = \"IMX900\"\n[output]\nimages = \"uint16\"\n");
+}
+
+// Without those in which the folder's name or a time stands.
+std::map<std::string, std::string> files_of(const fs::path& folder) {
+    std::map<std::string, std::string> files;
+    for (const auto& entry : fs::recursive_directory_iterator(folder)) {
+        const auto name = entry.path().filename().string();
+        if (entry.is_regular_file() && !name.starts_with("timings") && name != "report.html" &&
+            name != "topography.svg" && name != "checksums.sha256") {
+            files[fs::relative(entry.path(), folder).string()] = read_file(entry.path());
+        }
+    }
+    return files;
+}
+
+void expect_success(const ProgramResult& result) {
+    ASSERT_EQ(result.exit_code, 0) << result.standard_error;
+}
+
+TEST(CameraStack, HasTheSameBytesInOneRunResumedAndInShards) {
+    const auto folder = fresh_folder("camera_stack");
+    write_file(folder / "c.toml", with_camera());
+    expect_success(run_program({"stack", "c.toml", "--out", "a", "--device", "host"}, folder));
+    expect_success(run_program({"stack", "c.toml", "--out", "b", "--device", "host", "--shard", "2/2"}, folder));
+    expect_success(run_program({"stack", "c.toml", "--out", "b", "--device", "host", "--shard", "1/2"}, folder));
+    expect_success(run_program({"merge", "b"}, folder));
+    fs::copy(folder / "a", folder / "d", fs::copy_options::recursive);
+    fs::remove(folder / "d/images/z_0000.tif");
+    fs::remove(folder / "d/images/z_0003.tif");
+    expect_success(run_program({"stack", "c.toml", "--out", "d", "--device", "host"}, folder));
+    const auto one = files_of(folder / "a");
+    EXPECT_EQ(files_of(folder / "d"), one);
+    for (const char* file : {"images/z_0000.tif", "images/z_0004.tif", "results.json", "topography.tif"}) {
+        EXPECT_EQ(read_file(folder / "b" / file), one.at(file)) << file;
+    }
+    const auto camera = nlohmann::json::parse(one.at("results.json")).at("camera");
+    EXPECT_GT(camera.at("exposure_s"), 0);
+    EXPECT_GT(camera.at("ray_noise_e"), camera.at("camera_noise_e")); // of 2000 rays
+    EXPECT_THAT(camera.at("warnings").dump(), HasSubstr("--rays"));
+    EXPECT_THAT(read_file(folder / "a/report.html"), HasSubstr("camera noise e"));
+    EXPECT_THAT(one.at("images/z_0000.tif"), HasSubstr("values=grey values in DN"));
+
+    // An image of the same height is the stack's.
+    expect_success(run_program({"image", "c.toml", "--z", "-1", "--out", "i.tif", "--device", "host"}, folder));
+    const auto pixels = [](const std::string& bytes) { return bytes.substr(bytes.size() - 2 * 8 * 8); };
+    const auto single = read_file(folder / "i.tif");
+    EXPECT_NE(single.find(pixels(one.at("images/z_0001.tif"))), std::string::npos);
+}
+
+TEST(CameraStack, OtherSeedsMakeOtherImagesAndNoCameraMakesLight) {
+    const auto folder = fresh_folder("camera_seeds");
+    write_file(folder / "c.toml", with_camera());
+    write_file(folder / "light.toml", small_configuration);
+    const auto image = [&](const std::string& name, std::vector<std::string> settings) {
+        settings.insert(settings.begin(), {"image", name, "--z", "0", "--out", "i.tif", "--device", "host"});
+        expect_success(run_program(settings, folder));
+        return read_file(folder / "i.tif");
+    };
+    const auto first = image("c.toml", {});
+    EXPECT_EQ(image("c.toml", {}), first);
+    EXPECT_NE(image("c.toml", {"--set", "camera.seed=2"}), first);
+    EXPECT_THAT(image("light.toml", {}), Not(HasSubstr("DN")));
+    EXPECT_THAT(image("c.toml", {"--set", "camera.bit_depth=8", "--set", "camera.gain_dn_per_e=0.02", "--set",
+                                 "camera.offset_dn=8", "--set", "output.images=\"uint8\""}),
+                HasSubstr("grey values in DN"));
+}
+
+// The type of the files' pixels is no part of what is measured: whole grey values are the same in float32.
+TEST(CameraStack, IsEvaluatedToTheSameBitsOfAnyPixelTypeOnHostAndDevice) {
+    const auto folder = fresh_folder("camera_types");
+    write_file(folder / "c.toml", with_camera());
+    for (const char* where : {"host", "device"}) {
+        std::string first;
+        for (const char* type : {"float32", "uint16", "uint8"}) {
+            const std::string out = std::string(where) + type;
+            expect_success(run_program({"stack",    "c.toml",
+                                        "--out",    out,
+                                        "--device", "host",
+                                        "--set",    "camera.bit_depth=8",
+                                        "--set",    "camera.gain_dn_per_e=0.02",
+                                        "--set",    "camera.offset_dn=8",
+                                        "--set",    "camera.read_noise_e=60",
+                                        "--set",    std::string("topography.evaluate_on=\"") + where + "\"",
+                                        "--set",    std::string("output.images=\"") + type + "\"",
+                                        "--set",    "output.surfaces=[\"npy\"]"},
+                                       folder));
+            const auto heights = read_file(folder / out / "topography.npy") + read_file(folder / out / "quality.tif");
+            first = first.empty() ? heights : first;
+            EXPECT_EQ(heights, first) << where << " " << type;
+        }
+    }
+}
+
+TEST(CameraCheck, TellsOfTheCamera) {
+    const auto folder = fresh_folder("camera_check");
+    write_file(folder / "c.toml", with_camera());
+    const auto check = run_program({"check", "c.toml", "--json", "--forecast", "--device", "host"}, folder);
+    expect_success(check);
+    const auto json = nlohmann::json::parse(check.standard_output);
+    EXPECT_NEAR(json.at("camera_clip_e"), 9796, 2);
+    EXPECT_NEAR(json.at("camera_dynamic_range_db"), 63.80, 0.01);
+    EXPECT_GT(json.at("forecast").at("camera").at("ray_over_camera_noise"), 1.0 / 3);
+    EXPECT_FALSE(json.at("forecast").at("warnings").empty());
+}
+
+TEST(CameraCommand, WritesFiguresChartsAndImages) {
+    const auto folder = fresh_folder("camera_command");
+    write_file(folder / "c.toml", with_camera());
+    const auto camera =
+        run_program({"camera", "c.toml", "--out", "m", "--pixels", "48", "--averaged", "8", "--images"}, folder);
+    expect_success(camera);
+    EXPECT_THAT(camera.standard_output, HasSubstr("saturation capacity / e-"));
+    const auto json = nlohmann::json::parse(read_file(folder / "m/camera.json"));
+    EXPECT_NEAR(json.at("gain_dn_per_e").at("measured"), 0.399, 0.02);
+    for (const char* file : {"photon_transfer.svg", "signal_to_noise.svg", "linearity.svg", "transfer.csv",
+                             "images.csv", "images/transfer_000_a.tif"}) {
+        EXPECT_TRUE(fs::exists(folder / "m" / file)) << file;
+    }
+    const auto without = run_program({"camera", "absent.toml"}, folder);
+    EXPECT_EQ(without.exit_code, 2);
+}
+
+} // namespace
+} // namespace vkfv::test

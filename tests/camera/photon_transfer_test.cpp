@@ -1,0 +1,55 @@
+// The measurement finds what was put in: tools/camera_ten_seeds does it with larger images and ten seeds.
+#include "camera/photon_transfer.hpp"
+#include "camera/presets.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+namespace vkfv::camera {
+namespace {
+
+const PhotonTransferOptions small{.columns = 128, .rows = 96, .exposures = 50, .averaged = 24};
+
+void expect_near(const MeasuredFigure& measured, double wanted, double tolerance, const char* what) {
+    EXPECT_GT(measured.error, 0) << what;
+    EXPECT_NEAR(measured.value, wanted, tolerance * wanted) << what;
+}
+
+TEST(PhotonTransfer, FindsWhatWasPutIn) {
+    for (const auto preset : {Preset::imx250, Preset::imx900}) {
+        CameraOptions options = preset_camera(preset).value();
+        options.dark_current = 200;
+        const Camera camera(options, optics::Spectrum::line(0.53));
+        const auto found = photon_transfer_figures(measure_photon_transfer(camera, small));
+        const auto wanted = expected_figures(camera);
+        // Four standard errors or so of images that small.
+        expect_near(found.gain, wanted.gain.value, 0.012, "K");
+        expect_near(found.quantum_efficiency, wanted.quantum_efficiency.value, 0.012, "QE");
+        expect_near(found.read_noise, wanted.read_noise.value, 0.035, "read noise");
+        expect_near(found.capacity, wanted.capacity.value, 0.015, "capacity");
+        expect_near(found.signal_to_noise_db, wanted.signal_to_noise_db.value, 0.003, "SNR");
+        expect_near(found.dynamic_range_db, wanted.dynamic_range_db.value, 0.005, "dynamic range");
+        expect_near(found.dark_signal, wanted.dark_signal.value, 0.04, "DSNU");
+        expect_near(found.photo_response, wanted.photo_response.value, 0.04, "PRNU");
+        expect_near(found.dark_current, wanted.dark_current.value, 0.02, "dark current");
+        EXPECT_LT(found.linearity_error.value, 1e-3);
+    }
+}
+
+// Twins that are not what is expected of the camera: the tolerances above find them.
+TEST(PhotonTransfer, FindsWhatIsOff) {
+    CameraOptions options = preset_camera(Preset::imx900).value();
+    const auto wanted = expected_figures(Camera(options, optics::Spectrum::line(0.53)));
+    options.gain *= 1.03;
+    options.full_well *= 0.95;
+    options.photo_response *= 1.1;
+    const auto found =
+        photon_transfer_figures(measure_photon_transfer(Camera(options, optics::Spectrum::line(0.53)), small));
+    EXPECT_GT(std::abs(found.gain.value / wanted.gain.value - 1), 0.012);
+    EXPECT_GT(std::abs(found.capacity.value / wanted.capacity.value - 1), 0.015);
+    EXPECT_GT(std::abs(found.photo_response.value / wanted.photo_response.value - 1), 0.04);
+}
+
+} // namespace
+} // namespace vkfv::camera
