@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdlib>
+#include <functional>
+#include <numeric>
 
 namespace vkfv::topography {
 namespace {
@@ -16,13 +18,11 @@ struct Shares {
     double operator[](int image) const { return values[static_cast<std::size_t>(image - first)]; }
 };
 
-Shares shares_at(const std::vector<double>& weights, int at, int images) {
-    const int radius = static_cast<int>(weights.size()) - 1;
-    const int first = std::max(0, at - radius), last = std::min(images - 1, at + radius);
+Shares normalised(int first, int last, const std::function<double(int)>& weight) {
     Shares shares{.first = first, .values = {}};
     double total = 0;
     for (int image = first; image <= last; ++image) {
-        shares.values.push_back(weights[static_cast<std::size_t>(std::abs(image - at))]);
+        shares.values.push_back(weight(image));
         total += shares.values.back();
     }
     for (double& share : shares.values)
@@ -30,9 +30,55 @@ Shares shares_at(const std::vector<double>& weights, int at, int images) {
     return shares;
 }
 
+int radius_of(const std::vector<double>& weights) { return static_cast<int>(weights.size()) - 1; }
+
+Shares shares_at(const std::vector<double>& weights, int at, int images) {
+    const int radius = radius_of(weights);
+    return normalised(std::max(0, at - radius), std::min(images - 1, at + radius),
+                      [&](int image) { return weights[static_cast<std::size_t>(std::abs(image - at))]; });
+}
+
+double noise_variance(const Shares& shares) {
+    return std::inner_product(shares.values.begin(), shares.values.end(), shares.values.begin(), 0.0);
+}
+
+// See even_shares().
+Shares even_shares_at(const std::vector<double>& weights, int at, int images) {
+    const int radius = radius_of(weights);
+    if (radius == 0) {
+        return {.first = at, .values = {1}};
+    }
+    const int most = std::max(0, images - 1 - 2 * radius);
+    const int first = std::clamp(at - radius, 0, most), last = std::min(images - 1, first + 2 * radius);
+    const double middle = 0.5 * (first + last);
+    if (at == middle) {
+        return shares_at(weights, at, images);
+    }
+    // The Gaussian of the weights, wider as its exponent is flatter.
+    const auto about = [&](double centre, double flatness) {
+        return normalised(first, last, [&](int image) {
+            return std::pow(weights[1], flatness * (image - centre) * (image - centre));
+        });
+    };
+    const double variance = noise_variance(about(middle, 1));
+    double flat = 0, steep = 1;
+    for (int halving = 0; halving < 30; ++halving) {
+        const double between = 0.5 * (flat + steep);
+        (noise_variance(about(at, between)) < variance ? flat : steep) = between;
+    }
+    return about(at, steep);
+}
+
+std::vector<Share> in_float(const Shares& exact) {
+    std::vector<Share> shares;
+    for (int image = exact.first; image < exact.end(); ++image)
+        shares.push_back({image, static_cast<float>(exact[image])});
+    return shares;
+}
+
 // The shares of both averages, one after the other.
 Shares twice_shares_at(const std::vector<double>& weights, int at, int images) {
-    const int reach = 2 * (static_cast<int>(weights.size()) - 1);
+    const int reach = 2 * radius_of(weights);
     const int first = std::max(0, at - reach), last = std::min(images - 1, at + reach);
     Shares result{.first = first, .values = std::vector<double>(static_cast<std::size_t>(last - first + 1))};
     const Shares curve = shares_at(weights, at, images);
@@ -55,11 +101,11 @@ std::vector<double> axial_weights(double standard_deviation) {
 }
 
 std::vector<Share> axial_shares(const std::vector<double>& weights, int at, int images) {
-    const Shares exact = shares_at(weights, at, images);
-    std::vector<Share> shares;
-    for (int image = exact.first; image < exact.end(); ++image)
-        shares.push_back({image, static_cast<float>(exact[image])});
-    return shares;
+    return in_float(shares_at(weights, at, images));
+}
+
+std::vector<Share> even_shares(const std::vector<double>& weights, int at, int images) {
+    return in_float(even_shares_at(weights, at, images));
 }
 
 std::vector<double> twice_averaged(const std::vector<double>& weights, int at, int images) {
@@ -72,7 +118,7 @@ std::vector<double> twice_averaged(const std::vector<double>& weights, int at, i
 }
 
 std::vector<AveragedPoint> averaged_points(const std::vector<double>& weights, int images) {
-    const int reach = 2 * (static_cast<int>(weights.size()) - 1);
+    const int reach = 2 * radius_of(weights);
     std::vector<AveragedPoint> points;
     for (int at = 0; at < images; ++at) {
         // Where the ends are not felt, every point is like the one before it.

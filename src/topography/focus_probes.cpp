@@ -14,12 +14,14 @@ namespace {
 constexpr int reach = 2; // of the measures' masks beyond the window
 constexpr std::size_t most_values = std::size_t{1} << 25;
 
-std::vector<std::vector<Share>> means_of(const std::vector<double>& axial_weights, int images) {
-    std::vector<std::vector<Share>> means;
+using SharesAt = std::vector<Share> (*)(const std::vector<double>& weights, int at, int images);
+
+std::vector<std::vector<Share>> all_shares(SharesAt shares_at, const std::vector<double>& axial_weights, int images) {
+    std::vector<std::vector<Share>> all;
     for (int at = 0; at < images; ++at) {
-        means.push_back(axial_shares(axial_weights, at, images));
+        all.push_back(shares_at(axial_weights, at, images));
     }
-    return means;
+    return all;
 }
 
 std::vector<double> averaged(const std::vector<double>& values, const std::vector<std::vector<Share>>& means) {
@@ -153,11 +155,16 @@ void FocusProbes::add(const Channels& image) {
     }
 }
 
+FocusProbes::Means FocusProbes::means_of(const std::vector<double>& axial_weights, int count) {
+    const auto shares = all_shares(axial_shares, axial_weights, count);
+    return {.images = shares, .curve = shares};
+}
+
 std::vector<double> FocusProbes::curve(const Probe& probe, const std::vector<int>& order, const Means& means) const {
     const auto pixels = probe.pixels();
     Channels mean(static_cast<std::size_t>(channels_), Grid<float>(probe.columns, probe.rows));
     std::vector<double> values;
-    for (const auto& shares : means) {
+    for (const auto& shares : means.images) {
         for (auto& channel : mean) {
             std::ranges::fill(channel.values, 0.0f);
         }
@@ -173,7 +180,7 @@ std::vector<double> FocusProbes::curve(const Probe& probe, const std::vector<int
         }
         values.push_back(focus_at(mean, measure_, window_, probe.middle_column, probe.middle_row));
     }
-    return averaged(values, means);
+    return averaged(values, means.curve);
 }
 
 std::vector<std::vector<double>> FocusProbes::curves_in_order(const Means& means) const {
@@ -353,7 +360,9 @@ std::vector<Evidence> FocusProbes::by_chance(const std::vector<double>& axial_we
 
 double FocusProbes::share_with_rival(const std::vector<double>& axial_weights, double most_rival) const {
     const auto singles = curves_in_order(means_of({1}, images_));
-    const auto curves = curves_in_order(means_of(axial_weights, images_));
+    // The floor of noise must not pass for a maximum at either end.
+    const auto curves = curves_in_order({.images = all_shares(even_shares, axial_weights, images_),
+                                         .curve = all_shares(axial_shares, axial_weights, images_)});
     // Of the averaged noise over a single image's, and how many values of it are independent.
     const double variance = averaged_points(axial_weights, images_)[static_cast<std::size_t>(images_ / 2)].variance;
     const double independent = std::max(2.0, images_ * variance);

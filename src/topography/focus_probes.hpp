@@ -87,8 +87,11 @@ class FocusProbes {
     };
     Differences differences(const Probe& probe, std::size_t channel) const;
 
-    // What every image's mean is made of.
-    using Means = std::vector<std::vector<Share>>;
+    // What every mean is made of: of the images, then of the curve's values.
+    struct Means {
+        std::vector<std::vector<Share>> images, curve;
+    };
+    static Means means_of(const std::vector<double>& axial_weights, int count);
 
     // Of the weighted means of images in this order.
     std::vector<double> curve(const Probe& probe, const std::vector<int>& order, const Means& means) const;

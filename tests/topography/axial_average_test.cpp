@@ -38,6 +38,30 @@ TEST(AxialAverage, IsTheNormalisedWeightedMeanAlsoAtTheEnds) {
         }
 }
 
+TEST(AxialAverage, EvenSharesHaveTheSameNoiseEverywhere) {
+    for (const double s : {0.3, 0.5, 1.0, 4.0}) {
+        const auto weights = axial_weights(s);
+        for (const int count : {5, 10, 60}) {
+            double before = -1, middle = 0;
+            for (const Share& share : even_shares(weights, count / 2, count))
+                middle += share.weight * share.weight;
+            for (int k = 0; k < count; ++k) {
+                double total = 0, variance = 0, place = 0;
+                for (const Share& share : even_shares(weights, k, count)) {
+                    total += share.weight;
+                    variance += share.weight * share.weight;
+                    place += share.weight * share.image;
+                }
+                EXPECT_NEAR(total, 1, 1e-6);
+                const bool whole = 2 * weights.size() - 1 <= static_cast<std::size_t>(count);
+                EXPECT_NEAR(variance / middle, 1, whole ? 1e-5 : 0.1) << s << " " << count << " " << k;
+                EXPECT_GT(place, before) << s << " " << count << " " << k;
+                before = place;
+            }
+        }
+    }
+}
+
 TEST(AxialAverage, PositionsAreWhatTheAveragesMakeOfAStraightLine) {
     for (const double s : deviations) {
         const auto weights = axial_weights(s);
