@@ -61,9 +61,7 @@ class Image:
     def __init__(self, figures: dict):
         self.figures = figures
         self.file = Path(figures["file"])
-        self.pixels: Array = read_map(
-            self.file, "DN" if "camera" in figures else "W", f"image at z = {figures['z_um']:g} um"
-        )
+        self.pixels: Array = read_map(self.file, f"image at z = {figures['z_um']:g} um")
 
     def __repr__(self):
         return f"<vkfv.Image {self.pixels!r}>"

@@ -12,7 +12,7 @@ import numpy
 from .array import Array, centred_coords
 from .focus import focus_curves
 from .tables import read_records
-from .tiff import grid_of, read_map, read_pixels
+from .tiff import described, grid_of, image_unit, read_description, read_map, read_pixels
 from .x3p import read_x3p
 
 
@@ -116,7 +116,10 @@ class Stack:
     def all_in_focus(self) -> Array:
         """Every pixel from the images around its height, in their unit."""
         values, _, _ = read_pixels(self.folder / "all_in_focus.tif")
-        return self._pixels(values, self.image_unit, "all in focus")
+        if values.ndim == 2:
+            return Array(values, ("y", "x"), self.coords, name="all in focus")
+        coords = {**self.coords, "channel": numpy.arange(values.shape[2])}
+        return Array(values, ("y", "x", "channel"), coords, name="all in focus")
 
     @cached_property
     def diffracted(self) -> "DiffractedMaps | None":
@@ -128,26 +131,22 @@ class Stack:
     @cached_property
     def z(self) -> numpy.ndarray:
         """Nominal heights of the focal plane, um, one an image."""
-        return numpy.array([float(read_pixels(file)[1]["z_um"]) for file in self._image_files])
-
-    @property
-    def image_unit(self) -> str:
-        """Of the images' values: "W" a pixel; "DN", grey values, with a camera; empty where vkfv took no image."""
-        if not self.configuration:
-            return ""
-        return "DN" if "camera" in self.configuration else "W"
+        return numpy.array([float(described(read_description(file))["z_um"]) for file in self._image_files])
 
     def image(self, place: int) -> Array:
         """One image of the stack, from 0; -1: the last."""
-        return self._read_image(self._image_files[place])
+        values, description, _ = read_pixels(self._image_files[place])
+        text = described(description)
+        name = f"image at z = {text['z_um']} um"
+        return Array(values, ("y", "x"), self.coords, image_unit(description), name, text)
 
     @cached_property
     def images(self) -> Array:
         """All images, (z, y, x). Of 1000 images of 1000 x 1000 that is 4 GB: `image` takes one at a time."""
-        images = [read_pixels(file) for file in self._image_files]
-        z = numpy.array([float(text["z_um"]) for _, text, _ in images])
-        values = numpy.stack([values for values, _, _ in images])
-        return Array(values, ("z", "y", "x"), {"z": z, **self.coords}, self.image_unit, "image")
+        images = [self.image(place) for place in range(len(self._image_files))]
+        z = numpy.array([float(image.attributes["z_um"]) for image in images])
+        values = numpy.stack([image.values for image in images])
+        return Array(values, ("z", "y", "x"), {"z": z, **self.coords}, images[0].unit, "image")
 
     def focus_curves(self, rows: slice = slice(None), columns: slice = slice(None), **settings) -> Array:
         """Focus curves (z, y, x) of these rows and columns, averaged along z, by the settings that the heights were
@@ -175,21 +174,11 @@ class Stack:
     # Inside
 
     def _map(self, name: str, unit: str, label: str) -> Array:
-        return read_map(self.folder / name, unit, label, self.coords)
-
-    def _pixels(self, values: numpy.ndarray, unit: str, name: str) -> Array:
-        if values.ndim == 2:
-            return Array(values, ("y", "x"), self.coords, unit, name)
-        coords = {**self.coords, "channel": numpy.arange(values.shape[2])}
-        return Array(values, ("y", "x", "channel"), coords, unit, name)
-
-    def _read_image(self, file: Path) -> Array:
-        values, text, _ = read_pixels(file)
-        return Array(values, ("y", "x"), self.coords, self.image_unit, f"image at z = {text['z_um']} um", text)
+        return read_map(self.folder / name, label, unit, self.coords)
 
     @cached_property
     def _image_files(self) -> list[Path]:
-        files = sorted((self.folder / "images").glob("z_*.tif"))
+        files = sorted((self.folder / "images").glob("z_*.tif"), key=lambda file: int(file.stem[len("z_") :]))
         if not files:
             where = self.results.get("stack") if (self.folder / "results.json").exists() else None
             raise FileNotFoundError(f"{self.folder} holds no images" + (f": they are in {where}" if where else ""))

@@ -63,4 +63,4 @@ class Sweep:
         """Of a sweep of images: that of a record."""
         if self._json["of"] != "images":
             raise ValueError("this is a sweep of stacks: ask for stacks()")
-        return read_map(record["folder"] / "image.tif", "", "image")
+        return read_map(record["folder"] / "image.tif", "image")

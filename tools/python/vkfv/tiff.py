@@ -1,6 +1,7 @@
 """TIFF files as vkfv writes them."""
 
 import os
+import re
 
 import numpy
 import tifffile
@@ -16,8 +17,20 @@ def described(description: str) -> dict[str, str]:
     return dict(line.split("=", 1) for line in description.splitlines() if "=" in line)
 
 
-def read_pixels(path: str | os.PathLike) -> tuple[numpy.ndarray, dict[str, str], float]:
-    """Pixels (rows, columns[, channels]; the first row has the highest y), what the description says, pitch in um.
+def image_unit(description: str) -> str:
+    """Of an image's values, "W" or "DN", as its ImageDescription says; empty of other files."""
+    found = re.search(r"(?:radiant flux|radiant flux per pixel|grey values) in (W|DN)\b", description)
+    return found[1] if found else ""
+
+
+def read_description(path: str | os.PathLike) -> str:
+    """ImageDescription, without the pixels."""
+    with tifffile.TiffFile(path) as file:
+        return file.pages[0].description
+
+
+def read_pixels(path: str | os.PathLike) -> tuple[numpy.ndarray, str, float]:
+    """Pixels (rows, columns[, channels]; the first row has the highest y), ImageDescription, pitch in um.
 
     The pitch is that of the resolution tag, of single precision; NaN without one.
     """
@@ -28,7 +41,7 @@ def read_pixels(path: str | os.PathLike) -> tuple[numpy.ndarray, dict[str, str],
             pixels, length = page.tags["XResolution"].value
             unit = int(page.tags["ResolutionUnit"].value)
             pitch = length / pixels * (UM_PER_CM if unit == 3 else 25.4 * UM_PER_MM)
-        return page.asarray(), described(page.description), pitch
+        return page.asarray(), page.description, pitch
 
 
 def grid_of(path: str | os.PathLike) -> dict[str, numpy.ndarray] | None:
@@ -46,8 +59,10 @@ def grid_of(path: str | os.PathLike) -> dict[str, numpy.ndarray] | None:
     }
 
 
-def read_map(path: str | os.PathLike, unit: str, name: str, coords: dict[str, numpy.ndarray] | None = None) -> Array:
-    """A map of a value a pixel. coords: None: those that the file tells."""
-    values, _, pitch = read_pixels(path)
+def read_map(
+    path: str | os.PathLike, name: str, unit: str | None = None, coords: dict[str, numpy.ndarray] | None = None
+) -> Array:
+    """A map of a value a pixel. unit, coords: None: those that the file tells."""
+    values, description, pitch = read_pixels(path)
     coords = coords or grid_of(path) or centred_coords(values.shape[1], values.shape[0], pitch)
-    return Array(values, ("y", "x"), coords, unit, name)
+    return Array(values, ("y", "x"), coords, image_unit(description) if unit is None else unit, name)
