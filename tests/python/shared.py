@@ -16,15 +16,18 @@ COLUMNS, ROWS = 48, 40
 
 CONFIGURATION = f"""
 [source]
-radius_mm = 0.96
+radius_mm = 1.5
 wavelength_um = 0.5876
 [illumination]
 prescription = "koehler"
 field_stop_radius_mm = 0.5
 [objective]
-prescription = "10x_0.28"
+kind = "ideal"
+focal_length_mm = 20.0
+numerical_aperture = 0.28
 [tube_lens]
-prescription = "200mm"
+kind = "ideal"
+focal_length_mm = 200.0
 [detector]
 pixels = [{COLUMNS}, {ROWS}]
 pixel_um = 20.0
@@ -55,14 +58,18 @@ directory = "out"
 
 WITH_CAMERA_AND_STAGE = {
     "specimen": {"kind": "step", "height_um": 4.0},
-    "detector.pixels": [24, 24],
+    "detector.pixels": [24, 20],
     "scan": {"z_start_um": -6, "z_stop_um": 6, "z_step_um": 3},
-    "trace.rays": 2e4,
+    "trace": {"rays": 2e4, "device": "host"},
     "diffraction.model": "waves",
     "camera": {"preset": "IMX250"},
     "stage": {"jitter_um": 0.1, "evaluate": "read"},
     "output.images": "uint16",
 }
+
+
+# Without a device: kernels take longer to make ready than so few rays to trace.
+SMALL = {"detector.pixels": [16, 12], "trace": {"rays": 4e3, "device": "host"}}
 
 
 @functools.cache
@@ -107,6 +114,12 @@ def tilted() -> vkfv.Stack:
 def with_camera_and_stage() -> vkfv.Stack:
     """A step, as a camera and a stage with errors take it, by waves."""
     return vkfv.run(step_configuration(), out=folder() / "camera", **WITH_CAMERA_AND_STAGE)
+
+
+@functools.cache
+def small_image() -> vkfv.Image:
+    """Of the tilted plane, 2 um above best focus."""
+    return vkfv.image(configuration(), 2, out=folder() / "small.tif", **SMALL)
 
 
 @functools.cache

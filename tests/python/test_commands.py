@@ -13,8 +13,9 @@ from unittest import mock
 
 import numpy
 import shared
-from shared import vkfv
+from shared import SMALL, vkfv
 
+from test_outputs import undocumented, validate
 from vkfv.overrides import settings
 from vkfv.program import CHECKOUT
 
@@ -39,8 +40,7 @@ key = "specimen.roughness.noise_um"
 label = "noise"
 values = [1.0]
 """
-SMALL = {"detector.pixels": [16, 12], "trace.rays": 2e4}
-LONG = {"detector.pixels": [16, 16], "trace.rays": 2e5, "scan.z_step_um": 0.1}
+LONG = {**SMALL, "scan.z_step_um": 0.1}
 LONG_IMAGES = 241
 
 
@@ -78,9 +78,9 @@ class RunTest(unittest.TestCase):
         return [word for setting in settings(SMALL) for word in ("--set", setting)]
 
     def test_an_image(self):
-        out = shared.folder() / "one.tif"
-        image = vkfv.image(shared.configuration(), 2, out=out, **SMALL)
-        self.assertEqual((image.file, image.pixels.shape, image.pixels.unit), (out, (12, 16), "W"))
+        image = shared.small_image()
+        self.assertEqual((image.file, image.pixels.shape), (shared.folder() / "small.tif", (12, 16)))
+        self.assertEqual(image.pixels.unit, "W")
         figures = image.figures
         self.assertAlmostEqual(image.pixels.values.mean(dtype=float), figures["mean_pixel_W"], delta=1e-6 * figures["mean_pixel_W"])
         fates = {entry["name"]: entry["power_W"] for entry in figures["ledger"]["entries"]}
@@ -96,6 +96,8 @@ class RunTest(unittest.TestCase):
         dark, bright = (sweep.image(record) for record in sweep.records)
         self.assertGreater(bright.values.mean(), dark.values.mean())  # more light goes on as it came
         self.assertEqual((bright.unit, bright.shape), ("W", (12, 16)))
+        validate(json.loads((sweep.folder / "sweep.json").read_text(encoding="utf-8")), "sweep")
+        self.assertEqual(undocumented(sweep.folder, "sweep"), [])
         ratio = sweep.column("signal to noise")
         self.assertEqual(ratio.shape, (2,))
         self.assertTrue(numpy.isnan(sweep.column("share collected")).all())  # traced backward: there is none
@@ -114,6 +116,9 @@ class RunTest(unittest.TestCase):
         scan = {"scan": {"z_start_um": -6, "z_stop_um": 6, "z_step_um": 3}}
         out = shared.folder() / "stacks"
         sweep = vkfv.sweep(file, out=out, **SMALL, **scan)
+        printed, _ = printed_json("sweep", file, "--out", out, *self.set_small(), *(word for setting in settings(scan) for word in ("--set", setting)))
+        self.assertEqual(printed, json.loads((out / "sweep.json").read_text(encoding="utf-8")))
+        validate(printed, "sweep")
         (record,) = sweep.records
         stacks = sweep.stacks(record)
         self.assertEqual([stack.results["seed"] for stack in stacks], [1, 2])
@@ -148,8 +153,13 @@ class RunTest(unittest.TestCase):
         self.assertEqual(vkfv.check(shared.configuration(), **{"scan.z_step_um": 4, "trace": {"rays": 3e5}})["images"], 7)
 
     def test_warnings(self):
-        with self.assertWarnsRegex(vkfv.RunWarning, "field stop"):
-            vkfv.image(shared.configuration(), 0, out=shared.folder() / "w.tif", illumination={"field_stop_radius_mm": 0.05}, **SMALL)
+        with self.assertWarnsRegex(vkfv.RunWarning, "above the camera's saturation"):
+            image = vkfv.image(
+                shared.configuration(), 0, out=shared.folder() / "grey.tif", camera={"preset": "IMX250"}, **SMALL
+            )
+        self.assertEqual(image.pixels.unit, "DN")
+        self.assertIn("camera's saturation", "".join(image.figures["warnings"]))
+        validate(image.figures, "image")
 
 
 class ErrorTest(unittest.TestCase):

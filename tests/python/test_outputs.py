@@ -8,7 +8,6 @@ import unittest
 
 import jsonschema
 import shared
-from shared import vkfv
 
 SCHEMAS = shared.SOURCE / "assets" / "schemas"
 
@@ -19,6 +18,18 @@ def schema(name):
 
 def validate(value, name):
     jsonschema.Draft202012Validator(schema(name)).validate(value)
+
+
+def documented_files(kind):
+    """Patterns of the files in a folder of this kind."""
+    folders = json.loads((SCHEMAS / "folders.json").read_text(encoding="utf-8"))
+    return [file["name"] for file in folders[kind]["files"]]
+
+
+def undocumented(folder, kind):
+    """The files in it that no pattern tells of."""
+    files = (file.relative_to(folder).as_posix() for file in folder.rglob("*") if file.is_file())
+    return [file for file in files if not any(fnmatch.fnmatchcase(file, name) for name in documented_files(kind))]
 
 
 def objects(node):
@@ -72,33 +83,19 @@ class SchemaTest(unittest.TestCase):
                 validate(results, "results")
 
     def test_image(self):
-        out = shared.folder() / "schema.tif"
-        small = {"detector.pixels": [16, 16], "trace.rays": 4e3}
-        validate(vkfv.image(shared.configuration(), 0, out=out, **small).figures, "image")
-        with_camera = vkfv.image(shared.configuration(), 0, out=out, camera={"preset": "IMX250"}, **small)
-        validate(with_camera.figures, "image")
-        self.assertIn("camera", with_camera.figures)
-        self.assertEqual(with_camera.pixels.unit, "DN")
+        validate(shared.small_image().figures, "image")  # test_commands.py has one with a camera
 
 
 class FilesTest(unittest.TestCase):
-    def setUp(self):
-        self.folders = json.loads((SCHEMAS / "folders.json").read_text(encoding="utf-8"))
-
-    def undocumented(self, folder, kind):
-        patterns = [file["name"] for file in self.folders[kind]["files"]]
-        files = (file.relative_to(folder).as_posix() for file in folder.rglob("*") if file.is_file())
-        return [file for file in files if not any(fnmatch.fnmatchcase(file, pattern) for pattern in patterns)]
-
     def test_every_file_is_told_of(self):
         stacks = (shared.tilted(), shared.with_camera_and_stage(), shared.evaluated(), shared.foreign())
         for stack in stacks:
-            self.assertEqual(self.undocumented(stack.folder, "stack"), [])
+            self.assertEqual(undocumented(stack.folder, "stack"), [])
         # And every file that is told of exists, but for those of runs that are under way.
         written = [file.relative_to(stack.folder).as_posix() for stack in stacks for file in stack.folder.rglob("*")]
-        for file in self.folders["stack"]["files"]:
-            if file["name"] != "partial_*":
-                self.assertTrue(fnmatch.filter(written, file["name"]), file["name"])
+        for name in documented_files("stack"):
+            if name != "partial_*":
+                self.assertTrue(fnmatch.filter(written, name), name)
 
 
 class DocumentTest(unittest.TestCase):
