@@ -49,7 +49,7 @@ z_stop_um = 12.0
 z_step_um = 2.0
 [trace]
 estimator = "backward"
-rays = 1.5e5
+rays = 1.2e5
 [diffraction]
 model = "none"
 [output]
@@ -58,10 +58,10 @@ directory = "out"
 
 WITH_CAMERA_AND_STAGE = {
     "specimen": {"kind": "step", "height_um": 4.0},
-    "detector.pixels": [24, 20],
+    "detector.pixels": [20, 16],
     "scan": {"z_start_um": -6, "z_stop_um": 6, "z_step_um": 3},
-    "trace": {"rays": 2e4, "device": "host"},
-    "diffraction.model": "waves",
+    "trace": {"rays": 5e3, "device": "host"},
+    "diffraction": {"model": "waves", "cells": 2},
     "camera": {"preset": "IMX250"},
     "stage": {"jitter_um": 0.1, "evaluate": "read"},
     "output.images": "uint16",

@@ -40,6 +40,7 @@ key = "specimen.roughness.noise_um"
 label = "noise"
 values = [1.0]
 """
+SHORT = {"scan": {"z_start_um": -6, "z_stop_um": 6, "z_step_um": 3}}
 LONG = {**SMALL, "scan.z_step_um": 0.1}
 LONG_IMAGES = 241
 
@@ -51,6 +52,11 @@ def printed_json(*arguments):
     return json.loads(done.stdout), done
 
 
+def set_options(*overrides):
+    """The same as arguments of the program."""
+    return [word for table in overrides for setting in settings(table) for word in ("--set", setting)]
+
+
 class RunTest(unittest.TestCase):
     def test_a_stack(self):
         stack = shared.tilted()
@@ -60,22 +66,19 @@ class RunTest(unittest.TestCase):
         self.assertEqual(seen[-1]["done"], 13)
 
     def test_json_is_results_json(self):
-        """Again: nothing is traced, and what is printed is the file."""
-        stack = shared.tilted()
-        printed, done = printed_json("stack", shared.configuration(), "--timings")
-        self.assertEqual(printed, stack.results)
+        out = shared.folder() / "json"
+        printed, done = printed_json("stack", shared.configuration(), "--out", out, "--timings", *set_options(SMALL, SHORT))
+        self.assertEqual(printed, vkfv.Stack(out).results)
+        validate(printed, "results")
         self.assertIn("wall clock", done.stderr)  # --timings stands beside the JSON, not in it
-        self.assertIn("13 kept from before", done.stderr)
+        self.assertIn("5 images traced", done.stderr)
 
     def test_json_of_a_shard(self):
         out = shared.folder() / "shard"
-        arguments = ("stack", shared.configuration(), "--shard", "13/13", "--out", out, *self.set_small())
-        printed, _ = printed_json(*arguments)
-        self.assertEqual(printed, {"shard": 13, "shards": 13, "traced": 1, "kept": 0, "folder": str(out)})
-
-    @staticmethod
-    def set_small():
-        return [word for setting in settings(SMALL) for word in ("--set", setting)]
+        printed, _ = printed_json(
+            "stack", shared.configuration(), "--shard", "5/5", "--out", out, *set_options(SMALL, SHORT)
+        )
+        self.assertEqual(printed, {"shard": 5, "shards": 5, "traced": 1, "kept": 0, "folder": str(out)})
 
     def test_an_image(self):
         image = shared.small_image()
@@ -113,12 +116,11 @@ class RunTest(unittest.TestCase):
     def test_a_sweep_of_stacks(self):
         file = shared.folder() / "stacks.toml"
         file.write_text(shared.CONFIGURATION + STACKS, encoding="utf-8")
-        scan = {"scan": {"z_start_um": -6, "z_stop_um": 6, "z_step_um": 3}}
         out = shared.folder() / "stacks"
-        sweep = vkfv.sweep(file, out=out, **SMALL, **scan)
-        printed, _ = printed_json("sweep", file, "--out", out, *self.set_small(), *(word for setting in settings(scan) for word in ("--set", setting)))
+        printed, _ = printed_json("sweep", file, "--out", out, *set_options(SMALL, SHORT))
         self.assertEqual(printed, json.loads((out / "sweep.json").read_text(encoding="utf-8")))
         validate(printed, "sweep")
+        sweep = vkfv.Sweep(out)
         (record,) = sweep.records
         stacks = sweep.stacks(record)
         self.assertEqual([stack.results["seed"] for stack in stacks], [1, 2])
