@@ -52,7 +52,7 @@ class StackTest(unittest.TestCase):
         numpy.testing.assert_allclose(plane_slopes(sharpest), self.slopes, atol=0.012)
 
     def test_focus_curves_are_those_of_the_evaluation(self):
-        """Their maxima, through three points of the logarithm, are the program's heights to a hundredth of a step."""
+        """Their maxima, through three points of the logarithm, are the program's heights, to the rounding of float32."""
         evaluated = shared.evaluated()
         settings = evaluated.results["topography"]
         curves = vkfv.focus_curves(self.stack.images, settings).values
@@ -66,10 +66,10 @@ class StackTest(unittest.TestCase):
         heights = numpy.interp(largest + offset, numpy.arange(images), positions)
         # The same evaluation without the flat: of the images as they are.
         plain = vkfv.evaluate(self.stack.folder, out=shared.folder() / "plain", topography={"place_by_texture": False})
-        inside = plain.measured & (curves.argmax(axis=0) == largest)
+        inside = plain.measured
         self.assertGreater(inside.mean(), 0.8)
         error = heights[inside] - plain.heights.values[inside]
-        self.assertLess(numpy.sqrt(numpy.mean(error**2)), 0.02)
+        self.assertLess(numpy.sqrt(numpy.mean(error**2)), 1e-4)
 
     def test_every_measure_and_window(self):
         """Of a single pixel as of all; at the border too."""
