@@ -85,7 +85,8 @@ class RunTest(unittest.TestCase):
         self.assertEqual((image.file, image.pixels.shape), (shared.folder() / "small.tif", (12, 16)))
         self.assertEqual(image.pixels.unit, "W")
         figures = image.figures
-        self.assertAlmostEqual(image.pixels.values.mean(dtype=float), figures["mean_pixel_W"], delta=1e-6 * figures["mean_pixel_W"])
+        mean = figures["mean_pixel_W"]
+        self.assertAlmostEqual(image.pixels.values.mean(dtype=float), mean, delta=1e-6 * mean)
         fates = {entry["name"]: entry["power_W"] for entry in figures["ledger"]["entries"]}
         self.assertAlmostEqual(fates["detected"], image.pixels.values.sum(dtype=float), delta=1e-6 * fates["detected"])
         self.assertAlmostEqual(sum(fates.values()), figures["ledger"]["emitted_W"], places=9)

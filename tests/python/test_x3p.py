@@ -66,7 +66,10 @@ class X3pTest(unittest.TestCase):
             numpy.testing.assert_allclose(read.values, expected, atol=1e-7, err_msg=kind)
             numpy.testing.assert_allclose(read.x, [10, 12, 14])
             numpy.testing.assert_allclose(read.y, [-37, -40])
-            self.assertEqual(read.attributes, {"creator": "me", "date": "2024-01-01T00:00:00Z", "model": "M", "serial": "1", "version": "2"})
+            self.assertEqual(
+                read.attributes,
+                {"creator": "me", "date": "2024-01-01T00:00:00Z", "model": "M", "serial": "1", "version": "2"},
+            )
         # The program's own reader has the same heights in the same rows.
         out = shared.folder() / "converted.csv"
         command = [vkfv.find_program(), "surface", files["I"], "--form", "none", "--out", out, "--quiet"]

@@ -46,6 +46,14 @@ def _listed_points(points) -> numpy.ndarray:
     return numpy.array([float(height) if height else numpy.nan for height in heights])
 
 
+def _provenance(record2) -> dict[str, str]:
+    """Creator, date, comment and the instrument, as far as they are known."""
+    texts = {name.lower(): _text(record2, name, default="") for name in ("Creator", "Date", "Comment")}
+    for name in ("Manufacturer", "Model", "Serial", "Version"):
+        texts[name.lower()] = _text(record2, "Instrument", name, default="")
+    return {name: text for name, text in texts.items() if text and text != "unknown"}
+
+
 def read_x3p(path: str | os.PathLike) -> Array:
     """Heights of a surface on a regular grid in um, NaN where not measured, the first row with the highest y.
 
@@ -84,10 +92,5 @@ def read_x3p(path: str | os.PathLike) -> Array:
     pitch_x, pitch_y = (UM_PER_M * float(_text(axes, axis, "Increment")) for axis in ("CX", "CY"))
     x0, y0 = (UM_PER_M * float(_text(axes, axis, "Offset", default="0")) for axis in ("CX", "CY"))
     coords = {"y": y0 + (rows - 1 - numpy.arange(rows)) * pitch_y, "x": x0 + numpy.arange(columns) * pitch_x}
-    attributes = {
-        name.lower(): text
-        for names in (("Creator",), ("Date",), ("Comment",), *(("Instrument", name) for name in ("Manufacturer", "Model", "Serial", "Version")))
-        for name, text in ((names[-1], _text(record2, *names, default="")),)
-        if text and text != "unknown"
-    }
-    return Array(UM_PER_M * heights.reshape(rows, columns), ("y", "x"), coords, "um", "height", attributes)
+    values = UM_PER_M * heights.reshape(rows, columns)
+    return Array(values, ("y", "x"), coords, "um", "height", _provenance(record2))
