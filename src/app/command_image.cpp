@@ -26,7 +26,8 @@ Command image_command() {
     return {.name = "image",
             .summary = "Trace one exposure, at --z",
             .operands = {{"C.toml", "Configuration", into(&CommandOptions::file)}},
-            .options = together({configuration_options(), {out_option("Output folder, or a .tif file"), z}}),
+            .options =
+                together({configuration_options(), {out_option("Output folder, or a .tif file"), json_option(), z}}),
             .run = run_image,
             .example = "vkfv image assets/stacks/demo.toml --z -3.2 --rays 1e8"};
 }
@@ -47,7 +48,8 @@ void run_image(const CommandOptions& options) {
     const auto configuration = load_configuration(options.file, options.overrides, Needs::exposure);
     const double focal_height = options.of<ImageOptions>().focal_height;
     const auto file = image_path(options, configuration, focal_height);
-    fmt::print("{}", measurement::summary(measurement::measure_image(configuration, focal_height, file)));
+    const auto image = measurement::measure_image(configuration, focal_height, file);
+    fmt::print("{}", options.json ? measurement::image_json(image).dump(2) + "\n" : measurement::summary(image));
 }
 
 } // namespace vkfv::app

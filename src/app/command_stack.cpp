@@ -1,5 +1,7 @@
 #include "app/commands.hpp"
+#include "core/file.hpp"
 #include "core/progress.hpp"
+#include "measurement/evaluation_files.hpp"
 #include "measurement/stack.hpp"
 
 #include <fmt/format.h>
@@ -45,7 +47,7 @@ Command stack_command() {
             .summary =
                 "Trace a focus stack, reconstruct it and compare it with the truth; continues an interrupted one",
             .operands = {{"C.toml", "Configuration", into(&CommandOptions::file)}},
-            .options = together({configuration_options(), {out_option("Output folder"), shard}}),
+            .options = together({configuration_options(), {out_option("Output folder"), json_option(), shard}}),
             .run = run_stack,
             .example = "vkfv stack assets/stacks/demo.toml --out demo"};
 }
@@ -54,8 +56,15 @@ void run_stack(const CommandOptions& options) {
     auto progress = Progress::on_standard_error(options.quiet);
     const auto configuration = load_configuration(options.file, options.overrides, Needs::stack);
     const auto shard = options.of<StackOptions>().shard;
-    fmt::print("{}", shard ? measurement::summary(measurement::trace_shard(configuration, *shard, progress))
-                           : measurement::summary(measurement::measure_stack(configuration, progress)));
+    if (shard) {
+        const auto traced = measurement::trace_shard(configuration, *shard, progress);
+        fmt::print("{}", options.json ? measurement::shard_json(traced).dump(2) + "\n" : measurement::summary(traced));
+        tell_results(traced.folder);
+        return;
+    }
+    const auto stack = measurement::measure_stack(configuration, progress);
+    fmt::print("{}", options.json ? read_file(stack.folder / measurement::results_name) : measurement::summary(stack));
+    tell_results(stack.folder);
 }
 
 } // namespace vkfv::app

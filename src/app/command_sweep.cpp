@@ -13,7 +13,7 @@ Command sweep_command() {
             .summary = "Images or stacks for every combination of the parameters in [sweep]; continues an interrupted "
                        "one",
             .operands = {{"C.toml", "Configuration", into(&CommandOptions::file)}},
-            .options = together({configuration_options(), {out_option("Output folder")}}),
+            .options = together({configuration_options(), {out_option("Output folder"), json_option()}}),
             .run = run_sweep,
             .example = "vkfv sweep assets/stacks/paper_logo_small.toml"};
 }
@@ -21,10 +21,17 @@ Command sweep_command() {
 void run_sweep(const CommandOptions& options) {
     auto progress = Progress::on_standard_error(options.quiet);
     const auto result =
-        measurement::run_sweep(options.file, options.overrides, progress, [](const measurement::StackResult& stack) {
-            fmt::print("{}", measurement::summary(stack));
+        measurement::run_sweep(options.file, options.overrides, progress, [&](const measurement::StackResult& stack) {
+            if (!options.json) {
+                fmt::print("{}", measurement::summary(stack));
+            }
         });
-    fmt::print("{}results in {}\n", measurement::sweep_markdown(result.sweep, result.rows), result.folder.string());
+    if (options.json) {
+        fmt::print("{}", measurement::sweep_json(result.sweep, result.rows));
+    } else {
+        fmt::print("{}results in {}\n", measurement::sweep_markdown(result.sweep, result.rows), result.folder.string());
+    }
+    tell_results(result.folder);
 }
 
 } // namespace vkfv::app

@@ -1,5 +1,7 @@
 #include "app/commands.hpp"
 
+#include "core/log.hpp"
+
 namespace vkfv::app {
 
 std::vector<Command> commands() {
@@ -8,6 +10,10 @@ std::vector<Command> commands() {
             layout_command(),  optics_command(),     camera_command(), devices_command(), bench_command(),
             import_command(),  list_command(),       keys_command(),   explain_command(), template_command(),
             help_command(),    completion_command(), man_command()};
+}
+
+void tell_results(const std::filesystem::path& folder) {
+    log_event("results", {{"folder", std::filesystem::absolute(folder).lexically_normal().string()}});
 }
 
 } // namespace vkfv::app

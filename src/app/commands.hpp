@@ -35,6 +35,9 @@ Command help_command();
 Command completion_command();
 Command man_command();
 
+// To whoever reads the log as JSON: the folder that holds a command's results.
+void tell_results(const std::filesystem::path& folder);
+
 // A whole stack with its topography and deviation from truth; continues one that was interrupted.
 void run_stack(const CommandOptions& options);
 // Shards of a stack put together and evaluated, as if one run had traced them.

@@ -68,7 +68,7 @@ class CommandLine {
         spdlog::set_level(options_.quiet ? spdlog::level::warn : spdlog::level::info);
         command.run(options_);
         if (options_.timings) {
-            fmt::print("{}", stage_table());
+            fmt::print(options_.json ? stderr : stdout, "{}", stage_table()); // JSON stands alone
         }
     }
 

@@ -67,6 +67,12 @@ std::string json_line(std::string_view kind, std::string_view name, const LogFie
     return dumped(line);
 }
 
+void log_event(std::string_view name, const LogFields& fields) {
+    if (as_json) {
+        std::fputs((json_line("event", name, fields) + "\n").c_str(), stderr);
+    }
+}
+
 std::string json_quoted(std::string_view text) {
     return dumped(Json(text));
 }

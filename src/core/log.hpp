@@ -24,6 +24,9 @@ using LogFields = std::vector<std::pair<std::string, LogValue>>;
 // A line of JSON without its end; values that are not finite become null.
 std::string json_line(std::string_view kind, std::string_view name, const LogFields& fields);
 
+// Where the log is JSON, a line with "event" on standard error.
+void log_event(std::string_view name, const LogFields& fields);
+
 // A text as JSON has it, quotes included.
 std::string json_quoted(std::string_view text);
 

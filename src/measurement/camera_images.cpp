@@ -60,13 +60,16 @@ std::vector<double> means_of_squares(const Grid<double>& values, int side) {
 
 } // namespace
 
+nlohmann::ordered_json CameraNote::json() const {
+    return {{"exposure_s", exposure_time},
+            {"light_e", light.mean},
+            {"camera_noise_e", light.camera_noise},
+            {"ray_noise_e", light.ray_noise},
+            {"saturated_share", light.saturated_share}};
+}
+
 std::string CameraNote::text() const {
-    return nlohmann::ordered_json{{"exposure_s", exposure_time},
-                                  {"light_e", light.mean},
-                                  {"camera_noise_e", light.camera_noise},
-                                  {"ray_noise_e", light.ray_noise},
-                                  {"saturated_share", light.saturated_share}}
-        .dump();
+    return json().dump();
 }
 
 std::optional<CameraNote> CameraNote::parse(const std::string& text) {

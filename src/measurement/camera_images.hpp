@@ -24,7 +24,8 @@ struct CameraNote {
     double exposure_time = 0; // s
     camera::ImageLight light;
 
-    // JSON in a line, whose numbers read back to the same bits.
+    nlohmann::ordered_json json() const;
+    // The same in a line; its numbers read back to the same bits.
     std::string text() const;
     // None of an image that no camera took.
     static std::optional<CameraNote> parse(const std::string& text);

@@ -231,7 +231,7 @@ void write_results(ResultFolder& folder, const EvaluatedStack& stack) {
     results["points"] = point_counts(evaluation.topography.state);
     results["evaluated_by"] = fmt::format("vkfv {}", VKFV_VERSION);
     results.update(stack.origin);
-    folder.write("results.json", results.dump(2) + "\n");
+    folder.write(results_name, results.dump(2) + "\n");
     page.results = std::move(results);
     folder.write("report.html", stack_page(page));
     scan::append_timing(folder.path(), "evaluation", evaluation.seconds);
@@ -241,11 +241,11 @@ void write_results(ResultFolder& folder, const EvaluatedStack& stack) {
 nlohmann::ordered_json run_of(const std::filesystem::path& folder) {
     auto run = nlohmann::ordered_json::object();
     std::error_code none;
-    if (!std::filesystem::exists(folder / "results.json", none)) {
+    if (!std::filesystem::exists(folder / results_name, none)) {
         return run;
     }
-    const std::string text = read_file(folder / "results.json");
-    check_json_depth(text, folder / "results.json");
+    const std::string text = read_file(folder / results_name);
+    check_json_depth(text, folder / results_name);
     const auto results = nlohmann::ordered_json::parse(text, nullptr, false);
     for (const char* key : {"device", "stack_digest", "seed", "images", "rays_per_image", "waves", "stage", "camera"}) {
         if (results.is_object() && results.contains(key)) {

@@ -11,6 +11,7 @@
 
 #include <filesystem>
 #include <string>
+#include <string_view>
 #include <vector>
 
 namespace vkfv::measurement {
@@ -36,6 +37,9 @@ struct StackSource {
 
 // Of a stack of vkfv's own.
 StackSource stack_source(const Configuration& configuration, const optics::Instrument& instrument);
+
+// Of an evaluated stack, in its folder.
+inline constexpr std::string_view results_name = "results.json";
 
 // An evaluated stack with what its results say beside the evaluation.
 struct EvaluatedStack {

@@ -13,10 +13,14 @@
 
 #include <algorithm>
 #include <array>
+#include <iterator>
+#include <utility>
 
 namespace vkfv::measurement {
 
 namespace {
+
+using Json = nlohmann::ordered_json;
 
 constexpr double least_signal_to_noise = 10; // of 100 detected rays a pixel
 
@@ -56,6 +60,21 @@ std::string text_of(const CameraNote& note) {
         1e3 * note.exposure_time, light.mean, light.camera_noise, light.ray_noise, 100 * light.saturated_share);
 }
 
+std::optional<CameraNote> note_of(const Exposure& exposure) {
+    return exposure.taken ? CameraNote::parse(exposure.taken->note) : std::nullopt;
+}
+
+Json json_of(const trace::Ledger& ledger) {
+    Json entries = Json::array();
+    for (const auto& entry : ledger.entries) {
+        entries.push_back({{"name", entry.name}, {"power_W", entry.power}, {"rays", entry.rays}});
+    }
+    return {{"emitted_W", ledger.emitted},
+            {"residual_W", ledger.residual()},
+            {"residual_standard_error_W", ledger.residual_error},
+            {"entries", std::move(entries)}};
+}
+
 } // namespace
 
 ImageResult measure_image(const Configuration& configuration, double focal_height, const std::filesystem::path& file) {
@@ -66,8 +85,10 @@ ImageResult measure_image(const Configuration& configuration, double focal_heigh
     auto checkpoint = file;
     checkpoint += ".partial";
     ImageResult result{.exposure = expose(configuration, instrument, specimen, focal_height, checkpoint),
+                       .focal_height = focal_height,
                        .file = file,
-                       .picture = file};
+                       .picture = file,
+                       .warnings = {}};
     enter_stage("files");
     result.picture.replace_extension(".svg");
     const auto& exposure = result.exposure;
@@ -81,28 +102,53 @@ ImageResult measure_image(const Configuration& configuration, double focal_heigh
     std::error_code none;
     std::filesystem::remove(checkpoint, none);
     enter_stage("end");
-    for (const auto& warning : warning_of_lost_light(exposure.image)) {
-        spdlog::warn(warning);
-    }
+    result.warnings = warning_of_lost_light(exposure.image);
     if (exposure.taken) {
-        const auto figures = camera_figures(std::array{CameraNote::parse(exposure.taken->note).value()});
-        for (const auto& warning : camera_warnings(configuration, figures)) {
-            spdlog::warn(warning);
-        }
+        const auto figures = camera_figures(std::array{note_of(exposure).value()});
+        std::ranges::copy(camera_warnings(configuration, figures), std::back_inserter(result.warnings));
     } else if (const double ratio = signal_to_noise(exposure.image); ratio < least_signal_to_noise) {
-        spdlog::warn("noise is {:.0f} % of a pixel's mean light. {}", 100 / ratio,
-                     remedy_of_noise(configuration, 1 / ratio, 1 / least_signal_to_noise));
+        result.warnings.push_back(fmt::format("noise is {:.0f} % of a pixel's mean light. {}", 100 / ratio,
+                                              remedy_of_noise(configuration, 1 / ratio, 1 / least_signal_to_noise)));
+    }
+    for (const auto& warning : result.warnings) {
+        spdlog::warn(warning);
     }
     return result;
 }
 
 std::string summary(const ImageResult& result) {
     const auto& image = result.exposure.image;
-    const auto note = result.exposure.taken ? CameraNote::parse(result.exposure.taken->note) : std::nullopt;
+    const auto note = note_of(result.exposure);
     return text_of(image.ledger) + (note ? text_of(*note) : std::string()) +
            fmt::format("{} rays, {} detected, {:.3g} rays/s, {:.3g} s\n{}\n{}\n", image.rays, image.detected,
                        static_cast<double>(image.rays) / image.seconds, image.seconds, result.file.string(),
                        result.picture.string());
+}
+
+Json image_json(const ImageResult& result) {
+    const auto& [image, grid, tracer, diffracted, taken, type] = result.exposure;
+    double power = 0;
+    for (const double flux : image.flux.values) {
+        power += flux;
+    }
+    Json json = {{"file", result.file.string()},
+                 {"picture", result.picture.string()},
+                 {"z_um", result.focal_height * um_per_mm},
+                 {"columns", grid.columns},
+                 {"rows", grid.rows},
+                 {"pitch_um", grid.pitch_x * um_per_mm},
+                 {"device", tracer.text()},
+                 {"rays_launched", image.rays},
+                 {"rays_detected", image.detected},
+                 {"seconds", image.seconds},
+                 {"mean_pixel_W", power / static_cast<double>(image.flux.values.size())},
+                 {"signal_to_noise", signal_to_noise(image)},
+                 {"ledger", json_of(image.ledger)},
+                 {"warnings", result.warnings}};
+    if (const auto note = note_of(result.exposure)) {
+        json["camera"] = note->json();
+    }
+    return json;
 }
 
 } // namespace vkfv::measurement

@@ -89,6 +89,14 @@ std::string summary(const ShardResult& result) {
                        shard.index + 1, shard.count, traced.traced, traced.kept, folder.string());
 }
 
+nlohmann::ordered_json shard_json(const ShardResult& result) {
+    return {{"shard", result.shard.index + 1},
+            {"shards", result.shard.count},
+            {"traced", result.traced.traced},
+            {"kept", result.traced.kept},
+            {"folder", result.folder.string()}};
+}
+
 std::string summary(const StackResult& stack) {
     const auto& traced = stack.traced;
     std::string text = summary(stack.evaluation);

@@ -6,6 +6,8 @@
 #include "measurement/evaluation.hpp"
 #include "scan/stack.hpp"
 
+#include <nlohmann/json.hpp>
+
 #include <cstdint>
 #include <filesystem>
 #include <string>
@@ -34,6 +36,7 @@ struct ShardResult {
 };
 ShardResult trace_shard(const Configuration& configuration, scan::Shard shard, Progress& progress);
 std::string summary(const ShardResult& shard);
+nlohmann::ordered_json shard_json(const ShardResult& shard);
 
 // Puts the images of a stack's shards into one folder, which may hold some of them already, and evaluates them as the
 // run that traces all of them would: its bytes. Needs no device; without the one that traced, a warning tells that the

@@ -83,6 +83,7 @@ SweepResult run_sweep(const std::filesystem::path& file, const std::vector<TomlO
     const std::string title = file.stem().string();
     results.write("sweep.csv", sweep_csv(sweep, rows));
     results.write("sweep.md", sweep_markdown(sweep, rows));
+    results.write("sweep.json", sweep_json(sweep, rows));
     results.write("sweep.svg", sweep_contact_sheet(sweep, rows, title));
     results.write("charts.svg", sweep_charts(sweep, rows, title));
     results.write_checksums();

@@ -123,6 +123,32 @@ std::string sweep_markdown(const Sweep& sweep, const std::vector<SweepRow>& rows
     return table_text(sweep, rows, true);
 }
 
+std::string sweep_json(const Sweep& sweep, const std::vector<SweepRow>& rows) {
+    using Json = nlohmann::ordered_json;
+    const auto value_of = [](const std::string& toml_text) {
+        const auto number = number_of(toml_text);
+        return number ? Json(*number) : Json(plain_text(toml_text));
+    };
+    auto parameters = Json::array(), records = Json::array();
+    for (const auto& [key, label, values] : sweep.parameters) {
+        parameters.push_back({{"key", key}, {"label", label}});
+        std::ranges::transform(values, std::back_inserter(parameters.back()["values"]), value_of);
+    }
+    for (const auto& row : rows) {
+        auto values = Json::object();
+        for (std::size_t k = 0; k < row.values.size(); ++k) {
+            values[sweep.parameters[k].key] = value_of(row.values[k]);
+        }
+        records.push_back(
+            {{"folder", sweep_name(sweep, row.values)}, {"values", std::move(values)}, {"figures", row.figures}});
+    }
+    const Json object = {{"of", sweep.stacks ? "stacks" : "images"},
+                         {"repeats", sweep.repeats},
+                         {"parameters", std::move(parameters)},
+                         {"rows", std::move(records)}};
+    return object.dump(2) + "\n";
+}
+
 std::string sweep_contact_sheet(const Sweep& sweep, const std::vector<SweepRow>& rows, const std::string& title) {
     const auto& down = sweep.parameters.front();
     const auto& along = sweep.parameters.back();

@@ -29,6 +29,10 @@ std::string plain_text(const std::string& toml_text);
 std::string sweep_csv(const Sweep& sweep, const std::vector<SweepRow>& rows);
 std::string sweep_markdown(const Sweep& sweep, const std::vector<SweepRow>& rows);
 
+// The same for programs: what was varied, and for each combination its folder, its values by key and its figures by
+// name.
+std::string sweep_json(const Sweep& sweep, const std::vector<SweepRow>& rows);
+
 // The first parameter down the rows, the last along the columns; those between are held at their first values.
 std::string sweep_contact_sheet(const Sweep& sweep, const std::vector<SweepRow>& rows, const std::string& title);
 

@@ -1,0 +1,112 @@
+"""What the program writes against assets/schemas, and docs/outputs.md against these."""
+
+import fnmatch
+import importlib.machinery
+import importlib.util
+import json
+import unittest
+
+import jsonschema
+import shared
+
+SCHEMAS = shared.SOURCE / "assets" / "schemas"
+
+
+def schema(name):
+    return json.loads((SCHEMAS / f"{name}.schema.json").read_text(encoding="utf-8"))
+
+
+def validate(value, name):
+    jsonschema.Draft202012Validator(schema(name)).validate(value)
+
+
+def documented_files(kind):
+    """Patterns of the files in a folder of this kind."""
+    folders = json.loads((SCHEMAS / "folders.json").read_text(encoding="utf-8"))
+    return [file["name"] for file in folders[kind]["files"]]
+
+
+def undocumented(folder, kind):
+    """The files in it that no pattern tells of."""
+    files = (file.relative_to(folder).as_posix() for file in folder.rglob("*") if file.is_file())
+    return [file for file in files if not any(fnmatch.fnmatchcase(file, name) for name in documented_files(kind))]
+
+
+def objects(node):
+    """Every object that a schema describes."""
+    if isinstance(node, dict):
+        if node.get("type") == "object":
+            yield node
+        for child in node.values():
+            yield from objects(child)
+    elif isinstance(node, list):
+        for child in node:
+            yield from objects(child)
+
+
+class SchemaTest(unittest.TestCase):
+    def test_schemas_are_schemas(self):
+        for name in ("results", "sweep", "image"):
+            jsonschema.Draft202012Validator.check_schema(schema(name))
+            for described in objects(schema(name)):
+                self.assertIn("additionalProperties", described)
+                if described["additionalProperties"] is False:
+                    for key, value in described.get("properties", {}).items():
+                        if key in ("measured", "true") and described.get("description", "").startswith("A parameter"):
+                            continue
+                        self.assertTrue(value.get("description"), key)
+                        if "number" in value.get("type", ()):
+                            self.assertTrue(value.get("unit"), key)
+
+    def test_results(self):
+        """All of the keys are met with, and no other."""
+        stacks = (shared.tilted(), shared.with_camera_and_stage(), shared.evaluated(), shared.foreign())
+        for stack in stacks:
+            validate(stack.results, "results")
+        met = set().union(*(stack.results for stack in stacks))
+        self.assertEqual(set(schema("results")["properties"]) - met, {"shuffle_seed"})
+
+    def test_an_undocumented_key_fails(self):
+        for change in (
+            lambda results: results.update(new=1),
+            lambda results: results["curves"].update(new=1),
+            lambda results: results["parameters"].update(new={"measured": 1.0}),
+            lambda results: results["parameters"]["Sq_um"].update(new=1),
+            lambda results: results["dimensions"][0].update(new=1),
+            lambda results: results["points"].pop("dark"),
+            lambda results: results.update(sq_ratio="1"),
+        ):
+            results = json.loads(json.dumps(shared.tilted().results))
+            validate(results, "results")
+            change(results)
+            with self.assertRaises(jsonschema.ValidationError):
+                validate(results, "results")
+
+    def test_image(self):
+        validate(shared.small_image().figures, "image")  # test_commands.py has one with a camera
+
+
+class FilesTest(unittest.TestCase):
+    def test_every_file_is_told_of(self):
+        stacks = (shared.tilted(), shared.with_camera_and_stage(), shared.evaluated(), shared.foreign())
+        for stack in stacks:
+            self.assertEqual(undocumented(stack.folder, "stack"), [])
+        # And every file that is told of exists, but for those of runs that are under way.
+        written = [file.relative_to(stack.folder).as_posix() for stack in stacks for file in stack.folder.rglob("*")]
+        for name in documented_files("stack"):
+            if name != "partial_*":
+                self.assertTrue(fnmatch.filter(written, name), name)
+
+
+class DocumentTest(unittest.TestCase):
+    def test_outputs_md_is_that_of_the_schemas(self):
+        path = str(shared.SOURCE / "tools" / "outputs_document")
+        loader = importlib.machinery.SourceFileLoader("outputs_document", path)
+        tool = importlib.util.module_from_spec(importlib.util.spec_from_loader("outputs_document", loader))
+        loader.exec_module(tool)
+        page = (shared.SOURCE / "docs" / "outputs.md").read_text(encoding="utf-8")
+        self.assertEqual(page, tool.page(), "docs/outputs.md is stale. Renew it: tools/outputs_document --write")
+
+
+if __name__ == "__main__":
+    unittest.main()

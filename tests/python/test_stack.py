@@ -1,0 +1,178 @@
+"""A stack's folder as arrays: values, units, and above all where they stand."""
+
+import unittest
+
+import numpy
+import shared
+from shared import vkfv
+
+from vkfv.focus import axial_shares
+
+
+def plane_slopes(heights):
+    """Least-squares slopes along x and y of a map's values at its coordinates."""
+    x, y = numpy.meshgrid(heights.x, heights.y)
+    good = numpy.isfinite(heights.values)
+    terms = numpy.stack([x[good], y[good], numpy.ones(good.sum())], axis=1)
+    return numpy.linalg.lstsq(terms, heights.values[good].astype(float), rcond=None)[0][:2]
+
+
+class StackTest(unittest.TestCase):
+    @classmethod
+    def setUpClass(cls):
+        cls.stack = shared.tilted()
+        cls.slopes = numpy.tan(numpy.radians([shared.TILT_X_DEG, shared.TILT_Y_DEG]))
+
+    def test_pixel_centres(self):
+        heights = self.stack.heights
+        pitch = 20 / (200 / 20)  # of the chip, by the focal lengths of the two lenses
+        numpy.testing.assert_allclose(heights.x, (numpy.arange(shared.COLUMNS) - 23.5) * pitch, atol=1e-9)
+        numpy.testing.assert_allclose(heights.y, (19.5 - numpy.arange(shared.ROWS)) * pitch, atol=1e-9)
+        # Images and maps without a description of their grid stand at the same places.
+        small = shared.small_image().pixels
+        numpy.testing.assert_allclose(small.x, (numpy.arange(16) - 7.5) * pitch, rtol=1e-5)
+        numpy.testing.assert_allclose(small.y, (5.5 - numpy.arange(12)) * pitch, rtol=1e-5)
+
+    def test_the_plane_rises_as_it_was_tilted(self):
+        # The true plane carries a texture of 1 um / 12 a point: 0.0012 is five standard errors of a slope over this field.
+        numpy.testing.assert_allclose(plane_slopes(self.stack.truth), self.slopes, atol=0.0012)
+        measured = self.stack.heights
+        self.assertGreater(numpy.mean(self.stack.measured), 0.9)
+        numpy.testing.assert_allclose(plane_slopes(measured), self.slopes, atol=0.008)
+        # Where the coordinates say that it is high, it is.
+        high = measured.sel(x=slice(25, None), y=slice(20, None)).values
+        low = measured.sel(x=slice(None, -25), y=slice(None, -20)).values
+        self.assertGreater(numpy.nanmedian(high) - numpy.nanmedian(low), 3)
+
+    def test_images_are_sharpest_where_the_plane_is(self):
+        """By the images alone: the slopes, signs included, without anything that the evaluation wrote."""
+        curves = self.stack.focus_curves(smoothing_steps=1.0)
+        self.assertEqual(curves.shape, (13, shared.ROWS, shared.COLUMNS))
+        sharpest = vkfv.Array(curves.z[curves.values.argmax(axis=0)], ("y", "x"), {"y": curves.y, "x": curves.x})
+        numpy.testing.assert_allclose(plane_slopes(sharpest), self.slopes, atol=0.012)
+
+    def test_focus_curves_are_those_of_the_evaluation(self):
+        """Their maxima, through three points of the logarithm, are the program's heights, to the rounding of float32."""
+        evaluated = shared.evaluated()
+        settings = evaluated.results["topography"]
+        curves = vkfv.focus_curves(self.stack.images, settings).values
+        images = len(curves)
+        share = axial_shares(settings["smoothing_steps"], images)
+        positions = share @ share @ self.stack.z  # that the averages at the ends of the scan stand for
+        largest = numpy.clip(curves.argmax(axis=0), 1, images - 2)
+        rows, columns = numpy.indices(largest.shape)
+        before, here, after = (numpy.log(curves[largest + d, rows, columns]) for d in (-1, 0, 1))
+        offset = 0.5 * (before - after) / (before - 2 * here + after)
+        heights = numpy.interp(largest + offset, numpy.arange(images), positions)
+        # The same evaluation without the flat: of the images as they are.
+        plain = vkfv.evaluate(self.stack.folder, out=shared.folder() / "plain", topography={"place_by_texture": False})
+        inside = plain.measured
+        self.assertGreater(inside.mean(), 0.8)
+        error = heights[inside] - plain.heights.values[inside]
+        self.assertLess(numpy.sqrt(numpy.mean(error**2)), 1e-4)
+
+    def test_every_measure_and_window(self):
+        """Of a single pixel as of all; at the border too."""
+        for measure in ("standard-deviation", "tenengrad", "modified-laplacian", "brenner", "wavelet"):
+            for shape in ("box", "gaussian"):
+                settings = {"focus_measure": measure, "window_px": 5, "window_shape": shape, "smoothing_steps": 0.0}
+                curves = vkfv.focus_curves(self.stack.images, settings)
+                self.assertTrue((curves.values > 0).all())
+                for x, y in ((curves.x[0], curves.y[0]), (3.0, -7.0), (curves.x[-1], curves.y[20])):
+                    one = self.stack.focus_curve(x, y, **settings)
+                    numpy.testing.assert_allclose(one.values, curves.sel(x=x, y=y).values, rtol=1e-9)
+
+    def test_measures_by_hand(self):
+        """One bright pixel in a grey image, whose measures are counted on paper."""
+        values = numpy.ones((1, 9, 9))
+        values[0, 4, 4] = 2.0
+        at = numpy.arange(9.0)
+        image = vkfv.Array(values, ("z", "y", "x"), {"z": numpy.zeros(1), "y": -at, "x": at})
+        level = 1 + 1 / 9
+        # Means over 3 x 3 pixels around the bright one, over the mean level; and the roots of energies.
+        by_hand = {
+            "modified-laplacian": (4 + 4 * 1) / 9,
+            "tenengrad": numpy.sqrt((4 * 2 + 4 * 4) / 9),
+            "brenner": numpy.sqrt(4 / 9),
+            "standard-deviation": numpy.sqrt(8 / 81),
+        }
+        for measure, amplitude in by_hand.items():
+            settings = {"focus_measure": measure, "window_px": 3, "window_shape": "box", "smoothing_steps": 0}
+            found = vkfv.focus_curves(image, settings, slice(4, 5), slice(4, 5)).values[0, 0, 0]
+            self.assertAlmostEqual(found, amplitude / level, places=12, msg=measure)
+
+    def test_maps_and_units(self):
+        shapes = {
+            "heights": "um", "truth": "um", "deviation": "um", "height_noise": "um", "contrast": "", "fit_residual": "",
+            "mask": "", "all_in_focus": "",
+        }
+        for name, unit in shapes.items():
+            found = getattr(self.stack, name)
+            self.assertEqual((found.shape, found.unit), ((shared.ROWS, shared.COLUMNS), unit), name)
+        states = numpy.bincount(self.stack.mask.values.ravel(), minlength=len(vkfv.PointState))
+        counted = {state.name.lower(): int(states[state]) for state in vkfv.PointState}
+        self.assertEqual(counted, self.stack.results["points"])
+        has_height = numpy.isfinite(self.stack.heights.values)
+        numpy.testing.assert_array_equal(has_height, self.stack.measured)
+
+    def test_figures_are_those_of_the_maps(self):
+        """results.json's figures from the maps, by numpy alone."""
+        def levelled(heights):
+            x, y = numpy.meshgrid(heights.x, heights.y)
+            good = numpy.isfinite(self.stack.heights.values)
+            terms = numpy.stack([x[good], y[good], numpy.ones(good.sum())], axis=1)
+            values = heights.values[good].astype(float)
+            return values - terms @ numpy.linalg.lstsq(terms, values, rcond=None)[0]
+
+        measured, true = levelled(self.stack.heights), levelled(self.stack.truth)
+        results = self.stack.results
+        self.assertAlmostEqual(numpy.std(measured), results["sq_measured_um"], places=5)
+        self.assertAlmostEqual(numpy.std(true), results["sq_true_um"], places=5)
+        self.assertAlmostEqual(numpy.std(measured - true), results["rms_deviation_um"], places=5)
+        self.assertAlmostEqual(numpy.isfinite(self.stack.heights.values).mean(), results["measured_share"], places=9)
+
+    def test_images(self):
+        images = self.stack.images
+        numpy.testing.assert_allclose(images.z, numpy.arange(-12, 13, 2))
+        numpy.testing.assert_array_equal(images.z, self.stack.z)
+        self.assertEqual(images.unit, "W")
+        numpy.testing.assert_array_equal(self.stack.image(-1).values, images.values[-1])
+        for place, row in enumerate(self.stack.ledger):
+            self.assertEqual(row["image"], place)
+            self.assertEqual(row["z_um"], images.z[place])
+            self.assertAlmostEqual(images.values[place].sum(dtype=float), row["detected_W"], delta=1e-6 * row["detected_W"])
+
+    def test_camera_and_stage(self):
+        stack = shared.with_camera_and_stage()
+        self.assertEqual((stack.images.unit, stack.images.values.dtype), ("DN", numpy.uint16))
+        read = [row["read_um"] for row in stack.stage]
+        self.assertEqual(len(read), 5)
+        self.assertTrue(0 < numpy.std(read - stack.z) < 0.5)
+        names = [dimension["name"] for dimension in stack.dimensions]
+        self.assertTrue(any("step height" in name for name in names), names)
+        self.assertEqual(stack.configuration["stage"]["jitter_um"], 0.1)
+        with self.assertRaises(FileNotFoundError):
+            self.stack.stage
+
+    def test_evaluations_elsewhere(self):
+        evaluated = shared.evaluated()
+        self.assertFalse((evaluated.folder / "topography.tif").exists())
+        self.assertEqual(evaluated.heights.shape, (shared.ROWS, shared.COLUMNS))  # of topography.x3p
+        sharp, blurred = evaluated.heights.values, evaluated.diffracted.heights.values
+        self.assertGreater(numpy.nanmax(numpy.abs(sharp - blurred)), 0)
+        self.assertIsNone(self.stack.diffracted)
+        with self.assertRaisesRegex(FileNotFoundError, "they are in"):
+            evaluated.images
+        foreign = shared.foreign()
+        numpy.testing.assert_allclose(foreign.heights.x, (numpy.arange(shared.COLUMNS) - 23.5) * 0.5)
+        # The images descend by half the step, and the pixels are a quarter as far apart: slopes of the other sign, twice.
+        expected = -self.slopes * (1 / 2) / (0.5 / (self.stack.heights.x[1] - self.stack.heights.x[0]))
+        numpy.testing.assert_allclose(plane_slopes(foreign.heights), expected, atol=0.02)
+
+    def test_a_folder_of_something_else(self):
+        with self.assertRaisesRegex(FileNotFoundError, "neither"):
+            vkfv.Stack(shared.folder())
+
+
+if __name__ == "__main__":
+    unittest.main()

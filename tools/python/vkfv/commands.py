@@ -1,0 +1,119 @@
+"""The program's commands as functions. Keyword arguments that are not named are keys of the configuration:
+
+    vkfv.run("c.toml", trace={"rays": 1e6}, **{"specimen.height_um": 5})
+
+They override what the file says, as the option --set does; a misspelt key raises InputError with the nearest name.
+"""
+
+import json
+import os
+from collections.abc import Callable
+from pathlib import Path
+
+from .array import Array
+from .overrides import settings
+from .program import Event, Outcome, call
+from .stack import Stack
+from .sweep import Sweep
+from .tiff import read_map
+
+PathLike = str | os.PathLike
+
+
+def _call(
+    command: str,
+    operand: PathLike,
+    overrides: dict,
+    *,
+    out: PathLike | None,
+    options: tuple[str, ...] = (),
+    program: PathLike | None,
+    on_event: Callable[[Event], None] | None,
+) -> Outcome:
+    arguments = [command, os.fspath(operand), *options]
+    for setting in settings(overrides):
+        arguments += ["--set", setting]
+    if out is not None:
+        arguments += ["--out", os.fspath(out)]
+    return call(arguments, program=program, on_event=on_event)
+
+
+def run(
+    config: PathLike,
+    *,
+    out: PathLike | None = None,
+    program: PathLike | None = None,
+    on_event: Callable[[Event], None] | None = None,
+    **overrides,
+) -> Stack:
+    """Traces and measures a stack (`vkfv stack`), or continues one.
+
+    out: the folder; None: that of the configuration. on_event: is called with each event of the log, for example
+    {"event": "image", "done": 3, "images": 31, "seconds_left": 12.1, ...}; docs/cluster.md lists them.
+    """
+    outcome = _call("stack", config, overrides, out=out, options=("--json",), program=program, on_event=on_event)
+    return Stack(outcome.folder)
+
+
+class Image:
+    """One exposure: `pixels`, and `figures` as `vkfv image --json` tells them."""
+
+    def __init__(self, figures: dict):
+        self.figures = figures
+        self.file = Path(figures["file"])
+        self.pixels: Array = read_map(self.file, f"image at z = {figures['z_um']:g} um")
+
+    def __repr__(self):
+        return f"<vkfv.Image {self.pixels!r}>"
+
+
+def image(
+    config: PathLike,
+    z_um: float,
+    *,
+    out: PathLike | None = None,
+    program: PathLike | None = None,
+    on_event: Callable[[Event], None] | None = None,
+    **overrides,
+) -> Image:
+    """Traces one exposure with the focal plane at z_um (`vkfv image`). out: a folder or a .tif file."""
+    options = ("--json", "--z", repr(float(z_um)))
+    outcome = _call("image", config, overrides, out=out, options=options, program=program, on_event=on_event)
+    return Image(json.loads(outcome.text))
+
+
+def sweep(
+    config: PathLike,
+    *,
+    out: PathLike | None = None,
+    program: PathLike | None = None,
+    on_event: Callable[[Event], None] | None = None,
+    **overrides,
+) -> Sweep:
+    """Measures every combination of the parameters in [sweep] (`vkfv sweep`), or continues one."""
+    outcome = _call("sweep", config, overrides, out=out, options=("--json",), program=program, on_event=on_event)
+    return Sweep(outcome.folder)
+
+
+def evaluate(
+    images: PathLike,
+    *,
+    out: PathLike,
+    z_step_um: float | None = None,
+    pitch_um: float | None = None,
+    z_start_um: float | None = None,
+    program: PathLike | None = None,
+    **overrides,
+) -> Stack:
+    """Heights of images that are there (`vkfv topography`): of a stack's folder, or those of another instrument in a
+    folder or a TIFF file, with the step from image to image and the pixels' distance."""
+    given = {"--z_step_um": z_step_um, "--pitch_um": pitch_um, "--z_start_um": z_start_um}
+    options = tuple(word for name, value in given.items() if value is not None for word in (name, repr(float(value))))
+    _call("topography", images, overrides, out=out, options=options, program=program, on_event=None)
+    return Stack(out)
+
+
+def check(config: PathLike, *, program: PathLike | None = None, **overrides) -> dict:
+    """The instrument's first-order data and warnings (`vkfv check --json`); needs no device."""
+    outcome = _call("check", config, overrides, out=None, options=("--json",), program=program, on_event=None)
+    return json.loads(outcome.text)
