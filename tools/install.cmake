@@ -16,8 +16,8 @@ install(DIRECTORY ${assets} DESTINATION ${CMAKE_INSTALL_DATADIR}/vkfv
 install(FILES README.md CHANGELOG.md CONTRIBUTING.md CITATION.cff DESTINATION ${CMAKE_INSTALL_DOCDIR})
 install(FILES LICENSE DESTINATION ${CMAKE_INSTALL_DOCDIR} RENAME copyright)
 install(DIRECTORY docs DESTINATION ${CMAKE_INSTALL_DOCDIR})
-install(DIRECTORY assets DESTINATION ${CMAKE_INSTALL_DOCDIR} FILES_MATCHING
-        PATTERN "*.png" PATTERN "*.svg" PATTERN "specimens" EXCLUDE PATTERN "*-out" EXCLUDE)
+file(GLOB pictures assets/*.png assets/*.svg)
+install(FILES ${pictures} DESTINATION ${CMAKE_INSTALL_DOCDIR}/assets)
 
 # The program itself tells its manual and completions, when it is installed.
 set(told ${PROJECT_BINARY_DIR}/told)
@@ -38,8 +38,8 @@ install(FILES ${told}/_vkfv DESTINATION ${CMAKE_INSTALL_DATADIR}/zsh/vendor-comp
 install(FILES ${told}/vkfv.fish DESTINATION ${CMAKE_INSTALL_DATADIR}/fish/vendor_completions.d)
 
 set(CPACK_PACKAGE_NAME vkfv)
-set(CPACK_PACKAGE_VENDOR "the vkfv project")
-set(CPACK_PACKAGE_CONTACT "the vkfv project <vkfv@localhost>")
+set(CPACK_PACKAGE_VENDOR "vkfv maintainers")
+set(CPACK_PACKAGE_CONTACT "vkfv maintainers <maintainers@vkfv.invalid>")
 set(CPACK_PACKAGE_DESCRIPTION_SUMMARY "virtual focus-variation microscope")
 set(CPACK_PACKAGE_DESCRIPTION "Traces light through real lens prescriptions to a specimen and back to a detector, for every
 focal position of a scan, and finds the topography in the images. Needs a Vulkan driver: that of a GPU, or Mesa's for the
@@ -50,7 +50,5 @@ set(CPACK_GENERATOR DEB)
 set(CPACK_DEBIAN_FILE_NAME DEB-DEFAULT)
 set(CPACK_DEBIAN_PACKAGE_SECTION science)
 set(CPACK_DEBIAN_PACKAGE_SHLIBDEPS ON)
-# The loader is opened by name, which dpkg-shlibdeps does not see.
-set(CPACK_DEBIAN_PACKAGE_DEPENDS libvulkan1)
 set(CPACK_DEBIAN_PACKAGE_RECOMMENDS "mesa-vulkan-drivers | nvidia-driver-libs, fonts-dejavu-core")
 include(CPack)
