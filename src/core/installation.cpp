@@ -22,7 +22,8 @@ fs::path own_file() {
     link_map* map = nullptr;
     std::error_code none;
     // Only of a program is the loader's name for it empty.
-    if (dladdr1(reinterpret_cast<const void*>(&own_file), &info, reinterpret_cast<void**>(&map), RTLD_DL_LINKMAP) != 0 &&
+    if (dladdr1(reinterpret_cast<const void*>(&own_file), &info, reinterpret_cast<void**>(&map), RTLD_DL_LINKMAP) !=
+            0 &&
         map != nullptr && map->l_name != nullptr && *map->l_name != '\0') {
         return fs::canonical(map->l_name, none);
     }

@@ -10,6 +10,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstring>
 #include <map>
 #include <utility>
 
@@ -270,6 +271,7 @@ std::vector<std::string> prescription_names(const std::filesystem::path& folder,
             }
         }
     }
+    std::ranges::sort(names, [](const auto& a, const auto& b) { return strverscmp(a.c_str(), b.c_str()) < 0; });
     return names;
 }
 

@@ -68,7 +68,7 @@ std::string searched_for_prescription(const std::string& name, const std::filesy
 // Whether it is a file of the installed assets, which their names alone mean from anywhere.
 bool comes_with_program(const std::filesystem::path& file, const std::filesystem::path& folder);
 
-// The names that find_prescription finds in such a folder.
+// The names that find_prescription finds in such a folder, 5x before 10x.
 std::vector<std::string> prescription_names(const std::filesystem::path& folder, const std::filesystem::path& base);
 
 // Reads the prescription that find_prescription finds. A medium is looked for in the file's own [media], then in

@@ -2,7 +2,8 @@
 //
 // Commands stand in fenced blocks without a language. An HTML comment on the line before a block, which readers do not
 // see, tells how it is run:
-//   <!-- not run: why -->        not at all; its commands of vkfv are parsed all the same
+//   <!-- not run: why -->          not at all; the options of its commands must exist all the same
+//   <!-- checked: why -->          by `vkfv check` instead of the command, with its settings
 //   <!-- run: --set KEY=VALUE -->  with these options at the end of each command that traces
 #include "app/commands.hpp"
 #include "app/program.hpp"
@@ -71,7 +72,8 @@ Document parse_document(const std::string& text) {
         const std::string content = trimmed(line);
         if (content.starts_with("```")) {
             if (!within) {
-                document.blocks.push_back({.language = content.substr(3), .marker = marker, .text = "", .line = number + 1});
+                document.blocks.push_back(
+                    {.language = content.substr(3), .marker = marker, .text = "", .line = number + 1});
             }
             within = !within;
             marker.clear();
@@ -161,7 +163,8 @@ TEST(Documents, ABrokenLinkIsFound) {
     const fs::path file = source / "docs/waves.md";
     const std::string text = read_file(file);
     ASSERT_THAT(broken_links(file, text), testing::IsEmpty());
-    EXPECT_THAT(broken_links(file, text + "[a](valdation.md)\n"), testing::ElementsAre(testing::HasSubstr("no such file")));
+    EXPECT_THAT(broken_links(file, text + "[a](valdation.md)\n"),
+                testing::ElementsAre(testing::HasSubstr("no such file")));
     EXPECT_THAT(broken_links(file, text + "[a](../README.md#nowhere) `[b](c)`\n"),
                 testing::ElementsAre(testing::HasSubstr("no such heading")));
     EXPECT_THAT(broken_links(file, text + "[a](#what-it-costs) [b](../README.md#two-commands)\n"), testing::IsEmpty());
@@ -255,9 +258,11 @@ while shift && (($#)); do
     *:--rays) words+=(--rays 2000) && shift ;;
     *:trace.rays=*) words+=(trace.rays=2000) ;;
     optics:--out) command=check && words[0]=check && shift ;;
+    *:--out) [[ $HOW == check ]] && shift || words+=("$1") ;;
     *) words+=("$1") ;;
     esac
 done
+if [[ $HOW == check ]]; then command=check && words[0]=check; fi
 few=(--set trace.rays=2000 --set detector.pixels=16 --set diffraction.model=none $MORE)
 case $command in
 bench) words=(check "${words[@]:1}" "${few[@]}") ;;
@@ -314,49 +319,78 @@ void furnish(const fs::path& folder) {
     write_stack(folder / "images.tif", folder / "photographs");
 }
 
-class DocumentCommands : public testing::TestWithParam<fs::path> {};
-
-TEST_P(DocumentCommands, Run) {
+// Runs the commands of a document, in their order. What failed: "line: command: output".
+std::vector<std::string> failures_of(const std::string& text, const fs::path& folder) {
     declare();
-    const auto folder = fresh_folder("furnished");
     furnish(folder);
     const std::string environment =
-        fmt::format("export PATH='{}':$PATH MORE\nset -o pipefail\n", (folder / "bin").string());
-    ASSERT_EQ(run_script(folder, environment + "vkfv surface measured.x3p --form none --out truth.tif\n"), 0);
-    const std::string text = read_file(GetParam());
+        fmt::format("export PATH='{}':$PATH MORE= HOW=run\nset -o pipefail\n", (folder / "bin").string());
+    EXPECT_EQ(run_script(folder, environment + "vkfv surface measured.x3p --form none --out truth.tif\n"), 0);
     if (text.find(" shard-1 shard-2\n") != std::string::npos) {
-        ASSERT_EQ(run_script(folder, environment + "for k in 1 2; do MORE= vkfv stack C.toml --shard $k/2 --out shard-$k; done\n"), 0);
+        EXPECT_EQ(
+            run_script(folder, environment + "for k in 1 2; do vkfv stack C.toml --shard $k/2 --out shard-$k; done\n"),
+            0);
     }
+    std::vector<std::string> failures;
     std::set<std::string> done;
-    std::string variables; // that blocks before have set
+    std::string variables; // that lines before have set
     for (const auto& block : parse_document(text).blocks) {
         if (!block.language.empty()) {
+            continue;
+        }
+        const bool run = block.marker.starts_with("run: ");
+        const bool check = block.marker.starts_with("checked: ");
+        const bool left_out = block.marker.starts_with("not run: ");
+        if (!run && !check && !left_out && !block.marker.empty()) {
+            failures.push_back(fmt::format("{}: unknown comment: {}", block.line, block.marker));
             continue;
         }
         std::istringstream lines(block.text);
         std::string line;
         for (int number = block.line; std::getline(lines, line); ++number) {
-            const std::string where = fmt::format("{}:{}: {}", GetParam().string(), number, line);
-            EXPECT_THAT(unknown_words(line.substr(0, line.find(" #"))), testing::IsEmpty()) << where;
-            if (block.marker.starts_with("not run: ") || !done.insert(line).second) {
+            if (const auto unknown = unknown_words(line.substr(0, line.find(" #"))); !unknown.empty()) {
+                failures.push_back(fmt::format("{}: {}: unknown: {}", number, line, unknown.front()));
+            } else if (left_out || !done.insert(line).second) {
                 continue;
-            }
-            const bool run = block.marker.starts_with("run: ");
-            ASSERT_TRUE(run || block.marker.empty()) << where << "\nunknown comment: " << block.marker;
-            const std::string more = fmt::format("MORE='{}'\n", run ? block.marker.substr(5) : "");
-            if (std::regex_match(line, std::regex("[a-z_]+=.*"))) {
+            } else if (std::regex_match(line, std::regex("[a-z_]+=.*"))) {
                 variables += line + "\n";
-            } else {
-                ASSERT_EQ(run_script(folder, environment + more + variables + line + "\n"), 0)
-                    << where << "\n" << read_file(folder / "printed");
+            } else if (run_script(folder, fmt::format("{}MORE='{}' HOW={}\n{}{}\n", environment,
+                                                      run ? block.marker.substr(5) : "", check ? "check" : "run",
+                                                      variables, line)) != 0) {
+                failures.push_back(fmt::format("{}: {}: {}", number, line, read_file(folder / "printed")));
             }
         }
     }
+    return failures;
 }
 
-INSTANTIATE_TEST_SUITE_P(Documents, DocumentCommands, testing::ValuesIn(documents()), [](const auto& info) {
-    return info.param.stem().string();
-});
+class DocumentCommands : public testing::TestWithParam<fs::path> {};
+
+TEST_P(DocumentCommands, Run) {
+    EXPECT_THAT(failures_of(read_file(GetParam()), fresh_folder("furnished")), testing::IsEmpty()) << GetParam();
+}
+
+TEST(Documents, ABrokenCommandIsFound) {
+    const auto folder = fresh_folder("furnished");
+    const std::string text =
+        "```\nvkfv check C.toml # comment\n```\n"
+        "```\nvkfv check D.toml\n```\n"
+        "```\nvkfv check C.toml --set trace.rasy=3\n```\n"
+        "<!-- run: --set trace.seed=-1 -->\n```\nvkfv check C.toml --set trace.seed=3\n```\n"
+        "<!-- checked: it takes long -->\n```\nvkfv stack C.toml --set scan.z_step=1 --out x\n```\n"
+        "<!-- not run: it takes long -->\n```\nvkfv stack C.toml --aline\nno_such_program\n```\n"
+        "<!-- note -->\n```\nvkfv check C.toml\n```\n"
+        "```\nsome=3\nexit $some\n```\n"
+        "```text\nvkfv stak\n```\n";
+    using testing::HasSubstr;
+    EXPECT_THAT(failures_of(text, folder),
+                testing::ElementsAre(HasSubstr("D.toml: no such file"), HasSubstr("trace.rasy"),
+                                     HasSubstr("trace.seed"), HasSubstr("scan.z_step"), HasSubstr("unknown: --aline"),
+                                     HasSubstr("unknown comment"), HasSubstr("exit $some")));
+}
+
+INSTANTIATE_TEST_SUITE_P(Documents, DocumentCommands, testing::ValuesIn(documents()),
+                         [](const auto& info) { return info.param.stem().string(); });
 
 } // namespace
 } // namespace vkfv::test
