@@ -3,7 +3,7 @@
 // Commands stand in fenced blocks without a language. An HTML comment on the line before a block, which readers do not
 // see, tells how it is run:
 //   <!-- not run: why -->          not at all; the options of its commands must exist all the same
-//   <!-- checked: why -->          by `vkfv check` instead of the command, with its settings
+//   <!-- checked: why -->          only its configuration is read, with all settings
 //   <!-- run: --set KEY=VALUE -->  with these options at the end of each command that traces
 #include "app/commands.hpp"
 #include "app/program.hpp"
@@ -248,28 +248,31 @@ int run_script(const fs::path& folder, const std::string& script) {
 }
 
 // `vkfv` as the documents call it: the program, with few rays, pixels and images where it traces, and without waves.
-// `optics` and `bench`, which take long whatever is asked of them, only check the configuration; tests of their own run
-// them.
+// `optics`, `bench` and what is to be checked alone take long whatever is asked of them: `layout` reads the same
+// configuration.
 const std::string small_vkfv = R"(#!/usr/bin/env bash
 command=${1#--}
 words=("$1")
+case $HOW:$command in
+run:optics | run:bench | check:check | check:stack | check:image) command=layout ;;
+esac
 while shift && (($#)); do
     case $command:$1 in
     *:--rays) words+=(--rays 2000) && shift ;;
     *:trace.rays=*) words+=(trace.rays=2000) ;;
-    optics:--out) command=check && words[0]=check && shift ;;
-    *:--out) [[ $HOW == check ]] && shift || words+=("$1") ;;
+    layout:--out) shift ;;
     *) words+=("$1") ;;
     esac
 done
-if [[ $HOW == check ]]; then command=check && words[0]=check; fi
-few=(--set trace.rays=2000 --set detector.pixels=16 --set diffraction.model=none $MORE)
+few=(--set trace.rays=2000 --set detector.pixels=16 --set diffraction.model=none)
 case $command in
-bench) words=(check "${words[@]:1}" "${few[@]}") ;;
-check | image | sweep) words+=("${few[@]}") ;;
+check | image) words+=("${few[@]}") ;;
 stack) words+=(--set scan.z_start_um=-4 --set scan.z_stop_um=4 --set scan.z_step_um=4 "${few[@]}") ;;
+sweep) words+=(--set specimen.pitch_um=2 "${few[@]}") ;;
 camera) words+=(--pixels 32 --averaged 4) ;;
+layout) [[ ${words[0]} == *layout ]] || words=(layout "${words[1]}" layout.svg "${words[@]:2}" "${few[@]}") ;;
 esac
+case $command in check | image | stack | sweep | layout) words+=($MORE) ;; esac
 exec PROGRAM "${words[@]}"
 )";
 
