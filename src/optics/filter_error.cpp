@@ -187,7 +187,7 @@ FilterError largest_filter_error(const PupilFilter& filter, const Instrument& in
 
 PupilFilter filter_for_waves(const Instrument& instrument) {
     for (int cells = fewest_cells;; cells += 2) {
-        PupilFilter filter(instrument, cells);
+        PupilFilter filter = PupilFilter::unparted(instrument, cells);
         if (cells == most_cells ||
             largest_filter_error(filter, instrument, glm::dvec2(0)).difference <= most_error_of_cells) {
             return filter;

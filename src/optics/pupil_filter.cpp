@@ -161,19 +161,20 @@ int cells_of(const WaveOptions& options, const Instrument& instrument) {
 }
 
 PupilFilter::PupilFilter(const Instrument& instrument, const WaveOptions& options)
-    : PupilFilter(options.cells > 0 ? PupilFilter(instrument, options.cells) : filter_for_waves(instrument)) {
+    : PupilFilter(options.cells > 0 ? unparted(instrument, options.cells) : filter_for_waves(instrument)) {
     cells_.parts = static_cast<std::uint32_t>(parts_of(options, instrument));
     part_pitch_ = instrument.first_order.pixel_pitch / cells_.parts;
     noise_ = noise_of_pixels();
 }
 
-PupilFilter::PupilFilter(const Instrument& instrument, int cells) {
-    steps_ = std::max(32, points_a_cell * cells / 2);
-    cells_.side = static_cast<std::uint32_t>(cells);
-    cells_.parts = 1;
-    cells_.sensitive_side = std::sqrt(instrument.fill_factor);
-    part_pitch_ = instrument.first_order.pixel_pitch;
-    cells_.chief_position = chief_slope_per_position(instrument);
+PupilFilter PupilFilter::unparted(const Instrument& instrument, int cells) {
+    PupilFilter filter;
+    filter.steps_ = std::max(32, points_a_cell * cells / 2);
+    filter.cells_.side = static_cast<std::uint32_t>(cells);
+    filter.cells_.parts = 1;
+    filter.cells_.sensitive_side = std::sqrt(instrument.fill_factor);
+    filter.part_pitch_ = instrument.first_order.pixel_pitch;
+    filter.cells_.chief_position = chief_slope_per_position(instrument);
     std::vector<Wavefront> wavefronts;
     double largest = 0;
     double weight = 0;
@@ -182,7 +183,7 @@ PupilFilter::PupilFilter(const Instrument& instrument, int cells) {
         const Wavefront& wavefront = wavefronts.emplace_back(instrument, node);
         weight += node.weight;
         chief += node.weight * wavefront.chief_slope();
-        cutoff_ = std::max(cutoff_, 2 * wavefront.largest_rim() / wavefront.wavelength());
+        filter.cutoff_ = std::max(filter.cutoff_, 2 * wavefront.largest_rim() / wavefront.wavelength());
         constexpr int azimuths = 64;
         for (int k = 0; k < azimuths; ++k) {
             const double azimuth = 2 * pi * k / azimuths;
@@ -197,15 +198,17 @@ PupilFilter::PupilFilter(const Instrument& instrument, int cells) {
                           .expected = "a pupil",
                           .remedy = "See by vkfv layout what stops the light, or set diffraction.model = \"none\"."});
     }
-    cells_.per_slope = 1 / largest;
-    cells_.chief_x = chief.x / weight;
-    cells_.chief_y = chief.y / weight;
-    shares_.resize(static_cast<std::size_t>(cell_count()));
-    table_.resize(shares_.size() * static_cast<std::size_t>((2 * steps_ + 1) * (steps_ + 1)));
+    filter.cells_.per_slope = 1 / largest;
+    filter.cells_.chief_x = chief.x / weight;
+    filter.cells_.chief_y = chief.y / weight;
+    filter.shares_.resize(static_cast<std::size_t>(filter.cell_count()));
+    filter.table_.resize(filter.shares_.size() *
+                         static_cast<std::size_t>((2 * filter.steps_ + 1) * (filter.steps_ + 1)));
     for (const Wavefront& wavefront : wavefronts) {
-        add_wavelength(wavefront);
+        filter.add_wavelength(wavefront);
     }
-    fill_dark_cells();
+    filter.fill_dark_cells();
+    return filter;
 }
 
 void PupilFilter::fill_dark_cells() {

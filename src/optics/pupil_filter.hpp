@@ -42,7 +42,7 @@ class PupilFilter {
     // Throws InputError where no light comes through.
     PupilFilter(const Instrument& instrument, const WaveOptions& options);
     // Of so many cells across the pupil, for pixels that are not parted; without its noise().
-    PupilFilter(const Instrument& instrument, int cells);
+    static PupilFilter unparted(const Instrument& instrument, int cells);
 
     const physics::f64::PupilCells& cells() const { return cells_; }
     int cell_count() const { return static_cast<int>(physics::f64::pupil_cell_count(cells_)); }
@@ -73,6 +73,7 @@ class PupilFilter {
     int steps() const { return steps_; }
 
   private:
+    PupilFilter() = default;
     void add_wavelength(const Wavefront& wavefront);
     void fill_dark_cells();
     double noise_of_pixels() const;
