@@ -1,5 +1,6 @@
 // The only main(). Every failure ends here, as a message on standard error and an exit code.
 #include "app/commands.hpp"
+#include "app/version.hpp"
 #include "command_line/command_line.hpp"
 
 #include "core/error.hpp"
@@ -45,7 +46,7 @@ int main(int argument_count, char** argument_values) {
     const vkfv::vulkan::DriverScope drivers;
     try {
         vkfv::open_log();
-        vkfv::command_line::declare_commands(vkfv::app::commands());
+        vkfv::command_line::declare_commands(vkfv::app::commands(), vkfv::app::version_text);
         vkfv::command_line::run_command_line(argument_count, argument_values);
         return standard_output_is_whole() ? done : report_lost_output();
     } catch (const CLI::ParseError& error) {

@@ -134,7 +134,7 @@ struct Command {
 };
 
 // Once, before all else here: the commands of the program, in the order in which help lists them.
-void declare_commands(std::vector<Command> commands);
+void declare_commands(std::vector<Command> commands, std::function<std::string()> version);
 const std::vector<Command>& all_commands();
 // Throws InputError, with the nearest name, if there is none of this name.
 const Command& command_named(const std::string& name);

@@ -27,12 +27,17 @@ std::vector<Command>& declared() {
     return commands;
 }
 
+std::function<std::string()>& declared_version() {
+    static std::function<std::string()> version;
+    return version;
+}
+
 // The arguments by the declarations of all commands: of one that was named first (`vkfv stack C.toml`), or of one that
 // is itself written as an option (`vkfv --stack C.toml`).
 class CommandLine {
   public:
     explicit CommandLine(const Command* named) : named_(named), app_("", "vkfv") {
-        app_.set_version_flag("-v,--version", std::string("vkfv ") + VKFV_VERSION);
+        app_.set_version_flag("-v,--version", declared_version());
         app_.allow_extras(); // what is left over is refused below, with a suggestion
         operands_.resize(all_commands().size());
         for (std::size_t k = 0; k < all_commands().size(); ++k) {
@@ -280,7 +285,7 @@ const Command& command_named(const std::string& name) {
     return *found;
 }
 
-void declare_commands(std::vector<Command> commands) {
+void declare_commands(std::vector<Command> commands, std::function<std::string()> version) {
     for (auto& command : commands) {
         command.options.push_back({.name = "--quiet",
                                    .value = "",
@@ -296,6 +301,7 @@ void declare_commands(std::vector<Command> commands) {
                                    .target = into(&CommandOptions::timings)});
     }
     declared() = std::move(commands);
+    declared_version() = std::move(version);
 }
 
 void run_command_line(int argument_count, char** argument_values) {

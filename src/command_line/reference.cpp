@@ -108,7 +108,12 @@ std::vector<Section> sections_of_program() {
                      {"3", "No usable device"},
                      {"4", "The run failed and can be resumed"},
                      {"5", "Another run is writing there"},
-                     {"130, 143, 129", "Ended by SIGINT, SIGTERM, SIGHUP"}}}};
+                     {"130, 143, 129", "Ended by SIGINT, SIGTERM, SIGHUP"}}},
+        {.title = "Environment",
+         .entries = {{"VKFV_ASSETS",
+                      "A folder of assets (objectives, tube_lenses, illuminators, specimens, stacks) that "
+                      "is searched first; then those beside the configuration and in the folders above "
+                      "it, then those that came with the program"}}}};
 }
 
 std::vector<Section> whole_reference() {
@@ -209,9 +214,9 @@ std::string reference_markdown() {
         for (const auto& paragraph : section.paragraphs) {
             text += paragraph + "\n\n";
         }
-        if (!section.lines.empty()) {
-            text +=
-                fmt::format("```\n{}\n```\n{}", fmt::join(section.lines, "\n"), section.entries.empty() ? "" : "\n");
+        if (!section.lines.empty()) { // a test runs what is not marked as text
+            text += fmt::format("```{}\n{}\n```\n{}", section.title.starts_with("Example") ? "" : "text",
+                                fmt::join(section.lines, "\n"), section.entries.empty() ? "" : "\n");
         }
         for (const auto& [term, meaning] : section.entries) {
             text += fmt::format("- `{}`: {}\n", term, meaning);

@@ -1,6 +1,7 @@
 #include "configuration/configuration.hpp"
 
 #include "configuration/tables.hpp"
+#include "core/installation.hpp"
 
 #include <fmt/format.h>
 
@@ -89,7 +90,14 @@ void read_instrument(const TomlTable& root, Configuration& configuration) {
 
 Configuration load_configuration(const std::filesystem::path& file, const std::vector<TomlOverride>& overrides,
                                  Needs needs) {
-    return read_configuration(TomlTable::open(file, overrides), needs);
+    const auto found = given_or_installed(file);
+    auto configuration = read_configuration(TomlTable::open(found, overrides), needs);
+    // Beside an installed example nobody can write: its results go to the working directory.
+    if (const auto beside = configuration.output_directory.lexically_relative(found.parent_path());
+        found != file && *beside.begin() != "..") {
+        configuration.output_directory = beside;
+    }
+    return configuration;
 }
 
 Configuration read_configuration(const TomlTable& root, Needs needs) {

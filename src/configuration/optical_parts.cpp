@@ -115,7 +115,7 @@ optics::Prescription read_prescription(const Section& section, const TextKey& ke
         return prescription;
     }
     // A name that means the installed file means it from anywhere; another's path is kept.
-    if (optics::find_prescription(name, folder, {}) != prescription.file) {
+    if (!optics::comes_with_program(prescription.file, folder)) {
         name = absolute_path(prescription.file).string();
     }
     section.record_reference(key, name, content_digest(prescription));

@@ -1,12 +1,12 @@
 #include "images/codec.hpp"
 
 #include "core/error.hpp"
+#include "core/installation.hpp"
 
 #include <dlfcn.h>
 #include <fmt/format.h>
 
 #include <filesystem>
-#include <system_error>
 
 #ifdef __SANITIZE_ADDRESS__
 // The leak sanitizer stumbles over the thread-local storage of libraries that are loaded late (g++ 12).
@@ -24,14 +24,8 @@ namespace {
 // hide the program's run path from dlopen(). Never unloaded.
 void* open_module() {
     const std::filesystem::path name = VKFV_IMAGE_MODULE;
-    std::error_code none;
-    const auto folder = std::filesystem::read_symlink("/proc/self/exe", none).parent_path();
-    for (const auto& path : {folder / name, folder.parent_path() / "lib/vkfv" / name}) {
-        if (std::filesystem::exists(path, none)) {
-            return dlopen(path.c_str(), RTLD_NOW | RTLD_LOCAL);
-        }
-    }
-    return dlopen(name.c_str(), RTLD_NOW | RTLD_LOCAL);
+    const auto path = find_installed("lib/vkfv" / name);
+    return dlopen(path.value_or(name).c_str(), RTLD_NOW | RTLD_LOCAL);
 }
 
 const Codec& loaded() {

@@ -185,16 +185,14 @@ FilterError largest_filter_error(const PupilFilter& filter, const Instrument& in
                                 depths_of_field * instrument.first_order.depth_of_field);
 }
 
-int cells_for_waves(const Instrument& instrument) {
-    int cells = fewest_cells;
-    const auto leave_too_much = [&] {
-        const PupilFilter filter(instrument, {.cells = cells, .parts = 1});
-        return largest_filter_error(filter, instrument, glm::dvec2(0)).difference > most_error_of_cells;
-    };
-    while (cells < most_cells && leave_too_much()) {
-        cells += 2;
+PupilFilter filter_for_waves(const Instrument& instrument) {
+    for (int cells = fewest_cells;; cells += 2) {
+        PupilFilter filter = PupilFilter::unparted(instrument, cells);
+        if (cells == most_cells ||
+            largest_filter_error(filter, instrument, glm::dvec2(0)).difference <= most_error_of_cells) {
+            return filter;
+        }
     }
-    return cells;
 }
 
 } // namespace vkfv::optics

@@ -25,7 +25,8 @@ FilterError largest_filter_error(const PupilFilter& filter, const Instrument& in
 
 // What the cells may leave of that on the axis where their number is not asked for.
 inline constexpr double most_error_of_cells = 0.07;
-// Across the pupil: the fewest of 8, 10 ... 16 that leave no more, or 16. Throws as PupilFilter.
-int cells_for_waves(const Instrument& instrument);
+// With the fewest cells of 8, 10 ... 16 across the pupil that leave no more, or 16; of pixels that are not parted.
+// Throws as PupilFilter.
+PupilFilter filter_for_waves(const Instrument& instrument);
 
 } // namespace vkfv::optics

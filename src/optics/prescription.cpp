@@ -1,6 +1,7 @@
 #include "optics/prescription.hpp"
 
 #include "core/error.hpp"
+#include "core/installation.hpp"
 #include "core/toml_reader.hpp"
 #include "core/units.hpp"
 
@@ -9,6 +10,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstring>
 #include <map>
 #include <utility>
 
@@ -36,26 +38,6 @@ constexpr NumberRange abbe_range = {.minimum = 5, .maximum = 150}; // wide of ev
 constexpr NumberRange length_range = {.minimum = 0, .maximum = 1e6};
 constexpr NumberRange offset_range = {.minimum = -length_range.maximum, .maximum = length_range.maximum};
 constexpr NumberRange tilt_range_deg = {.minimum = -360, .maximum = 360};
-
-std::filesystem::path asset_in(const std::filesystem::path& assets, const std::filesystem::path& folder,
-                               const std::string& name) {
-    return assets / folder / (name + ".toml");
-}
-
-// Those beside the folder `base` and beside the folders above it, then the installed ones.
-std::vector<std::filesystem::path> asset_folders(const std::filesystem::path& base) {
-    std::vector<std::filesystem::path> folders;
-    std::error_code code;
-    for (auto beside = std::filesystem::absolute(base, code).lexically_normal(); !beside.empty();
-         beside = beside.parent_path()) {
-        folders.push_back(beside / "assets");
-        if (beside == beside.parent_path()) {
-            break;
-        }
-    }
-    folders.emplace_back(VKFV_ASSETS_DIR);
-    return folders;
-}
 
 bool names_a_path(const std::string& name) {
     return name.ends_with(".toml");
@@ -245,13 +227,11 @@ Prescription read_prescription(const TomlTable& root, const std::filesystem::pat
 
 std::string searched_for_prescription(const std::string& name, const std::filesystem::path& folder,
                                       const std::filesystem::path& base) {
-    std::error_code code;
-    const auto beside = std::filesystem::absolute(base, code).lexically_normal();
     if (names_a_path(name)) {
-        return fmt::format("looked for {}", (beside / name).string());
+        std::error_code code;
+        return fmt::format("looked for {}", (std::filesystem::absolute(base, code).lexically_normal() / name).string());
     }
-    return fmt::format("looked for assets/{}/{}.toml beside {}, beside every folder above it, and in {}",
-                       folder.generic_string(), name, beside.string(), VKFV_ASSETS_DIR);
+    return searched_for_asset(folder / (name + ".toml"), base);
 }
 
 std::optional<std::filesystem::path> find_prescription(const std::string& name, const std::filesystem::path& folder,
@@ -265,11 +245,17 @@ std::optional<std::filesystem::path> find_prescription(const std::string& name, 
         return is_file(path) ? std::optional(path) : std::nullopt;
     }
     for (const auto& assets : asset_folders(base)) {
-        if (const auto path = asset_in(assets, folder, name); is_file(path)) {
+        if (auto path = assets / folder / (name + ".toml"); is_file(path)) {
             return path;
         }
     }
     return std::nullopt;
+}
+
+bool comes_with_program(const std::filesystem::path& file, const std::filesystem::path& folder) {
+    const auto installed = installed_assets();
+    std::error_code code;
+    return installed && std::filesystem::equivalent(*installed / folder / file.filename(), file, code);
 }
 
 std::vector<std::string> prescription_names(const std::filesystem::path& folder, const std::filesystem::path& base) {
@@ -285,6 +271,7 @@ std::vector<std::string> prescription_names(const std::filesystem::path& folder,
             }
         }
     }
+    std::ranges::sort(names, [](const auto& a, const auto& b) { return strverscmp(a.c_str(), b.c_str()) < 0; });
     return names;
 }
 

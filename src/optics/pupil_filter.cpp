@@ -157,26 +157,33 @@ int parts_of(const WaveOptions& options, const Instrument& instrument) {
 }
 
 int cells_of(const WaveOptions& options, const Instrument& instrument) {
-    return options.cells > 0 ? options.cells : cells_for_waves(instrument);
+    return options.cells > 0 ? options.cells : static_cast<int>(filter_for_waves(instrument).cells().side);
 }
 
-PupilFilter::PupilFilter(const Instrument& instrument, const WaveOptions& options) {
-    const auto nodes = at_most(most_wavelengths, spectral_nodes(instrument));
-    const int cells = cells_of(options, instrument);
-    steps_ = std::max(32, points_a_cell * cells / 2);
-    cells_.side = static_cast<std::uint32_t>(cells);
+PupilFilter::PupilFilter(const Instrument& instrument, const WaveOptions& options)
+    : PupilFilter(options.cells > 0 ? unparted(instrument, options.cells) : filter_for_waves(instrument)) {
     cells_.parts = static_cast<std::uint32_t>(parts_of(options, instrument));
-    cells_.sensitive_side = std::sqrt(instrument.fill_factor);
     part_pitch_ = instrument.first_order.pixel_pitch / cells_.parts;
-    cells_.chief_position = chief_slope_per_position(instrument);
+    noise_ = noise_of_pixels();
+}
+
+PupilFilter PupilFilter::unparted(const Instrument& instrument, int cells) {
+    PupilFilter filter;
+    filter.steps_ = std::max(32, points_a_cell * cells / 2);
+    filter.cells_.side = static_cast<std::uint32_t>(cells);
+    filter.cells_.parts = 1;
+    filter.cells_.sensitive_side = std::sqrt(instrument.fill_factor);
+    filter.part_pitch_ = instrument.first_order.pixel_pitch;
+    filter.cells_.chief_position = chief_slope_per_position(instrument);
+    std::vector<Wavefront> wavefronts;
     double largest = 0;
     double weight = 0;
     glm::dvec2 chief(0);
-    for (const SpectralNode& node : nodes) {
-        const Wavefront wavefront(instrument, node);
+    for (const SpectralNode& node : at_most(most_wavelengths, spectral_nodes(instrument))) {
+        const Wavefront& wavefront = wavefronts.emplace_back(instrument, node);
         weight += node.weight;
         chief += node.weight * wavefront.chief_slope();
-        cutoff_ = std::max(cutoff_, 2 * wavefront.largest_rim() / wavefront.wavelength());
+        filter.cutoff_ = std::max(filter.cutoff_, 2 * wavefront.largest_rim() / wavefront.wavelength());
         constexpr int azimuths = 64;
         for (int k = 0; k < azimuths; ++k) {
             const double azimuth = 2 * pi * k / azimuths;
@@ -191,16 +198,17 @@ PupilFilter::PupilFilter(const Instrument& instrument, const WaveOptions& option
                           .expected = "a pupil",
                           .remedy = "See by vkfv layout what stops the light, or set diffraction.model = \"none\"."});
     }
-    cells_.per_slope = 1 / largest;
-    cells_.chief_x = chief.x / weight;
-    cells_.chief_y = chief.y / weight;
-    shares_.resize(static_cast<std::size_t>(cell_count()));
-    table_.resize(shares_.size() * static_cast<std::size_t>((2 * steps_ + 1) * (steps_ + 1)));
-    for (const SpectralNode& node : nodes) {
-        add_wavelength(instrument, node);
+    filter.cells_.per_slope = 1 / largest;
+    filter.cells_.chief_x = chief.x / weight;
+    filter.cells_.chief_y = chief.y / weight;
+    filter.shares_.resize(static_cast<std::size_t>(filter.cell_count()));
+    filter.table_.resize(filter.shares_.size() *
+                         static_cast<std::size_t>((2 * filter.steps_ + 1) * (filter.steps_ + 1)));
+    for (const Wavefront& wavefront : wavefronts) {
+        filter.add_wavelength(wavefront);
     }
-    fill_dark_cells();
-    noise_ = noise_of_pixels();
+    filter.fill_dark_cells();
+    return filter;
 }
 
 void PupilFilter::fill_dark_cells() {
@@ -225,8 +233,7 @@ void PupilFilter::fill_dark_cells() {
     }
 }
 
-void PupilFilter::add_wavelength(const Instrument& instrument, const SpectralNode& node) {
-    const Wavefront wavefront(instrument, node);
+void PupilFilter::add_wavelength(const Wavefront& wavefront) {
     const Lattice lattice(wavefront, steps_, cells_);
     const std::size_t count = shares_.size();
     std::vector<double> points(count);
@@ -263,12 +270,12 @@ void PupilFilter::add_wavelength(const Instrument& instrument, const SpectralNod
     }
     const double ratio = cutoff_ * wavefront.wavelength() / (2 * wavefront.largest_rim());
     for (std::size_t cell = 0; cell < count; ++cell) {
-        shares_[cell] += node.weight * points[cell] / all;
+        shares_[cell] += wavefront.weight() * points[cell] / all;
         for (int dy = 0; dy <= steps_; ++dy) {
             for (int dx = -steps_; dx <= steps_; ++dx) {
                 const Complex value = interpolated(own.data() + cell * plane, steps_, dx * ratio, dy * ratio);
                 table_[cell * plane + static_cast<std::size_t>(dy * columns + dx + steps_)] +=
-                    std::complex<float>(node.weight * value);
+                    std::complex<float>(wavefront.weight() * value);
             }
         }
     }

@@ -13,6 +13,8 @@
 
 namespace vkfv::optics {
 
+class Wavefront;
+
 struct WaveOptions {
     int cells = 0;                 // across the pupil, even; 0: as many as the axis' aberrations ask for
     int parts = 0;                 // of a pixel's side in which light is sorted; 0: as fine as waves ask for
@@ -24,7 +26,7 @@ struct WaveOptions {
 int parts_for_waves(const Instrument& instrument);
 // Those asked for, else these.
 int parts_of(const WaveOptions& options, const Instrument& instrument);
-// Those asked for, else cells_for_waves() (optics/filter_error.hpp), for which filters are made and compared.
+// Those asked for, else those of filter_for_waves() (optics/filter_error.hpp), for which filters are made and compared.
 int cells_of(const WaveOptions& options, const Instrument& instrument);
 
 // Of an instrument's axis. The image has the spectrum  sum over the cells c of  w_c(f) I_c(f)  with
@@ -39,6 +41,8 @@ class PupilFilter {
   public:
     // Throws InputError where no light comes through.
     PupilFilter(const Instrument& instrument, const WaveOptions& options);
+    // Of so many cells across the pupil, for pixels that are not parted; without its noise().
+    static PupilFilter unparted(const Instrument& instrument, int cells);
 
     const physics::f64::PupilCells& cells() const { return cells_; }
     int cell_count() const { return static_cast<int>(physics::f64::pupil_cell_count(cells_)); }
@@ -69,7 +73,8 @@ class PupilFilter {
     int steps() const { return steps_; }
 
   private:
-    void add_wavelength(const Instrument& instrument, const SpectralNode& node);
+    PupilFilter() = default;
+    void add_wavelength(const Wavefront& wavefront);
     void fill_dark_cells();
     double noise_of_pixels() const;
 

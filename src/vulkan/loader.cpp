@@ -2,6 +2,7 @@
 
 #include "core/error.hpp"
 #include "vulkan/device.hpp"
+#include "vulkan/loader_version.hpp"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -150,6 +151,16 @@ std::shared_ptr<const Loader> open_drivers() {
         kept_loader = loader;
     }
     return loader;
+}
+
+std::optional<std::string> loader_version() {
+    try {
+        const auto version = make_context().enumerateInstanceVersion();
+        return fmt::format("{}.{}.{}", VK_API_VERSION_MAJOR(version), VK_API_VERSION_MINOR(version),
+                           VK_API_VERSION_PATCH(version));
+    } catch (const DeviceError&) {
+        return std::nullopt;
+    }
 }
 
 std::vector<vk::raii::PhysicalDevice> physical_devices(const vk::raii::Instance& instance) {

@@ -1,6 +1,7 @@
 // Commands by name and as options, and what is told of them: all of it from the same declarations.
 #include "app/commands.hpp"
 #include "app/program.hpp"
+#include "app/version.hpp"
 #include "command_line/command_line.hpp"
 #include "command_line/reference.hpp"
 
@@ -18,7 +19,7 @@ namespace {
 
 // Not before main(): the commands ask other rooms for their lists.
 class Declared : public testing::Environment {
-    void SetUp() override { command_line::declare_commands(app::commands()); }
+    void SetUp() override { command_line::declare_commands(app::commands(), app::version_text); }
 };
 [[maybe_unused]] const auto* const declared = testing::AddGlobalTestEnvironment(new Declared);
 

@@ -115,8 +115,39 @@ TEST(Program, HelpAndVersion) {
     for (const char* option : {"--version", "-v"}) {
         const auto version = run_program({option}, folder);
         EXPECT_EQ(version.exit_code, 0);
-        EXPECT_THAT(version.standard_output, testing::StartsWith("vkfv "));
+        EXPECT_THAT(version.standard_output, testing::MatchesRegex("vkfv [0-9.]+\n"
+                                                                   "commit:        (unknown|[0-9a-f]+( and changes)?)\n"
+                                                                   "compiler:      [A-Za-z]+ [0-9.]+, [A-Za-z]+\n"
+                                                                   "SPIR-V digest: [0-9a-f]+\n"
+                                                                   "Vulkan loader: [0-9]+[.][0-9]+[.][0-9]+\n"));
     }
+}
+
+// As `cmake --install` lays it out, in a folder that knows nothing of the sources.
+TEST(Program, RunsWhereItWasInstalled) {
+    const auto folder = fresh_folder("installed");
+    const std::string install =
+        fmt::format("cmake --install '{}' --prefix '{}/usr' >/dev/null", VKFV_BINARY_DIR, folder.string());
+    ASSERT_EQ(std::system(install.c_str()), 0);
+    for (const char* file :
+         {"share/man/man1/vkfv.1.gz", "share/bash-completion/completions/vkfv", "share/doc/vkfv/README.md",
+          "share/doc/vkfv/docs/tutorial.md", "share/doc/vkfv/assets/demo.png"}) {
+        EXPECT_TRUE(std::filesystem::file_size(folder / "usr" / file) > 0) << file;
+    }
+    std::filesystem::create_directories(folder / "elsewhere");
+    // A letter in a PNG is read by the module, the lenses are assets, results go to the working directory.
+    const std::string image =
+        fmt::format("cd '{0}/elsewhere' && ../usr/bin/vkfv image assets/stacks/image_letter.toml --z 0 "
+                    "--rays 1e3 --set diffraction.model=none --quiet >/dev/null",
+                    folder.string());
+    EXPECT_EQ(std::system(image.c_str()), 0);
+    EXPECT_TRUE(std::filesystem::exists(folder / "elsewhere/vkfv-out/image_+0.000um.tif"));
+    EXPECT_EQ(read_file(folder / "usr/bin/vkfv").find(VKFV_SOURCE_DIR "/assets"), std::string::npos);
+    const std::string lost = fmt::format(
+        "rm -r '{0}/usr/share' && cd '{0}/elsewhere' && ../usr/bin/vkfv check c.toml 2>said", folder.string());
+    write_file(folder / "elsewhere/c.toml", small_configuration);
+    EXPECT_NE(std::system(lost.c_str()), 0);
+    EXPECT_THAT(read_file(folder / "elsewhere/said"), HasSubstr("install vkfv again"));
 }
 
 std::vector<std::string> lines_of(const std::string& text) {

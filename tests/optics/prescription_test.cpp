@@ -8,6 +8,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <cstdlib>
 #include <cstring>
 #include <fstream>
 
@@ -174,6 +175,33 @@ TEST_F(WrittenPrescription, IsFoundBesideTheConfigurationAndAboveIt) {
     EXPECT_FALSE(find_prescription("mine", "tube_lenses", folder_));
     EXPECT_THROW(load_prescription("11x", "objectives", folder_), InputError);
     EXPECT_THROW(load_prescription("missing.toml", "objectives", folder_), InputError);
+}
+
+// Sets VKFV_ASSETS for a test.
+class ChosenAssets {
+  public:
+    explicit ChosenAssets(const std::filesystem::path& folder) { setenv("VKFV_ASSETS", folder.c_str(), 1); }
+    ~ChosenAssets() { unsetenv("VKFV_ASSETS"); }
+    ChosenAssets(const ChosenAssets&) = delete;
+    ChosenAssets& operator=(const ChosenAssets&) = delete;
+};
+
+TEST_F(WrittenPrescription, IsThatOfTheVariableThenThatBesideThenTheInstalledOne) {
+    const auto found = [&] { return find_prescription("10x_0.28", "objectives", folder_ / "stacks").value(); };
+    const auto installed = found();
+    EXPECT_TRUE(comes_with_program(installed, "objectives"));
+    write("assets/objectives/10x_0.28.toml", a_lens);
+    const auto beside = folder_ / "assets/objectives/10x_0.28.toml";
+    EXPECT_EQ(found(), beside);
+    EXPECT_FALSE(comes_with_program(beside, "objectives"));
+    std::filesystem::create_directories(folder_ / "chosen/objectives");
+    const ChosenAssets chosen(folder_ / "chosen");
+    EXPECT_EQ(found(), beside) << "the chosen folder lacks it";
+    write("chosen/objectives/10x_0.28.toml", a_lens);
+    EXPECT_EQ(found(), folder_ / "chosen/objectives/10x_0.28.toml");
+    EXPECT_EQ(find_prescription("20x_0.41", "objectives", folder_ / "stacks")->parent_path(), installed.parent_path());
+    const ChosenAssets missing(folder_ / "missing");
+    EXPECT_THROW(found(), InputError);
 }
 
 TEST_F(WrittenPrescription, ReadsEveryKey) {
