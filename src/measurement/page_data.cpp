@@ -131,8 +131,8 @@ Json map_data(EvaluationData& data, const std::string& name, const Evaluation& e
 }
 
 // Each curve in 8 bits from its lowest value to its highest.
-Json curves_data(EvaluationData& data, const std::string& name, const topography::FocusCurves& curves,
-                 const topography::TopographyOptions& options, int count) {
+Json curves_data(EvaluationData& data, const std::string& name, const Evaluation& evaluation, int count) {
+    const auto& curves = evaluation.topography.curves;
     const std::size_t heights = curves.z.size();
     const std::size_t points = curves.peaks.size();
     if (heights == 0 || points == 0) {
@@ -143,8 +143,8 @@ Json curves_data(EvaluationData& data, const std::string& name, const topography
     const std::size_t kept = (heights + every - 1) / every;
     std::vector<std::uint8_t> bytes;
     bytes.reserve(points * kept);
-    // Lowest and highest value, the peak in um, and the fit: where its middle stands in um, how far it reaches, its
-    // largest value and coefficients, in steps of the curve.
+    // Lowest and highest value, the peak and its standard uncertainty in um, and the fit: the image of its middle, how
+    // many it reaches to either side, its largest value and coefficients.
     std::vector<float> numbers;
     for (std::size_t point = 0; point < points; ++point) {
         const auto curve = std::span(curves.values).subspan(point * heights, heights);
@@ -154,9 +154,11 @@ Json curves_data(EvaluationData& data, const std::string& name, const topography
             bytes.push_back(static_cast<std::uint8_t>(std::lround((curve[k] - low) * scale)));
         }
         const auto& fit = curves.fits[point];
+        const double noise = evaluation.topography.height_noise(curves.columns[point % curves.columns.size()],
+                                                                curves.rows[point / curves.columns.size()]);
         for (const double number :
              {static_cast<double>(low), static_cast<double>(high), curves.peaks[point] * um_per_mm,
-              static_cast<double>(fit.at), static_cast<double>(fit.range), fit.largest, fit.coefficients[0],
+              noise * um_per_mm, static_cast<double>(fit.at), static_cast<double>(fit.range), fit.largest, fit.coefficients[0],
               fit.coefficients[1], fit.coefficients[2]}) {
             numbers.push_back(static_cast<float>(number));
         }
@@ -166,10 +168,10 @@ Json curves_data(EvaluationData& data, const std::string& name, const topography
     std::vector<double> z;
     std::ranges::transform(curves.z, std::back_inserter(z), [](double height) { return height * um_per_mm; });
     using topography::PeakMethod;
-    const bool gaussian = options.peak == PeakMethod::gaussian || options.peak == PeakMethod::gaussian_fit;
+    const bool gaussian = evaluation.options.peak == PeakMethod::gaussian || evaluation.options.peak == PeakMethod::gaussian_fit;
     return {{"columns", curves.columns}, {"rows", curves.rows},           {"z", z},
             {"every", every},            {"values", name + "-curves"},    {"fits", name + "-fits"},
-            {"gaussian", gaussian},      {"method", name_of(options.peak)}};
+            {"gaussian", gaussian},      {"method", name_of(evaluation.options.peak)}};
 }
 
 struct Distribution {
@@ -270,7 +272,7 @@ EvaluationData evaluation_data(const std::string& name, const Evaluation& evalua
                    {"y0", height.y0 * um_per_mm},
                    {"pitch", {height.pitch_x * um_per_mm, height.pitch_y * um_per_mm}}}},
                  {"map", map_data(data, name, evaluation, maps, count)},
-                 {"curves", curves_data(data, name, evaluation.topography.curves, evaluation.options, count)}};
+                 {"curves", curves_data(data, name, evaluation, count)}};
     data.json["distributions"] = distributions.get();
     return data;
 }

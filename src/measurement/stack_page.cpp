@@ -15,6 +15,15 @@ namespace {
 
 using Rows = std::vector<std::vector<std::string>>;
 
+// "form plane, L-filter 80 µm (Gaussian)"
+std::string treatment_of(const surface::Band& band) {
+    std::string text = report::treatment_text(band);
+    for (auto at = text.find(" um"); at != std::string::npos; at = text.find(" um", at)) {
+        text.replace(at, 3, " µm");
+    }
+    return text;
+}
+
 std::string text_of(const nlohmann::ordered_json& value) {
     if (value.is_number_float()) {
         return report::reader_number(value.get<double>());
@@ -38,7 +47,7 @@ void add_deviations(Rows& rows, const std::string& prefix, const std::vector<Fig
     const auto length = [](double mm) { return report::reader_number(mm * um_per_mm); };
     for (const auto& figures : all) {
         if (const auto& deviation = figures.deviation) {
-            rows.push_back({prefix + report::treatment_text(figures.band),
+            rows.push_back({prefix + treatment_of(figures.band),
                             report::reader_number(100 * deviation->measured_share), length(deviation->sq_true),
                             length(deviation->sq_measured),
                             report::reader_number(deviation->sq_measured / deviation->sq_true), length(deviation->rms),
@@ -79,7 +88,7 @@ bool add_parameters(report::Page& page, const std::string& prefix, const std::ve
                                                             report::reader_number(row.value - figures.truth[k].value)}
                                  : std::vector<std::string>{row.name, unit, measured});
         }
-        page.table(prefix + report::treatment_text(figures.band), rows);
+        page.table(prefix + treatment_of(figures.band), rows);
     }
     return any;
 }

@@ -50,7 +50,7 @@ vkfv.chart = (place, label, content) => {
             if (mark.name) {
                 const left = across(mark.x) > (margin.left + right) / 2;
                 drawn.append("text").attr("class", "mark-text").attr("x", across(mark.x) + (left ? -6 : 6))
-                    .attr("y", margin.top + 12).attr("text-anchor", left ? "end" : "start").text(mark.name);
+                    .attr("y", bottom - 8).attr("text-anchor", left ? "end" : "start").text(mark.name);
             }
         }
         // The legend, from the right.

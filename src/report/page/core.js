@@ -35,6 +35,17 @@ const vkfv = (() => {
         return written.replace("-", "−");
     }
 
+    // With its standard uncertainty, if that is known: two digits of it, and no more than four of the value.
+    function uncertain(value, uncertainty) {
+        if (!Number.isFinite(value) || !(uncertainty > 0) || !Number.isFinite(uncertainty)) {
+            return number(value);
+        }
+        const decimals = Math.max(0, Math.min(1 - Math.floor(Math.log10(uncertainty)),
+                                              3 - Math.floor(Math.log10(Math.max(Math.abs(value), 1e-3)))));
+        const error = uncertainty.toFixed(decimals);
+        return `${value.toFixed(decimals).replace("-", "−")} ± ${Number(error) > 0 ? error : number(uncertainty, 1)}`;
+    }
+
     const states = ["measured", "no peak within the scan", "no better than chance", "poor fit", "many peaks",
                     "repaired from its neighbours", "low contrast", "dark"];
 
@@ -58,5 +69,5 @@ const vkfv = (() => {
     }
 
     const parts = []; // run by main.js once all are there
-    return {data, text, blob, number, states, heights, chosen, events, choose, parts};
+    return {data, text, blob, number, uncertain, states, heights, chosen, events, choose, parts};
 })();

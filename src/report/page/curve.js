@@ -2,9 +2,9 @@
 // The focus curve of the grid's point that is nearest to the cursor, with what its peak was found by.
 vkfv.parts.push(() => {
     const {number} = vkfv;
-    const numbers = 9; // of a curve: see curves_data() of page_data.cpp
+    const numbers = 10; // of a curve: see curves_data() of page_data.cpp
 
-    // {z: [...], values: [...], peak, fit: [[z, value] ...], column, row}: pixels of the image, column from the left, row
+    // {z: [...], values: [...], peak, uncertainty, fit: [[z, value] ...], column, row}: pixels of the image, column from the left, row
     // from below; null without curves.
     vkfv.curve = () => {
         const {curves, pixels} = vkfv.chosen.evaluation;
@@ -20,7 +20,7 @@ vkfv.parts.push(() => {
         const row = of(y, pixels.y0, pixels.pitch[1], pixels.rows, curves.rows.length);
         const point = row * curves.columns.length + column;
         const z = curves.z.filter((unused, k) => k % curves.every === 0);
-        const [low, high, peak, at, range, largest, c0, c1, c2] =
+        const [low, high, peak, uncertainty, at, range, largest, c0, c1, c2] =
             vkfv.blob(curves.fits, Float32Array).subarray(numbers * point, numbers * (point + 1));
         const bytes = vkfv.blob(curves.values, Uint8Array).subarray(point * z.length, (point + 1) * z.length);
         const values = Array.from(bytes, byte => low + byte / 255 * (high - low));
@@ -35,7 +35,7 @@ vkfv.parts.push(() => {
                 }
             }
         }
-        return {z, values, peak, fit: fit.filter(d => d[1] >= 0), column: curves.columns[column], row: curves.rows[row]};
+        return {z, values, peak, uncertainty, fit: fit.filter(d => d[1] >= 0), column: curves.columns[column], row: curves.rows[row]};
     };
 
     const draw = vkfv.chart("#curve", "Focus measure over the height of the focal plane", () => {
@@ -64,7 +64,7 @@ vkfv.parts.push(() => {
         d3.select("#curve-text").text(
             `Pixel at x ${number(x0 + curve.column * pitch[0])} µm, y ${number(y0 + curve.row * pitch[1])} µm: ` +
             `${vkfv.chosen.cursor.state}; ` +
-            (Number.isFinite(curve.peak) ? `peak at z = ${number(curve.peak)} µm (${curves.method})` : "no peak"));
+            (Number.isFinite(curve.peak) ? `peak at z = ${vkfv.uncertain(curve.peak, curve.uncertainty)} µm (${curves.method})` : "no peak"));
     }
     vkfv.events.on("cursor.curve", show);
     vkfv.events.on("frame.curve", show);

@@ -62,10 +62,15 @@ vkfv.parts.push(() => {
         label.append("tspan").text(d => narrow && d.name.length > 22 ? `${d.name.slice(0, 20)}…` : d.name);
         label.append("tspan").attr("x", d => d.x1 + 5).attr("dy", "1.15em").text(d => `${number(100 * d.value / aimed, 3)} %`);
     }
+    // The backward estimator follows what is detected alone.
+    const followed = power("not followed backward") === 0;
     d3.select("#flow-note").text(
         `${number(emitted)} W leave the source` + (notAimed > 0
             ? `, ${number(100 * notAimed / emitted)} % of them in directions that never reach the first element: the streams are of the other ${number(aimed)} W`
-            : "") + `; ${number(detected)} W are detected.`);
-    vkfv.events.on("resize.light", draw);
-    draw();
+            : "") + `; ${number(detected)} W are detected. ` +
+        (followed ? "" : "The backward estimator follows no other light: forward tracing tells where it goes."));
+    if (followed) {
+        vkfv.events.on("resize.light", draw);
+        draw();
+    }
 });

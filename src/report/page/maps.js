@@ -226,7 +226,7 @@ vkfv.parts.push(() => {
         for (const [title, domain, colours] of bars) {
             const figure = place.append("figure");
             const width = Math.max(160, figure.node().clientWidth);
-            const svg = figure.append("svg").attr("width", width).attr("height", 42).attr("role", "img").attr("aria-label", `Colours: ${title}, from ${number(domain[0])} to ${number(domain[1])}`);
+            const svg = figure.append("svg").attr("viewBox", `0 0 ${width} 42`).attr("width", width).attr("height", 42).attr("role", "img").attr("aria-label", `Colours: ${title}, from ${number(domain[0])} to ${number(domain[1])}`);
             svg.selectAll("rect").data(colours).enter().append("rect").attr("x", (d, k) => 8 + k * (width - 16) / 256)
                 .attr("width", (width - 16) / 256 + 0.6).attr("height", 14).attr("fill", d => d);
             svg.append("g").attr("transform", "translate(0,14)")

@@ -110,6 +110,9 @@ vkfv.parts.push(() => {
     }
 
     function draw() {
+        if (window.matchMedia("print").matches) {
+            return; // the sheet shows what the window did
+        }
         const width = canvas.clientWidth, height = canvas.clientHeight;
         space.renderer.setPixelRatio(Math.min(2, window.devicePixelRatio || 1));
         space.renderer.setSize(width, height, false);
@@ -148,6 +151,7 @@ vkfv.parts.push(() => {
         d3.selectAll("#space-colour, #space-layer").on("change", () => rebuild(false));
         vkfv.events.on("scale.space", () => rebuild(false));
         vkfv.events.on("resize.space", draw);
+        window.matchMedia("(prefers-color-scheme: dark)").addListener(draw);
     }
 
     d3.select("#space-layer").selectAll("option")
