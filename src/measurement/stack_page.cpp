@@ -129,7 +129,8 @@ void add_light(report::Page& page, const scan::MeanLedger& ledger) {
     Rows rows{{"where it went", "power / W", "share of the emitted / %"}};
     for (const auto& [name, power] : ledger.shares) {
         if (power != 0 || name == "detected") {
-            rows.push_back({name, report::reader_number(power), report::reader_number(100 * power / ledger.emitted)});
+            const bool check = name == "residual";
+            rows.push_back({check ? "residual: emitted less all of these" : name, report::reader_number(power), report::reader_number(100 * power / ledger.emitted)});
         }
     }
     page.table("Mean of all images; what is not listed took none", rows);

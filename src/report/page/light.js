@@ -37,7 +37,7 @@ vkfv.parts.push(() => {
             before = here;
         }
         // Of the whole way: what an element of the non-sequential trace ends, and the estimator does not follow.
-        const others = shares.filter(d => !used.has(d[0]) && d[1] > 0).sort((a, b) => b[1] - a[1]);
+        const others = shares.filter(d => !used.has(d[0]) && d[1] > 1e-9 * aimed).sort((a, b) => b[1] - a[1]);
         for (const [loss, value] of others.slice(0, 8)) {
             links.push({source: 0, target: node(loss, true), value, lost: true});
             links.filter(link => !link.lost).forEach(link => { link.value -= value; });
@@ -52,14 +52,15 @@ vkfv.parts.push(() => {
         const svg = d3.select(place).append("svg").attr("width", width).attr("height", height).attr("viewBox", `0 0 ${width} ${height}`)
             .attr("role", "img").attr("aria-label", `Of the light aimed at the instrument ${number(100 * detected / aimed)} % is detected; the table below has every share`);
         const {nodes, links} = d3.sankey().nodeWidth(12).nodePadding(narrow ? 22 : 26).nodeAlign(d3.sankeyLeft)
-            .extent([[2, 14], [width - (narrow ? 95 : 190), height - 14]])(graph());
+            .extent([[2, 14], [width - (narrow ? 95 : 280), height - 14]])(graph());
         svg.selectAll("path").data(links).enter().append("path").attr("class", d => d.lost ? "link lost" : "link")
             .attr("d", d3.sankeyLinkHorizontal()).attr("stroke-width", d => Math.max(1.5, d.width));
         svg.selectAll("rect").data(nodes).enter().append("rect").attr("x", d => d.x0).attr("y", d => d.y0)
             .attr("width", d => d.x1 - d.x0).attr("height", d => Math.max(1.5, d.y1 - d.y0));
         const label = svg.selectAll("text").data(nodes).enter().append("text").attr("x", d => d.x1 + 5)
             .attr("y", d => (d.y0 + d.y1) / 2 + 4);
-        label.append("tspan").text(d => narrow && d.name.length > 22 ? `${d.name.slice(0, 20)}…` : d.name);
+        const room = d => Math.max(12, Math.floor((width - d.x1 - 5) / 6.6)); // letters
+        label.append("tspan").text(d => d.name.length > room(d) ? `${d.name.slice(0, room(d) - 1)}…` : d.name);
         label.append("tspan").attr("x", d => d.x1 + 5).attr("dy", "1.15em").text(d => `${number(100 * d.value / aimed, 3)} %`);
     }
     // The backward estimator follows what is detected alone.

@@ -55,7 +55,7 @@ vkfv.parts.push(() => {
     function begin() {
         let renderer = null;
         try {
-            renderer = new THREE.WebGLRenderer({canvas, antialias: true, alpha: true, preserveDrawingBuffer: true});
+            renderer = new THREE.WebGLRenderer({canvas, antialias: true, preserveDrawingBuffer: true});
         } catch (failure) {
             note.text("This browser has no WebGL: the surface is not drawn in space.");
             return;
@@ -114,6 +114,7 @@ vkfv.parts.push(() => {
             return; // the sheet shows what the window did
         }
         const width = canvas.clientWidth, height = canvas.clientHeight;
+        space.scene.background = new THREE.Color(getComputedStyle(document.documentElement).getPropertyValue("--raised").trim());
         space.renderer.setPixelRatio(Math.min(2, window.devicePixelRatio || 1));
         space.renderer.setSize(width, height, false);
         space.camera.aspect = width / Math.max(1, height);
