@@ -1,6 +1,7 @@
 #include "measurement/page_data.hpp"
 
 #include "core/units.hpp"
+#include "report/markup.hpp"
 #include "report/png.hpp"
 #include "surface/filter.hpp"
 #include "surface/material_ratio.hpp"
@@ -224,27 +225,6 @@ Json distributions_data(const LevelledMaps& maps) {
     return json;
 }
 
-// As the content of a script element: no markup can begin in it.
-std::string json_text(const Json& json) {
-    std::string text;
-    for (const char c : json.dump()) {
-        switch (c) {
-        case '<':
-            text += "\\u003c";
-            break;
-        case '>':
-            text += "\\u003e";
-            break;
-        case '&':
-            text += "\\u0026";
-            break;
-        default:
-            text += c;
-        }
-    }
-    return text;
-}
-
 } // namespace
 
 LevelledMaps levelled_maps(const Evaluation& evaluation) {
@@ -303,7 +283,7 @@ void add_data(report::Page& page, const EvaluationData& frames, const std::vecto
     for (const auto& [id, text] : frames.blobs) {
         page.data(id, text);
     }
-    page.data("data", json_text(json));
+    page.data("data", report::json_text(json));
     for (const char* file : {"d3.min.js", "d3-sankey.min.js", "three.min.js", "OrbitControls.js", "core.js", "chart.js",
                              "maps.js", "profile.js", "frames.js", "curve.js", "surface.js", "distributions.js",
                              "light.js", "timings.js", "main.js"}) {

@@ -1,7 +1,7 @@
 "use strict";
 // Curves over two axes, as wide as their place and drawn again when that changes.
 // content(): {x: {label, domain}, y: {label, domain, zero}, series: [{name, points: [[x, y] ...], kind}], marks: [{x, name,
-// quiet}], height, dots}; y of NaN leaves a gap. kind: "line" (default), "steps", "plain" (a line without a legend).
+// quiet}], height, dots}; y of NaN leaves a gap; null: there is nothing to draw. kind: "line" (default), "steps", "plain" (a line without a legend).
 vkfv.chart = (place, label, content) => {
     const element = d3.select(place);
     const margin = {top: 30, right: 16, bottom: 44, left: 62};
@@ -12,7 +12,12 @@ vkfv.chart = (place, label, content) => {
     }
 
     function draw() {
-        const {x, y, series, marks = [], height = 300, dots = false} = content();
+        const given = content();
+        if (!given) {
+            element.selectAll("*").remove();
+            return;
+        }
+        const {x, y, series, marks = [], height = 300, dots = false} = given;
         const width = Math.max(240, element.node().clientWidth);
         element.selectAll("*").remove();
         const svg = element.append("svg").attr("viewBox", `0 0 ${width} ${height}`).attr("width", width)

@@ -53,15 +53,19 @@ const vkfv = (() => {
     const layers = new Map();
     function heights(layer) {
         if (!layers.has(layer)) {
+            const packed = blob(layer.blob, Uint16Array);
             const step = (layer.high - layer.low) / 65534;
-            layers.set(layer, Float32Array.from(blob(layer.blob, Uint16Array),
-                                                value => value === 65535 ? NaN : layer.low + step * value));
+            const values = new Float32Array(packed.length);
+            for (let k = 0; k < packed.length; ++k) {
+                values[k] = packed[k] === 65535 ? NaN : layer.low + step * packed[k];
+            }
+            layers.set(layer, values);
         }
         return layers.get(layer);
     }
 
     // What is chosen, and who wants to know: "cursor", "view", "profile", "evaluation", "scale", "frame".
-    const chosen = {evaluation: data.evaluations[0], cursor: null, profile: null, frame: 0, scale: null};
+    const chosen = {evaluation: (data.evaluations || [])[0], cursor: null, profile: null, frame: 0, scale: null};
     const events = d3.dispatch("cursor", "view", "profile", "evaluation", "scale", "frame", "resize");
     function choose(what, value) {
         chosen[what] = value;

@@ -40,6 +40,9 @@ vkfv.parts.push(() => {
 
     const draw = vkfv.chart("#curve", "Focus measure over the height of the focal plane", () => {
         const curve = vkfv.curve();
+        if (!curve) {
+            return null;
+        }
         const {frames} = vkfv.data;
         const marks = [];
         if (Number.isFinite(curve.peak)) {

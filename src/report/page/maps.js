@@ -3,8 +3,11 @@
 vkfv.parts.push(() => {
     const titles = {measured: "Measured height", truth: "True height", deviation: "Deviation, measured − true"};
     const margin = {left: 48, right: 8, top: 6, bottom: 36};
-    const viridis = d3.range(256).map(k => d3.rgb(d3.interpolateViridis(k / 255)));
-    const blueRed = d3.range(256).map(k => d3.rgb(d3.interpolateRdBu(1 - k / 255)));
+    const palette = interpolate => d3.range(256).map(k => d3.rgb(interpolate(k / 255)));
+    const viridis = palette(d3.interpolateViridis);
+    const blueRed = palette(share => d3.interpolateRdBu(1 - share));
+    const pixelsOf = colours => Uint32Array.from(colours, ({r, g, b}) => (255 << 24 | b << 16 | g << 8 | r) >>> 0); // little end first
+    const pixels = new Map([[viridis, pixelsOf(viridis)], [blueRed, pixelsOf(blueRed)]]);
     const number = vkfv.number;
     let view = d3.zoomIdentity; // in units of the plots' own width
     let drags = "profile";
@@ -21,12 +24,23 @@ vkfv.parts.push(() => {
     // From the lowest height to the highest, but for the outermost two thousandths at either end.
     function usualScale() {
         const {layers} = map();
-        const values = [layers.measured, layers.truth].filter(Boolean)
-            .flatMap(layer => Array.from(vkfv.heights(layer)).filter(Number.isFinite));
-        values.sort((a, b) => a - b);
+        // Of some, which tell as well: every point of a small map, one in a prime number of a large one.
+        const sorted = (wanted, change = value => value) => {
+            const some = [];
+            for (const layer of wanted.filter(Boolean)) {
+                const heights = vkfv.heights(layer);
+                const stride = heights.length > 50000 ? 17 : 1;
+                for (let k = 0; k < heights.length; k += stride) {
+                    if (Number.isFinite(heights[k])) {
+                        some.push(change(heights[k]));
+                    }
+                }
+            }
+            return Float32Array.from(some).sort();
+        };
+        const values = sorted([layers.measured, layers.truth]);
         const [from, to] = [0.002, 0.998].map(share => d3.quantile(values, share));
-        const deviations = layers.deviation
-            ? Array.from(vkfv.heights(layers.deviation)).filter(Number.isFinite).map(Math.abs).sort((a, b) => a - b) : [];
+        const deviations = sorted([layers.deviation], Math.abs);
         const end = deviations.length ? d3.quantile(deviations, 0.99) : 1;
         return {low: Number((values.length ? from : 0).toPrecision(3)), high: Number((values.length ? to : 1).toPrecision(3)),
                 deviation: Number((end || 1).toPrecision(3))};
@@ -39,13 +53,15 @@ vkfv.parts.push(() => {
                                                                : [scale.low, scale.high, viridis];
         const picture = new ImageData(columns, rows);
         const factor = 255 / (to - from || 1);
-        panel.values.forEach((value, k) => {
-            if (Number.isFinite(value)) {
-                const {r, g, b} = colours[Math.max(0, Math.min(255, Math.round((value - from) * factor)))];
-                const at = 4 * ((rows - 1 - Math.floor(k / columns)) * columns + k % columns);
-                picture.data.set([r, g, b, 255], at);
+        const [to32, of] = [new Uint32Array(picture.data.buffer), pixels.get(colours)];
+        for (let row = 0, k = 0; row < rows; ++row) {
+            for (let at = (rows - 1 - row) * columns, end = at + columns; at < end; ++at, ++k) {
+                const value = panel.values[k];
+                if (Number.isFinite(value)) {
+                    to32[at] = of[Math.max(0, Math.min(255, Math.round((value - from) * factor)))];
+                }
             }
-        });
+        }
         panel.picture.width = columns;
         panel.picture.height = rows;
         panel.picture.getContext("2d").putImageData(picture, 0, 0);

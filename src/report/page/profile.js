@@ -30,18 +30,13 @@ vkfv.parts.push(() => {
     };
     const heights = vkfv.chart("#profile-heights", "Heights along the profile", () => ({
         x: {label: "distance / µm"}, y: {label: "height / µm"}, series: series(["measured", "truth"])}));
-    const deviation = vkfv.chart("#profile-deviation", "Deviation along the profile", () => ({
+    const deviation = vkfv.chart("#profile-deviation", "Deviation along the profile", () => vkfv.chosen.evaluation.map.layers.deviation && ({
         x: {label: "distance / µm"}, y: {label: "deviation / µm", zero: true}, height: 190,
         series: series(["deviation"]).map(one => ({...one, colour: 3}))}));
 
     vkfv.events.on("profile.chart", () => {
         heights();
-        if (vkfv.chosen.evaluation.map.layers.deviation) {
-            deviation();
-        } else {
-            d3.select("#profile-deviation").selectAll("*").remove();
-            vkfv.events.on("resize.#profile-deviation", null);
-        }
+        deviation();
         const {from, to} = vkfv.chosen.profile;
         const profile = vkfv.profile();
         const measured = profile.measured.filter(Number.isFinite);

@@ -47,6 +47,7 @@ vkfv.parts.push(() => {
         result.setAttribute("uv", new THREE.Float32BufferAttribute(places, 2));
         result.setAttribute("color", new THREE.Float32BufferAttribute(colours, 3));
         result.setIndex(faces);
+        note.text(faces.length ? "" : "Nothing was measured.");
         result.computeVertexNormals();
         space.relief = (high - low) / unit;
         return result;
