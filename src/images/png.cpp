@@ -41,7 +41,8 @@ bool encode(png_structp png, png_infop info, PngTarget& target, const Pixels& pi
     }
     png_set_write_fn(png, &target, append_bytes, [](png_structp) {});
     png_set_IHDR(png, info, static_cast<png_uint_32>(pixels.columns), static_cast<png_uint_32>(pixels.rows), 8,
-                 pixels.channels == 3 ? PNG_COLOR_TYPE_RGB : PNG_COLOR_TYPE_GRAY, PNG_INTERLACE_NONE, PNG_COMPRESSION_TYPE_DEFAULT, PNG_FILTER_TYPE_DEFAULT);
+                 pixels.channels == 3 ? PNG_COLOR_TYPE_RGB : PNG_COLOR_TYPE_GRAY, PNG_INTERLACE_NONE,
+                 PNG_COMPRESSION_TYPE_DEFAULT, PNG_FILTER_TYPE_DEFAULT);
     png_set_compression_strategy(png, Z_DEFAULT_STRATEGY); // as fast as libpng's own choice, and these bytes are known
     // These say nothing. They stand in all pictures that vkfv has drawn, whose bytes are these.
     png_set_oFFs(png, info, 0, 0, PNG_OFFSET_PIXEL);

@@ -23,7 +23,8 @@ constexpr std::uint64_t most_curve_values = 2048;
 // The page, its curves and curves.npy.
 std::uint64_t page_bytes(const Configuration& configuration) {
     const std::uint64_t images = configuration.scan ? configuration.scan->positions().size() : 0;
-    return report_bytes + std::min(most_frame_bytes, images * configuration.instrument.detector_pixels.count() * 4 / 3) +
+    return report_bytes +
+           std::min(most_frame_bytes, images * configuration.instrument.detector_pixels.count() * 4 / 3) +
            std::min(most_curve_values, images) * curve_bytes;
 }
 
@@ -34,7 +35,8 @@ std::uint64_t image_bytes(ImageSize pixels) {
 }
 
 std::uint64_t results_bytes(const Configuration& configuration) {
-    const std::uint64_t once = configuration.instrument.detector_pixels.count() * bytes_a_point + page_bytes(configuration);
+    const std::uint64_t once =
+        configuration.instrument.detector_pixels.count() * bytes_a_point + page_bytes(configuration);
     return configuration.diffraction.any() && !configuration.camera ? 2 * once : once;
 }
 

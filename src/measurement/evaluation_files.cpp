@@ -219,7 +219,8 @@ StackSource stack_source(const Configuration& configuration, const optics::Instr
 void write_results(ResultFolder& folder, const EvaluatedStack& stack) {
     const auto& evaluation = stack.evaluation;
     auto figures = std::async(std::launch::async, [&] { return figures_of(evaluation); });
-    auto frames = std::async(std::launch::async, [&] { return frames_data(evaluation.frames, stack.files.image_unit); });
+    auto frames =
+        std::async(std::launch::async, [&] { return frames_data(evaluation.frames, stack.files.image_unit); });
     const int count = evaluation.diffracted ? 2 : 1;
     auto data = write_maps(folder, "", evaluation, stack.files, count);
     StackPage page{.title = name_of(folder.path()),

@@ -114,8 +114,7 @@ Json map_data(EvaluationData& data, const std::string& name, const Evaluation& e
                  {"pitch", {block * place.pitch_x * um_per_mm, block * place.pitch_y * um_per_mm}}};
     json["layers"]["measured"] = packed_heights(data, name + "-measured", measured);
     if (maps.truth) {
-        json["layers"]["truth"] =
-            packed_heights(data, name + "-truth", report::block_means(maps.truth->height, block));
+        json["layers"]["truth"] = packed_heights(data, name + "-truth", report::block_means(maps.truth->height, block));
     }
     if (maps.deviation) {
         json["layers"]["deviation"] =
@@ -125,8 +124,7 @@ Json map_data(EvaluationData& data, const std::string& name, const Evaluation& e
     json["states"] = name + "-states";
     data.blobs.emplace_back(
         name + "-texture",
-        report::base64(
-            texture_png(report::block_means(topography::grey(evaluation.topography.all_in_focus), block))));
+        report::base64(texture_png(report::block_means(topography::grey(evaluation.topography.all_in_focus), block))));
     json["texture"] = name + "-texture";
     return json;
 }
@@ -158,8 +156,8 @@ Json curves_data(EvaluationData& data, const std::string& name, const Evaluation
         const double noise = evaluation.topography.height_noise(curves.columns[point % curves.columns.size()],
                                                                 curves.rows[point / curves.columns.size()]);
         for (const double number :
-             {static_cast<double>(low), static_cast<double>(high), curves.peaks[point] * um_per_mm,
-              noise * um_per_mm, static_cast<double>(fit.at), static_cast<double>(fit.range), fit.largest, fit.coefficients[0],
+             {static_cast<double>(low), static_cast<double>(high), curves.peaks[point] * um_per_mm, noise * um_per_mm,
+              static_cast<double>(fit.at), static_cast<double>(fit.range), fit.largest, fit.coefficients[0],
               fit.coefficients[1], fit.coefficients[2]}) {
             numbers.push_back(static_cast<float>(number));
         }
@@ -169,14 +167,20 @@ Json curves_data(EvaluationData& data, const std::string& name, const Evaluation
     std::vector<double> z;
     std::ranges::transform(curves.z, std::back_inserter(z), [](double height) { return height * um_per_mm; });
     using topography::PeakMethod;
-    const bool gaussian = evaluation.options.peak == PeakMethod::gaussian || evaluation.options.peak == PeakMethod::gaussian_fit;
-    return {{"columns", curves.columns}, {"rows", curves.rows},           {"z", z},
-            {"every", every},            {"values", name + "-curves"},    {"fits", name + "-fits"},
-            {"gaussian", gaussian},      {"method", name_of(evaluation.options.peak)}};
+    const bool gaussian =
+        evaluation.options.peak == PeakMethod::gaussian || evaluation.options.peak == PeakMethod::gaussian_fit;
+    return {{"columns", curves.columns},
+            {"rows", curves.rows},
+            {"z", z},
+            {"every", every},
+            {"values", name + "-curves"},
+            {"fits", name + "-fits"},
+            {"gaussian", gaussian},
+            {"method", name_of(evaluation.options.peak)}};
 }
 
 struct Distribution {
-    std::vector<double> shares; // of the points, an interval each
+    std::vector<double> shares;  // of the points, an interval each
     std::vector<double> heights; // um, exceeded on 0, 1 ... 100 % of the area
 };
 
@@ -186,7 +190,8 @@ Distribution distribution_of(const surface::HeightMap& map, const Extent& extent
     const double width = std::max(extent.high - extent.low, std::numeric_limits<double>::min()) / histogram_intervals;
     for (const double height : map.height.values) {
         if (std::isfinite(height)) {
-            const int interval = std::clamp(static_cast<int>((height - extent.low) / width), 0, histogram_intervals - 1);
+            const int interval =
+                std::clamp(static_cast<int>((height - extent.low) / width), 0, histogram_intervals - 1);
             result.shares[static_cast<std::size_t>(interval)] += 1;
             points += 1;
         }
@@ -266,8 +271,14 @@ EvaluationData frames_data(const report::Frames& frames, const std::string& unit
     std::vector<double> z;
     std::ranges::transform(frames.z, std::back_inserter(z), [](double height) { return height * um_per_mm; });
     data.blobs.emplace_back("frames", std::move(all));
-    data.json = {{"columns", frames.columns}, {"rows", frames.rows}, {"block", frames.block}, {"every", frames.every},
-                 {"white", frames.white},     {"unit", unit},        {"z", z},                {"blob", "frames"}};
+    data.json = {{"columns", frames.columns},
+                 {"rows", frames.rows},
+                 {"block", frames.block},
+                 {"every", frames.every},
+                 {"white", frames.white},
+                 {"unit", unit},
+                 {"z", z},
+                 {"blob", "frames"}};
     return data;
 }
 

@@ -1,5 +1,5 @@
-// What the report's scripts show of a stack: frames, maps, focus curves and distributions of heights, small enough for a
-// page however large the stack.
+// What the report's scripts show of a stack: frames, maps, focus curves and distributions of heights, small enough for
+// a page however large the stack.
 #pragma once
 
 #include "measurement/evaluation.hpp"

@@ -47,9 +47,8 @@ void add_deviations(Rows& rows, const std::string& prefix, const std::vector<Fig
     const auto length = [](double mm) { return report::reader_number(mm * um_per_mm); };
     for (const auto& figures : all) {
         if (const auto& deviation = figures.deviation) {
-            rows.push_back({prefix + treatment_of(figures.band),
-                            report::reader_number(100 * deviation->measured_share), length(deviation->sq_true),
-                            length(deviation->sq_measured),
+            rows.push_back({prefix + treatment_of(figures.band), report::reader_number(100 * deviation->measured_share),
+                            length(deviation->sq_true), length(deviation->sq_measured),
                             report::reader_number(deviation->sq_measured / deviation->sq_true), length(deviation->rms),
                             report::reader_number(deviation->correlation)});
         }
@@ -130,7 +129,8 @@ void add_light(report::Page& page, const scan::MeanLedger& ledger) {
     for (const auto& [name, power] : ledger.shares) {
         if (power != 0 || name == "detected") {
             const bool check = name == "residual";
-            rows.push_back({check ? "residual: emitted less all of these" : name, report::reader_number(power), report::reader_number(100 * power / ledger.emitted)});
+            rows.push_back({check ? "residual: emitted less all of these" : name, report::reader_number(power),
+                            report::reader_number(100 * power / ledger.emitted)});
         }
     }
     page.table("Mean of all images; what is not listed took none", rows);

@@ -41,8 +41,8 @@ Grid<Value> means_of_blocks(const Grid<Value>& image, int block) {
             }
             for (int column = 0; column < result.columns; ++column) {
                 const auto k = static_cast<std::size_t>(column);
-                result(column, row) = counts[k] > 0 ? static_cast<Value>(sums[k] / counts[k])
-                                                    : std::numeric_limits<Value>::quiet_NaN();
+                result(column, row) =
+                    counts[k] > 0 ? static_cast<Value>(sums[k] / counts[k]) : std::numeric_limits<Value>::quiet_NaN();
             }
         }
     });
@@ -68,8 +68,8 @@ float white_of(const std::vector<Grid<float>>& frames) {
     if (values.empty()) {
         return 0;
     }
-    const auto place = values.begin() + static_cast<std::ptrdiff_t>((1 - brightest_share) *
-                                                                    static_cast<double>(values.size() - 1));
+    const auto place =
+        values.begin() + static_cast<std::ptrdiff_t>((1 - brightest_share) * static_cast<double>(values.size() - 1));
     std::ranges::nth_element(values, place);
     return *place > 0 ? *place : *std::ranges::max_element(values);
 }

@@ -150,12 +150,13 @@ class DeviceFocusPlanes final : public FocusPlanes {
             gathered_.emplace_back(device_, images_a_gathered_buffer * gathered_count_ * sizeof(float),
                                    vulkan::Buffer::Memory::host);
         }
-        dispatch(gather_,
-                 {{BINDING_CURVES, &averaged_}, {BINDING_PIXELS, &gathered_pixels_}, {BINDING_GATHERED, &gathered_.back()}},
-                 GatheredImage{static_cast<std::uint32_t>(gathered_count_),
-                               static_cast<std::uint32_t>(image % averaged_curves_) * static_cast<std::uint32_t>(pixels_),
-                               static_cast<std::uint32_t>((gathered_images_ % images_a_gathered_buffer) * gathered_count_)},
-                 gathered_count_);
+        dispatch(
+            gather_,
+            {{BINDING_CURVES, &averaged_}, {BINDING_PIXELS, &gathered_pixels_}, {BINDING_GATHERED, &gathered_.back()}},
+            GatheredImage{static_cast<std::uint32_t>(gathered_count_),
+                          static_cast<std::uint32_t>(image % averaged_curves_) * static_cast<std::uint32_t>(pixels_),
+                          static_cast<std::uint32_t>((gathered_images_ % images_a_gathered_buffer) * gathered_count_)},
+            gathered_count_);
         ++gathered_images_;
     }
 

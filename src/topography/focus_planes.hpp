@@ -17,7 +17,7 @@ struct StackSummary {
     Grid<float> brightness; // sum over the images of the channels' mean
     Grid<focus::f64::CurveRecord> curves;
     Grid<focus::f64::SingleRecord> singles;
-    Channels all_in_focus; // each pixel from the images around its maximum
+    Channels all_in_focus;       // each pixel from the images around its maximum
     std::vector<float> gathered; // averaged curves' values at the plan's pixels, one image after the other
 };
 

@@ -271,8 +271,8 @@ FocusCurves StackEvaluator::curves_of(StackSummary& stack, const std::function<d
                     curve[k] = result.values[point * heights + k] = value;
                 }
                 const auto& record = stack.curves(result.columns[column], result.rows[row]);
-                result.peaks[point] = record.found != 0 ? height_at(record.at + record.offset)
-                                                        : std::numeric_limits<double>::quiet_NaN();
+                result.peaks[point] =
+                    record.found != 0 ? height_at(record.at + record.offset) : std::numeric_limits<double>::quiet_NaN();
                 if (record.found != 0 && curve_grid_.every == 1)
                     result.fits[point] = fit_of(options_.peak, curve, record.at, options_.peak_range_steps);
             }

@@ -14,8 +14,8 @@ TEST(Report, WorksInABrowser) {
     const auto folder = fresh_folder("report");
     write_file(folder / "c.toml", small_configuration);
     // Every curve's peak is taken: so few rays measure nothing that chance does not.
-    const auto stack = run_program({"stack", "c.toml", "--rays", "2e5", "--set", "topography.smoothing_steps=0", "--set",
-                                    "topography.false_peak_rate=1", "--set", "topography.most_rival=1"},
+    const auto stack = run_program({"stack", "c.toml", "--rays", "2e5", "--set", "topography.smoothing_steps=0",
+                                    "--set", "topography.false_peak_rate=1", "--set", "topography.most_rival=1"},
                                    folder);
     ASSERT_EQ(stack.exit_code, 0) << stack.standard_error;
     const std::string command = "python3 " VKFV_SOURCE_DIR "/tools/check_report --seconds 30 '" +

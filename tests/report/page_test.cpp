@@ -37,8 +37,7 @@ TEST(Page, shows_texts_as_they_are) {
     const auto row = table.child("tr").next_sibling("tr");
     EXPECT_STREQ(row.child("th").child_value(), "</table>");
     EXPECT_STREQ(row.child("td").child_value(), "<b>");
-    EXPECT_STREQ(first.next_sibling().child("details").child("pre").child_value(),
-                 "key = \"<value>\"\nsecond = 2\n");
+    EXPECT_STREQ(first.next_sibling().child("details").child("pre").child_value(), "key = \"<value>\"\nsecond = 2\n");
     // Every section can be gone to.
     const auto links = body.child("header").child("nav").child("ul");
     EXPECT_STREQ(links.last_child().child("a").attribute("href").value(), "#two");

@@ -12,8 +12,9 @@ namespace {
 TEST(LedgerTable, HasTheMeanOfAllImages) {
     const std::filesystem::path folder = testing::TempDir() + "ledger_table";
     std::filesystem::create_directories(folder);
-    std::ofstream(folder / "ledger.csv") << "image,z_um,rays,detected_rays,emitted_W,detected_W,\"beside, \"\"it\"\"_W\","
-                                            "residual_W\n0,-1,10,3,2,0.5,1.5,0\n1,0,10,4,2,0.25,1.75,1e-17\n";
+    std::ofstream(folder / "ledger.csv")
+        << "image,z_um,rays,detected_rays,emitted_W,detected_W,\"beside, \"\"it\"\"_W\","
+           "residual_W\n0,-1,10,3,2,0.5,1.5,0\n1,0,10,4,2,0.25,1.75,1e-17\n";
     const auto ledger = mean_ledger(folder);
     EXPECT_EQ(ledger.emitted, 2);
     ASSERT_EQ(ledger.shares.size(), 3u);

@@ -46,7 +46,7 @@ vkfv.parts.push(() => {
         const {frames} = vkfv.data;
         const marks = [];
         if (Number.isFinite(curve.peak)) {
-            marks.push({x: curve.peak, name: `peak ${number(curve.peak)} µm`});
+            marks.push({x: curve.peak, name: `peak ${vkfv.uncertain(curve.peak, curve.uncertainty)} µm`});
         }
         if (frames.z.length) {
             marks.push({x: frames.z[vkfv.chosen.frame], quiet: true});
