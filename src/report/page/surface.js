@@ -85,7 +85,7 @@ vkfv.parts.push(() => {
         const result = new THREE.Texture(image);
         result.minFilter = THREE.LinearFilter;
         result.generateMipmaps = false;
-        image.onload = () => { result.needsUpdate = true; draw(); };
+        image.onload = () => { result.needsUpdate = true; rebuild(false); };
         image.src = `data:image/png;base64,${vkfv.text(evaluation.map.texture)}`;
         return result;
     }
@@ -103,7 +103,8 @@ vkfv.parts.push(() => {
             const factor = Math.log10(Math.max(0.1, Math.min(1000, 0.2 / Math.max(1e-9, space.relief))));
             d3.select("#space-scale").property("value", Math.round(factor * 20) / 20);
         }
-        const textured = d3.select("#space-colour").property("value") === "texture";
+        // The heights' colours until the image is there.
+        const textured = d3.select("#space-colour").property("value") === "texture" && space.texture.image.complete;
         space.material.map = textured ? space.texture : null;
         space.material.vertexColors = textured ? THREE.NoColors : THREE.VertexColors;
         space.material.needsUpdate = true;
