@@ -262,12 +262,12 @@ specimen::Roughness read_roughness(const TomlTable& table, const TomlTable& spec
         section.fail(section.has(keys.sq) ? keys.sq : keys.ra, "one of noise_um, sq_um and ra_um",
                      "Keep one of them; each says how high the roughness is.");
     }
-    if (!roughness.sq && !roughness.ra) {
+    if (!section.has(keys.sq) && !section.has(keys.ra)) {
         roughness.noise = from_um(section.number(keys.noise));
     }
     roughness.shortest = length(keys.shortest);
     roughness.longest = length(keys.longest);
-    if (section.has(keys.kernel) || !roughness.shortest) {
+    if (section.has(keys.kernel) || !section.has(keys.shortest)) {
         roughness.kernel = from_um(section.number(keys.kernel));
     }
     roughness.pitch = from_um(section.number(keys.pitch));
