@@ -167,5 +167,11 @@ vkfv.parts.push(() => {
             begun();
         }
     }, {rootMargin: "200px"}).observe(canvas);
-    window.addEventListener("beforeprint", begun);
+    window.addEventListener("beforeprint", () => {
+        begun();
+        if (space) { // a canvas out of sight may be printed as it was shown last
+            draw();
+            document.getElementById("space-print").src = canvas.toDataURL();
+        }
+    });
 });
