@@ -13,6 +13,8 @@ const uint BINDING_RECORDS = 9u;
 const uint BINDING_PLACES = 10u;
 const uint BINDING_ALL_IN_FOCUS = 11u;
 const uint BINDING_SINGLES = 12u;
+const uint BINDING_PIXELS = 13u;
+const uint BINDING_GATHERED = 14u;
 
 // focus_mean.comp: a term of a weighted mean of planes.
 struct MeanTerm {
@@ -40,6 +42,13 @@ struct FollowedImage {
     int at;
     int images;
     int kept; // curves
+};
+
+// focus_gather.comp
+struct GatheredImage {
+    uint count;
+    uint first_from; // where the curves' values of this image begin
+    uint first_to;
 };
 
 // focus_select.comp

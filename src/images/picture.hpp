@@ -11,6 +11,8 @@ namespace vkfv::images {
 
 // Three bytes a pixel, the first row on top. The same pixels give the same bytes. RunError where libpng cannot.
 std::string png_bytes(int columns, int rows, std::span<const std::uint8_t> rgb);
+// One byte a pixel, likewise.
+std::string grey_png_bytes(int columns, int rows, std::span<const std::uint8_t> grey);
 
 // The pixels that a letter covers, its origin on the baseline, y down; ends excluded.
 struct Ink {

@@ -4,6 +4,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <array>
 #include <cstddef>
 #include <limits>
@@ -14,7 +15,18 @@ namespace {
 
 constexpr std::uint64_t bytes_around_pixels = 4096; // of an image: its description and the rest of a block
 constexpr std::uint64_t bytes_a_point = 54;         // nine maps in float32, the mask, and two surfaces
-constexpr std::uint64_t report_bytes = 4'000'000;
+constexpr std::uint64_t report_bytes = 6'000'000;   // without what follows
+constexpr std::uint64_t most_frame_bytes = 8'000'000;
+constexpr std::uint64_t curve_bytes = 64 * 64 * 6; // an image: of curves.npy, and in the report
+constexpr std::uint64_t most_curve_values = 2048;
+
+// The page, its curves and curves.npy.
+std::uint64_t page_bytes(const Configuration& configuration) {
+    const std::uint64_t images = configuration.scan ? configuration.scan->positions().size() : 0;
+    return report_bytes +
+           std::min(most_frame_bytes, images * configuration.instrument.detector_pixels.count() * 4 / 3) +
+           std::min(most_curve_values, images) * curve_bytes;
+}
 
 } // namespace
 
@@ -23,7 +35,8 @@ std::uint64_t image_bytes(ImageSize pixels) {
 }
 
 std::uint64_t results_bytes(const Configuration& configuration) {
-    const std::uint64_t once = configuration.instrument.detector_pixels.count() * bytes_a_point + report_bytes;
+    const std::uint64_t once =
+        configuration.instrument.detector_pixels.count() * bytes_a_point + page_bytes(configuration);
     return configuration.diffraction.any() && !configuration.camera ? 2 * once : once;
 }
 

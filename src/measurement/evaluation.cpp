@@ -14,6 +14,7 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <future>
 #include <vector>
 
 namespace vkfv::measurement {
@@ -93,6 +94,15 @@ std::string reasons_text(const Evaluation& evaluation) {
     return text;
 }
 
+// Enough to see how curves differ over the field; values of long stacks are thinned out, 32 MB at most.
+topography::CurveGrid curve_grid(int images) {
+    constexpr int a_side = 64, most_values = 2048;
+    return images > 0 ? topography::CurveGrid{.columns = a_side,
+                                              .rows = a_side,
+                                              .every = (images + most_values - 1) / most_values}
+                      : topography::CurveGrid();
+}
+
 } // namespace
 
 topography::FocusPlanesMaker focus_planes_for(EvaluateOn evaluate_on, std::shared_ptr<const vulkan::Device> traces) {
@@ -146,11 +156,15 @@ std::optional<Flat> read_flat(const Configuration& configuration, ImageSize pixe
 }
 
 StackEvaluation::StackEvaluation(const topography::TopographyOptions& options, topography::FocusPlanesMaker make_planes,
-                                 std::optional<optics::Diffraction> diffraction)
-    : evaluator_(options, make_planes), diffraction_(std::move(diffraction)) {
+                                 std::optional<optics::Diffraction> diffraction, int images)
+    : evaluator_(options, make_planes, curve_grid(images)), diffraction_(std::move(diffraction)) {
     evaluation_.options = options;
+    if (images > 0) {
+        frames_.emplace(images);
+    }
     if (diffraction_) {
-        diffracted_ = std::make_unique<StackEvaluation>(options, std::move(make_planes));
+        diffracted_ = std::make_unique<StackEvaluation>(options, std::move(make_planes), std::nullopt, images);
+        diffracted_->frames_.reset(); // the same images
     }
 }
 
@@ -160,6 +174,9 @@ void StackEvaluation::add(topography::Channels image, double z, std::optional<do
         columns_ = image.front().columns;
         rows_ = image.front().rows;
     }
+    if (frames_ && !image.empty()) {
+        frames_->add(image.size() == 1 ? image.front() : topography::grey(image), z);
+    }
     if (diffraction_) {
         diffracted_->add({diffraction_->apply(image.front())}, z, reading);
     }
@@ -167,7 +184,9 @@ void StackEvaluation::add(topography::Channels image, double z, std::optional<do
 }
 
 void StackEvaluation::reconstruct(double x0, double y0, double pitch, const std::optional<Flat>& flat) {
+    auto frames = std::async(std::launch::async, [&] { return frames_ ? frames_->finish() : report::Frames(); });
     evaluation_.topography = evaluator_.finish(x0, y0, pitch);
+    evaluation_.frames = frames.get();
     if (flat) {
         auto corrected = topography::correct_flatness(std::move(evaluation_.topography.height), flat->heights);
         evaluation_.topography.height = std::move(corrected.heights);

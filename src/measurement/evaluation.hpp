@@ -4,6 +4,7 @@
 #include "configuration/configuration.hpp"
 #include "measurement/standard.hpp"
 #include "optics/diffraction.hpp"
+#include "report/frames.hpp"
 #include "topography/compare.hpp"
 #include "topography/topography.hpp"
 
@@ -49,6 +50,7 @@ struct Evaluation {
     std::optional<topography::Deviation> filtered_deviation; // and filtered; none if the band has no limit
     topography::Band band;                                   // its form holds for the levelled one too
     std::vector<StandardDimension> dimensions;               // of a standard; none of other specimens
+    report::Frames frames;                                   // the images, made small; not of `diffracted`
     double seconds = 0;                                      // wall clock
     std::shared_ptr<Evaluation> diffracted; // the same of the images after diffraction; none without [diffraction]
 };
@@ -64,9 +66,10 @@ topography::FocusPlanesMaker focus_planes_for(EvaluateOn evaluate_on, const std:
 class StackEvaluation {
   public:
     // make_planes: where the work is done. With diffraction the images are evaluated twice, without and with it; they
-    // have its size and one channel then.
+    // have its size and one channel then. images: how many will come, of which the report's frames and focus curves are
+    // kept; 0: none are.
     StackEvaluation(const topography::TopographyOptions& options, topography::FocusPlanesMaker make_planes,
-                    std::optional<optics::Diffraction> diffraction = {});
+                    std::optional<optics::Diffraction> diffraction, int images);
 
     // As StackEvaluator::add().
     void add(topography::Channels image, double z, std::optional<double> reading = {});
@@ -83,6 +86,7 @@ class StackEvaluation {
     topography::StackEvaluator evaluator_;
     std::optional<optics::Diffraction> diffraction_;
     std::unique_ptr<StackEvaluation> diffracted_;
+    std::optional<report::FrameTally> frames_;
     int columns_ = 0;
     int rows_ = 0;
     Evaluation evaluation_;

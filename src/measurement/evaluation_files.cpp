@@ -14,6 +14,7 @@
 #include "surface/filter.hpp"
 #include "surface_files/gwy.hpp"
 #include "surface_files/height_image.hpp"
+#include "surface_files/npy.hpp"
 #include "surface_files/surface_file.hpp"
 
 #include <fmt/format.h>
@@ -92,18 +93,13 @@ std::string name_of(const std::filesystem::path& folder) {
     return (whole.has_filename() ? whole : whole.parent_path()).filename().string();
 }
 
-std::string picture_of(const std::filesystem::path& folder, const Evaluation& evaluation,
+std::string picture_of(const std::filesystem::path& folder, const Evaluation& evaluation, const LevelledMaps& maps,
                        const std::string& image_unit) {
-    const surface::Form& form = evaluation.band.form;
     report::TopographyPicture picture;
     picture.title = name_of(folder);
-    picture.measured = surface::remove_form(evaluation.topography.height, form);
-    if (evaluation.truth) {
-        auto pair = topography::levelled_pair(evaluation.topography.height, *evaluation.truth, {.form = form});
-        picture.deviation = topography::deviation_map(pair);
-        picture.measured = std::move(pair.measured);
-        picture.truth = surface::remove_form(*evaluation.truth, form); // of points that were not measured too
-    }
+    picture.measured = maps.measured;
+    picture.truth = maps.truth;
+    picture.deviation = maps.deviation;
     picture.image_unit = image_unit;
     picture.all_in_focus = topography::grey(evaluation.topography.all_in_focus);
     return report::topography_picture(picture);
@@ -135,22 +131,55 @@ std::vector<surface::GwyChannel> channels_of(const Evaluation& evaluation,
     return channels;
 }
 
-// Into this folder in the results' own, each file by a thread of its own. Returns the picture.
-std::string write_maps(ResultFolder& results, const std::filesystem::path& folder, const Evaluation& evaluation,
-                       const TopographyFiles& files) {
+// The first row has the highest y.
+std::string curves_bytes(const topography::FocusCurves& curves) {
+    const std::size_t row_values = curves.columns.size() * curves.z.size();
+    std::vector<float> values;
+    values.reserve(curves.values.size());
+    for (std::size_t row = curves.rows.size(); row-- > 0;) {
+        const auto begin = curves.values.begin() + static_cast<std::ptrdiff_t>(row * row_values);
+        values.insert(values.end(), begin, begin + static_cast<std::ptrdiff_t>(row_values));
+    }
+    return surface::npy_bytes(values, {curves.rows.size(), curves.columns.size(), curves.z.size()});
+}
+
+// Where the values of curves.npy stand: pixels of an image from its left and upper end, heights of the focal plane.
+nlohmann::ordered_json places_json(const topography::FocusCurves& curves, int image_rows) {
+    std::vector<int> rows;
+    std::transform(curves.rows.rbegin(), curves.rows.rend(), std::back_inserter(rows),
+                   [&](int row) { return image_rows - 1 - row; });
+    std::vector<double> z;
+    std::ranges::transform(curves.z, std::back_inserter(z), [](double height) { return height * um_per_mm; });
+    return {{"file", "curves.npy"}, {"rows", rows}, {"columns", curves.columns}, {"z_um", z}};
+}
+
+// What times are told of: not among the results, since no two runs take the same. A script, which alone a page that was
+// opened from a disk may load.
+void write_timings_script(const std::filesystem::path& folder) {
+    const nlohmann::json text = read_file(folder / "timings.csv");
+    write_file(folder / "timings.js", "vkfv.timings.show(" + text.dump() + ");\n");
+}
+
+// Into this folder in the results' own, each file by a thread of its own. Returns what the page shows of them; `count`
+// evaluations share it.
+EvaluationData write_maps(ResultFolder& results, const std::filesystem::path& folder, const Evaluation& evaluation,
+                          const TopographyFiles& files, int count) {
     const auto& topography = evaluation.topography;
     const images::ImageTags pitch{
         .pitch_x = topography.height.pitch_x, .pitch_y = topography.height.pitch_y, .description = {}};
     std::optional<surface::HeightMap> deviation;
-    std::string picture;
+    EvaluationData data;
+    const LevelledMaps levelled = levelled_maps(evaluation);
     JobQueue jobs(static_cast<int>(std::max(1u, std::thread::hardware_concurrency())), 100);
     const auto write = [&](const std::string& name, const auto& bytes_of) {
         jobs.add([&results, path = folder / name, bytes_of] { results.write(path, bytes_of()); });
     };
     jobs.add([&] {
-        picture = picture_of(results.path() / folder, evaluation, files.image_unit);
-        results.write(folder / "topography.svg", picture);
+        results.write(folder / "topography.svg",
+                      picture_of(results.path() / folder, evaluation, levelled, files.image_unit));
     });
+    jobs.add([&] { data = evaluation_data(folder.empty() ? "plain" : "diffracted", evaluation, levelled, count); });
+    write("curves.npy", [&] { return curves_bytes(topography.curves); });
     if (evaluation.truth) {
         write("truth.tif", [&] { return surface::height_map_bytes(*evaluation.truth); });
         deviation = topography::deviation_map(topography.height, *evaluation.truth, evaluation.band);
@@ -169,7 +198,7 @@ std::string write_maps(ResultFolder& results, const std::filesystem::path& folde
     write("mask.tif", [&] { return images::tiff_bytes(converted<std::uint16_t>(topography.state), pitch); });
     write("all_in_focus.tif", [&] { return images::tiff_bytes(topography.all_in_focus, pitch); });
     jobs.finish();
-    return picture;
+    return data;
 }
 
 } // namespace
@@ -190,20 +219,24 @@ StackSource stack_source(const Configuration& configuration, const optics::Instr
 void write_results(ResultFolder& folder, const EvaluatedStack& stack) {
     const auto& evaluation = stack.evaluation;
     auto figures = std::async(std::launch::async, [&] { return figures_of(evaluation); });
-    std::string svg = write_maps(folder, "", evaluation, stack.files);
+    auto frames =
+        std::async(std::launch::async, [&] { return frames_data(evaluation.frames, stack.files.image_unit); });
+    const int count = evaluation.diffracted ? 2 : 1;
+    auto data = write_maps(folder, "", evaluation, stack.files, count);
     StackPage page{.title = name_of(folder.path()),
-                   .plain = {.figures = figures.get(), .svg = std::move(svg)},
+                   .plain = {.figures = figures.get(), .dimensions = evaluation.dimensions, .data = std::move(data)},
                    .diffracted = {},
+                   .frames = frames.get(),
                    .results = {},
+                   .ledger = stack.source.ledger,
                    .layout = stack.source.layout,
                    .configuration = stack.source.configuration};
     auto results = json_of(page.plain.figures);
-    page.plain.dimensions = evaluation.dimensions;
     add_dimensions(results, evaluation.dimensions);
     if (evaluation.diffracted) {
         page.diffracted = {.figures = figures_of(*evaluation.diffracted),
-                           .svg = write_maps(folder, "diffracted", *evaluation.diffracted, stack.files)};
-        page.diffracted->dimensions = evaluation.diffracted->dimensions;
+                           .dimensions = evaluation.diffracted->dimensions,
+                           .data = write_maps(folder, "diffracted", *evaluation.diffracted, stack.files, count)};
         results["diffracted"] = json_of(page.diffracted->figures);
         add_dimensions(results["diffracted"], evaluation.diffracted->dimensions);
     }
@@ -228,6 +261,7 @@ void write_results(ResultFolder& folder, const EvaluatedStack& stack) {
                          {"image_noise", whole.image_noise},
                          {"noise_correlation", {whole.noise_correlation(1, 0), whole.noise_correlation(0, 1)}},
                          {"height_noise_um", median_of(evaluation.topography.height_noise) * um_per_mm}};
+    results["focus_curves"] = places_json(evaluation.topography.curves, evaluation.topography.height.rows());
     results["points"] = point_counts(evaluation.topography.state);
     results["evaluated_by"] = fmt::format("vkfv {}", VKFV_VERSION);
     results.update(stack.origin);
@@ -235,6 +269,7 @@ void write_results(ResultFolder& folder, const EvaluatedStack& stack) {
     page.results = std::move(results);
     folder.write("report.html", stack_page(page));
     scan::append_timing(folder.path(), "evaluation", evaluation.seconds);
+    write_timings_script(folder.path());
     folder.write_checksums();
 }
 

@@ -5,6 +5,7 @@
 #include "core/result_folder.hpp"
 #include "measurement/evaluation.hpp"
 #include "optics/instrument.hpp"
+#include "scan/ledger_table.hpp"
 #include "surface_files/provenance.hpp"
 
 #include <nlohmann/json.hpp>
@@ -33,6 +34,7 @@ TopographyFiles topography_files(const Configuration& configuration);
 struct StackSource {
     std::string layout;        // the instrument as SVG; empty: not known
     std::string configuration; // TOML; empty: none
+    scan::MeanLedger ledger{}; // of the images' light; empty: not known
 };
 
 // Of a stack of vkfv's own.
@@ -51,8 +53,9 @@ struct EvaluatedStack {
 
 // Writes into the folder, checksums last, the first row of each with the highest y: the topography's files, quality.tif
 // (contrast), fit_residual.tif, mask.tif (uint16: topography::PointState), all_in_focus.tif; with a truth also
-// truth.tif and deviation.tif (float32 um); topography.svg, a picture of them, levelled; results.json; and report.html,
-// all of it on a page. What diffraction changes stands in a folder `diffracted` in it.
+// truth.tif and deviation.tif (float32 um); topography.svg, a picture of them, levelled; results.json; curves.npy
+// (focus curves on a grid, float32, rows x columns x heights); and report.html, all of it on a page, which finds the
+// times in timings.js. What diffraction changes stands in a folder `diffracted` in it.
 void write_results(ResultFolder& folder, const EvaluatedStack& stack);
 
 // What the results in a stack's folder say of the trace: device, digest, seed and counts; none if there are no results.

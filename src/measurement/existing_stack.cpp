@@ -147,12 +147,15 @@ EvaluatedStack evaluate_own_stack(const OwnStack& stack) {
     const auto flat = read_flat(configuration, pixels, instrument.first_order.pixel_pitch);
     const auto order = order_of_images(positions.size(), stack.shuffle);
     StackEvaluation evaluation(evaluation_options(configuration, instrument), planes_for(configuration),
-                               diffraction_of_evaluation(configuration, instrument));
+                               diffraction_of_evaluation(configuration, instrument),
+                               static_cast<int>(positions.size()));
     for (std::size_t place = 0; place < positions.size(); ++place) {
         const int image = order[place];
         evaluation.add({scan::read_frame(stack.folder, image, positions[static_cast<std::size_t>(image)])},
                        positions[place], reading_of(configuration, positions[place], static_cast<int>(place)));
     }
+    auto source = stack_source(configuration, instrument);
+    source.ledger = scan::mean_ledger(stack.folder);
     auto origin = run_of(stack.folder);
     std::error_code none; // a folder to be made is another
     if (!std::filesystem::equivalent(stack.destination, stack.folder, none)) {
@@ -164,7 +167,7 @@ EvaluatedStack evaluate_own_stack(const OwnStack& stack) {
     return {.evaluation = evaluation.finish(truth_on_pixels(instrument, configuration, specimen), configuration.band,
                                             flat, specimen::feature_of(configuration.specimen->shape)),
             .origin = std::move(origin),
-            .source = stack_source(configuration, instrument),
+            .source = std::move(source),
             .files = topography_files(configuration)};
 }
 
@@ -180,7 +183,7 @@ EvaluatedStack evaluate_images(const scan::ImageSeries& series, const ForeignSta
     if (!options.smoothing_steps) {
         options.smoothing_steps = smoothing_of(images, order, options);
     }
-    StackEvaluation evaluation(options, planes_for(configuration));
+    StackEvaluation evaluation(options, planes_for(configuration), std::nullopt, series.size());
     spdlog::info("{} images, {} to {}", series.size(), series.name(0), series.name(series.size() - 1));
     std::optional<Flat> flat;
     bool negative = false;

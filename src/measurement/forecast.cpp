@@ -70,7 +70,7 @@ class Prober {
             // What an evaluation keeps does not grow with the number of images.
             StackEvaluation evaluation(evaluation_options(configuration_, instrument_),
                                        focus_planes_for(configuration_.evaluate_on, tracer->device()),
-                                       diffraction_of_evaluation(configuration_, instrument_));
+                                       diffraction_of_evaluation(configuration_, instrument_), 0);
             const auto positions = configuration_.scan->positions();
             for (std::size_t k = 0; k < std::min<std::size_t>(3, positions.size()); ++k) {
                 evaluation.add({scan::as_stored(probe.image.flux)}, positions[k]);

@@ -2,10 +2,12 @@
 
 #include "core/units.hpp"
 #include "report/page.hpp"
+#include "report/reader_text.hpp"
 
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 
 namespace vkfv::measurement {
 
@@ -13,157 +15,209 @@ namespace {
 
 using Rows = std::vector<std::vector<std::string>>;
 
-std::string text_of(const nlohmann::ordered_json& value) {
-    return value.is_string() ? value.get<std::string>() : value.dump();
+// "form plane, L-filter 80 µm (Gaussian)"
+std::string treatment_of(const surface::Band& band) {
+    std::string text = report::treatment_text(band);
+    for (auto at = text.find(" um"); at != std::string::npos; at = text.find(" um", at)) {
+        text.replace(at, 3, " µm");
+    }
+    return text;
 }
 
-// "rays_per_image" as "rays per image".
-std::string words_of(std::string key) {
-    std::ranges::replace(key, '_', ' ');
-    return key;
+std::string text_of(const nlohmann::ordered_json& value) {
+    if (value.is_number_float()) {
+        return report::reader_number(value.get<double>());
+    }
+    if (value.is_number_integer()) {
+        return report::reader_count(value.get<std::int64_t>());
+    }
+    if (value.is_array()) {
+        std::string text;
+        for (const auto& item : value) {
+            text += (text.empty() ? "" : ", ") + text_of(item);
+        }
+        return text;
+    }
+    return value.is_string() ? value.get<std::string>()
+           : value.is_null() ? report::reader_number(surface::undefined)
+                             : value.dump();
 }
 
 void add_deviations(Rows& rows, const std::string& prefix, const std::vector<Figures>& all) {
+    const auto length = [](double mm) { return report::reader_number(mm * um_per_mm); };
     for (const auto& figures : all) {
         if (const auto& deviation = figures.deviation) {
-            rows.push_back(
-                {prefix + report::treatment_text(figures.band), report::number_text(100 * deviation->measured_share),
-                 report::number_text(deviation->sq_measured * um_per_mm),
-                 report::number_text(deviation->sq_true * um_per_mm),
-                 report::number_text(deviation->sq_measured / deviation->sq_true),
-                 report::number_text(deviation->rms * um_per_mm), report::number_text(deviation->correlation)});
+            rows.push_back({prefix + treatment_of(figures.band), report::reader_number(100 * deviation->measured_share),
+                            length(deviation->sq_true), length(deviation->sq_measured),
+                            report::reader_number(deviation->sq_measured / deviation->sq_true), length(deviation->rms),
+                            report::reader_number(deviation->correlation)});
         }
     }
 }
 
-void add_dimensions(report::Page& page, const char* heading, const std::vector<StandardDimension>& dimensions) {
-    if (dimensions.empty()) {
-        return;
-    }
-    page.heading(heading);
-    Rows rows{{"", "rule", "unit", "nominal", "true", "measured", "deviation", "error", "standard deviation",
-               "standard error"}};
+void add_dimensions(report::Page& page, const char* caption, const std::vector<StandardDimension>& dimensions) {
+    Rows rows{{"dimension", "rule", "unit", "nominal", "true", "measured", "measured − nominal", "measured − true",
+               "standard deviation"}};
     for (const auto& one : dimensions) {
         const auto row = one.in_unit();
-        std::vector<std::string> cells{row.name, row.rule, row.unit};
-        for (const double value : {row.nominal, row.truth, row.measured, row.deviation, row.error,
-                                   row.standard_deviation, row.standard_error}) {
-            cells.push_back(report::number_text(value));
-        }
-        rows.push_back(cells);
+        rows.push_back({row.name, row.rule, report::reader_unit(row.unit), report::reader_number(row.nominal),
+                        report::reader_number(row.truth), report::reader_number(row.measured, row.standard_error),
+                        report::reader_number(row.deviation), report::reader_number(row.error),
+                        report::reader_number(row.standard_deviation)});
     }
-    page.table(rows);
+    page.table(caption, rows);
 }
 
-// Of all treatments side by side; those that have none (nothing was measured) are left out.
-void add_parameters(report::Page& page, const std::string& prefix, const std::vector<Figures>& all) {
-    Rows rows;
-    std::string treatments;
+// A table a treatment; those that have none (nothing was measured) are left out.
+bool add_parameters(report::Page& page, const std::string& prefix, const std::vector<Figures>& all) {
+    bool any = false;
     for (const auto& figures : all) {
         if (figures.measured.empty()) {
             continue;
         }
-        if (rows.empty()) {
-            rows.push_back({"parameter", "unit"});
-            for (const auto& row : figures.measured) {
-                rows.push_back({row.name, words_of(row.unit)});
-            }
-        }
-        treatments += (treatments.empty() ? prefix : "; then ") + report::treatment_text(figures.band);
+        any = true;
         const bool known = !figures.truth.empty();
-        rows.front().emplace_back("measured");
-        if (known) {
-            rows.front().insert(rows.front().end(), {"true", "ratio"});
-        }
+        Rows rows{known ? std::vector<std::string>{"parameter", "unit", "nominal", "measured", "deviation"}
+                        : std::vector<std::string>{"parameter", "unit", "measured"}};
         for (std::size_t k = 0; k < figures.measured.size(); ++k) {
             const auto& row = figures.measured[k];
-            auto& cells = rows[k + 1];
-            cells.push_back(report::number_text(row.value));
-            if (known) {
-                cells.push_back(report::number_text(figures.truth[k].value));
-                // A ratio of directions means nothing.
-                cells.push_back(row.unit == "deg" ? "-" : report::number_text(row.value / figures.truth[k].value));
-            }
+            const std::string unit = report::reader_unit(row.unit), measured = report::reader_number(row.value);
+            rows.push_back(known ? std::vector<std::string>{row.name, unit,
+                                                            report::reader_number(figures.truth[k].value), measured,
+                                                            report::reader_number(row.value - figures.truth[k].value)}
+                                 : std::vector<std::string>{row.name, unit, measured});
         }
+        page.table(prefix + treatment_of(figures.band), rows);
     }
-    page.paragraph(treatments.empty() ? "Nothing was measured." : treatments + ".");
-    page.table(rows);
+    return any;
 }
 
 // The members that are there, in this order.
-void add_members(report::Page& page, const nlohmann::ordered_json& object, const std::vector<const char*>& keys) {
-    Rows rows{{"", ""}};
-    for (const char* key : keys) {
+void add_members(report::Page& page, const char* caption, const nlohmann::ordered_json& object,
+                 const std::vector<std::string>& keys) {
+    Rows rows{{"", "value"}};
+    for (const std::string& key : keys) {
         if (const auto found = object.find(key); found != object.end()) {
-            rows.push_back({words_of(key), text_of(*found)});
+            // A digest and a seed are names, not quantities.
+            const bool name = key.ends_with("seed") || key.ends_with("digest");
+            rows.push_back({report::reader_label(key), name && !found->is_string() ? found->dump() : text_of(*found)});
         }
     }
-    page.table(rows);
+    page.table(caption, rows);
 }
 
-void add_members(report::Page& page, const nlohmann::ordered_json& object) {
-    std::vector<const char*> keys;
+void add_members(report::Page& page, const char* caption, const nlohmann::ordered_json& object) {
+    std::vector<std::string> keys;
     for (const auto& [key, value] : object.items()) {
-        keys.push_back(key.c_str());
+        keys.push_back(key);
     }
-    add_members(page, object, keys);
+    add_members(page, caption, object, keys);
+}
+
+nlohmann::ordered_json ledger_json(const scan::MeanLedger& ledger) {
+    auto shares = nlohmann::ordered_json::array();
+    for (const auto& share : ledger.shares) {
+        shares.push_back({share.name, share.power});
+    }
+    return {{"emitted", ledger.emitted}, {"shares", shares}};
+}
+
+void add_light(report::Page& page, const scan::MeanLedger& ledger) {
+    page.section("light", "Light from the source to the detector");
+    page.part("light.html");
+    Rows rows{{"where it went", "power / W", "share of the emitted / %"}};
+    for (const auto& [name, power] : ledger.shares) {
+        if (power != 0 || name == "detected") {
+            const bool check = name == "residual";
+            rows.push_back({check ? "residual: emitted less all of these" : name, report::reader_number(power),
+                            report::reader_number(100 * power / ledger.emitted)});
+        }
+    }
+    page.table("Mean of all images; what is not listed took none", rows);
+}
+
+void add_run(report::Page& page, const StackPage& content) {
+    const auto& results = content.results;
+    page.section("run", "Run and settings");
+    add_members(page, "Images", results,
+                {"stack", "first_image", "last_image", "z_start_um", "z_step_um", "pitch_um", "shuffle_seed", "images",
+                 "rays_per_image", "seed", "device", "stack_digest", "evaluated_by"});
+    add_members(page, "Points by what became of them", results.at("points"));
+    add_members(page, "Evaluation", results.at("topography"));
+    constexpr std::array<std::pair<const char*, const char*>, 4> tables = {
+        {{"flatness", "Field curvature, measured on a flat, that was taken off"},
+         {"waves", "How far the images are from what waves make (contrast, within two depths of field)"},
+         {"camera", "How the camera took them; noise is the root mean square over all pixels and images, of the "
+                    "camera temporal, of the rays the Monte Carlo standard error of the light"},
+         {"stage", "Errors of the stage"}}};
+    for (const auto& [key, caption] : tables) {
+        if (const auto found = results.find(key); found != results.end()) {
+            add_members(page, caption, *found);
+        }
+    }
+    if (!content.configuration.empty()) {
+        page.folded("Configuration (stack.toml)", content.configuration);
+    }
 }
 
 } // namespace
 
 std::string stack_page(const StackPage& content) {
     report::Page page;
-    page.picture(content.plain.svg, "Measured heights, truth, deviation and a profile");
-    const auto& points = content.results.at("points");
-    if (content.plain.figures.front().deviation) {
-        page.heading("Deviation from the truth");
-        Rows rows{{"", "measured / %", "Sq / um", "true Sq / um", "ratio", "RMS deviation / um", "correlation"}};
-        add_deviations(rows, "", content.plain.figures);
+    const auto& plain = content.plain;
+    page.section("results", "Results");
+    if (plain.figures.front().deviation) {
+        Rows rows{{"treatment of both surfaces", "measured / %", "true Sq / µm", "measured Sq / µm", "ratio",
+                   "RMS deviation / µm", "correlation"}};
+        add_deviations(rows, "", plain.figures);
         if (content.diffracted) {
             add_deviations(rows, "with diffraction, ", content.diffracted->figures);
         }
-        page.table(rows);
+        page.table("Measured heights against true ones", rows);
+    } else {
+        page.paragraph(fmt::format("Measured: {} % of the points.",
+                                   report::reader_number(100 * plain.figures.front().measured_share)));
     }
-    add_dimensions(page, "Dimensions", content.plain.dimensions);
-    if (content.diffracted) {
+    if (!plain.dimensions.empty()) {
+        add_dimensions(page, "Dimensions of the standard", plain.dimensions);
+    }
+    if (content.diffracted && !content.diffracted->dimensions.empty()) {
         add_dimensions(page, "Dimensions with diffraction", content.diffracted->dimensions);
     }
-    page.heading("Points");
-    add_members(page, points);
-    page.heading("ISO 25178-2");
-    add_parameters(page, "", content.plain.figures);
+    page.section("heights", "Heights");
+    page.part("maps.html");
+    page.section("profile", "Profile");
+    page.part("profile.html");
+    page.section("focus", "Images and focus curve");
+    page.part("focus.html");
+    page.section("surface", "Surface");
+    page.part("surface.html");
+    page.section("distributions", "Distribution of heights");
+    page.part("distributions.html");
+    page.section("parameters", "ISO 25178-2 parameters");
+    page.paragraph("Nominal values are those of the true surface at the same points, treated alike.");
+    const bool measured = add_parameters(page, "", plain.figures);
+    if (!measured) {
+        page.paragraph("Nothing was measured.");
+    }
     if (content.diffracted) {
         add_parameters(page, "With diffraction, ", content.diffracted->figures);
-        page.heading("With diffraction");
-        page.picture(content.diffracted->svg, "The same after diffraction");
     }
-    page.heading("Evaluation");
-    add_members(page, content.results.at("topography"));
-    if (const auto flatness = content.results.find("flatness"); flatness != content.results.end()) {
-        page.paragraph("Field curvature, measured on a flat, was taken off:");
-        add_members(page, *flatness);
-    }
-    page.heading("Images");
-    add_members(page, content.results,
-                {"stack", "first_image", "last_image", "z_start_um", "z_step_um", "pitch_um", "shuffle_seed", "images",
-                 "rays_per_image", "seed", "device", "stack_digest", "evaluated_by"});
-    if (const auto waves = content.results.find("waves"); waves != content.results.end()) {
-        page.paragraph("How far they are from what waves make (contrast, within two depths of field):");
-        add_members(page, *waves);
-    }
-    if (const auto camera = content.results.find("camera"); camera != content.results.end()) {
-        page.paragraph("How the camera took them; noise is the root mean square over all pixels and images, of the "
-                       "camera temporal, of the rays the Monte Carlo standard error of the light:");
-        add_members(page, *camera);
+    if (!content.ledger.shares.empty()) {
+        add_light(page, content.ledger);
     }
     if (!content.layout.empty()) {
-        page.heading("Instrument");
+        page.section("instrument", "Instrument");
         page.picture(content.layout, "The instrument to scale, with rays");
     }
-    if (!content.configuration.empty()) {
-        page.heading("Configuration");
-        page.folded("stack.toml", content.configuration);
+    page.section("timings", "Timings");
+    page.part("timings.html");
+    add_run(page, content);
+    std::vector<EvaluationData> evaluations{plain.data};
+    if (content.diffracted) {
+        evaluations.push_back(content.diffracted->data);
     }
+    add_data(page, content.frames, evaluations, ledger_json(content.ledger));
     return page.document(content.title);
 }
 

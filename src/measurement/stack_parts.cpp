@@ -49,7 +49,8 @@ GrowingEvaluation::GrowingEvaluation(const StackScene& scene, topography::FocusP
                                      const optics::PupilFilter* filter)
     : scene_(scene), flat_(read_flat(scene.configuration, scene.pixels(), scene.instrument.first_order.pixel_pitch)),
       evaluation_(evaluation_options(scene.configuration, scene.instrument), std::move(planes),
-                  diffraction_of_evaluation(scene.configuration, scene.instrument)) {
+                  diffraction_of_evaluation(scene.configuration, scene.instrument),
+                  static_cast<int>(scene.positions.size())) {
     truth_ = std::async(std::launch::async,
                         [&scene] { return truth_on_pixels(scene.instrument, scene.configuration, scene.specimen); });
     source_ = std::async(std::launch::async, [&scene] { return stack_source(scene.configuration, scene.instrument); });
@@ -81,6 +82,7 @@ Evaluation GrowingEvaluation::write(scan::ImageStore& store, const trace::Tracer
                                     {"rays_per_image", trace::launched_rays(configuration.trace, scene_.pixels())}},
                          .source = source_.get(),
                          .files = topography_files(configuration)};
+    stack.source.ledger = scan::mean_ledger(store.folder());
     if (wave_limits_) {
         const WaveLimits limits = wave_limits_->get();
         for (const auto& warning : warnings_of(limits)) {

@@ -26,4 +26,24 @@ std::string escaped(std::string_view text) {
     return result;
 }
 
+std::string json_text(const nlohmann::ordered_json& json) {
+    std::string text;
+    for (const char c : json.dump()) {
+        switch (c) {
+        case '<':
+            text += "\\u003c";
+            break;
+        case '>':
+            text += "\\u003e";
+            break;
+        case '&':
+            text += "\\u0026";
+            break;
+        default:
+            text += c;
+        }
+    }
+    return text;
+}
+
 } // namespace vkfv::report

@@ -18,6 +18,16 @@ std::string png_bytes(const Grid<Rgb>& pixels) {
     return images::png_bytes(pixels.columns, pixels.rows, values);
 }
 
+std::string grey_png_bytes(const Grid<std::uint8_t>& pixels) {
+    std::vector<std::uint8_t> values;
+    values.reserve(pixels.values.size());
+    for (int row = pixels.rows - 1; row >= 0; --row) {
+        const auto begin = pixels.values.begin() + static_cast<std::ptrdiff_t>(pixels.index(0, row));
+        values.insert(values.end(), begin, begin + pixels.columns);
+    }
+    return images::grey_png_bytes(pixels.columns, pixels.rows, values);
+}
+
 std::string base64(const std::string& bytes) {
     constexpr const char* digits = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
     std::string text;

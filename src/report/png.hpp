@@ -4,6 +4,7 @@
 #include "core/grid.hpp"
 #include "report/colours.hpp"
 
+#include <cstdint>
 #include <string>
 
 namespace vkfv::report {
@@ -11,6 +12,9 @@ namespace vkfv::report {
 // Row 0 of the grid, the lowest y, becomes the PNG's last. The same pixels give the same bytes. RunError where
 // libpng cannot.
 std::string png_bytes(const Grid<Rgb>& pixels);
+
+// The same of grey values in 0 ... 255.
+std::string grey_png_bytes(const Grid<std::uint8_t>& pixels);
 
 std::string base64(const std::string& bytes);
 

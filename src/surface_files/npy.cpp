@@ -134,22 +134,43 @@ SurfaceFile parse_npy(std::string_view bytes, const std::filesystem::path& path,
     return result;
 }
 
-std::string npy_bytes(const HeightMap& map) {
-    std::string header =
-        fmt::format("{{'descr': '<f8', 'fortran_order': False, 'shape': ({}, {}), }}", map.rows(), map.columns());
+namespace {
+
+// Up to the first value. type: as NumPy names it; shape: numbers with commas.
+std::string header_bytes(const char* type, const std::string& shape) {
+    std::string header = fmt::format("{{'descr': '{}', 'fortran_order': False, 'shape': ({}), }}", type, shape);
     const std::size_t fixed = length_at + sizeof(std::uint16_t);
     header.resize((fixed + header.size()) / npy_alignment * npy_alignment + npy_alignment - fixed, ' ');
     header.back() = '\n';
     std::string bytes(npy_magic);
     bytes += std::string("\x01\0", 2);
     append(bytes, static_cast<std::uint16_t>(header.size()));
-    bytes += header;
+    return bytes + header;
+}
+
+} // namespace
+
+std::string npy_bytes(const HeightMap& map) {
+    std::string bytes = header_bytes("<f8", fmt::format("{}, {}", map.rows(), map.columns()));
     bytes.reserve(bytes.size() + map.height.values.size() * sizeof(double));
     for (int row = map.rows() - 1; row >= 0; --row)
         for (int column = 0; column < map.columns(); ++column) {
             const double mm = map.height(column, row);
             append(bytes, std::isfinite(mm) ? mm / mm_per_um : std::numeric_limits<double>::quiet_NaN());
         }
+    return bytes;
+}
+
+std::string npy_bytes(std::span<const float> values, const std::vector<std::size_t>& shape) {
+    std::string text;
+    for (const std::size_t length : shape) {
+        text += fmt::format("{}, ", length);
+    }
+    std::string bytes = header_bytes("<f4", text);
+    bytes.reserve(bytes.size() + values.size_bytes());
+    for (const float value : values) {
+        append(bytes, value);
+    }
     return bytes;
 }
 

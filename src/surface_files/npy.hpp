@@ -3,8 +3,11 @@
 
 #include "surface_files/surface_file.hpp"
 
+#include <cstddef>
+#include <span>
 #include <string>
 #include <string_view>
+#include <vector>
 
 namespace vkfv::surface {
 
@@ -17,5 +20,8 @@ SurfaceFile parse_npy(std::string_view bytes, const std::filesystem::path& file,
 
 // Float64 um, version 1.0; pitch, position and provenance have no place in it.
 std::string npy_bytes(const HeightMap& map);
+
+// Float32 in C's order, version 1.0. shape: of its product there must be as many values.
+std::string npy_bytes(std::span<const float> values, const std::vector<std::size_t>& shape);
 
 } // namespace vkfv::surface

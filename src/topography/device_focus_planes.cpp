@@ -3,6 +3,7 @@
 #include "spirv/focus_brightness.h"
 #include "spirv/focus_columns.h"
 #include "spirv/focus_follow.h"
+#include "spirv/focus_gather.h"
 #include "spirv/focus_mean.h"
 #include "spirv/focus_response.h"
 #include "spirv/focus_rows.h"
@@ -11,6 +12,7 @@
 #include "vulkan/kernel.hpp"
 
 #include <algorithm>
+#include <deque>
 #include <memory>
 #include <utility>
 
@@ -19,6 +21,7 @@ namespace vkfv::topography {
 namespace {
 
 constexpr std::uint32_t workgroup = 128;
+constexpr std::size_t images_a_gathered_buffer = 64;
 
 using namespace focus::f32; // bindings and push constants: shaders/focus/interface.glsl
 
@@ -73,6 +76,8 @@ class DeviceFocusPlanes final : public FocusPlanes {
                   sizeof(SingleImage)),
           follow_(device_, "focus_follow", ::focus_follow,
                   storage_buffers({BINDING_CURVES, BINDING_RECORDS, BINDING_PLACES}), sizeof(FollowedImage)),
+          gather_(device_, "focus_gather", ::focus_gather,
+                  storage_buffers({BINDING_CURVES, BINDING_PIXELS, BINDING_GATHERED}), sizeof(GatheredImage)),
           select_(device_, "focus_select", ::focus_select,
                   storage_buffers({BINDING_IMAGE, BINDING_PLACES, BINDING_ALL_IN_FOCUS}), sizeof(SelectedImage)),
           mean_image_(device_, channels_ * pixels_ * sizeof(float)), responses_(device_, pixels_ * sizeof(WindowSums)),
@@ -81,7 +86,10 @@ class DeviceFocusPlanes final : public FocusPlanes {
           averaged_(device_, static_cast<std::size_t>(averaged_curves_) * pixels_ * sizeof(float)),
           alone_(device_, pixels_ * sizeof(float)), records_(device_, pixels_ * sizeof(CurveRecord)),
           singles_(device_, pixels_ * sizeof(SingleRecord)), places_(device_, pixels_ * sizeof(float)),
-          brightness_(device_, pixels_ * sizeof(float)), all_in_focus_(device_, channels_ * pixels_ * sizeof(float)) {
+          brightness_(device_, pixels_ * sizeof(float)), all_in_focus_(device_, channels_ * pixels_ * sizeof(float)),
+          gathered_count_(stack.gathered_pixels.size()),
+          gathered_pixels_(device_, std::max<std::size_t>(1, gathered_count_) * sizeof(std::uint32_t)) {
+        gathered_pixels_.write_values(std::span<const std::uint32_t>(stack.gathered_pixels));
         const std::vector<float> weights(stack.window.weights().begin(), stack.window.weights().end());
         weights_.write_values(std::span<const float>(weights));
         brightness_.fill_zero();
@@ -137,6 +145,21 @@ class DeviceFocusPlanes final : public FocusPlanes {
             static_cast<std::size_t>(image % averaged_curves_) * pixels_, pixels_);
     }
 
+    void gather(int image) override {
+        if (gathered_images_ % images_a_gathered_buffer == 0) {
+            gathered_.emplace_back(device_, images_a_gathered_buffer * gathered_count_ * sizeof(float),
+                                   vulkan::Buffer::Memory::host);
+        }
+        dispatch(
+            gather_,
+            {{BINDING_CURVES, &averaged_}, {BINDING_PIXELS, &gathered_pixels_}, {BINDING_GATHERED, &gathered_.back()}},
+            GatheredImage{static_cast<std::uint32_t>(gathered_count_),
+                          static_cast<std::uint32_t>(image % averaged_curves_) * static_cast<std::uint32_t>(pixels_),
+                          static_cast<std::uint32_t>((gathered_images_ % images_a_gathered_buffer) * gathered_count_)},
+            gathered_count_);
+        ++gathered_images_;
+    }
+
     void follow(int image, int images) override {
         dispatch(follow_, {{BINDING_CURVES, &averaged_}, {BINDING_RECORDS, &records_}, {BINDING_PLACES, &places_}},
                  FollowedImage{plan_, image, images, averaged_curves_}, pixels_);
@@ -169,6 +192,12 @@ class DeviceFocusPlanes final : public FocusPlanes {
                                single_in_double);
         for (std::size_t channel = 0; channel < channels_; ++channel) {
             result.all_in_focus.push_back(grid(all_in_focus_.read_values<float>(pixels_, channel * pixels_)));
+        }
+        for (std::size_t left = gathered_images_; const vulkan::Buffer& buffer : gathered_) {
+            const std::size_t images = std::min(left, images_a_gathered_buffer);
+            const auto values = buffer.read_values<float>(images * gathered_count_);
+            result.gathered.insert(result.gathered.end(), values.begin(), values.end());
+            left -= images;
         }
         return result;
     }
@@ -236,9 +265,13 @@ class DeviceFocusPlanes final : public FocusPlanes {
     std::size_t channels_;
     std::shared_ptr<const vulkan::Device> shared_;
     const vulkan::Device& device_;
-    vulkan::Kernel mean_, add_brightness_, response_, rows_, columns_, single_, follow_, select_;
+    vulkan::Kernel mean_, add_brightness_, response_, rows_, columns_, single_, follow_, gather_, select_;
     vulkan::Buffer mean_image_, responses_, row_sums_, weights_, averaged_, alone_, records_, singles_, places_,
         brightness_, all_in_focus_;
+    std::size_t gathered_count_; // pixels
+    vulkan::Buffer gathered_pixels_;
+    std::deque<vulkan::Buffer> gathered_; // in host memory
+    std::size_t gathered_images_ = 0;
     std::vector<vulkan::Buffer> images_;   // the last few in turn
     std::vector<vulkan::Buffer> curves_;   // likewise
     bool measured_alone_ = false;          // what was measured last is an image itself

@@ -17,7 +17,8 @@ struct StackSummary {
     Grid<float> brightness; // sum over the images of the channels' mean
     Grid<focus::f64::CurveRecord> curves;
     Grid<focus::f64::SingleRecord> singles;
-    Channels all_in_focus; // each pixel from the images around its maximum
+    Channels all_in_focus;       // each pixel from the images around its maximum
+    std::vector<float> gathered; // averaged curves' values at the plan's pixels, one image after the other
 };
 
 struct FocusPlanesPlan {
@@ -27,6 +28,7 @@ struct FocusPlanesPlan {
     int images_kept = 0;
     int curves_kept = 0;
     int averaged_curves_kept = 0;
+    std::vector<std::uint32_t> gathered_pixels{}; // see gather()
 };
 
 class FocusPlanes {
@@ -40,6 +42,8 @@ class FocusPlanes {
     virtual void measure_alone(int image) = 0;
     // The weighted mean of curves measured: the averaged curves' values at `image`.
     virtual void average(int image, std::span<const Share> shares) = 0;
+    // Keeps the averaged curves' values at `image`, which was averaged last, of the plan's pixels.
+    virtual void gather(int image) = 0;
     // follow_curve() of every pixel; `images` averaged curves are there.
     virtual void follow(int image, int images) = 0;
     virtual StackSummary summary() = 0;

@@ -31,8 +31,8 @@ struct CurveScene {
 class HostFocusPlanes final : public FocusPlanes {
   public:
     explicit HostFocusPlanes(const FocusPlanesPlan& plan)
-        : plan_(plan.plan), window_(plan.window), images_(plan.images_kept), curves_(plan.curves_kept),
-          averaged_(plan.averaged_curves_kept) {
+        : plan_(plan.plan), window_(plan.window), gathered_pixels_(plan.gathered_pixels), images_(plan.images_kept),
+          curves_(plan.curves_kept), averaged_(plan.averaged_curves_kept) {
         summary_.brightness = Grid<float>(plan_.columns, plan_.rows);
         summary_.curves = Grid<f64::CurveRecord>(plan_.columns, plan_.rows, f64::empty_curve());
         summary_.singles = Grid<f64::SingleRecord>(plan_.columns, plan_.rows);
@@ -69,6 +69,11 @@ class HostFocusPlanes final : public FocusPlanes {
 
     void average(int image, std::span<const Share> shares) override {
         averaged_[image] = weighted_mean(shares, [&](int k) -> const Grid<float>& { return curves_[k]; });
+    }
+
+    void gather(int image) override {
+        for (const std::uint32_t pixel : gathered_pixels_)
+            summary_.gathered.push_back(averaged_[image].values[pixel]);
     }
 
     void follow(int image, int images) override {
@@ -123,6 +128,7 @@ class HostFocusPlanes final : public FocusPlanes {
 
     f64::FocusPlan plan_;
     FocusWindow window_;
+    std::vector<std::uint32_t> gathered_pixels_;
     Ring<Channels> images_;
     Ring<Grid<float>> curves_;
     Ring<Grid<float>> averaged_;

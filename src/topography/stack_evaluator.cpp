@@ -136,9 +136,10 @@ std::vector<double> averaged(const std::vector<double>& readings, const std::vec
 
 } // namespace
 
-StackEvaluator::StackEvaluator(const TopographyOptions& options, FocusPlanesMaker make_planes)
+StackEvaluator::StackEvaluator(const TopographyOptions& options, FocusPlanesMaker make_planes, CurveGrid curve_grid)
     : options_(checked(options)), measure_(options.focus_measure), window_(options.window_px, options.window_shape),
-      axial_weights_(axial_weights(options.smoothing_steps.value_or(0))), make_planes_(std::move(make_planes)) {}
+      axial_weights_(axial_weights(options.smoothing_steps.value_or(0))), make_planes_(std::move(make_planes)),
+      curve_grid_(curve_grid) {}
 
 void StackEvaluator::check(const Channels& image, double z) const {
     const std::string which = fmt::format("image {}", z_.size());
@@ -186,12 +187,18 @@ void StackEvaluator::begin(const Channels& first) {
     probes_.emplace(columns_, rows_, measure_, window_);
     if (const int wide = wide_window(options_.window_px, columns_, rows_); wide > 0 && options_.most_rival < 1)
         wide_.emplace(columns_, rows_, measure_, FocusWindow(wide, options_.window_shape), wide_places_a_side);
+    std::vector<std::uint32_t> gathered;
+    for (const int row : curve_grid_.rows_of(rows_))
+        for (const int column : curve_grid_.columns_of(columns_))
+            gathered.push_back(static_cast<std::uint32_t>(row) * static_cast<std::uint32_t>(columns_) +
+                               static_cast<std::uint32_t>(column));
     // An image is judged once the curve's average has passed it by the range: its own neighbours are asked for then.
     planes_ = make_planes_({.plan = plan,
                             .window = window_,
                             .images_kept = 2 * radius + 2 * plan.peak_range + 1,
                             .curves_kept = 2 * radius + 1,
-                            .averaged_curves_kept = 2 * plan.peak_range + 1});
+                            .averaged_curves_kept = 2 * plan.peak_range + 1,
+                            .gathered_pixels = std::move(gathered)});
 }
 
 void StackEvaluator::add(Channels image, double z, std::optional<double> reading) {
@@ -220,6 +227,8 @@ void StackEvaluator::advance(bool all_taken) {
     const auto average = [&](bool all_measured) {
         while (averaged_ < (all_measured ? measured_ : measured_ - radius)) {
             planes_->average(averaged_, axial_shares(axial_weights_, averaged_, measured_));
+            if (curve_grid_.columns > 0 && averaged_ % curve_grid_.every == 0)
+                planes_->gather(averaged_);
             ++averaged_;
             while (followed_ < averaged_ - options_.peak_range_steps) {
                 planes_->follow(followed_, averaged_);
@@ -238,6 +247,37 @@ void StackEvaluator::advance(bool all_taken) {
     average(true);
     for (; followed_ < averaged_; ++followed_)
         planes_->follow(followed_, averaged_);
+}
+
+FocusCurves StackEvaluator::curves_of(StackSummary& stack, const std::function<double(double)>& height_at) const {
+    FocusCurves result{.columns = curve_grid_.columns_of(columns_), .rows = curve_grid_.rows_of(rows_)};
+    const std::size_t points = result.columns.size() * result.rows.size();
+    if (points == 0)
+        return result;
+    const int images = static_cast<int>(z_.size());
+    for (int image = 0; image < images; image += curve_grid_.every)
+        result.z.push_back(height_at(image));
+    const std::size_t heights = result.z.size();
+    result.values.resize(points * heights);
+    result.peaks.resize(points);
+    result.fits.resize(points);
+    parallel_bands(static_cast<int>(result.rows.size()), 1, [&](int first, int end) {
+        for (auto row = static_cast<std::size_t>(first); row < static_cast<std::size_t>(end); ++row)
+            for (std::size_t column = 0; column < result.columns.size(); ++column) {
+                const std::size_t point = result.index(column, row);
+                std::vector<double> curve(heights);
+                for (std::size_t k = 0; k < heights; ++k) {
+                    const float value = stack.gathered[k * points + point];
+                    curve[k] = result.values[point * heights + k] = value;
+                }
+                const auto& record = stack.curves(result.columns[column], result.rows[row]);
+                result.peaks[point] =
+                    record.found != 0 ? height_at(record.at + record.offset) : std::numeric_limits<double>::quiet_NaN();
+                if (record.found != 0 && curve_grid_.every == 1)
+                    result.fits[point] = fit_of(options_.peak, curve, record.at, options_.peak_range_steps);
+            }
+    });
+    return result;
 }
 
 // What a curve must have to be no matter of chance.
@@ -322,6 +362,7 @@ Topography StackEvaluator::finish(double x0, double y0, double pitch) {
         return here + (at - before) * (read[static_cast<std::size_t>(before + 1)] - here);
     };
     Topography result;
+    result.curves = curves_of(stack, height_at);
     result.height = {.height = Grid<double>(columns_, rows_, std::numeric_limits<double>::quiet_NaN()),
                      .x0 = x0,
                      .y0 = y0,

@@ -31,6 +31,7 @@
 
 #include "core/grid.hpp"
 #include "surface/height_map.hpp"
+#include "topography/focus_curves.hpp"
 #include "topography/focus_measure.hpp"
 #include "topography/focus_planes.hpp"
 #include "topography/focus_probes.hpp"
@@ -38,6 +39,7 @@
 #include "topography/peak_method.hpp"
 
 #include <cstdint>
+#include <functional>
 #include <optional>
 #include <span>
 #include <vector>
@@ -112,6 +114,7 @@ struct Topography {
     // around the largest value of the focus measure. In the images' unit; as many channels as they have.
     Channels all_in_focus;
     StackFigures stack;
+    FocusCurves curves; // of the grid that was asked for
 };
 
 // Evaluates a stack whose images come one at a time, in one pass. With r = ceil(3 smoothing_steps), R =
@@ -122,7 +125,8 @@ class StackEvaluator {
   public:
     // `make_planes` makes what does the work: the host's cores unless a device is given. Throws InputError where an
     // option is out of its range.
-    explicit StackEvaluator(const TopographyOptions& options, FocusPlanesMaker make_planes = make_host_focus_planes);
+    explicit StackEvaluator(const TopographyOptions& options, FocusPlanesMaker make_planes = make_host_focus_planes,
+                            CurveGrid curve_grid = {});
 
     // The image at height z (mm). Images come in ascending z, equidistant to a hundredth of a step and all of
     // one size and number of channels, with finite values: InputError otherwise.
@@ -139,6 +143,7 @@ class StackEvaluator {
     void check(const Channels& image, double z) const;
     void begin(const Channels& first);
     void advance(bool all_taken);
+    FocusCurves curves_of(StackSummary& stack, const std::function<double(double)>& height_at) const;
     StackFigures judge_stack() const;
     // noise: standard deviation of a single image's measure; averaging: the factor on it that both averages leave.
     PointState judge(const focus::f64::CurveRecord& curve, const focus::f64::SingleRecord& single, double noise,
@@ -149,6 +154,7 @@ class StackEvaluator {
     FocusWindow window_;
     std::vector<double> axial_weights_;
     FocusPlanesMaker make_planes_;
+    CurveGrid curve_grid_;
     std::optional<FocusProbes> probes_;   // from the first image on
     std::optional<FocusProbes> wide_;     // likewise, by a window several times as wide
     std::unique_ptr<FocusPlanes> planes_; // from the first image on

@@ -56,7 +56,7 @@ TEST(CameraStack, HasTheSameBytesInOneRunResumedAndInShards) {
     EXPECT_GT(camera.at("exposure_s"), 0);
     EXPECT_GT(camera.at("ray_noise_e"), camera.at("camera_noise_e")); // of 2000 rays
     EXPECT_THAT(camera.at("warnings").dump(), HasSubstr("--rays"));
-    EXPECT_THAT(read_file(folder / "a/report.html"), HasSubstr("camera noise e"));
+    EXPECT_THAT(read_file(folder / "a/report.html"), HasSubstr("camera noise / e⁻"));
     EXPECT_THAT(one.at("images/z_0000.tif"), HasSubstr("values=grey values in DN"));
 
     // An image of the same height is the stack's.

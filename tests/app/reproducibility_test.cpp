@@ -41,7 +41,7 @@ std::vector<std::string> short_stack(const std::string& out, std::vector<std::st
 std::map<std::string, std::string> bytes_of(const std::filesystem::path& folder) {
     std::map<std::string, std::string> bytes;
     for (const auto& entry : std::filesystem::recursive_directory_iterator(folder)) {
-        if (entry.is_regular_file() && entry.path().filename() != "timings.csv") {
+        if (entry.is_regular_file() && !entry.path().filename().string().starts_with("timings")) {
             bytes[entry.path().lexically_relative(folder).string()] = read_file(entry.path());
         }
     }

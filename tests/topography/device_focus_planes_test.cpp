@@ -42,7 +42,7 @@ std::vector<Channels> stack(int channels) {
 
 topography::Topography evaluated(const std::vector<Channels>& stack, const topography::TopographyOptions& options,
                                  const topography::FocusPlanesMaker& maker) {
-    topography::StackEvaluator evaluator(options, maker);
+    topography::StackEvaluator evaluator(options, maker, {.columns = 5, .rows = 40, .every = 3});
     for (int k = 0; k < images; ++k)
         evaluator.add(stack[static_cast<std::size_t>(k)], k * step);
     return evaluator.finish(0, 0, 0.002);
@@ -78,6 +78,10 @@ void expect_same(const topography::Topography& host, const topography::Topograph
                         position_bound)
                 << which;
     }
+    ASSERT_EQ(device.curves.values.size(), 5u * rows * 8);
+    ASSERT_EQ(host.curves.values.size(), device.curves.values.size());
+    for (std::size_t k = 0; k < host.curves.values.size(); ++k)
+        EXPECT_NEAR(device.curves.values[k] / host.curves.values[k], 1, 10 * value_bound) << which;
     EXPECT_GT(compared, columns * rows * 9 / 10) << which;
     EXPECT_LE(other_image, 2) << which; // of 1073
 }

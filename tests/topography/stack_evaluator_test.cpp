@@ -319,6 +319,10 @@ class WatchedPlanes final : public FocusPlanes {
         }
         planes_->average(image, shares);
     }
+    void gather(int image) override {
+        EXPECT_EQ(image, averaged_ - 1);
+        planes_->gather(image);
+    }
     void follow(int image, int images) override {
         EXPECT_EQ(image, followed_++);
         EXPECT_EQ(images, averaged_);

@@ -1,0 +1,60 @@
+// report.html in a browser: tools/check_report moves, drags and plays, and compares with the files beside.
+#include "app/program.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cstdlib>
+#include <filesystem>
+#include <optional>
+#include <string>
+
+namespace vkfv::test {
+namespace {
+
+// What does not hold, if anything; none: there is no browser.
+std::optional<std::string> failures_of(const std::filesystem::path& results) {
+    const auto told = results.parent_path() / "checks.txt";
+    const std::string command = "python3 " VKFV_SOURCE_DIR "/tools/check_report --seconds 30 '" + results.string() +
+                                "' > '" + told.string() + "' 2>&1";
+    const int status = std::system(command.c_str());
+    constexpr int no_browser = 77;
+    if (WIFEXITED(status) && WEXITSTATUS(status) == no_browser) {
+        return std::nullopt;
+    }
+    EXPECT_THAT(read_file(told), testing::HasSubstr("holds:"));
+    return status == 0 ? "" : read_file(told);
+}
+
+TEST(Report, OfAStackWorksInABrowser) {
+    const auto folder = fresh_folder("report");
+    write_file(folder / "c.toml", small_configuration);
+    // Every curve's peak is taken: so few rays measure nothing that chance does not.
+    const auto stack = run_program({"stack", "c.toml", "--rays", "2e5", "--set", "topography.smoothing_steps=0",
+                                    "--set", "topography.false_peak_rate=1", "--set", "topography.most_rival=1"},
+                                   folder);
+    ASSERT_EQ(stack.exit_code, 0) << stack.standard_error;
+    const auto failures = failures_of(folder / "out");
+    if (!failures) {
+        GTEST_SKIP() << "no Chromium here";
+    }
+    EXPECT_EQ(*failures, "");
+}
+
+TEST(Report, OfASweepWorksInABrowser) {
+    const auto folder = fresh_folder("sweep_report");
+    write_file(folder / "c.toml", small_configuration +
+                                      "\n[sweep]\nz_um = 0.5\n[[sweep.parameter]]\nkey = \"specimen.material.g\"\n"
+                                      "label = \"g\"\nvalues = [0.3, 1.0]\n[[sweep.parameter]]\n"
+                                      "key = \"trace.rays\"\nlabel = \"N\"\nvalues = [1e4, 2e4]\n");
+    const auto sweep = run_program({"sweep", "c.toml", "--out", "out", "--device", "host"}, folder);
+    ASSERT_EQ(sweep.exit_code, 0) << sweep.standard_error;
+    const auto failures = failures_of(folder / "out");
+    if (!failures) {
+        GTEST_SKIP() << "no Chromium here";
+    }
+    EXPECT_EQ(*failures, "");
+}
+
+} // namespace
+} // namespace vkfv::test
