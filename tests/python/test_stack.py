@@ -71,6 +71,14 @@ class StackTest(unittest.TestCase):
         error = heights[inside] - plain.heights.values[inside]
         self.assertLess(numpy.sqrt(numpy.mean(error**2)), 1e-4)
 
+    def test_curves_that_the_program_kept(self):
+        """curves.npy: row, column, height at the places that results.json tells."""
+        kept = numpy.load(self.stack.folder / "curves.npy")
+        at = self.stack.results["focus_curves"]
+        numpy.testing.assert_allclose(at["z_um"], self.stack.z, atol=1e-9)
+        curves = self.stack.focus_curves().values[:, at["rows"]][:, :, at["columns"]].transpose(1, 2, 0)
+        numpy.testing.assert_allclose(kept, curves, atol=1e-6 * curves.max())
+
     def test_every_measure_and_window(self):
         """Of a single pixel as of all; at the border too."""
         for measure in ("standard-deviation", "tenengrad", "modified-laplacian", "brenner", "wavelet"):
