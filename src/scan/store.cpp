@@ -31,7 +31,6 @@ constexpr std::string_view lock_name = ".lock"; // and .lock_..., of core/result
 constexpr std::string_view identity_prefix = "#: ";
 constexpr std::string_view digest_label = " (digest ";
 constexpr std::size_t digest_digits = 16;
-constexpr double cm_per_um = 1e-4;
 
 std::vector<std::string> lines_of(std::string_view text) {
     std::vector<std::string> lines;
@@ -463,12 +462,11 @@ void ImageStore::store(int image, const trace::Image& exposure, const Frame& fra
     const std::string header = ledger_header(exposure.ledger);
     const std::string row = ledger_row(image, z, exposure);
 
-    // The first lines are what ImageJ and Fiji take the distance of the images from; it is in the unit of the
-    // resolution tags. A stack of one image has none.
-    std::string text = "ImageJ=1.11a\nunit=cm\n";
+    // The first lines are what ImageJ and Fiji take the unit and the distance of the images from. A stack of one image
+    // has no distance.
+    std::string text = "ImageJ=1.11a\nunit=um\n";
     if (description_.positions.size() > 1) {
-        text += fmt::format("spacing={:.12g}\n",
-                            (description_.positions[1] - description_.positions[0]) * um_per_mm * cm_per_um);
+        text += fmt::format("spacing={:.12g}\n", (description_.positions[1] - description_.positions[0]) * um_per_mm);
     }
     text += fmt::format("image={}\nz_um={}\nvalues={}\n{}first_row=highest y\nstack={}\n"
                         "ledger_columns={}\nledger_row={}{}{}\n",

@@ -40,7 +40,8 @@ Files files_below(const std::filesystem::path& folder) {
     Files files;
     for (const auto& entry : std::filesystem::recursive_directory_iterator(folder)) {
         const auto name = entry.path().filename();
-        if (entry.is_regular_file() && name != "timings.csv" && !name.string().starts_with(".lock")) {
+        if (entry.is_regular_file() && name != "timings.csv" && name != "timings.js" &&
+            !name.string().starts_with(".lock")) {
             files[entry.path().lexically_relative(folder).generic_string()] = read_file(entry.path());
         }
     }

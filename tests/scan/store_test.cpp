@@ -110,7 +110,7 @@ TEST(ImageStore, ImagesTellTheirPitchHeightAndDistance) {
                 5000e-6); // pixels per cm at 2 um; a float's rounding is far below 1e-6
     const std::string text = tiff.text(270);
     EXPECT_THAT(text, testing::StartsWith("ImageJ="));
-    EXPECT_THAT(text, HasSubstr("\nunit=cm\nspacing=8e-05\n")); // 0.8 um
+    EXPECT_THAT(text, HasSubstr("\nunit=um\nspacing=0.8\n"));
     EXPECT_THAT(text, HasSubstr("\nimage=2\nz_um=0.4\n"));
 }
 
