@@ -30,7 +30,9 @@ Shares normalised(int first, int last, const std::function<double(int)>& weight)
     return shares;
 }
 
-int radius_of(const std::vector<double>& weights) { return static_cast<int>(weights.size()) - 1; }
+int radius_of(const std::vector<double>& weights) {
+    return static_cast<int>(weights.size()) - 1;
+}
 
 Shares shares_at(const std::vector<double>& weights, int at, int images) {
     const int radius = radius_of(weights);

@@ -21,9 +21,9 @@ struct Share {
 // The average at image `at` of a stack of `images`, in ascending order of the images.
 std::vector<Share> axial_shares(const std::vector<double>& weights, int at, int images);
 
-// Means of the images that all have the same noise: at the ends, where images lie on one side only, the Gaussian is wider
-// and takes as many of them as elsewhere. A focus measure takes noise for texture: with axial_shares() a curve of noise
-// alone rises towards both ends, to sqrt(2) of what it is elsewhere.
+// Means of the images that all have the same noise: at the ends, where images lie on one side only, the Gaussian is
+// wider and takes as many of them as elsewhere. A focus measure takes noise for texture: with axial_shares() a curve of
+// noise alone rises towards both ends, to sqrt(2) of what it is elsewhere.
 std::vector<Share> even_shares(const std::vector<double>& weights, int at, int images);
 
 // The weights of all images in the curve's point `at` after both averages, in their order.

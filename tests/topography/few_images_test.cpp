@@ -192,8 +192,8 @@ TEST(FocusProbes, TellTheWidthOfFocusCurves) {
     }
 }
 
-// Averages of fewer images leave more noise, which a focus measure takes for texture: at the ends of a scan that must not
-// pass for a second maximum.
+// Averages of fewer images leave more noise, which a focus measure takes for texture: at the ends of a scan that must
+// not pass for a second maximum.
 TEST(FocusProbes, FindNoSecondMaximumInWeakTextureAndNoise) {
     constexpr int wide_side = 128, images = 41, window = 41;
     std::mt19937 random(11);
