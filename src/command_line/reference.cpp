@@ -185,8 +185,9 @@ const std::vector<OwnedOption>& all_options() {
                 found->owners.push_back(&command);
             }
         }
-        for (auto& [option, owners] : list) {
-            std::ranges::stable_partition(owners, [&](const auto* owner) { return owner->name == option->foremost; });
+        for (OwnedOption& owned : list) {
+            std::ranges::stable_partition(owned.owners,
+                                          [&](const auto* owner) { return owner->name == owned.option->foremost; });
         }
         return list;
     }();

@@ -17,7 +17,7 @@ constexpr std::uint64_t bytes_around_pixels = 4096; // of an image: its descript
 constexpr std::uint64_t bytes_a_point = 54;         // nine maps in float32, the mask, and two surfaces
 constexpr std::uint64_t report_bytes = 6'000'000;   // without what follows
 constexpr std::uint64_t most_frame_bytes = 8'000'000;
-constexpr std::uint64_t curve_bytes = 64 * 64 * 6; // an image: of curves.npy, and in the report
+constexpr std::uint64_t curve_bytes = std::uint64_t{64} * 64 * 6; // an image: of curves.npy, and in the report
 constexpr std::uint64_t most_curve_values = 2048;
 
 // The page, its curves and curves.npy.

@@ -16,6 +16,7 @@ struct ValuesScene {
 std::vector<int> evenly_spread(int count, int pixels) {
     const int kept = std::min(count, pixels);
     std::vector<int> places;
+    places.reserve(static_cast<std::size_t>(kept));
     for (int k = 0; k < kept; ++k) {
         places.push_back(static_cast<int>((2 * std::int64_t{k} + 1) * pixels / (2 * std::int64_t{kept})));
     }

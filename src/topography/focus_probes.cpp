@@ -18,6 +18,7 @@ using SharesAt = std::vector<Share> (*)(const std::vector<double>& weights, int 
 
 std::vector<std::vector<Share>> all_shares(SharesAt shares_at, const std::vector<double>& axial_weights, int images) {
     std::vector<std::vector<Share>> all;
+    all.reserve(static_cast<std::size_t>(images));
     for (int at = 0; at < images; ++at) {
         all.push_back(shares_at(axial_weights, at, images));
     }

@@ -287,6 +287,7 @@ void write_stack(const fs::path& file, const fs::path& folder) {
     auto mode = OIIO::ImageOutput::Create;
     for (const int contrast : {10, 30, 60, 31, 11}) {
         std::vector<std::uint8_t> pixels;
+        pixels.reserve(std::size_t{side} * side);
         for (int k = 0; k < side * side; ++k) {
             pixels.push_back(static_cast<std::uint8_t>(128 + (k * 7919 % 13 > 6 ? contrast : -contrast)));
         }

@@ -184,6 +184,8 @@ class ChosenAssets {
     ~ChosenAssets() { unsetenv("VKFV_ASSETS"); }
     ChosenAssets(const ChosenAssets&) = delete;
     ChosenAssets& operator=(const ChosenAssets&) = delete;
+    ChosenAssets(ChosenAssets&&) = delete;
+    ChosenAssets& operator=(ChosenAssets&&) = delete;
 };
 
 TEST_F(WrittenPrescription, IsThatOfTheVariableThenThatBesideThenTheInstalledOne) {

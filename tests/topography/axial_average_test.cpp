@@ -50,7 +50,7 @@ TEST(AxialAverage, EvenSharesHaveTheSameNoiseEverywhere) {
                 for (const Share& share : even_shares(weights, k, count)) {
                     total += share.weight;
                     variance += share.weight * share.weight;
-                    place += share.weight * share.image;
+                    place += share.weight * static_cast<double>(share.image);
                 }
                 EXPECT_NEAR(total, 1, 1e-6);
                 const bool whole = 2 * weights.size() - 1 <= static_cast<std::size_t>(count);
