@@ -64,7 +64,8 @@ Shares even_shares_at(const std::vector<double>& weights, int at, int images) {
     };
     const double variance = noise_variance(about(middle, 1));
     double flat = 0, steep = 1;
-    for (int halving = 0; halving < 30; ++halving) {
+    constexpr int halvings = 30; // beyond the digits of a float, which the shares become
+    for (int halving = 0; halving < halvings; ++halving) {
         const double between = 0.5 * (flat + steep);
         (noise_variance(about(at, between)) < variance ? flat : steep) = between;
     }

@@ -12,14 +12,19 @@
 namespace vkfv::test {
 namespace {
 
-// What does not hold, if anything; none: there is no browser.
+// Ubuntu has Chromium as a snap alone; elsewhere tools/setup installs it.
+bool has_chromium_package() {
+    return read_file("/etc/os-release").find("\nID=ubuntu") == std::string::npos;
+}
+
+// What does not hold, if anything; none: there is no browser, and none to be installed.
 std::optional<std::string> failures_of(const std::filesystem::path& results) {
     const auto told = results.parent_path() / "checks.txt";
     const std::string command = "python3 " VKFV_SOURCE_DIR "/tools/check_report --seconds 30 '" + results.string() +
                                 "' > '" + told.string() + "' 2>&1";
     const int status = std::system(command.c_str());
     constexpr int no_browser = 77;
-    if (WIFEXITED(status) && WEXITSTATUS(status) == no_browser) {
+    if (WIFEXITED(status) && WEXITSTATUS(status) == no_browser && !has_chromium_package()) {
         return std::nullopt;
     }
     EXPECT_THAT(read_file(told), testing::HasSubstr("holds:"));
@@ -36,7 +41,7 @@ TEST(Report, OfAStackWorksInABrowser) {
     ASSERT_EQ(stack.exit_code, 0) << stack.standard_error;
     const auto failures = failures_of(folder / "out");
     if (!failures) {
-        GTEST_SKIP() << "no Chromium here";
+        GTEST_SKIP() << "Ubuntu has no package of Chromium";
     }
     EXPECT_EQ(*failures, "");
 }
@@ -51,7 +56,7 @@ TEST(Report, OfASweepWorksInABrowser) {
     ASSERT_EQ(sweep.exit_code, 0) << sweep.standard_error;
     const auto failures = failures_of(folder / "out");
     if (!failures) {
-        GTEST_SKIP() << "no Chromium here";
+        GTEST_SKIP() << "Ubuntu has no package of Chromium";
     }
     EXPECT_EQ(*failures, "");
 }
