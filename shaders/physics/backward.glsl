@@ -64,8 +64,8 @@ VKFV_SCENE_FUNCTION VKFV_FUNCTION BackwardArrival look_from_detector(VKFV_SCENE_
     ray.direction = real3(slope.x * axial, slope.y * axial, axial);
     ray.path_length = real(0.0);
     real specimen_index = specimen_medium_index(instrument, light);
-    TrainResult train = trace_train(VKFV_SCENE instrument.illumination_first, instrument.illumination_count, ray,
-                                    real(1.0), true, light);
+    TrainResult train = trace_short_train(VKFV_SCENE instrument.illumination_first, instrument.illumination_count, ray,
+                                          real(1.0), light, SHORT_TRAIN_FINE);
     Ray down = fly_to_top(train.ray, exposure, specimen_index);
     real scale = real(1.0) / specimen_index;
     BackwardArrival arrival;

@@ -164,6 +164,13 @@ VKFV_FUNCTION real3 direction_in_disc(GateDisc disc, real u0, real u1) {
     return real3(x * z, y * z, z);
 }
 
+VKFV_FUNCTION bool within_disc(GateDisc disc, real3 direction) {
+    real x = direction.x - disc.centre.x * direction.z;
+    real y = direction.y - disc.centre.y * direction.z;
+    real radius = disc.radius * direction.z;
+    return direction.z > real(0.0) && x * x + y * y <= radius * radius;
+}
+
 // p / q of a direction within the gate; d(omega) = z^3 d(slopes). 0 for a delta.
 VKFV_FUNCTION real density_ratio(Lobe lobe, Incidence incidence, GateDisc disc, real3 direction) {
     real density = lobe_bsdf(lobe, incidence, direction) * max(dot(direction, incidence.normal), real(0.0));
@@ -175,8 +182,10 @@ VKFV_FUNCTION real density_ratio(Lobe lobe, Incidence incidence, GateDisc disc, 
 // lobe by rejection, one uniform in the slopes of the gate's disc, of density q, kept with the chance p / q. Where that
 // is nowhere above 1 it is exact: the light passes with the chance of the integral of p over the gate, and those
 // directions that do have the density p. All other light has escaped; mostly that is known from a bound of p alone.
+// Where the bound exceeds 1, near the middle of a sharp lobe, the direction is one of the lobe's own within the least
+// cone about the mirror direction that holds the gate, and p / q is asked of that.
 struct GatedScatter {
-    bool applies; // else the bound exceeds 1, or the model knows none
+    bool applies; // else both bounds exceed 1, or the model knows none
     bool passes;
     real3 direction;
 };
@@ -185,7 +194,8 @@ VKFV_FUNCTION GatedScatter scatter_into_gate(Lobe lobe, Incidence incidence, Gat
     // Unit directions are no further apart than their slopes.
     real scale = inversesqrt(real(1.0) + disc.centre.x * disc.centre.x + disc.centre.y * disc.centre.y);
     real3 off = real3(disc.centre.x * scale, disc.centre.y * scale, scale) - incidence.mirror;
-    real apart = max(sqrt(dot(off, off)) - disc.radius, real(0.0));
+    real to_centre = sqrt(dot(off, off));
+    real apart = max(to_centre - disc.radius, real(0.0));
     real area = real(3.14159265358979324) * disc.radius * disc.radius;
     real ceiling = lobe_ceiling(lobe, incidence, apart) * area;
     GatedScatter result;
@@ -196,6 +206,13 @@ VKFV_FUNCTION GatedScatter scatter_into_gate(Lobe lobe, Incidence incidence, Gat
     if (result.applies && u2 < ceiling) {
         result.direction = direction_in_disc(disc, u0, u1);
         result.passes = u2 < density_ratio(lobe, incidence, disc, result.direction);
+    }
+    if (from_above && ceiling > real(1.0)) {
+        real chord = to_centre + disc.radius;
+        ConeDraw cone = lobe_cone(lobe, incidence, min(real(0.5) * chord * chord, real(2.0)), u0, u1);
+        result.applies = cone.bound > real(0.0) && cone.bound <= real(1.0);
+        result.direction = cone.direction;
+        result.passes = result.applies && u2 < cone.ratio && within_disc(disc, cone.direction);
     }
     return result;
 }

@@ -11,6 +11,9 @@
 // share that is accepted. With the line `// table`, NAME_bsdf takes `real table[LOBE_TABLE_SIZE]` after the parameters,
 // and the host fills it: src/specimen/scatter_tables.cpp.
 
+// With the line `// cone`, NAME_cone(parameters..., [table,] Incidence incidence, real versine, real u0, real u1) draws a
+// direction within the cone of that versine (1 - cos of its half angle) about the mirror direction: ConeDraw.
+
 // The models that the specimen's material has, bit k for model k, and SCATTER_CHOICE unless it is one lobe that
 // reflects everything: what it has not is compiled out of a kernel.
 const uint SCATTER_CHOICE = 0x80000000u;
@@ -30,6 +33,14 @@ struct Incidence {
 
 struct ScatterTry {
     bool accepted;
+    real3 direction; // unit
+};
+
+// A direction drawn within a cone, and the density that is wanted there over the density that it was drawn by: the
+// chance by which it is kept, if it is nowhere above 1.
+struct ConeDraw {
+    real bound; // no ratio is larger; 0: the model draws no such directions
+    real ratio;
     real3 direction; // unit
 };
 

@@ -8,7 +8,6 @@
 #include "measurement/assembly.hpp"
 #include "measurement/camera_images.hpp"
 #include "measurement/wave_limits.hpp"
-#include "measurement/working_devices.hpp"
 #include "scan/checkpoint_files.hpp"
 #include "specimen/geometry_digest.hpp"
 
@@ -47,14 +46,14 @@ Grid<float> in_float(const Grid<double>& image) {
 
 } // namespace
 
-Exposure expose(const Configuration& configuration, const optics::Instrument& instrument,
+Exposure expose(const Configuration& configuration, WorkingDevices& devices, const optics::Instrument& instrument,
                 const specimen::Specimen& specimen, double focal_height, const std::filesystem::path& checkpoint) {
     Exposure exposure;
     exposure.grid = PixelGrid::centred(configuration.instrument.detector_pixels, instrument.first_order.pixel_pitch);
     exposure.type = configuration.pixel_type;
-    work_with_devices(configuration.trace.device, [&](const WorkingDevices& devices) {
+    work_with_devices(devices, [&](const WorkingDevices& working) {
         enter_stage("device, kernels");
-        const auto tracer = make_tracer(devices, configuration, instrument, specimen);
+        const auto tracer = make_tracer(working, configuration, instrument, specimen);
         enter_stage("image");
         exposure.tracer = tracer->identity();
         const auto image = image_index(configuration, focal_height);
@@ -70,7 +69,7 @@ Exposure expose(const Configuration& configuration, const optics::Instrument& in
         }
         if (configuration.camera) {
             const auto heights = configuration.scan ? configuration.scan->positions() : std::vector{focal_height};
-            const double seconds = exposure_time(configuration, instrument, specimen, heights, devices);
+            const double seconds = exposure_time(configuration, instrument, specimen, heights, working);
             exposure.taken =
                 ImagingCamera(configuration, instrument, seconds).develop(static_cast<int>(image), exposure.image);
         }

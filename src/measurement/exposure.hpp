@@ -4,6 +4,7 @@
 #include "configuration/configuration.hpp"
 #include "core/grid.hpp"
 #include "core/pixel_grid.hpp"
+#include "measurement/working_devices.hpp"
 #include "optics/instrument.hpp"
 #include "scan/store.hpp"
 #include "specimen/specimen.hpp"
@@ -28,7 +29,7 @@ struct Exposure {
     std::optional<scan::Frame> taken;      // by the camera, if there is one: grey values of light after diffraction
     scan::PixelType type = scan::PixelType::float32; // of the files
 };
-Exposure expose(const Configuration& configuration, const optics::Instrument& instrument,
+Exposure expose(const Configuration& configuration, WorkingDevices& devices, const optics::Instrument& instrument,
                 const specimen::Specimen& specimen, double focal_height, const std::filesystem::path& checkpoint = {});
 // The pixels' mean over the root mean square of their standard errors.
 double signal_to_noise(const trace::Image& image);

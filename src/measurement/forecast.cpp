@@ -56,8 +56,9 @@ struct Probe {
 class Prober {
   public:
     Prober(const Configuration& configuration, double focal_height)
-        : configuration_(configuration), focal_height_(focal_height), specimen_(make_specimen(configuration)),
-          instrument_(instrument_for(configuration, specimen_, focal_height)), devices_(configuration.trace.device) {}
+        : configuration_(configuration), focal_height_(focal_height), devices_(configuration.trace.device),
+          specimen_(make_specimen(configuration)),
+          instrument_(instrument_for(configuration, specimen_, focal_height)) {}
 
     // The second of two exposures: the first one warms up.
     Probe expose(std::uint64_t rays) const {
@@ -88,9 +89,9 @@ class Prober {
   private:
     const Configuration& configuration_;
     double focal_height_;
+    WorkingDevices devices_;
     specimen::Specimen specimen_;
     optics::Instrument instrument_;
-    WorkingDevices devices_;
 };
 
 // What the camera makes of light like the probe's, of so many times as many rays.

@@ -78,13 +78,14 @@ Json json_of(const trace::Ledger& ledger) {
 } // namespace
 
 ImageResult measure_image(const Configuration& configuration, double focal_height, const std::filesystem::path& file) {
+    WorkingDevices devices(configuration.trace.device);
     enter_stage("specimen");
     const auto specimen = make_specimen(configuration);
     enter_stage("instrument");
     const auto instrument = instrument_for(configuration, specimen, focal_height);
     auto checkpoint = file;
     checkpoint += ".partial";
-    ImageResult result{.exposure = expose(configuration, instrument, specimen, focal_height, checkpoint),
+    ImageResult result{.exposure = expose(configuration, devices, instrument, specimen, focal_height, checkpoint),
                        .focal_height = focal_height,
                        .file = file,
                        .picture = file,

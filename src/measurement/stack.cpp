@@ -58,25 +58,27 @@ StackResult trace_and_evaluate(const StackScene& scene, const WorkingDevices& de
 } // namespace
 
 StackResult measure_stack(const Configuration& configuration, Progress& progress) {
+    WorkingDevices devices(configuration.trace.device);
     const StackScene scene(configuration);
     StackResult result;
-    work_with_devices(configuration.trace.device,
-                      [&](const WorkingDevices& devices) { result = trace_and_evaluate(scene, devices, progress); });
+    work_with_devices(devices,
+                      [&](const WorkingDevices& working) { result = trace_and_evaluate(scene, working, progress); });
     return result;
 }
 
 ShardResult trace_shard(const Configuration& configuration, scan::Shard shard, Progress& progress) {
+    WorkingDevices devices(configuration.trace.device);
     const StackScene scene(configuration);
     ShardResult result{.shard = shard, .traced = {}, .folder = configuration.output_directory};
-    work_with_devices(configuration.trace.device, [&](const WorkingDevices& devices) {
+    work_with_devices(devices, [&](const WorkingDevices& working) {
         enter_stage("device, kernels");
-        const auto tracer = make_tracer(devices, configuration, scene.instrument, scene.specimen);
+        const auto tracer = make_tracer(working, configuration, scene.instrument, scene.specimen);
         enter_stage("folder of the stack");
         scan::ImageStore store(configuration.output_directory, scene.description(tracer->identity()), shard);
         require_space(store, 0);
         enter_stage("images");
         result.traced = scan::run_stack(*tracer, store, progress, {}, configuration.checkpoint_interval,
-                                        developer_of(scene, store, devices));
+                                        developer_of(scene, store, working));
     });
     enter_stage("end");
     return result;

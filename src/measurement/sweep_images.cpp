@@ -93,7 +93,8 @@ SweepRow image_row(const Configuration& configuration, ResultFolder& results, co
     if (earlier.value("digest", "") == digest) {
         row.figures = earlier.at("figures");
     } else {
-        const Exposure exposure = expose(configuration, instrument, surface.specimen, focal_height);
+        WorkingDevices devices(configuration.trace.device);
+        const Exposure exposure = expose(configuration, devices, instrument, surface.specimen, focal_height);
         const bool tells =
             configuration.trace.estimator == trace::Estimator::forward && !configuration.trace.directed_scatter;
         row.figures = figures_of(exposure.image, tells);

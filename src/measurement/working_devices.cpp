@@ -17,19 +17,31 @@
 
 namespace vkfv::measurement {
 
+WorkingDevices::Member::Member(std::string its_selector) : selector(std::move(its_selector)) {
+    open();
+}
+
+void WorkingDevices::Member::open() {
+    device = {}; // one that is lost closes first
+    if (selector != "host") {
+        device = std::async(std::launch::async, [name = selector] {
+                     return std::make_shared<const vulkan::Device>(vulkan::DeviceOptions{name});
+                 }).share();
+    }
+}
+
 WorkingDevices::WorkingDevices(const std::string& selector) {
     const bool is_list = selector == "all" || selector.find(',') != std::string::npos;
     if (!is_list) {
-        members_.push_back({.selector = selector});
+        members_.emplace_back(selector);
         return;
     }
     const auto reports = vulkan::list_devices();
     const auto chosen = vulkan::choose_devices(reports, selector);
     for (const std::size_t device : chosen) {
         // Alone it goes by its own words, so that a message repeats them.
-        members_.push_back({.selector = chosen.size() == 1 && selector != "all"
-                                            ? selector
-                                            : fmt::format("{}", reports[device].index)});
+        members_.emplace_back(chosen.size() == 1 && selector != "all" ? selector
+                                                                      : fmt::format("{}", reports[device].index));
     }
 }
 
@@ -44,6 +56,7 @@ std::unique_ptr<trace::Tracer> WorkingDevices::make_tracer(const optics::Instrum
             return trace::make_host_tracer(instrument, specimen, of_member);
         }
         try {
+            of_member.opened = members_[place].device.get();
             return trace::make_device_tracer(instrument, specimen, of_member);
         } catch (const std::exception&) {
             trace::rethrow_as_failure_of(static_cast<int>(place));
@@ -86,6 +99,7 @@ void WorkingDevices::take_note(const vulkan::DeviceFailure& failure) {
     if (member.batch_divisor == 1) {
         member.batch_divisor = 2;
         spdlog::warn("{}. It is opened again, with half the batch", failure.cause());
+        member.open();
         return;
     }
     members_.erase(members_.begin() + failure.place);
@@ -93,8 +107,8 @@ void WorkingDevices::take_note(const vulkan::DeviceFailure& failure) {
                  members_.size() == 1 ? "device goes" : "devices go");
 }
 
-void work_with_devices(const std::string& selector, const std::function<void(const WorkingDevices&)>& work) {
-    for (WorkingDevices devices(selector);;) {
+void work_with_devices(WorkingDevices& devices, const std::function<void(const WorkingDevices&)>& work) {
+    for (;;) {
         try {
             work(devices);
             return;

@@ -8,12 +8,14 @@
 
 #include <cstdint>
 #include <functional>
+#include <future>
 #include <memory>
 #include <string>
 #include <utility>
 #include <vector>
 
 namespace vkfv::vulkan {
+class Device;
 class DeviceFailure;
 }
 
@@ -23,10 +25,11 @@ namespace vkfv::measurement {
 class WorkingDevices {
   public:
     // Those of trace.device: see vulkan::choose_devices(); "host" means the reference in double on the host's cores.
-    // Throws DeviceError.
+    // They are opened by threads of their own, while the scene is made. Throws DeviceError where a list names none.
     explicit WorkingDevices(const std::string& selector);
 
-    // On all of them; what the options say of devices and batches' divisor does not count.
+    // On all of them; what the options say of devices and batches' divisor does not count. Throws DeviceError, also
+    // where a device has not opened.
     std::unique_ptr<trace::Tracer> make_tracer(const optics::Instrument& instrument, const specimen::Specimen& specimen,
                                                const trace::TraceOptions& options) const;
 
@@ -38,8 +41,12 @@ class WorkingDevices {
 
   private:
     struct Member {
+        explicit Member(std::string selector);
+        void open(); // again
+
         std::string selector;
         std::uint64_t batch_divisor = 1;
+        std::shared_future<std::shared_ptr<const vulkan::Device>> device; // none on the host
     };
     explicit WorkingDevices(std::vector<Member> members) : members_(std::move(members)) {}
 
@@ -50,8 +57,8 @@ class WorkingDevices {
 std::unique_ptr<trace::Tracer> make_tracer(const WorkingDevices& devices, const Configuration& configuration,
                                            const optics::Instrument& instrument, const specimen::Specimen& specimen);
 
-// Does the work with the devices of trace.device, again from its beginning where one of them has failed. What is stored
-// meanwhile is to be kept by the work itself.
-void work_with_devices(const std::string& selector, const std::function<void(const WorkingDevices&)>& work);
+// Does the work with the devices, again from its beginning where one of them has failed. What is stored meanwhile is to
+// be kept by the work itself.
+void work_with_devices(WorkingDevices& devices, const std::function<void(const WorkingDevices&)>& work);
 
 } // namespace vkfv::measurement

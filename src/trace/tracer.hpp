@@ -35,6 +35,7 @@ struct TraceOptions {
     std::uint64_t batch = 0;         // rays in flight at once; 0: what suits the device
     std::uint64_t batch_divisor = 1; // of what `batch` says
     std::string device;              // selector: an index or a part of the name
+    std::shared_ptr<const vulkan::Device> opened; // that device, if it is open
     bool nonsequential = false;      // light finds its own way, and interfaces split it
     bool directed_scatter = false;   // forward, sequential: every bounce also aims at the pupil, and light has weights
     std::optional<bool> instrument_in_constants; // of the forward kernels; none: where it pays

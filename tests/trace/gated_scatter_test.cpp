@@ -29,7 +29,7 @@ std::vector<Case> cases() {
     for (const double theta : {0.0, 0.25}) {
         for (const double tilt : {0.0, 0.4}) {
             result.push_back({specimen::tabulated({SCATTER_LAMBERTIAN, 1, 0, 0, 0, 0, {}}), theta, tilt});
-            for (const double g : {-0.2, 0.0, 0.3, 0.5, 0.7}) {
+            for (const double g : {-0.2, 0.0, 0.3, 0.5, 0.7, 0.8, 0.9}) {
                 result.push_back({specimen::tabulated({SCATTER_HENYEY_GREENSTEIN, 1, g, 0, 0, 0, {}}), theta, tilt});
             }
         }
@@ -135,7 +135,7 @@ TEST(GatedScatter, LooksLikeDirectionsDrawnOneByOne) {
                 degrees += 1;
             }
         }
-        EXPECT_GT(test::chi_square_tail(chi_square, degrees), test::sidak(1e-3, 24));
+        EXPECT_GT(test::chi_square_tail(chi_square, degrees), test::sidak(1e-3, static_cast<int>(cases().size())));
     }
 }
 
@@ -145,8 +145,9 @@ TEST(GatedScatter, IsUsedWhereItIsExactAlone) {
     };
     const auto hg = [](double g) { return specimen::tabulated({SCATTER_HENYEY_GREENSTEIN, 1, g, 0, 0, 0, {}}); };
     EXPECT_TRUE(applies(hg(0.3), disc_of_10x(), 0));
-    EXPECT_FALSE(applies(hg(0.95), disc_of_10x(), 0));  // its density times the gate exceeds 1
-    EXPECT_TRUE(applies(hg(0.95), disc_of_10x(), 0.5)); // the lobe's middle is far from the gate
+    EXPECT_TRUE(applies(hg(0.95), disc_of_10x(), 0));    // by the cone: its density times the gate exceeds 1
+    EXPECT_FALSE(applies(hg(0.95), disc_of_10x(), 0.2)); // so does what a cone with all of the gate holds
+    EXPECT_TRUE(applies(hg(0.95), disc_of_10x(), 0.5));  // the lobe's middle is far from the gate
     EXPECT_FALSE(applies(hg(0.3), disc_of_10x(10), 0));
     EXPECT_FALSE(applies(hg(1), disc_of_10x(), 0));
     EXPECT_FALSE(applies({SCATTER_MIRROR, 1, 0, 0, 0, 0, {}}, disc_of_10x(), 0));

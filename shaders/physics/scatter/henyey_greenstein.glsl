@@ -9,6 +9,7 @@
 // parameter: g, -0.9, 1, 0, asymmetry: 0 is Lambertian and 1 the mirror
 // table
 // ceiling
+// cone
 
 // 1 - cos(alpha) of a Henyey-Greenstein draw. The usual inversion, rearranged so that neither g -> 0 nor alpha -> 0
 // cancels: 2 (1 - g)^2 (1 - u) (1 + g u) / (1 - g + 2 g u)^2, with cos(alpha) ascending in u.
@@ -90,4 +91,23 @@ VKFV_FUNCTION real henyey_greenstein_ceiling(real g, real table[LOBE_TABLE_SIZE]
     real least = real(1.0) - abs(g);
     real base = least * least + max(g, real(0.0)) * apart * apart;
     return g < real(1.0) ? henyey_greenstein_of_base(g, table, incidence, base) : real(0.0);
+}
+
+// By p's own distribution, of which the cone holds 1 - outside: the ratio is cos(theta_o) (1 - outside) / N.
+VKFV_FUNCTION ConeDraw henyey_greenstein_cone(real g, real table[LOBE_TABLE_SIZE], Incidence incidence, real versine,
+                                              real u0, real u1) {
+    ConeDraw result;
+    result.bound = real(0.0);
+    result.ratio = real(0.0);
+    result.direction = incidence.mirror;
+    if (g > real(0.0) && g < real(1.0)) {
+        real base = (real(1.0) - g) * (real(1.0) - g) + real(2.0) * g * versine;
+        real outside = ((real(1.0) - g) * (real(1.0) + g) * inversesqrt(base) - (real(1.0) - g)) / (real(2.0) * g);
+        real inside = real(1.0) - outside;
+        result.bound = inside / henyey_greenstein_norm(g, table, -dot(incidence.incoming, incidence.normal));
+        real drawn = draw_henyey_greenstein_versine(g, outside + inside * u0);
+        result.direction = direction_around(incidence.mirror, drawn, u1);
+        result.ratio = result.bound * dot(result.direction, incidence.normal);
+    }
+    return result;
 }
