@@ -11,8 +11,8 @@
 // share that is accepted. With the line `// table`, NAME_bsdf takes `real table[LOBE_TABLE_SIZE]` after the parameters,
 // and the host fills it: src/specimen/scatter_tables.cpp.
 
-// With the line `// cone`, NAME_cone(parameters..., [table,] Incidence incidence, real versine, real u0, real u1) draws a
-// direction within the cone of that versine (1 - cos of its half angle) about the mirror direction: ConeDraw.
+// With the line `// cone`, NAME_cone(parameters..., [table,] Incidence incidence, real versine, real u0, real u1) draws
+// a direction within the cone of that versine (1 - cos of its half angle) about the mirror direction: ConeDraw.
 
 // The models that the specimen's material has, bit k for model k, and SCATTER_CHOICE unless it is one lobe that
 // reflects everything: what it has not is compiled out of a kernel.

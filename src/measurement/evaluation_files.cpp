@@ -182,7 +182,9 @@ EvaluationData write_maps(ResultFolder& results, const std::filesystem::path& fo
     write("curves.npy", [&] { return curves_bytes(topography.curves); });
     if (evaluation.truth) {
         write("truth.tif", [&] { return surface::height_map_bytes(*evaluation.truth); });
-        deviation = topography::deviation_map(topography.height, *evaluation.truth, evaluation.band);
+        deviation = evaluation.band.limited()
+                        ? topography::deviation_map(topography.height, *evaluation.truth, evaluation.band)
+                        : levelled.deviation;
         write("deviation.tif", [&] { return surface::height_map_bytes(*deviation); });
     }
     for (const std::string& file : files.names) {

@@ -57,8 +57,8 @@ class Prober {
   public:
     Prober(const Configuration& configuration, double focal_height)
         : configuration_(configuration), focal_height_(focal_height), devices_(configuration.trace.device),
-          specimen_(make_specimen(configuration)),
-          instrument_(instrument_for(configuration, specimen_, focal_height)) {}
+          specimen_(make_specimen(configuration)), instrument_(instrument_for(configuration, specimen_, focal_height)) {
+    }
 
     // The second of two exposures: the first one warms up.
     Probe expose(std::uint64_t rays) const {

@@ -13,6 +13,7 @@
 
 #include <algorithm>
 #include <array>
+#include <future>
 #include <iterator>
 #include <utility>
 
@@ -93,13 +94,13 @@ ImageResult measure_image(const Configuration& configuration, double focal_heigh
     enter_stage("files");
     result.picture.replace_extension(".svg");
     const auto& exposure = result.exposure;
-    auto files = image_files(file, exposure, focal_height);
     const auto title = fmt::format("{}, z = {:g} um", configuration.file.stem().string(), focal_height * um_per_mm);
-    files.emplace_back(result.picture, picture_of(exposure, title));
+    auto picture = std::async(std::launch::async, [&] { return picture_of(exposure, title); });
     make_folder(file.parent_path());
-    for (const auto& [name, bytes] : files) {
+    for (const auto& [name, bytes] : image_files(file, exposure, focal_height)) {
         write_file(name, bytes);
     }
+    write_file(result.picture, picture.get());
     std::error_code none;
     std::filesystem::remove(checkpoint, none);
     enter_stage("end");

@@ -237,11 +237,10 @@ LevelledMaps levelled_maps(const Evaluation& evaluation) {
     if (!evaluation.truth) {
         return {.measured = surface::remove_form(evaluation.topography.height, form), .truth = {}, .deviation = {}};
     }
+    auto truth = std::async(std::launch::async, [&] { return surface::remove_form(*evaluation.truth, form); });
     auto pair = topography::levelled_pair(evaluation.topography.height, *evaluation.truth, {.form = form});
     auto deviation = topography::deviation_map(pair);
-    return {.measured = std::move(pair.measured),
-            .truth = surface::remove_form(*evaluation.truth, form),
-            .deviation = std::move(deviation)};
+    return {.measured = std::move(pair.measured), .truth = truth.get(), .deviation = std::move(deviation)};
 }
 
 EvaluationData evaluation_data(const std::string& name, const Evaluation& evaluation, const LevelledMaps& maps,

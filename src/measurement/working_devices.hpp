@@ -17,7 +17,7 @@
 namespace vkfv::vulkan {
 class Device;
 class DeviceFailure;
-}
+} // namespace vkfv::vulkan
 
 namespace vkfv::measurement {
 

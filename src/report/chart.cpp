@@ -20,6 +20,13 @@ constexpr const char* grid_style = "stroke=\"#dddddd\"";
 constexpr const char* frame_style = "fill=\"none\" stroke=\"#666666\"";
 constexpr double least_separation = 26; // of tick labels, pixels
 
+// All there is to say of grey pixels.
+Grid<std::uint8_t> reds(const Grid<Rgb>& pixels) {
+    Grid<std::uint8_t> values(pixels.columns, pixels.rows);
+    std::ranges::transform(pixels.values, values.values.begin(), &Rgb::red);
+    return values;
+}
+
 std::string label_style(const char* anchor) {
     return fmt::format("font-size=\"11\" text-anchor=\"{}\" fill=\"#444444\"", anchor);
 }
@@ -260,7 +267,10 @@ void draw_map(Svg& svg, dvec2 corner, dvec2 size, const Map& map) {
             for (std::uint8_t* const channel : {&pixels.values[k].red, &pixels.values[k].green, &pixels.values[k].blue})
                 *channel = static_cast<std::uint8_t>(std::lround(*channel * brightness.values[k]));
     }
-    svg.image({low.x, high.y}, {high.x - low.x, low.y - high.y}, png_bytes(pixels));
+    const bool is_grey = map.palette == Palette::grey && !map.brightness &&
+                         std::ranges::all_of(shown.values, [](double value) { return std::isfinite(value); });
+    svg.image({low.x, high.y}, {high.x - low.x, low.y - high.y},
+              is_grey ? grey_png_bytes(reds(pixels)) : png_bytes(pixels));
     draw_axes(svg, frame, false);
 
     if (map.of_place && map.scale_bar)

@@ -61,6 +61,10 @@ void Svg::clip_rectangle(std::string_view id, glm::dvec2 corner, glm::dvec2 size
     body_ += "</clipPath>\n";
 }
 
+void Svg::append(const Svg& other) {
+    body_ += other.body_;
+}
+
 std::string Svg::document(glm::dvec2 size, std::string_view title) const {
     return fmt::format("<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"{0}\" height=\"{1}\" "
                        "viewBox=\"0 0 {0} {1}\" font-family=\"Helvetica, Arial, 'DejaVu Sans', sans-serif\">\n"

@@ -23,6 +23,9 @@ class Svg {
     // Groups with clip-path="url(#id)" are cut to it.
     void clip_rectangle(std::string_view id, glm::dvec2 corner, glm::dvec2 size);
 
+    // What another has drawn, over what stands here.
+    void append(const Svg& other);
+
     // On white.
     std::string document(glm::dvec2 size, std::string_view title) const;
 

@@ -7,7 +7,11 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
+#include <future>
 #include <limits>
+#include <utility>
+#include <vector>
 
 namespace vkfv::report {
 namespace {
@@ -65,33 +69,50 @@ std::string topography_picture(const TopographyPicture& picture) {
     };
     svg.text({margin, 34}, picture.title, "font-size=\"19\" fill=\"#111111\"");
 
-    const Map probe = map_of("", picture.measured, 0, 1, Palette::height);
-    auto [low, high] = range_of(probe.values, 2e-3);
-    if (picture.truth) {
-        const auto [true_low, true_high] = range_of(map_of("", *picture.truth, 0, 1, Palette::height).values, 2e-3);
-        low = std::min(low, true_low);
-        high = std::max(high, true_high);
-    }
-    draw_map(svg, next(), panel, map_of("Measured height", picture.measured, low, high, Palette::height));
+    const auto range_of_heights = [](const surface::HeightMap& heights, double outside) {
+        return range_of(map_of("", heights, 0, 1, Palette::height).values, outside);
+    };
+    auto true_range = std::async(std::launch::async, [&] {
+        return picture.truth
+                   ? range_of_heights(*picture.truth, 2e-3)
+                   : std::pair{std::numeric_limits<double>::infinity(), -std::numeric_limits<double>::infinity()};
+    });
+    const auto [low_measured, high_measured] = range_of_heights(picture.measured, 2e-3);
+    const auto [low_true, high_true] = true_range.get();
+    const double low = std::min(low_measured, low_true), high = std::max(high_measured, high_true);
+
+    // Each map by a thread of its own, put together in their order.
+    std::vector<std::future<Svg>> maps;
+    const auto draw = [&](const std::function<Map()>& make) {
+        maps.push_back(std::async(std::launch::async, [corner = next(), make] {
+            Svg part;
+            draw_map(part, corner, panel, make());
+            return part;
+        }));
+    };
+    draw([&] { return map_of("Measured height", picture.measured, low, high, Palette::height); });
     if (picture.truth)
-        draw_map(svg, next(), panel, map_of("True height", *picture.truth, low, high, Palette::height));
-    if (picture.deviation) {
-        const auto [least, most] = range_of(map_of("", *picture.deviation, 0, 1, Palette::height).values, 1e-2);
-        const double end = std::max(std::abs(least), std::abs(most));
-        draw_map(svg, next(), panel,
-                 map_of("Deviation, measured less true", *picture.deviation, -end, end, Palette::signed_deviation));
-    }
+        draw([&] { return map_of("True height", *picture.truth, low, high, Palette::height); });
+    if (picture.deviation)
+        draw([&] {
+            const auto [least, most] = range_of_heights(*picture.deviation, 1e-2);
+            const double end = std::max(std::abs(least), std::abs(most));
+            return map_of("Deviation, measured less true", *picture.deviation, -end, end, Palette::signed_deviation);
+        });
     if (picture.all_in_focus) {
-        draw_map(svg, next(), panel,
-                 map_of_image("All in focus", *picture.all_in_focus, picture.measured, picture.image_unit));
+        draw([&] { return map_of_image("All in focus", *picture.all_in_focus, picture.measured, picture.image_unit); });
         // The heights' colours, as bright as the image.
-        Map overlay = map_of("Heights over the image", picture.measured, low, high, Palette::height);
-        const Map image = map_of_image("", *picture.all_in_focus, picture.measured, picture.image_unit);
-        overlay.brightness = image.values;
-        for (double& value : overlay.brightness->values)
-            value = std::clamp(value / image.high, 0.0, 1.0);
-        draw_map(svg, next(), panel, overlay);
+        draw([&] {
+            Map overlay = map_of("Heights over the image", picture.measured, low, high, Palette::height);
+            const Map image = map_of_image("", *picture.all_in_focus, picture.measured, picture.image_unit);
+            overlay.brightness = image.values;
+            for (double& value : overlay.brightness->values)
+                value = std::clamp(value / image.high, 0.0, 1.0);
+            return overlay;
+        });
     }
+    for (auto& map : maps)
+        svg.append(map.get());
     const int row = picture.measured.rows() / 2;
     std::vector<Curve> curves{profile("measured", picture.measured, row)};
     if (picture.truth)
@@ -117,6 +138,11 @@ std::string image_picture(const std::string& title, const Grid<double>& image, d
     const auto count = static_cast<double>(image.values.size());
     const double mean = sum / count, deviation = std::sqrt(std::max(0.0, square / count - mean * mean));
     constexpr int intervals = 100;
+    auto drawn = std::async(std::launch::async, [&] {
+        Svg part;
+        draw_map(part, {margin, head}, panel, map);
+        return part;
+    });
     const double top = range_of(map.values, 2e-4).second;
     std::vector<double> counts(intervals, 0.0);
     for (const double value : image.values) {
@@ -126,7 +152,7 @@ std::string image_picture(const std::string& title, const Grid<double>& image, d
     }
     Svg svg;
     svg.text({margin, 34}, title, "font-size=\"19\" fill=\"#111111\"");
-    draw_map(svg, {margin, head}, panel, map);
+    svg.append(drawn.get());
     draw_histogram(svg, {margin + panel.x + margin, head}, panel,
                    fmt::format("Mean {:.4g} {}, contrast {:.4f}", mean, quantity.unit, deviation / mean),
                    {0, top, quantity.label, false}, counts);

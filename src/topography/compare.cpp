@@ -4,6 +4,7 @@
 #include "surface/height_parameters.hpp"
 
 #include <cmath>
+#include <future>
 #include <limits>
 #include <stdexcept>
 #include <utility>
@@ -38,8 +39,9 @@ LevelledPair levelled_pair(HeightMap measured, HeightMap truth, const Band& band
     if (band.form.kind == surface::Form::Kind::truth) {
         measured = remove_plane(std::move(measured), least_squares_plane(difference_of(measured, truth)));
     } else {
+        auto of_truth = std::async(std::launch::async, [&] { return remove_form(std::move(truth), band.form); });
         measured = remove_form(std::move(measured), band.form);
-        truth = remove_form(std::move(truth), band.form);
+        truth = of_truth.get();
         keep_common_points(measured, truth); // a sphere ends
     }
     return {.measured = filtered(std::move(measured), band),
@@ -48,15 +50,18 @@ LevelledPair levelled_pair(HeightMap measured, HeightMap truth, const Band& band
 }
 
 Deviation compare(const LevelledPair& treated) {
+    auto of_truth = std::async(std::launch::async, [&] { return surface::height_parameters(treated.truth); });
+    auto of_difference =
+        std::async(std::launch::async, [&] { return surface::height_parameters(deviation_map(treated)); });
     const auto a = surface::height_parameters(treated.measured);
-    const auto b = surface::height_parameters(treated.truth);
+    const auto b = of_truth.get();
     double covariance = 0, count = 0;
     for (std::size_t k = 0; k < treated.measured.height.values.size(); ++k)
         if (const double z = treated.measured.height.values[k]; std::isfinite(z)) {
             covariance += (z - a.mean) * (treated.truth.height.values[k] - b.mean);
             count += 1;
         }
-    const auto difference = surface::height_parameters(deviation_map(treated));
+    const auto difference = of_difference.get();
     Deviation result;
     result.sq_measured = a.sq;
     result.sq_true = b.sq;

@@ -7,6 +7,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <future>
 #include <limits>
 #include <numeric>
 #include <stdexcept>
@@ -332,15 +333,19 @@ PointState StackEvaluator::judge(const focus::f64::CurveRecord& curve, const foc
 Topography StackEvaluator::finish(double x0, double y0, double pitch) {
     require(z_.size() >= 3, "stack", fmt::format("{} images", z_.size()), "at least 3 images",
             "A peak needs an image on either side: widen the scan.");
+    // By the probes alone, while the planes are finished.
+    auto noise_of_probes = std::async(std::launch::async, [this] { return probes_->noise(); });
+    auto correlation_of_probes = std::async(std::launch::async, [this] { return probes_->noise_correlation(); });
+    auto figures_of_probes = std::async(std::launch::async, [this] { return judge_stack(); });
     advance(true);
     StackSummary stack = planes_->summary();
     planes_.reset();
 
     const int images = static_cast<int>(z_.size());
-    const NoiseModel noise_model = probes_->noise();
-    const NoiseCorrelation correlation = probes_->noise_correlation();
+    const NoiseModel noise_model = noise_of_probes.get();
+    const NoiseCorrelation correlation = correlation_of_probes.get();
     const double gain = noise_gain(measure_, 1, correlation);
-    StackFigures figures = judge_stack();
+    StackFigures figures = figures_of_probes.get();
     const SmoothedNoise smoothed = smoothed_noise(axial_weights_);
     const std::vector<AveragedPoint> points = averaged_points(axial_weights_, images);
     const std::vector<double> read = averaged(readings_, axial_weights_);

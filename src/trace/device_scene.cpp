@@ -48,8 +48,8 @@ std::vector<vulkan::Box> boxes_of(const optics::Room& room) {
 
 DeviceScene make_device_scene(const optics::Instrument& instrument, const specimen::Specimen& specimen,
                               const TraceOptions& options, const optics::Instrument* seen) {
-    auto device = options.opened ? options.opened
-                                 : std::make_shared<const vulkan::Device>(vulkan::DeviceOptions{options.device});
+    auto device =
+        options.opened ? options.opened : std::make_shared<const vulkan::Device>(vulkan::DeviceOptions{options.device});
     optics::Room room = options.nonsequential ? optics::furnish(instrument) : optics::Room{};
     Accounts accounts =
         options.nonsequential ? Accounts(instrument, room.names) : Accounts(instrument, options.directed_scatter);

@@ -32,12 +32,12 @@ struct TraceOptions {
     std::uint32_t seed = 1;
     int max_bounces = 2;
     Traversal traversal = Traversal::automatic;
-    std::uint64_t batch = 0;         // rays in flight at once; 0: what suits the device
-    std::uint64_t batch_divisor = 1; // of what `batch` says
-    std::string device;              // selector: an index or a part of the name
+    std::uint64_t batch = 0;                      // rays in flight at once; 0: what suits the device
+    std::uint64_t batch_divisor = 1;              // of what `batch` says
+    std::string device;                           // selector: an index or a part of the name
     std::shared_ptr<const vulkan::Device> opened; // that device, if it is open
-    bool nonsequential = false;      // light finds its own way, and interfaces split it
-    bool directed_scatter = false;   // forward, sequential: every bounce also aims at the pupil, and light has weights
+    bool nonsequential = false;                   // light finds its own way, and interfaces split it
+    bool directed_scatter = false; // forward, sequential: every bounce also aims at the pupil, and light has weights
     std::optional<bool> instrument_in_constants; // of the forward kernels; none: where it pays
     std::optional<optics::WaveOptions> waves;    // sequential: images as waves make them; none: as rays do
 };

@@ -283,6 +283,9 @@ TEST_F(Cluster, TheLogTellsOfEachImageInJson) {
         EXPECT_EQ(image["device"], 0);
         EXPECT_GT(image["rays_per_s"].get<double>(), 0);
         EXPECT_GT(image["longest_submission_s"].get<double>(), 0);
+        const double span = image["device_end_s"].get<double>() - image["device_begin_s"].get<double>();
+        EXPECT_GT(image["device_busy_s"].get<double>(), 0);
+        EXPECT_LE(image["device_busy_s"].get<double>(), span * (1 + 1e-9));
         EXPECT_GE(image["seconds_left"].get<double>(), 0);
         const double sum = image["detected_W"].get<double>() + image["lost_W"].get<double>();
         EXPECT_NEAR(sum + image["residual_W"].get<double>(), image["emitted_W"].get<double>(), 1e-12);
