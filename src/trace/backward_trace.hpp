@@ -2,6 +2,7 @@
 #pragma once
 
 #include "trace/backward_image.hpp"
+#include "trace/device_exposures.hpp"
 #include "trace/device_scene.hpp"
 
 #include <cstdint>
@@ -38,8 +39,9 @@ class BackwardTrace {
     vulkan::Kernel kernel_;
 };
 
-// Throws as make_device_tracer().
-std::unique_ptr<Tracer> make_backward_tracer(const optics::Instrument& instrument, const specimen::Specimen& specimen,
-                                             const TraceOptions& options);
+// device: to trace on; none: that of the options is opened. Throws as make_device_tracer().
+std::unique_ptr<DeviceExposures> make_backward_tracer(const optics::Instrument& instrument,
+                                                      const specimen::Specimen& specimen, const TraceOptions& options,
+                                                      std::shared_ptr<const vulkan::Device> device);
 
 } // namespace vkfv::trace

@@ -47,8 +47,11 @@ std::vector<vulkan::Box> boxes_of(const optics::Room& room) {
 }
 
 DeviceScene make_device_scene(const optics::Instrument& instrument, const specimen::Specimen& specimen,
-                              const TraceOptions& options, const optics::Instrument* seen) {
-    auto device = std::make_shared<const vulkan::Device>(vulkan::DeviceOptions{options.device});
+                              const TraceOptions& options, const optics::Instrument* seen,
+                              std::shared_ptr<const vulkan::Device> device) {
+    if (!device) {
+        device = std::make_shared<const vulkan::Device>(vulkan::DeviceOptions{options.device});
+    }
     optics::Room room = options.nonsequential ? optics::furnish(instrument) : optics::Room{};
     Accounts accounts =
         options.nonsequential ? Accounts(instrument, room.names) : Accounts(instrument, options.directed_scatter);

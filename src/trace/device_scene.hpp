@@ -85,7 +85,9 @@ struct DeviceScene {
 // Throws DeviceError (no usable device, too little memory) or InputError (a traversal that specimen or device does not
 // admit, too many surfaces).
 // seen: the instrument, not turned round, by whose pupil light is sorted if the options ask for waves; none: it is not.
+// device: to trace on; none: that of the options is opened.
 DeviceScene make_device_scene(const optics::Instrument& instrument, const specimen::Specimen& specimen,
-                              const TraceOptions& options, const optics::Instrument* seen = nullptr);
+                              const TraceOptions& options, const optics::Instrument* seen = nullptr,
+                              std::shared_ptr<const vulkan::Device> device = nullptr);
 
 } // namespace vkfv::trace
