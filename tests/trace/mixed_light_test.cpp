@@ -42,7 +42,7 @@ optics::InstrumentDescription mixed_description() {
     description.turned = true;
     optics::SourceDescription ring;
     ring.key = "source[1]";
-    ring.flux = 5;
+    ring.flux = 14;
     ring.ring = narrow_ring(0.8);
     description.further_sources = {ring};
     return description;
@@ -107,21 +107,19 @@ double agreement(const trace::Image& one, const trace::Image& other) {
 } // namespace
 
 // Energy: both estimators, in float on the device and in double on the host. Each with a wrong twin, whose ring light
-// is 5 % brighter.
+// is 5 % brighter, or forward, of few rays, 20 %.
 TEST(MixedLight, GivesTheSumOfItsSources) {
     const auto description = mixed_description();
-    auto brighter = description;
-    brighter.further_sources.front().flux *= 1.05;
     const auto mixed = optics::assemble(description);
-    const auto twin = optics::assemble(brighter);
     struct Way {
         trace::Estimator estimator;
         std::uint64_t rays;
         bool on_host;
+        double brighter; // the twin's ring light
     };
     for (const Way& way :
-         {Way{trace::Estimator::forward, 12'000'000, false}, Way{trace::Estimator::backward, 1 << 18, false},
-          Way{trace::Estimator::backward, 1 << 16, true}}) {
+         {Way{trace::Estimator::forward, 4'000'000, false, 1.2}, Way{trace::Estimator::backward, 1 << 18, false, 1.05},
+          Way{trace::Estimator::backward, 1 << 16, true, 1.05}}) {
         SCOPED_TRACE(way.on_host);
         SCOPED_TRACE(static_cast<int>(way.estimator));
         std::vector<trace::Image> parts;
@@ -129,20 +127,22 @@ TEST(MixedLight, GivesTheSumOfItsSources) {
             parts.push_back(expose(lit_by(description, source), options(way.estimator, way.rays, 11), way.on_host));
         }
         const double share = total(parts[1].flux) / (total(parts[0].flux) + total(parts[1].flux));
-        EXPECT_GT(share, 0.3) << "the twin would hardly differ";
-        EXPECT_LT(share, 0.8);
+        EXPECT_GT(share, 0.4) << "the twin would hardly differ";
+        EXPECT_LT(share, 0.6);
         const auto with = options(way.estimator, way.rays);
         const auto whole = expose(mixed, with, way.on_host);
         EXPECT_LT(apart(whole, parts), largest_z);
-        EXPECT_GT(apart(expose(twin, with, way.on_host), parts), largest_z);
-        EXPECT_DOUBLE_EQ(whole.ledger.emitted, 6);
+        auto twin = description;
+        twin.further_sources.front().flux *= way.brighter;
+        EXPECT_GT(apart(expose(optics::assemble(twin), with, way.on_host), parts), largest_z);
+        EXPECT_DOUBLE_EQ(whole.ledger.emitted, 15);
     }
 }
 
 TEST(MixedLight, IsTheSameForwardAndBackward) {
     const auto description = mixed_description();
     const auto mixed = optics::assemble(description);
-    const auto forward = expose(mixed, options(trace::Estimator::forward, 12'000'000));
+    const auto forward = expose(mixed, options(trace::Estimator::forward, 8'000'000));
     ASSERT_GT(forward.detected, 25'000u);
     const double p = agreement(forward, expose(mixed, options(trace::Estimator::backward, 1 << 19)));
     EXPECT_GT(p, level);
@@ -153,7 +153,7 @@ TEST(MixedLight, IsTheSameForwardAndBackward) {
     EXPECT_LT(agreement(forward, expose(optics::assemble(other), options(trace::Estimator::backward, 1 << 19))), level);
     // Every ray has one fate, and all the light is accounted for.
     EXPECT_LT(std::abs(forward.ledger.residual()), 1e-6 * forward.ledger.emitted);
-    EXPECT_EQ(forward.rays, 12'000'000u);
+    EXPECT_EQ(forward.rays, 8'000'000u);
     std::uint64_t rays = 0;
     std::set<std::string> names;
     for (const auto& entry : forward.ledger.entries) {
@@ -169,17 +169,17 @@ TEST(MixedLight, FindsItsOwnWayToo) {
     auto description = mixed_description();
     description.turned = false;
     const auto mixed = optics::assemble(description);
-    auto with = options(trace::Estimator::forward, 4'000'000);
+    auto with = options(trace::Estimator::forward, 2'000'000);
     with.nonsequential = true;
     const auto found = expose(mixed, with);
     EXPECT_LT(std::abs(found.ledger.residual()), 1e-6 * found.ledger.emitted);
     with.nonsequential = false;
     const auto led = expose(mixed, with);
     // Ideal interfaces make no ghosts, and the splitter's shares are drawn instead of calculated.
-    EXPECT_GT(found.detected, 500u);
+    EXPECT_GT(found.detected, 1000u);
     EXPECT_LT(apart(found, {led}), largest_z);
     auto brighter = description;
-    brighter.further_sources.front().flux *= 1.8; // few rays arrive: a coarser twin
+    brighter.further_sources.front().flux *= 1.5; // few rays arrive: a coarser twin
     EXPECT_GT(apart(found, {expose(optics::assemble(brighter), with)}), largest_z);
 }
 
@@ -190,7 +190,7 @@ TEST(MixedLight, OfTwoColoursIsOneLightOfTwoLines) {
     optics::SourceDescription blue;
     blue.flux = 2;
     blue.ring = narrow_ring(0.8);
-    blue.spectrum = optics::Spectrum::line(0.47);
+    blue.spectrum = optics::Spectrum::line(0.5);
     optics::SourceDescription red = blue;
     red.key = "source[1]";
     red.flux = 3;
@@ -201,7 +201,7 @@ TEST(MixedLight, OfTwoColoursIsOneLightOfTwoLines) {
     auto one = description;
     one.source.spectrum.reset();
     one.source.flux = 5;
-    one.spectrum = optics::Spectrum::lines({0.47, 0.63}, {2, 3});
+    one.spectrum = optics::Spectrum::lines({0.5, 0.63}, {2, 3});
     one.further_sources.clear();
     const auto both = optics::assemble(description);
     const auto lines = optics::assemble(one);
@@ -210,7 +210,7 @@ TEST(MixedLight, OfTwoColoursIsOneLightOfTwoLines) {
     const auto backward = options(trace::Estimator::backward, 1 << 18);
     const auto image = expose(both, backward);
     EXPECT_LT(apart(image, {expose(lines, options(trace::Estimator::backward, 1 << 18, 5))}), largest_z);
-    // Wrong twin: a fourth more of the one colour.
+    // Wrong twin: 5 % more light.
     one.source.flux = 5.25;
     EXPECT_GT(apart(image, {expose(optics::assemble(one), options(trace::Estimator::backward, 1 << 18, 5))}),
               largest_z);
