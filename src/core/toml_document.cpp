@@ -81,8 +81,8 @@ void merge(toml::table& into, toml::table&& from, const TomlOverride& given) {
                         {.where = {.file = given.origin},
                          .key = given.key,
                          .found = fmt::format("\"{}\" after \"{}\"", index.str(), key.str()),
-                         .expected = fmt::format("which of the {} tables [[{}]], 0 to {}", tables.size(), key.str(),
-                                                 tables.size() - 1),
+                         .expected =
+                             fmt::format("which [[{}]] is meant, by its number, 0 to {}", key.str(), tables.size() - 1),
                          .remedy = fmt::format("Write {}.0.{} for that of the first.", key.str(),
                                                element == nullptr && own.is_table() ? "KEY" : index.str())});
                 }
