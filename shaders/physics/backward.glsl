@@ -136,6 +136,10 @@ VKFV_SCENE_FUNCTION VKFV_FUNCTION real trace_to_source(VKFV_SCENE_PARAMETER Inst
         RingMeeting meeting = meet_ring(instrument.ring, from_aim, train.ray.direction / index);
         real emission_cosine = sqrt(max(real(1.0) - instrument.emission_sine * instrument.emission_sine, real(0.0)));
         arrives = meeting.found && meeting.cosine >= emission_cosine;
+    } else if (arrives && (features(VKFV_SCENE_ALONE) & FEATURE_RECTANGLE) != 0u) {
+        // The last surface is the circle about it. Its frame is the source's turned half a turn about x.
+        arrives = abs(train.ray.position.x) <= instrument.source_half_width &&
+                  abs(train.ray.position.y) <= instrument.source_half_height;
     }
     return arrives ? query.weight * train.transmitted : real(0.0);
 }

@@ -94,6 +94,9 @@ VKFV_SCENE_FUNCTION VKFV_FUNCTION Emission emit(VKFV_SCENE_PARAMETER Instrument 
     if ((present & FEATURE_RING) != 0u) {
         emission.ray =
             emit_from_ring(instrument.ring, instrument.emission_sine, draws.u0, draws.u1, draws.u2, draws.u3);
+    } else if ((present & FEATURE_RECTANGLE) != 0u) {
+        emission.ray = emit_from_rectangle(instrument.source_half_width, instrument.source_half_height,
+                                           instrument.emission_sine, draws.u0, draws.u1, draws.u2, draws.u3);
     } else {
         emission.ray =
             emit_from_disc(instrument.source_radius, instrument.emission_sine, draws.u0, draws.u1, draws.u2, draws.u3);

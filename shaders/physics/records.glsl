@@ -37,6 +37,7 @@ const uint FEATURE_RING = 16u;             // a ring light instead of the disc
 const uint FEATURE_DIRECTED_SCATTER = 32u; // of the trace, not of the instrument: survivors have weights
 const uint FEATURE_PUPIL_CELLS = 128u;     // likewise: light is sorted by where it crosses the pupil
 const uint FEATURE_REFLECTANCE_MAP = 64u;  // of the specimen
+const uint FEATURE_RECTANGLE = 256u;       // a rectangle instead of the disc
 
 const int SURFACE_CAPACITY = 128;  // surfaces of both trains together that the device's uniform block holds
 const int KNOWN_SURFACES = 64;     // of them, that a kernel can have as constants (device/prescription.glsl)
@@ -187,6 +188,8 @@ struct SourceFrame {
 //   |gate_position * (x, y) + gate_slope * (dx/dz, dy/dz)| <= gate_radius,  x, y in mm on the specimen's top plane.
 #define VKFV_INSTRUMENT_FIELDS(FIELD) \
     FIELD(real, source_radius)       /* mm, a flat Lambertian disc */ \
+    FIELD(real, source_half_width)   /* mm, a rectangle in its place: along x of the source's frame */ \
+    FIELD(real, source_half_height)  /* along y */ \
     FIELD(real, source_distance)     /* mm, from the source to the first vertex of the illumination train */ \
     FIELD(real, emission_sine)       /* sine of the half-angle of the cone aimed into; 1 is the whole hemisphere */ \
     FIELD(real, magnification)       /* lateral, signed: detector over object */ \

@@ -62,6 +62,17 @@ VKFV_FUNCTION Ray emit_from_disc(real radius, real emission_sine, real u0, real 
     return ray;
 }
 
+// A flat rectangle about the origin in z = 0.
+VKFV_FUNCTION Ray emit_from_rectangle(real half_width, real half_height, real emission_sine, real u0, real u1, real u2,
+                                      real u3) {
+    Ray ray;
+    ray.position =
+        real3(half_width * (real(2.0) * u0 - real(1.0)), half_height * (real(2.0) * u1 - real(1.0)), real(0.0));
+    ray.direction = lambertian_direction(emission_sine, u2, u3);
+    ray.path_length = real(0.0);
+    return ray;
+}
+
 // A ring light about the z axis that shines on the origin from z < 0. Its band lies on a cone: at w across the band,
 // from the ring's inside, its radius is r - w sin(elevation), and so is its share of the area.
 struct RingPoint {

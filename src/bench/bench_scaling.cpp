@@ -78,7 +78,7 @@ Json over_surfaces(const BenchScene& scene) {
             }
             const auto first_order = measurement::assemble_instrument(configuration).first_order;
             auto fitted = configuration;
-            fitted.instrument.source_radius = first_order.pupil_radius_in_source;
+            fitted.instrument.source.radius = first_order.pupil_radius_in_source;
             // A wider field of view than the configuration's would be lit beyond its specimen.
             if (fitted.instrument.field_stop_radius) {
                 *fitted.instrument.field_stop_radius *=

@@ -5,6 +5,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <initializer_list>
 
 namespace vkfv {
@@ -12,7 +13,7 @@ namespace vkfv {
 namespace {
 
 // That every medium has an index over the whole spectrum: else an error at the wavelength, which names the medium.
-void require_indices(const Configuration& configuration, const std::string& wavelength_key) {
+void require_indices(const Configuration& configuration, const LightOfSource& light) {
     const auto& instrument = configuration.instrument;
     const auto require = [&](const std::string& part, const optics::Medium& medium, const std::string& key,
                              std::initializer_list<double> wavelengths_um) {
@@ -29,8 +30,8 @@ void require_indices(const Configuration& configuration, const std::string& wave
         }
     };
     const auto require_over_spectrum = [&](const std::string& part, const optics::Medium& medium) {
-        const auto& spectrum = instrument.spectrum;
-        require(part, medium, wavelength_key, {spectrum.shortest_um, spectrum.longest_um, spectrum.reference_um});
+        const auto& spectrum = light.spectrum;
+        require(part, medium, light.key, {spectrum.shortest_um, spectrum.longest_um, spectrum.reference_um});
     };
     const auto require_all_of = [&](const char* role, const optics::Prescription& prescription) {
         const std::string part = fmt::format("the {} {}", role, prescription.name);
@@ -70,9 +71,28 @@ void require_possible_aperture(const TomlTable& root, const Configuration& confi
     }
 }
 
+// What is computed of the sum of all light, with the spectrum of what the sources emit. Of this the specimen gets
+// another mixture.
+void require_one_spectrum(const Configuration& configuration) {
+    const auto& sources = configuration.instrument.further_sources;
+    const auto other = std::ranges::find_if(sources, [](const auto& source) { return source.spectrum.has_value(); });
+    const char* const part = configuration.camera             ? "[camera]"
+                             : configuration.diffraction.airy ? "[diffraction] model = \"airy\""
+                                                              : nullptr;
+    if (other != sources.end() && part != nullptr) {
+        throw InputError({.where = configuration.places.at(other->key),
+                          .key = other->key,
+                          .found = "sources of different spectra",
+                          .expected = fmt::format("one spectrum of all sources with {}, which knows the spectrum of "
+                                                  "their sum alone",
+                                                  part),
+                          .remedy = fmt::format("Give all the same wavelength or spectrum, or take {} out.", part)});
+    }
+}
+
 void read_instrument(const TomlTable& root, Configuration& configuration) {
-    std::string wavelength_key;
-    root.attempt("source", [&] { wavelength_key = read_source(root, configuration); });
+    std::vector<LightOfSource> lights;
+    root.attempt("source", [&] { lights = read_source(root, configuration); });
     const std::pair<const char*, void (*)(const TomlTable&, Configuration&)> parts[] = {
         {"illumination", read_illumination}, {"beam_splitter", read_beam_splitter}, {"fold_mirror", read_fold_mirrors},
         {"interfaces", read_interfaces},     {"objective", read_objective},         {"cover_glass", read_cover_glass},
@@ -81,7 +101,11 @@ void read_instrument(const TomlTable& root, Configuration& configuration) {
         root.attempt(key, [&, read = read] { read(root, configuration); }); // clang 14 captures no binding by name
     }
     if (root.sound("")) { // what takes all of them together
-        root.attempt("source", [&] { require_indices(configuration, wavelength_key); });
+        root.attempt("source", [&] {
+            for (const LightOfSource& light : lights) {
+                require_indices(configuration, light);
+            }
+        });
         root.attempt("objective", [&] { require_possible_aperture(root, configuration); });
     }
 }
@@ -116,6 +140,7 @@ Configuration read_configuration(const TomlTable& root, Needs needs) {
     root.attempt("stage", [&] { read_stage(root, configuration); });
     root.attempt("trace", [&] { read_trace(root, configuration); });
     root.attempt("diffraction", [&] { read_diffraction(root, configuration); });
+    root.attempt("source", [&] { require_one_spectrum(configuration); });
     root.attempt("topography", [&] { read_topography(root, configuration, needs); });
     root.attempt("output", [&] { read_output(root, configuration); });
     root.attempt("sweep", [&] { read_sweep(root, configuration); });

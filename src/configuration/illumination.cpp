@@ -37,8 +37,8 @@ const ChoiceKey<SplitterKind>
 const NumberKey splitter_reflectance("reflectance",
                                      {.minimum = 0, .maximum = 1, .minimum_included = false, .maximum_included = false},
                                      default_splitter_reflectance,
-                                     "Share of the illumination that is sent to the specimen; 0 only with a ring "
-                                     "light.");
+                                     "Share of the illumination that is sent to the specimen; 0 only with ring "
+                                     "lights alone.");
 const NumberKey splitter_transmittance("transmittance", share_range, Default::in_words("1 - reflectance"),
                                        "Share of the light from the specimen that passes to the detector.");
 const TextKey splitter_glass =
@@ -87,7 +87,7 @@ const NumberKey design_wavelength =
 const KeyTable& illumination_keys() {
     static const KeyTable table{.path = "illumination",
                                 .presence = KeyTable::Presence::optional,
-                                .meaning = "The illuminator between a disc source and the beam splitter.",
+                                .meaning = "The illuminator between a disc or rectangle and the beam splitter.",
                                 .subject = "an illumination",
                                 .kind = "",
                                 .keys = {&illuminator, &field_stop, &aperture, &objective_distance}};
@@ -129,11 +129,11 @@ const KeyTable& interfaces_keys() {
 
 void read_illumination(const TomlTable& root, Configuration& configuration) {
     auto& instrument = configuration.instrument;
-    if (instrument.ring) {
+    if (instrument.source.ring) {
         if (root.has("illumination")) {
             root.fail("illumination",
-                      "no [illumination] with a source of kind \"ring\", which shines past the objective",
-                      "Remove it, or choose a source of kind \"disc\".");
+                      "no [illumination] with sources of kind \"ring\" alone, which shine past the objective",
+                      "Remove it, or add a source of kind \"disc\" or \"rectangle\".");
         }
         return;
     }
@@ -151,7 +151,7 @@ void read_beam_splitter(const TomlTable& root, Configuration& configuration) {
     splitter.kind = section.kind(splitter_kind);
     // A ring light does without its reflection.
     auto reflectances = splitter_reflectance.range;
-    reflectances.minimum_included = configuration.instrument.ring || !root.sound("source");
+    reflectances.minimum_included = configuration.instrument.source.ring || !root.sound("source");
     splitter.reflectance = section.number_in(splitter_reflectance, reflectances);
     splitter.transmittance = section.number(splitter_transmittance, 1 - splitter.reflectance);
     if (splitter.reflectance + splitter.transmittance > 1 + share_rounding) {
@@ -171,7 +171,7 @@ void read_fold_mirrors(const TomlTable& root, Configuration& configuration) {
         const Section section(table, fold_mirror_keys(), configuration);
         optics::FoldMirror mirror;
         mirror.path = section.choice(path);
-        if (mirror.path == MirrorPath::illumination && configuration.instrument.ring) {
+        if (mirror.path == MirrorPath::illumination && configuration.instrument.source.ring) {
             section.fail(path, "\"imaging\", as a ring light has no illumination path", "Remove the mirror.");
         }
         mirror.distance = section.number(mirror_distance);

@@ -373,6 +373,14 @@ std::string configuration_schema() {
             add_to_schema((*object)["properties"], *table, *key);
         }
     }
+    for (const KeyTable* table : key_tables()) {
+        if (table->several) {
+            Json& one = schema["properties"][table->path];
+            const Json properties = one["properties"];
+            one["items"] = {{"type", "object"}, {"additionalProperties", false}, {"properties", properties}};
+            one["type"] = {"object", "array"};
+        }
+    }
     schema["required"] = required;
     return schema.dump(2) + "\n";
 }

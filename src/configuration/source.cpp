@@ -1,4 +1,4 @@
-// [source] and [source.spectrum].
+// [source], or several [[source]], and [source.spectrum].
 #include "configuration/ranges.hpp"
 #include "configuration/tables.hpp"
 #include "core/digest.hpp"
@@ -13,22 +13,30 @@ namespace vkfv {
 
 namespace {
 
-enum class SourceKind { disc, ring };
+enum class SourceKind { disc, rectangle, ring };
 enum class SpectrumKind { monochromatic, lines, gaussian, table };
 
 constexpr double least_flux = 1e-15, largest_flux = 1e15; // W; what falls on a pixel stays a float32
 
 const ChoiceKey<SourceKind> kind("kind",
                                  {{SourceKind::disc, "disc", "a Lambertian disc behind an illuminator"},
+                                  {SourceKind::rectangle, "rectangle", "a Lambertian rectangle there: an LED's die"},
                                   {SourceKind::ring, "ring", "a ring light around the objective"}},
                                  SourceKind::disc, "What shines.");
 const NumberKey flux("flux_W", NumberRange::within(least_flux, largest_flux), 1.0,
                      "Radiant flux that the source sends into its half space.");
 const NumberKey radius = of_kinds(
     {"disc"}, for_example("5.0", NumberKey("radius_mm", NumberRange::positive(), needed, "Radius of the disc.")));
-const NumberKey disc_distance =
-    of_kinds({"disc"}, NumberKey("distance_mm", NumberRange::positive(), Default::in_words("the prescription's"),
-                                 "From the disc to the illuminator's first vertex."));
+const NumberKey die_width =
+    of_kinds({"rectangle"}, for_example("1.9", NumberKey("width_mm", NumberRange::positive(), needed,
+                                                         "Width of the rectangle, along x of the specimen where no "
+                                                         "mirror turns it.")));
+const NumberKey die_height =
+    of_kinds({"rectangle"},
+             for_example("1.9", NumberKey("height_mm", NumberRange::positive(), needed, "Height of the rectangle.")));
+const NumberKey illuminator_distance = of_kinds(
+    {"disc", "rectangle"}, NumberKey("distance_mm", NumberRange::positive(), Default::in_words("the prescription's"),
+                                     "From disc or rectangle to the illuminator's first vertex."));
 const NumberKey ring_distance =
     of_kinds({"ring"}, for_example("30.0", NumberKey("distance_mm", NumberRange::positive(), needed,
                                                      "From the ring's middle line to the focus on the axis.")));
@@ -133,22 +141,21 @@ optics::Spectrum read_spectrum_table(const Section& section) {
     return optics::Spectrum::table(places, section.numbers(densities));
 }
 
-// Gives the key that the wavelengths stand at.
-std::string read_spectrum(const Section& source, Configuration& configuration) {
-    auto& spectrum = configuration.instrument.spectrum;
+LightOfSource read_spectrum(const Section& source, Configuration& configuration) {
     const auto table = source.table().optional_table("spectrum");
+    const std::string& path = source.table().path();
     if (!table) {
-        spectrum = optics::Spectrum::line(source.number(wavelength));
-        return "source." + wavelength.name;
+        return {path + "." + wavelength.name, optics::Spectrum::line(source.number(wavelength))};
     }
     if (source.has(wavelength)) {
         source.note(wavelength, "a wavelength or [source.spectrum], not both", "Remove one of the two.");
     }
     const Section section(*table, spectrum_keys(), configuration);
+    LightOfSource light{table->path(), optics::Spectrum::line(*wavelength.value)};
     source.table().attempt("spectrum", [&] {
-        at_its_place(configuration, table->where(), [&] { spectrum = read_spectrum_table(section); });
+        at_its_place(configuration, table->where(), [&] { light.spectrum = read_spectrum_table(section); });
     });
-    return table->path();
+    return light;
 }
 
 optics::RingLightDescription read_ring(const Section& source) {
@@ -168,16 +175,50 @@ optics::RingLightDescription read_ring(const Section& source) {
     return ring;
 }
 
+struct ReadSource {
+    optics::SourceDescription source;
+    LightOfSource light;
+};
+
+// has_illuminator: whether another source stands behind it.
+ReadSource read_one(const Section& section, bool has_illuminator, Configuration& configuration) {
+    optics::SourceDescription source;
+    source.key = section.table().path();
+    const SourceKind what = section.kind(kind);
+    if (what != SourceKind::ring && has_illuminator) {
+        section.fail(kind, "\"ring\", as another source stands behind the illuminator already",
+                     "Make it a ring light, or leave one of the two out.");
+    }
+    source.flux = section.number(flux);
+    switch (what) {
+    case SourceKind::ring:
+        source.ring = read_ring(section);
+        break;
+    case SourceKind::rectangle:
+        source.rectangle = glm::dvec2(section.number(die_width), section.number(die_height));
+        source.distance = section.number_if_given(illuminator_distance);
+        break;
+    case SourceKind::disc:
+        source.radius = section.number(radius);
+        source.distance = section.number_if_given(illuminator_distance);
+        break;
+    }
+    return {source, read_spectrum(section, configuration)};
+}
+
 } // namespace
 
 const KeyTable& source_keys() {
     static const KeyTable table{.path = "source",
                                 .presence = KeyTable::Presence::needed,
-                                .meaning = "The light.",
+                                .meaning =
+                                    "The light. Each of several sources stands below a [[source]] of its own: one "
+                                    "disc or rectangle at most, and ring lights.",
                                 .subject = "a source",
                                 .kind = "kind",
-                                .keys = {&kind, &flux, &radius, &disc_distance, &ring_distance, &elevation, &width,
-                                         &segments, &fill, &on, &wavelength}};
+                                .keys = {&kind, &flux, &radius, &die_width, &die_height, &illuminator_distance,
+                                         &ring_distance, &elevation, &width, &segments, &fill, &on, &wavelength},
+                                .several = true};
     return table;
 }
 
@@ -192,18 +233,38 @@ const KeyTable& spectrum_keys() {
     return table;
 }
 
-std::string read_source(const TomlTable& root, Configuration& configuration) {
-    auto& instrument = configuration.instrument;
-    const Section source(root.table("source"), source_keys(), configuration);
-    const SourceKind what = source.kind(kind);
-    instrument.flux = source.number(flux);
-    if (what == SourceKind::ring) {
-        instrument.ring = read_ring(source);
-    } else {
-        instrument.source_radius = source.number(radius);
-        instrument.source_distance = source.number_if_given(disc_distance);
+std::vector<LightOfSource> read_source(const TomlTable& root, Configuration& configuration) {
+    std::vector<ReadSource> read;
+    for (const TomlTable& table : root.table_or_tables("source")) {
+        root.attempt(table.path(), [&] {
+            const bool has_illuminator =
+                std::ranges::any_of(read, [](const ReadSource& other) { return !other.source.ring; });
+            read.push_back(read_one(Section(table, source_keys(), configuration), has_illuminator, configuration));
+        });
     }
-    return read_spectrum(source, configuration);
+    std::vector<LightOfSource> lights;
+    if (read.empty()) {
+        return lights; // what is wrong was noted
+    }
+    std::vector<optics::Spectrum::Part> parts;
+    for (const auto& [source, light] : read) {
+        lights.push_back(light);
+        parts.push_back({.flux = source.flux, .spectrum = light.spectrum});
+    }
+    auto& instrument = configuration.instrument;
+    instrument.spectrum = optics::Spectrum::mixture(parts);
+    for (auto& [source, light] : read) {
+        if (!(light.spectrum == instrument.spectrum)) {
+            source.spectrum = light.spectrum;
+        }
+    }
+    // What stands behind the illuminator is the first.
+    std::ranges::stable_partition(read, [](const ReadSource& one) { return !one.source.ring; });
+    instrument.source = read.front().source;
+    for (std::size_t further = 1; further < read.size(); ++further) {
+        instrument.further_sources.push_back(read[further].source);
+    }
+    return lights;
 }
 
 } // namespace vkfv

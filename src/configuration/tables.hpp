@@ -11,8 +11,13 @@
 namespace vkfv {
 
 void read_glass_catalogs(const TomlTable& root, Configuration& configuration);
-// Gives the key that the wavelengths stand at.
-std::string read_source(const TomlTable& root, Configuration& configuration);
+
+// The wavelengths of a source, and the key that they stand at.
+struct LightOfSource {
+    std::string key;
+    optics::Spectrum spectrum;
+};
+std::vector<LightOfSource> read_source(const TomlTable& root, Configuration& configuration);
 void read_illumination(const TomlTable& root, Configuration& configuration);
 void read_beam_splitter(const TomlTable& root, Configuration& configuration);
 void read_fold_mirrors(const TomlTable& root, Configuration& configuration);

@@ -190,7 +190,8 @@ struct KeyTable {
     std::string subject; // in messages, with `kind`: "a source"; empty: the key is named instead
     std::string kind;    // name of the key that decides what other keys there are; empty: none does
     std::vector<const Key*> keys;
-    bool shown = false; // in a template, although it may be absent
+    bool shown = false;   // in a template, although it may be absent
+    bool several = false; // instead of one [path] there may be several [[path]]
 
     // The kinds in the order of their key's choices.
     std::vector<std::string> kinds() const;

@@ -10,9 +10,14 @@ namespace vkfv {
 Section::Section(const TomlTable& table, const KeyTable& keys, ReadKeys& read)
     : table_(table), keys_(&keys), read_(&read) {
     const auto& path = table.path();
-    // "a.b[2]" is a table of the array a.b.
-    const std::string header = path.ends_with(']') ? fmt::format("\n[[{}]]\n", path.substr(0, path.rfind('[')))
-                                                   : fmt::format("\n[{}]\n", path);
+    // "a[1].b[2]" is a table of the array a.b in the last table of the array a.
+    std::string header = "\n[";
+    bool in_index = false;
+    for (const char character : path) {
+        in_index = in_index ? character != ']' : character == '[';
+        header += in_index || character == ']' ? "" : std::string(1, character);
+    }
+    header = path.ends_with(']') ? "\n[" + header.substr(1) + "]]\n" : header + "]\n";
     read_->canonical += header;
     read_->identity += header;
     read_->places[path] = table.where();

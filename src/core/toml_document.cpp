@@ -6,6 +6,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <charconv>
 #include <sstream>
 #include <tuple>
 
@@ -56,12 +57,37 @@ toml::table parse_text(std::string_view text, const std::filesystem::path& name)
     }
 }
 
-// Moves `from` into `into`, table by table; what is no table on both sides is replaced.
-void merge(toml::table& into, toml::table&& from) {
+// The table of an array of tables that a key "0", "1", ... means; none: it means none.
+toml::table* element_of(toml::array& tables, std::string_view key) {
+    std::size_t index = 0;
+    const auto [end, error] = std::from_chars(key.data(), key.data() + key.size(), index);
+    toml::node* element = error == std::errc() && end == key.data() + key.size() ? tables.get(index) : nullptr;
+    return element != nullptr ? element->as_table() : nullptr;
+}
+
+// Moves `from` into `into`, table by table; what is no table on both sides is replaced. A table whose keys are numbers
+// goes into those tables of an array. Throws InputError where the array has no such table.
+void merge(toml::table& into, toml::table&& from, const TomlOverride& given) {
     for (auto&& [key, node] : from) {
         toml::node* present = into.get(key.str());
         if (present && present->is_table() && node.is_table()) {
-            merge(*present->as_table(), std::move(*node.as_table()));
+            merge(*present->as_table(), std::move(*node.as_table()), given);
+        } else if (present && present->is_array_of_tables() && node.is_table()) {
+            toml::array& tables = *present->as_array();
+            for (auto&& [index, own] : *node.as_table()) {
+                toml::table* element = element_of(tables, index.str());
+                if (element == nullptr || !own.is_table()) {
+                    throw InputError(
+                        {.where = {.file = given.origin},
+                         .key = given.key,
+                         .found = fmt::format("\"{}\" after \"{}\"", index.str(), key.str()),
+                         .expected =
+                             fmt::format("which [[{}]] is meant, by its number, 0 to {}", key.str(), tables.size() - 1),
+                         .remedy = fmt::format("Write {}.0.{} for that of the first.", key.str(),
+                                               element == nullptr && own.is_table() ? "KEY" : index.str())});
+                }
+                merge(*element, std::move(*own.as_table()), given);
+            }
         } else {
             into.insert_or_assign(toml::key(key), std::move(node));
         }
@@ -148,7 +174,7 @@ TomlDocument::TomlDocument(std::string_view text, std::filesystem::path name,
     std::vector<InputProblem> wrong;
     for (const auto& given : overrides) {
         try {
-            merge(root, parse_override(given));
+            merge(root, parse_override(given), given);
         } catch (const InputError& error) {
             wrong.push_back(error.problem());
         }

@@ -423,6 +423,11 @@ std::vector<TomlTable> TomlTable::optional_tables(std::string_view key) const {
     return found;
 }
 
+std::vector<TomlTable> TomlTable::table_or_tables(std::string_view key) const {
+    const toml::node* node = state_->find(key);
+    return node && node->is_array() ? tables(key) : std::vector{table(key)};
+}
+
 std::vector<TomlTable> TomlTable::tables(std::string_view key) const {
     auto found = optional_tables(key);
     if (found.empty()) {

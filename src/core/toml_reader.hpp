@@ -109,6 +109,8 @@ class TomlTable {
     // [[key]] or an array of inline tables; `tables` wants at least one.
     std::vector<TomlTable> tables(std::string_view key) const;
     std::vector<TomlTable> optional_tables(std::string_view key) const;
+    // [key] alone, or one or several [[key]].
+    std::vector<TomlTable> table_or_tables(std::string_view key) const;
 
     // Throws for the keys, here and in the tables got from here, that nobody has asked for, and names the
     // nearest of those that were; with them for all that was noted. Call it on the root, last.

@@ -73,9 +73,12 @@ optics::Instrument assemble_instrument(const Configuration& configuration, const
                 std::max(description.greatest_defocus, std::abs(height - focal_height) + astray);
         }
     }
-    if (description.ring) {
-        description.ring->lit_radius =
-            std::hypot(std::max(-record.x_min, record.x_max), std::max(-record.y_min, record.y_max));
+    const double lit_radius = std::hypot(std::max(-record.x_min, record.x_max), std::max(-record.y_min, record.y_max));
+    if (auto& ring = description.source.ring) {
+        ring->lit_radius = lit_radius;
+    }
+    for (auto& source : description.further_sources) {
+        source.ring.value().lit_radius = lit_radius;
     }
     auto instrument = assemble_at_its_place(configuration, description);
     for (const auto& warning : instrument.warnings) {

@@ -161,7 +161,7 @@ EvaluatedStack evaluate_own_stack(const OwnStack& stack) {
     if (!std::filesystem::equivalent(stack.destination, stack.folder, none)) {
         origin = {{"stack", stack.folder.string()},
                   {"images", positions.size()},
-                  {"rays_per_image", trace::launched_rays(configuration.trace, pixels)},
+                  {"rays_per_image", trace::launched_rays(configuration.trace, configuration.instrument)},
                   {"seed", configuration.trace.seed}};
     }
     return {.evaluation = evaluation.finish(truth_on_pixels(instrument, configuration, specimen), configuration.band,

@@ -119,7 +119,7 @@ Forecast forecast(const Configuration& configuration) {
     Forecast result;
     result.devices = prober.devices();
     result.images = static_cast<int>(positions.size());
-    result.rays_per_image = trace::launched_rays(configuration.trace, pixels);
+    result.rays_per_image = trace::launched_rays(configuration.trace, configuration.instrument);
     const auto rays = static_cast<double>(result.rays_per_image), tried = static_cast<double>(probe.image.rays);
     const double more = rays / tried;
     const auto count = static_cast<double>(probe.image.flux.values.size());

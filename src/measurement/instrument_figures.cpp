@@ -21,7 +21,8 @@ namespace {
 std::vector<FigureGroup> groups_of(const Configuration& configuration, const optics::Instrument& instrument,
                                    const optics::ImageQuality& quality) {
     const optics::FirstOrder& first_order = instrument.first_order;
-    const bool ring = configuration.instrument.ring.has_value();
+    const auto& source = configuration.instrument.source;
+    const bool ring = source.ring.has_value();
     const auto of_disc = [&](double value) { return ring ? NAN : value; };
     return {
         {"Lenses",
@@ -48,7 +49,7 @@ std::vector<FigureGroup> groups_of(const Configuration& configuration, const opt
           {"exit_pupil_distance_mm", quality.exit_pupil_distance, "in front of the detector"},
           {"exit_pupil_radius_mm", quality.exit_pupil_radius, "as the detector sees the aperture stop"}}},
         {"Illumination",
-         {{"source_radius_mm", of_disc(configuration.instrument.source_radius), "as configured; -: a ring light"},
+         {{"source_radius_mm", of_disc(source.inner_radius()), "a rectangle's: half its shorter side; -: a ring light"},
           {"pupil_radius_in_source_mm", of_disc(first_order.pupil_radius_in_source),
            "of the source that fills the objective's pupil"},
           {"illumination_to_objective_mm", of_disc(first_order.illumination_to_objective),
@@ -150,7 +151,7 @@ FigureGroup figures_of_camera(const camera::Camera& camera) {
 ScanFigures figures_of_scan(const Configuration& configuration) {
     const auto positions = configuration.scan->positions();
     return {.images = positions.size(),
-            .rays_per_image = trace::launched_rays(configuration.trace, configuration.instrument.detector_pixels),
+            .rays_per_image = trace::launched_rays(configuration.trace, configuration.instrument),
             .first = positions.front(),
             .last = positions.back()};
 }

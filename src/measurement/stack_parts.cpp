@@ -73,15 +73,16 @@ Evaluation GrowingEvaluation::write(scan::ImageStore& store, const trace::Tracer
         spdlog::warn("No light reaches the detector in any image. vkfv --image of one position tells where it goes");
     }
     enter_stage("heights and truth");
-    EvaluatedStack stack{.evaluation = evaluation_.finish(truth_.get(), configuration.band, flat_,
-                                                          specimen::feature_of(configuration.specimen->shape)),
-                         .origin = {{"device", tracer.text()},
-                                    {"stack_digest", store.description().digest},
-                                    {"seed", configuration.trace.seed},
-                                    {"images", scene_.positions.size()},
-                                    {"rays_per_image", trace::launched_rays(configuration.trace, scene_.pixels())}},
-                         .source = source_.get(),
-                         .files = topography_files(configuration)};
+    EvaluatedStack stack{
+        .evaluation = evaluation_.finish(truth_.get(), configuration.band, flat_,
+                                         specimen::feature_of(configuration.specimen->shape)),
+        .origin = {{"device", tracer.text()},
+                   {"stack_digest", store.description().digest},
+                   {"seed", configuration.trace.seed},
+                   {"images", scene_.positions.size()},
+                   {"rays_per_image", trace::launched_rays(configuration.trace, configuration.instrument)}},
+        .source = source_.get(),
+        .files = topography_files(configuration)};
     stack.source.ledger = scan::mean_ledger(store.folder());
     if (wave_limits_) {
         const WaveLimits limits = wave_limits_->get();

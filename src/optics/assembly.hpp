@@ -114,7 +114,7 @@ FoldedElements fold(const InstrumentDescription& description, const AxialLayout&
 
 [[noreturn]] void refuse(std::string key, std::string found, std::string expected, std::string remedy,
                          const std::filesystem::path& file = {});
-void require_positive(double value, const char* key);
+void require_positive(double value, const std::string& key);
 void require_surfaces(const Prescription& prescription, const char* key);
 void require_air(double index, const Prescription& prescription, const char* key);
 

@@ -129,17 +129,18 @@ PlacedSurfaces detector_to_specimen(const AxialLayout& layout, const ImagingTrai
     return train;
 }
 
-// The outline of a disc is the last surface; a ring light stands behind its cover glass, if there is one.
+// The outline of a disc of this radius is the last surface; a ring light stands behind its cover glass, if there is
+// one.
 PlacedSurfaces specimen_to_source(const InstrumentDescription& description, const AxialLayout& layout,
-                                  const Illumination& illumination) {
+                                  const Illumination& illumination, double radius) {
     PlacedSurfaces train = reversed(illumination.train);
-    if (description.ring) {
+    if (description.source.ring) {
         link(train, layout.front);
         return train;
     }
     PlacedSurface source = dummy_plane(layout.air, illumination.source_pose.half_turn(), "source");
     source.surface.flags |= physics::f64::SURFACE_CLIPPED;
-    source.surface.semi_diameter_squared = description.source_radius * description.source_radius;
+    source.surface.semi_diameter_squared = radius * radius;
     train.push_back(source);
     link(train, layout.front);
     return train;
@@ -183,7 +184,11 @@ TurnedInstrument turn_round(const InstrumentDescription& description, const Axia
                             const ImagingTrain& imaging, const Illumination& illumination,
                             const Instrument& instrument) {
     const std::vector<Surface> to_specimen = surfaces_of(detector_to_specimen(layout, imaging));
-    const std::vector<Surface> to_source = surfaces_of(specimen_to_source(description, layout, illumination));
+    const SourceDescription& source = description.source;
+    const auto to_disc = [&](double radius) {
+        return surfaces_of(specimen_to_source(description, layout, illumination, radius));
+    };
+    const std::vector<Surface> to_source = to_disc(source.outer_radius());
     TurnedInstrument turned;
     turned.surfaces = to_specimen;
     turned.surfaces.insert(turned.surfaces.end(), to_source.begin(), to_source.end());
@@ -200,7 +205,7 @@ TurnedInstrument turn_round(const InstrumentDescription& description, const Axia
     // crossing, slope - per_position * position, changes its sign alone.
     optics.pupil_position = pupil.per_position;
 
-    if (description.ring) {
+    if (description.source.ring) {
         draw_ring(optics, description, layout, turned.constants, to_source);
         return turned;
     }
@@ -209,13 +214,19 @@ TurnedInstrument turn_round(const InstrumentDescription& description, const Axia
                                   .then(transfer_of_train(to_source));
     optics.source_position = whole.a / (whole.b * layout.object_index.centre);
     optics.object_distance = layout.working_distance;
-    const SeenSource seen = seen_source({.train = to_source,
-                                         .working_distance = layout.working_distance,
-                                         .detector_distance = 0,
-                                         .pupil_curvature = optics.source_position,
-                                         .symmetric = !has_displaced(to_source)},
-                                        field_radius + description.greatest_defocus);
+    const auto seen_through = [&](const std::vector<Surface>& train) {
+        return seen_source({.train = train,
+                            .working_distance = layout.working_distance,
+                            .detector_distance = 0,
+                            .pupil_curvature = optics.source_position,
+                            .symmetric = !has_displaced(train)},
+                           field_radius + description.greatest_defocus);
+    };
+    SeenSource seen = seen_through(to_source);
     optics.source_outer = seen.outer;
+    if (source.rectangle) { // outside is what no point of the circle about it sends, sure what the circle in it does
+        seen = seen_through(to_disc(source.inner_radius()));
+    }
     // Other wavelengths have other rims, and losses must be traced.
     const bool nothing_sure =
         !description.spectrum.monochromatic() || (instrument.features & physics::f64::FEATURE_LOSSES) != 0;

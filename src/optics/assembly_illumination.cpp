@@ -26,9 +26,9 @@ void move(PlacedSurfaces& part, const Pose& from, const Pose& to) {
 
 double source_distance_of(const InstrumentDescription& description, const Prescription& prescribed) {
     const std::optional<double> distance =
-        description.source_distance ? description.source_distance : prescribed.source_distance;
+        description.source.distance ? description.source.distance : prescribed.source_distance;
     if (!distance || !(*distance >= 0)) {
-        refuse("source.distance_mm", distance ? fmt::format("{}", *distance) : "",
+        refuse(description.source.key + ".distance_mm", distance ? fmt::format("{}", *distance) : "",
                "the distance from the source to the illuminator, >= 0",
                "Give it, or source_distance_mm in the prescription.", prescribed.file);
     }
@@ -80,13 +80,15 @@ PupilFilling fill_pupil(const InstrumentDescription& description, const Prescrip
     }
     result.magnification = source_image.magnification;
     result.pupil_radius_in_source = pupil.radius / std::abs(source_image.magnification);
-    const double filling_radius = std::min(
-        description.source_radius, description.illumination_aperture_radius.value_or(description.source_radius));
+    const double inner_radius = description.source.inner_radius();
+    const double filling_radius =
+        std::min(inner_radius, description.illumination_aperture_radius.value_or(inner_radius));
     if (filling_radius < 0.98 * result.pupil_radius_in_source) {
         result.warnings.push_back(
-            fmt::format("The source does not fill the objective's pupil: its radius is {:.4g} mm, filling takes "
+            fmt::format("The source does not fill the objective's pupil: its {} is {:.4g} mm, filling takes "
                         "{:.4g} mm.",
-                        filling_radius, result.pupil_radius_in_source));
+                        description.source.rectangle ? "shorter side's half" : "radius", filling_radius,
+                        result.pupil_radius_in_source));
     }
     const double image_to_pupil = result.to_objective + pupil.distance - glass_shift - source_image.distance;
     if (!(std::abs(image_to_pupil) < 0.05 * efl_objective)) {
@@ -175,7 +177,7 @@ std::vector<std::string> warning_of_field_stop(const AxialLayout& layout, const 
 double aimed_sine_of(const InstrumentDescription& description, const Prescription& prescribed,
                      const std::vector<Surface>& train, std::size_t stop, double source_distance) {
     const bool straight = !has_displaced(train);
-    const DiscSource source = {.radius = description.source_radius,
+    const DiscSource source = {.radius = description.source.outer_radius(),
                                .distance = source_distance,
                                .monochromatic = description.spectrum.monochromatic()};
     const RayTransfer towards_stop =

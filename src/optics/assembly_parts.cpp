@@ -22,7 +22,7 @@ void refuse(std::string key, std::string found, std::string expected, std::strin
                       .remedy = std::move(remedy)});
 }
 
-void require_positive(double value, const char* key) {
+void require_positive(double value, const std::string& key) {
     if (!(value > 0 && std::isfinite(value))) {
         refuse(key, fmt::format("{}", value), "a finite number > 0", "Correct it.");
     }

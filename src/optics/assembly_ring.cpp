@@ -15,7 +15,7 @@ namespace {
 // sideways, by less than its thickness if it is the denser medium; else near total reflection by any length, and then
 // all light is kept.
 double ring_emission_sine(const InstrumentDescription& description, const AxialLayout& layout) {
-    const RingLightDescription& ring = *description.ring;
+    const RingLightDescription& ring = *description.source.ring;
     const Spectrum& spectrum = description.spectrum;
     constexpr double margin = 1.5; // around the detector's field
     const double lit_radius =
@@ -54,21 +54,22 @@ physics::f64::RingLight ring_constants(const RingLightDescription& ring, double 
     return constants;
 }
 
-void check_ring(const RingLightDescription& ring, const physics::f64::RingLight& constants, bool has_cover) {
+void check_ring(const SourceDescription& source, const physics::f64::RingLight& constants, bool has_cover) {
+    const RingLightDescription& ring = *source.ring;
     if (ring.segments < 1 || ring.segments > physics::f64::RING_CAPACITY ||
         ring.on.size() != static_cast<std::size_t>(ring.segments) || constants.switched_on == 0) {
-        refuse("source.segments", fmt::format("{} segments", ring.segments),
+        refuse(source.key + ".segments", fmt::format("{} segments", ring.segments),
                fmt::format("1 to {} segments, at least one of them on", physics::f64::RING_CAPACITY),
                "Switch a segment on.");
     }
     if (!(ring.distance > 0 && ring.width > 0 && ring.elevation > 0 && ring.elevation < 0.5 * pi &&
           0.5 * ring.width * std::tan(ring.elevation) < ring.distance)) {
-        refuse("source.width_mm", fmt::format("{} mm wide, {} mm away", ring.width, ring.distance),
+        refuse(source.key + ".width_mm", fmt::format("{} mm wide, {} mm away", ring.width, ring.distance),
                "a band that does not reach the axis", "Choose a smaller width or elevation.");
     }
     if (has_cover && !(ring.distance * constants.elevation_sine - constants.half_width * constants.elevation_cosine >
                        constants.aim_distance)) {
-        refuse("source.distance_mm", fmt::format("{} mm", ring.distance),
+        refuse(source.key + ".distance_mm", fmt::format("{} mm", ring.distance),
                fmt::format("a ring above the cover glass, whose upper face is {:.6g} mm over the focus",
                            constants.aim_distance),
                "Move the ring farther away, or the cover glass nearer to the specimen.");
@@ -83,8 +84,8 @@ Illumination place_ring(const InstrumentDescription& description, const AxialLay
     result.train = reversed(layout.cover);
     const Pose entry = result.train.empty() ? layout.front.half_turn() : result.train.front().pose;
     link(result.train, entry);
-    result.ring = ring_constants(*description.ring, entry.origin.z - measured.best_focus_offset);
-    check_ring(*description.ring, result.ring, !layout.cover.empty());
+    result.ring = ring_constants(*description.source.ring, entry.origin.z - measured.best_focus_offset);
+    check_ring(description.source, result.ring, !layout.cover.empty());
     result.aimed_sine = ring_emission_sine(description, layout);
     result.source_pose = downward(0);
     return result;

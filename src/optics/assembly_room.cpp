@@ -82,7 +82,7 @@ std::vector<Element> splitter_elements(const InstrumentDescription& description,
 FoldedElements fold(const InstrumentDescription& description, const AxialLayout& layout, const ImagingTrain& imaging,
                     const MeasuredImaging& measured, const Illumination& illumination) {
     FoldedElements folded = {.elements = {}, .source_pose = illumination.source_pose};
-    if (!description.ring) {
+    if (!description.source.ring) {
         folded = fold_illumination(description, imaging.splitter, illumination);
         folded.source_pose.origin.z -= measured.best_focus_offset;
     }

@@ -1,4 +1,4 @@
-// The cone that a disc source is aimed into: it holds every ray that passes the illumination. Lengths in mm.
+// The cone that a flat source within a disc is aimed into: it holds every ray that passes the illumination. mm.
 #pragma once
 
 #include "optics/first_order.hpp"

@@ -226,8 +226,9 @@ Setting setting_of(const InstrumentDescription& description, const Instrument& i
         .description = description,
         .instrument = instrument,
         .imaging = imaging_of(instrument),
-        .nodes = spectral_nodes(instrument),
+        .nodes = spectral_nodes(description.spectrum.bins, constants.spectrum_centre, constants.spectrum_half_width),
         .reference = {{.spectral = 0, .wavelength_um = 1 / std::sqrt(constants.spectrum_centre), .weight = 1}}};
+    std::ranges::stable_sort(setting.nodes, {}, &SpectralNode::wavelength_um); // of several sources they overlap
     // The cover glass' two surfaces stand before the objective's.
     const auto& objective = description.objective.surfaces;
     const std::size_t objective_first = description.cover_glass ? 2 : 0;

@@ -48,7 +48,11 @@ physics::f64::Instrument constants_of(const InstrumentDescription& description, 
                                       const Illumination& illumination) {
     const Spectrum& spectrum = description.spectrum;
     physics::f64::Instrument constants{};
-    constants.source_radius = description.source_radius;
+    const SourceDescription& source = description.source;
+    constants.source_radius = source.radius;
+    const glm::dvec2 sides = source.rectangle.value_or(glm::dvec2(0));
+    constants.source_half_width = 0.5 * sides.x;
+    constants.source_half_height = 0.5 * sides.y;
     constants.source_distance = illumination.source_distance;
     constants.ring = illumination.ring;
     constants.emission_sine = description.directed_emission ? illumination.aimed_sine : 1;
@@ -68,7 +72,7 @@ physics::f64::Instrument constants_of(const InstrumentDescription& description, 
                                         measured.best_focus_offset + description.greatest_defocus);
     constants.spectrum_centre = spectrum.centre();
     constants.spectrum_half_width = spectrum.half_width();
-    constants.spectral_bins = static_cast<int>(spectrum.bins.size());
+    constants.spectral_bins = static_cast<int>(source.spectrum.value_or(spectrum).bins.size());
     constants.specimen_index = layout.object_index.centre;
     constants.specimen_dispersion = layout.object_index.dispersion;
     constants.illumination_first = 0;
@@ -80,7 +84,9 @@ physics::f64::Instrument constants_of(const InstrumentDescription& description, 
 
 std::uint32_t features_of(const InstrumentDescription& description, const std::vector<Surface>& surfaces) {
     using namespace physics::f64;
-    std::uint32_t features = description.ring ? FEATURE_RING : 0u;
+    std::uint32_t features = description.source.ring        ? FEATURE_RING
+                             : description.source.rectangle ? FEATURE_RECTANGLE
+                                                            : 0u;
     features |= description.spectrum.monochromatic() ? 0u : FEATURE_SPECTRUM;
     for (const Surface& surface : surfaces) {
         const bool lossy_mirror = (surface.flags & SURFACE_MIRROR) != 0 && surface.reflectance < 1;
@@ -92,10 +98,15 @@ std::uint32_t features_of(const InstrumentDescription& description, const std::v
 }
 
 void check(const InstrumentDescription& description) {
-    if (!description.ring) {
-        require_positive(description.source_radius, "source.radius_mm");
+    for (const SourceDescription* source : description.sources()) {
+        if (source->rectangle) {
+            require_positive(source->rectangle->x, source->key + ".width_mm");
+            require_positive(source->rectangle->y, source->key + ".height_mm");
+        } else if (!source->ring) {
+            require_positive(source->radius, source->key + ".radius_mm");
+        }
+        require_positive(source->flux, source->key + ".flux_W");
     }
-    require_positive(description.flux, "source.flux_W");
     require_positive(description.spectrum.reference_um, "source.wavelength_um");
     require_positive(description.detector_width, "detector.size_mm");
     require_positive(std::min(description.detector_pixels.columns, description.detector_pixels.rows),
@@ -112,13 +123,13 @@ Instrument reduce(const InstrumentDescription& description, const AxialLayout& l
     instrument.surfaces.insert(instrument.surfaces.end(), imaging.imaging.train.begin(), imaging.imaging.train.end());
     name_surfaces(instrument.surface_names, "illumination", illumination.train);
     name_surfaces(instrument.surface_names, "imaging", imaging.train);
-    instrument.spectral_bins = description.spectrum.bins;
+    instrument.spectral_bins = description.source.spectrum.value_or(description.spectrum).bins;
     instrument.constants = constants_of(description, layout, imaging, measured, illumination);
     instrument.features = features_of(description, instrument.surfaces);
     instrument.first_order = first_order_of(description, layout, measured, illumination);
-    instrument.flux = description.flux;
+    instrument.flux = description.source.flux;
     instrument.fill_factor = description.fill_factor;
-    instrument.splitter_reflectance = description.ring ? 1 : description.splitter.reflectance;
+    instrument.splitter_reflectance = description.source.ring ? 1 : description.splitter.reflectance;
     instrument.splitter_transmittance = description.splitter.transmittance;
     instrument.illumination_surfaces_before_splitter = illumination.surfaces_before_splitter;
     instrument.imaging_surfaces_before_splitter = imaging.surfaces_before_splitter;
@@ -151,6 +162,9 @@ const char* name_of(Part part) {
 }
 
 Instrument with_whole_pixels(Instrument instrument) {
+    for (Instrument& further : instrument.further_lights) {
+        further = with_whole_pixels(std::move(further));
+    }
     instrument.constants.pixel_reach = 1;
     if (instrument.turned) {
         instrument.turned->constants.pixel_reach = 1;
@@ -158,20 +172,59 @@ Instrument with_whole_pixels(Instrument instrument) {
     return instrument;
 }
 
+double SourceDescription::outer_radius() const {
+    return rectangle ? 0.5 * glm::length(*rectangle) : radius;
+}
+
+double SourceDescription::inner_radius() const {
+    return rectangle ? 0.5 * std::min(rectangle->x, rectangle->y) : radius;
+}
+
+std::vector<const SourceDescription*> InstrumentDescription::sources() const {
+    std::vector<const SourceDescription*> all = {&source};
+    for (const SourceDescription& further : further_sources) {
+        all.push_back(&further);
+    }
+    return all;
+}
+
+std::vector<const Instrument*> Instrument::lights() const {
+    std::vector<const Instrument*> all = {this};
+    for (const Instrument& further : further_lights) {
+        all.push_back(&further);
+    }
+    return all;
+}
+
 Instrument assemble(const InstrumentDescription& description) {
     check(description);
     const AxialLayout layout = lay_out(description);
     const ImagingTrain imaging = place_imaging(description, layout);
     const MeasuredImaging measured = measure_imaging(description, layout, imaging);
-    const Illumination illumination =
-        description.ring ? place_ring(description, layout, measured) : place_illuminator(description, layout, imaging);
-    Instrument instrument = reduce(description, layout, imaging, measured, illumination);
-    if (description.turned) {
-        instrument.turned = turn_round(description, layout, imaging, illumination, instrument);
+    const auto in_light_of = [&](const SourceDescription& source) {
+        InstrumentDescription lit = description;
+        lit.source = source;
+        const Illumination illumination =
+            source.ring ? place_ring(lit, layout, measured) : place_illuminator(lit, layout, imaging);
+        Instrument instrument = reduce(lit, layout, imaging, measured, illumination);
+        if (lit.turned) {
+            instrument.turned = turn_round(lit, layout, imaging, illumination, instrument);
+        }
+        FoldedElements folded = fold(lit, layout, imaging, measured, illumination);
+        instrument.elements = std::move(folded.elements);
+        instrument.source_pose = folded.source_pose;
+        return instrument;
+    };
+    Instrument instrument = in_light_of(description.source);
+    for (const SourceDescription& source : description.further_sources) {
+        if (!source.ring) {
+            refuse(source.key, "another disc or rectangle", "one source behind the illuminator, the first",
+                   "Make the others ring lights.");
+        }
+        Instrument further = in_light_of(source);
+        further.elements = instrument.elements; // light of a ring may find its way to the illuminator too
+        instrument.further_lights.push_back(std::move(further));
     }
-    FoldedElements folded = fold(description, layout, imaging, measured, illumination);
-    instrument.elements = std::move(folded.elements);
-    instrument.source_pose = folded.source_pose;
     return instrument;
 }
 

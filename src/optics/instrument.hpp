@@ -32,6 +32,20 @@ struct RingLightDescription {
     std::optional<double> lit_radius; // of the circle about the axis that all of the ring must light; none: the field
 };
 
+// A Lambertian source: a disc or a rectangle behind the illuminator, or a ring light. mm, W.
+struct SourceDescription {
+    std::string key = "source"; // of its table, for messages
+    double flux = 1;
+    double radius = 0;                        // of the disc
+    std::optional<glm::dvec2> rectangle;      // instead of the disc: its width and height
+    std::optional<double> distance;           // of both to the illumination's first vertex; none: the prescription's
+    std::optional<RingLightDescription> ring; // instead of both, and of the illuminator
+    std::optional<Spectrum> spectrum;         // none: the instrument's
+
+    double outer_radius() const; // of the circle about the disc or rectangle
+    double inner_radius() const; // of the circle in it
+};
+
 struct BeamSplitter {
     enum class Kind { ideal, plate, cube } kind = Kind::ideal;
     double reflectance = 0.5;   // for the illumination
@@ -61,11 +75,9 @@ struct CoverGlass {
 
 // What a configuration says of the instrument, in the units of the inside (mm, W, rad, wavelengths in um).
 struct InstrumentDescription {
-    double source_radius = 0;
-    double flux = 1;
-    Spectrum spectrum = Spectrum::line(0.5876);
-    std::optional<RingLightDescription> ring; // instead of the disc and its illuminator
-    std::optional<double> source_distance;    // to the illumination's first vertex; none: the prescription's
+    SourceDescription source;
+    std::vector<SourceDescription> further_sources; // ring lights
+    Spectrum spectrum = Spectrum::line(0.5876);     // of all light together: first-order data and best focus are its
     Prescription illumination;
     std::optional<double> illumination_to_objective;    // last illumination vertex to the objective's last (back)
                                                         // vertex; none: the source is imaged into the pupil
@@ -89,6 +101,8 @@ struct InstrumentDescription {
     bool directed_emission = true; // aim the source at the cone that can pass the illumination train
     bool turned = false;           // the backward estimator's form is wanted too
     double greatest_defocus = 0.2; // of the specimen's top plane from the plane of best focus, for the gate
+
+    std::vector<const SourceDescription*> sources() const; // all, in their order
 };
 
 // First-order and measured properties (mm, unless the name says otherwise), at the reference wavelength.
@@ -137,9 +151,9 @@ struct TurnedInstrument {
     physics::f64::BackwardOptics optics{};
 };
 
-// Trains and constants in double. `surfaces` holds the illumination train (source to specimen: illuminator,
-// then the objective backward) and the imaging train (specimen to detector). Light travels towards +z in
-// both; the specimen frame is the illumination's turned half a turn about x. Constant throughout a run.
+// Trains and constants in double, with the light of one source. `surfaces` holds the illumination train (source to
+// specimen: illuminator, then the objective backward) and the imaging train (specimen to detector). Light travels
+// towards +z in both; the specimen frame is the illumination's turned half a turn about x. Constant throughout a run.
 struct Instrument {
     std::vector<physics::f64::Surface> surfaces;
     std::vector<std::string> surface_names; // for the ledger: "illumination 3 (koehler 1)", ...
@@ -162,7 +176,9 @@ struct Instrument {
     Pose source_pose; // of the source's frame, light towards its z (a ring light's: its aim), in the elements' frame
     std::optional<TurnedInstrument> turned; // where the description asks for it
     std::vector<std::string> warnings;
+    std::vector<Instrument> further_lights; // the same instrument in the light of each further source
 
+    std::vector<const Instrument*> lights() const; // one a source, this one first
     TrainScene scene() const { return {surfaces, features, spectral_bins}; }
     ImageSize detector_pixels() const { return {constants.detector_columns, constants.detector_rows}; }
 };

@@ -19,6 +19,7 @@ struct WaveOptions {
     int cells = 0;                 // across the pupil, even; 0: as many as the axis' aberrations ask for
     int parts = 0;                 // of a pixel's side in which light is sorted; 0: as fine as waves ask for
     std::uint64_t most_memory = 0; // bytes that this may take of a device; 0: what the device has
+    int sharers = 1;               // of that memory: images that are made of different light at a time
 };
 
 // Parts of a pixel's side whose pitch is at most lambda / (4 NA) for the shortest wavelength: the frequencies that the

@@ -141,6 +141,40 @@ Spectrum Spectrum::table(const std::vector<double>& wavelengths_um, const std::v
     return finish(std::move(bins), moment, total);
 }
 
+Spectrum Spectrum::mixture(const std::vector<Part>& parts) {
+    const auto differs = [&](const Part& part) { return !(part.spectrum == parts.front().spectrum); };
+    if (std::ranges::none_of(parts, differs)) {
+        return parts.front().spectrum;
+    }
+    std::vector<SpectralBin> bins;
+    double total = 0;
+    double moment = 0;
+    double longest = 0;
+    for (const auto& [flux, spectrum] : parts) {
+        double before = 0;
+        for (SpectralBin bin : spectrum.bins) {
+            const double share = bin.cumulative - before;
+            before = bin.cumulative;
+            bin.cumulative = flux * share;
+            bins.push_back(bin);
+        }
+        total += flux;
+        moment += flux * spectrum.reference_um;
+        longest = std::max(longest, spectrum.longest_um);
+    }
+    std::ranges::stable_sort(bins, {}, &SpectralBin::start);
+    Spectrum mixture = finish(std::move(bins), moment, total);
+    mixture.longest_um = longest;
+    return mixture;
+}
+
+bool Spectrum::operator==(const Spectrum& other) const {
+    return reference_um == other.reference_um &&
+           std::ranges::equal(bins, other.bins, [](const SpectralBin& a, const SpectralBin& b) {
+               return a.cumulative == b.cumulative && a.start == b.start && a.stop == b.stop && a.tilt == b.tilt;
+           });
+}
+
 SpectralIndex spectral_index(const Medium& medium, const Spectrum& spectrum) {
     SpectralIndex result{.centre = medium.index(spectrum.reference_um)};
     if (spectrum.monochromatic()) {

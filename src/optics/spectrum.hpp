@@ -28,6 +28,16 @@ struct Spectrum {
     static Spectrum gaussian(double centre_um, double full_width_um);
     // A spectral flux that is linear between the points and zero outside. All three throw InputError.
     static Spectrum table(const std::vector<double>& wavelengths_um, const std::vector<double>& densities);
+    // Light of several spectra together, each with its flux. No kernel draws from it: it may have any number of bins.
+    struct Part;
+    static Spectrum mixture(const std::vector<Part>& parts);
+
+    bool operator==(const Spectrum& other) const; // the same light
+};
+
+struct Spectrum::Part {
+    double flux = 0; // > 0
+    Spectrum spectrum;
 };
 
 // A wavelength of a quadrature over the spectrum.

@@ -151,8 +151,7 @@ void draw_legend(Canvas& canvas, const Drawing& drawing, double bottom) {
         if (!drawing.has(style.bundle)) {
             continue;
         }
-        const std::string meaning =
-            drawing.is_ring && style.bundle == RoomRay::Bundle::illumination_centre ? "illumination" : style.meaning;
+        const std::string meaning = style.meaning;
         canvas.svg.line({x, y}, {x + 26, y}, fmt::format("stroke=\"{}\" stroke-width=\"2.5\"", style.colour));
         canvas.write_label({x + 32, y + 0.35 * label_size}, meaning, "start");
         x += 60 + width_of(meaning);

@@ -333,13 +333,14 @@ bool Drawing::has(RoomRay::Bundle bundle) const {
 Drawing draw_instrument(const optics::Instrument& instrument) {
     const auto& constants = instrument.constants;
     Drawing drawing;
-    drawing.is_ring = (instrument.features & physics::f64::FEATURE_RING) != 0;
     drawing.rays = trace_room_rays(instrument);
     const ElementSections sections(instrument, drawing.rays);
     Shapes& shapes = drawing.shapes;
     DrawnBoxes boxes;
-    if (drawing.is_ring) {
-        boxes.source = add_ring(shapes, constants.ring, sections.extent());
+    for (const optics::Instrument* light : instrument.lights()) {
+        if ((light->features & physics::f64::FEATURE_RING) != 0) {
+            boxes.ring_lights.push_back(add_ring(shapes, light->constants.ring, sections.extent()));
+        }
     }
     add_housing(shapes, sections, Part::objective);
     add_housing(shapes, sections, Part::tube_lens);
@@ -350,8 +351,11 @@ Drawing draw_instrument(const optics::Instrument& instrument) {
     add_flat_elements(shapes, sections);
     boxes.specimen = add_specimen(shapes, sections, instrument.first_order.field_edge);
     add_detector(shapes, instrument.elements.back().pose, constants.detector_half_height);
-    if (!drawing.is_ring) {
-        boxes.source = add_source(shapes, instrument.source_pose, constants.source_radius, sections.extent());
+    if ((instrument.features & physics::f64::FEATURE_RING) == 0) {
+        const bool is_rectangle = (instrument.features & physics::f64::FEATURE_RECTANGLE) != 0;
+        boxes.source =
+            add_source(shapes, instrument.source_pose,
+                       is_rectangle ? constants.source_half_height : constants.source_radius, sections.extent());
     }
     drawing.labels = label_parts(instrument, sections, boxes);
     drawing.objective = objective_region(sections);

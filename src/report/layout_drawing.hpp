@@ -31,7 +31,6 @@ struct Drawing {
     std::vector<Shape> shapes; // from the back to the front
     std::vector<Label> labels;
     Box objective; // the specimen and all that follows up to the objective's back
-    bool is_ring = false;
 
     Box bounds() const;
     bool has(RoomRay::Bundle bundle) const;
@@ -43,7 +42,8 @@ Drawing draw_instrument(const optics::Instrument& instrument);
 struct DrawnBoxes {
     Box specimen;
     Box detector; // the camera's body
-    Box source;
+    Box source;   // behind the illuminator
+    std::vector<Box> ring_lights;
 };
 
 // What is called what; empty boxes have no label.

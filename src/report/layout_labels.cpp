@@ -62,11 +62,12 @@ std::vector<Label> label_parts(const optics::Instrument& instrument, const Eleme
             labels.push_back(label(name_of(role), own, upright, role == SurfaceRole::aperture_stop));
         }
     }
-    const bool is_ring = (instrument.features & physics::f64::FEATURE_RING) != 0;
     labels.push_back(label("specimen", boxes.specimen, true, true));
     labels.push_back(label("detector", boxes.detector, is_upright(elements.back().pose)));
-    labels.push_back(
-        label(is_ring ? "ring light" : "source", boxes.source, is_ring || is_upright(instrument.source_pose)));
+    labels.push_back(label("source", boxes.source, is_upright(instrument.source_pose)));
+    for (const Box& ring : boxes.ring_lights) {
+        labels.push_back(label("ring light", ring, true));
+    }
     std::erase_if(labels, [](const Label& drawn) { return drawn.part.empty(); });
     return labels;
 }

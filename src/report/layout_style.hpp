@@ -20,9 +20,10 @@ struct BundleStyle {
     const char* colour;
     const char* meaning;
 };
-constexpr std::array<BundleStyle, 4> bundle_styles = {{
+constexpr std::array<BundleStyle, 5> bundle_styles = {{
     {RoomRay::Bundle::illumination_rim, "#009e73", "illumination, rim of the source"},
     {RoomRay::Bundle::illumination_centre, "#e69f00", "illumination, middle of the source"},
+    {RoomRay::Bundle::ring_light, "#cc79a7", "illumination, ring light"},
     {RoomRay::Bundle::imaging_edge, "#d55e00", "imaging, edge of the field"},
     {RoomRay::Bundle::imaging_axis, "#0072b2", "imaging, middle of the field"},
 }};

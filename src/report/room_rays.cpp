@@ -41,7 +41,7 @@ Way imaging_way(const std::vector<Element>& elements) {
 Way illumination_way(const std::vector<Element>& elements, bool is_ring) {
     Way way;
     const std::size_t begin = imaging_begin(elements);
-    for (std::size_t i = 0; i < begin; ++i) {
+    for (std::size_t i = 0; i < begin && !is_ring; ++i) {
         way.push_back({i, elements[i].kind == Element::Kind::mirror});
     }
     std::size_t end = begin;
@@ -209,9 +209,12 @@ void add_imaging(std::vector<RoomRay>& rays, const optics::Instrument& instrumen
 }
 
 void add_disc(std::vector<RoomRay>& rays, const optics::Instrument& instrument) {
+    const auto& constants = instrument.constants;
+    const bool is_rectangle = (instrument.features & physics::f64::FEATURE_RECTANGLE) != 0;
+    const double half_height = is_rectangle ? constants.source_half_height : constants.source_radius;
     RoomTracer tracer(instrument.elements, illumination_way(instrument.elements, false));
     const optics::Pose& source = instrument.source_pose;
-    const double greatest = std::min(instrument.constants.emission_sine, steepest_sine);
+    const double greatest = std::min(constants.emission_sine, steepest_sine);
     const auto from = [&](double height, Bundle bundle, int count) {
         return fan(
             [&](double sine) {
@@ -225,7 +228,7 @@ void add_disc(std::vector<RoomRay>& rays, const optics::Instrument& instrument) 
         constexpr int heights = 40;
         std::vector<RoomRay> rim;
         for (int step = heights; step > 0 && rim.empty(); --step) {
-            rim = from(side * instrument.constants.source_radius * step / heights, Bundle::illumination_rim, 3);
+            rim = from(side * half_height * step / heights, Bundle::illumination_rim, 3);
         }
         append(rays, std::move(rim));
     }
@@ -260,8 +263,7 @@ void add_ring(std::vector<RoomRay>& rays, const optics::Instrument& instrument) 
                                ring.distance * ring.elevation_sine);
         for (const double height : {-1.0, 0.0, 1.0}) {
             const glm::dvec3 aim(0, height * instrument.first_order.field_edge, 0);
-            if (auto ray =
-                    tracer.trace_to_focus(start, glm::normalize(aim - start), index, Bundle::illumination_centre)) {
+            if (auto ray = tracer.trace_to_focus(start, glm::normalize(aim - start), index, Bundle::ring_light)) {
                 rays.push_back(std::move(*ray));
             }
         }
@@ -272,10 +274,12 @@ void add_ring(std::vector<RoomRay>& rays, const optics::Instrument& instrument) 
 
 std::vector<RoomRay> trace_room_rays(const optics::Instrument& instrument) {
     std::vector<RoomRay> rays;
-    if ((instrument.features & physics::f64::FEATURE_RING) != 0) {
-        add_ring(rays, instrument);
-    } else {
-        add_disc(rays, instrument);
+    for (const optics::Instrument* light : instrument.lights()) {
+        if ((light->features & physics::f64::FEATURE_RING) != 0) {
+            add_ring(rays, *light);
+        } else {
+            add_disc(rays, *light);
+        }
     }
     add_imaging(rays, instrument);
     return rays;

@@ -10,7 +10,7 @@
 namespace vkfv::report {
 
 struct RoomRay {
-    enum class Bundle { illumination_centre, illumination_rim, imaging_axis, imaging_edge };
+    enum class Bundle { illumination_centre, illumination_rim, ring_light, imaging_axis, imaging_edge };
     static constexpr int no_element = -1;
 
     Bundle bundle = Bundle::imaging_axis;

@@ -1,6 +1,7 @@
 #include "scan/staged_tracer.hpp"
 
 #include "scan/plan.hpp"
+#include "trace/image_sum.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -10,15 +11,6 @@
 namespace vkfv::scan {
 
 namespace {
-
-void add(Grid<double>& sum, const Grid<double>& part) {
-    std::ranges::transform(sum.values, part.values, sum.values.begin(), std::plus<>());
-}
-
-void add_squares(Grid<double>& sum, const Grid<double>& part) {
-    std::ranges::transform(sum.values, part.values, sum.values.begin(),
-                           [](double a, double b) { return std::hypot(a, b); });
-}
 
 void scale(trace::Image& image, double flux) {
     for (Grid<double>* grid : {&image.flux, &image.standard_error}) {
@@ -31,25 +23,6 @@ void scale(trace::Image& image, double flux) {
     for (auto& entry : image.ledger.entries) {
         entry.power *= flux;
     }
-}
-
-// Of exposures one after another.
-void add(trace::Image& sum, const trace::Image& part) {
-    add(sum.flux, part.flux);
-    add_squares(sum.standard_error, part.standard_error);
-    sum.ledger.emitted += part.ledger.emitted;
-    sum.ledger.residual_error = std::hypot(sum.ledger.residual_error, part.ledger.residual_error);
-    for (std::size_t k = 0; k < sum.ledger.entries.size(); ++k) {
-        sum.ledger.entries[k].power += part.ledger.entries[k].power;
-        sum.ledger.entries[k].rays += part.ledger.entries[k].rays;
-    }
-    sum.rays += part.rays;
-    sum.detected += part.detected;
-    sum.crossings += part.crossings;
-    sum.seconds += part.seconds;
-    sum.device_seconds += part.device_seconds;
-    sum.longest_submission = std::max(sum.longest_submission, part.longest_submission);
-    sum.device_end = part.device_end;
 }
 
 class StagedTracer final : public trace::Tracer {

@@ -25,10 +25,8 @@ BackwardPlan backward_plan(std::uint64_t rays, ImageSize detector_pixels) {
     return plan;
 }
 
-std::uint64_t launched_rays(const TraceOptions& options, ImageSize detector_pixels) {
-    return options.estimator == Estimator::backward
-               ? backward_plan(options.rays, detector_pixels).rays_per_pixel() * detector_pixels.count()
-               : options.rays;
+std::uint64_t backward_rays(std::uint64_t rays, ImageSize detector_pixels) {
+    return backward_plan(rays, detector_pixels).rays_per_pixel() * detector_pixels.count();
 }
 
 physics::f64::Lattice BackwardPlan::lattice() const {
@@ -65,8 +63,10 @@ BackwardImage::BackwardImage(const optics::Instrument& instrument, const Backwar
     sums_.resize(plan.randomisations * pixels_.count());
     const auto& constants = instrument.constants;
     const bool is_ring = (instrument.features & physics::f64::FEATURE_RING) != 0;
-    const double area =
-        is_ring ? physics::f64::ring_area(constants.ring) : pi * constants.source_radius * constants.source_radius;
+    const bool is_rectangle = (instrument.features & physics::f64::FEATURE_RECTANGLE) != 0;
+    const double area = is_ring        ? physics::f64::ring_area(constants.ring)
+                        : is_rectangle ? 4 * constants.source_half_width * constants.source_half_height
+                                       : pi * constants.source_radius * constants.source_radius;
     const double radiance = instrument.flux / (pi * area);
     const double pitch = 2 * constants.detector_half_width / pixels_.columns;
     const double side = std::min(2 * constants.pixel_reach, 1.0);

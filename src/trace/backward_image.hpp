@@ -21,6 +21,8 @@ struct BackwardPlan {
 
 // No fewer than `rays` in all.
 BackwardPlan backward_plan(std::uint64_t rays, ImageSize detector_pixels);
+// How many these are.
+std::uint64_t backward_rays(std::uint64_t rays, ImageSize detector_pixels);
 
 // Of an instrument that was turned round, with the numbers of candidates that suit a material.
 physics::f64::BackwardOptics backward_optics(const optics::Instrument& instrument,

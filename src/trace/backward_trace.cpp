@@ -6,7 +6,6 @@
 #include "spirv/backward_specialised_bvh.h"
 #include "spirv/backward_specialised_quadtree.h"
 #include "spirv/backward_specialised_ray_query.h"
-#include "trace/device_exposures.hpp"
 #include "trace/device_numbers.hpp"
 #include "trace/scene_waves.hpp"
 
@@ -121,13 +120,12 @@ class BackwardTracer final : public DeviceExposures {
     const optics::PupilFilter* pupil_filter() const override { return scene_.filter ? &*scene_.filter : nullptr; }
     std::uint64_t units() const override { return plan_.randomisations * trace_.chunks(); }
     std::uint64_t rays_per_unit() const override { return trace_.points_per_chunk(); }
-
-  private:
-    class Exposure;
-
     std::unique_ptr<DeviceExposure> prepare(FocalPosition position, std::uint32_t image,
                                             std::size_t slot) const override;
     std::size_t slots() const override { return waves_ ? waves_->exposures_at_a_time() : most_exposures; }
+
+  private:
+    class Exposure;
 
     std::size_t pixels() const { return pixel_count(scene_); }
     // Sums of randomisations that are kept for the host at a time.
@@ -145,10 +143,10 @@ class BackwardTracer final : public DeviceExposures {
 };
 
 // Its units are the chunks of one randomisation after the other.
-class BackwardTracer::Exposure final : public DeviceExposure {
+class BackwardTracer::Exposure final : public SingleExposure {
   public:
     Exposure(const BackwardTracer& tracer, const vulkan::Buffer& for_host)
-        : DeviceExposure(*tracer.scene_.device, tracer.pace_), tracer_(tracer), for_host_(for_host),
+        : SingleExposure(*tracer.scene_.device, tracer.pace_), tracer_(tracer), for_host_(for_host),
           sums_(tracer.instrument_, tracer.plan_) {}
 
     void set_out(std::span<const std::uint64_t> numbers) override {
@@ -268,8 +266,8 @@ std::unique_ptr<DeviceExposure> BackwardTracer::prepare(FocalPosition position, 
 
 } // namespace
 
-std::unique_ptr<Tracer> make_backward_tracer(const optics::Instrument& instrument, const specimen::Specimen& specimen,
-                                             const TraceOptions& options) {
+std::unique_ptr<DeviceExposures> make_backward_tracer(const optics::Instrument& instrument,
+                                                      const specimen::Specimen& specimen, const TraceOptions& options) {
     return std::make_unique<BackwardTracer>(instrument, specimen, options);
 }
 

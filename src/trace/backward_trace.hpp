@@ -2,6 +2,7 @@
 #pragma once
 
 #include "trace/backward_image.hpp"
+#include "trace/device_exposures.hpp"
 #include "trace/device_scene.hpp"
 
 #include <cstdint>
@@ -39,7 +40,7 @@ class BackwardTrace {
 };
 
 // Throws as make_device_tracer().
-std::unique_ptr<Tracer> make_backward_tracer(const optics::Instrument& instrument, const specimen::Specimen& specimen,
-                                             const TraceOptions& options);
+std::unique_ptr<DeviceExposures> make_backward_tracer(const optics::Instrument& instrument,
+                                                      const specimen::Specimen& specimen, const TraceOptions& options);
 
 } // namespace vkfv::trace

@@ -82,24 +82,29 @@ ExposurePart DeviceExposures::count(FocalPosition position, std::uint32_t image,
     while (first < end) {
         first = exposure.submit(first, end);
     }
-    auto numbers = exposure.numbers();
-    return {.numbers = std::move(numbers),
-            .device_seconds = exposure.work.seconds(),
-            .longest_submission = exposure.work.longest()};
+    ExposurePart part{.numbers = exposure.numbers()};
+    for (const ExposureWork* work : exposure.works()) {
+        part.device_seconds += work->seconds();
+        part.longest_submission = std::max(part.longest_submission, work->longest());
+    }
+    return part;
 }
 
 Image DeviceExposures::finished(UnderWay& under_way) const {
     Image image = under_way.exposure->finish();
-    ExposureWork& work = under_way.exposure->work;
-    work.wait();
+    const auto works = under_way.exposure->works();
+    image.device_seconds = image.longest_submission = 0;
+    for (ExposureWork* work : works) {
+        work->wait();
+        image.device_seconds += work->seconds();
+        image.longest_submission = std::max(image.longest_submission, work->longest());
+    }
     {
         const std::scoped_lock lock(mutex_);
-        first_tick_ = first_tick_.value_or(work.first_tick());
-        image.device_begin = device()->seconds_between(*first_tick_, work.first_tick());
-        image.device_end = device()->seconds_between(*first_tick_, work.last_tick());
+        first_tick_ = first_tick_.value_or(works.front()->first_tick());
+        image.device_begin = device()->seconds_between(*first_tick_, works.front()->first_tick());
+        image.device_end = device()->seconds_between(*first_tick_, works.back()->last_tick());
     }
-    image.device_seconds = work.seconds();
-    image.longest_submission = work.longest();
     image.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - under_way.begun).count();
     return image;
 }

@@ -21,7 +21,6 @@ namespace vkfv::trace {
 // One that is under way, in this order: set_out(), submit() until it is counted, hand_over(), finish().
 class DeviceExposure {
   public:
-    DeviceExposure(const vulkan::Device& device, DispatchPace& pace) : work(device, pace) {}
     virtual ~DeviceExposure() = default;
 
     // From the numbers that were counted before; none: from nothing.
@@ -36,7 +35,17 @@ class DeviceExposure {
     virtual void hand_over() = 0;
     // Waits for the device and makes the image; once.
     virtual Image finish() = 0;
+    // What it submits by, in the order of its submissions.
+    virtual std::vector<ExposureWork*> works() = 0;
+};
 
+// One whose work is a single sequence.
+class SingleExposure : public DeviceExposure {
+  public:
+    SingleExposure(const vulkan::Device& device, DispatchPace& pace) : work(device, pace) {}
+    std::vector<ExposureWork*> works() final { return {&work}; }
+
+  protected:
     ExposureWork work;
 };
 
@@ -48,7 +57,8 @@ class DeviceExposures : public Tracer {
     int most_under_way() const final { return static_cast<int>(slots()); }
     ExposurePart count(FocalPosition position, std::uint32_t image, std::uint64_t first, std::uint64_t end) const final;
 
-  protected:
+    // For begin(), count(), and for who makes one exposure of those of several tracers.
+
     // How many may be under way, at most most_exposures; who begins another waits.
     virtual std::size_t slots() const = 0;
     // One that has nothing to do yet. Not called by two threads at a time, nor are others begun before this one has

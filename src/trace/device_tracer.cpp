@@ -4,6 +4,7 @@
 #include "trace/device_exposures.hpp"
 #include "trace/device_numbers.hpp"
 #include "trace/forward_trace.hpp"
+#include "trace/mixed_light.hpp"
 #include "trace/nonsequential_trace.hpp"
 #include "trace/scene_waves.hpp"
 #include "trace/wave_image.hpp"
@@ -48,6 +49,9 @@ class DeviceTracer final : public DeviceExposures {
     std::shared_ptr<const vulkan::Device> device() const override { return scene_.device; }
     const optics::PupilFilter* pupil_filter() const override { return scene_.filter ? &*scene_.filter : nullptr; }
     std::uint64_t units() const override { return rays_; }
+    std::unique_ptr<DeviceExposure> prepare(FocalPosition position, std::uint32_t image,
+                                            std::size_t slot) const override;
+    std::size_t slots() const override { return waves_ ? waves_->exposures_at_a_time() : most_exposures; }
 
   private:
     class Exposure;
@@ -60,10 +64,6 @@ class DeviceTracer final : public DeviceExposures {
         return std::make_unique<ForwardTrace>(scene, batch);
     }
 
-    std::unique_ptr<DeviceExposure> prepare(FocalPosition position, std::uint32_t image,
-                                            std::size_t slot) const override;
-    std::size_t slots() const override { return waves_ ? waves_->exposures_at_a_time() : most_exposures; }
-
     optics::Instrument instrument_;
     std::uint64_t rays_;
     mutable DeviceScene scene_;
@@ -74,10 +74,10 @@ class DeviceTracer final : public DeviceExposures {
     mutable std::array<std::optional<vulkan::Buffer>, most_exposures> for_host_; // counts, then the light of waves
 };
 
-class DeviceTracer::Exposure final : public DeviceExposure {
+class DeviceTracer::Exposure final : public SingleExposure {
   public:
     Exposure(const DeviceTracer& tracer, const vulkan::Buffer& for_host)
-        : DeviceExposure(*tracer.scene_.device, tracer.pace_), tracer_(tracer), for_host_(for_host) {}
+        : SingleExposure(*tracer.scene_.device, tracer.pace_), tracer_(tracer), for_host_(for_host) {}
 
     void set_out(std::span<const std::uint64_t> numbers) override {
         clears_ = numbers.empty();
@@ -146,18 +146,27 @@ std::unique_ptr<DeviceExposure> DeviceTracer::prepare(FocalPosition position, st
 
 std::unique_ptr<Tracer> make_device_tracer(const optics::Instrument& described, const specimen::Specimen& specimen,
                                            const TraceOptions& options) {
-    const optics::Instrument instrument = as_traced(described, options);
-    if (options.estimator == Estimator::backward) {
-        return make_backward_tracer(instrument, specimen, options);
+    std::vector<std::unique_ptr<DeviceExposures>> tracers;
+    for (auto& light : one_by_one(as_traced(described, options), options)) {
+        if (!tracers.empty()) {
+            light.options.opened = tracers.front()->device();
+        }
+        if (options.estimator == Estimator::backward) {
+            tracers.push_back(make_backward_tracer(light.instrument, specimen, light.options));
+        } else {
+            tracers.push_back(std::make_unique<DeviceTracer>(light.instrument, specimen, light.options));
+        }
     }
-    return std::make_unique<DeviceTracer>(instrument, specimen, options);
+    return tracers.size() == 1 ? std::move(tracers.front()) : mix_on_device(std::move(tracers));
 }
 
-TracerIdentity expected_identity(const optics::Instrument& described, const specimen::Specimen& specimen,
-                                 const TraceOptions& options) {
-    const optics::Instrument instrument = as_traced(described, options);
+namespace {
+
+TracerIdentity expected_identity_of(const optics::Instrument& instrument, const specimen::Specimen& specimen,
+                                    const TraceOptions& options) {
     const optics::Instrument traced =
         options.estimator == Estimator::backward ? optics::turned_round(instrument) : instrument;
+
     const auto& waves = options.nonsequential ? std::nullopt : options.waves;
     if (options.device == "host") {
         return host_identity(traced, waves ? LightSorting{.pupil_cells = optics::cells_of(*waves, instrument),
@@ -173,6 +182,17 @@ TracerIdentity expected_identity(const optics::Instrument& described, const spec
         sorting = {.pupil_cells = fitted.cells, .parts_per_pixel = fitted.parts};
     }
     return device_identity(report, traversal_name(traversal), traced, sorting);
+}
+
+} // namespace
+
+TracerIdentity expected_identity(const optics::Instrument& described, const specimen::Specimen& specimen,
+                                 const TraceOptions& options) {
+    std::vector<TracerIdentity> identities;
+    for (const auto& light : one_by_one(as_traced(described, options), options)) {
+        identities.push_back(expected_identity_of(light.instrument, specimen, light.options));
+    }
+    return mixed_identity(identities);
 }
 
 std::vector<PathEnd> device_paths(const optics::Instrument& instrument, const specimen::Specimen& specimen,

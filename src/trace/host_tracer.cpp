@@ -6,6 +6,7 @@
 #include "trace/host_backward_tracer.hpp"
 #include "trace/host_scene.hpp"
 #include "trace/ledger.hpp"
+#include "trace/mixed_light.hpp"
 #include "trace/wave_image.hpp"
 
 #include <fmt/format.h>
@@ -172,11 +173,15 @@ Exposure make_exposure(const optics::Instrument& instrument, const SpecimenRecor
 
 std::unique_ptr<Tracer> make_host_tracer(const optics::Instrument& described, const specimen::Specimen& specimen,
                                          const TraceOptions& options) {
-    const optics::Instrument instrument = as_traced(described, options);
-    if (options.estimator == Estimator::backward) {
-        return make_host_backward_tracer(instrument, specimen, options);
+    std::vector<std::unique_ptr<Tracer>> tracers;
+    for (const auto& light : one_by_one(as_traced(described, options), options)) {
+        if (options.estimator == Estimator::backward) {
+            tracers.push_back(make_host_backward_tracer(light.instrument, specimen, light.options));
+        } else {
+            tracers.push_back(std::make_unique<HostTracer>(light.instrument, specimen, light.options));
+        }
     }
-    return std::make_unique<HostTracer>(instrument, specimen, options);
+    return tracers.size() == 1 ? std::move(tracers.front()) : mix_on_host(std::move(tracers));
 }
 
 std::vector<PathEnd> host_paths(const optics::Instrument& instrument, const specimen::Specimen& specimen,
@@ -192,6 +197,8 @@ std::vector<PathEnd> host_paths(const optics::Instrument& instrument, const spec
     const Exposure exposure = make_exposure(instrument, record, position, options.seed, image);
     physics::f64::Instrument constants = instrument.constants;
     constants.source_radius *= source_scale;
+    constants.source_half_width *= source_scale;
+    constants.source_half_height *= source_scale;
     constants.emission_sine = std::min(1.0, constants.emission_sine * source_scale);
     std::vector<PathEnd> ends(count);
     for (std::uint64_t index = 0; index < count; ++index) {

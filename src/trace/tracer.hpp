@@ -42,8 +42,9 @@ struct TraceOptions {
     std::optional<optics::WaveOptions> waves;    // sequential: images as waves make them; none: as rays do
 };
 
-// How many rays an exposure launches: those asked for, or what each pixel's share is rounded up to backward.
-std::uint64_t launched_rays(const TraceOptions& options, ImageSize detector_pixels);
+// How many rays an exposure launches: those asked for, or what each pixel's share is rounded up to backward, for each
+// source by itself.
+std::uint64_t launched_rays(const TraceOptions& options, const optics::InstrumentDescription& instrument);
 
 enum class Train { none, illumination, imaging };
 

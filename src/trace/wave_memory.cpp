@@ -22,7 +22,8 @@ struct Limits {
 
 Limits limits_of(const optics::WaveOptions& options, const vulkan::DeviceReport& device) {
     const auto usable = static_cast<std::uint64_t>(usable_share * static_cast<double>(device.memory_bytes));
-    return {.memory = options.most_memory > 0 ? std::min(options.most_memory, usable) : usable,
+    const std::uint64_t all = options.most_memory > 0 ? std::min(options.most_memory, usable) : usable;
+    return {.memory = all / static_cast<std::uint64_t>(options.sharers),
             .buffer = device.max_allocation_bytes - padding,
             .binding = std::min(device.max_storage_buffer_bytes, device.max_allocation_bytes - padding)};
 }

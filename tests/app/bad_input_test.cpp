@@ -111,6 +111,19 @@ Case ring_fault(const std::string& name, const std::string& keys, std::vector<st
             std::move(message)};
 }
 
+const std::string second_ring = "kind = \"ring\"\ndistance_mm = 30\nelevation_deg = 45\nwidth_mm = 5\n";
+
+// Another source of these keys, from line 7 on, beside the disc; further tables at the end.
+Case sources_fault(const std::string& name, const std::string& keys, std::vector<std::string> message,
+                   const std::string& tables = "") {
+    return {name,
+            {{"[source]\n", "[[source]]\n"},
+             {"wavelength_um = 0.5876\n", "wavelength_um = 0.5876\n[[source]]\n" + keys},
+             {"[output]", tables + "[output]"}},
+            2,
+            std::move(message)};
+}
+
 // A specimen of these keys in place of the step, from line 25 on.
 Case kind_fault(const std::string& name, const std::string& keys, std::vector<std::string> message,
                 std::map<std::string, std::string> files = {}) {
@@ -291,11 +304,45 @@ std::vector<Case> cases() {
          2,
          {"topography.form", "\"polynomial-20\", \"sphere\" or \"truth\""}},
         // The instrument.
-        instrument_fault("UnknownSource", "radius_mm = 0.96", "kind = \"disk\"\nradius_mm = 0.96",
-                         {"c.toml:3:8", "source.kind", "\"disc\" or \"ring\"", "Did you mean \"disc\"?"}),
+        instrument_fault(
+            "UnknownSource", "radius_mm = 0.96", "kind = \"disk\"\nradius_mm = 0.96",
+            {"c.toml:3:8", "source.kind", "\"disc\" or \"rectangle\" or \"ring\"", "Did you mean \"disc\"?"}),
         instrument_fault("RingKeyOfADisc", "radius_mm = 0.96", "radius_mm = 0.96\nsegments = 8",
                          {"c.toml:4:12", "source.segments", "kind \"disc\"", "belongs to kind \"ring\""}),
         ring_fault("DiscKeyOfARing", "radius_mm = 1\n", {"c.toml:4:13", "source.radius_mm", "kind \"ring\""}),
+        instrument_fault("RectangleWithoutHeight", "radius_mm = 0.96", "kind = \"rectangle\"\nwidth_mm = 1",
+                         {"c.toml:2:1", "source.height_mm", "Add height_mm to [source]"}),
+        instrument_fault("RectangleOfNoWidth", "radius_mm = 0.96", "kind = \"rectangle\"\nheight_mm = 1\nwidth_mm = 0",
+                         {"c.toml:5:12", "source.width_mm", "> 0"}),
+        instrument_fault("DiscKeyOfARectangle", "radius_mm = 0.96",
+                         "kind = \"rectangle\"\nheight_mm = 1\nwidth_mm = 1\nradius_mm = 1",
+                         {"c.toml:6:13", "source.radius_mm", "kind \"rectangle\"", "belongs to kind \"disc\""}),
+        sources_fault("TwoSourcesBehindTheIlluminator", "radius_mm = 1\n",
+                      {"c.toml:6:1", "source[1].kind", "behind the illuminator already", "Make it a ring light"}),
+        sources_fault("SecondSourceWithAFault", "kind = \"ring\"\ndistance_mm = 30\nelevation_deg = 95\nwidth_mm = 5\n",
+                      {"c.toml:9:17", "source[1].elevation_deg", "in (0, 90)"}),
+        sources_fault("SecondSourceWithAnUnknownKey", second_ring + "flux = 2\n",
+                      {"c.toml:11:1", "source[1].flux", "Did you mean flux_W?"}),
+        sources_fault("SecondRingOverTheAxis", "kind = \"ring\"\ndistance_mm = 10\nelevation_deg = 80\nwidth_mm = 9\n",
+                      {"c.toml:10:12", "source[1].width_mm", "a band that does not reach the axis"}),
+        sources_fault("ColoursUnderAnAiryPattern", second_ring + "wavelength_um = 0.5\n",
+                      {"c.toml:6:1", "source[1]", "one spectrum of all sources", "the same wavelength"},
+                      "[diffraction]\nmodel = \"airy\"\n"),
+        sources_fault("ColoursUnderACamera", second_ring + "wavelength_um = 0.5\n",
+                      {"c.toml:6:1", "source[1]", "one spectrum of all sources", "take [camera] out"},
+                      "[camera]\npreset = \"IMX250\"\n"),
+        sources_fault("ASourceThatIsNoTable", second_ring + "[[source.spectrum]]\nkind = \"lines\"\n",
+                      {"source[1].spectrum", "a table"}),
+        {"OverrideOfAllSources",
+         {{"[source]\n", "[[source]]\n"}},
+         2,
+         {"--set", "source.flux_W", "which [[source]] is meant, by its number, 0 to 0", "Write source.0.flux_W"},
+         {"--check", "c.toml", "--set", "source.flux_W=2"}},
+        {"OverrideOfNoSource",
+         {{"[source]\n", "[[source]]\n"}},
+         2,
+         {"--set", "source.1.flux_W", "0 to 0"},
+         {"--check", "c.toml", "--set", "source.1.flux_W=2"}},
         ring_fault("RingWithoutDistance", "elevation_deg = 45\nwidth_mm = 1\n",
                    {"c.toml:2:1", "source.distance_mm", "Add distance_mm to [source]"}),
         ring_fault("RingInTheZenith", "distance_mm = 10\nelevation_deg = 90\nwidth_mm = 1\n",

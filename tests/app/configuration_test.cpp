@@ -29,7 +29,7 @@ Configuration load(const std::string& name, const std::string& text, const std::
 
 TEST(Configuration, ConvertsUnitsOnceAtTheBorder) {
     const auto configuration = load("units", small_configuration);
-    EXPECT_EQ(configuration.instrument.source_radius, 0.96);
+    EXPECT_EQ(configuration.instrument.source.radius, 0.96);
     EXPECT_EQ(configuration.instrument.spectrum.reference_um, 0.5876);
     EXPECT_EQ(configuration.instrument.detector_pixels, ImageSize::square(8));
     EXPECT_EQ(std::get<specimen::Step>(configuration.specimen->shape).height, 0.002);
@@ -204,24 +204,64 @@ const std::string wavelength_line = "wavelength_um = 0.5876\n";
 const std::string disc_lines = "radius_mm = 0.96\nflux_W = 1.0\nwavelength_um = 0.5876\n\n[illumination]\n"
                                "prescription = \"koehler\"\nfield_stop_radius_mm = 0.2\n";
 
+TEST(Configuration, SeveralSourcesAreRead) {
+    const std::string rings = "[[source]]\nkind = \"ring\"\nflux_W = 2\ndistance_mm = 12\nelevation_deg = 30\n"
+                              "width_mm = 2\nwavelength_um = 0.5876\n";
+    const std::string disc = "[[source]]\nkind = \"rectangle\"\nwidth_mm = 1.5\nheight_mm = 1\nflux_W = 3\n";
+    // The order in the file decides nothing but the names: what stands behind the illuminator is the first.
+    const auto one = described("[source]\nradius_mm = 0.96\nflux_W = 1.0\nwavelength_um = 0.5876\n",
+                               rings + disc + "wavelength_um = 0.5876\n");
+    EXPECT_EQ(one.source.key, "source[1]");
+    EXPECT_EQ(one.source.flux, 3);
+    ASSERT_TRUE(one.source.rectangle);
+    EXPECT_EQ(*one.source.rectangle, glm::dvec2(1.5, 1));
+    EXPECT_EQ(one.source.inner_radius(), 0.5);
+    EXPECT_NEAR(one.source.outer_radius(), std::hypot(0.75, 0.5), 1e-15);
+    ASSERT_EQ(one.further_sources.size(), 1u);
+    EXPECT_EQ(one.further_sources[0].key, "source[0]");
+    EXPECT_EQ(one.further_sources[0].flux, 2);
+    EXPECT_EQ(one.further_sources[0].ring->distance, 12);
+    EXPECT_FALSE(one.source.spectrum); // all the same
+    EXPECT_TRUE(one.spectrum.monochromatic());
+    const auto coloured = described("[source]\nradius_mm = 0.96\nflux_W = 1.0\nwavelength_um = 0.5876\n",
+                                    rings + disc +
+                                        "[source.spectrum]\nkind = \"gaussian\"\ncentre_um = 0.5\n"
+                                        "full_width_um = 0.02\n");
+    ASSERT_TRUE(coloured.source.spectrum);
+    ASSERT_TRUE(coloured.further_sources[0].spectrum);
+    EXPECT_EQ(coloured.source.spectrum->reference_um, 0.5);
+    EXPECT_EQ(coloured.further_sources[0].spectrum->reference_um, 0.5876);
+    EXPECT_NEAR(coloured.spectrum.reference_um, (3 * 0.5 + 2 * 0.5876) / 5, 1e-12);
+}
+
+// One of several is changed by its number.
+TEST(Configuration, OverridesReachOneOfSeveralSources) {
+    const auto folder = fresh_folder("overridden_sources");
+    write_file(folder / "c.toml", replaced(small_configuration, "[source]\n", "[[source]]\n"));
+    const auto configuration =
+        load_configuration(folder / "c.toml", {{"source.0.flux_W", "2.5", "--set"}, {"trace.seed", "4", "--set"}});
+    EXPECT_EQ(configuration.instrument.source.flux, 2.5);
+    EXPECT_EQ(configuration.instrument.source.radius, 0.96);
+}
+
 TEST(Configuration, RingLightsAreRead) {
     const std::string keys = "kind = \"ring\"\ndistance_mm = 12\nelevation_deg = 30\nwidth_mm = 2\n";
     const auto plain = described(disc_lines, keys);
-    ASSERT_TRUE(plain.ring);
-    EXPECT_EQ(plain.ring->distance, 12);
-    EXPECT_NEAR(std::sin(plain.ring->elevation), 0.5, 1e-15); // one rounding of the angle
-    EXPECT_EQ(plain.ring->width, 2);
-    EXPECT_EQ(plain.ring->segments, 1);
-    EXPECT_EQ(plain.ring->fill, 1);
-    EXPECT_EQ(plain.ring->on, std::vector<bool>{true});
-    EXPECT_FALSE(plain.ring->lit_radius);
-    EXPECT_FALSE(plain.source_distance);
+    ASSERT_TRUE(plain.source.ring);
+    EXPECT_EQ(plain.source.ring->distance, 12);
+    EXPECT_NEAR(std::sin(plain.source.ring->elevation), 0.5, 1e-15); // one rounding of the angle
+    EXPECT_EQ(plain.source.ring->width, 2);
+    EXPECT_EQ(plain.source.ring->segments, 1);
+    EXPECT_EQ(plain.source.ring->fill, 1);
+    EXPECT_EQ(plain.source.ring->on, std::vector<bool>{true});
+    EXPECT_FALSE(plain.source.ring->lit_radius);
+    EXPECT_FALSE(plain.source.distance);
     EXPECT_TRUE(plain.illumination.surfaces.empty());
     const auto switched = described(disc_lines, keys + "segments = 3\nfill = 0.8\non = [true, false, true]\n");
-    EXPECT_EQ(switched.ring->segments, 3);
-    EXPECT_EQ(switched.ring->fill, 0.8);
-    EXPECT_EQ(switched.ring->on, (std::vector<bool>{true, false, true}));
-    EXPECT_EQ(described(disc_lines, keys + "segments = 4\n").ring->on, std::vector<bool>(4, true));
+    EXPECT_EQ(switched.source.ring->segments, 3);
+    EXPECT_EQ(switched.source.ring->fill, 0.8);
+    EXPECT_EQ(switched.source.ring->on, (std::vector<bool>{true, false, true}));
+    EXPECT_EQ(described(disc_lines, keys + "segments = 4\n").source.ring->on, std::vector<bool>(4, true));
     EXPECT_EQ(
         described(disc_lines + "\n[beam_splitter]\nreflectance = 0.5", keys + "[beam_splitter]\nreflectance = 0\n")
             .splitter.transmittance,

@@ -86,6 +86,8 @@ TEST(Keys, JsonAndSchemaNameEveryKey) {
     EXPECT_EQ(schema["properties"]["fold_mirror"]["type"], "array");
     EXPECT_THAT(schema["properties"]["trace"]["properties"]["estimator"]["enum"].dump(), HasSubstr("backward"));
     EXPECT_EQ(schema["properties"]["source"]["properties"]["spectrum"]["type"], "object");
+    EXPECT_EQ(schema["properties"]["source"]["type"], nlohmann::json({"object", "array"})); // [source] or [[source]]
+    EXPECT_EQ(schema["properties"]["source"]["items"]["properties"]["flux_W"]["maximum"], 1e15);
 }
 
 TEST(Keys, OneIsExplainedByItsNameOrItsLastWord) {

@@ -206,8 +206,8 @@ Instrument ideal(const std::function<void(InstrumentDescription&)>& change) {
     description.objective.surfaces.front().thickness = objective_focal_length;
     description.tube_lens.surfaces = {lens(tube_focal_length)};
     description.objective_to_tube_lens = tube_distance;
-    description.ring = any_ring(30); // the disc's illuminator is for the tests that ask for it
-    description.source_radius = 1;
+    description.source.ring = any_ring(30); // the disc's illuminator is for the tests that ask for it
+    description.source.radius = 1;
     change(description);
     return assemble(description);
 }
@@ -262,7 +262,7 @@ TEST(TiltedParts, MoveTheImageWithTheNodalPoint) {
     const double tilt = 1e-3;
     const auto tilted = displaced([&](auto& d) {
         d.tube_lens_placement.change.tilt_y = tilt;
-        d.ring = any_ring(30);
+        d.source.ring = any_ring(30);
     });
     double first = 0;
     double last = 0;
@@ -283,7 +283,7 @@ TEST(TiltedParts, MoveTheImageWithTheNodalPoint) {
 TEST(DecentredParts, MoveTheImageOfRealLenses) {
     const auto tube = displaced([](auto& d) {
         d.tube_lens_placement.change.decentre_x = decentre;
-        d.ring = any_ring(30);
+        d.source.ring = any_ring(30);
     });
     for (const double slope : {-1e-4, 0.0, 1e-4}) {
         EXPECT_NEAR(landing(tube, slope).x, decentre, 1e-8);
@@ -318,7 +318,7 @@ TEST(DecentredParts, MayBePrescribed) {
     const CoordinateBreak decentred{.decentre_x = 0.3, .decentre_y = -0.2};
     const auto with_disc = [](const CoordinateBreak& place, const CoordinateBreak& prescription) {
         return ideal([&](auto& d) {
-            d.ring.reset();
+            d.source.ring.reset();
             d.objective_placement.change = place;
             d.objective.surfaces.front().breaks = {prescription};
         });
@@ -357,7 +357,7 @@ TEST(BeamSplitter, LeavesTheImage) {
 TEST(IlluminationAperture, LeavesTheAim) {
     const auto pinhole = [](std::optional<double> aperture) {
         return ideal([&](auto& d) {
-            d.ring.reset();
+            d.source.ring.reset();
             d.field_stop_radius = 0.01;
             d.illumination_aperture_radius = aperture;
         });
@@ -370,7 +370,7 @@ TEST(IlluminationAperture, LeavesTheAim) {
 TEST(RingLight, StandsAboveTheCoverGlass) {
     const auto assembled = [](double distance) {
         return ideal([&](auto& d) {
-            d.ring = any_ring(distance);
+            d.source.ring = any_ring(distance);
             d.cover_glass = CoverGlass{.thickness = 0.17, .glass = Medium::constant("N-BK7", n), .distance = 5.0};
         });
     };

@@ -287,8 +287,8 @@ TEST(EmissionCone, HoldsThinConesOfAnAssembledIlluminator) {
     stop.thickness = 150;
     stop.role = PrescribedSurface::Role::field_stop;
     auto description = test::microscope();
-    description.source_radius = 1;
-    description.source_distance = 1;
+    description.source.radius = 1;
+    description.source.distance = 1;
     description.field_stop_radius.reset();
     description.illumination = ideal_lens(150);
     description.illumination.surfaces.insert(description.illumination.surfaces.begin(), stop);
@@ -338,7 +338,7 @@ TEST(RingLight, IsAimedAtAllThatItMustLight) {
     for (const double cover : {0.0, 0.17, 2.0}) {
         auto description = test::microscope();
         description.objective = ideal_objective(20, 0.28);
-        description.ring = RingLightDescription{
+        description.source.ring = RingLightDescription{
             .distance = 12, .elevation = 0.5, .width = 2, .segments = 1, .fill = 1, .on = {true}, .lit_radius = 0.3};
         description.greatest_defocus = 1.5;
         if (cover > 0) {

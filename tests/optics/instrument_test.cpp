@@ -324,7 +324,7 @@ TEST(DirectedEmission, HoldsAllThatPasses) {
         int outside_narrow = 0;
         for (int i = 0; i < 100000; ++i) {
             const auto ray =
-                physics::f64::emit_from_disc(description.source_radius, std::min(1.0, 1.5 * sine), uniform(generator),
+                physics::f64::emit_from_disc(description.source.radius, std::min(1.0, 1.5 * sine), uniform(generator),
                                              uniform(generator), uniform(generator), uniform(generator));
             const auto result = test::trace(
                 train, ray.position - glm::dvec3(0, 0, instrument.constants.source_distance), ray.direction, 1u);
@@ -415,7 +415,7 @@ TEST(Instrument, NamesItsSurfaces) {
 TEST(Instrument, Warns) {
     EXPECT_TRUE(assemble(test::microscope()).warnings.empty());
     auto description = test::microscope();
-    description.source_radius = 0.9;
+    description.source.radius = 0.9;
     EXPECT_THAT(assemble(description).warnings, ::testing::ElementsAre(HasSubstr("does not fill")));
     description = test::microscope();
     description.field_stop_radius = 0.6; // 0.080 mm on the specimen; the corners are at 0.092 mm
@@ -440,7 +440,7 @@ TEST(Instrument, RefusesPartsThatDoNotFit) {
         return "accepted";
     };
     auto description = test::microscope();
-    description.source_radius = 0;
+    description.source.radius = 0;
     EXPECT_EQ(key_of(description), "source.radius_mm");
     description = test::microscope();
     description.spectrum = optics::Spectrum::line(1.5);
@@ -449,7 +449,7 @@ TEST(Instrument, RefusesPartsThatDoNotFit) {
     description.illumination.source_distance.reset();
     EXPECT_EQ(key_of(description), "source.distance_mm");
     description = test::microscope();
-    description.source_distance = 30; // its image stands in front of the field lens
+    description.source.distance = 30; // its image stands in front of the field lens
     EXPECT_EQ(key_of(description), "illumination.objective_distance_mm");
     description = test::microscope();
     description.illumination.surfaces[2].role = PrescribedSurface::Role::refracting;

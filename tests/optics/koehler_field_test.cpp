@@ -117,13 +117,13 @@ TEST(KoehlerField, IsUniformWithinTheStatisticalError) {
 TEST(KoehlerField, IsUniformByTheRadianceThatReachesIt) {
     const auto description = koehler_20x();
     const auto instrument = assemble(description);
-    const double middle = irradiance(instrument, description.source_radius, 0);
+    const double middle = irradiance(instrument, description.source.radius, 0);
     // The objective's numerical aperture is filled: pi NA^2. The imaging's cone starts a best focus offset away, and
     // its pupil is seen the other way through: they differ by its aberration.
     EXPECT_NEAR(middle / (pi * std::pow(instrument.first_order.numerical_aperture, 2)), 1, 2e-3);
     for (const double share : {0.35, 0.7, 1.0}) {
         // Less than the statistics of any image could show.
-        EXPECT_NEAR(irradiance(instrument, description.source_radius, share * field_radius) / middle, 1, 1e-4) << share;
+        EXPECT_NEAR(irradiance(instrument, description.source.radius, share * field_radius) / middle, 1, 1e-4) << share;
     }
     // Wrong twin: a source that does not fill the pupil lights less.
     EXPECT_LT(irradiance(instrument, 0.6, 0) / middle, 0.8);

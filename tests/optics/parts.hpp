@@ -23,7 +23,7 @@ inline constexpr double d_line_um = 0.587562;
 inline optics::InstrumentDescription microscope(const std::string& objective = "10x_0.28") {
     const auto base = source_folder() / "assets" / "stacks";
     optics::InstrumentDescription description;
-    description.source_radius = 0.96;
+    description.source.radius = 0.96;
     description.spectrum = optics::Spectrum::line(d_line_um);
     description.illumination = optics::load_prescription("koehler", "illuminators", base);
     description.field_stop_radius = 0.85;

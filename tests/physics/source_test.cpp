@@ -71,6 +71,59 @@ TEST(Source, a_finite_disc_obeys_footes_formula) {
     EXPECT_LT(chi_square_p(seen, expected_in_rings(foote(0.82), 3.0)), false_positive_rate); // wrong twin
 }
 
+// J. R. Howell, A Catalog of Radiation Heat Transfer Configuration Factors, C-11: of a surface element at the distance
+// 1 below a corner of a parallel rectangle a x b; odd in both sides, so that four corners make any rectangle.
+double corner_factor(double a, double b) {
+    const double along = std::sqrt(1 + a * a), across = std::sqrt(1 + b * b);
+    return (a / along * std::atan(b / along) + b / across * std::atan(a / across)) / (2 * M_PI);
+}
+
+// The irradiance is the factor times the exitance pi L, and pi L w h is the flux: shares of the flux on 12 x 10 cells
+// of a plane, and beside them. So the whole of the light, pi L times the area, is the sum over all of the plane.
+TEST(Source, a_rectangle_obeys_the_configuration_factor) {
+    constexpr double half_width = 0.8, half_height = 0.3, width = 3.6, height = 3;
+    constexpr int columns = 12, rows = 10;
+    std::vector<double> seen(columns * rows + 1);
+    for (uint k = 0; k < rays; ++k) {
+        const Draws u = draw(14u, 0u, uvec2(k, 0u), 0u);
+        const Ray ray =
+            fly_to_plane(emit_from_rectangle(half_width, half_height, 1.0, u.u0, u.u1, u.u2, u.u3), 1.0, 1.0);
+        const double column = std::floor((ray.position.x / width + 0.5) * columns);
+        const double row = std::floor((ray.position.y / height + 0.5) * rows);
+        const bool inside = column >= 0 && column < columns && row >= 0 && row < rows;
+        seen[inside ? static_cast<std::size_t>(row * columns + column) : seen.size() - 1] += 1;
+    }
+    const auto expected = [&](double a, double b) {
+        const auto irradiance = [&](double x, double y) {
+            return (corner_factor(a - x, b - y) - corner_factor(-a - x, b - y) - corner_factor(a - x, -b - y) +
+                    corner_factor(-a - x, -b - y)) /
+                   (4 * a * b);
+        };
+        std::vector<double> counts;
+        double sum = 0;
+        for (int row = 0; row < rows; ++row) {
+            const double y = (static_cast<double>(row) / rows - 0.5) * height;
+            for (int column = 0; column < columns; ++column) {
+                const double x = (static_cast<double>(column) / columns - 0.5) * width;
+                const double share = integrate(
+                    [&](double at_y) {
+                        return integrate([&](double at_x) { return irradiance(at_x, at_y); }, x, x + width / columns,
+                                         4);
+                    },
+                    y, y + height / rows, 4);
+                counts.push_back(share * rays);
+                sum += share;
+            }
+        }
+        counts.push_back((1 - sum) * rays);
+        return counts;
+    };
+    EXPECT_GT(chi_square_p(seen, expected(half_width, half_height)), false_positive_rate);
+    // Wrong twins: a little wider, and with its sides exchanged.
+    EXPECT_LT(chi_square_p(seen, expected(1.03 * half_width, half_height)), false_positive_rate);
+    EXPECT_LT(chi_square_p(seen, expected(half_height, half_width)), false_positive_rate);
+}
+
 // A Lambertian source sends sin^2 of its flux into a cone; the aimed source is the whole one's part in that cone.
 TEST(Source, an_aimed_disc_is_the_cone_cut_out_of_the_whole) {
     const double sine = 0.3;

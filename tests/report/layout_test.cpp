@@ -79,7 +79,24 @@ std::vector<Case> cases() {
              ring.fill = 0.8;
              ring.on = {true, true, true, true, false, false, true, true};
              ring.lit_radius = 0.1;
-             d.ring = ring;
+             d.source.ring = ring;
+             return d;
+         }},
+        {"rectangle and rings",
+         [] {
+             auto d = microscope();
+             d.source.rectangle = glm::dvec2(1.2, 1.8);
+             for (const double elevation : {0.5, 1.0}) {
+                 optics::SourceDescription ring;
+                 ring.ring = optics::RingLightDescription{.distance = 45,
+                                                          .elevation = elevation,
+                                                          .width = 4,
+                                                          .segments = 1,
+                                                          .fill = 1,
+                                                          .on = {true},
+                                                          .lit_radius = 0.1};
+                 d.further_sources.push_back(ring);
+             }
              return d;
          }},
         {"cover glass",
@@ -187,8 +204,8 @@ TEST_P(LayoutTest, RaysEndWhereTheSequentialTrainsSay) {
             EXPECT_NEAR(drawn.y, arrived.position.y, 1e-9);
             continue;
         }
-        const bool ring = (instrument.features & physics::f64::FEATURE_RING) != 0;
-        if (ring && constants.illumination_count == 0) {
+        const bool ring = ray.bundle == RoomRay::Bundle::ring_light;
+        if (ring && instrument.elements.front().part != optics::Part::cover_glass) {
             continue; // a straight line
         }
         const auto& pose = instrument.source_pose;

@@ -300,19 +300,48 @@ TEST(Backward, gates_hold_for_every_microscope) {
     }
 }
 
+// An LED's die: narrower than the pupil one way, wider the other.
+TEST(Backward, knows_a_rectangular_source) {
+    auto description = small_description();
+    description.source.rectangle = glm::dvec2(2.4, 0.9);
+    const auto rough = test::rough_specimen();
+    const auto instrument = optics::assemble(description);
+    const auto forward = forward_image(instrument, rough, 1, 6'000'000);
+    expect_agreement(forward, backward_image(instrument, rough, 1));
+    // Wrong twins: wider, so that more of the same flux passes beside the pupil, and with its sides exchanged.
+    for (const glm::dvec2 sides : {glm::dvec2(2.54, 0.9), glm::dvec2(0.9, 2.4)}) {
+        auto other = description;
+        other.source.rectangle = sides;
+        EXPECT_LT(agreement(forward, backward_image(optics::assemble(other), rough, 1)), level) << sides.x;
+    }
+    // Of a die that the pupil sees whole, aiming loses nothing.
+    auto small = description;
+    small.source.rectangle = glm::dvec2(0.8, 0.5);
+    auto whole = small;
+    whole.directed_emission = false;
+    const auto detected = [&](const optics::InstrumentDescription& of) {
+        return forward_image(optics::assemble(of), rough, 1, 6'000'000).ledger.entries.front();
+    };
+    const auto aimed = detected(small), analog = detected(whole);
+    const double error =
+        std::hypot(aimed.power / std::sqrt(double(aimed.rays)), analog.power / std::sqrt(double(analog.rays)));
+    EXPECT_LT(std::abs(aimed.power - analog.power), 3.9 * error); // two-sided, 1e-4
+    EXPECT_GT(aimed.rays, 2 * analog.rays);
+}
+
 // Light from one side, past the objective: segments with gaps, wide and sharp lobes, mirrors, a spectrum, a cover
 // glass.
 TEST(Backward, knows_a_ring_light) {
     auto description = small_description();
     description.detector_width = 0.64;
     description.greatest_defocus = 0.02;
-    description.ring = optics::RingLightDescription{.distance = 25,
-                                                    .elevation = 0.8,
-                                                    .width = 0.1, // forward light is aimed the better
-                                                    .segments = 5,
-                                                    .fill = 0.7,
-                                                    .on = {true, true, false, false, true},
-                                                    .lit_radius = 0.05};
+    description.source.ring = optics::RingLightDescription{.distance = 25,
+                                                           .elevation = 0.8,
+                                                           .width = 0.1, // forward light is aimed the better
+                                                           .segments = 5,
+                                                           .fill = 0.7,
+                                                           .on = {true, true, false, false, true},
+                                                           .lit_radius = 0.05};
     const auto rough = test::rough_specimen();
     const auto instrument = optics::assemble(description);
     const auto forward = forward_image(instrument, rough, 1, 8'000'000);
@@ -320,8 +349,8 @@ TEST(Backward, knows_a_ring_light) {
     // Wrong twins: a ring a little lower, and one whose gaps stand elsewhere.
     for (const bool lower : {true, false}) {
         auto other = description;
-        other.ring->elevation -= lower ? 0.03 : 0;
-        other.ring->on = lower ? other.ring->on : std::vector<bool>{true, true, true, false, false};
+        other.source.ring->elevation -= lower ? 0.03 : 0;
+        other.source.ring->on = lower ? other.source.ring->on : std::vector<bool>{true, true, true, false, false};
         EXPECT_LT(agreement(forward, backward_image(optics::assemble(other), rough, 1)), level) << lower;
     }
     const auto mixed =

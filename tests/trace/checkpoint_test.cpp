@@ -39,6 +39,7 @@ struct Form {
     bool directed = false;
     bool waves = false;
     bool backward = false;
+    bool mixed = false; // light of a disc and a ring
 };
 
 void PrintTo(const Form& form, std::ostream* to) {
@@ -49,6 +50,12 @@ std::unique_ptr<trace::Tracer> tracer_of(const Form& form) {
     auto description = microscope_description();
     description.detector_pixels = ImageSize::square(32);
     description.turned = form.backward;
+    if (form.mixed) {
+        optics::SourceDescription ring;
+        ring.ring = optics::RingLightDescription{
+            .distance = 25, .elevation = 0.8, .width = 1, .segments = 1, .fill = 1, .on = {true}, .lit_radius = 0.1};
+        description.further_sources = {ring};
+    }
     static std::vector<std::unique_ptr<optics::Instrument>> instruments;
     instruments.push_back(std::make_unique<optics::Instrument>(optics::assemble(description)));
     trace::TraceOptions options;
@@ -125,13 +132,15 @@ TEST_P(Checkpoint, PartsOfSeveralDevicesGiveTheSameBits) {
     EXPECT_GT(joined.device_seconds, 0);
 }
 
-INSTANTIATE_TEST_SUITE_P(OfEveryForm, Checkpoint,
-                         testing::Values(Form{.name = "forward"}, Form{.name = "nonsequential", .nonsequential = true},
-                                         Form{.name = "directed", .directed = true},
-                                         Form{.name = "waves", .waves = true},
-                                         Form{.name = "backward", .backward = true},
-                                         Form{.name = "backward_waves", .waves = true, .backward = true}),
-                         [](const auto& form) { return form.param.name; });
+INSTANTIATE_TEST_SUITE_P(
+    OfEveryForm, Checkpoint,
+    testing::Values(Form{.name = "forward"}, Form{.name = "nonsequential", .nonsequential = true},
+                    Form{.name = "directed", .directed = true}, Form{.name = "waves", .waves = true},
+                    Form{.name = "backward", .backward = true},
+                    Form{.name = "backward_waves", .waves = true, .backward = true},
+                    Form{.name = "mixed", .mixed = true},
+                    Form{.name = "mixed_backward_waves", .waves = true, .backward = true, .mixed = true}),
+    [](const auto& form) { return form.param.name; });
 
 TEST(CheckpointClock, WithoutCheckpointsNoneIsDue) {
     EXPECT_FALSE(trace::CheckpointClock(nullptr).due());

@@ -131,7 +131,7 @@ TEST(Image, the_ledger_gives_each_loss_the_power_it_carried) {
 // Analog emission and emission into the cone that can arrive have the same expectation of detected power.
 TEST(Image, aimed_emission_detects_the_power_of_the_whole_source) {
     auto description = test::microscope_description();
-    description.source_radius = 0.2;
+    description.source.radius = 0.2;
     const auto aimed = optics::assemble(description);
     description.directed_emission = false;
     const auto whole = optics::assemble(description);

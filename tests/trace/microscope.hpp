@@ -11,7 +11,7 @@ namespace vkfv::test {
 inline optics::InstrumentDescription microscope_description() {
     const std::filesystem::path base = std::filesystem::path(VKFV_SOURCE_DIR) / "assets" / "stacks";
     optics::InstrumentDescription description;
-    description.source_radius = 0.96;
+    description.source.radius = 0.96;
     description.spectrum = optics::Spectrum::line(0.587562);
     description.illumination = optics::load_prescription("koehler", "illuminators", base);
     description.field_stop_radius = 0.85;

@@ -23,7 +23,7 @@ constexpr double nm = 1e-6; // mm
 optics::InstrumentDescription described(const std::string& objective, const std::string& tube_lens) {
     const std::filesystem::path base = std::filesystem::path(VKFV_SOURCE_DIR) / "assets" / "stacks";
     auto description = test::microscope_description();
-    description.source_radius = 1.2; // fills the pupil of every objective
+    description.source.radius = 1.2; // fills the pupil of every objective
     description.field_stop_radius = 4.1;
     description.splitter.kind = optics::BeamSplitter::Kind::cube;
     description.splitter.glass = description.illumination.surfaces[3].medium_after; // N-BK7

@@ -25,7 +25,7 @@ optics::InstrumentDescription described(const Microscope& microscope) {
     description.tube_lens = optics::load_prescription(microscope.tube_lens, "tube_lenses", base);
     description.detector_width = 8; // mm: a common sensor
     // The imaging is what is traced; a ring light needs no illuminator to be fitted to the objective.
-    description.ring = optics::RingLightDescription{
+    description.source.ring = optics::RingLightDescription{
         .distance = 30, .elevation = 0.5, .width = 1, .segments = 1, .fill = 1, .on = {true}, .lit_radius = 0.1};
     return description;
 }

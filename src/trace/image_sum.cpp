@@ -1,0 +1,41 @@
+#include "trace/image_sum.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <functional>
+
+namespace vkfv::trace {
+
+namespace {
+
+void add(Ledger& sum, const Ledger& part) {
+    sum.emitted += part.emitted;
+    sum.residual_error = std::hypot(sum.residual_error, part.residual_error);
+    for (const Ledger::Entry& entry : part.entries) {
+        const auto same = std::ranges::find(sum.entries, entry.name, &Ledger::Entry::name);
+        if (same == sum.entries.end()) {
+            sum.entries.push_back(entry);
+        } else {
+            same->power += entry.power;
+            same->rays += entry.rays;
+        }
+    }
+}
+
+} // namespace
+
+void add(Image& sum, const Image& part) {
+    std::ranges::transform(sum.flux.values, part.flux.values, sum.flux.values.begin(), std::plus<>());
+    std::ranges::transform(sum.standard_error.values, part.standard_error.values, sum.standard_error.values.begin(),
+                           [](double a, double b) { return std::hypot(a, b); });
+    add(sum.ledger, part.ledger);
+    sum.rays += part.rays;
+    sum.detected += part.detected;
+    sum.crossings += part.crossings;
+    sum.seconds += part.seconds;
+    sum.device_seconds += part.device_seconds;
+    sum.longest_submission = std::max(sum.longest_submission, part.longest_submission);
+    sum.device_end = part.device_end;
+}
+
+} // namespace vkfv::trace
