@@ -155,10 +155,10 @@ void Accounts::add_slots(const std::vector<Surface>& surfaces, int illumination,
 
 Ledger Accounts::ledger(std::span<const std::uint64_t> numbers, std::uint64_t rays) const {
     const double per_ray = flux_ * aimed_ / static_cast<double>(rays);
-    const auto counts = numbers.first(slots_.size());
+    const auto counts = numbers.first(slots());
     // In rays of weight 1.
     const auto amount = [&](std::size_t slot) {
-        return weighted_ ? static_cast<double>(numbers[slots_.size() + slot]) / WEIGHT_ONE
+        return weighted_ ? static_cast<double>(numbers[slots() + slot]) / WEIGHT_ONE
                          : static_cast<double>(counts[slot]);
     };
     Ledger ledger;

@@ -29,13 +29,14 @@ class Accounts {
     // Non-sequential: every ray keeps its power to its end, at one of these elements.
     Accounts(const optics::Instrument& instrument, const std::vector<std::string>& element_names);
 
-    // Of physics::ledger_slot().
-    std::size_t slots() const { return slots_.size(); }
+    // Room for those of physics::ledger_slot(), in whole steps: a kernel is compiled for each number of them, which
+    // takes a processor seconds, and instruments of about as many surfaces share it. What is beyond stays 0.
+    std::size_t slots() const { return (slots_.size() + slot_step - 1) / slot_step * slot_step; }
 
     // How many numbers a trace keeps. Directed scatter: after the counts of the slots their sums of weights (units of
     // 1 / WEIGHT_ONE) and the sum over the paths of physics::weight_square() of what each adds; a pixel has its sum of
     // weights and the sum of their squares (units of 2^-24).
-    std::size_t ledger_numbers() const { return weighted_ ? 2 * slots_.size() + 1 : slots_.size(); }
+    std::size_t ledger_numbers() const { return weighted_ ? 2 * slots() + 1 : slots(); }
     std::size_t pixel_numbers() const { return pixels_.count() * (weighted_ ? 2 : 1); }
 
     // Image in W from the numbers of the pixels and of the ledger, with the standard error of each pixel. What was not
@@ -62,6 +63,8 @@ class Accounts {
         std::size_t splitter_passes = 0;
         int crossings = 0;
     };
+    static constexpr std::size_t slot_step = 64;
+
     static std::vector<Surface> surfaces_of(const optics::Instrument& instrument);
     // crossings of the illumination and of both trains in whole.
     void add_slots(const std::vector<Surface>& surfaces, int illumination, int both);

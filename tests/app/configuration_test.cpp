@@ -1,6 +1,7 @@
 // Configurations in process: values, units, canonical text and identity.
 #include "app/program.hpp"
 #include "configuration/configuration.hpp"
+#include "configuration/key_documents.hpp"
 #include "measurement/assembly.hpp"
 #include "specimen/geometry_digest.hpp"
 
@@ -8,6 +9,9 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <map>
+#include <set>
+#include <tuple>
 
 namespace vkfv::measurement {
 
@@ -136,6 +140,81 @@ TEST(Configuration, IdentityHoldsWhatChangesImagesAndNothingElse) {
     };
     for (const auto& change : influential) {
         EXPECT_NE(load("identity", small_configuration, {change}).identity, reference) << change.key;
+    }
+}
+
+// Every key of [stage] and [camera]: another value makes other images, but for those that are declared to influence
+// none.
+TEST(Configuration, IdentityHoldsWhatStageAndCameraDoToImages) {
+    const auto stage = replaced(small_configuration, "[output]\n",
+                                "[stage]\nlinearity_at_um = [0, 1]\nlinearity_um = [0, 0]\nvibration_um = [0.1]\n"
+                                "vibration_hz = [203]\nlateral_drift_um_per_s = [0, 0]\ntilt_deg = [0, 0]\n[output]\n");
+    const auto camera =
+        replaced(small_configuration, "[output]\n", "[camera]\npreset = \"IMX900\"\nfull_well_e = 9000\n[output]\n");
+    const auto timed = replaced(small_configuration, "[output]\n",
+                                "[camera]\npreset = \"IMX900\"\nexposure = \"time\"\nexposure_ms = 1\n[output]\n");
+    const auto curve = replaced(small_configuration, "[output]\n",
+                                "[camera]\npreset = \"IMX900\"\nefficiency_wavelengths_um = [0.4, 0.7]\n"
+                                "quantum_efficiencies = [0.5, 0.6]\n[output]\n");
+    const std::vector<std::tuple<std::string, std::string, std::string>> changes = {
+        {stage, "stage.scale_error", "0.01"},
+        {stage, "stage.linearity_at_um", "[0, 2]"},
+        {stage, "stage.linearity_um", "[0, 0.1]"},
+        {stage, "stage.periodic_um", "0.1"},
+        {stage, "stage.period_um", "21"},
+        {stage, "stage.phase_deg", "10"},
+        {stage, "stage.jitter_um", "0.1"},
+        {stage, "stage.backlash_um", "0.1"},
+        {stage, "stage.drift_um_per_s", "0.1"},
+        {stage, "stage.vibration_um", "[0.2]"},
+        {stage, "stage.vibration_hz", "[204]"},
+        {stage, "stage.lateral_drift_um_per_s", "[0, 1]"},
+        {stage, "stage.tilt_deg", "[0, 1]"},
+        {stage, "stage.runout_um", "1"},
+        {stage, "stage.runout_period_um", "400"},
+        {stage, "stage.light_noise", "0.01"},
+        {stage, "stage.direction", "\"down\""},
+        {stage, "stage.interval_s", "0.2"},
+        {stage, "stage.exposure_s", "0.01"},
+        {stage, "stage.moments", "9"},
+        {stage, "stage.seed", "2"},
+        {stage, "stage.reading_noise_um", "0.1"},
+        {stage, "stage.evaluate", "\"read\""},
+        {camera, "camera.preset", "\"IMX250\""},
+        {camera, "camera.quantum_efficiency", "0.5"},
+        {camera, "camera.full_well_e", "9001"},
+        {camera, "camera.read_noise_e", "6"},
+        {camera, "camera.dark_current_e_per_s", "1"},
+        {camera, "camera.gain_dn_per_e", "0.3"},
+        {camera, "camera.offset_dn", "61"},
+        {camera, "camera.bit_depth", "11"},
+        {camera, "camera.dsnu_e", "3"},
+        {camera, "camera.prnu_percent", "0.8"},
+        {camera, "camera.exposure", "\"first\""},
+        {camera, "camera.saturation", "0.7"},
+        {camera, "camera.frames", "2"},
+        {camera, "camera.seed", "2"},
+        {timed, "camera.exposure_ms", "2"},
+        {curve, "camera.efficiency_wavelengths_um", "[0.4, 0.8]"},
+        {curve, "camera.quantum_efficiencies", "[0.5, 0.7]"},
+    };
+    std::map<std::string, std::string> references; // identities
+    std::set<std::string> tried;
+    for (const auto& [text, key, value] : changes) {
+        auto& reference = references[text];
+        if (reference.empty()) {
+            reference = load("identity", text).identity;
+        }
+        const bool influences = key != "stage.reading_noise_um" && key != "stage.evaluate";
+        EXPECT_EQ(load("identity", text, {{key, value, ""}}).identity != reference, influences) << key;
+        tried.insert(key);
+    }
+    for (const KeyTable* table : key_tables()) { // a new key has its line above
+        if (table->path == "stage" || table->path == "camera") {
+            for (const Key* key : table->keys) {
+                EXPECT_TRUE(tried.contains(table->path + "." + key->name)) << table->path << "." << key->name;
+            }
+        }
     }
 }
 

@@ -51,6 +51,31 @@ TEST(Ledger, TellsElementsOfTheRoomWithoutATrain) {
     EXPECT_EQ(last.surface, 1);
 }
 
+// Instruments of about as many surfaces have kernels in common; what a kernel has room for beyond is not read.
+TEST(Ledger, HasRoomInWholeSteps) {
+    const auto instrument = test::microscope();
+    const std::size_t used = physics::f64::PATH_STATUS_COUNT + 4 * instrument.surfaces.size();
+    for (const bool directed : {false, true}) {
+        const trace::Accounts accounts(instrument, directed);
+        ASSERT_EQ(accounts.slots() % 64, 0u);
+        ASSERT_GE(accounts.slots(), used);
+        ASSERT_LT(accounts.slots(), used + 64);
+        std::vector<std::uint64_t> numbers(accounts.ledger_numbers(), 16);
+        const std::vector<std::uint64_t> pixels(accounts.pixel_numbers());
+        const Ledger ledger = accounts.image(pixels, numbers, 1000).ledger;
+        for (std::size_t beyond = used; beyond < accounts.slots(); ++beyond) {
+            numbers[beyond] = 1000;
+            if (directed) {
+                numbers[accounts.slots() + beyond] = 1000;
+            }
+        }
+        EXPECT_EQ(accounts.image(pixels, numbers, 1000).ledger.residual(), ledger.residual());
+        numbers[used - 1] += 1; // the twin: the last that is read
+        numbers[directed ? accounts.slots() + used - 1 : used - 1] += 16;
+        EXPECT_NE(accounts.image(pixels, numbers, 1000).ledger.residual(), ledger.residual());
+    }
+}
+
 TEST(ShareCollected, CountsTheRaysThatCameThroughThePupil) {
     Ledger ledger;
     EXPECT_FALSE(trace::share_collected(ledger).has_value());

@@ -170,12 +170,13 @@ TEST(Waves, give_gratings_the_contrast_of_the_debye_integral) {
         for (const double s : {0.25, 0.5}) {
             const double period = grating_wavelength / (2 * aperture * s);
             const auto specimen = flat_with_grating(period, angle);
+            auto options = with_waves(trace::Estimator::backward);
+            options.rays = 128 * grating_pixels * grating_pixels;
+            options.max_bounces = 1;
+            const auto tracer = trace::make_device_tracer(instrument, specimen, options);
             for (const double waves : {0.0, 0.25}) {
                 const double z = 2 * waves * grating_wavelength / (aperture * aperture);
-                auto options = with_waves(trace::Estimator::backward);
-                options.rays = 128 * grating_pixels * grating_pixels;
-                options.max_bounces = 1;
-                const auto image = trace::make_device_tracer(instrument, specimen, options)->expose(z, 1);
+                const auto image = tracer->expose(z, 1);
                 const double expected = debye_transfer(aperture, grating_wavelength, s, z);
                 EXPECT_NEAR(grating_contrast(image.flux, period, angle, pitch), expected, waves == 0 ? 0.015 : 0.045)
                     << aperture << ' ' << s << ' ' << waves;
