@@ -242,7 +242,7 @@ struct Lobe {
     VKFV_LOBE_FIELDS(VKFV_DECLARE, VKFV_DECLARE_ARRAY)
 };
 
-// The weights' sum is the reflectance, at most 1; the rest is absorbed. Lobes that there are not weigh nothing.
+// The weights' sum is the reflectance, at most 1; the rest is absorbed. Unused lobes have the weight 0.
 #define VKFV_MATERIAL_FIELDS(FIELD) \
     FIELD(Lobe, lobe_0) \
     FIELD(Lobe, lobe_1) \

@@ -4,8 +4,8 @@
 // side, also for a path that is traced backward, so a backward path gives scatter_density() its own direction reversed
 // as `outgoing`.
 
-// By one number, uniform in (0, 1): a lobe with the probability of its weight, else SCATTER_NONE. Lobes that a material
-// has not weigh nothing.
+// By one number, uniform in (0, 1): a lobe with the probability of its weight, else SCATTER_NONE. Unused lobes have
+// the weight 0.
 VKFV_FUNCTION Lobe choose_lobe(Material material, real u) {
     Lobe lobe = material.lobe_0;
     real bound = lobe.weight;

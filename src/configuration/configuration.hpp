@@ -75,6 +75,7 @@ struct Configuration : ReadKeys {
     topography::Band band;               // form of both comparisons with the truth; filters of the second; unlimited:
                                          // there is only one
     std::filesystem::path output_directory;
+    bool stack_file = false;                                // all images in one file, beside the single ones
     static constexpr double usual_checkpoint_interval = 60; // s
     double checkpoint_interval = usual_checkpoint_interval; // of an exposure that takes longer; 0: none are kept
     scan::PixelType pixel_type = scan::PixelType::float32;  // of the images

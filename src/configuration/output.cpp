@@ -17,15 +17,16 @@ struct SurfaceFormat {
     const char* file;
     const char* meaning;
 };
-constexpr std::array surface_formats = {SurfaceFormat{"tiff", "topography.tif", "float32 heights in um"},
-                                        SurfaceFormat{"x3p", "topography.x3p", "ISO 25178-72"},
-                                        SurfaceFormat{"sur", "topography.sur", "Digital Surf"},
-                                        SurfaceFormat{"sdf", "topography.sdf", "ISO 25178-71"},
-                                        SurfaceFormat{"ply", "topography.ply", "triangles for viewers"},
-                                        SurfaceFormat{"gwy", "topography.gwy", "Gwyddion, with all maps of the result"},
-                                        SurfaceFormat{"gsf", "topography.gsf", "Gwyddion's simple field"},
-                                        SurfaceFormat{"npy", "topography.npy", "NumPy, float64 heights in um"},
-                                        SurfaceFormat{"csv", "topography.csv", "a matrix of heights in um"}};
+constexpr std::array surface_formats = {
+    SurfaceFormat{"tiff", "topography.tif", "float32 heights in um"},
+    SurfaceFormat{"x3p", "topography.x3p", "ISO 25178-72, of truth and deviation too"},
+    SurfaceFormat{"sur", "topography.sur", "Digital Surf"},
+    SurfaceFormat{"sdf", "topography.sdf", "ISO 25178-71"},
+    SurfaceFormat{"ply", "topography.ply", "triangles for viewers"},
+    SurfaceFormat{"gwy", "topography.gwy", "Gwyddion, with all maps of the result"},
+    SurfaceFormat{"gsf", "topography.gsf", "Gwyddion's simple field"},
+    SurfaceFormat{"npy", "topography.npy", "NumPy, float64 heights in um"},
+    SurfaceFormat{"csv", "topography.csv", "a matrix of heights in um"}};
 
 std::vector<Key::Choice> choices_of_formats() {
     std::vector<Key::Choice> choices;
@@ -57,6 +58,11 @@ const ChoiceKey<PixelType>
             {PixelType::uint16, "uint16", "a camera's grey values, those of averaged frames rounded"},
             {PixelType::uint8, "uint8", "the same, with camera.bit_depth of at most 8"}},
            PixelType::float32, "Values of the images' pixels.");
+const ChoiceKey<bool> image_files = without_influence(
+    ChoiceKey<bool>("image_files",
+                    {{false, "single", "images/z_0000.tif and so on"},
+                     {true, "stack", "the same, and all of them in images.tif, a z-stack for ImageJ and napari"}},
+                    false, "Files of the images."));
 const NumberKey checkpoint = without_influence(NumberKey(
     "checkpoint_s", NumberRange::within(0, longest_checkpoint_interval), Configuration::usual_checkpoint_interval,
     "An exposure that takes longer is kept half done, so often; 0: never."));
@@ -86,7 +92,7 @@ const KeyTable& output_keys() {
                                 .meaning = "Where results go, and in which formats.",
                                 .subject = "an output",
                                 .kind = "",
-                                .keys = {&directory, &surfaces, &images, &checkpoint}};
+                                .keys = {&directory, &surfaces, &images, &image_files, &checkpoint}};
     return table;
 }
 
@@ -129,6 +135,7 @@ void read_output(const TomlTable& root, Configuration& configuration) {
         configuration.topography_files.emplace_back(format->file);
     }
     section.record(surfaces, fmt::format("[{}]", fmt::join(formats, ", ")));
+    configuration.stack_file = section.choice(image_files);
     configuration.checkpoint_interval = section.number(checkpoint);
     configuration.pixel_type = section.choice(images);
     if (configuration.pixel_type != PixelType::float32 && !configuration.camera && root.sound("camera")) {

@@ -1,5 +1,6 @@
 #include "core/file.hpp"
 
+#include "core/digest.hpp"
 #include "core/error.hpp"
 
 #include <fmt/format.h>
@@ -12,6 +13,7 @@
 #include <algorithm>
 #include <array>
 #include <cerrno>
+#include <optional>
 #include <system_error>
 #include <utility>
 
@@ -108,6 +110,24 @@ bool holds(int file, std::string_view bytes) {
     return true;
 }
 
+// SHA-256 of all that the file holds; none where the disk fails, which errno tells of.
+std::optional<std::string> checksum(int file) {
+    Digest digest;
+    std::vector<char> block(std::size_t{1} << 20);
+    for (off_t done = 0;;) {
+        const ssize_t got = ::pread(file, block.data(), block.size(), done);
+        if (got == 0) {
+            return digest.sha256();
+        }
+        if (got > 0) {
+            digest.add(std::string_view(block.data(), static_cast<std::size_t>(got)));
+            done += got;
+        } else if (errno != EINTR) {
+            return std::nullopt;
+        }
+    }
+}
+
 // File systems that cannot sync a folder say so; their renames are as durable as they make them.
 void sync_folder(const fs::path& folder) {
     const Descriptor file(::open(folder.empty() ? "." : folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC));
@@ -163,6 +183,33 @@ fs::path target_of(const fs::path& path) {
         }
     }
     return target;
+}
+
+constexpr std::string_view not_returned = "the disk does not return what was written";
+
+// fill: writes and syncs the unfinished file, and tells what went wrong; empty: nothing.
+void replace_file(const fs::path& path, const std::function<std::string(int)>& fill) {
+    const fs::path target = target_of(path);
+    const fs::path beside = unfinished_path(target);
+    Descriptor file(open_unfinished(beside, path));
+    std::string reason;
+    try {
+        reason = fill(file.number());
+    } catch (...) {
+        ::unlink(beside.c_str());
+        throw;
+    }
+    if (reason.empty() && ::rename(beside.c_str(), target.c_str()) != 0) {
+        reason = fmt::format("it cannot be renamed from {}: {}", beside.filename().string(), reason_of(errno));
+    }
+    if (!reason.empty()) {
+        ::unlink(beside.c_str());
+        fail(path, "cannot be written", reason);
+    }
+    if (!file.close()) {
+        fail_to_write(path, errno);
+    }
+    sync_folder(target.parent_path());
 }
 
 } // namespace
@@ -227,25 +274,38 @@ std::string read_file(const fs::path& path, const FileRequest& request) {
 }
 
 void write_file(const fs::path& path, std::string_view bytes) {
-    const fs::path target = target_of(path);
-    const fs::path beside = unfinished_path(target);
-    Descriptor file(open_unfinished(beside, path));
-    std::string reason;
-    if (!write_all(file.number(), bytes) || ::fsync(file.number()) != 0) {
-        reason = reason_of(errno);
-    } else if (!holds(file.number(), bytes)) {
-        reason = "the disk does not return what was written";
-    } else if (::rename(beside.c_str(), target.c_str()) != 0) {
-        reason = fmt::format("it cannot be renamed from {}: {}", beside.filename().string(), reason_of(errno));
+    replace_file(path, [&](int file) {
+        if (!write_all(file, bytes) || ::fsync(file) != 0) {
+            return reason_of(errno);
+        }
+        return holds(file, bytes) ? std::string() : std::string(not_returned);
+    });
+}
+
+std::string write_file_in_parts(const fs::path& path, const std::function<void(const AddBytes&)>& parts) {
+    Digest digest;
+    replace_file(path, [&](int file) {
+        parts([&](std::string_view bytes) {
+            if (!write_all(file, bytes)) {
+                fail_to_write(path, errno);
+            }
+            digest.add(bytes);
+        });
+        if (::fsync(file) != 0) {
+            return reason_of(errno);
+        }
+        return checksum(file) == digest.sha256() ? std::string() : std::string(not_returned);
+    });
+    return digest.sha256();
+}
+
+std::string checksum_of_file(const fs::path& path) {
+    const InputFile file(path);
+    const auto sum = checksum(::fileno(file.stream()));
+    if (!sum) {
+        refuse_file(path, "", reason_of(errno), "a file that can be read", "Check the disk.");
     }
-    if (!reason.empty()) {
-        ::unlink(beside.c_str());
-        fail(path, "cannot be written", reason);
-    }
-    if (!file.close()) {
-        fail_to_write(path, errno);
-    }
-    sync_folder(target.parent_path());
+    return *sum;
 }
 
 void append_line(const fs::path& path, std::string_view line) {

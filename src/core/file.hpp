@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <cstdio>
 #include <filesystem>
+#include <functional>
 #include <memory>
 #include <string>
 #include <string_view>
@@ -48,6 +49,15 @@ std::string read_file(const std::filesystem::path& path, const FileRequest& requ
 // synced, read back and compared, renamed; then the folder is synced. Programs that write the same file take turns. A
 // link is followed; what is no regular file is not replaced. Throws RunError, with the reason and the remedy.
 void write_file(const std::filesystem::path& path, std::string_view bytes);
+
+// The same for a file that may be larger than the memory: `parts` hands its bytes over in order, and what is read back
+// is compared by its checksum, which is returned (SHA-256, 64 hexadecimal digits). What `parts` throws leaves the file
+// of before.
+using AddBytes = std::function<void(std::string_view)>;
+std::string write_file_in_parts(const std::filesystem::path& path, const std::function<void(const AddBytes&)>& parts);
+
+// SHA-256 of a regular file of any size. Throws InputError.
+std::string checksum_of_file(const std::filesystem::path& path);
 
 // A line at the end of a text file that others watch; not synced. Throws RunError.
 void append_line(const std::filesystem::path& path, std::string_view line);

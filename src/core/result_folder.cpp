@@ -1,7 +1,6 @@
 #include "core/result_folder.hpp"
 
 #include "core/digest.hpp"
-#include "core/file.hpp"
 
 #include <fcntl.h>
 #include <fmt/format.h>
@@ -27,10 +26,6 @@ const std::string part_lock_prefix = ".lock_"; // and the part
 const std::string turn_name = ".lock_turn";
 constexpr std::size_t sum_digits = 64;
 constexpr std::string_view between = "  "; // as sha256sum writes it
-
-std::string sum_of(std::string_view bytes) {
-    return Digest().add(bytes).sha256();
-}
 
 std::string reason() {
     return std::generic_category().message(errno);
@@ -159,8 +154,15 @@ void ResultFolder::write(const fs::path& name, std::string_view bytes) {
     note(name, bytes);
 }
 
+void ResultFolder::write_in_parts(const fs::path& name, const std::function<void(const AddBytes&)>& parts) {
+    make_folder((folder_ / name).parent_path());
+    std::string sum = write_file_in_parts(folder_ / name, parts);
+    const std::scoped_lock lock(mutex_);
+    sums_[name.generic_string()] = std::move(sum);
+}
+
 void ResultFolder::note(const fs::path& name, std::string_view bytes) {
-    std::string sum = sum_of(bytes);
+    std::string sum = Digest().add(bytes).sha256();
     const std::scoped_lock lock(mutex_);
     sums_[name.generic_string()] = std::move(sum);
 }
@@ -169,7 +171,7 @@ bool ResultFolder::holds(const fs::path& name) const {
     const auto listed = earlier_.find(name.generic_string());
     std::error_code none;
     return listed != earlier_.end() && fs::exists(folder_ / name, none) &&
-           sum_of(read_file(folder_ / name)) == listed->second;
+           checksum_of_file(folder_ / name) == listed->second;
 }
 
 void ResultFolder::write_checksums() const {
@@ -210,7 +212,7 @@ Check check_by_checksums(const fs::path& folder) {
     for (const auto& [sum, name] : entries_of(folder, strange)) {
         check.files.push_back(name);
         try {
-            if (sum_of(read_file(folder / name)) != sum) {
+            if (checksum_of_file(folder / name) != sum) {
                 check.damages.push_back({name, "is not the file that was written"});
             }
         } catch (const InputError& error) {

@@ -3,8 +3,10 @@
 #pragma once
 
 #include "core/error.hpp"
+#include "core/file.hpp"
 
 #include <filesystem>
+#include <functional>
 #include <map>
 #include <mutex>
 #include <string>
@@ -37,6 +39,8 @@ class ResultFolder {
     // Files by names relative to the folder, with sub-folders where they have some. write_file() of core/file.hpp, and
     // a line of the list to be. Several threads may write, each its own files.
     void write(const std::filesystem::path& name, std::string_view bytes);
+    // The same by write_file_in_parts().
+    void write_in_parts(const std::filesystem::path& name, const std::function<void(const AddBytes&)>& parts);
     // A line of the list for a file that is known to be whole.
     void note(const std::filesystem::path& name, std::string_view bytes);
 

@@ -1,6 +1,7 @@
 #include "measurement/disk_space.hpp"
 
 #include "core/error.hpp"
+#include "scan/stack_file.hpp"
 
 #include <fmt/format.h>
 
@@ -37,7 +38,12 @@ std::uint64_t image_bytes(ImageSize pixels) {
 std::uint64_t results_bytes(const Configuration& configuration) {
     const std::uint64_t once =
         configuration.instrument.detector_pixels.count() * bytes_a_point + page_bytes(configuration);
-    return configuration.diffraction.any() && !configuration.camera ? 2 * once : once;
+    const std::uint64_t evaluated = configuration.diffraction.any() && !configuration.camera ? 2 * once : once;
+    return evaluated +
+           (configuration.stack_file && configuration.scan
+                ? scan::stack_file_bytes(configuration.scan->positions().size(),
+                                         configuration.instrument.detector_pixels.count(), configuration.pixel_type)
+                : 0);
 }
 
 std::uint64_t free_bytes(const std::filesystem::path& folder) {

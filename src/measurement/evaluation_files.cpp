@@ -187,6 +187,16 @@ EvaluationData write_maps(ResultFolder& results, const std::filesystem::path& fo
                         : levelled.deviation;
         write("deviation.tif", [&] { return surface::height_map_bytes(*deviation); });
     }
+    // The format that laboratories exchange has all heights. What is no height, X3P cannot hold: it is in GWY.
+    if (deviation && std::ranges::find(files.names, "topography.x3p") != files.names.end()) {
+        const auto write_surface = [&](const std::string& name, const surface::HeightMap& map, const char* what) {
+            surface::Provenance provenance = files.provenance;
+            provenance.comment = fmt::format("{}\n{}", what, provenance.comment);
+            write(name, [&map, name, provenance] { return surface::surface_bytes(name, map, provenance); });
+        };
+        write_surface("truth.x3p", *evaluation.truth, "true heights of the specimen at the pixels' centres");
+        write_surface("deviation.x3p", *deviation, "measured less true heights, after form and filters");
+    }
     for (const std::string& file : files.names) {
         write(file, [&, file] {
             return file.ends_with(".gwy") ? surface::gwy_bytes(channels_of(evaluation, deviation), files.provenance)

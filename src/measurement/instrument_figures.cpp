@@ -11,7 +11,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <future>
 #include <limits>
+#include <optional>
+#include <utility>
 
 namespace vkfv::measurement {
 
@@ -107,8 +110,9 @@ FigureGroup aberrations(const optics::FirstOrder& first_order, const optics::Ima
 FigureGroup figures_of_waves(const optics::WaveOptions& options, const optics::Instrument& instrument,
                              std::vector<std::string>& warnings) {
     constexpr double bytes_per_gib = 1 << 30;
+    FieldWaves waves(instrument);
     const optics::PupilFilter filter(instrument, options);
-    const WaveLimits limits = wave_limits(filter, instrument);
+    const WaveLimits limits = wave_limits(filter, instrument, std::move(waves));
     const auto further = warnings_of(limits);
     warnings.insert(warnings.end(), further.begin(), further.end());
     const auto memory = trace::wave_memory(limits.cells, limits.parts, instrument.detector_pixels());
@@ -157,8 +161,7 @@ ScanFigures figures_of_scan(const Configuration& configuration) {
 }
 
 SpecimenFigures figures_of_specimen(const Configuration& configuration, const optics::Instrument& instrument,
-                                    std::vector<std::string>& warnings) {
-    const auto specimen = make_specimen(configuration);
+                                    const specimen::Specimen& specimen, std::vector<std::string>& warnings) {
     const auto relief =
         relief_of(specimen, configuration.instrument.detector_pixels, instrument.first_order.pixel_pitch);
     const auto sparse = warning_of_sparse_field(specimen, relief);
@@ -221,9 +224,21 @@ std::string value_text(double value) {
 } // namespace
 
 InstrumentFigures instrument_figures(const Configuration& configuration) {
+    // What does not wait for anything else has threads of its own: every command of a new instrument begins with this.
+    std::future<specimen::Specimen> specimen;
+    if (configuration.specimen) {
+        specimen = std::async(std::launch::async, [&] { return make_specimen(configuration); });
+    }
     const auto instrument = assemble_instrument(configuration);
     const auto& first_order = instrument.first_order;
-    const auto quality = optics::image_quality(configuration.instrument, instrument);
+    auto measured =
+        std::async(std::launch::async, [&] { return optics::image_quality(configuration.instrument, instrument); });
+    std::vector<std::string> warnings_of_waves;
+    std::optional<FigureGroup> waves;
+    if (configuration.trace.waves) {
+        waves = figures_of_waves(*configuration.trace.waves, instrument, warnings_of_waves);
+    }
+    const auto quality = measured.get();
     InstrumentFigures figures{.groups = groups_of(configuration, instrument, quality),
                               .scan = {},
                               .specimen = {},
@@ -231,8 +246,9 @@ InstrumentFigures instrument_figures(const Configuration& configuration) {
     figures.groups.push_back(aberrations(first_order, quality));
     auto& warnings = figures.warnings;
     warnings.insert(warnings.end(), quality.warnings.begin(), quality.warnings.end());
-    if (configuration.trace.waves) {
-        figures.groups.push_back(figures_of_waves(*configuration.trace.waves, instrument, warnings));
+    if (waves) {
+        figures.groups.push_back(*std::move(waves));
+        warnings.insert(warnings.end(), warnings_of_waves.begin(), warnings_of_waves.end());
     }
     if (configuration.camera) {
         const camera::Camera camera(*configuration.camera, configuration.instrument.spectrum);
@@ -245,7 +261,7 @@ InstrumentFigures instrument_figures(const Configuration& configuration) {
         warn_of_step(configuration, *figures.scan, first_order, warnings);
     }
     if (configuration.specimen) {
-        figures.specimen = figures_of_specimen(configuration, instrument, warnings);
+        figures.specimen = figures_of_specimen(configuration, instrument, specimen.get(), warnings);
         warn_of_size(*figures.specimen, first_order, quality, warnings);
         if (figures.scan) {
             warn_of_range(figures.specimen->relief, *figures.scan, first_order, warnings);

@@ -6,6 +6,7 @@
 #include "measurement/camera_images.hpp"
 #include "measurement/exposure.hpp"
 #include "measurement/stage_figures.hpp"
+#include "scan/stack_file.hpp"
 #include "specimen/geometry_digest.hpp"
 #include "specimen/kinds.hpp"
 
@@ -106,6 +107,10 @@ Evaluation GrowingEvaluation::write(scan::ImageStore& store, const trace::Tracer
     if (configuration.stage) {
         stack.origin["stage"] = stage_figures(configuration);
         store.results().write(stage_file, stage_table(configuration));
+    }
+    if (configuration.stack_file) {
+        enter_stage("images in one file");
+        scan::write_stack_file(store);
     }
     enter_stage("results and report");
     write_results(store.results(), stack);

@@ -5,7 +5,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <future>
 
 namespace vkfv::measurement {
 
@@ -15,29 +14,31 @@ constexpr double most_error = 0.1;
 
 } // namespace
 
-WaveLimits wave_limits(const optics::PupilFilter& filter, const optics::Instrument& instrument) {
+FieldWaves::FieldWaves(const optics::Instrument& instrument) {
+    const auto begin = [&instrument](glm::dvec2 field) {
+        return std::async(std::launch::async,
+                          [&instrument, field] { return optics::point_for_filter(instrument, field); });
+    };
+    corner = begin(instrument.first_order.field_corner);
+    edge = begin({instrument.first_order.field_edge, 0});
+}
+
+WaveLimits wave_limits(const optics::PupilFilter& filter, const optics::Instrument& instrument, FieldWaves waves) {
+    const double reach = optics::reach_of_filter(instrument);
     WaveLimits limits{.cells = static_cast<int>(filter.cells().side),
                       .parts = static_cast<int>(filter.cells().parts),
                       .asked_parts = optics::parts_for_waves(instrument),
                       .folded_contrast = filter.folded_contrast(),
                       .points = {}};
-    const optics::FirstOrder& first_order = instrument.first_order;
-    struct Place {
-        const char* name;
-        glm::dvec2 field;
-    };
-    std::vector<std::future<WaveLimits::Point>> points;
-    for (const Place& place : {Place{"axis", glm::dvec2(0)}, Place{"edge", glm::dvec2(first_order.field_edge, 0)},
-                               Place{"corner", first_order.field_corner}}) {
-        points.push_back(std::async(std::launch::async, [&filter, &instrument, place] {
-            return WaveLimits::Point{.name = place.name,
-                                     .error = optics::largest_filter_error(filter, instrument, place.field)};
-        }));
-    }
-    for (auto& point : points) {
-        limits.points.push_back(point.get());
-    }
+    limits.points.push_back({.name = "axis", .error = optics::largest_filter_error(filter, instrument, glm::dvec2(0))});
+    limits.points.push_back({.name = "edge", .error = optics::largest_filter_error(filter, waves.edge.get(), reach)});
+    limits.points.push_back(
+        {.name = "corner", .error = optics::largest_filter_error(filter, waves.corner.get(), reach)});
     return limits;
+}
+
+WaveLimits wave_limits(const optics::PupilFilter& filter, const optics::Instrument& instrument) {
+    return wave_limits(filter, instrument, FieldWaves(instrument));
 }
 
 std::vector<std::string> warnings_of(const WaveLimits& limits) {

@@ -7,6 +7,7 @@
 
 #include <nlohmann/json.hpp>
 
+#include <future>
 #include <string>
 #include <vector>
 
@@ -24,7 +25,16 @@ struct WaveLimits {
     std::vector<Point> points;
 };
 
+// What the field makes of the instrument's wavefront: traced by threads of their own, while its filter is made.
+struct FieldWaves {
+    explicit FieldWaves(const optics::Instrument& instrument); // which must live as long
+
+    std::future<optics::PointWaves> edge;
+    std::future<optics::PointWaves> corner;
+};
+
 // Of the axis, the middle of a side and the corner of the field, within two depths of field.
+WaveLimits wave_limits(const optics::PupilFilter& filter, const optics::Instrument& instrument, FieldWaves waves);
 WaveLimits wave_limits(const optics::PupilFilter& filter, const optics::Instrument& instrument);
 
 // Where the worst point's contrast is off by more than 0.1, and where light folds back; some sentences each.

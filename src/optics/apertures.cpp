@@ -1,5 +1,6 @@
 #include "optics/apertures.hpp"
 
+#include "core/parallel_list.hpp"
 #include "core/units.hpp"
 
 #include <algorithm>
@@ -178,21 +179,27 @@ double least_spot(const Imaging& imaging, const Outline& outline) {
 // largest.
 double gate_radius(const Imaging& imaging, double field_radius, double lowest, double highest) {
     constexpr int field_points = 12;
+    const auto largest_of = [&](glm::dvec2 position) {
+        const Outline outline = outline_at(imaging, position);
+        double largest = 0;
+        for (std::size_t azimuth = 0; azimuth < outline.radii.size(); ++azimuth) {
+            if (outline.radii[azimuth] == 0) {
+                continue;
+            }
+            const glm::dvec2 cosines = outline.cosines(azimuth, outline.radii[azimuth]);
+            const glm::dvec2 slope = cosines / std::sqrt(1 - glm::dot(cosines, cosines));
+            for (const double t : {lowest, highest}) {
+                largest = std::max(largest, glm::length(imaging.pupil_curvature * outline.position +
+                                                        (1 + imaging.pupil_curvature * t) * slope));
+            }
+        }
+        return largest;
+    };
     double largest = 0;
     for (const glm::dvec2& direction : search_directions(imaging.symmetric)) {
-        for (int i = 0; i <= field_points; ++i) {
-            const Outline outline = outline_at(imaging, direction * (field_radius * i / field_points));
-            for (std::size_t azimuth = 0; azimuth < outline.radii.size(); ++azimuth) {
-                if (outline.radii[azimuth] == 0) {
-                    continue;
-                }
-                const glm::dvec2 cosines = outline.cosines(azimuth, outline.radii[azimuth]);
-                const glm::dvec2 slope = cosines / std::sqrt(1 - glm::dot(cosines, cosines));
-                for (const double t : {lowest, highest}) {
-                    largest = std::max(largest, glm::length(imaging.pupil_curvature * outline.position +
-                                                            (1 + imaging.pupil_curvature * t) * slope));
-                }
-            }
+        for (const double here : parallel_list(
+                 field_points + 1, [&](int i) { return largest_of(direction * (field_radius * i / field_points)); })) {
+            largest = std::max(largest, here);
         }
     }
     return search_margin * largest;

@@ -41,10 +41,10 @@ Imaging at_wavelength(Imaging imaging, double spectral);
 
 // The largest t of [0, limit] at which the predicate holds, to rounding: looked for inward in steps of limit / 32, then
 // by bisection. Where it holds only between two steps, and not at 0, it is not found. None: it holds at no step.
+// bisections: what they leave of a step; 45 of them all but rounding.
 template <class Predicate>
-std::optional<double> farthest(double limit, Predicate holds) {
+std::optional<double> farthest(double limit, Predicate holds, int bisections = 45) {
     constexpr int steps = 32;
-    constexpr int bisections = 45; // 2^-45 of a step
     for (int step = steps; step >= 0; --step) {
         double inside = limit * step / steps;
         if (!holds(inside)) {

@@ -1,6 +1,7 @@
 // The instrument with its light turned round, for paths that start at the detector.
 #include "optics/assembly.hpp"
 
+#include "core/parallel_list.hpp"
 #include "optics/first_order.hpp"
 
 #include <algorithm>
@@ -81,9 +82,10 @@ ExitPupil exit_pupil(const Imaging& imaging, double field_half_width, double fie
     pupil.per_position = glm::dot(mean_slope, mean_position) / glm::dot(mean_position, mean_position);
     constexpr int field_points = 12;
     for (const glm::dvec2& direction : search_directions(imaging.symmetric)) {
-        for (int i = 0; i <= field_points; ++i) {
-            for (const Rim& rim :
-                 rims_at_detector(imaging, outline_at(imaging, direction * (field_radius * i / field_points)))) {
+        for (const std::vector<Rim>& rims : parallel_list(field_points + 1, [&](int i) {
+                 return rims_at_detector(imaging, outline_at(imaging, direction * (field_radius * i / field_points)));
+             })) {
+            for (const Rim& rim : rims) {
                 pupil.radius =
                     std::max(pupil.radius, outside_margin * glm::length(rim.slope - pupil.per_position * rim.position));
             }
@@ -106,9 +108,11 @@ SeenSource seen_source(const Imaging& seen, double seen_radius) {
     double inner = on_axis;
     int sure_points = field_points;
     for (const glm::dvec2& direction : search_directions(seen.symmetric)) {
+        const auto crossed = parallel_list(field_points + 1, [&](int i) {
+            return crossings(outline_at(seen, direction * (seen_radius * i / field_points)), seen.pupil_curvature);
+        });
         for (int i = 0; i <= field_points; ++i) {
-            const auto [least, most] =
-                crossings(outline_at(seen, direction * (seen_radius * i / field_points)), seen.pupil_curvature);
+            const auto [least, most] = crossed[static_cast<std::size_t>(i)];
             outer = std::max(outer, outside_margin * most);
             if (least < inside_share * on_axis) {
                 sure_points = std::min(sure_points, i - 1);

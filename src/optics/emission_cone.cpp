@@ -1,5 +1,6 @@
 #include "optics/emission_cone.hpp"
 
+#include "core/parallel_list.hpp"
 #include "core/units.hpp"
 #include "optics/apertures.hpp"
 #include "optics/bundle.hpp"
@@ -96,11 +97,12 @@ double largest_sampled_sine(std::span<const Surface> train, bool symmetric, cons
         for (int round = 0; round < 3; ++round) {
             const double step = (high - low) / points;
             double largest_here = 0;
+            const auto sines =
+                parallel_list(points + 1, [&](int i) { return largest_from(direction * (low + i * step)); });
             for (int i = 0; i <= points; ++i) {
-                const double distance = low + i * step;
-                if (const double sine = largest_from(direction * distance); sine > largest_here) {
+                if (const double sine = sines[static_cast<std::size_t>(i)]; sine > largest_here) {
                     largest_here = sine;
-                    best = distance;
+                    best = low + i * step;
                 }
             }
             largest = std::max(largest, largest_here);

@@ -1,10 +1,15 @@
 #include "optics/filter_error.hpp"
 
+#include "core/parallel_list.hpp"
 #include "core/units.hpp"
+#include "optics/complex_product.hpp"
 
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <cstdlib>
 #include <vector>
 
 namespace vkfv::optics {
@@ -23,10 +28,6 @@ constexpr int most_wavelengths = 3; // of a continuous spectrum
 constexpr int fewest_cells = 8;
 constexpr int most_cells = 16;
 
-Complex product(Complex a, Complex b) {
-    return {a.real() * b.real() - a.imag() * b.imag(), a.real() * b.imag() + a.imag() * b.real()};
-}
-
 // Of each height.
 using AtHeights = std::array<Complex, heights>;
 
@@ -34,14 +35,34 @@ double height_of(std::size_t h, double reach) {
     return reach * (static_cast<double>(h) / half_heights - 1);
 }
 
+// Powers 0 ... of a number of modulus 1; those below 0 are the conjugates.
+class Powers {
+  public:
+    static constexpr int most = half / (frequencies + 1) + 1; // from one frequency to the next
+
+    explicit Powers(double phase) {
+        powers_[0] = 1;
+        powers_[1] = std::polar(1.0, phase);
+        for (std::size_t k = 2; k < powers_.size(); ++k) {
+            powers_[k] = product(powers_[k - 1], powers_[1]);
+        }
+    }
+    Complex operator()(int exponent) const {
+        const Complex power = powers_[static_cast<std::size_t>(std::abs(exponent))];
+        return exponent < 0 ? std::conj(power) : power;
+    }
+
+  private:
+    std::array<Complex, most + 1> powers_;
+};
+
 // One wavelength's pupil on a lattice about the chief ray, whose points p + lambda f / 2 are points again for the
 // frequencies 2 unit (dx, dy), at heights within `reach` (mm).
 class PupilLattice {
   public:
     PupilLattice(const Wavefront& wavefront, const physics::f64::PupilCells& cells, double unit, double reach)
         : half_(static_cast<int>(std::ceil(wavefront.largest_rim() / (wavefront.wavelength() * unit)))),
-          side_(2 * half_), unit_(unit), cell_(static_cast<std::size_t>(side_ * side_), -1), wave_(cell_.size()),
-          displacement_(cell_.size()), spread_(cell_.size()) {
+          side_(2 * half_), passes_(static_cast<std::size_t>(side_ * side_)), wave_(passes_.size()) {
         const double wave_number = 2 * pi / wavefront.wavelength();
         const Wavefront raised = wavefront.at_height(wavefront.height() + 1);
         const glm::dvec2 chief_slope =
@@ -51,17 +72,22 @@ class PupilLattice {
                 const glm::dvec2 p = wavefront.chief() + wavefront.wavelength() * unit * glm::dvec2(i + 0.5, j + 0.5);
                 if (wavefront.passes(p)) {
                     const std::size_t place = index(i, j);
-                    cell_[place] =
-                        static_cast<int>(physics::f64::pupil_cell(cells, wavefront.image_slope(p) + chief_slope));
+                    passes_[place] = 1;
                     const double path = wavefront.path(p);
                     const double defocus = raised.path(p) - path;
-                    for (std::size_t h = 0; h < heights; ++h) {
-                        wave_[place][h] = std::polar(1.0, wave_number * (path + height_of(h, reach) * defocus));
+                    Complex wave = std::polar(1.0, wave_number * (path + height_of(0, reach) * defocus));
+                    const Complex step = std::polar(1.0, wave_number * (reach / half_heights) * defocus);
+                    for (Complex& at_height : wave_[place]) {
+                        at_height = wave;
+                        wave = product(wave, step);
                     }
                     const glm::dvec2 displacement = wavefront.displacement(p);
-                    spread_[place] = (raised.displacement(p) - displacement) * (reach / half_heights);
-                    displacement_[place] = displacement - static_cast<double>(half_heights) * spread_[place];
-                    ++points_;
+                    const glm::dvec2 spread = (raised.displacement(p) - displacement) * (reach / half_heights);
+                    const glm::dvec2 lowest = displacement - static_cast<double>(half_heights) * spread;
+                    const double turn = -4 * pi * unit;
+                    points_.push_back({.cell = physics::f64::pupil_cell(cells, wavefront.image_slope(p) + chief_slope),
+                                       .lowest = {Powers(turn * lowest.x), Powers(turn * lowest.y)},
+                                       .step = {Powers(turn * spread.x), Powers(turn * spread.y)}});
                 }
             }
         }
@@ -78,7 +104,7 @@ class PupilLattice {
                 const auto here = static_cast<std::ptrdiff_t>(index(i, j));
                 const auto ahead = static_cast<std::size_t>(here + step);
                 const auto behind = static_cast<std::size_t>(here - step);
-                if (cell_[ahead] >= 0 && cell_[behind] >= 0) {
+                if (passes_[ahead] != 0 && passes_[behind] != 0) {
                     for (std::size_t h = 0; h < heights; ++h) {
                         sum[h] += product(std::conj(wave_[ahead][h]), wave_[behind][h]);
                     }
@@ -88,54 +114,91 @@ class PupilLattice {
         return mean(sum);
     }
 
-    // The cells' images as rays make them, each by its filter.
-    AtHeights filtered(int dx, int dy, const std::vector<Complex>& of_cell) const {
-        const glm::dvec2 turn = -4 * pi * unit_ * glm::dvec2(dx, dy);
-        AtHeights sum{};
-        for (std::size_t place = 0; place < cell_.size(); ++place) {
-            if (cell_[place] >= 0) {
-                Complex value = product(of_cell[static_cast<std::size_t>(cell_[place])],
-                                        std::polar(1.0, glm::dot(turn, displacement_[place])));
-                const Complex step = std::polar(1.0, glm::dot(turn, spread_[place]));
+    // exp(-2 pi i f . t) of each point at the lowest height, and what leads from one height to the next, for
+    // frequencies that follow each other closely: three quarters of the time went into sines and cosines.
+    class Rays {
+      public:
+        explicit Rays(const PupilLattice& lattice) : lattice_(lattice), phases_(lattice.points_.size()) {}
+
+        void go_to(int dx, int dy) {
+            const int x = dx - dx_;
+            const int y = dy - dy_;
+            for (std::size_t k = 0; k < phases_.size(); ++k) {
+                const Point& point = lattice_.points_[k];
+                Phase& phase = phases_[k];
+                phase.lowest = product(phase.lowest, product(point.lowest[0](x), point.lowest[1](y)));
+                phase.step = product(phase.step, product(point.step[0](x), point.step[1](y)));
+            }
+            dx_ = dx;
+            dy_ = dy;
+        }
+
+        // The cells' images as rays make them, each by its filter.
+        AtHeights filtered(const std::vector<Complex>& of_cell) const {
+            AtHeights sum{};
+            for (std::size_t k = 0; k < phases_.size(); ++k) {
+                Complex value = product(of_cell[lattice_.points_[k].cell], phases_[k].lowest);
                 for (Complex& each : sum) {
                     each += value;
-                    value = product(value, step);
+                    value = product(value, phases_[k].step);
                 }
             }
+            return lattice_.mean(sum);
         }
-        return mean(sum);
-    }
+
+      private:
+        struct Phase {
+            Complex lowest = 1;
+            Complex step = 1;
+        };
+        const PupilLattice& lattice_;
+        int dx_ = 0;
+        int dy_ = 0;
+        std::vector<Phase> phases_; // of each point
+    };
 
   private:
+    struct Point {
+        std::uint32_t cell;
+        std::array<Powers, 2> lowest; // of a unit of frequency along x and along y
+        std::array<Powers, 2> step;
+    };
+
     std::size_t index(int i, int j) const { return static_cast<std::size_t>((j + half_) * side_ + i + half_); }
     AtHeights mean(AtHeights sum) const {
         for (Complex& each : sum) {
-            each /= static_cast<double>(points_);
+            each /= static_cast<double>(points_.size());
         }
         return sum;
     }
 
     int half_;
     int side_;
-    double unit_;
-    int points_ = 0;
-    std::vector<int> cell_; // -1: outside the pupil
+    std::vector<char> passes_;
     std::vector<AtHeights> wave_;
-    std::vector<glm::dvec2> displacement_; // at the lowest height
-    std::vector<glm::dvec2> spread_;       // of it from one height to the next
+    std::vector<Point> points_; // those that pass
 };
+
+// Directions without those that are mirror images of others: about the axis each has eight, about a point of the x axis
+// of a symmetric instrument two. Opposite ones are conjugates.
+int directions_of(const PointWaves& point) {
+    const auto& wavefronts = point.wavefronts();
+    return std::ranges::all_of(wavefronts, &Wavefront::round)      ? directions / 4 + 1
+           : std::ranges::all_of(wavefronts, &Wavefront::mirrored) ? directions / 2 + 1
+                                                                   : directions;
+}
 
 } // namespace
 
 FilterError largest_filter_error(const PupilFilter& filter, const PointWaves& point, double reach) {
-    FilterError largest;
-    if (std::ranges::any_of(point.wavefronts(), [](const Wavefront& each) { return each.largest_rim() == 0; })) {
-        return largest;
+    const auto& wavefronts = point.wavefronts();
+    if (std::ranges::any_of(wavefronts, [](const Wavefront& each) { return each.largest_rim() == 0; })) {
+        return {};
     }
     const double unit = 0.5 * filter.cutoff() / half;
     std::vector<PupilLattice> lattices;
-    std::vector<std::array<glm::dvec2, heights>> aside(point.wavefronts().size());
-    for (const Wavefront& wavefront : point.wavefronts()) {
+    std::vector<std::array<glm::dvec2, heights>> aside(wavefronts.size());
+    for (const Wavefront& wavefront : wavefronts) {
         lattices.emplace_back(wavefront, filter.cells(), unit, reach);
     }
     for (std::size_t h = 0; h < heights; ++h) {
@@ -144,52 +207,66 @@ FilterError largest_filter_error(const PupilFilter& filter, const PointWaves& po
             aside[k][h] = raised.aside(raised.wavefronts()[k]);
         }
     }
-    std::vector<Complex> of_cell(static_cast<std::size_t>(filter.cell_count()));
-    for (int direction = 0; direction < directions; ++direction) {
+    const auto largest_along = [&](int direction) {
+        FilterError worst;
+        std::vector<PupilLattice::Rays> rays(lattices.begin(), lattices.end());
         for (int s = 1; s <= frequencies; ++s) {
             const glm::dvec2 steps = half * s / (frequencies + 1.0) * direction_of(pi * direction / directions);
             const int dx = static_cast<int>(std::lround(steps.x));
             const int dy = static_cast<int>(std::lround(steps.y));
             const glm::dvec2 frequency = 2 * unit * glm::dvec2(dx, dy);
-            for (int cell = 0; cell < filter.cell_count(); ++cell) {
-                of_cell[static_cast<std::size_t>(cell)] = filter.transfer(cell, frequency.x, frequency.y);
-            }
+            const auto of_cell = filter.transfers(frequency.x, frequency.y);
             AtHeights waves{};
             AtHeights filtered{};
             for (std::size_t k = 0; k < lattices.size(); ++k) {
+                rays[k].go_to(dx, dy);
                 const AtHeights of_waves = lattices[k].waves(dx, dy);
-                const AtHeights of_filter = lattices[k].filtered(dx, dy, of_cell);
+                const AtHeights of_filter = rays[k].filtered(of_cell);
                 for (std::size_t h = 0; h < heights; ++h) {
                     const Complex shift =
-                        std::polar(point.wavefronts()[k].weight(), -2 * pi * glm::dot(frequency, aside[k][h]));
+                        std::polar(wavefronts[k].weight(), -2 * pi * glm::dot(frequency, aside[k][h]));
                     waves[h] += shift * of_waves[h];
                     filtered[h] += shift * of_filter[h];
                 }
             }
             for (std::size_t h = 0; h < heights; ++h) {
-                if (const double difference = std::abs(filtered[h] - waves[h]); difference > largest.difference) {
-                    largest = {.difference = difference,
-                               .frequency = frequency,
-                               .height = height_of(h, reach),
-                               .waves = waves[h],
-                               .filtered = filtered[h]};
+                if (const double difference = std::abs(filtered[h] - waves[h]); difference > worst.difference) {
+                    worst = {.difference = difference,
+                             .frequency = frequency,
+                             .height = height_of(h, reach),
+                             .waves = waves[h],
+                             .filtered = filtered[h]};
                 }
             }
         }
-    }
-    return largest;
+        return worst;
+    };
+    const std::vector<FilterError> largest = parallel_list(directions_of(point), largest_along);
+    return *std::ranges::max_element(largest, {}, &FilterError::difference);
 }
 
 FilterError largest_filter_error(const PupilFilter& filter, const Instrument& instrument, glm::dvec2 field) {
-    return largest_filter_error(filter, PointWaves(instrument, field, most_wavelengths),
-                                depths_of_field * instrument.first_order.depth_of_field);
+    if (field == glm::dvec2(0) && filter.error_on_axis()) {
+        return *filter.error_on_axis();
+    }
+    return largest_filter_error(filter, point_for_filter(instrument, field), reach_of_filter(instrument));
+}
+
+double reach_of_filter(const Instrument& instrument) {
+    return depths_of_field * instrument.first_order.depth_of_field;
+}
+
+PointWaves point_for_filter(const Instrument& instrument, glm::dvec2 field) {
+    return PointWaves(instrument, field, most_wavelengths);
 }
 
 PupilFilter filter_for_waves(const Instrument& instrument) {
+    const auto wavefronts = wavefronts_for_cells(instrument);
+    const auto axis = wavefronts.size() == 1 ? PointWaves(wavefronts) : point_for_filter(instrument, glm::dvec2(0));
     for (int cells = fewest_cells;; cells += 2) {
-        PupilFilter filter = PupilFilter::unparted(instrument, cells);
-        if (cells == most_cells ||
-            largest_filter_error(filter, instrument, glm::dvec2(0)).difference <= most_error_of_cells) {
+        PupilFilter filter = PupilFilter::unparted(instrument, wavefronts, cells);
+        filter.set_error_on_axis(largest_filter_error(filter, axis, reach_of_filter(instrument)));
+        if (cells == most_cells || filter.error_on_axis()->difference <= most_error_of_cells) {
             return filter;
         }
     }

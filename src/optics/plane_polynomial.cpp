@@ -1,5 +1,6 @@
 #include "optics/plane_polynomial.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <stdexcept>
 #include <utility>
@@ -45,75 +46,123 @@ glm::dvec2 PlanePolynomial::gradient(glm::dvec2 at) const {
 
 namespace {
 
-using Column = std::vector<double>;
+bool has(Parity parity, int power_of_y) {
+    return parity == Parity::any || (power_of_y % 2 == 0) == (parity == Parity::even);
+}
 
-std::vector<Column> monomials(int degree, const std::vector<glm::dvec2>& points) {
-    std::vector<Column> columns;
-    Column power_of_y(points.size(), 1.0);
+// Their places among all coefficients.
+std::vector<std::size_t> terms_of(int degree, Parity parity) {
+    std::vector<std::size_t> terms;
+    std::size_t place = 0;
     for (int j = 0; j <= degree; ++j) {
-        Column power = power_of_y;
-        for (int i = 0; i <= degree - j; ++i) {
-            columns.push_back(power);
-            for (std::size_t k = 0; k < points.size(); ++k) {
-                power[k] *= points[k].x;
+        for (int i = 0; i <= degree - j; ++i, ++place) {
+            if (has(parity, j)) {
+                terms.push_back(place);
             }
         }
-        for (std::size_t k = 0; k < points.size(); ++k) {
-            power_of_y[k] *= points[k].y;
+    }
+    return terms;
+}
+
+// Monomials at the points, and the values, side by side: reflections of all columns then go along rows, where they are
+// vectors. Each column's sums have the order of its points.
+class Columns {
+  public:
+    Columns(int degree, Parity parity, const std::vector<glm::dvec2>& points,
+            const std::vector<std::vector<double>>& values, const std::vector<double>& weights)
+        : rows_(points.size()), count_(terms_of(degree, parity).size() + values.size()), numbers_(rows_ * count_) {
+        for (std::size_t k = 0; k < rows_; ++k) {
+            double* number = row(k);
+            double power_of_y = 1;
+            for (int j = 0; j <= degree; ++j) {
+                double power = power_of_y;
+                for (int i = 0; i <= degree - j; ++i) {
+                    if (has(parity, j)) {
+                        *number++ = power;
+                    }
+                    power *= points[k].x;
+                }
+                power_of_y *= points[k].y;
+            }
+            for (const auto& value : values) {
+                *number++ = value[k];
+            }
+            if (!weights.empty()) {
+                std::ranges::for_each(row(k), number, [&](double& each) { each *= std::sqrt(weights[k]); });
+            }
         }
     }
-    return columns;
-}
 
-double product(const Column& a, const Column& b, std::size_t first) {
-    double sum = 0;
-    for (std::size_t k = first; k < a.size(); ++k) {
-        sum += a[k] * b[k];
-    }
-    return sum;
-}
+    double* row(std::size_t k) { return &numbers_[k * count_]; }
 
-void reflect(Column& column, const Column& mirror, double scale, std::size_t first) {
-    const double along = scale * product(mirror, column, first);
-    for (std::size_t k = first; k < column.size(); ++k) {
-        column[k] -= along * mirror[k];
+    // Makes zeros of a column's numbers below its diagonal. Returns what stands on the diagonal.
+    double reflect(std::size_t column) {
+        std::vector<double> mirror;
+        double square = 0;
+        for (std::size_t k = column; k < rows_; ++k) {
+            mirror.push_back(row(k)[column]);
+            square += mirror.back() * mirror.back();
+        }
+        const double length = std::copysign(std::sqrt(square), -mirror.front());
+        mirror.front() -= length;
+        square = 0;
+        for (const double each : mirror) {
+            square += each * each;
+        }
+        const double scale = square > 0 ? 2 / square : 0;
+        along_.assign(count_, 0.0);
+        for (std::size_t k = column; k < rows_; ++k) {
+            const double* numbers = row(k);
+            const double factor = mirror[k - column];
+            for (std::size_t m = column + 1; m < count_; ++m) {
+                along_[m] += factor * numbers[m];
+            }
+        }
+        for (double& each : along_) {
+            each *= scale;
+        }
+        for (std::size_t k = column; k < rows_; ++k) {
+            double* numbers = row(k);
+            const double factor = mirror[k - column];
+            for (std::size_t m = column + 1; m < count_; ++m) {
+                numbers[m] -= along_[m] * factor;
+            }
+        }
+        return length;
     }
-}
+
+  private:
+    std::size_t rows_;
+    std::size_t count_;
+    std::vector<double> numbers_;
+    std::vector<double> along_;
+};
 
 } // namespace
 
 std::vector<PlanePolynomial> fit_polynomials(int degree, const std::vector<glm::dvec2>& points,
-                                             std::vector<std::vector<double>> values) {
-    std::vector<Column> columns = monomials(degree, points);
-    const std::size_t terms = columns.size();
-    if (points.size() < terms) {
+                                             const std::vector<std::vector<double>>& values, Parity parity,
+                                             const std::vector<double>& weights) {
+    const std::vector<std::size_t> terms = terms_of(degree, parity);
+    if (points.size() < terms.size()) {
         throw std::invalid_argument("fit_polynomials: fewer points than terms");
     }
-    std::vector<double> diagonal(terms);
-    for (std::size_t n = 0; n < terms; ++n) {
-        Column mirror = columns[n];
-        const double length = std::copysign(std::sqrt(product(mirror, mirror, n)), -mirror[n]);
-        diagonal[n] = length;
-        mirror[n] -= length;
-        const double square = product(mirror, mirror, n);
-        const double scale = square > 0 ? 2 / square : 0;
-        for (std::size_t m = n + 1; m < terms; ++m) {
-            reflect(columns[m], mirror, scale, n);
-        }
-        for (Column& value : values) {
-            reflect(value, mirror, scale, n);
-        }
+    Columns columns(degree, parity, points, values, weights);
+    std::vector<double> diagonal;
+    for (std::size_t n = 0; n < terms.size(); ++n) {
+        diagonal.push_back(columns.reflect(n));
     }
     std::vector<PlanePolynomial> fitted;
-    for (const Column& value : values) {
+    for (std::size_t which = 0; which < values.size(); ++which) {
         PlanePolynomial polynomial(degree);
         const auto coefficients = polynomial.coefficients();
-        for (std::size_t n = terms; n-- > 0;) {
-            double rest = value[n];
-            for (std::size_t m = n + 1; m < terms; ++m) {
-                rest -= columns[m][n] * coefficients[m];
+        for (std::size_t n = terms.size(); n-- > 0;) {
+            const double* row = columns.row(n);
+            double rest = row[terms.size() + which];
+            for (std::size_t m = n + 1; m < terms.size(); ++m) {
+                rest -= row[m] * coefficients[terms[m]];
             }
-            coefficients[n] = diagonal[n] != 0 ? rest / diagonal[n] : 0;
+            coefficients[terms[n]] = diagonal[n] != 0 ? rest / diagonal[n] : 0;
         }
         fitted.push_back(std::move(polynomial));
     }

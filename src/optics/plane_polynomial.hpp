@@ -29,10 +29,15 @@ class PlanePolynomial {
     std::vector<double> coefficients_;
 };
 
+// Which powers of y a polynomial has: of a function that is its own mirror image about the x axis, or that changes its
+// sign there.
+enum class Parity { any, even, odd };
+
 // The polynomial for each column of `values` whose squared deviations at the points have the least sum, by
 // Householder's reflections (Golub and Van Loan, "Matrix Computations", section 5.3). Points within the unit disc, more
-// of them than terms: std::invalid_argument.
+// of them than terms: std::invalid_argument. weights: of the squares; none: all alike.
 std::vector<PlanePolynomial> fit_polynomials(int degree, const std::vector<glm::dvec2>& points,
-                                             std::vector<std::vector<double>> values);
+                                             const std::vector<std::vector<double>>& values,
+                                             Parity parity = Parity::any, const std::vector<double>& weights = {});
 
 } // namespace vkfv::optics

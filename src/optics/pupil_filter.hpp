@@ -4,16 +4,27 @@
 // pupils.
 #pragma once
 
+#include "optics/cell_transfer.hpp"
 #include "optics/instrument.hpp"
 #include "physics/physics.hpp"
 
 #include <complex>
 #include <cstdint>
+#include <memory>
+#include <mutex>
+#include <optional>
 #include <vector>
 
 namespace vkfv::optics {
 
-class Wavefront;
+// How far the contrast of images as a filter makes them is from that of waves: largest_filter_error().
+struct FilterError {
+    double difference = 0;                                   // |filtered - waves|
+    glm::dvec2 frequency = glm::dvec2(0);                    // where it is largest, cycles per mm of the object
+    double height = 0;                                       // of the object plane above z = 0, mm
+    std::complex<double> waves = std::complex<double>(0);    // Hopkins' transfer function of this point of the field
+    std::complex<double> filtered = std::complex<double>(0); // what the axis' filter makes of this point's rays
+};
 
 struct WaveOptions {
     int cells = 0;                 // across the pupil, even; 0: as many as the axis' aberrations ask for
@@ -44,23 +55,29 @@ class PupilFilter {
     PupilFilter(const Instrument& instrument, const WaveOptions& options);
     // Of so many cells across the pupil, for pixels that are not parted; without its noise().
     static PupilFilter unparted(const Instrument& instrument, int cells);
+    static PupilFilter unparted(const Instrument& instrument, std::vector<Wavefront> wavefronts, int cells);
 
     const physics::f64::PupilCells& cells() const { return cells_; }
     int cell_count() const { return static_cast<int>(physics::f64::pupil_cell_count(cells_)); }
+    // Its error on the axis, where that decided how many cells there are.
+    const std::optional<FilterError>& error_on_axis() const { return error_on_axis_; }
+    void set_error_on_axis(const FilterError& error) { error_on_axis_ = error; }
     // Of light from the axis that fills the pupil as a Lambertian surface's does. What arrives in a cell of share 0
     // comes from the field's edge; it is filtered as that of the nearest other cell.
-    double share(int cell) const { return shares_[static_cast<std::size_t>(cell)]; }
+    double share(int cell) const { return made_->transfer.shares()[static_cast<std::size_t>(cell)]; }
     // The cells that the mirror images of a cell's light, left to right and upside down, belong to.
     int mirrored(int cell) const;
     int mirrored_upright(int cell) const;
 
-    // w of a frequency in cycles per mm of the object plane.
+    // w of a frequency in cycles per mm of the object plane, by the table.
     std::complex<double> transfer(int cell, double fx, double fy) const;
-    double cutoff() const { return cutoff_; }         // 2 NA / lambda of the shortest wavelength, cycles per mm
-    double part_pitch() const { return part_pitch_; } // mm in the object plane
+    // The same of all cells, without the table: for few frequencies.
+    std::vector<std::complex<double>> transfers(double fx, double fy) const { return made_->transfer.at(fx, fy); }
+    double cutoff() const { return made_->transfer.cutoff(); } // 2 NA / lambda of the shortest, cycles per mm
+    double part_pitch() const { return part_pitch_; }          // mm in the object plane
 
     // Standard deviation of a pixel's noise after the filter over that before it, for light that is alike everywhere.
-    double noise() const { return noise_; }
+    double noise() const;
 
     // Beyond half a cycle a part a wave is filtered as the one that it folds back to. By how much the contrast of a
     // level Lambertian specimen's image is off then, at most, for waves that the pupil passes: the largest
@@ -70,22 +87,27 @@ class PupilFilter {
 
     // As a device reads it: w at fx = column / steps cutoff, from -steps to steps, and fy = row / steps cutoff, from 0,
     // bilinear between; cell after cell, row after row. For fy < 0: the conjugate of -f.
-    const std::vector<std::complex<float>>& table() const { return table_; }
-    int steps() const { return steps_; }
+    // It is made when it is first asked for.
+    const std::vector<std::complex<float>>& table() const;
+    int steps() const { return made_->transfer.steps(); }
 
   private:
-    PupilFilter() = default;
-    void add_wavelength(const Wavefront& wavefront);
-    void fill_dark_cells();
+    struct Made { // shared by copies
+        CellTransfer transfer;
+        std::once_flag table_once{};
+        std::vector<std::complex<float>> table{};
+        std::once_flag noise_once{};
+        double noise = 1;
+    };
+
+    explicit PupilFilter(CellTransfer transfer);
     double noise_of_pixels() const;
 
     physics::f64::PupilCells cells_{};
-    int steps_ = 0;
-    double cutoff_ = 0;
     double part_pitch_ = 0;
-    double noise_ = 1;
-    std::vector<double> shares_;
-    std::vector<std::complex<float>> table_;
+    bool parted_ = false;
+    std::optional<FilterError> error_on_axis_;
+    std::shared_ptr<Made> made_;
 };
 
 } // namespace vkfv::optics

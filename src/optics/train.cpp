@@ -167,8 +167,17 @@ physics::f64::TrainResult trace_through(std::span<const Surface> train, physics:
         train.empty() ? 1 : index_at(train.front().index_before, train.front().dispersion_before, spectral);
     ray.direction *= index;
     const physics::f64::Light light{.spectral = spectral, .wave_number = 1, .survival = 0};
-    return physics::f64::trace_train(TrainScene{.surfaces = train}, 0, static_cast<int>(train.size()), ray, index,
-                                     apertures, light);
+    physics::f64::TrainResult result = physics::f64::enter_train(ray, index);
+    // Only what the surface has is computed; the other terms would change no bit.
+    for (std::size_t i = 0; i < train.size() && result.status == physics::f64::PATH_ALIVE; ++i) {
+        const Surface& surface = train[i];
+        const std::uint32_t present =
+            (is_displaced(surface) ? physics::f64::FEATURE_PLACEMENT : 0u) |
+            (spectral != 0 ? physics::f64::FEATURE_SPECTRUM : 0u) |
+            ((surface.flags & physics::f64::SURFACE_IDEAL_LENS) != 0 ? physics::f64::FEATURE_IDEAL_LENS : 0u);
+        result = physics::f64::trace_surface(surface, static_cast<int>(i), result, apertures != 0u, light, present);
+    }
+    return result;
 }
 
 } // namespace vkfv::optics

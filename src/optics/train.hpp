@@ -74,7 +74,7 @@ struct TrainScene {
 };
 
 // Through the whole train, from the entry's frame to the last vertex's. ray.direction is a unit vector; nothing is lost
-// at interfaces. spectral: x of physics::Light.
+// at interfaces. spectral: x of physics::Light. A ray that ends is traced no further than to the surface where it does.
 physics::f64::TrainResult trace_through(std::span<const physics::f64::Surface> train, physics::f64::Ray ray,
                                         std::uint32_t apertures, double spectral = 0);
 

@@ -52,33 +52,25 @@ double slope_of_horner(const std::vector<double>& coefficients, double at) {
     return sum;
 }
 
-// Samples that fill a pupil, dense towards its rim as a fit wants them.
-std::vector<glm::dvec2> fill_pupil(const Wavefront& wavefront, int rings, int spokes, double turn) {
-    std::vector<glm::dvec2> points;
-    for (int spoke = 0; spoke < spokes; ++spoke) {
-        const double azimuth = 2 * pi * (spoke + turn) / spokes;
-        // Within the rim, which is known at some azimuths and drawn straight between them.
-        const double rim = (1 - 1e-9) * wavefront.rim(azimuth);
-        for (int ring = 0; ring < rings; ++ring) {
-            points.push_back(wavefront.chief() + rim * std::cos(pi * ring / (2.0 * rings)) * direction_of(azimuth));
-        }
-    }
-    return points;
-}
-
 // The factor of Wavefront::defocus() that leaves the least variance.
-double defocus_of(const std::vector<double>& path, const std::vector<double>& defocus) {
+double defocus_of(const std::vector<double>& path, const std::vector<double>& defocus,
+                  const std::vector<double>& weights) {
+    const auto weight = [&](std::size_t i) { return weights.empty() ? 1.0 : weights[i]; };
+    double count = 0;
+    for (std::size_t i = 0; i < path.size(); ++i) {
+        count += weight(i);
+    }
     double mean_path = 0;
     double mean_defocus = 0;
     for (std::size_t i = 0; i < path.size(); ++i) {
-        mean_path += path[i] / static_cast<double>(path.size());
-        mean_defocus += defocus[i] / static_cast<double>(path.size());
+        mean_path += weight(i) * path[i] / count;
+        mean_defocus += weight(i) * defocus[i] / count;
     }
     double both = 0;
     double square = 0;
     for (std::size_t i = 0; i < path.size(); ++i) {
-        both += (path[i] - mean_path) * (defocus[i] - mean_defocus);
-        square += (defocus[i] - mean_defocus) * (defocus[i] - mean_defocus);
+        both += weight(i) * (path[i] - mean_path) * (defocus[i] - mean_defocus);
+        square += weight(i) * (defocus[i] - mean_defocus) * (defocus[i] - mean_defocus);
     }
     return square > 0 ? both / square : 0;
 }
@@ -93,6 +85,10 @@ Wavefront::Wavefront(const Imaging& imaging, double magnification, double focus,
                      glm::dvec2 field, double height)
     : wavelength_(wavelength.wavelength_um * mm_per_um), weight_(wavelength.weight), height_(height),
       detector_point_(magnification * field), rims_(azimuths, 0.0) {
+    if (imaging.symmetric && field.y != 0) {
+        along_ = glm::normalize(field);
+        field = {glm::length(field), 0};
+    }
     const Imaging alone = at_wavelength(imaging, wavelength.spectral);
     index_ = alone.train.front().index_before;
     chief_ = index_ * imaging.chief_cosines(field);
@@ -105,26 +101,30 @@ Wavefront::Wavefront(const Imaging& imaging, double magnification, double focus,
                       .guess = field};
     const auto chief = view.trace(chief_, 0);
     object_point_ = view.guess = chief ? chief->object_point : field;
+    // About the axis, and about a point of the x axis, a symmetric train's pupil has its symmetry.
+    round_ = imaging.symmetric && field == glm::dvec2(0);
+    mirrored_ = imaging.symmetric;
     if (!view.trace(chief_, 1)) {
         if (const auto middle = middle_of_light(view)) {
-            chief_ = *middle;
+            chief_ = {middle->x, mirrored_ ? 0 : middle->y};
             axial_chief_ = axial(index_, chief_);
             object_point_ = view.trace(chief_, 0)->object_point;
         }
     }
-    // About the axis, and about a point of the x axis, a symmetric train's pupil has its symmetry.
-    round_ = imaging.symmetric && field == glm::dvec2(0);
-    const bool half = imaging.symmetric && field.y == 0;
     for (std::size_t i = 0; i < azimuths; ++i) {
         if (round_ && i > 0) {
             rims_[i] = rims_[0];
-        } else if (half && i > azimuths / 2) {
+        } else if (mirrored_ && i > azimuths / 2) {
             rims_[i] = rims_[azimuths - i];
         } else {
             const glm::dvec2 direction = direction_of(2 * pi * static_cast<double>(i) / azimuths);
-            rims_[i] = farthest(index_ + glm::length(chief_), [&](double radius) {
-                           return view.trace(chief_ + radius * direction, 1).has_value();
-                       }).value_or(0);
+            // Images depend on the axis; in the field 5e-10 do.
+            const int bisections = field == glm::dvec2(0) ? 45 : 26;
+            rims_[i] =
+                farthest(
+                    index_ + glm::length(chief_),
+                    [&](double radius) { return view.trace(chief_ + radius * direction, 1).has_value(); }, bisections)
+                    .value_or(0);
         }
     }
     largest_rim_ = *std::ranges::max_element(rims_);
@@ -137,6 +137,47 @@ Wavefront::Wavefront(const Imaging& imaging, double magnification, double focus,
     }
 }
 
+struct Wavefront::Samples {
+    std::vector<glm::dvec2> places; // in the unit disc
+    std::vector<double> defocus;
+    std::vector<double> weights{}; // none: all alike
+    std::vector<double> path{};    // W
+    std::vector<double> slope_x{};
+    std::vector<double> slope_y{};
+};
+
+// Rays that fill the pupil, dense towards its rim as a fit wants them. Of a pupil that is its own mirror image those of
+// one half count twice.
+Wavefront::Samples Wavefront::sample(const DetectorView& view, int rings, int spokes, double turn) const {
+    Samples samples;
+    const auto chief = view.trace(chief_, 0);
+    const bool half = mirrored_ && !round_;
+    for (int spoke = 0; chief && spoke < spokes; ++spoke) {
+        const double place = spoke + turn;
+        if (half && 2 * place > spokes) {
+            break;
+        }
+        const double azimuth = 2 * pi * place / spokes;
+        // Within the rim, which is known at some azimuths and drawn straight between them.
+        const double rim = (1 - 1e-9) * own_rim(azimuth);
+        for (int ring = 0; ring < rings; ++ring) {
+            const glm::dvec2 p = chief_ + rim * std::cos(pi * ring / (2.0 * rings)) * direction_of(azimuth);
+            if (const auto traced = view.trace(p, 0)) {
+                samples.places.push_back((p - chief_) / largest_rim_);
+                samples.defocus.push_back(defocus(p));
+                samples.path.push_back(chief->path_length - traced->path_length -
+                                       glm::dot(p, traced->object_point - chief->object_point));
+                samples.slope_x.push_back(traced->slope.x - chief->slope.x);
+                samples.slope_y.push_back(traced->slope.y - chief->slope.y);
+                if (half) {
+                    samples.weights.push_back(place == 0 || 2 * place == spokes ? 1 : 2);
+                }
+            }
+        }
+    }
+    return samples;
+}
+
 void Wavefront::fit(const Imaging& imaging, glm::dvec2 detector, double magnification, double focus) {
     const DetectorView view{.imaging = imaging,
                             .index = index_,
@@ -144,56 +185,47 @@ void Wavefront::fit(const Imaging& imaging, glm::dvec2 detector, double magnific
                             .plane = focus,
                             .detector = detector,
                             .guess = object_point_};
-    struct Samples {
-        std::vector<glm::dvec2> places; // in the unit disc
-        std::vector<double> defocus;
-        std::vector<std::vector<double>> values{3}; // W, slopes
-    };
     const auto chief = view.trace(chief_, 0);
     chief_slope_ = chief ? chief->slope : glm::dvec2(0);
-    const auto sample = [&](int rings, int spokes, double turn) {
-        Samples samples;
-        for (const glm::dvec2 p : fill_pupil(*this, rings, spokes, turn)) {
-            if (const auto traced = view.trace(p, 0); traced && chief) {
-                samples.places.push_back((p - chief_) / largest_rim_);
-                samples.defocus.push_back(defocus(p));
-                samples.values[0].push_back(chief->path_length - traced->path_length -
-                                            glm::dot(p, traced->object_point - chief->object_point));
-                samples.values[1].push_back(traced->slope.x - chief->slope.x);
-                samples.values[2].push_back(traced->slope.y - chief->slope.y);
-            }
-        }
-        return samples;
-    };
     constexpr int degrees[] = {8, 12, 16, 20, 24};
     for (const int degree : degrees) {
-        Samples samples = sample(degree / 2 + 3, 2 * degree + 4, 0);
-        defocus_ = defocus_of(samples.values[0], samples.defocus);
+        Samples samples = sample(view, degree / 2 + 3, 2 * degree + 4, 0);
+        defocus_ = defocus_of(samples.path, samples.defocus, samples.weights);
         for (std::size_t i = 0; i < samples.places.size(); ++i) {
-            samples.values[0][i] -= defocus_ * samples.defocus[i];
+            samples.path[i] -= defocus_ * samples.defocus[i];
         }
-        if (samples.places.size() < PlanePolynomial::terms(degree)) {
+        const auto even_terms = static_cast<std::size_t>((degree / 2 + 1) * (degree / 2 + 1));
+        if (samples.places.size() < (samples.weights.empty() ? PlanePolynomial::terms(degree) : even_terms)) {
             break;
         }
-        auto fitted = fit_polynomials(degree, samples.places, std::move(samples.values));
-        path_ = std::move(fitted[0]);
+        if (samples.weights.empty()) {
+            auto fitted = fit_polynomials(degree, samples.places, {samples.path, samples.slope_x, samples.slope_y});
+            path_ = std::move(fitted[0]);
+            slope_x_ = std::move(fitted[1]);
+            slope_y_ = std::move(fitted[2]);
+        } else {
+            auto even =
+                fit_polynomials(degree, samples.places, {samples.path, samples.slope_x}, Parity::even, samples.weights);
+            auto odd = fit_polynomials(degree, samples.places, {samples.slope_y}, Parity::odd, samples.weights);
+            path_ = std::move(even[0]);
+            slope_x_ = std::move(even[1]);
+            slope_y_ = std::move(odd[0]);
+        }
         // They are 0 by definition: piston and tilt.
         const auto coefficients = path_.coefficients();
         coefficients[0] = coefficients[1] = coefficients[static_cast<std::size_t>(degree) + 1] = 0;
-        slope_x_ = std::move(fitted[1]);
-        slope_y_ = std::move(fitted[2]);
         // Other rays tell whether that is enough.
         constexpr double enough = 1e-6;       // wavelengths
         constexpr double enough_slope = 5e-6; // of the largest
-        const Samples others = sample(degree / 2 + 1, 2 * degree + 1, 0.5);
+        const Samples others = sample(view, degree / 2 + 1, 2 * degree + 1, 0.5);
         double path_error = 0;
         double slope_error = 0;
         double largest_slope = 0;
         for (std::size_t i = 0; i < others.places.size(); ++i) {
             const glm::dvec2 place = others.places[i];
-            const glm::dvec2 slope(others.values[1][i], others.values[2][i]);
+            const glm::dvec2 slope(others.slope_x[i], others.slope_y[i]);
             path_error =
-                std::max(path_error, std::abs(path_.value(place) + defocus_ * others.defocus[i] - others.values[0][i]));
+                std::max(path_error, std::abs(path_.value(place) + defocus_ * others.defocus[i] - others.path[i]));
             slope_error =
                 std::max(slope_error, glm::length(glm::dvec2(slope_x_.value(place), slope_y_.value(place)) - slope));
             largest_slope = std::max(largest_slope, glm::length(slope));
@@ -218,6 +250,10 @@ Wavefront Wavefront::at_height(double height) const {
 }
 
 double Wavefront::rim(double azimuth) const {
+    return own_rim(along_.y == 0 ? azimuth : azimuth - std::atan2(along_.y, along_.x));
+}
+
+double Wavefront::own_rim(double azimuth) const {
     const double turns = azimuth / (2 * pi);
     const double place = (turns - std::floor(turns)) * azimuths;
     const auto before = std::min(static_cast<std::size_t>(place), azimuths - 1);
@@ -226,7 +262,7 @@ double Wavefront::rim(double azimuth) const {
 }
 
 bool Wavefront::passes(glm::dvec2 p) const {
-    const glm::dvec2 from_chief = p - chief_;
+    const glm::dvec2 from_chief = own(p) - chief_;
     const double square = glm::dot(from_chief, from_chief);
     if (square > largest_rim_ * largest_rim_) {
         return false;
@@ -235,7 +271,7 @@ bool Wavefront::passes(glm::dvec2 p) const {
     if (square <= smallest_rim_ * smallest_rim_) {
         return true;
     }
-    const double rim = this->rim(std::atan2(from_chief.y, from_chief.x));
+    const double rim = own_rim(std::atan2(from_chief.y, from_chief.x));
     return square <= rim * rim;
 }
 
@@ -257,7 +293,7 @@ double Wavefront::range() const {
     for (int i = 0; i < spokes; ++i) {
         const double azimuth = 2 * pi * i / spokes;
         for (const double share : {0.25, 0.5, 0.75, 0.9, 1.0}) {
-            const double path = this->path(chief_ + share * rim(azimuth) * direction_of(azimuth));
+            const double path = own_path(chief_ + share * own_rim(azimuth) * direction_of(azimuth));
             least = std::min(least, path);
             most = std::max(most, path);
         }
@@ -270,26 +306,31 @@ double Wavefront::defocus(glm::dvec2 p) const {
 }
 
 glm::dvec2 Wavefront::object_point() const {
-    return object_point_ + height_ / axial_chief_ * chief_;
+    return turned(object_point_ + height_ / axial_chief_ * chief_);
 }
 
 double Wavefront::path(glm::dvec2 p) const {
+    return own_path(own(p));
+}
+
+double Wavefront::own_path(glm::dvec2 p) const {
     const glm::dvec2 place = (p - chief_) / largest_rim_;
     const double rest = round_ ? horner(round_path_, glm::dot(place, place)) : path_.value(place);
     return rest + (defocus_ + height_) * defocus(p);
 }
 
-glm::dvec2 Wavefront::displacement(glm::dvec2 p) const {
+glm::dvec2 Wavefront::displacement(glm::dvec2 of) const {
+    const glm::dvec2 p = own(of);
     const glm::dvec2 place = (p - chief_) / largest_rim_;
     const glm::dvec2 rest =
         round_ ? 2 * slope_of_horner(round_path_, glm::dot(place, place)) * place : path_.gradient(place);
-    return rest / largest_rim_ - (defocus_ + height_) * (p / axial(index_, p) - chief_ / axial_chief_);
+    return turned(rest / largest_rim_ - (defocus_ + height_) * (p / axial(index_, p) - chief_ / axial_chief_));
 }
 
 glm::dvec2 Wavefront::image_slope(glm::dvec2 p) const {
-    const glm::dvec2 place = (p - chief_) / largest_rim_;
-    return round_ ? horner(round_slope_, glm::dot(place, place)) * place
-                  : glm::dvec2(slope_x_.value(place), slope_y_.value(place));
+    const glm::dvec2 place = (own(p) - chief_) / largest_rim_;
+    return turned(round_ ? horner(round_slope_, glm::dot(place, place)) * place
+                         : glm::dvec2(slope_x_.value(place), slope_y_.value(place)));
 }
 
 } // namespace vkfv::optics

@@ -17,6 +17,8 @@
 
 namespace vkfv::optics {
 
+struct DetectorView;
+
 // Rad from the x axis.
 inline glm::dvec2 direction_of(double azimuth) {
     return {std::cos(azimuth), std::sin(azimuth)};
@@ -40,8 +42,9 @@ class Wavefront {
     double weight() const { return weight_; }         // the wavelength's share of the flux
     double index() const { return index_; }           // of the specimen's medium
     double height() const { return height_; }         // of the object plane
-    glm::dvec2 chief() const { return chief_; } // p of the paraxial chief ray; if it is stopped, of the light's middle
-    glm::dvec2 object_point() const;            // x of the chief ray
+    // p of the paraxial chief ray; if it is stopped, of the light's middle.
+    glm::dvec2 chief() const { return turned(chief_); }
+    glm::dvec2 object_point() const; // x of the chief ray
 
     // The largest |p - chief| that passes all apertures in that direction (rad from x); continuous. Pupils with holes
     // are taken for filled.
@@ -49,7 +52,9 @@ class Wavefront {
     double largest_rim() const { return largest_rim_; }
     double smallest_rim() const { return smallest_rim_; }
     bool passes(glm::dvec2 p) const;
-    double area() const; // of the pupil, in p
+    bool round() const { return round_; }                        // that of the axis of a symmetric train
+    bool mirrored() const { return mirrored_ && along_.y == 0; } // about the x axis: of such a point of that train
+    double area() const;                                         // of the pupil, in p
     // Between the least and the largest W, looked for along 24 radii: mm.
     double range() const;
 
@@ -58,10 +63,19 @@ class Wavefront {
     glm::dvec2 displacement(glm::dvec2 p) const; // t, mm
     // (dx/dz, dy/dz) of the light at the detector, in the frame of physics::Detection, less that of the chief ray.
     glm::dvec2 image_slope(glm::dvec2 p) const;
-    glm::dvec2 chief_slope() const { return chief_slope_; }       // of the chief ray there
-    glm::dvec2 detector_point() const { return detector_point_; } // in the same frame, mm
+    glm::dvec2 chief_slope() const { return turned(chief_slope_); } // of the chief ray there
+    glm::dvec2 detector_point() const { return detector_point_; }   // in the same frame, mm
 
   private:
+    // All below has p with x along the field, and turns back what it returns: a symmetric train images all points at
+    // one distance alike, and about that axis they have half the work.
+    glm::dvec2 turned(glm::dvec2 own) const { return own.x * along_ + own.y * glm::dvec2(-along_.y, along_.x); }
+    glm::dvec2 own(glm::dvec2 p) const { return {along_.x * p.x + along_.y * p.y, along_.x * p.y - along_.y * p.x}; }
+    double own_rim(double azimuth) const;
+    double own_path(glm::dvec2 p) const;
+    struct Samples;
+    Samples sample(const DetectorView& view, int rings, int spokes, double turn) const;
+
     double defocus(glm::dvec2 p) const; // sqrt(n^2 - p^2), without piston and tilt at the chief ray
     void fit(const Imaging& imaging, glm::dvec2 detector, double magnification, double focus);
 
@@ -69,7 +83,8 @@ class Wavefront {
     double weight_ = 1;
     double index_ = 1;
     double height_ = 0;
-    double defocus_ = 0; // mm of defocus() in W at height 0: kept apart, as it is no polynomial
+    double defocus_ = 0;                  // mm of defocus() in W at height 0: kept apart, as it is no polynomial
+    glm::dvec2 along_ = glm::dvec2(1, 0); // the x axis of what follows
     glm::dvec2 chief_ = glm::dvec2(0);
     glm::dvec2 object_point_ = glm::dvec2(0);
     glm::dvec2 chief_slope_ = glm::dvec2(0);
@@ -84,6 +99,7 @@ class Wavefront {
     PlanePolynomial slope_y_;
     // About the axis W is a polynomial in the square, and the slope that times the place: what is asked for most, fast.
     bool round_ = false;
+    bool mirrored_ = false;
     std::vector<double> round_path_;
     std::vector<double> round_slope_;
 };

@@ -79,13 +79,6 @@ std::map<std::string, std::string> values_by_key(std::string_view identity) {
     return values;
 }
 
-// Rounded to a femtometre: z = start + i step loses its binary tail in the text and no height its meaning.
-std::string micrometres_text(double millimetres) {
-    constexpr double per_micrometre = 1e9;
-    // Adding 0 turns -0 into 0.
-    return fmt::format("{}", std::round(millimetres * um_per_mm * per_micrometre) / per_micrometre + 0.0);
-}
-
 std::string csv_field(const std::string& text) {
     if (text.find_first_of(",\"\n") == std::string::npos) {
         return text;
@@ -227,6 +220,12 @@ std::string stored_identity(const fs::path& folder) {
     return identity;
 }
 
+std::string micrometres_text(double millimetres) {
+    constexpr double per_micrometre = 1e9;
+    // Adding 0 turns -0 into 0.
+    return fmt::format("{}", std::round(millimetres * um_per_mm * per_micrometre) / per_micrometre + 0.0);
+}
+
 fs::path image_path(int image) {
     return fs::path(images_name) / fmt::format("z_{:04}.tif", image);
 }
@@ -243,16 +242,6 @@ Grid<float> as_stored(const Grid<double>& flux) {
 }
 
 namespace {
-
-template <class Integer>
-Grid<Integer> rounded(const Grid<float>& values) {
-    Grid<Integer> result(values.columns, values.rows);
-    constexpr double highest = std::numeric_limits<Integer>::max();
-    std::ranges::transform(values.values, result.values.begin(), [&](double value) {
-        return static_cast<Integer>(std::clamp(std::floor(value + 0.5), 0.0, highest));
-    });
-    return result;
-}
 
 template <class Integer>
 Grid<float> rounded_floats(const Grid<float>& values) {

@@ -19,7 +19,10 @@
 #include "core/result_folder.hpp"
 #include "trace/tracer.hpp"
 
+#include <algorithm>
+#include <cmath>
 #include <filesystem>
+#include <limits>
 #include <memory>
 #include <mutex>
 #include <string>
@@ -130,6 +133,21 @@ Check check_images(const std::filesystem::path& folder);
 std::filesystem::path image_path(int image);
 // Of its exposure as long as it is half done: "partial_0007".
 std::filesystem::path checkpoint_path(int image);
+
+// A height in um as files tell it, rounded to a femtometre: z = start + i step loses its binary tail in the text and no
+// height its meaning.
+std::string micrometres_text(double millimetres);
+
+// Values as a camera's file has them: rounded, and cut off where the type ends.
+template <class Integer>
+Grid<Integer> rounded(const Grid<float>& values) {
+    Grid<Integer> result(values.columns, values.rows);
+    constexpr double highest = std::numeric_limits<Integer>::max();
+    std::ranges::transform(values.values, result.values.begin(), [&](double value) {
+        return static_cast<Integer>(std::clamp(std::floor(value + 0.5), 0.0, highest));
+    });
+    return result;
+}
 
 // Light as it is stored, in float32.
 Grid<float> as_stored(const Grid<double>& flux);

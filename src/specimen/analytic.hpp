@@ -11,4 +11,7 @@ struct LatticeScene {
     double lattice_at(int column, int row) const { return static_cast<double>(lattice->heights(column, row)); }
 };
 
+// What physics::surface_height() needs of a lattice on the plane z = 0: no bounds, which take longer than heights.
+physics::f64::SpecimenRecord record_of_lattice(const HeightField& lattice);
+
 } // namespace vkfv::specimen

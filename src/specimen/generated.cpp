@@ -1,5 +1,6 @@
 #include "specimen/generated.hpp"
 
+#include "core/parallel_rows.hpp"
 #include "specimen/description.hpp"
 
 #include <fmt/format.h>
@@ -63,14 +64,16 @@ class Lattice {
 
 void set_heights(HeightField& field, const Analytic& function) {
     const physics::f64::SpecimenRecord record = specimen::record({function, {}}, 1);
-    for (int row = 0; row < field.heights.rows; ++row) {
-        for (int column = 0; column < field.heights.columns; ++column) {
-            field.heights(column, row) =
-                static_cast<float>(physics::f64::shape_height(record, field.x_min + column * field.pitch_x,
-                                                              field.y_min + row * field.pitch_y)
-                                       .height);
+    parallel_rows(field.heights.columns, field.heights.rows, [&](int first, int end) {
+        for (int row = first; row < end; ++row) {
+            for (int column = 0; column < field.heights.columns; ++column) {
+                field.heights(column, row) =
+                    static_cast<float>(physics::f64::shape_height(record, field.x_min + column * field.pitch_x,
+                                                                  field.y_min + row * field.pitch_y)
+                                           .height);
+            }
         }
-    }
+    });
 }
 
 } // namespace

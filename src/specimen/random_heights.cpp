@@ -1,9 +1,11 @@
 #include "specimen/random_heights.hpp"
 
+#include "core/parallel_rows.hpp"
 #include "core/section.hpp"
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <numeric>
 #include <random>
@@ -24,30 +26,45 @@ const IntegerKey random_seed_key("seed", 0, largest_seed, 1, "Of the random numb
 void filter_lines(Grid<double>& grid, const std::vector<double>& weights) {
     const int radius = static_cast<int>(weights.size()) - 1; // weights[k] at distance k
     const int columns = grid.columns;
-    std::vector<double> padded(static_cast<std::size_t>(columns + 2 * radius));
-    for (int row = 0; row < grid.rows; ++row) {
-        for (int i = 0; i < columns + 2 * radius; ++i) {
-            const int column = ((i - radius) % columns + columns) % columns;
-            padded[static_cast<std::size_t>(i)] = grid(column, row);
-        }
-        for (int column = 0; column < columns; ++column) {
-            const double* centre = padded.data() + column + radius;
-            double sum = weights[0] * centre[0];
-            for (int k = 1; k <= radius; ++k) {
-                sum += weights[static_cast<std::size_t>(k)] * (centre[k] + centre[-k]);
+    parallel_rows(columns, grid.rows, [&](int first, int end) {
+        std::vector<double> padded(static_cast<std::size_t>(columns + 2 * radius));
+        std::vector<double> sums(static_cast<std::size_t>(columns));
+        for (int row = first; row < end; ++row) {
+            for (int i = 0; i < columns + 2 * radius; ++i) {
+                const int column = ((i - radius) % columns + columns) % columns;
+                padded[static_cast<std::size_t>(i)] = grid(column, row);
             }
-            grid(column, row) = sum;
+            // Weight after weight: so neighbouring points are summed at a time, each in the order of its weights.
+            const double* centre = padded.data() + radius;
+            for (int column = 0; column < columns; ++column) {
+                sums[static_cast<std::size_t>(column)] = weights[0] * centre[column];
+            }
+            for (int k = 1; k <= radius; ++k) {
+                const double weight = weights[static_cast<std::size_t>(k)];
+                for (int column = 0; column < columns; ++column) {
+                    sums[static_cast<std::size_t>(column)] += weight * (centre[column + k] + centre[column - k]);
+                }
+            }
+            std::ranges::copy(sums, grid.values.begin() + static_cast<std::ptrdiff_t>(grid.index(0, row)));
         }
-    }
+    });
 }
 
+// By blocks that fit into the cache.
 Grid<double> transposed(const Grid<double>& grid) {
+    constexpr int block = 32;
     Grid<double> result(grid.rows, grid.columns);
-    for (int row = 0; row < grid.rows; ++row) {
-        for (int column = 0; column < grid.columns; ++column) {
-            result(row, column) = grid(column, row);
+    parallel_rows(grid.columns, grid.rows, [&](int first, int end) {
+        for (int top = first; top < end; top += block) {
+            for (int left = 0; left < grid.columns; left += block) {
+                for (int row = top; row < std::min(end, top + block); ++row) {
+                    for (int column = left; column < std::min(grid.columns, left + block); ++column) {
+                        result(row, column) = grid(column, row);
+                    }
+                }
+            }
         }
-    }
+    });
     return result;
 }
 
@@ -106,15 +123,27 @@ Grid<double> filtered_noise(int columns, int rows, double kernel, std::uint32_t 
     // 53 bits to the middle of a cell of (0, 1); the distributions of the standard library differ between
     // libraries.
     const auto uniform = [&] { return (static_cast<double>(generator() >> 11) + 0.5) * 0x1p-53; };
-    for (std::size_t i = 0; i < noise.values.size(); i += 2) {
-        // G. E. P. Box, M. E. Muller, "A note on the generation of random normal deviates" (1958).
-        const double r = std::sqrt(-2 * std::log(uniform()));
-        const double phi = 2 * pi * uniform();
-        noise.values[i] = r * std::cos(phi);
-        if (i + 1 < noise.values.size()) {
-            noise.values[i + 1] = r * std::sin(phi);
-        }
+    // Numbers are drawn one after the other; all cores make normal deviates of them.
+    for (std::size_t i = 0; i < noise.values.size(); ++i) {
+        noise.values[i] = uniform();
     }
+    const double unpaired = noise.values.size() % 2 == 1 ? uniform() : 0;
+    const std::size_t pairs = (noise.values.size() + 1) / 2;
+    constexpr std::size_t pairs_a_row = 4096;
+    parallel_rows(pairs_a_row, static_cast<int>((pairs + pairs_a_row - 1) / pairs_a_row), [&](int first, int end) {
+        const std::size_t last = std::min(pairs, static_cast<std::size_t>(end) * pairs_a_row);
+        for (std::size_t pair = static_cast<std::size_t>(first) * pairs_a_row; pair < last; ++pair) {
+            // G. E. P. Box, M. E. Muller, "A note on the generation of random normal deviates" (1958).
+            const std::size_t i = 2 * pair;
+            const bool whole = i + 1 < noise.values.size();
+            const double r = std::sqrt(-2 * std::log(noise.values[i]));
+            const double phi = 2 * pi * (whole ? noise.values[i + 1] : unpaired);
+            noise.values[i] = r * std::cos(phi);
+            if (whole) {
+                noise.values[i + 1] = r * std::sin(phi);
+            }
+        }
+    });
     if (kernel > 0) {
         // Beyond six standard deviations a weight is below 2e-8 of the first.
         std::vector<double> weights(static_cast<std::size_t>(std::ceil(6 * kernel)) + 1);

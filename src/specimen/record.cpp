@@ -1,11 +1,16 @@
 #include "specimen/description.hpp"
 
+#include "core/parallel_rows.hpp"
 #include "core/units.hpp"
+#include "specimen/analytic.hpp"
 
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <limits>
+#include <mutex>
+#include <span>
+#include <vector>
 
 namespace vkfv::specimen {
 namespace {
@@ -27,6 +32,11 @@ struct Bounds {
 struct LatticeBounds {
     Bounds height;
     double slope = 0;
+    void include(const LatticeBounds& other) {
+        height.include(other.height.lower);
+        height.include(other.height.upper);
+        slope = std::max(slope, other.slope);
+    }
 };
 
 constexpr double largest_weight_sum = 1.25;
@@ -44,38 +54,94 @@ double largest_cubic_slope(const std::array<double, 4>& h) {
     return largest;
 }
 
-LatticeBounds bounds_of(const HeightField& lattice) {
-    LatticeBounds result;
-    const Grid<float>& heights = lattice.heights;
-    for (int row = 0; row + 1 < heights.rows; ++row) {
-        for (int column = 0; column + 1 < heights.columns; ++column) {
-            std::array<std::array<double, 4>, 4> along_x;
-            std::array<std::array<double, 4>, 4> along_y;
-            Bounds cell;
-            for (std::size_t j = 0; j < 4; ++j) {
-                for (std::size_t i = 0; i < 4; ++i) {
-                    const double height = static_cast<double>(
-                        heights(std::clamp(column + static_cast<int>(i) - 1, 0, heights.columns - 1),
-                                std::clamp(row + static_cast<int>(j) - 1, 0, heights.rows - 1)));
-                    along_x[j][i] = height;
-                    along_y[i][j] = height;
-                    cell.include(height);
-                }
+// Of each interval between neighbouring columns of a row: the four points about it.
+struct RowIntervals {
+    std::vector<double> lowest;
+    std::vector<double> highest;
+    std::vector<double> slope; // along x, times the pitch
+
+    explicit RowIntervals(std::span<const float> heights)
+        : lowest(heights.size() - 1), highest(lowest.size()), slope(lowest.size()) {
+        const std::size_t last = heights.size() - 1;
+        for (std::size_t column = 0; column < last; ++column) {
+            std::array<double, 4> points{};
+            for (std::size_t i = 0; i < 4; ++i) {
+                points[i] = static_cast<double>(heights[std::min(last, std::max(column + i, std::size_t{1}) - 1)]);
             }
-            const double middle = 0.5 * (cell.lower + cell.upper);
-            const double reach = largest_weight_sum * largest_weight_sum * (cell.upper - middle);
-            result.height.include(middle - reach);
-            result.height.include(middle + reach);
-            double slope_x = 0;
-            double slope_y = 0;
-            for (std::size_t j = 0; j < 4; ++j) {
-                slope_x = std::max(slope_x, largest_cubic_slope(along_x[j]));
-                slope_y = std::max(slope_y, largest_cubic_slope(along_y[j]));
-            }
-            result.slope = std::max(result.slope, largest_weight_sum *
-                                                      std::hypot(slope_x / lattice.pitch_x, slope_y / lattice.pitch_y));
+            lowest[column] = std::min(std::min(points[0], points[1]), std::min(points[2], points[3]));
+            highest[column] = std::max(std::max(points[0], points[1]), std::max(points[2], points[3]));
+            slope[column] = largest_cubic_slope(points);
         }
     }
+};
+
+// Of the cells between `row` and the next; rows: the four about them.
+LatticeBounds bounds_of_cells(const HeightField& lattice, int row, const std::array<const RowIntervals*, 4>& rows,
+                              std::vector<double>& slopes_y) {
+    const Grid<float>& heights = lattice.heights;
+    slopes_y.resize(static_cast<std::size_t>(heights.columns));
+    for (int column = 0; column < heights.columns; ++column) {
+        std::array<double, 4> points{};
+        for (int j = 0; j < 4; ++j) {
+            points[static_cast<std::size_t>(j)] =
+                static_cast<double>(heights(column, std::clamp(row + j - 1, 0, heights.rows - 1)));
+        }
+        slopes_y[static_cast<std::size_t>(column)] = largest_cubic_slope(points);
+    }
+    LatticeBounds result;
+    double steepest_square = 0;
+    const std::size_t last = slopes_y.size() - 1;
+    for (std::size_t column = 0; column < last; ++column) {
+        double lower = rows[0]->lowest[column], upper = rows[0]->highest[column];
+        double slope_x = 0, slope_y = 0;
+        for (std::size_t j = 0; j < 4; ++j) {
+            lower = std::min(lower, rows[j]->lowest[column]);
+            upper = std::max(upper, rows[j]->highest[column]);
+            slope_x = std::max(slope_x, rows[j]->slope[column]);
+            slope_y = std::max(slope_y, slopes_y[std::min(last, std::max(column + j, std::size_t{1}) - 1)]);
+        }
+        const double middle = 0.5 * (lower + upper);
+        const double reach = largest_weight_sum * largest_weight_sum * (upper - middle);
+        result.height.include(middle - reach);
+        result.height.include(middle + reach);
+        slope_x /= lattice.pitch_x;
+        slope_y /= lattice.pitch_y;
+        // hypot() is slow, and few cells are steeper than all before.
+        constexpr double rounding = 1e-12;
+        const double square = slope_x * slope_x + slope_y * slope_y;
+        if (square >= (1 - rounding) * steepest_square) {
+            steepest_square = std::max(steepest_square, square);
+            result.slope = std::max(result.slope, largest_weight_sum * std::hypot(slope_x, slope_y));
+        }
+    }
+    return result;
+}
+
+LatticeBounds bounds_of(const HeightField& lattice) {
+    constexpr int band = 64;
+    const Grid<float>& heights = lattice.heights;
+    LatticeBounds result;
+    std::mutex merging;
+    parallel_bands(heights.rows - 1, band, [&](int first, int end) {
+        const int lowest_row = std::max(0, first - 1), highest_row = std::min(heights.rows - 1, end + 1);
+        std::vector<RowIntervals> rows;
+        for (int row = lowest_row; row <= highest_row; ++row) {
+            rows.emplace_back(
+                std::span(heights.values).subspan(heights.index(0, row), static_cast<std::size_t>(heights.columns)));
+        }
+        LatticeBounds own;
+        std::vector<double> slopes_y;
+        for (int row = first; row < end; ++row) {
+            std::array<const RowIntervals*, 4> about{};
+            for (int j = 0; j < 4; ++j) {
+                about[static_cast<std::size_t>(j)] =
+                    &rows[static_cast<std::size_t>(std::clamp(row + j - 1, lowest_row, highest_row) - lowest_row)];
+            }
+            own.include(bounds_of_cells(lattice, row, about, slopes_y));
+        }
+        const std::scoped_lock lock(merging);
+        result.include(own);
+    });
     return result;
 }
 
@@ -183,6 +249,14 @@ struct Recorder {
 };
 
 } // namespace
+
+SpecimenRecord record_of_lattice(const HeightField& lattice) {
+    SpecimenRecord result{};
+    result.kind = physics::f64::SPECIMEN_ANALYTIC;
+    result.shape = physics::f64::SHAPE_PLANE;
+    Recorder{result}.grid(lattice);
+    return result;
+}
 
 SpecimenRecord record(const Specimen& specimen, int max_bounces) {
     SpecimenRecord result{};

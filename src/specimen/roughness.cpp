@@ -1,6 +1,7 @@
 #include "specimen/roughness.hpp"
 
 #include "core/fourier.hpp"
+#include "core/parallel_rows.hpp"
 #include "specimen/analytic.hpp"
 #include "specimen/description.hpp"
 #include "specimen/random_heights.hpp"
@@ -11,6 +12,7 @@
 #include <algorithm>
 #include <cmath>
 #include <complex>
+#include <future>
 #include <numeric>
 #include <span>
 
@@ -69,25 +71,45 @@ double mean_deviation(std::span<const double> line) {
 
 RoughnessHeights roughness_heights(const Grid<double>& heights) {
     RoughnessHeights result;
-    Grid<double> about_mean = heights;
-    subtract_mean(about_mean);
-    result.sq = root_mean_square(about_mean);
-    result.sa = mean_deviation(heights.values);
-    std::vector<double> column(static_cast<std::size_t>(heights.rows));
-    double rows = 0, columns = 0;
-    for (int i = 0; i < heights.columns; ++i) {
-        for (int row = 0; row < heights.rows; ++row) {
-            column[static_cast<std::size_t>(row)] = heights(i, row);
+    auto sq = std::async(std::launch::async, [&] {
+        Grid<double> about_mean = heights;
+        subtract_mean(about_mean);
+        return root_mean_square(about_mean);
+    });
+    auto sa = std::async(std::launch::async, [&] { return mean_deviation(heights.values); });
+    std::vector<double> of_rows(static_cast<std::size_t>(heights.rows));
+    parallel_rows(heights.columns, heights.rows, [&](int first, int end) {
+        for (int row = first; row < end; ++row) {
+            of_rows[static_cast<std::size_t>(row)] = mean_deviation(
+                std::span(heights.values).subspan(heights.index(0, row), static_cast<std::size_t>(heights.columns)));
         }
-        columns += mean_deviation(column) / heights.columns;
+    });
+    // Columns that stand beside each other are copied together: each would fetch all of the memory.
+    constexpr int together = 16;
+    std::vector<double> of_columns(static_cast<std::size_t>(heights.columns));
+    parallel_bands(heights.columns, together, [&](int first, int end) {
+        Grid<double> columns(heights.rows, end - first);
+        for (int row = 0; row < heights.rows; ++row) {
+            for (int column = first; column < end; ++column) {
+                columns(row, column - first) = heights(column, row);
+            }
+        }
+        for (int column = first; column < end; ++column) {
+            of_columns[static_cast<std::size_t>(column)] =
+                mean_deviation(std::span(columns.values)
+                                   .subspan(columns.index(0, column - first), static_cast<std::size_t>(heights.rows)));
+        }
+    });
+    double rows = 0, columns = 0;
+    for (const double each : of_columns) {
+        columns += each / heights.columns;
     }
-    for (int row = 0; row < heights.rows; ++row) {
-        rows +=
-            mean_deviation(
-                std::span(heights.values).subspan(heights.index(0, row), static_cast<std::size_t>(heights.columns))) /
-            heights.rows;
+    for (const double each : of_rows) {
+        rows += each / heights.rows;
     }
     result.ra = 0.5 * (rows + columns);
+    result.sq = sq.get();
+    result.sa = sa.get();
     return result;
 }
 
@@ -161,23 +183,19 @@ void add_roughness(HeightField& field, const Roughness& roughness, const SourceL
 
     const bool same_grid = std::abs(roughness.pitch - field.pitch_x) <= 1e-9 * roughness.pitch &&
                            std::abs(roughness.pitch - field.pitch_y) <= 1e-9 * roughness.pitch;
-    Analytic carrier;
-    carrier.x_min = own.x_min;
-    carrier.y_min = own.y_min;
-    carrier.x_max = own.x_max();
-    carrier.y_max = own.y_max();
-    carrier.lattice = std::move(own);
-    const physics::f64::SpecimenRecord record = specimen::record({carrier, {}}, 1);
-    const LatticeScene scene{&*carrier.lattice};
-    for (int row = 0; row < field.heights.rows; ++row) {
-        for (int column = 0; column < field.heights.columns; ++column) {
-            const double added = same_grid ? scene.lattice_at(column, row)
-                                           : surface_height(scene, record, field.x_min + column * field.pitch_x,
-                                                            field.y_min + row * field.pitch_y)
-                                                 .height;
-            field.heights(column, row) = static_cast<float>(field.heights(column, row) + added);
+    const physics::f64::SpecimenRecord record = record_of_lattice(own);
+    const LatticeScene scene{&own};
+    parallel_rows(field.heights.columns, field.heights.rows, [&](int first, int end) {
+        for (int row = first; row < end; ++row) {
+            for (int column = 0; column < field.heights.columns; ++column) {
+                const double added = same_grid ? scene.lattice_at(column, row)
+                                               : surface_height(scene, record, field.x_min + column * field.pitch_x,
+                                                                field.y_min + row * field.pitch_y)
+                                                     .height;
+                field.heights(column, row) = static_cast<float>(field.heights(column, row) + added);
+            }
         }
-    }
+    });
 }
 
 } // namespace vkfv::specimen

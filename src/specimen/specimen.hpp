@@ -69,7 +69,7 @@ struct Material {
     static Material henyey_greenstein(double g) { return {{{"henyey-greenstein", 1, {g}}}}; }
 };
 
-// The record the trace takes. Throws InputError (placed at `where`) for a model that there is not, parameters out of
+// The record the trace takes. Throws InputError (placed at `where`) for an unknown model, parameters out of
 // their ranges, and weights that add up to more than 1.
 physics::f64::Material material_record(const Material& material, const SourceLocation& where = {});
 

@@ -1024,6 +1024,10 @@ std::vector<Case> cases() {
          {{"directory = \"out\"", "images = \"uint16\""}},
          2,
          {"c.toml:49:10: output.images", "without a [camera]", "add a [camera]"}},
+        {"ImageFilesOfAnotherKind",
+         {{"directory = \"out\"", "image_files = \"stacks\""}},
+         2,
+         {"c.toml:49:15: output.image_files", "\"single\" or \"stack\""}},
         {"CameraCommandWithoutCamera", {}, 2, {"camera", "a camera to measure", "preset"}, {"camera", "c.toml"}},
     };
 }

@@ -74,6 +74,27 @@ TEST_F(File, IsReadAsItWasWritten) {
     EXPECT_THAT(names(), testing::ElementsAre("a.txt"));
 }
 
+TEST_F(File, InPartsIsTheSameFile) {
+    const std::string whole = std::string(3 << 20, 'a') + "end";
+    const std::string sum = vkfv::write_file_in_parts(file, [&](const vkfv::AddBytes& add) {
+        add(whole.substr(0, 1000));
+        add("");
+        add(whole.substr(1000));
+    });
+    EXPECT_EQ(vkfv::read_file(file), whole);
+    EXPECT_EQ(sum, vkfv::Digest().add(whole).sha256());
+    EXPECT_EQ(vkfv::checksum_of_file(file), sum);
+    // What its maker throws leaves the file of before, and nothing beside it.
+    const auto broken = [](const vkfv::AddBytes& add) {
+        add("half");
+        throw vkfv::RunError("no more");
+    };
+    EXPECT_THROW(vkfv::write_file_in_parts(file, broken), vkfv::RunError);
+    EXPECT_EQ(vkfv::checksum_of_file(file), sum);
+    EXPECT_EQ(names(), std::vector<std::string>{"a.txt"});
+    EXPECT_THROW(vkfv::checksum_of_file(folder), vkfv::InputError);
+}
+
 TEST_F(File, FoldersAreMade) {
     EXPECT_THAT(failure(folder / "b" / "d.txt"), HasSubstr("No such file or directory"));
     vkfv::make_folder(folder / "b" / "c" / "");

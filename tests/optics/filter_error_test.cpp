@@ -105,5 +105,28 @@ TEST(FilterError, OfPartsThatAreTooCoarse) {
     EXPECT_NEAR(coarse.folded_contrast(), expected, 0.02);
 }
 
+// Few frequencies are computed one by one, of a round pupil an eighth of them: the table says the same.
+TEST(FilterError, SingleFrequenciesAreThoseOfTheTable) {
+    auto description = test::microscope();
+    for (const double decentre : {0.0, 1.0}) {
+        description.tube_lens_placement.change.decentre_y = decentre;
+        const PupilFilter filter(assemble(description), {.cells = 4});
+        const double unit = filter.cutoff() / filter.steps();
+        for (const glm::dvec2 place : {glm::dvec2(5, 3), glm::dvec2(-5, 3), glm::dvec2(3, 5), glm::dvec2(-7, 11),
+                                       glm::dvec2(4, -9), glm::dvec2(-8, 0), glm::dvec2(2.3, 6.8), glm::dvec2(0, 60)}) {
+            const auto transfers = filter.transfers(unit * place.x, unit * place.y);
+            double mirrored = 0;
+            for (int cell = 0; cell < filter.cell_count(); ++cell) {
+                const auto expected = filter.transfer(cell, unit * place.x, unit * place.y);
+                EXPECT_NEAR(std::abs(transfers[static_cast<std::size_t>(cell)] - expected), 0, 2e-7) << place.x;
+                const auto other = filter.mirrored(cell);
+                mirrored = std::max(mirrored, std::abs(transfers[static_cast<std::size_t>(other)] - expected));
+            }
+            // Cells are told apart: those of the mirror image would be found.
+            EXPECT_TRUE(mirrored > 1e-3 || place.x == 0) << place.x;
+        }
+    }
+}
+
 } // namespace
 } // namespace vkfv::optics

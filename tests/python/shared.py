@@ -65,6 +65,7 @@ WITH_CAMERA_AND_STAGE = {
     "camera": {"preset": "IMX250"},
     "stage": {"jitter_um": 0.1, "evaluate": "read"},
     "output.images": "uint16",
+    "output.image_files": "stack",
 }
 
 

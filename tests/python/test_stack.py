@@ -4,6 +4,7 @@ import unittest
 
 import numpy
 import shared
+import tifffile
 from shared import vkfv
 
 from vkfv.focus import axial_shares
@@ -32,6 +33,21 @@ class StackTest(unittest.TestCase):
         small = shared.small_image().pixels
         numpy.testing.assert_allclose(small.x, (numpy.arange(16) - 7.5) * pitch, rtol=1e-5)
         numpy.testing.assert_allclose(small.y, (5.5 - numpy.arange(12)) * pitch, rtol=1e-5)
+
+    def test_all_images_in_one_file(self):
+        """tifffile takes images.tif for a z-stack of ImageJ, with um and heights."""
+        stack = shared.with_camera_and_stage()
+        with tifffile.TiffFile(stack.folder / "images.tif") as file:
+            self.assertTrue(file.is_imagej)
+            self.assertEqual(file.series[0].axes, "ZYX")
+            numpy.testing.assert_array_equal(file.asarray(), stack.images.values)
+            told = file.imagej_metadata
+            pitch = stack.images.x[1] - stack.images.x[0]
+            across, count = file.pages[0].tags["XResolution"].value
+        self.assertEqual((told["unit"], told["slices"], told["spacing"]), ("um", len(stack.z), 3))
+        self.assertAlmostEqual(-told["zorigin"] * told["spacing"], stack.z[0], 9)
+        self.assertEqual(told["Labels"], [f"z_um={z:g}" for z in stack.z])
+        self.assertAlmostEqual(count / across, pitch, 6)
 
     def test_the_plane_rises_as_it_was_tilted(self):
         # The true plane carries a texture of 1 um / 12 a point: 0.0012 is five standard errors of a slope over this field.

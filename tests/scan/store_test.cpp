@@ -2,6 +2,7 @@
 
 #include "core/error.hpp"
 #include "fake_stack.hpp"
+#include "scan/stack_file.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -112,6 +113,34 @@ TEST(ImageStore, ImagesTellTheirPitchHeightAndDistance) {
     EXPECT_THAT(text, testing::StartsWith("ImageJ="));
     EXPECT_THAT(text, HasSubstr("\nunit=um\nspacing=0.8\n"));
     EXPECT_THAT(text, HasSubstr("\nimage=2\nz_um=0.4\n"));
+}
+
+// images.tif: pages are read by ImageJ's rule, all values behind each other up to the file's end.
+TEST(ImageStore, AllImagesInOneFileAreTheSingleOnes) {
+    const FreshFolder folder("stack_file");
+    run(folder.path(), FakeTracer(), describe());
+    ImageStore store(folder.path(), describe());
+    write_stack_file(store);
+    store.results().write_checksums();
+    const std::string bytes = bytes_of(folder.path() / stack_file_name);
+    EXPECT_THAT(bytes, HasSubstr("\nslices=4\nunit=um\nspacing=0.8\nzorigin=1.5\n"));
+    std::size_t place = bytes.size() - 4 * rows * columns * sizeof(float);
+    for (int image = 0; image < 4; ++image) {
+        for (int row = 0; row < rows; ++row) {
+            for (int column = 0; column < columns; ++column, place += sizeof(float)) {
+                float value = 0;
+                std::memcpy(&value, bytes.data() + place, sizeof value);
+                EXPECT_EQ(value, static_cast<float>(flux(column, rows - 1 - row, describe().positions[image],
+                                                         static_cast<std::uint32_t>(image), 1)));
+            }
+        }
+    }
+    EXPECT_LE(bytes.size(), stack_file_bytes(4, rows * columns, PixelType::float32));
+    // It has a checksum, and a damaged image does not enter it.
+    EXPECT_THAT(bytes_of(folder.path() / "checksums.sha256"), HasSubstr(std::string(stack_file_name)));
+    write_bytes(folder.path() / "images/z_0002.tif", "no image");
+    EXPECT_THROW(write_stack_file(store), InputError);
+    EXPECT_EQ(bytes_of(folder.path() / stack_file_name), bytes);
 }
 
 TEST(ImageStore, FramesReadBackWithTheLowestRowFirst) {

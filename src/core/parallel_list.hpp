@@ -1,0 +1,23 @@
+// Shares the items of a list among threads.
+#pragma once
+
+#include "core/parallel_rows.hpp"
+
+#include <cstddef>
+#include <vector>
+
+namespace vkfv {
+
+// make(k) for k = 0 .. count - 1, each by whichever thread is free; in order. `make` must not throw.
+template <class Make>
+auto parallel_list(int count, const Make& make) {
+    std::vector<decltype(make(0))> list(static_cast<std::size_t>(count));
+    parallel_bands(count, 1, [&](int first, int end) {
+        for (int k = first; k < end; ++k) {
+            list[static_cast<std::size_t>(k)] = make(k);
+        }
+    });
+    return list;
+}
+
+} // namespace vkfv
