@@ -322,7 +322,7 @@ std::vector<Case> cases() {
         sources_fault("SecondSourceWithAFault", "kind = \"ring\"\ndistance_mm = 30\nelevation_deg = 95\nwidth_mm = 5\n",
                       {"c.toml:9:17", "source[1].elevation_deg", "in (0, 90)"}),
         sources_fault("SecondSourceWithAnUnknownKey", second_ring + "flux = 2\n",
-                      {"c.toml:11:1", "source[1].flux", "Did you mean flux_W?"}),
+                      {"c.toml:11:1", "source[1].flux", "Did you mean \"flux_W\"?"}),
         sources_fault("SecondRingOverTheAxis", "kind = \"ring\"\ndistance_mm = 10\nelevation_deg = 80\nwidth_mm = 9\n",
                       {"c.toml:10:12", "source[1].width_mm", "a band that does not reach the axis"}),
         sources_fault("ColoursUnderAnAiryPattern", second_ring + "wavelength_um = 0.5\n",
