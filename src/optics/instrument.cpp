@@ -172,6 +172,8 @@ Instrument assemble(const InstrumentDescription& description) {
     FoldedElements folded = fold(description, layout, imaging, measured, illumination);
     instrument.elements = std::move(folded.elements);
     instrument.source_pose = folded.source_pose;
+    instrument.meshes = place_meshes(description, measured);
+    instrument.features |= instrument.meshes.empty() ? 0u : physics::f64::FEATURE_FACETS;
     return instrument;
 }
 
