@@ -21,12 +21,13 @@ using optics::MeshElement;
 constexpr double mm_per_gltf_unit = 1e3; // glTF 2.0 lengths are metres
 constexpr double largest_coordinate = 1e6;
 
-const ChoiceKey<MeshElement::Kind>
-    mesh_kind("kind",
-              {{MeshElement::Kind::glass, "glass", "a closed body that refracts"},
-               {MeshElement::Kind::mirror, "mirror", "reflects on both sides"},
-               {MeshElement::Kind::absorber, "absorber", "stops all light: a mount, a baffle"}},
-              needed, "What the facets do to light.");
+const ChoiceKey<MeshElement::Kind> mesh_kind = for_example(
+    "\"glass\"",
+    ChoiceKey<MeshElement::Kind>("kind",
+                                 {{MeshElement::Kind::glass, "glass", "a closed body that refracts"},
+                                  {MeshElement::Kind::mirror, "mirror", "reflects on both sides"},
+                                  {MeshElement::Kind::absorber, "absorber", "stops all light: a mount, a baffle"}},
+                                 needed, "What the facets do to light."));
 const FileKey mesh_file =
     for_example("\"prism.stl\"", FileKey("file", Default::none(), "The mesh: an STL or glTF file. Facets are flat."));
 const ChoiceKey<double> mesh_unit = [] {

@@ -23,7 +23,7 @@ class BoxTree {
     BoxTree() = default;
     explicit BoxTree(std::span<const Box> boxes);
 
-    // Calls nearer(k, farthest) for every box k that the ray may meet at a distance from `start` to `farthest`; it
+    // Calls nearer(k, farthest) for every box k that the ray may meet at a distance from 0 to `farthest`; it
     // gives the new `farthest`. Boxes are a little wider than they are, by what a few operations round.
     template <class Nearer>
     void walk(const glm::dvec3& origin, const glm::dvec3& direction, double farthest, Nearer nearer) const {
