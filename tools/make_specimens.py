@@ -1,14 +1,20 @@
 #!/usr/bin/env python3
-"""Makes the example specimens of assets/specimens: the letter F in relief, 5 um high, on a plate of 0.2 x 0.2 mm.
+"""Makes example meshes. Of assets/specimens: the letter F in relief, 5 um high, on a plate of 0.2 x 0.2 mm.
 
 letter_F.stl   binary STL in mm
 letter_F.glb   glTF 2.0 in m; the letter stands upright in a viewer's front view
 letter_F.png   height map of 100 x 100 pixels of 2 um, 16 bit: 65535 on the letter, 0 beside it
+letter_F.xyz   scattered points in um, one in each square of 4 um, in no order
+
+And of assets/elements, in mm:
+
+window.stl     a plate of 30 x 30 mm, 2 mm thick in its middle, whose upper face is tilted by 0.01 degrees about x
 
 Seen from +z with x to the right and y up, each reads as F: a mirrored or turned letter is a mistake in a reader.
 """
 import argparse
 import json
+import math
 import struct
 import zlib
 from pathlib import Path
@@ -61,14 +67,24 @@ def triangles():
     return numpy.array(result, dtype=numpy.float32)
 
 
-def write_stl(path, corners):
+def write_stl(path, corners, title):
     normals = numpy.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
     normals /= numpy.linalg.norm(normals, axis=1, keepdims=True)
     with path.open("wb") as file:
-        file.write(b"letter F in relief, mm".ljust(80, b" "))
+        file.write(title.ljust(80).encode())
         file.write(struct.pack("<I", len(corners)))
         for normal, triangle in zip(normals, corners):
             file.write(struct.pack("<12f", *normal, *triangle.ravel()) + b"\0\0")
+
+
+def window(half_width=15.0, thickness=2.0, angle_deg=0.01):
+    """As triangles(), of a closed body; its lower face is z = 0."""
+    rise = half_width * math.tan(math.radians(angle_deg))
+    corners = numpy.array([(x, y, z + (rise * numpy.sign(y) if z else 0))
+                           for z in (0, thickness) for y in (-half_width, half_width) for x in (-half_width, half_width)])
+    faces = [(0, 2, 3, 1), (4, 5, 7, 6), (0, 1, 5, 4), (2, 6, 7, 3), (0, 4, 6, 2), (1, 3, 7, 5)]
+    triangles = [(a, b, c) for a, b, c, d in faces] + [(a, c, d) for a, b, c, d in faces]
+    return corners[numpy.array(triangles)].astype(numpy.float32)
 
 
 def write_glb(path, corners):
@@ -120,16 +136,33 @@ def write_png(path, size=100):
                      chunk(b"IEND", b""))
 
 
+def write_xyz(path, pitch=0.004):
+    generator = numpy.random.default_rng(1)
+    corners = numpy.arange(X[0], X[-1] - pitch / 2, pitch)
+    x, y = (values.ravel() for values in numpy.meshgrid(corners, corners))
+    x = x + pitch * generator.random(len(x))
+    y = y + pitch * generator.random(len(y))
+    high = numpy.array([is_high(row) for row in range(len(LETTER))])
+    z = numpy.where(high[numpy.searchsorted(Y, y) - 1, numpy.searchsorted(X, x) - 1], HEIGHT, 0.0)
+    points = generator.permutation(numpy.stack([x, y, z], axis=1) * 1000)
+    lines = [f"{px:.1f} {py:.1f} {pz:g}" for px, py, pz in points]
+    path.write_text("# letter F in relief: x, y and z in um\n" + "\n".join(lines) + "\n")
+
+
 def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     default = Path(__file__).resolve().parent.parent / "assets" / "specimens"
-    parser.add_argument("--out", type=Path, default=default, help="folder (default: assets/specimens)")
+    parser.add_argument("--out", type=Path, default=default, help="folder of the specimens (default: assets/specimens)")
     folder = parser.parse_args().out
     folder.mkdir(parents=True, exist_ok=True)
     corners = triangles()
-    write_stl(folder / "letter_F.stl", corners)
+    write_stl(folder / "letter_F.stl", corners, "letter F in relief, mm")
     write_glb(folder / "letter_F.glb", corners)
     write_png(folder / "letter_F.png")
+    write_xyz(folder / "letter_F.xyz")
+    elements = folder.parent / "elements"
+    elements.mkdir(exist_ok=True)
+    write_stl(elements / "window.stl", window(), "window with a wedge of 0.01 degrees, mm")
 
 
 if __name__ == "__main__":

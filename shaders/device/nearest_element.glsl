@@ -1,53 +1,60 @@
-// The instrument's elements as procedural boxes, in the structure that holds the specimen too: nearest_element() of
-// physics/nonsequential.glsl. Elements and specimen stand in frames of their own (they move against each other from
-// image to image), so each is asked for by itself.
+// The instrument's elements, and the facets of those that are meshes, as procedural boxes, in the structure that holds
+// the specimen too: nearest_element() of physics/nonsequential.glsl. Elements and specimen stand in frames of their own
+// (they move against each other from image to image), so each is asked for by itself.
 layout(set = 0, binding = BINDING_ELEMENTS, scalar) readonly buffer Elements { Element elements[]; };
 layout(set = 0, binding = BINDING_ELEMENT_ORDER, scalar) readonly buffer ElementOrder {
     uint element_order[];
-}; // of the boxes
+}; // of the boxes: an element's index, or with FACET_BIT a facet's
+layout(set = 0, binding = BINDING_FACETS, scalar) readonly buffer Facets { Facet facets[]; };
 
 Element element_at(int index) { return elements[index]; }
+Facet facet_at(int index) { return facets[index]; }
 
 // mm: no instrument is larger.
 const real FARTHEST = real(1e6);
 
-#ifdef VKFV_RAY_QUERY
-ElementHit nearest_element(real3 origin, real3 direction, int left) {
-    real least = least_distance(origin);
-    ElementHit nearest;
-    nearest.index = -1;
-    nearest.distance = FARTHEST;
-    rayQueryEXT query;
-    rayQueryInitializeEXT(query, specimen_structure, gl_RayFlagsNoneEXT, ELEMENT_MASK, origin, real(0.0), direction,
-                          nearest.distance);
-    while (rayQueryProceedEXT(query)) {
-        int index = int(element_order[rayQueryGetIntersectionPrimitiveIndexEXT(query, false)]);
-        ElementMeeting meeting = meet_element(elements[index], origin, direction, index == left, least);
-        if (meeting.found && meeting.distance < nearest.distance) {
-            nearest.index = index;
-            nearest.distance = meeting.distance;
-            rayQueryGenerateIntersectionEXT(query, meeting.distance);
+// What the box at this place in the order holds.
+NearestElement consider_box(NearestElement nearest, uint place, RayFrame frame, real3 direction, PathPlace from,
+                            real least) {
+    uint held = element_order[place];
+    if ((features() & FEATURE_FACETS) != 0u && (held & FACET_BIT) != 0u) {
+        int facet = int(held & ~FACET_BIT);
+        nearest = consider_facet(nearest, frame, facets[facet], facet, from, least);
+    } else {
+        int index = int(held);
+        ElementMeeting meeting = meet_element(elements[index], frame.origin, direction, index == from.element, least);
+        if (meeting.found && meeting.distance < nearest.hit.distance) {
+            nearest.hit.index = index;
+            nearest.hit.facet = -1;
+            nearest.hit.distance = meeting.distance;
         }
     }
     return nearest;
 }
-#else
-ElementHit nearest_element(real3 origin, real3 direction, int left) {
+
+ElementHit nearest_element(real3 origin, real3 direction, PathPlace from) {
     real least = least_distance(origin);
-    ElementHit nearest;
-    nearest.index = -1;
-    nearest.distance = FARTHEST;
+    RayFrame frame = ray_frame(origin, direction);
+    NearestElement nearest = no_element(FARTHEST);
+#ifdef VKFV_RAY_QUERY
+    rayQueryEXT query;
+    rayQueryInitializeEXT(query, specimen_structure, gl_RayFlagsNoneEXT, ELEMENT_MASK, origin, real(0.0), direction,
+                          FARTHEST);
+    while (rayQueryProceedEXT(query)) {
+        real farthest = nearest.hit.distance;
+        nearest = consider_box(nearest, uint(rayQueryGetIntersectionPrimitiveIndexEXT(query, false)), frame, direction,
+                               from, least);
+        if (nearest.hit.distance < farthest) {
+            rayQueryGenerateIntersectionEXT(query, nearest.hit.distance);
+        }
+    }
+#else
     // Boxes and origin are as far apart as the instrument is long.
     real reach = max(max(abs(origin.x), abs(origin.y)), max(abs(origin.z), real(1e3)));
     BvhWalk walk = bvh_walk(batch.elements_root, origin, direction, real(0.0), real(16.0) * SURFACE_EPSILON * reach);
-    while (bvh_proceed(walk, nearest.distance)) {
-        int index = int(element_order[walk.primitive]);
-        ElementMeeting meeting = meet_element(elements[index], origin, direction, index == left, least);
-        if (meeting.found && meeting.distance < nearest.distance) {
-            nearest.index = index;
-            nearest.distance = meeting.distance;
-        }
+    while (bvh_proceed(walk, nearest.hit.distance)) {
+        nearest = consider_box(nearest, walk.primitive, frame, direction, from, least);
     }
-    return nearest;
-}
 #endif
+    return nearest_hit(nearest, from);
+}

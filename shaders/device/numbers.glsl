@@ -20,6 +20,9 @@ const uint BINDING_ELEMENTS = 15u;
 const uint BINDING_ELEMENT_ORDER = 16u;
 const uint BINDING_BACKWARD = 17u;
 const uint BINDING_REFLECTANCES = 18u; // of a specimen: the grid of its reflectance map
+const uint BINDING_FACETS = 19u;
+
+const uint FACET_BIT = 0x80000000u; // in the order of the elements' boxes: it is a facet's, whose index follows
 
 const uint CONSTANT_SPECIMEN_KIND = 0u;
 const uint CONSTANT_LEDGER_SLOTS = 1u;

@@ -7,6 +7,7 @@ layout(local_size_x = 1) in;
 
 layout(set = 0, binding = BINDING_SURVIVORS, scalar) readonly buffer Survivors { Survivor survivors[]; };
 layout(set = 0, binding = BINDING_ELEMENTS, scalar) readonly buffer Elements { Element elements[]; };
+layout(set = 0, binding = BINDING_FACETS, scalar) readonly buffer Facets { Facet facets[]; };
 layout(set = 0, binding = BINDING_FOUND, scalar) writeonly buffer Echo { real numbers[]; };
 
 Hit specimen_hit(real3 origin, real3 direction) {
@@ -40,6 +41,7 @@ void echo(Surface record) { VKFV_SURFACE_FIELDS(VKFV_ECHO, VKFV_ECHO_KNOWN, 0) }
 void echo(SpectralBin record) { VKFV_SPECTRAL_BIN_FIELDS(VKFV_ECHO) }
 void echo(RingLight record) { VKFV_RING_LIGHT_FIELDS(VKFV_ECHO) }
 void echo(Element record) { VKFV_ELEMENT_FIELDS(VKFV_ECHO) }
+void echo(Facet record) { VKFV_FACET_FIELDS(VKFV_ECHO) }
 void echo(Instrument record) { VKFV_INSTRUMENT_FIELDS(VKFV_ECHO) }
 void echo(Lobe record) { VKFV_LOBE_FIELDS(VKFV_ECHO, VKFV_ECHO_ARRAY) }
 void echo(Material record) { VKFV_MATERIAL_FIELDS(VKFV_ECHO) }
@@ -61,4 +63,5 @@ void main() {
     echo(spectrum[2]);
     echo(survivors[2]);
     echo(elements[2]);
+    echo(facets[2]);
 }

@@ -20,7 +20,11 @@
 #include "physics/pupil_cells.glsl"
 #include "physics/reflectance.glsl"
 #include "physics/path.glsl"
+#if defined(__cplusplus) || defined(VKFV_NONSEQUENTIAL) || defined(VKFV_BVH)
+#include "physics/ray_frame.glsl"
+#endif
 #if defined(__cplusplus) || defined(VKFV_NONSEQUENTIAL) // most kernels have no elements
+#include "physics/facets.glsl"
 #include "physics/nonsequential.glsl"
 #endif
 #if defined(__cplusplus) || defined(VKFV_BACKWARD)

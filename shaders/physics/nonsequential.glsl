@@ -8,14 +8,19 @@ template <class Scene>
 Element element_at(const Scene& scene, int index) {
     return scene.element_at(index);
 }
-// The nearest element that the ray meets; left: the index of the one it comes from, else -1.
 template <class Scene>
-ElementHit nearest_element(const Scene& scene, real3 origin, real3 direction, int left) {
-    return scene.nearest_element(origin, direction, left);
+Facet facet_at(const Scene& scene, int index) {
+    return scene.facet_at(index);
+}
+// The nearest element that the ray meets.
+template <class Scene>
+ElementHit nearest_element(const Scene& scene, real3 origin, real3 direction, PathPlace from) {
+    return scene.nearest_element(origin, direction, from);
 }
 #else
 Element element_at(int index);
-ElementHit nearest_element(real3 origin, real3 direction, int left);
+Facet facet_at(int index);
+ElementHit nearest_element(real3 origin, real3 direction, PathPlace from);
 #endif
 
 VKFV_FUNCTION real3 into_element(Element element, real3 v) {
@@ -142,20 +147,14 @@ struct Passage {
     real3 direction; // unit
 };
 
-// u uniform in (0, 1): which of the possible rays.
-VKFV_FUNCTION Passage pass_element(Element element, int index, ElementMeeting meeting, Light light, real u) {
+// The same in the frame that the meeting is given in, where the interface is between these indices and the normal has
+// length 1. clear: it is no mount that is met. u uniform in (0, 1): which of the possible rays.
+VKFV_FUNCTION Passage turn_at(Element element, int index, bool clear, real3 point, real3 direction, real3 normal,
+                              real before, real after, Light light, real u) {
     Surface surface = element.surface;
-    bool along = meeting.side > real(0.0);
-    real before = along ? surface.index_before + disperse(surface.dispersion_before, light.spectral)
-                        : surface.index_after + disperse(surface.dispersion_after, light.spectral);
-    real after = along ? surface.index_after + disperse(surface.dispersion_after, light.spectral)
-                       : surface.index_before + disperse(surface.dispersion_before, light.spectral);
-    real3 normal = meeting.normal * (real(1.0) / sqrt(dot(meeting.normal, meeting.normal)));
-    real cosine = min(dot(meeting.direction, normal), real(1.0));
-    real3 point = meeting.point;
-    real3 direction = meeting.direction;
+    real cosine = min(dot(direction, normal), real(1.0));
     uint status = PATH_ALIVE;
-    if (!meeting.clear || element.kind == ELEMENT_DETECTOR) {
+    if (!clear || element.kind == ELEMENT_DETECTOR || element.kind == ELEMENT_ABSORBER) {
         status = PATH_VIGNETTED; // by the mount, or the detector's back
     } else if (element.kind == ELEMENT_INTERFACE) {
         real reflectance = interface_reflectance(surface, before, after, cosine, light.wave_number);
@@ -183,12 +182,55 @@ VKFV_FUNCTION Passage pass_element(Element element, int index, ElementMeeting me
     }
     Passage passage;
     passage.fate = make_fate(status, status == PATH_ALIVE ? -1 : index);
-    real3 own_point = real3(point.x, point.y, meeting.side * point.z);
-    real3 own_direction = real3(direction.x, direction.y, meeting.side * direction.z);
+    passage.position = point;
+    passage.direction = direction;
+    return passage;
+}
+
+VKFV_FUNCTION Passage pass_element(Element element, int index, ElementMeeting meeting, Light light, real u) {
+    Surface surface = element.surface;
+    bool along = meeting.side > real(0.0);
+    real before = along ? surface.index_before + disperse(surface.dispersion_before, light.spectral)
+                        : surface.index_after + disperse(surface.dispersion_after, light.spectral);
+    real after = along ? surface.index_after + disperse(surface.dispersion_after, light.spectral)
+                       : surface.index_before + disperse(surface.dispersion_before, light.spectral);
+    real3 normal = meeting.normal * (real(1.0) / sqrt(dot(meeting.normal, meeting.normal)));
+    Passage own =
+        turn_at(element, index, meeting.clear, meeting.point, meeting.direction, normal, before, after, light, u);
+    real3 own_point = real3(own.position.x, own.position.y, meeting.side * own.position.z);
+    real3 own_direction = real3(own.direction.x, own.direction.y, meeting.side * own.direction.z);
+    Passage passage;
+    passage.fate = own.fate;
     passage.position = element.origin + out_of_element(element, own_point);
     real3 turned = out_of_element(element, own_direction);
     passage.direction = turned * (real(1.0) / sqrt(dot(turned, turned)));
     return passage;
+}
+
+struct FacetPassage {
+    Passage passage;
+    int inside; // as PathPlace::inside
+};
+
+// The surface's index_before is that of the medium outside of the mesh, index_after that inside.
+VKFV_FUNCTION FacetPassage pass_facet(Element element, Facet facet, real3 origin, real3 direction, int inside,
+                                      Light light, real u) {
+    FacetMeeting meeting = meet_facet(ray_frame(origin, direction), facet);
+    Surface surface = element.surface;
+    real outer = surface.index_before + disperse(surface.dispersion_before, light.spectral);
+    real inner = surface.index_after + disperse(surface.dispersion_after, light.spectral);
+    // From the corner: on the facet, however far the ray came.
+    real3 point =
+        facet.corner_a + meeting.v * (facet.corner_b - facet.corner_a) + meeting.w * (facet.corner_c - facet.corner_a);
+    real3 normal = facet.normal * (meeting.leaving ? real(1.0) : real(-1.0));
+    FacetPassage result;
+    result.passage = turn_at(element, facet.element, true, point, direction, normal, meeting.leaving ? inner : outer,
+                             meeting.leaving ? outer : inner, light, u);
+    real3 turned = result.passage.direction;
+    result.passage.direction = turned * (real(1.0) / sqrt(dot(turned, turned)));
+    bool refracted = element.kind == ELEMENT_INTERFACE && dot(turned, normal) > real(0.0);
+    result.inside = refracted ? (meeting.leaving ? -1 : facet.element) : inside;
+    return result;
 }
 
 // Turns, at elements or the specimen, that a path may have: about twice those of the sequential model's longest. What
@@ -214,12 +256,19 @@ VKFV_SCENE_FUNCTION VKFV_FUNCTION Detection trace_nonsequential(VKFV_SCENE_PARAM
     detection.x = real(0.0);
     detection.y = real(0.0);
     real3 to_specimen = real3(real(0.0), real(0.0), exposure.focal_height) - displacement(exposure);
-    int left = -1;
+    PathPlace place;
+    place.element = -1;
+    place.facet = -1;
+    place.inside = -1;
     int bounces = 0;
     for (int k = 0; k < MOST_INTERACTIONS && detection.fate.status == PATH_ALIVE; ++k) {
-        ElementHit met = nearest_element(VKFV_SCENE origin, direction, left);
+        ElementHit met = nearest_element(VKFV_SCENE origin, direction, place);
         Hit hit = specimen_hit(VKFV_SCENE origin + to_specimen, direction);
-        if (hit.found == 1u && (met.index < 0 || hit.distance < met.distance)) {
+        bool on_specimen = hit.found == 1u && (met.index < 0 || hit.distance < met.distance);
+        if ((features(VKFV_SCENE_ALONE) & FEATURE_FACETS) != 0u &&
+            (met.index == ASTRAY || (on_specimen && place.inside >= 0))) {
+            detection.fate = make_fate(PATH_NUMERICAL, -1);
+        } else if (on_specimen) {
             if (bounces == specimen.max_bounces) {
                 detection.fate = make_fate(PATH_BOUNCE_LIMIT, -1);
             } else {
@@ -233,14 +282,25 @@ VKFV_SCENE_FUNCTION VKFV_FUNCTION Detection trace_nonsequential(VKFV_SCENE_PARAM
                                                                 : PATH_NUMERICAL,
                                            -1);
                 bounces += 1;
-                left = -1;
+                place.element = -1;
+                place.facet = -1;
             }
         } else if (met.index < 0) {
             detection.fate = make_fate(PATH_ESCAPED, -1);
+        } else if ((features(VKFV_SCENE_ALONE) & FEATURE_FACETS) != 0u && met.facet >= 0) {
+            Draws turn = draw(exposure.seed, exposure.image, path, 1u + uint(k));
+            FacetPassage through = pass_facet(element_at(VKFV_SCENE met.index), facet_at(VKFV_SCENE met.facet), origin,
+                                              direction, place.inside, emission.light, turn.u0);
+            detection.fate = through.passage.fate;
+            origin = through.passage.position;
+            direction = through.passage.direction;
+            place.element = -1;
+            place.facet = met.facet;
+            place.inside = through.inside;
         } else {
             Element element = element_at(VKFV_SCENE met.index);
             ElementMeeting meeting =
-                meet_element(element, origin, direction, met.index == left, least_distance(origin));
+                meet_element(element, origin, direction, met.index == place.element, least_distance(origin));
             if (element.kind == ELEMENT_DETECTOR && meeting.clear && meeting.side > real(0.0)) {
                 detection = detect(instrument, meeting.point.x, meeting.point.y);
             } else {
@@ -249,7 +309,8 @@ VKFV_SCENE_FUNCTION VKFV_FUNCTION Detection trace_nonsequential(VKFV_SCENE_PARAM
                 detection.fate = passage.fate;
                 origin = passage.position;
                 direction = passage.direction;
-                left = met.index;
+                place.element = met.index;
+                place.facet = -1;
             }
         }
     }

@@ -8,7 +8,8 @@
 //   Hit specimen_hit(real3 origin, real3 direction) const;
 //   real reflectance_at(int column, int row) const;    only with FEATURE_REFLECTANCE_MAP
 //   Element element_at(int index) const;              only for non-sequential paths
-//   ElementHit nearest_element(real3 origin, real3 direction, int left) const;   likewise
+//   ElementHit nearest_element(real3 origin, real3 direction, PathPlace from) const;   likewise
+//   Facet facet_at(int index) const;                  only with FEATURE_FACETS
 //   real lattice_at(int column, int row) const;      only for analytic specimens with a lattice
 #pragma once
 
@@ -21,6 +22,7 @@
 #include <glm/integer.hpp>
 
 #define VKFV_FUNCTION inline
+#define VKFV_PRECISE
 #define VKFV_SCENE_FUNCTION template <class Scene>
 #define VKFV_SCENE_PARAMETER const Scene &scene,
 #define VKFV_SCENE scene,
@@ -51,6 +53,7 @@
     using glm::uvec2; \
     using glm::uvec4; \
     using uint = std::uint32_t; \
+    inline real3 fma(real3 a, real3 b, real3 c) { return a * b + c; } \
     inline uint multiply_high(uint a, uint b) { return static_cast<uint>((static_cast<std::uint64_t>(a) * b) >> 32); }
 
 namespace vkfv::physics::f64 {
@@ -70,6 +73,7 @@ VKFV_PHYSICS_LANGUAGE
 } // namespace vkfv::physics::f32
 
 #undef VKFV_FUNCTION
+#undef VKFV_PRECISE
 #undef VKFV_SCENE_FUNCTION
 #undef VKFV_SCENE_PARAMETER
 #undef VKFV_SCENE

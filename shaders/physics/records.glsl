@@ -38,6 +38,7 @@ const uint FEATURE_DIRECTED_SCATTER = 32u; // of the trace, not of the instrumen
 const uint FEATURE_PUPIL_CELLS = 128u;     // likewise: light is sorted by where it crosses the pupil
 const uint FEATURE_REFLECTANCE_MAP = 64u;  // of the specimen
 const uint FEATURE_RECTANGLE = 256u;       // a rectangle instead of the disc
+const uint FEATURE_FACETS = 512u;          // elements whose form is a mesh
 
 const int SURFACE_CAPACITY = 128;  // surfaces of both trains together that the device's uniform block holds
 const int KNOWN_SURFACES = 64;     // of them, that a kernel can have as constants (device/prescription.glsl)
@@ -147,7 +148,8 @@ const uint ELEMENT_MIRROR = 2u;
 const uint ELEMENT_SPLITTER = 3u;
 const uint ELEMENT_IDEAL_LENS = 4u;
 const uint ELEMENT_DETECTOR = 5u;
-const uint ELEMENT_BARREL = 6u; // an absorbing tube about z
+const uint ELEMENT_BARREL = 6u;   // an absorbing tube about z
+const uint ELEMENT_ABSORBER = 7u; // of facets alone
 
 // An element as it stands in the room, for non-sequential tracing. Each is absorbing around its free aperture (the
 // surface's semi-diameter): its mount is the same surface out to rim_radius, and from there the plane z = rim_height.
@@ -167,10 +169,30 @@ struct Element {
     VKFV_ELEMENT_FIELDS(VKFV_DECLARE)
 };
 
+// A flat triangle of an element whose form is a mesh, in the frame that elements stand in.
+#define VKFV_FACET_FIELDS(FIELD) \
+    FIELD(real3, corner_a) /* mm; of a closed mesh counter-clockwise seen from outside */ \
+    FIELD(real3, corner_b) \
+    FIELD(real3, corner_c) \
+    FIELD(real3, normal)   /* unit, to where the corners go round counter-clockwise */ \
+    FIELD(int, element)    /* index of its element */ \
+    FIELD(uint, closed)    /* 1: of a closed mesh, which light meets from the side alone that it is on */
+struct Facet {
+    VKFV_FACET_FIELDS(VKFV_DECLARE)
+};
+
 // The nearest element on a ray's way.
 struct ElementHit {
     int index;     // -1: none
+    int facet;     // of its mesh; -1: it is no mesh
     real distance; // mm
+};
+
+// Where a path is between two meetings.
+struct PathPlace {
+    int element; // that it comes from; -1: none, or a mesh
+    int facet;   // likewise; -1: none
+    int inside;  // the element of a closed mesh that it is in; -1: none
 };
 
 // Where the source stands in the room.

@@ -50,6 +50,10 @@ void require_indices(const Configuration& configuration, const LightOfSource& li
         require_over_spectrum("the cover glass", instrument.cover_glass->glass);
     }
     require_all_of("tube lens", instrument.tube_lens);
+    for (const optics::MeshElement& mesh : instrument.meshes) {
+        require_over_spectrum("the mesh element", mesh.glass);
+        require_over_spectrum("what surrounds the mesh element", mesh.surrounding);
+    }
     if (instrument.interfaces.model == optics::Interfaces::Model::quarter_wave) {
         require("the quarter-wave layer", instrument.interfaces.layer, "interfaces.design_wavelength_um",
                 {instrument.interfaces.design_wavelength_um});
@@ -94,9 +98,11 @@ void read_instrument(const TomlTable& root, Configuration& configuration) {
     std::vector<LightOfSource> lights;
     root.attempt("source", [&] { lights = read_source(root, configuration); });
     const std::pair<const char*, void (*)(const TomlTable&, Configuration&)> parts[] = {
-        {"illumination", read_illumination}, {"beam_splitter", read_beam_splitter}, {"fold_mirror", read_fold_mirrors},
-        {"interfaces", read_interfaces},     {"objective", read_objective},         {"cover_glass", read_cover_glass},
-        {"tube_lens", read_tube_lens},       {"detector", read_detector},           {"camera", read_camera}};
+        {"illumination", read_illumination},  {"beam_splitter", read_beam_splitter},
+        {"fold_mirror", read_fold_mirrors},   {"interfaces", read_interfaces},
+        {"objective", read_objective},        {"cover_glass", read_cover_glass},
+        {"tube_lens", read_tube_lens},        {"detector", read_detector},
+        {"mesh_element", read_mesh_elements}, {"camera", read_camera}};
     for (const auto& [key, read] : parts) {
         root.attempt(key, [&, read = read] { read(root, configuration); }); // clang 14 captures no binding by name
     }

@@ -71,6 +71,10 @@ void read_trace(const TomlTable& root, Configuration& configuration) {
     }
     trace.max_bounces = static_cast<int>(section.integer(max_bounces));
     trace.nonsequential = section.choice(mode);
+    if (!trace.nonsequential && !configuration.instrument.meshes.empty()) {
+        section.fail(mode, "\"nonsequential\" with [[mesh_element]], which light in a given sequence does not meet",
+                     "Set mode = \"nonsequential\", or remove the mesh elements.");
+    }
     trace.estimator = section.choice(estimator);
     if (trace.estimator == Estimator::backward) {
         configuration.instrument.turned = true;

@@ -110,6 +110,9 @@ struct FoldedElements {
 FoldedElements fold(const InstrumentDescription& description, const AxialLayout& layout, const ImagingTrain& imaging,
                     const MeasuredImaging& measured, const Illumination& illumination);
 
+// In the frame of the folded elements.
+std::vector<PlacedMesh> place_meshes(const InstrumentDescription& description, const MeasuredImaging& measured);
+
 // What stages share.
 
 [[noreturn]] void refuse(std::string key, std::string found, std::string expected, std::string remedy,

@@ -107,4 +107,26 @@ FoldedElements fold(const InstrumentDescription& description, const AxialLayout&
     return folded;
 }
 
+std::vector<PlacedMesh> place_meshes(const InstrumentDescription& description, const MeasuredImaging& measured) {
+    std::vector<PlacedMesh> meshes;
+    for (const MeshElement& element : description.meshes) {
+        PlacedMesh mesh{.kind = element.kind, .name = element.name, .facets = element.facets};
+        mesh.closed = openness_of(mesh.facets).closed();
+        if (mesh.closed) {
+            mesh.facets = turned_outward(std::move(mesh.facets));
+        }
+        for (glm::dvec3& vertex : mesh.facets.vertices) {
+            vertex = element.pose.point(vertex);
+            vertex.z -= measured.best_focus_offset;
+        }
+        // An interface like those of the lenses, with their coating.
+        mesh.surface = plate(description, Pose{}, 0, element.glass, element.surrounding, std::nullopt, element.name)
+                           .front()
+                           .surface;
+        mesh.surface.reflectance = element.reflectance;
+        meshes.push_back(std::move(mesh));
+    }
+    return meshes;
+}
+
 } // namespace vkfv::optics

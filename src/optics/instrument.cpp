@@ -213,6 +213,8 @@ Instrument assemble(const InstrumentDescription& description) {
         FoldedElements folded = fold(lit, layout, imaging, measured, illumination);
         instrument.elements = std::move(folded.elements);
         instrument.source_pose = folded.source_pose;
+        instrument.meshes = place_meshes(lit, measured);
+        instrument.features |= instrument.meshes.empty() ? 0u : physics::f64::FEATURE_FACETS;
         return instrument;
     };
     Instrument instrument = in_light_of(description.source);

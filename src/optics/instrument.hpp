@@ -2,6 +2,7 @@
 #pragma once
 
 #include "core/pixel_grid.hpp"
+#include "optics/mesh_element.hpp"
 #include "optics/prescription.hpp"
 #include "optics/spectrum.hpp"
 #include "optics/train.hpp"
@@ -98,9 +99,10 @@ struct InstrumentDescription {
     ImageSize detector_pixels;
     double fill_factor = 1; // share of a pixel's area, a square in its middle, that is sensitive
     Placement detector_placement;
-    bool directed_emission = true; // aim the source at the cone that can pass the illumination train
-    bool turned = false;           // the backward estimator's form is wanted too
-    double greatest_defocus = 0.2; // of the specimen's top plane from the plane of best focus, for the gate
+    std::vector<MeshElement> meshes; // the non-sequential mode's alone
+    bool directed_emission = true;   // aim the source at the cone that can pass the illumination train
+    bool turned = false;             // the backward estimator's form is wanted too
+    double greatest_defocus = 0.2;   // of the specimen's top plane from the plane of best focus, for the gate
 
     std::vector<const SourceDescription*> sources() const; // all, in their order
 };
@@ -172,7 +174,8 @@ struct Instrument {
     // at 0).
     double front_vertex_height = 0;
     std::vector<Element>
-        elements;     // in the order of the light: illuminator, splitter, cover glass, objective, ... detector
+        elements; // in the order of the light: illuminator, splitter, cover glass, objective, ... detector
+    std::vector<PlacedMesh> meshes; // in the same frame; only light without a given sequence meets them
     Pose source_pose; // of the source's frame, light towards its z (a ring light's: its aim), in the elements' frame
     std::optional<TurnedInstrument> turned; // where the description asks for it
     std::vector<std::string> warnings;

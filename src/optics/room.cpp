@@ -122,7 +122,45 @@ Room furnish(const Instrument& instrument) {
         }
         first = last + 1;
     }
+    room.surfaces = room.elements.size();
+    for (const PlacedMesh& mesh : instrument.meshes) {
+        room.add_mesh(mesh);
+    }
     return room;
+}
+
+BoxTree::Box bounds_of(const physics::f64::Facet& facet) {
+    return {glm::min(facet.corner_a, glm::min(facet.corner_b, facet.corner_c)),
+            glm::max(facet.corner_a, glm::max(facet.corner_b, facet.corner_c))};
+}
+
+void Room::add_mesh(const PlacedMesh& mesh) {
+    physics::f64::Element element{};
+    element.kind = mesh.kind == MeshElement::Kind::glass    ? physics::f64::ELEMENT_INTERFACE
+                   : mesh.kind == MeshElement::Kind::mirror ? physics::f64::ELEMENT_MIRROR
+                                                            : physics::f64::ELEMENT_ABSORBER;
+    element.surface = mesh.surface;
+    stand(element, Pose{});
+    const auto index = static_cast<int>(elements.size());
+    elements.push_back(element);
+    names.push_back(fmt::format("mesh: {}", mesh.name));
+    const std::vector<glm::dvec3> normals = normals_of(mesh.facets);
+    const auto corner = [&](std::uint32_t vertex) { return glm::dvec3(glm::vec3(mesh.facets.vertices[vertex])); };
+    for (std::size_t k = 0; k < mesh.facets.triangles.size(); ++k) {
+        const glm::uvec3& triangle = mesh.facets.triangles[k];
+        facets.push_back({.corner_a = corner(triangle.x),
+                          .corner_b = corner(triangle.y),
+                          .corner_c = corner(triangle.z),
+                          .normal = normals[k],
+                          .element = index,
+                          .closed = mesh.closed ? 1u : 0u});
+    }
+    std::vector<Box> boxes;
+    boxes.reserve(facets.size());
+    for (const physics::f64::Facet& facet : facets) {
+        boxes.push_back(bounds_of(facet));
+    }
+    facet_tree = BoxTree(boxes);
 }
 
 Room::Box Room::bounds(std::size_t index) const {
@@ -153,18 +191,24 @@ Room::Box Room::bounds(std::size_t index) const {
     return box;
 }
 
-physics::f64::ElementHit nearest_element(const Room& room, glm::dvec3 origin, glm::dvec3 direction, int left) {
+physics::f64::ElementHit nearest_element(const Room& room, glm::dvec3 origin, glm::dvec3 direction,
+                                         physics::f64::PathPlace from) {
     using namespace physics::f64;
     const double least = least_distance(origin);
-    ElementHit nearest{-1, std::numeric_limits<double>::infinity()};
-    for (std::size_t i = 0; i < room.elements.size(); ++i) {
+    NearestElement nearest = no_element(std::numeric_limits<double>::infinity());
+    for (std::size_t i = 0; i < room.surfaces; ++i) {
         const int index = static_cast<int>(i);
-        const ElementMeeting meeting = meet_element(room.elements[i], origin, direction, index == left, least);
-        if (meeting.found && meeting.distance < nearest.distance) {
-            nearest = {index, meeting.distance};
+        const ElementMeeting meeting = meet_element(room.elements[i], origin, direction, index == from.element, least);
+        if (meeting.found && meeting.distance < nearest.hit.distance) {
+            nearest.hit = {.index = index, .facet = -1, .distance = meeting.distance};
         }
     }
-    return nearest;
+    const RayFrame frame = ray_frame(origin, direction);
+    room.facet_tree.walk(origin, direction, nearest.hit.distance, [&](std::uint32_t facet, double) {
+        nearest = consider_facet(nearest, frame, room.facets[facet], static_cast<int>(facet), from, least);
+        return nearest.hit.distance;
+    });
+    return nearest_hit(nearest, from);
 }
 
 } // namespace vkfv::optics

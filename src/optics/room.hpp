@@ -2,6 +2,7 @@
 // beside the lenses.
 #pragma once
 
+#include "core/box_tree.hpp"
 #include "optics/instrument.hpp"
 
 #include <glm/glm.hpp>
@@ -12,20 +13,27 @@
 namespace vkfv::optics {
 
 struct Room {
-    std::vector<physics::f64::Element> elements; // frame and unit: Element of instrument.hpp
-    std::vector<std::string> names;              // "objective: 10x_0.28 3", ...
+    // Frame and unit: Element of instrument.hpp. First those that are surfaces, then those that are meshes.
+    std::vector<physics::f64::Element> elements;
+    std::size_t surfaces = 0;       // how many of the first
+    std::vector<std::string> names; // "objective: 10x_0.28 3", ...
+    // Of the meshes, element by element; corners are numbers of single precision, so that host and device meet the
+    // same.
+    std::vector<physics::f64::Facet> facets;
+    BoxTree facet_tree;
     physics::f64::SourceFrame source;
 
-    struct Box {
-        glm::dvec3 lower;
-        glm::dvec3 upper;
-    };
-    Box bounds(std::size_t element) const; // encloses its surface, mount and rim
+    using Box = BoxTree::Box;
+    Box bounds(std::size_t element) const; // of a surface: encloses it, its mount and rim
+    void add_mesh(const PlacedMesh& mesh);
 };
+
+BoxTree::Box bounds_of(const physics::f64::Facet& facet);
 
 Room furnish(const Instrument& instrument);
 
-// The nearest element that a ray meets, for physics::trace_nonsequential on the host. Tries every element.
-physics::f64::ElementHit nearest_element(const Room& room, glm::dvec3 origin, glm::dvec3 direction, int left);
+// The nearest element that a ray meets, for physics::trace_nonsequential on the host. Tries every surface.
+physics::f64::ElementHit nearest_element(const Room& room, glm::dvec3 origin, glm::dvec3 direction,
+                                         physics::f64::PathPlace from);
 
 } // namespace vkfv::optics

@@ -1,6 +1,7 @@
 #include "report/layout_drawing.hpp"
 
 #include "report/layout_style.hpp"
+#include "report/mesh_sections.hpp"
 
 #include <fmt/format.h>
 
@@ -154,6 +155,30 @@ void add_lenses(Shapes& shapes, const ElementSections& sections) {
         const bool is_cut = across(elements[i].pose).has_value();
         add(shapes, is_cut ? lens_outline(sections, i) : rim(elements[i].pose, sections.radius(i)), true, attributes);
     }
+}
+
+// What the plane of drawing cuts of it, or else its outline's box. Gives what encloses it.
+Box add_mesh(Shapes& shapes, const optics::PlacedMesh& mesh) {
+    using MeshKind = optics::MeshElement::Kind;
+    const bool is_glass = mesh.kind == MeshKind::glass;
+    const std::string line = fmt::format("stroke=\"{}\" stroke-width=\"{}\" stroke-linejoin=\"round\"",
+                                         is_glass ? "#40627a" : ink, mesh.kind == MeshKind::mirror ? 2.0 : 0.9);
+    const std::string fill = is_glass ? fmt::format("fill=\"{}\" ", glass(mesh.surface.index_after))
+                             : mesh.kind == MeshKind::absorber && mesh.closed ? "fill=\"#8a8a8a\" "
+                                                                              : "";
+    Box drawn;
+    for (const SectionLine& section : section_of(mesh.facets)) {
+        add(shapes, section.points, section.closed, "class=\"mesh\" " + (section.closed ? fill : "") + line);
+        drawn.add(box_of(shapes.back()));
+    }
+    if (drawn.empty()) {
+        for (const dvec3& vertex : mesh.facets.vertices) {
+            drawn.add(flat(vertex));
+        }
+        add(shapes, {drawn.lower, {drawn.upper.x, drawn.lower.y}, drawn.upper, {drawn.lower.x, drawn.upper.y}}, true,
+            "class=\"mesh\" stroke-dasharray=\"3 3\" " + line);
+    }
+    return drawn;
 }
 
 void add_rays(Shapes& shapes, const std::vector<RoomRay>& rays) {
@@ -347,6 +372,10 @@ Drawing draw_instrument(const optics::Instrument& instrument) {
     boxes.detector = add_camera(shapes, sections);
     add_immersion(shapes, sections, constants.specimen_index);
     add_lenses(shapes, sections);
+    std::vector<Label> mesh_labels;
+    for (const optics::PlacedMesh& mesh : instrument.meshes) {
+        mesh_labels.push_back({.text = mesh.name, .part = add_mesh(shapes, mesh)});
+    }
     add_rays(shapes, drawing.rays);
     add_flat_elements(shapes, sections);
     boxes.specimen = add_specimen(shapes, sections, instrument.first_order.field_edge);
@@ -358,6 +387,7 @@ Drawing draw_instrument(const optics::Instrument& instrument) {
                        is_rectangle ? constants.source_half_height : constants.source_radius, sections.extent());
     }
     drawing.labels = label_parts(instrument, sections, boxes);
+    drawing.labels.insert(drawing.labels.end(), mesh_labels.begin(), mesh_labels.end());
     drawing.objective = objective_region(sections);
     return drawing;
 }

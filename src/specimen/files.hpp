@@ -38,6 +38,14 @@ FileMesh read_stl(const std::filesystem::path& file, const SourceLocation& menti
 // out.
 FileMesh read_gltf(const std::filesystem::path& file, const SourceLocation& mention);
 
+// Points of a surface as a text file has them (csv, txt, xyz), a line each: x, y and z, in its own unit and frame; what
+// further columns hold is left out. Lines with a gap in the first three (NaN, BAD, empty) are not measured.
+struct FilePoints {
+    std::vector<glm::dvec3> points; // finite, at least one
+    std::size_t not_measured = 0;   // lines
+};
+FilePoints read_points(const std::filesystem::path& file, const SourceLocation& mention);
+
 // Grey values, integers scaled to 0..1 and floats as they are. The file's top row is the grid's last (highest
 // y). Of a file that is cut off nothing is taken.
 Grid<float> read_image(const std::filesystem::path& file, const SourceLocation& mention);
@@ -45,6 +53,7 @@ Grid<float> read_image(const std::filesystem::path& file, const SourceLocation& 
 // The same of a file's bytes; `file` names it in messages, and a glTF's other buffers lie beside it.
 FileMesh parse_stl(std::string_view bytes, const std::filesystem::path& file);
 FileMesh parse_gltf(std::string bytes, const std::filesystem::path& file);
+FilePoints parse_points(std::string_view bytes, const std::filesystem::path& file);
 Grid<float> parse_image(std::string_view bytes, const std::filesystem::path& file);
 
 // More points than this are a mistake in the file or the configuration (1 GiB of heights).

@@ -1,12 +1,12 @@
 #include "specimen/intersector.hpp"
 
+#include "core/box_tree.hpp"
 #include "specimen/analytic.hpp"
 
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <limits>
-#include <numeric>
 #include <optional>
 
 namespace vkfv::specimen {
@@ -179,101 +179,41 @@ class FieldWalk {
     double margin_ = 0;
 };
 
-class Hierarchy {
+class Triangles {
   public:
-    explicit Hierarchy(const Mesh& mesh) {
+    explicit Triangles(const Mesh& mesh) {
         triangles_.reserve(mesh.triangles.size());
+        std::vector<BoxTree::Box> boxes;
+        boxes.reserve(mesh.triangles.size());
         for (const glm::uvec3& triangle : mesh.triangles) {
-            triangles_.push_back({glm::dvec3(mesh.vertices[triangle.x]), glm::dvec3(mesh.vertices[triangle.y]),
-                                  glm::dvec3(mesh.vertices[triangle.z])});
+            const glm::dvec3 a(mesh.vertices[triangle.x]), b(mesh.vertices[triangle.y]), c(mesh.vertices[triangle.z]);
+            triangles_.push_back({a, b, c});
+            boxes.push_back({glm::min(a, glm::min(b, c)), glm::max(a, glm::max(b, c))});
         }
-        if (!triangles_.empty()) {
-            build(0, triangles_.size());
-        }
+        tree_ = BoxTree(boxes);
     }
 
     Hit hit(const glm::dvec3& origin, const glm::dvec3& direction) const {
         Hit nearest = no_hit();
-        if (nodes_.empty()) {
-            return nearest;
-        }
         const Ray ray(origin, direction);
-        std::array<std::size_t, 64> stack; // a median split of 2^32 triangles is 32 deep
-        std::size_t depth = 0;
-        stack[depth++] = 0;
-        while (depth > 0) {
-            const Node& node = nodes_[stack[--depth]];
-            Interval inside{0, nearest.distance};
-            for (int axis = 0; axis < 3; ++axis) {
-                const double margin = selection_margin * (std::abs(origin[axis]) + std::abs(node.lower[axis]) +
-                                                          std::abs(node.upper[axis]));
-                inside.clip(origin[axis], direction[axis], node.lower[axis] - margin, node.upper[axis] + margin);
+        tree_.walk(origin, direction, infinity, [&](std::uint32_t index, double farthest) {
+            const auto& t = triangles_[index];
+            const std::optional<double> distance = ray.meet(t[0], t[1], t[2]);
+            if (distance && *distance < farthest) {
+                const glm::dvec3 normal = glm::normalize(glm::cross(t[1] - t[0], t[2] - t[0]));
+                nearest.found = 1;
+                nearest.distance = *distance;
+                nearest.position = ray.at(*distance);
+                nearest.normal = glm::dot(normal, direction) > 0 ? -normal : normal;
             }
-            if (inside.empty()) {
-                continue;
-            }
-            if (node.count == 0) {
-                stack[depth++] = node.second;
-                stack[depth++] = node.first;
-                continue;
-            }
-            for (std::size_t i = node.first; i < node.first + node.count; ++i) {
-                const Triangle& t = triangles_[i];
-                const std::optional<double> distance = ray.meet(t[0], t[1], t[2]);
-                if (distance && *distance < nearest.distance) {
-                    const glm::dvec3 normal = glm::normalize(glm::cross(t[1] - t[0], t[2] - t[0]));
-                    nearest.found = 1;
-                    nearest.distance = *distance;
-                    nearest.position = ray.at(*distance);
-                    nearest.normal = glm::dot(normal, direction) > 0 ? -normal : normal;
-                }
-            }
-        }
+            return nearest.distance;
+        });
         return nearest;
     }
 
   private:
-    using Triangle = std::array<glm::dvec3, 3>;
-    struct Node {
-        glm::dvec3 lower = glm::dvec3(infinity);
-        glm::dvec3 upper = glm::dvec3(-infinity);
-        std::size_t first = 0;  // child, or triangle of a leaf
-        std::size_t second = 0; // child
-        std::size_t count = 0;  // triangles of a leaf; 0: an inner node
-    };
-    static constexpr std::size_t leaf_size = 4;
-
-    std::size_t build(std::size_t begin, std::size_t end) {
-        const std::size_t index = nodes_.size();
-        Node node;
-        for (std::size_t i = begin; i < end; ++i) {
-            for (const glm::dvec3& vertex : triangles_[i]) {
-                node.lower = glm::min(node.lower, vertex);
-                node.upper = glm::max(node.upper, vertex);
-            }
-        }
-        node.first = begin;
-        node.count = end - begin;
-        nodes_.push_back(node);
-        if (node.count > leaf_size) {
-            const glm::dvec3 extent = node.upper - node.lower;
-            const int axis = extent.x >= extent.y && extent.x >= extent.z ? 0 : (extent.y >= extent.z ? 1 : 2);
-            const std::size_t middle = begin + node.count / 2;
-            const auto at = [&](std::size_t i) { return triangles_.begin() + static_cast<std::ptrdiff_t>(i); };
-            std::nth_element(at(begin), at(middle), at(end), [axis](const Triangle& a, const Triangle& b) {
-                return a[0][axis] + a[1][axis] + a[2][axis] < b[0][axis] + b[1][axis] + b[2][axis];
-            });
-            const std::size_t first = build(begin, middle);
-            const std::size_t second = build(middle, end);
-            nodes_[index].first = first;
-            nodes_[index].second = second;
-            nodes_[index].count = 0;
-        }
-        return index;
-    }
-
-    std::vector<Triangle> triangles_;
-    std::vector<Node> nodes_;
+    std::vector<std::array<glm::dvec3, 3>> triangles_;
+    BoxTree tree_;
 };
 
 class Marcher {
@@ -294,7 +234,7 @@ class Marcher {
 } // namespace
 
 struct Intersector::State {
-    std::variant<FieldWalk, Hierarchy, Marcher> geometry;
+    std::variant<FieldWalk, Triangles, Marcher> geometry;
     std::optional<ReflectanceMap> reflectance;
 };
 
@@ -302,7 +242,7 @@ Intersector::Intersector(const Specimen& specimen) {
     using Geometry = decltype(State::geometry);
     struct Prepare {
         Geometry operator()(const HeightField& field) const { return FieldWalk(field); }
-        Geometry operator()(const Mesh& mesh) const { return Hierarchy(mesh); }
+        Geometry operator()(const Mesh& mesh) const { return Triangles(mesh); }
         Geometry operator()(const Analytic& analytic) const { return Marcher(analytic); }
     };
     state_ = std::make_unique<State>(State{std::visit(Prepare{}, specimen.geometry), specimen.reflectance});

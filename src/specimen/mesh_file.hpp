@@ -8,6 +8,7 @@
 #include <vector>
 
 namespace vkfv {
+class FileKey;
 class Key;
 class Section;
 template <class Value>
@@ -29,7 +30,9 @@ struct MeshFile {
 // configuration names the file.
 Mesh placed_mesh(FileMesh source, const MeshFile& description, const SourceLocation& mention);
 
-std::vector<const Key*> mesh_file_keys(const ChoiceKey<double>& unit);
-void read_mesh_file(const Section& section, const ChoiceKey<double>& unit, MeshFile& mesh);
+// file: the key that names it; unit: of its lengths.
+std::vector<const Key*> mesh_file_keys(const FileKey& file, const ChoiceKey<double>& unit);
+void read_mesh_file(const Section& section, const FileKey& file, const ChoiceKey<double>& unit, MeshFile& mesh);
+extern const FileKey mesh_key; // `file` of the kinds whose file is a mesh
 
 } // namespace vkfv::specimen

@@ -14,7 +14,7 @@ constexpr int subdivision = 5;
 constexpr double off_specimen = -std::numeric_limits<double>::infinity();
 
 // The points of a band of pixel rows.
-struct Points {
+struct SamplePoints {
     double x0, y0, pitch_x, pitch_y; // of the pixels
     int first_row;                   // of points
     Grid<double> heights;            // off_specimen where there is none
@@ -34,7 +34,7 @@ double edge(const glm::dvec2& a, const glm::dvec2& b, const glm::dvec2& p) {
 }
 
 struct Fill {
-    Points& points;
+    SamplePoints& points;
 
     template <class Function>
     void each(double x_min, double x_max, double y_min, double y_max, Function function) const {
@@ -132,12 +132,12 @@ surface::HeightMap truth(const Specimen& specimen, int columns, int rows, double
     const int band = std::max(1, (1 << 20) / std::max(1, points_per_row));
     parallel_bands(rows, band, [&](int first, int end) {
         const int count = end - first;
-        Points points{x0,
-                      y0,
-                      pitch_x,
-                      pitch_y,
-                      first * subdivision,
-                      Grid<double>(columns * subdivision, count * subdivision, off_specimen)};
+        SamplePoints points{x0,
+                            y0,
+                            pitch_x,
+                            pitch_y,
+                            first * subdivision,
+                            Grid<double>(columns * subdivision, count * subdivision, off_specimen)};
         std::visit(Fill{points}, specimen.geometry);
         for (int row = 0; row < count; ++row) {
             for (int column = 0; column < columns; ++column) {

@@ -4,6 +4,7 @@
 #include "core/units.hpp"
 #include "surface_files/image_scale.hpp"
 #include "surface_files/lengths.hpp"
+#include "surface_files/table_text.hpp"
 
 #include <algorithm>
 #include <array>
@@ -17,124 +18,6 @@ namespace {
 constexpr std::string_view table_title = "# vkfv heights in um";
 constexpr std::size_t title_lines = 5; // with the scale; provenance follows, whose text may look like either
 constexpr double nan = std::numeric_limits<double>::quiet_NaN();
-
-std::string_view bare(std::string_view text) {
-    const auto begin = text.find_first_not_of(" \t\r");
-    return begin == std::string_view::npos ? std::string_view()
-                                           : text.substr(begin, text.find_last_not_of(" \t\r") + 1 - begin);
-}
-
-// How numbers stand in a line.
-struct Style {
-    char separator = ' '; // blanks: any number of blanks and tabs
-    bool decimal_comma = false;
-};
-
-template <class Take>
-void for_cells(std::string_view line, const Style& style, Take take) {
-    line = bare(line);
-    for (bool more = !line.empty(); more;) {
-        const auto end = style.separator == ' ' ? line.find_first_of(" \t") : line.find(style.separator);
-        take(bare(line.substr(0, end)));
-        more = end != std::string_view::npos;
-        if (more)
-            line.remove_prefix(end + 1);
-        if (style.separator == ' ')
-            line = bare(line);
-        // A separator at the line's end closes the last cell.
-        more = more && !line.empty();
-    }
-}
-
-std::optional<double> number_of(std::string_view cell, const Style& style) {
-    if (!style.decimal_comma)
-        return number_in<double>(cell);
-    std::string text(cell);
-    std::ranges::replace(text, ',', '.');
-    return number_in<double>(text);
-}
-
-// Of a line of numbers: a semicolon or a tab separates in any case, and a comma is a decimal one then; a comma that a
-// digit follows at once is a decimal one if blanks separate.
-Style style_of(std::string_view line) {
-    line = bare(line);
-    const bool comma = line.find(',') != std::string_view::npos;
-    for (const char separator : {';', '\t'})
-        if (line.find(separator) != std::string_view::npos)
-            return {separator, comma && line.find('.') == std::string_view::npos};
-    if (!comma)
-        return {' ', false};
-    if (line.find(' ') == std::string_view::npos || line.find('.') != std::string_view::npos)
-        return {',', false};
-    for (auto at = line.find(','); at != std::string_view::npos; at = line.find(',', at + 1))
-        if (at + 1 >= line.size() || line[at + 1] < '0' || line[at + 1] > '9')
-            return {',', false};
-    return {' ', true};
-}
-
-bool is_data(std::string_view line, const Style& style) {
-    bool first = true, numbers = false, words = false;
-    for_cells(line, style, [&](std::string_view cell) {
-        const bool number = number_of(cell, style).has_value();
-        // A line of data may begin with a gap, which is no word of a heading.
-        const bool gap = cell.empty() || cell == "NaN" || cell == "nan" || cell == "NAN" || cell == "BAD" ||
-                         cell == "Bad" || cell.find_first_not_of("*-") == std::string_view::npos;
-        words = words || (first && !number && !gap);
-        numbers = numbers || number || !cell.empty();
-        first = false;
-    });
-    return numbers && !words;
-}
-
-struct Table {
-    std::vector<std::string_view> header; // its lines
-    std::vector<double> values;           // row by row; NaN: not measured
-    std::size_t columns = 0, rows = 0;
-};
-
-Table table_of(const ByteReader& file, std::string_view text) {
-    Table table;
-    std::optional<Style> style;
-    int number = 0;
-    for (std::size_t at = 0; at < text.size();) {
-        const std::string_view line = text.substr(at, text.substr(at).find('\n'));
-        at += line.size() + 1;
-        ++number;
-        const std::string_view content = bare(line);
-        if (content.empty())
-            continue;
-        const Style own = style.value_or(style_of(content));
-        if (content.starts_with('#') || (!style && !is_data(content, own))) {
-            table.header.push_back(content);
-            continue;
-        }
-        style = own;
-        std::size_t count = 0;
-        for_cells(content, own, [&](std::string_view cell) {
-            const bool word = cell.find_first_of("0123456789") == std::string_view::npos;
-            const auto value = number_of(cell, own);
-            if (!value && !word)
-                throw InputError({.where = {.file = file.file(), .line = number},
-                                  .key = fmt::format("column {}", count + 1),
-                                  .found = plain_line(cell.substr(0, 40)),
-                                  .expected = "a number, or a word for a point that is not measured",
-                                  .remedy = "Export the heights anew, with one separator and one decimal sign."});
-            table.values.push_back(value.value_or(nan));
-            ++count;
-        });
-        if (table.rows > 0 && count != table.columns)
-            throw InputError({.where = {.file = file.file(), .line = number},
-                              .key = "columns",
-                              .found = fmt::format("{}", count),
-                              .expected = fmt::format("{}, as in the lines above", table.columns),
-                              .remedy = "Export the heights as a whole matrix."});
-        table.columns = count;
-        ++table.rows;
-    }
-    if (table.rows == 0)
-        file.fail({}, "", "no line of numbers", "a table of heights");
-    return table;
-}
 
 // What a header says of lengths, in mm.
 struct Header {
@@ -191,7 +74,7 @@ struct Ruler {
     }
 };
 
-Ruler ruler_of(const Table& table, std::size_t column) {
+Ruler ruler_of(const TableText& table, std::size_t column) {
     std::vector<double> places;
     for (std::size_t row = 0; row < table.rows; ++row)
         places.push_back(table.values[row * table.columns + column]);
@@ -216,7 +99,7 @@ Ruler ruler_of(const Table& table, std::size_t column) {
 }
 
 // Of three columns; nothing where the first two make up no grid of which at least one point in `emptiness` is there.
-std::optional<HeightMap> grid_of_points(const Table& table, std::uint64_t emptiness) {
+std::optional<HeightMap> grid_of_points(const TableText& table, std::uint64_t emptiness) {
     if (table.columns != 3 || table.rows < 4)
         return std::nullopt;
     const Ruler x = ruler_of(table, 0), y = ruler_of(table, 1);
@@ -239,7 +122,7 @@ std::optional<HeightMap> grid_of_points(const Table& table, std::uint64_t emptin
     return map;
 }
 
-HeightMap matrix_of(const Table& table) {
+HeightMap matrix_of(const TableText& table) {
     HeightMap map;
     map.height = Grid<double>(static_cast<int>(table.columns), static_cast<int>(table.rows));
     for (std::size_t line = 0; line < table.rows; ++line)
@@ -275,11 +158,7 @@ bool named_like_height_table(std::string_view name) {
 
 SurfaceFile parse_height_table(std::string_view bytes, const std::filesystem::path& path, const ImageScale& scale) {
     const ByteReader file(bytes, path);
-    if (bytes.starts_with("\xEF\xBB\xBF")) // the byte-order mark of UTF-8
-        bytes.remove_prefix(3);
-    if (bytes.find('\0') != std::string_view::npos)
-        file.fail(bytes.find('\0'), "", "a NUL", "text", "Export the heights as plain text, ASCII or UTF-8.");
-    const Table table = table_of(file, bytes);
+    const TableText table = parse_table_text(bytes, path, "a table of heights");
     const bool own = is_own(table.header);
     const Header header = header_of(
         std::span(table.header).first(std::min(table.header.size(), own ? title_lines : table.header.size())));

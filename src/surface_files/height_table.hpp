@@ -11,9 +11,7 @@ namespace vkfv::surface {
 // No content of its own tells such a file: by its name's ending, .csv .txt .asc .xyz in lower case.
 bool named_like_height_table(std::string_view name);
 
-// Numbers between commas, semicolons, tabs or blanks; with decimal commas where another separator leaves no doubt.
-// Lines before the first of numbers, and those that begin with '#', are a header; empty cells and words (NaN, BAD, ***)
-// between numbers are not measured. Three columns whose first two make up a regular grid are x, y and z in one unit;
+// Text of parse_table_text(). Three columns whose first two make up a regular grid are x, y and z in one unit;
 // points that are left out there are not measured. The first line of a matrix has the highest y. Pitch and unit are
 // those of `scale`, or else of the header: lines as height_table() writes them, or Gwyddion's ("# Width: 10 um",
 // "# Height: 10 um", "# Value units: m"); both is an error. Throws InputError.

@@ -14,8 +14,8 @@ namespace vkfv::trace {
 // probe_records shows that the shaders see the same fields.
 static_assert(alignof(kernels::Parameters) == 4 && alignof(physics::f32::Surface) == 4 &&
               alignof(physics::f32::SpectralBin) == 4 && alignof(physics::f32::Survivor) == 4 &&
-              alignof(physics::f32::Element) == 4 && alignof(kernels::NonsequentialBatch) == 4 &&
-              alignof(kernels::BackwardBlock) == 4);
+              alignof(physics::f32::Element) == 4 && alignof(physics::f32::Facet) == 4 &&
+              alignof(kernels::NonsequentialBatch) == 4 && alignof(kernels::BackwardBlock) == 4);
 
 namespace {
 
@@ -73,6 +73,7 @@ physics::f32::Surface to_float(const physics::f64::Surface& record) {
 }
 
 VKFV_TO_FLOAT(Element, VKFV_ELEMENT_FIELDS)
+VKFV_TO_FLOAT(Facet, VKFV_FACET_FIELDS)
 VKFV_TO_FLOAT(SourceFrame, VKFV_SOURCE_FRAME_FIELDS)
 VKFV_TO_FLOAT(Instrument, VKFV_INSTRUMENT_FIELDS)
 VKFV_TO_FLOAT(BackwardOptics, VKFV_BACKWARD_OPTICS_FIELDS)

@@ -17,6 +17,7 @@ std::vector<physics::f32::SpectralBin> spectrum_block(const optics::Instrument& 
 
 physics::f32::Surface to_float(const physics::f64::Surface& record); // with its bend_residual
 physics::f32::Element to_float(const physics::f64::Element& record);
+physics::f32::Facet to_float(const physics::f64::Facet& record);
 physics::f32::SourceFrame to_float(const physics::f64::SourceFrame& record);
 physics::f32::Instrument to_float(const physics::f64::Instrument& record);
 physics::f32::BackwardOptics to_float(const physics::f64::BackwardOptics& record);

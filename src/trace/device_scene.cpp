@@ -19,29 +19,48 @@ vulkan::Buffer buffer_of(const vulkan::Device& device, const std::vector<Value>&
     return buffer;
 }
 
+template <class Record>
+auto in_float(const std::vector<Record>& records) {
+    std::vector<decltype(to_float(records.front()))> result;
+    result.reserve(records.size());
+    for (const Record& record : records) {
+        result.push_back(to_float(record));
+    }
+    return result;
+}
+
+// order: of the boxes of boxes_of().
 ElementBuffers element_buffers(const vulkan::Device& device, const optics::Room& room,
                                const std::vector<std::uint32_t>& order) {
-    std::vector<physics::f32::Element> elements;
-    elements.reserve(room.elements.size());
-    for (const auto& element : room.elements) {
-        elements.push_back(to_float(element));
+    const auto surfaces = static_cast<std::uint32_t>(room.surfaces);
+    std::vector<std::uint32_t> held;
+    held.reserve(order.size());
+    for (const std::uint32_t box : order) {
+        held.push_back(box < surfaces ? box : kernels::FACET_BIT | (box - surfaces));
     }
-    return {buffer_of(device, elements), buffer_of(device, order)};
+    auto facets = in_float(room.facets);
+    facets.resize(std::max<std::size_t>(facets.size(), 1)); // a buffer holds something
+    return {buffer_of(device, in_float(room.elements)), buffer_of(device, held), buffer_of(device, facets)};
 }
 
 } // namespace
 
 std::vector<vulkan::Box> boxes_of(const optics::Room& room) {
     std::vector<vulkan::Box> boxes;
-    boxes.reserve(room.elements.size());
-    for (std::size_t element = 0; element < room.elements.size(); ++element) {
-        const auto bounds = room.bounds(element);
+    boxes.reserve(room.surfaces + room.facets.size());
+    const auto add = [&](const optics::Room::Box& bounds) {
         vulkan::Box box{glm::vec3(bounds.lower), glm::vec3(bounds.upper)};
         for (int axis = 0; axis < 3; ++axis) {
             box.minimum[axis] = next_below(box.minimum[axis]);
             box.maximum[axis] = next_above(box.maximum[axis]);
         }
         boxes.push_back(box);
+    };
+    for (std::size_t element = 0; element < room.surfaces; ++element) {
+        add(room.bounds(element));
+    }
+    for (const auto& facet : room.facets) {
+        add(optics::bounds_of(facet));
     }
     return boxes;
 }
@@ -130,6 +149,7 @@ std::vector<vulkan::Binding> DeviceScene::bindings(std::initializer_list<vulkan:
     if (elements) {
         all.push_back({kernels::BINDING_ELEMENTS, &elements->elements});
         all.push_back({kernels::BINDING_ELEMENT_ORDER, &elements->order});
+        all.push_back({kernels::BINDING_FACETS, &elements->facets});
     }
     all.insert(all.end(), further.begin(), further.end());
     return all;
@@ -145,6 +165,7 @@ std::vector<vulkan::BindingDeclaration> DeviceScene::declarations(std::initializ
     if (elements) {
         all.push_back({kernels::BINDING_ELEMENTS, storage_buffer});
         all.push_back({kernels::BINDING_ELEMENT_ORDER, storage_buffer});
+        all.push_back({kernels::BINDING_FACETS, storage_buffer});
     }
     for (const std::uint32_t slot : further) {
         all.push_back({slot, storage_buffer});

@@ -18,13 +18,14 @@
 
 namespace vkfv::trace {
 
-// Elements' boxes in float, rounded outward.
+// Boxes in float, rounded outward: of the elements that are surfaces, then of the facets of the others.
 std::vector<vulkan::Box> boxes_of(const optics::Room& room);
 
 // The elements of non-sequential paths in a device's memory.
 struct ElementBuffers {
     vulkan::Buffer elements;
-    vulkan::Buffer order; // of their boxes
+    vulkan::Buffer order;  // of their boxes
+    vulkan::Buffer facets; // of those that are meshes
 };
 
 // Exposures that a device is given at a time: while the host takes one, the device has another.

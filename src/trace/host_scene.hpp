@@ -19,9 +19,10 @@ struct HostScene {
     }
     double reflectance_at(int column, int row) const { return intersector->reflectance_at(column, row); }
     const physics::f64::Element& element_at(int index) const { return room->elements[static_cast<std::size_t>(index)]; }
+    const physics::f64::Facet& facet_at(int index) const { return room->facets[static_cast<std::size_t>(index)]; }
     physics::f64::ElementHit nearest_element(physics::f64::real3 origin, physics::f64::real3 direction,
-                                             int left) const {
-        return optics::nearest_element(*room, origin, direction, left);
+                                             physics::f64::PathPlace from) const {
+        return optics::nearest_element(*room, origin, direction, from);
     }
 };
 

@@ -548,6 +548,7 @@ TEST(Configuration, EveryKindOfSpecimenIsRead) {
         {"surface", "file = \"a.tif\"\npitch_um = 2\nunit = \"um\"\nsize_mm = 0.1\nlevel = false\n"},
         {"stl", "file = \"a.stl\"\nunit = \"um\"\ncentre = false\n"},
         {"gltf", "file = \"a.glb\"\n"},
+        {"points", "file = \"a.xyz\"\nunit = \"mm\"\nheight_unit = \"um\"\nlongest_edge_um = 5\n"},
     };
     for (const auto& [kind, keys] : kinds) {
         const auto text =

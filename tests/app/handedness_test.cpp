@@ -13,9 +13,9 @@ namespace vkfv::test {
 static const std::filesystem::path source_folder = VKFV_SOURCE_DIR;
 
 // The letter F of assets/specimens, raised: what a viewer shows (the file's first row on top) has its stem on the left,
-// its bars to the right, the upper one at the top, in the topography's truth for each of its four makers.
-TEST(Handedness, ALetterReadsCorrectlyAsImageMeshGltfAndSurface) {
-    for (const char* name : {"image_letter", "stl_letter", "gltf_letter", "surface_letter"}) {
+// its bars to the right, the upper one at the top, in the topography's truth for each of its makers.
+TEST(Handedness, ALetterReadsCorrectlyFromEveryKindOfFile) {
+    for (const char* name : {"image_letter", "stl_letter", "gltf_letter", "surface_letter", "points_letter"}) {
         const auto folder = fresh_folder(std::string("hand_") + name);
         std::vector<std::string> arguments = {"--stack",
                                               (source_folder / "assets/stacks" / name).string() + ".toml",

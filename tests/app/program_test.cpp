@@ -59,7 +59,8 @@ TEST(ExampleStacks, CoverEveryKindOfSpecimen) {
     for (const auto& file : example_stacks()) {
         all += read_file(file);
     }
-    for (const char* kind : {"plane", "step", "sphere", "sinusoid", "chirp", "rough", "image", "stl", "gltf"}) {
+    for (const char* kind :
+         {"plane", "step", "sphere", "sinusoid", "chirp", "rough", "image", "stl", "gltf", "points"}) {
         EXPECT_THAT(all, HasSubstr(std::string("kind = \"") + kind + "\""));
     }
     EXPECT_THAT(all, HasSubstr("representation = \"analytic\""));

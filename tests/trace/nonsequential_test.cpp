@@ -3,8 +3,8 @@
 #include "optics/room.hpp"
 #include "support/statistics.hpp"
 #include "trace/device_tracer.hpp"
+#include "trace/elements.hpp"
 #include "trace/host_tracer.hpp"
-#include "trace/microscope.hpp"
 
 #include <gtest/gtest.h>
 
@@ -13,130 +13,7 @@
 
 using namespace vkfv;
 using namespace vkfv::physics::f64;
-
-namespace {
-
-trace::TraceOptions options(trace::Traversal traversal, bool nonsequential = true) {
-    trace::TraceOptions result;
-    result.rays = 400000;
-    result.seed = 3;
-    result.max_bounces = 2;
-    result.traversal = traversal;
-    result.nonsequential = nonsequential;
-    return result;
-}
-
-// Few pixels, so that few rays make a sharp test.
-optics::InstrumentDescription coarse_microscope() {
-    auto description = test::microscope_description();
-    description.detector_pixels = ImageSize::square(8);
-    return description;
-}
-
-// p-value that two independent images have the same expectation.
-double same_expectation_p(const trace::Image& a, const trace::Image& b) {
-    double chi_square = 0;
-    for (std::size_t k = 0; k < a.flux.values.size(); ++k) {
-        chi_square += std::pow(a.flux.values[k] - b.flux.values[k], 2) /
-                      (std::pow(a.standard_error.values[k], 2) + std::pow(b.standard_error.values[k], 2));
-    }
-    return test::chi_square_tail(chi_square, static_cast<double>(a.flux.values.size()));
-}
-
-// Little roughness and a narrow lobe, so that much of the light returns.
-specimen::Specimen smooth_specimen() {
-    return test::rough_specimen(0.95, 0.0002);
-}
-
-// A scene of given elements alone.
-struct Bench {
-    optics::Room room;
-    Surface surface_at(int) const { return {}; }
-    std::uint32_t features() const { return 0; }
-    SpectralBin spectral_bin(int) const { return {}; }
-    Hit specimen_hit(real3, real3) const { return {}; }
-    double reflectance_at(int, int) const { return 1; }
-    Element element_at(int index) const { return room.elements[static_cast<std::size_t>(index)]; }
-    ElementHit nearest_element(real3 origin, real3 direction, int left) const {
-        return optics::nearest_element(room, origin, direction, left);
-    }
-
-    void add(Element element, const optics::Pose& pose) {
-        element.origin = pose.origin;
-        element.axis_x = pose.axes[0];
-        element.axis_y = pose.axes[1];
-        element.axis_z = pose.axes[2];
-        element.rim_radius = element.outer_radius = radius;
-        element.surface.semi_diameter_squared = radius * radius;
-        room.elements.push_back(element);
-    }
-    void add_plate(const optics::Pose& first, double thickness, double index) {
-        Element face{};
-        face.kind = ELEMENT_INTERFACE;
-        face.surface.flags = SURFACE_FRESNEL;
-        face.surface.index_before = 1;
-        face.surface.index_after = index;
-        add(face, first);
-        std::swap(face.surface.index_before, face.surface.index_after);
-        add(face, first.along_z(thickness));
-    }
-    void add_detector(double height) {
-        Element detector{};
-        detector.kind = ELEMENT_DETECTOR;
-        detector.surface.index_before = detector.surface.index_after = 1;
-        add(detector, optics::Pose{}.along_z(height));
-    }
-
-    static constexpr double radius = 20;
-};
-
-// A fine parallel pencil up the axis from z = -1.
-physics::f64::Instrument pencil(double half_size, int pixels) {
-    physics::f64::Instrument instrument{};
-    instrument.source_radius = 0.01;
-    instrument.emission_sine = 1e-5;
-    instrument.magnification = 1;
-    instrument.detector_half_width = half_size;
-    instrument.detector_half_height = half_size;
-    instrument.detector_columns = pixels;
-    instrument.detector_rows = pixels;
-    instrument.pixel_reach = 1;
-    instrument.spectrum_centre = 4;
-    instrument.spectrum_half_width = 1;
-    return instrument;
-}
-
-constexpr SourceFrame below_the_axis() {
-    return {{0, 0, -1}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
-}
-
-std::vector<Detection> trace_bench(const Bench& bench, const physics::f64::Instrument& instrument,
-                                   std::uint32_t paths) {
-    std::vector<Detection> ends;
-    ends.reserve(paths);
-    const Exposure exposure{.top_distance = 0,
-                            .seed = 5,
-                            .image = 1,
-                            .focal_height = 0,
-                            .top_distance_residual = 0,
-                            .beside_x = 0,
-                            .beside_y = 0};
-    for (std::uint32_t path = 0; path < paths; ++path) {
-        ends.push_back(
-            trace_nonsequential(bench, instrument, SpecimenRecord{}, exposure, below_the_axis(), uvec2(path, 0)));
-    }
-    return ends;
-}
-
-double detected_share(const std::vector<Detection>& ends) {
-    double detected = 0;
-    for (const Detection& end : ends) {
-        detected += end.fate.status == PATH_DETECTED ? 1 : 0;
-    }
-    return detected / static_cast<double>(ends.size());
-}
-
-} // namespace
+using namespace vkfv::test;
 
 TEST(Nonsequential, WithoutFresnelItGivesTheSequentialImage) {
     const auto description = coarse_microscope();
@@ -290,7 +167,7 @@ TEST(Nonsequential, NothingPassesBesideTheLenses) {
             const glm::dvec3 origin(0.05 + 0.5 * i, 0, 0);
             const double angle = j * 0.03;
             const glm::dvec3 direction(std::sin(angle), 0, std::cos(angle));
-            const auto hit = optics::nearest_element(room, origin, direction, -1);
+            const auto hit = optics::nearest_element(room, origin, direction, {-1, -1, -1});
             // First to be met is the objective, never what stands behind it, unless the ray passes outside its barrel.
             if (hit.index >= 0 && room.names[static_cast<std::size_t>(hit.index)].starts_with("detector")) {
                 const double at_detector = origin.x + std::tan(angle) * 327;

@@ -47,6 +47,9 @@ class Filler {
     void fill(Element& record) {
         VKFV_ELEMENT_FIELDS(VKFV_FILL)
     }
+    void fill(Facet& record) {
+        VKFV_FACET_FIELDS(VKFV_FILL)
+    }
     void fill(Instrument& record) {
         VKFV_INSTRUMENT_FIELDS(VKFV_FILL)
     }
@@ -94,6 +97,7 @@ TEST(Records, the_device_sees_every_field_where_the_host_wrote_it) {
     std::vector<SpectralBin> bins(SPECTRUM_CAPACITY);
     std::vector<Survivor> survivors(3);
     std::vector<Element> elements(3);
+    std::vector<Facet> facets(3);
     kernels::Parameters parameters{};
     Filler filler; // in the order of the probe
     filler.fill(surfaces[2]);
@@ -106,15 +110,17 @@ TEST(Records, the_device_sees_every_field_where_the_host_wrote_it) {
     filler.fill(bins[2]);
     filler.fill(survivors[2]);
     filler.fill(elements[2]);
+    filler.fill(facets[2]);
     const std::vector<float>& expected = filler.written;
-    EXPECT_EQ(expected.size() * sizeof(float),
-              sizeof(Surface) + sizeof(kernels::Parameters) + sizeof(SpectralBin) + sizeof(Survivor) + sizeof(Element));
+    EXPECT_EQ(expected.size() * sizeof(float), sizeof(Surface) + sizeof(kernels::Parameters) + sizeof(SpectralBin) +
+                                                   sizeof(Survivor) + sizeof(Element) + sizeof(Facet));
 
     const vulkan::Buffer surface_buffer = buffer_of<Surface>(device, surfaces);
     const vulkan::Buffer parameter_buffer = buffer_of<kernels::Parameters>(device, std::span(&parameters, 1));
     const vulkan::Buffer spectrum_buffer = buffer_of<SpectralBin>(device, bins);
     const vulkan::Buffer survivor_buffer = buffer_of<Survivor>(device, survivors);
     const vulkan::Buffer element_buffer = buffer_of<Element>(device, elements);
+    const vulkan::Buffer facet_buffer = buffer_of<Facet>(device, facets);
     const vulkan::Buffer echo(device, expected.size() * sizeof(float));
     using enum vulkan::BindingKind;
     const vulkan::Kernel kernel(device, "probe_records", ::probe_records,
@@ -123,12 +129,14 @@ TEST(Records, the_device_sees_every_field_where_the_host_wrote_it) {
                                  {kernels::BINDING_SPECTRUM, uniform_buffer},
                                  {kernels::BINDING_SURVIVORS, storage_buffer},
                                  {kernels::BINDING_ELEMENTS, storage_buffer},
+                                 {kernels::BINDING_FACETS, storage_buffer},
                                  {kernels::BINDING_FOUND, storage_buffer}});
-    const std::array<vulkan::Binding, 6> bindings = {{{kernels::BINDING_SURFACES, &surface_buffer},
+    const std::array<vulkan::Binding, 7> bindings = {{{kernels::BINDING_SURFACES, &surface_buffer},
                                                       {kernels::BINDING_PARAMETERS, &parameter_buffer},
                                                       {kernels::BINDING_SPECTRUM, &spectrum_buffer},
                                                       {kernels::BINDING_SURVIVORS, &survivor_buffer},
                                                       {kernels::BINDING_ELEMENTS, &element_buffer},
+                                                      {kernels::BINDING_FACETS, &facet_buffer},
                                                       {kernels::BINDING_FOUND, &echo}}};
     vulkan::Commands commands(device);
     commands.dispatch(kernel, bindings, std::span<const std::byte>{}, 1);

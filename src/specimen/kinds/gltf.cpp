@@ -11,12 +11,12 @@ const ChoiceKey<double> gltf_unit_key = unit_key(1e3, "Of the file; a glTF is to
 } // namespace
 
 std::vector<const Key*> Gltf::keys() {
-    return mesh_file_keys(gltf_unit_key);
+    return mesh_file_keys(mesh_key, gltf_unit_key);
 }
 
 Gltf Gltf::read(const Section& section) {
     Gltf mesh;
-    read_mesh_file(section, gltf_unit_key, mesh);
+    read_mesh_file(section, mesh_key, gltf_unit_key, mesh);
     return mesh;
 }
 

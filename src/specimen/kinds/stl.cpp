@@ -11,12 +11,12 @@ const ChoiceKey<double> stl_unit_key = unit_key(1.0, "Of the file, which does no
 } // namespace
 
 std::vector<const Key*> Stl::keys() {
-    return mesh_file_keys(stl_unit_key);
+    return mesh_file_keys(mesh_key, stl_unit_key);
 }
 
 Stl Stl::read(const Section& section) {
     Stl mesh;
-    read_mesh_file(section, stl_unit_key, mesh);
+    read_mesh_file(section, mesh_key, stl_unit_key, mesh);
     return mesh;
 }
 

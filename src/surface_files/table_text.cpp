@@ -1,0 +1,132 @@
+#include "surface_files/table_text.hpp"
+
+#include "core/byte_reader.hpp"
+#include "surface_files/provenance.hpp"
+
+#include <algorithm>
+#include <limits>
+#include <optional>
+
+namespace vkfv::surface {
+namespace {
+
+// How numbers stand in a line.
+struct Style {
+    char separator = ' '; // blanks: any number of blanks and tabs
+    bool decimal_comma = false;
+};
+
+template <class Take>
+void for_cells(std::string_view line, const Style& style, Take take) {
+    line = bare(line);
+    for (bool more = !line.empty(); more;) {
+        const auto end = style.separator == ' ' ? line.find_first_of(" \t") : line.find(style.separator);
+        take(bare(line.substr(0, end)));
+        more = end != std::string_view::npos;
+        if (more)
+            line.remove_prefix(end + 1);
+        if (style.separator == ' ')
+            line = bare(line);
+        // A separator at the line's end closes the last cell.
+        more = more && !line.empty();
+    }
+}
+
+std::optional<double> number_of(std::string_view cell, const Style& style) {
+    if (!style.decimal_comma)
+        return number_in<double>(cell);
+    std::string text(cell);
+    std::ranges::replace(text, ',', '.');
+    return number_in<double>(text);
+}
+
+// Of a line of numbers: a semicolon or a tab separates in any case, and a comma is a decimal one then; a comma that a
+// digit follows at once is a decimal one if blanks separate.
+Style style_of(std::string_view line) {
+    line = bare(line);
+    const bool comma = line.find(',') != std::string_view::npos;
+    for (const char separator : {';', '\t'})
+        if (line.find(separator) != std::string_view::npos)
+            return {separator, comma && line.find('.') == std::string_view::npos};
+    if (!comma)
+        return {' ', false};
+    if (line.find(' ') == std::string_view::npos || line.find('.') != std::string_view::npos)
+        return {',', false};
+    for (auto at = line.find(','); at != std::string_view::npos; at = line.find(',', at + 1))
+        if (at + 1 >= line.size() || line[at + 1] < '0' || line[at + 1] > '9')
+            return {',', false};
+    return {' ', true};
+}
+
+bool is_data(std::string_view line, const Style& style) {
+    bool first = true, numbers = false, words = false;
+    for_cells(line, style, [&](std::string_view cell) {
+        const bool number = number_of(cell, style).has_value();
+        // A line of data may begin with a gap, which is no word of a heading.
+        const bool gap = cell.empty() || cell == "NaN" || cell == "nan" || cell == "NAN" || cell == "BAD" ||
+                         cell == "Bad" || cell.find_first_not_of("*-") == std::string_view::npos;
+        words = words || (first && !number && !gap);
+        numbers = numbers || number || !cell.empty();
+        first = false;
+    });
+    return numbers && !words;
+}
+
+} // namespace
+
+std::string_view bare(std::string_view text) {
+    const auto begin = text.find_first_not_of(" \t\r");
+    return begin == std::string_view::npos ? std::string_view()
+                                           : text.substr(begin, text.find_last_not_of(" \t\r") + 1 - begin);
+}
+
+TableText parse_table_text(std::string_view text, const std::filesystem::path& path, const char* meant) {
+    const ByteReader file(text, path);
+    if (text.starts_with("\xEF\xBB\xBF")) // the byte-order mark of UTF-8
+        text.remove_prefix(3);
+    if (text.find('\0') != std::string_view::npos)
+        file.fail(text.find('\0'), "", "a NUL", "text", "Export the table as plain text, ASCII or UTF-8.");
+    TableText table;
+    std::optional<Style> style;
+    int number = 0;
+    for (std::size_t at = 0; at < text.size();) {
+        const std::string_view line = text.substr(at, text.substr(at).find('\n'));
+        at += line.size() + 1;
+        ++number;
+        const std::string_view content = bare(line);
+        if (content.empty())
+            continue;
+        const Style own = style.value_or(style_of(content));
+        if (content.starts_with('#') || (!style && !is_data(content, own))) {
+            table.header.push_back(content);
+            continue;
+        }
+        style = own;
+        std::size_t count = 0;
+        for_cells(content, own, [&](std::string_view cell) {
+            const bool word = cell.find_first_of("0123456789") == std::string_view::npos;
+            const auto value = number_of(cell, own);
+            if (!value && !word)
+                throw InputError({.where = {.file = file.file(), .line = number},
+                                  .key = fmt::format("column {}", count + 1),
+                                  .found = plain_line(cell.substr(0, 40)),
+                                  .expected = "a number, or a word for a point that is not measured",
+                                  .remedy = "Export the table anew, with one separator and one decimal sign."});
+            table.values.push_back(value.value_or(std::numeric_limits<double>::quiet_NaN()));
+            ++count;
+        });
+        if (table.rows > 0 && count != table.columns)
+            throw InputError({.where = {.file = file.file(), .line = number},
+                              .key = "columns",
+                              .found = fmt::format("{}", count),
+                              .expected = fmt::format("{}, as in the lines above", table.columns),
+                              .remedy = "Export the table anew, with as many numbers in every line."});
+        table.columns = count;
+        ++table.rows;
+    }
+    if (table.rows == 0)
+        file.fail({}, "", "no line of numbers", meant);
+    return table;
+}
+
+} // namespace vkfv::surface

@@ -1,0 +1,64 @@
+// What the plane of drawing cuts of a mesh.
+#include "report/mesh_sections.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+
+namespace vkfv::report {
+namespace {
+
+// Corners at +-1; bit k of a corner's number: + along axis k.
+optics::Facets unit_cube() {
+    optics::Facets cube;
+    for (int corner = 0; corner < 8; ++corner) {
+        cube.vertices.emplace_back((corner & 1) * 2 - 1, (corner >> 1 & 1) * 2 - 1, (corner >> 2) * 2 - 1);
+    }
+    constexpr int faces[6][4] = {{0, 2, 3, 1}, {4, 5, 7, 6}, {0, 1, 5, 4}, {2, 6, 7, 3}, {0, 4, 6, 2}, {1, 3, 7, 5}};
+    for (const auto& face : faces) {
+        cube.triangles.emplace_back(face[0], face[1], face[2]);
+        cube.triangles.emplace_back(face[0], face[2], face[3]);
+    }
+    return cube;
+}
+
+double area_of(const SectionLine& line) {
+    double twice = 0;
+    for (std::size_t k = 0; k < line.points.size(); ++k) {
+        const glm::dvec2 a = line.points[k], b = line.points[(k + 1) % line.points.size()];
+        twice += a.x * b.y - a.y * b.x;
+    }
+    return std::abs(twice) / 2;
+}
+
+TEST(MeshSections, ACubeIsCutAsASquare) {
+    const auto lines = section_of(unit_cube());
+    ASSERT_EQ(lines.size(), 1u);
+    EXPECT_TRUE(lines[0].closed);
+    EXPECT_NEAR(area_of(lines[0]), 4, 1e-12);
+    for (const glm::dvec2& point : lines[0].points) {
+        EXPECT_NEAR(std::max(std::abs(point.x), std::abs(point.y)), 1, 1e-12);
+    }
+}
+
+TEST(MeshSections, AnOpenMeshIsCutAsALineWithEnds) {
+    auto open = unit_cube();
+    open.triangles.erase(open.triangles.begin() + 2, open.triangles.begin() + 4); // without its face at +z
+    const auto lines = section_of(open);
+    ASSERT_EQ(lines.size(), 1u);
+    EXPECT_FALSE(lines[0].closed);
+    EXPECT_NEAR(lines[0].points.front().y, 1, 1e-12);
+    EXPECT_NEAR(lines[0].points.back().y, 1, 1e-12);
+}
+
+TEST(MeshSections, WhatThePlaneDoesNotMeetIsNotCut) {
+    auto aside = unit_cube();
+    for (glm::dvec3& vertex : aside.vertices) {
+        vertex.x += 3;
+    }
+    EXPECT_TRUE(section_of(aside).empty());
+}
+
+} // namespace
+} // namespace vkfv::report
