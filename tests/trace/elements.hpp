@@ -32,11 +32,15 @@ inline optics::InstrumentDescription coarse_microscope() {
 // p-value that two independent images have the same expectation.
 inline double same_expectation_p(const trace::Image& a, const trace::Image& b) {
     double chi_square = 0;
+    double degrees = 0;
     for (std::size_t k = 0; k < a.flux.values.size(); ++k) {
-        chi_square += std::pow(a.flux.values[k] - b.flux.values[k], 2) /
-                      (std::pow(a.standard_error.values[k], 2) + std::pow(b.standard_error.values[k], 2));
+        const double variance = std::pow(a.standard_error.values[k], 2) + std::pow(b.standard_error.values[k], 2);
+        if (variance > 0) { // else dark in both
+            chi_square += std::pow(a.flux.values[k] - b.flux.values[k], 2) / variance;
+            degrees += 1;
+        }
     }
-    return test::chi_square_tail(chi_square, static_cast<double>(a.flux.values.size()));
+    return test::chi_square_tail(chi_square, degrees);
 }
 
 // Little roughness and a narrow lobe, so that much of the light returns.

@@ -358,7 +358,7 @@ optics::InstrumentDescription microscope_with_meshes() {
         back = part.part == optics::Part::objective ? std::max(back, part.pose.origin.z) : back;
     }
     const double middle = 0.5 * (back + splitter->pose.origin.z);
-    description.meshes.push_back(element(drawn_out({{-14, 0}, {14, 0}, {14, 1.5}, {-14, 1}}, 14),
+    description.meshes.push_back(element(drawn_out({{-14, 0}, {14, 0}, {14, 1.02}, {-14, 1}}, 14),
                                          optics::Pose{{0.5, 0.3, middle}, glm::dmat3(1)}.turned({.tilt_x = 0.05}),
                                          MeshElement::Kind::glass, "wedge"));
     description.meshes.push_back(
