@@ -31,7 +31,8 @@
     FIELD(real, ring_cosine)     /* between light and the band's normal, at least */ \
     FIELD(uint, ring_is_bare)    /* 1: what is drawn is what shines */ \
     FIELD(uint, cone_candidates) /* directions towards the source that each scatter event weighs against each other */ \
-    FIELD(uint, lobe_candidates) /* directions of the lobe besides, 0 or 1 */
+    FIELD(uint, lobe_candidates) /* directions of the lobe besides, 0 or 1 */ \
+    FIELD(uint, rim_period)      /* a power of 2: every which path looks at the source's rim; 0: it is not told apart */
 struct BackwardOptics {
     VKFV_BACKWARD_OPTICS_FIELDS(VKFV_DECLARE)
 };
@@ -127,8 +128,8 @@ VKFV_SCENE_FUNCTION VKFV_FUNCTION real trace_to_source(VKFV_SCENE_PARAMETER Inst
                          -exposure.top_distance);
     ray.direction = query.direction * index;
     ray.path_length = real(0.0);
-    TrainResult train = trace_train_by_loop(VKFV_SCENE instrument.imaging_first, instrument.imaging_count, ray, index,
-                                            true, query.light);
+    TrainResult train = trace_short_train_by_loop(VKFV_SCENE instrument.imaging_first, instrument.imaging_count, ray,
+                                                  index, query.light, SHORT_TRAIN_PLAIN);
     bool arrives = train.status == PATH_ALIVE;
     if (arrives && (features(VKFV_SCENE_ALONE) & FEATURE_RING) != 0u) {
         real3 from_aim =
@@ -173,35 +174,53 @@ struct Candidate {
     real density; // of one of the candidates of the source
 };
 
-// The paraxial source as a point sees it: a disc of slopes.
-struct SeenDisc {
+// Part of the paraxial source as a point sees it: a disc of slopes, or what of it is outside an inner one.
+struct SeenPart {
     real2 centre;
-    real radius;
+    real inner;
+    real outer;
 };
-VKFV_FUNCTION SeenDisc seen_disc(BackwardOptics backward, real plane, real3 position) {
+VKFV_FUNCTION SeenPart seen_whole(BackwardOptics backward, real plane, real3 position) {
     real factor = real(1.0) / (real(1.0) + backward.source_position * (plane - position.z));
-    SeenDisc disc;
-    disc.centre = real2(position.x, position.y) * (-backward.source_position * factor);
-    disc.radius = backward.source_outer * factor;
-    return disc;
+    SeenPart whole;
+    whole.centre = real2(position.x, position.y) * (-backward.source_position * factor);
+    whole.inner = real(0.0);
+    whole.outer = backward.source_outer * factor;
+    return whole;
 }
 
-VKFV_FUNCTION Candidate in_disc(SeenDisc disc, real3 direction) {
-    real2 from_centre = real2(direction.x, direction.y) / direction.z - disc.centre;
+// Radius of what a point sees for sure: of its directions all cross the object plane within the inner field; else 0.
+VKFV_FUNCTION real sure_radius(BackwardOptics backward, real plane, real3 position, SeenPart whole) {
+    real rise = plane - position.z;
+    real radius = whole.outer * (backward.source_inner / backward.source_outer);
+    real2 middle = real2(position.x, position.y) + whole.centre * rise;
+    real within = backward.inner_field - radius * abs(rise);
+    return within > real(0.0) && dot(middle, middle) <= within * within ? radius : real(0.0);
+}
+
+VKFV_FUNCTION Candidate in_part(SeenPart part, real3 direction) {
+    real2 from_centre = real2(direction.x, direction.y) / direction.z - part.centre;
+    real apart_squared = dot(from_centre, from_centre);
+    real inner_squared = part.inner * part.inner;
+    real outer_squared = part.outer * part.outer;
     Candidate candidate;
     candidate.direction = direction;
-    candidate.usable = direction.z > real(0.0) && dot(from_centre, from_centre) <= disc.radius * disc.radius;
+    candidate.usable = direction.z > real(0.0) && apart_squared <= outer_squared && apart_squared >= inner_squared;
     // domega = cos^3 of the slopes' area.
-    candidate.density =
-        real(1.0) / (real(3.14159265358979324) * disc.radius * disc.radius * direction.z * direction.z * direction.z);
+    candidate.density = real(1.0) / (real(3.14159265358979324) * (outer_squared - inner_squared) * direction.z *
+                                     direction.z * direction.z);
     return candidate;
 }
 
-VKFV_FUNCTION Candidate draw_in_disc(SeenDisc disc, real u0, real u1) {
-    real rho = disc.radius * sqrt(u0);
+VKFV_FUNCTION Candidate draw_in_part(SeenPart part, real u0, real u1) {
+    real inner_squared = part.inner * part.inner;
+    real rho = sqrt(inner_squared + u0 * (part.outer * part.outer - inner_squared));
     Turn turn = turn_of(u1);
-    real2 slope = disc.centre + real2(turn.cosine, turn.sine) * rho;
-    return in_disc(disc, real3(slope.x, slope.y, real(1.0)) * (real(1.0) / sqrt(real(1.0) + dot(slope, slope))));
+    real2 slope = part.centre + real2(turn.cosine, turn.sine) * rho;
+    Candidate candidate =
+        in_part(part, real3(slope.x, slope.y, real(1.0)) * (real(1.0) / sqrt(real(1.0) + dot(slope, slope))));
+    candidate.usable = true; // on its edges too, where rounding decides
+    return candidate;
 }
 
 VKFV_FUNCTION Candidate on_ring(BackwardOptics backward, real3 direction, RingMeeting meeting) {
@@ -235,31 +254,31 @@ struct Connection {
 // the source's disc or ring, and of the lobe seen backward. Each weighs f / (sum of all candidates' densities): the
 // balance heuristic.
 VKFV_SCENE_FUNCTION VKFV_FUNCTION Connection connect(VKFV_SCENE_PARAMETER Material material, BackwardOptics backward,
-                                                     real plane, Hit hit, real3 outgoing, real u0, real u1, real choice,
+                                                     real plane, SeenPart part, uint cone_candidates, Hit hit,
+                                                     real3 outgoing, real u0, real u1, real choice,
                                                      Scattered of_lobe) {
     bool is_ring = (features(VKFV_SCENE_ALONE) & FEATURE_RING) != 0u;
-    SeenDisc disc = seen_disc(backward, plane, hit.position);
     Connection connection;
     connection.weight = real(0.0);
     connection.direction = real3(real(0.0), real(0.0), real(1.0));
     real u = choice;
-    for (uint k = 0u; k < backward.cone_candidates + backward.lobe_candidates; ++k) {
+    for (uint k = 0u; k < cone_candidates + backward.lobe_candidates; ++k) {
         Candidate candidate;
-        if (k < backward.cone_candidates) {
+        if (k < cone_candidates) {
             // Parts of equal area, each turned by the golden angle against the one before.
-            real first = (real(k) + u0) / real(backward.cone_candidates);
+            real first = (real(k) + u0) / real(cone_candidates);
             real second = fract(u1 + real(k) * real(0.61803398874989485));
             if (is_ring) {
                 candidate = draw_on_ring(backward, plane, hit.position, first, second);
             } else {
-                candidate = draw_in_disc(disc, first, second);
+                candidate = draw_in_part(part, first, second);
             }
         } else {
             if (is_ring) {
                 candidate = on_ring(backward, of_lobe.direction,
                                     meet_drawn_ring(backward, plane, hit.position, of_lobe.direction));
             } else {
-                candidate = in_disc(disc, of_lobe.direction);
+                candidate = in_part(part, of_lobe.direction);
             }
             candidate.usable = candidate.usable && of_lobe.accepted;
         }
@@ -267,7 +286,7 @@ VKFV_SCENE_FUNCTION VKFV_FUNCTION Connection connect(VKFV_SCENE_PARAMETER Materi
         real cosine = dot(direction, hit.normal);
         if (candidate.usable && cosine > real(0.0)) {
             real flux = scatter_bsdf(material, -direction, hit.normal, outgoing) * cosine;
-            real density = real(backward.cone_candidates) * candidate.density;
+            real density = real(cone_candidates) * candidate.density;
             if (backward.lobe_candidates != 0u) {
                 density = density +
                           real(backward.lobe_candidates) * scatter_density(material, -outgoing, hit.normal, direction);
@@ -416,15 +435,30 @@ VKFV_SCENE_FUNCTION VKFV_FUNCTION real trace_backward(VKFV_SCENE_PARAMETER Instr
         }
         under_way = under_way && scattered.accepted;
         scattered.accepted = scattered.accepted && !delta;
-        Connection connection = connect(VKFV_SCENE specimen.material, backward, plane, hit, outgoing, draws.u0,
-                                        draws.u1, draws.u2, scattered);
-        if (connection.weight > real(0.0)) {
-            Hit blocker = displaced_hit(VKFV_SCENE exposure, origin, connection.direction);
-            if (blocker.found == 0u) {
-                query.position = origin;
-                query.direction = connection.direction;
-                query.weight = throughput * connection.weight;
-                value = value + collect(VKFV_SCENE instrument, backward, plane, specimen, exposure, query);
+        // What the source shows for sure makes a smooth number of what the directions bring; its rim a rough one, which
+        // weighs less and is asked for less often. Elsewhere all of the source is looked at as one.
+        SeenPart whole = seen_whole(backward, plane, hit.position);
+        bool has_rim = backward.rim_period != 0u && (features(VKFV_SCENE_ALONE) & FEATURE_RING) == 0u;
+        real sure = has_rim ? sure_radius(backward, plane, hit.position, whole) : real(0.0);
+        bool parted = sure > real(0.0);
+        bool looks_further = !parted || point % max(backward.rim_period, 1u) == 0u;
+        for (uint part = parted ? 0u : 1u; part < (looks_further ? 2u : 1u); ++part) {
+            bool rim = parted && part == 1u;
+            SeenPart seen = whole;
+            seen.outer = part == 0u ? sure : whole.outer;
+            seen.inner = rim ? sure : real(0.0);
+            Connection connection =
+                connect(VKFV_SCENE specimen.material, backward, plane, seen, rim ? 1u : backward.cone_candidates, hit,
+                        outgoing, draws.u0, draws.u1, draws.u2, scattered);
+            if (connection.weight > real(0.0)) {
+                Hit blocker = displaced_hit(VKFV_SCENE exposure, origin, connection.direction);
+                if (blocker.found == 0u) {
+                    query.position = origin;
+                    query.direction = connection.direction;
+                    query.weight =
+                        throughput * connection.weight * (rim ? real(backward.rim_period) : real(1.0));
+                    value = value + collect(VKFV_SCENE instrument, backward, plane, specimen, exposure, query);
+                }
             }
         }
         if (under_way) {

@@ -150,22 +150,62 @@ VKFV_FUNCTION ShortTrain pass_surface(Surface surface, ShortTrain before, Light 
     return after;
 }
 
+VKFV_FUNCTION ShortTrain enter_short_train(Ray ray, real index) {
+    ShortTrain way;
+    way.position = ray.position;
+    way.direction = ray.direction;
+    way.steepness = real(1.0) / ray.direction.z;
+    way.index = index;
+    way.within = true;
+    way.passed = 0;
+    return way;
+}
+
+// ray: as it entered. Of light that has gone astray the long form tells.
+VKFV_SCENE_FUNCTION VKFV_FUNCTION TrainResult leave_short_train(VKFV_SCENE_PARAMETER int first, int count, Ray ray,
+                                                                real index, Light light, ShortTrain way) {
+    TrainResult result = enter_train(ray, index);
+    result.ray.position = way.position;
+    result.ray.direction = way.direction;
+    result.index = way.index;
+    result.status = way.within ? PATH_ALIVE : PATH_VIGNETTED;
+    result.surface = way.within ? -1 : first + way.passed;
+    // Not by a question that a not-a-number could pass if it were turned round.
+    bool sound = abs(way.position.x) + abs(way.position.y) < real(1e30) && abs(way.direction.z) < real(1e30) &&
+                 ray.direction.z > real(0.0);
+    if (!sound) {
+        result = trace_train_by_loop(VKFV_SCENE first, count, ray, index, true, light);
+    }
+    return result;
+}
+
+// trace_short_train() of surfaces that a kernel does not know.
+VKFV_SCENE_FUNCTION VKFV_FUNCTION TrainResult trace_short_train_by_loop(VKFV_SCENE_PARAMETER int first, int count,
+                                                                        Ray ray, real index, Light light, uint form) {
+    uint present = features(VKFV_SCENE_ALONE);
+    TrainResult result = enter_train(ray, index);
+    if ((present & FEATURES_OF_LONG_TRAINS) != 0u) {
+        result = trace_train_by_loop(VKFV_SCENE first, count, ray, index, true, light);
+    } else {
+        ShortTrain way = enter_short_train(ray, index);
+        for (int i = first; i < first + count; ++i) {
+            way = pass_surface(surface_at(VKFV_SCENE i), way, light, present, form);
+        }
+        result = leave_short_train(VKFV_SCENE first, count, ray, index, light, way);
+    }
+    return result;
+}
+
 // As trace_train() with apertures; of the result's path length and transmittance nothing is known.
 VKFV_SCENE_FUNCTION VKFV_FUNCTION TrainResult trace_short_train(VKFV_SCENE_PARAMETER int first, int count, Ray ray,
                                                                 real index, Light light, uint form) {
+#ifdef VKFV_SPECIALISED
     uint present = features(VKFV_SCENE_ALONE);
     TrainResult result = enter_train(ray, index);
     if ((present & FEATURES_OF_LONG_TRAINS) != 0u) {
         result = trace_train(VKFV_SCENE first, count, ray, index, true, light);
     } else {
-        ShortTrain way;
-        way.position = ray.position;
-        way.direction = ray.direction;
-        way.steepness = real(1.0) / ray.direction.z;
-        way.index = index;
-        way.within = true;
-        way.passed = 0;
-#ifdef VKFV_SPECIALISED
+        ShortTrain way = enter_short_train(ray, index);
 #define VKFV_PASS_QUICKLY(k) \
     if (k < known_count) { \
         if (first <= known_first + k && known_first + k < first + count) { \
@@ -175,22 +215,10 @@ VKFV_SCENE_FUNCTION VKFV_FUNCTION TrainResult trace_short_train(VKFV_SCENE_PARAM
         } \
     }
         VKFV_EACH_KNOWN_SURFACE(VKFV_PASS_QUICKLY)
-#else
-        for (int i = first; i < first + count; ++i) {
-            way = pass_surface(surface_at(VKFV_SCENE i), way, light, present, form);
-        }
-#endif
-        result.ray.position = way.position;
-        result.ray.direction = way.direction;
-        result.index = way.index;
-        result.status = way.within ? PATH_ALIVE : PATH_VIGNETTED;
-        result.surface = way.within ? -1 : first + way.passed;
-        // Not by a question that a not-a-number could pass if it were turned round.
-        bool sound = abs(way.position.x) + abs(way.position.y) < real(1e30) && abs(way.direction.z) < real(1e30) &&
-                     ray.direction.z > real(0.0);
-        if (!sound) {
-            result = trace_train_by_loop(VKFV_SCENE first, count, ray, index, true, light);
-        }
+        result = leave_short_train(VKFV_SCENE first, count, ray, index, light, way);
     }
     return result;
+#else
+    return trace_short_train_by_loop(VKFV_SCENE first, count, ray, index, light, form);
+#endif
 }

@@ -24,9 +24,9 @@ BackwardPlan backward_plan(std::uint64_t rays, ImageSize detector_pixels);
 // How many these are.
 std::uint64_t backward_rays(std::uint64_t rays, ImageSize detector_pixels);
 
-// Of an instrument that was turned round, with the numbers of candidates that suit a material.
+// Of an instrument that was turned round, with the numbers of candidates that suit a material and the plan.
 physics::f64::BackwardOptics backward_optics(const optics::Instrument& instrument,
-                                             const physics::f64::Material& material);
+                                             const physics::f64::Material& material, const BackwardPlan& plan);
 
 // Gathers the pixels' sums of all randomisations.
 class BackwardImage {

@@ -44,6 +44,7 @@ std::vector<vulkan::SpecializationConstant> constants(const DeviceScene& scene,
                    : scene.kernel_constants();
     all.push_back({kernels::CONSTANT_CONE_CANDIDATES, optics.cone_candidates});
     all.push_back({kernels::CONSTANT_LOBE_CANDIDATES, optics.lobe_candidates});
+    all.push_back({kernels::CONSTANT_RIM_PERIOD, optics.rim_period});
     constexpr std::uint32_t queries_at_hand = 11;
     all.push_back({kernels::CONSTANT_QUERY_CAPACITY,
                    queries_at_hand + static_cast<std::uint32_t>(scene.constants.specimen.max_bounces)});
@@ -103,7 +104,7 @@ class BackwardTracer final : public DeviceExposures {
         : instrument_(instrument), turned_(optics::turned_round(instrument)),
           plan_(backward_plan(options.rays, instrument.detector_pixels())),
           scene_(make_device_scene(turned_, specimen, options, &instrument_)),
-          trace_(scene_, backward_optics(instrument_, scene_.host_record.material), plan_, options),
+          trace_(scene_, backward_optics(instrument_, scene_.host_record.material, plan_), plan_, options),
           light_(*scene_.device, scene_.light_buffers()),
           pace_(std::uint64_t{trace_.most_chunks_at_a_time()} * trace_.points_per_chunk()) {
         if (scene_.filter) {

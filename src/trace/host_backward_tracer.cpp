@@ -95,7 +95,7 @@ class HostBackwardTracer final : public Tracer {
     BackwardPlan plan_;
     std::optional<optics::PupilFilter> filter_;
     Lattice lattice_ = plan_.lattice();
-    BackwardOptics optics_ = backward_optics(instrument_, record_.material);
+    BackwardOptics optics_ = backward_optics(instrument_, record_.material, plan_);
 };
 
 } // namespace

@@ -11,6 +11,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <functional>
 #include <numeric>
 #include <random>
 #include <set>
@@ -112,6 +113,26 @@ TEST(Backward, another_specimen_does_not_pass) {
               level);
     const auto steep = test::steep_specimen(0.65);
     EXPECT_LT(agreement(forward_image(instrument, steep, 4), backward_image(instrument, steep, 3)), level);
+}
+
+// What the source shows for sure is looked at apart from its rim: the same image with less noise.
+TEST(Backward, tells_the_rim_of_the_source_apart) {
+    const auto instrument = optics::assemble(small_description());
+    const auto rough = test::rough_specimen();
+    auto as_one = instrument;
+    as_one.turned->optics.source_inner = 0;
+    const auto variance = [](const trace::Image& image) {
+        return std::transform_reduce(image.standard_error.values.begin(), image.standard_error.values.end(), 0.0,
+                                     std::plus<>(), [](double error) { return error * error; });
+    };
+    const auto apart = backward_image(instrument, rough, 1);
+    EXPECT_LT(variance(apart), 0.6 * variance(backward_image(as_one, rough, 1)));
+    const auto forward = forward_image(instrument, rough, 1);
+    expect_agreement(forward, apart);
+    // Wrong twin: more is taken for sure than is.
+    auto too_sure = instrument;
+    too_sure.turned->optics.source_inner *= 1.1;
+    EXPECT_LT(agreement(forward, backward_image(too_sure, rough, 1)), level);
 }
 
 TEST(Backward, knows_every_material) {
