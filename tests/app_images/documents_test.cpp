@@ -326,6 +326,15 @@ void furnish(const fs::path& folder) {
     write_stack(folder / "images.tif", folder / "photographs");
 }
 
+// The next line of a block, with those that continue it. False at the end.
+bool next_command(std::istream& lines, std::string& command) {
+    const bool found = static_cast<bool>(std::getline(lines, command));
+    for (std::string more; command.ends_with("\\") && std::getline(lines, more);) {
+        command = command.substr(0, command.size() - 1) + more;
+    }
+    return found;
+}
+
 // Runs the commands of a document, in their order. What failed: "line: command: output".
 std::vector<std::string> failures_of(const std::string& text, const fs::path& folder) {
     declare();
@@ -354,7 +363,7 @@ std::vector<std::string> failures_of(const std::string& text, const fs::path& fo
         }
         std::istringstream lines(block.text);
         std::string line;
-        for (int number = block.line; std::getline(lines, line); ++number) {
+        for (int number = block.line; next_command(lines, line); ++number) {
             if (const auto unknown = unknown_words(line.substr(0, line.find(" #"))); !unknown.empty()) {
                 failures.push_back(fmt::format("{}: {}: unknown: {}", number, line, unknown.front()));
             } else if (left_out || !done.insert(line).second) {
