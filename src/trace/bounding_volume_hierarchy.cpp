@@ -1,9 +1,12 @@
 #include "trace/bounding_volume_hierarchy.hpp"
 
+#include "core/parallel_list.hpp"
+
 #include <algorithm>
 #include <array>
 #include <bit>
 #include <cmath>
+#include <iterator>
 #include <limits>
 #include <stdexcept>
 #include <utility>
@@ -114,39 +117,77 @@ std::uint32_t part_by_median(std::vector<Reference>& references, const Range& ra
     return middle;
 }
 
-std::vector<BinaryNode> build_binary(std::vector<Reference>& references, std::size_t leaf_size) {
-    std::vector<BinaryNode> nodes;
-    nodes.reserve(references.size());
-    nodes.emplace_back();
-    std::vector<Range> pending = {{0, 0, static_cast<std::uint32_t>(references.size()), 1}};
+// Makes the node of a range: a leaf, whose middle is its end, or one whose children are the two sides of the middle.
+std::uint32_t split(std::vector<BinaryNode>& nodes, std::vector<Reference>& references, const Range& range,
+                    std::size_t leaf_size) {
+    const std::uint32_t count = range.end - range.begin;
+    Bounds box;
+    Bounds centres;
+    for (std::uint32_t i = range.begin; i < range.end; ++i) {
+        box.add(references[i].box);
+        centres.add(references[i].centre());
+    }
+    if (count <= leaf_size) {
+        nodes[range.node] = {box, range.begin, count};
+        return range.end;
+    }
+    // Medians halve, so they need as many levels as this; the heuristic may waste those beyond.
+    const int halvings = std::bit_width(count - 1);
+    std::uint32_t middle = range.begin;
+    if (range.depth + halvings < hierarchy_depth) {
+        middle = part_by_area(references, range, centres);
+    }
+    if (middle == range.begin || middle == range.end) {
+        middle = part_by_median(references, range, centres);
+    }
+    nodes[range.node] = {box, static_cast<std::uint32_t>(nodes.size()), 0};
+    nodes.resize(nodes.size() + 2);
+    return middle;
+}
+
+// The nodes of a range, the first that of all of it. Ranges of no more than `whole` references are left to `parts`.
+std::vector<BinaryNode> build_nodes(std::vector<Reference>& references, Range range, std::size_t leaf_size,
+                                    std::uint32_t whole, std::vector<Range>& parts) {
+    std::vector<BinaryNode> nodes(1);
+    range.node = 0;
+    std::vector<Range> pending = {range};
     while (!pending.empty()) {
-        const Range range = pending.back();
+        const Range next = pending.back();
         pending.pop_back();
-        const std::uint32_t count = range.end - range.begin;
-        Bounds box;
-        Bounds centres;
-        for (std::uint32_t i = range.begin; i < range.end; ++i) {
-            box.add(references[i].box);
-            centres.add(references[i].centre());
-        }
-        if (count <= leaf_size) {
-            nodes[range.node] = {box, range.begin, count};
+        if (next.end - next.begin <= whole) {
+            parts.push_back(next);
             continue;
         }
-        // Medians halve, so they need as many levels as this; the heuristic may waste those beyond.
-        const int halvings = std::bit_width(count - 1);
-        std::uint32_t middle = range.begin;
-        if (range.depth + halvings < hierarchy_depth) {
-            middle = part_by_area(references, range, centres);
+        const std::uint32_t middle = split(nodes, references, next, leaf_size);
+        if (middle < next.end) {
+            const std::uint32_t first = nodes[next.node].first;
+            pending.push_back({first + 1, middle, next.end, next.depth + 1});
+            pending.push_back({first, next.begin, middle, next.depth + 1});
         }
-        if (middle == range.begin || middle == range.end) {
-            middle = part_by_median(references, range, centres);
-        }
-        const auto first = static_cast<std::uint32_t>(nodes.size());
-        nodes[range.node] = {box, first, 0};
-        nodes.resize(nodes.size() + 2);
-        pending.push_back({first + 1, middle, range.end, range.depth + 1});
-        pending.push_back({first, range.begin, middle, range.depth + 1});
+    }
+    return nodes;
+}
+
+// A thread takes that many references as a whole. No core count is in it, so that every machine makes the same tree.
+constexpr std::uint32_t references_a_part = 1U << 15;
+
+std::vector<BinaryNode> build_binary(std::vector<Reference>& references, std::size_t leaf_size) {
+    std::vector<Range> parts;
+    std::vector<BinaryNode> nodes = build_nodes(references, {0, 0, static_cast<std::uint32_t>(references.size()), 1},
+                                                leaf_size, references_a_part, parts);
+    const auto below = parallel_list(static_cast<int>(parts.size()), [&](int part) {
+        std::vector<Range> none;
+        return build_nodes(references, parts[static_cast<std::size_t>(part)], leaf_size, 0, none);
+    });
+    for (std::size_t part = 0; part < parts.size(); ++part) {
+        // Its first node has a place already, the others follow.
+        const auto base = static_cast<std::uint32_t>(nodes.size()) - 1;
+        const auto placed = [base](BinaryNode node) {
+            node.first += node.count == 0 ? base : 0;
+            return node;
+        };
+        nodes[parts[part].node] = placed(below[part].front());
+        std::transform(below[part].begin() + 1, below[part].end(), std::back_inserter(nodes), placed);
     }
     return nodes;
 }
@@ -230,6 +271,73 @@ void set_box(HierarchyNode& node, std::size_t slot, const Bounds& box) {
     }
 }
 
+// A node that is to be made of one of two.
+struct Widening {
+    std::uint32_t node;
+    std::uint32_t source;
+};
+
+// Makes it, and gives places to the nodes in its slots, which are to be made next.
+void widen(const std::vector<BinaryNode>& binary, const std::vector<Reference>& references, const Widening& widening,
+           BoundingVolumeHierarchy& result, std::vector<Widening>& pending) {
+    const Bounds& box = binary[widening.source].box;
+    HierarchyNode node = frame_of(box);
+    node.first_node = static_cast<std::uint32_t>(result.nodes.size());
+    node.first_primitive = static_cast<std::uint32_t>(result.order.size());
+    const auto slots = in_slots(binary, open(binary, widening.source), box);
+    for (std::size_t slot = 0; slot < 8; ++slot) {
+        if (slots[slot] == no_child) {
+            continue;
+        }
+        const BinaryNode& child = binary[slots[slot]];
+        set_box(node, slot, child.box);
+        if (child.count == 0) {
+            node.inner = static_cast<std::uint8_t>(node.inner | 1U << slot);
+            node.slots[slot] = static_cast<std::uint8_t>(32 + 24 + slot);
+            pending.push_back({static_cast<std::uint32_t>(result.nodes.size()), slots[slot]});
+            result.nodes.emplace_back();
+        } else {
+            const std::size_t offset = result.order.size() - node.first_primitive;
+            node.slots[slot] = static_cast<std::uint8_t>(((1U << child.count) - 1) << 5 | offset);
+            for (std::uint32_t k = 0; k < child.count; ++k) {
+                result.order.push_back(references[child.first + k].index);
+            }
+        }
+    }
+    result.nodes[widening.node] = node;
+}
+
+// All below a node of two, the first node its own.
+BoundingVolumeHierarchy widen_all(const std::vector<BinaryNode>& binary, const std::vector<Reference>& references,
+                                  std::uint32_t source) {
+    BoundingVolumeHierarchy result;
+    result.nodes.emplace_back();
+    std::vector<Widening> pending = {{0, source}};
+    while (!pending.empty()) {
+        const Widening next = pending.back();
+        pending.pop_back();
+        widen(binary, references, next, result, pending);
+    }
+    return result;
+}
+
+// Puts a tree where a place is kept for its first node.
+void graft(BoundingVolumeHierarchy& result, std::uint32_t place, const BoundingVolumeHierarchy& part) {
+    const auto base = static_cast<std::uint32_t>(result.nodes.size()) - 1;
+    const auto first_primitive = static_cast<std::uint32_t>(result.order.size());
+    const auto placed = [&](HierarchyNode node) {
+        node.first_node += base;
+        node.first_primitive += first_primitive;
+        return node;
+    };
+    result.nodes[place] = placed(part.nodes.front());
+    std::transform(part.nodes.begin() + 1, part.nodes.end(), std::back_inserter(result.nodes), placed);
+    result.order.insert(result.order.end(), part.order.begin(), part.order.end());
+}
+
+// So many trees below the uppermost nodes are made side by side.
+constexpr std::size_t grafts = 512;
+
 } // namespace
 
 BoundingVolumeHierarchy build_hierarchy(std::span<const vulkan::Box> boxes, std::size_t leaf_size) {
@@ -254,35 +362,17 @@ BoundingVolumeHierarchy build_hierarchy(std::span<const vulkan::Box> boxes, std:
     result.nodes.reserve(boxes.size() / 4 + 1);
     result.order.reserve(boxes.size());
     result.nodes.emplace_back();
-    std::vector<std::pair<std::uint32_t, std::uint32_t>> pending = {{0, 0}}; // wide node, its node of two
-    while (!pending.empty()) {
-        const auto [index, source] = pending.back();
-        pending.pop_back();
-        const Bounds& box = binary[source].box;
-        HierarchyNode node = frame_of(box);
-        node.first_node = static_cast<std::uint32_t>(result.nodes.size());
-        node.first_primitive = static_cast<std::uint32_t>(result.order.size());
-        const auto slots = in_slots(binary, open(binary, source), box);
-        for (std::size_t slot = 0; slot < 8; ++slot) {
-            if (slots[slot] == no_child) {
-                continue;
-            }
-            const BinaryNode& child = binary[slots[slot]];
-            set_box(node, slot, child.box);
-            if (child.count == 0) {
-                node.inner = static_cast<std::uint8_t>(node.inner | 1U << slot);
-                node.slots[slot] = static_cast<std::uint8_t>(32 + 24 + slot);
-                pending.emplace_back(static_cast<std::uint32_t>(result.nodes.size()), slots[slot]);
-                result.nodes.emplace_back();
-            } else {
-                const std::size_t offset = result.order.size() - node.first_primitive;
-                node.slots[slot] = static_cast<std::uint8_t>(((1U << child.count) - 1) << 5 | offset);
-                for (std::uint32_t k = 0; k < child.count; ++k) {
-                    result.order.push_back(references[child.first + k].index);
-                }
-            }
-        }
-        result.nodes[index] = node;
+    std::vector<Widening> pending = {{0, 0}};
+    std::size_t made = 0;
+    for (; made < pending.size() && pending.size() - made < grafts; ++made) {
+        const Widening next = pending[made];
+        widen(binary, references, next, result, pending);
+    }
+    const auto parts = parallel_list(static_cast<int>(pending.size() - made), [&](int part) {
+        return widen_all(binary, references, pending[made + static_cast<std::size_t>(part)].source);
+    });
+    for (std::size_t part = 0; part < parts.size(); ++part) {
+        graft(result, pending[made + part].node, parts[part]);
     }
     return result;
 }

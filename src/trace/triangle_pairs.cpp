@@ -1,5 +1,8 @@
 #include "trace/triangle_pairs.hpp"
 
+#include "core/parallel_list.hpp"
+
+#include <algorithm>
 #include <cstddef>
 #include <cstdint>
 #include <limits>
@@ -56,13 +59,16 @@ vulkan::Box TrianglePair::box() const {
     return box;
 }
 
-std::vector<TrianglePair> pair_triangles(std::span<const glm::vec3> vertices, std::span<const glm::uvec3> triangles) {
-    const Fans fans = fans_of(vertices.size(), triangles);
-    std::vector<bool> taken(triangles.size(), false);
+namespace {
+
+// Pairs of the triangles from `begin` up to `end` with each other.
+std::vector<TrianglePair> pair_between(std::span<const glm::vec3> vertices, std::span<const glm::uvec3> triangles,
+                                       const Fans& fans, std::size_t begin, std::size_t end) {
+    std::vector<bool> taken(end - begin, false);
     std::vector<TrianglePair> pairs;
-    pairs.reserve(triangles.size() / 2 + 1);
-    for (std::size_t index = 0; index < triangles.size(); ++index) {
-        if (taken[index]) {
+    pairs.reserve((end - begin) / 2 + 1);
+    for (std::size_t index = begin; index < end; ++index) {
+        if (taken[index - begin]) {
             continue;
         }
         const glm::uvec3& own = triangles[index];
@@ -77,7 +83,7 @@ std::vector<TrianglePair> pair_triangles(std::span<const glm::vec3> vertices, st
                 const std::uint32_t candidate = fans.triangles[k];
                 const glm::uvec3& other = triangles[candidate];
                 const bool shares = other.x == c || other.y == c || other.z == c;
-                if (candidate == index || taken[candidate] || !shares) {
+                if (candidate <= index || candidate >= end || taken[candidate - begin] || !shares) {
                     continue;
                 }
                 const int third = other.x != a && other.x != c ? 0 : other.y != a && other.y != c ? 1 : 2;
@@ -89,11 +95,29 @@ std::vector<TrianglePair> pair_triangles(std::span<const glm::vec3> vertices, st
                 }
             }
         }
-        taken[index] = true;
         if (partner != no_triangle) {
-            taken[partner] = true;
+            taken[partner - begin] = true;
         }
         pairs.push_back(best);
+    }
+    return pairs;
+}
+
+} // namespace
+
+std::vector<TrianglePair> pair_triangles(std::span<const glm::vec3> vertices, std::span<const glm::uvec3> triangles) {
+    // A thread takes so many triangles at a time, which find no partner beyond.
+    constexpr std::size_t triangles_a_part = std::size_t{1} << 16;
+    const Fans fans = fans_of(vertices.size(), triangles);
+    const auto parts = parallel_list(
+        static_cast<int>((triangles.size() + triangles_a_part - 1) / triangles_a_part), [&](int part) {
+            const std::size_t begin = triangles_a_part * static_cast<std::size_t>(part);
+            return pair_between(vertices, triangles, fans, begin, std::min(triangles.size(), begin + triangles_a_part));
+        });
+    std::vector<TrianglePair> pairs;
+    pairs.reserve(triangles.size() / 2 + parts.size());
+    for (const auto& part : parts) {
+        pairs.insert(pairs.end(), part.begin(), part.end());
     }
     return pairs;
 }

@@ -117,6 +117,14 @@ TEST(BoundingVolumeHierarchy, HoldsEveryPrimitiveOnceAndEnclosesIt) {
     EXPECT_LE(examine(build_hierarchy(boxes, 3), boxes).depth, 9);
 }
 
+// Large ones are made in parts that are put together.
+TEST(BoundingVolumeHierarchy, IsWholeWhenMadeInParts) {
+    const auto boxes = random_boxes(150'000, 0.01F, 45);
+    const auto tree = build_hierarchy(boxes, 1);
+    EXPECT_TRUE(examine(tree, boxes).sound(tree.nodes.size()));
+    EXPECT_EQ(tree.order, build_hierarchy(boxes, 1).order);
+}
+
 TEST(BoundingVolumeHierarchy, AShrunkBoxIsNoticed) {
     const auto boxes = random_boxes(1000, 0.01F, 42);
     for (const std::size_t index : {0U, 517U, 999U}) {

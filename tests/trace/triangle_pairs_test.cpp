@@ -78,6 +78,14 @@ TEST(TrianglePairs, HoldEveryTriangleOnce) {
     EXPECT_NE(all(pairs), mesh.all());
 }
 
+// Large meshes are paired in parts, over whose borders few triangles would have found a partner.
+TEST(TrianglePairs, HoldEveryTriangleOfManyOnce) {
+    const Mesh mesh = grid(300);
+    const auto pairs = pair_triangles(mesh.vertices, mesh.triangles);
+    EXPECT_EQ(all(pairs), mesh.all());
+    EXPECT_LE(pairs.size(), 90'000u + 4);
+}
+
 TEST(TrianglePairs, TakeThePartnerThatMakesTheSmallestBox) {
     // Two triangles at the middle one's sides, the second far away.
     const Mesh mesh{{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {9, 9, 9}, {1, 1, 0}}, {{0, 1, 2}, {0, 1, 3}, {1, 2, 4}}};
