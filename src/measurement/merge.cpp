@@ -6,6 +6,8 @@
 #include "measurement/disk_space.hpp"
 #include "measurement/stack.hpp"
 #include "measurement/stack_parts.hpp"
+#include "scan/stack_identity.hpp"
+#include "trace/mixed_light.hpp"
 #include "vulkan/device.hpp"
 
 #include <fmt/format.h>
