@@ -1,6 +1,7 @@
 #include "app/commands.hpp"
 
 #include "core/result_folder.hpp"
+#include "scan/stack_identity.hpp"
 #include "scan/store.hpp"
 
 #include <fmt/format.h>

@@ -115,12 +115,14 @@ FigureGroup figures_of_waves(const optics::WaveOptions& options, const optics::I
     const WaveLimits limits = wave_limits(filter, instrument, std::move(waves));
     const auto further = warnings_of(limits);
     warnings.insert(warnings.end(), further.begin(), further.end());
-    const auto memory = trace::wave_memory(limits.cells, limits.parts, instrument.detector_pixels());
+    // Each source's light is sorted by itself.
+    const auto memory =
+        instrument.lights().size() * trace::wave_memory(limits.cells, limits.parts, instrument.detector_pixels()).all();
     const auto error_of = [&](std::size_t point) { return limits.points[point].error.difference; };
     return {"Images as waves make them, within two depths of field",
             {{"wave_cells", static_cast<double>(limits.cells), "across the pupil that light is sorted by"},
              {"wave_parts_per_pixel", static_cast<double>(limits.parts), "of a pixel's side that light is sorted in"},
-             {"wave_memory_gib", static_cast<double>(memory.all()) / bytes_per_gib, "that a GPU needs, at most"},
+             {"wave_memory_gib", static_cast<double>(memory) / bytes_per_gib, "that a GPU needs, at most"},
              {"wave_folded_contrast", limits.folded_contrast, "what waves too fine for the parts are off by"},
              {"wave_contrast_error_axis", error_of(0), "of the pupil's cells against Hopkins' integral"},
              {"wave_contrast_error_edge", error_of(1), "the same at the edge, by the filter of the axis"},

@@ -6,6 +6,8 @@
 #include "measurement/disk_space.hpp"
 #include "measurement/stack.hpp"
 #include "measurement/stack_parts.hpp"
+#include "scan/stack_identity.hpp"
+#include "trace/mixed_light.hpp"
 #include "vulkan/device.hpp"
 
 #include <fmt/format.h>
@@ -40,11 +42,8 @@ std::string ranges_text(const std::vector<int>& numbers) {
 trace::TracerIdentity tracer_of(const std::string& identity, const StackScene& scene, const fs::path& folder) {
     auto tracer =
         trace::TracerIdentity::parse(TomlTable::parse(identity, folder / scan::configuration_name).table("made"));
-    const auto& traced = scene.configuration.trace;
-    const optics::Instrument through =
-        traced.estimator == trace::Estimator::backward ? optics::turned_round(scene.instrument) : scene.instrument;
     tracer.kernels = trace::kernels_digest();
-    tracer.instrument = trace::instrument_digest(through);
+    tracer.instrument = trace::traced_digest(scene.instrument, scene.configuration.trace);
     return tracer;
 }
 

@@ -118,7 +118,7 @@ Wavefront::Wavefront(const Imaging& imaging, double magnification, double focus,
             rims_[i] = rims_[azimuths - i];
         } else {
             const glm::dvec2 direction = direction_of(2 * pi * static_cast<double>(i) / azimuths);
-            // Images depend on the axis; in the field 5e-10 do.
+            // Images depend on the rim on the axis, to the last bit; in the field 5e-10 of the way is enough.
             const int bisections = field == glm::dvec2(0) ? 45 : 26;
             rims_[i] =
                 farthest(

@@ -52,29 +52,38 @@ std::optional<MeshEdge> step(Pieces& pieces, const MeshEdge& from) {
     return to;
 }
 
+// The line that begins at this edge, taken out of the pieces.
+SectionLine line_from(Pieces& pieces, const MeshEdge& start, const optics::Facets& facets) {
+    SectionLine line;
+    line.points.push_back(crossing(facets, start));
+    for (auto edge = step(pieces, start); edge; edge = step(pieces, *edge)) {
+        line.closed = *edge == start;
+        if (!line.closed) {
+            line.points.push_back(crossing(facets, *edge));
+        }
+    }
+    return line;
+}
+
 } // namespace
 
 std::vector<SectionLine> section_of(const optics::Facets& facets) {
     Pieces pieces = pieces_of(facets);
+    std::vector<MeshEdge> ends; // of lines that are not closed
+    for (const auto& [edge, other] : pieces) {
+        if (pieces.count(edge) == 1) {
+            ends.push_back(edge);
+        }
+    }
     std::vector<SectionLine> lines;
+    for (const MeshEdge& end : ends) {
+        if (pieces.contains(end)) { // else it was the other end of a line before
+            lines.push_back(line_from(pieces, end, facets));
+        }
+    }
     while (!pieces.empty()) {
-        // A line with ends begins at one of them.
-        auto start = pieces.begin()->first;
-        for (const auto& [edge, other] : pieces) {
-            if (pieces.count(edge) == 1) {
-                start = edge;
-                break;
-            }
-        }
-        SectionLine line;
-        line.points.push_back(crossing(facets, start));
-        for (auto edge = step(pieces, start); edge; edge = step(pieces, *edge)) {
-            line.closed = *edge == start;
-            if (!line.closed) {
-                line.points.push_back(crossing(facets, *edge));
-            }
-        }
-        lines.push_back(std::move(line));
+        const MeshEdge start = pieces.begin()->first;
+        lines.push_back(line_from(pieces, start, facets));
     }
     return lines;
 }

@@ -5,6 +5,7 @@
 #include "core/file.hpp"
 #include "core/units.hpp"
 #include "images/image_file.hpp"
+#include "scan/stack_identity.hpp"
 
 #include <fmt/format.h>
 
@@ -12,9 +13,7 @@
 #include <cmath>
 #include <cstdint>
 #include <limits>
-#include <map>
 #include <optional>
-#include <sstream>
 #include <stdexcept>
 #include <string_view>
 
@@ -28,56 +27,6 @@ constexpr std::string_view ledger_name = "ledger.csv";
 constexpr std::string_view timings_header = "what,seconds,rays_per_s";
 constexpr std::string_view images_name = "images";
 constexpr std::string_view lock_name = ".lock"; // and .lock_..., of core/result_folder.hpp
-constexpr std::string_view identity_prefix = "#: ";
-constexpr std::string_view digest_label = " (digest ";
-constexpr std::size_t digest_digits = 16;
-
-std::vector<std::string> lines_of(std::string_view text) {
-    std::vector<std::string> lines;
-    std::istringstream stream{std::string(text)};
-    for (std::string line; std::getline(stream, line);) {
-        lines.push_back(line);
-    }
-    return lines;
-}
-
-std::string stack_text(const StackDescription& description) {
-    std::string text =
-        fmt::format("# A stack of vkfv: its configuration, every default spelled out. `vkfv --stack` takes this file.\n"
-                    "# What its images depend on{}{}); a run that differs in any of it is refused here:\n",
-                    digest_label, description.digest);
-    for (const std::string& line : lines_of(description.identity)) {
-        if (!line.empty()) {
-            text += fmt::format("{}{}\n", identity_prefix, line);
-        }
-    }
-    return text + "\n" + description.configuration;
-}
-
-std::string identity_of(std::string_view stack_text) {
-    std::string identity;
-    for (const std::string& line : lines_of(stack_text)) {
-        if (line.starts_with(identity_prefix)) {
-            identity += line.substr(identity_prefix.size()) + "\n";
-        }
-    }
-    return identity;
-}
-
-// "[trace]" and "seed = 1" become "trace.seed" -> "1".
-std::map<std::string, std::string> values_by_key(std::string_view identity) {
-    std::map<std::string, std::string> values;
-    std::string table;
-    for (const std::string& line : lines_of(identity)) {
-        const auto equals = line.find(" = ");
-        if (line.starts_with('[')) {
-            table = line.substr(1, line.rfind(']') - 1) + ".";
-        } else if (equals != std::string::npos) {
-            values[table + line.substr(0, equals)] = line.substr(equals + 3);
-        }
-    }
-    return values;
-}
 
 std::string csv_field(const std::string& text) {
     if (text.find_first_of(",\"\n") == std::string::npos) {
@@ -189,37 +138,6 @@ bool holds_nothing_but_a_beginning(const fs::path& folder) {
 
 } // namespace
 
-std::string identity_differences(std::string_view there, std::string_view here) {
-    const auto old_values = values_by_key(there);
-    auto new_values = values_by_key(here);
-    std::string text;
-    for (const auto& [key, old_value] : old_values) {
-        const auto found = new_values.find(key);
-        if (found == new_values.end()) {
-            text += fmt::format("\n  {}: {} there, absent here", key, old_value);
-        } else {
-            if (found->second != old_value) {
-                text += fmt::format("\n  {}: {} there, {} here", key, old_value, found->second);
-            }
-            new_values.erase(found);
-        }
-    }
-    for (const auto& [key, new_value] : new_values) {
-        text += fmt::format("\n  {}: absent there, {} here", key, new_value);
-    }
-    return text;
-}
-
-std::string stored_identity(const fs::path& folder) {
-    const fs::path path = folder / configuration_name;
-    std::string identity = identity_of(read_file(path, {.expected = "the configuration of a stack"}));
-    if (identity.empty()) {
-        refuse_file(path, "", "a file without the identity of a stack", "the stack.toml of a stack that vkfv traced",
-                    "Give another --out: the configuration belongs outside of the output folder.");
-    }
-    return identity;
-}
-
 std::string micrometres_text(double millimetres) {
     constexpr double per_micrometre = 1e9;
     // Adding 0 turns -0 into 0.
@@ -274,9 +192,7 @@ Check check_images(const fs::path& folder) {
     Check check;
     std::string digest;
     try {
-        const std::string text = read_file(folder / configuration_name);
-        const auto place = text.find(digest_label);
-        digest = text.substr(place == std::string::npos ? text.size() : place + digest_label.size(), digest_digits);
+        digest = stored_digest(folder);
     } catch (const InputError& error) {
         check.damages.push_back({fs::path(configuration_name), error.problem().found});
     }

@@ -124,8 +124,6 @@ class ImageStore {
     std::vector<std::string> damaged_;
 };
 
-inline constexpr std::string_view configuration_name = "stack.toml";
-
 // The images of a stack, finished or not: whether each is whole, and one of this stack.
 Check check_images(const std::filesystem::path& folder);
 
@@ -156,12 +154,6 @@ Grid<float> as_stored(Grid<float> values, PixelType type);
 
 // A line of a folder's timings.csv: how long it took, and of what traced rays, how many. Throws RunError.
 void append_timing(const std::filesystem::path& folder, const std::string& what, double seconds, double rays = 0);
-
-// The identity of the stack in a folder, as StackDescription has it. Throws InputError if there is none.
-std::string stored_identity(const std::filesystem::path& folder);
-
-// A line for each key in which two identities differ, "\n  trace.seed: 1 there, 2 here"; empty if they are the same.
-std::string identity_differences(std::string_view there, std::string_view here);
 
 // Values of a stored image, radiant flux per pixel in W or grey values; row 0 at the lowest y. `z` is its focal height
 // (mm) as planned. Throws InputError, with the remedy, if the image is missing, not whole or of another height: frames

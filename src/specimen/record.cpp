@@ -33,8 +33,8 @@ struct LatticeBounds {
     Bounds height;
     double slope = 0;
     void include(const LatticeBounds& other) {
-        height.include(other.height.lower);
-        height.include(other.height.upper);
+        height.lower = std::min(height.lower, other.height.lower);
+        height.upper = std::max(height.upper, other.height.upper);
         slope = std::max(slope, other.slope);
     }
 };

@@ -11,6 +11,7 @@
 #include <limits>
 #include <numeric>
 #include <stdexcept>
+#include <utility>
 
 namespace vkfv::topography {
 namespace {
@@ -330,6 +331,30 @@ PointState StackEvaluator::judge(const focus::f64::CurveRecord& curve, const foc
                                                                                     : PointState::measured;
 }
 
+namespace {
+
+// Linearly between a curve's points; at: a place, in points.
+template <class ValueOf>
+double between(double at, int points, const ValueOf& value_of) {
+    const auto before = static_cast<std::size_t>(std::clamp(static_cast<int>(std::floor(at)), 0, points - 2));
+    const double here = value_of(before);
+    return here + (at - static_cast<double>(before)) * (value_of(before + 1) - here);
+}
+
+// Maps of so many points. place: where they lie.
+Topography nothing_measured(int columns, int rows, surface::HeightMap place) {
+    Topography result;
+    place.height = Grid<double>(columns, rows, std::numeric_limits<double>::quiet_NaN());
+    result.height = std::move(place);
+    result.contrast = result.fit_residual = Grid<double>(columns, rows);
+    result.height_noise = result.height.height;
+    result.peaks = Grid<std::uint16_t>(columns, rows);
+    result.state = Grid<PointState>(columns, rows, PointState::measured);
+    return result;
+}
+
+} // namespace
+
 Topography StackEvaluator::finish(double x0, double y0, double pitch) {
     require(z_.size() >= 3, "stack", fmt::format("{} images", z_.size()), "at least 3 images",
             "A peak needs an image on either side: widen the scan.");
@@ -349,34 +374,17 @@ Topography StackEvaluator::finish(double x0, double y0, double pitch) {
     const SmoothedNoise smoothed = smoothed_noise(axial_weights_);
     const std::vector<AveragedPoint> points = averaged_points(axial_weights_, images);
     const std::vector<double> read = averaged(readings_, axial_weights_);
-    // Of a place between the curve's points.
-    const auto position = [&](double at) {
-        const int before = std::clamp(static_cast<int>(std::floor(at)), 0, images - 2);
-        const double here = points[static_cast<std::size_t>(before)].position;
-        return here + (at - before) * (points[static_cast<std::size_t>(before + 1)].position - here);
-    };
     const double brightness = mean_of(stack.brightness) / images;
     const Grid<float> brightness_around = window_mean(stack.brightness, window_); // of all images together
     const double step = (z_.back() - z_.front()) / (images - 1);
     const auto height_at = [&](double at) {
-        if (read.empty()) {
-            return z_.front() + step * position(at);
-        }
-        const int before = std::clamp(static_cast<int>(std::floor(at)), 0, images - 2);
-        const double here = read[static_cast<std::size_t>(before)];
-        return here + (at - before) * (read[static_cast<std::size_t>(before + 1)] - here);
+        return read.empty()
+                   ? z_.front() + step * between(at, images, [&](std::size_t point) { return points[point].position; })
+                   : between(at, images, [&](std::size_t point) { return read[point]; });
     };
-    Topography result;
+    Topography result =
+        nothing_measured(columns_, rows_, {.height = {}, .x0 = x0, .y0 = y0, .pitch_x = pitch, .pitch_y = pitch});
     result.curves = curves_of(stack, height_at);
-    result.height = {.height = Grid<double>(columns_, rows_, std::numeric_limits<double>::quiet_NaN()),
-                     .x0 = x0,
-                     .y0 = y0,
-                     .pitch_x = pitch,
-                     .pitch_y = pitch};
-    result.contrast = result.fit_residual = Grid<double>(columns_, rows_);
-    result.height_noise = result.height.height;
-    result.peaks = Grid<std::uint16_t>(columns_, rows_);
-    result.state = Grid<PointState>(columns_, rows_, PointState::measured);
     const auto judge_point = [&](int column, int row) {
         const auto& curve = stack.curves(column, row);
         const double pixels = window_.pixels(columns_, rows_, column, row);

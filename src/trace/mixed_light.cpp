@@ -3,6 +3,7 @@
 #include "core/digest.hpp"
 #include "trace/backward_image.hpp"
 #include "trace/image_sum.hpp"
+#include "trace/wave_image.hpp"
 
 #include <fmt/format.h>
 
@@ -165,6 +166,18 @@ std::unique_ptr<DeviceExposure> DeviceMixture::prepare(FocalPosition position, s
     return std::make_unique<Exposure>(std::move(parts));
 }
 
+// One is itself.
+std::string digest_of_lights(const std::vector<std::string>& instruments) {
+    if (instruments.size() == 1) {
+        return instruments.front();
+    }
+    Digest digest;
+    for (const std::string& one : instruments) {
+        digest.add(one);
+    }
+    return digest.text();
+}
+
 } // namespace
 
 std::vector<std::uint64_t> rays_of_sources(std::uint64_t rays, std::span<const double> shares) {
@@ -216,14 +229,24 @@ std::vector<OneLight> one_by_one(const optics::Instrument& instrument, const Tra
 
 TracerIdentity mixed_identity(const std::vector<TracerIdentity>& identities) {
     TracerIdentity identity = identities.front();
-    if (identities.size() > 1) {
-        Digest digest;
-        for (const TracerIdentity& one : identities) {
-            digest.add(one.toml());
+    std::vector<std::string> instruments;
+    for (const TracerIdentity& one : identities) {
+        instruments.push_back(one.instrument);
+        if (instruments.size() > 1 && one.sorting.pupil_cells != 0) {
+            identity.further_sortings.push_back(one.sorting);
         }
-        identity.instrument = digest.text();
     }
+    identity.instrument = digest_of_lights(instruments);
     return identity;
+}
+
+std::string traced_digest(const optics::Instrument& instrument, const TraceOptions& options) {
+    std::vector<std::string> instruments;
+    for (const OneLight& light : one_by_one(as_traced(instrument, options), options)) {
+        instruments.push_back(instrument_digest(
+            options.estimator == Estimator::backward ? optics::turned_round(light.instrument) : light.instrument));
+    }
+    return digest_of_lights(instruments);
 }
 
 std::unique_ptr<Tracer> mix_on_host(std::vector<std::unique_ptr<Tracer>> tracers) {

@@ -27,6 +27,9 @@ std::vector<OneLight> one_by_one(const optics::Instrument& instrument, const Tra
 // As one; of a single one itself.
 TracerIdentity mixed_identity(const std::vector<TracerIdentity>& identities);
 
+// TracerIdentity::instrument of who traces this instrument with these options, on any device.
+std::string traced_digest(const optics::Instrument& instrument, const TraceOptions& options);
+
 // tracers: of each light, at least two.
 std::unique_ptr<Tracer> mix_on_host(std::vector<std::unique_ptr<Tracer>> tracers);
 // On one device.

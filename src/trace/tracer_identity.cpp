@@ -9,10 +9,12 @@
 #include "spirv/digest.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
+#include <algorithm>
 #include <limits>
 #include <span>
-#include <vector>
+#include <utility>
 
 namespace vkfv::trace {
 
@@ -39,6 +41,15 @@ std::string TracerIdentity::toml() const {
     if (sorting.pupil_cells != 0) {
         text += fmt::format("pupil_cells = {}\nparts_per_pixel = {}\n", sorting.pupil_cells, sorting.parts_per_pixel);
     }
+    if (!further_sortings.empty()) {
+        std::vector<int> cells, parts;
+        for (const LightSorting& further : further_sortings) {
+            cells.push_back(further.pupil_cells);
+            parts.push_back(further.parts_per_pixel);
+        }
+        text += fmt::format("further_pupil_cells = [{}]\nfurther_parts_per_pixel = [{}]\n", fmt::join(cells, ", "),
+                            fmt::join(parts, ", "));
+    }
     return text +
            fmt::format("kernels_digest = {}\ninstrument_digest = {}\n", toml_quoted(kernels), toml_quoted(instrument));
 }
@@ -48,6 +59,12 @@ TracerIdentity TracerIdentity::parse(const TomlTable& table) {
     const auto number = [&](const char* key) {
         return table.optional_integer(key, 0, std::numeric_limits<std::uint32_t>::max()).value_or(0);
     };
+    const auto numbers = [&](const char* key) { return table.optional_numbers(key).value_or(std::vector<double>()); };
+    const auto cells = numbers("further_pupil_cells"), parts = numbers("further_parts_per_pixel");
+    std::vector<LightSorting> further;
+    for (std::size_t k = 0; k < std::min(cells.size(), parts.size()); ++k) {
+        further.push_back({.pupil_cells = static_cast<int>(cells[k]), .parts_per_pixel = static_cast<int>(parts[k])});
+    }
     return {.device = table.string("device"),
             .vendor_id = static_cast<std::uint32_t>(number("vendor_id")),
             .device_id = static_cast<std::uint32_t>(number("device_id")),
@@ -56,6 +73,7 @@ TracerIdentity TracerIdentity::parse(const TomlTable& table) {
             .fourier = text("fourier"),
             .sorting = {.pupil_cells = static_cast<int>(number("pupil_cells")),
                         .parts_per_pixel = static_cast<int>(number("parts_per_pixel"))},
+            .further_sortings = std::move(further),
             .kernels = table.string("kernels_digest"),
             .instrument = table.string("instrument_digest")};
 }
@@ -101,6 +119,7 @@ TracerIdentity device_identity(const vulkan::DeviceReport& device, const std::st
             .traversal = traversal,
             .fourier = sorting.pupil_cells != 0 && !vulkan::is_software(device) ? vulkan::fourier_library() : "",
             .sorting = sorting,
+            .further_sortings = {},
             .kernels = kernels_digest(),
             .instrument = instrument_digest(instrument)};
 }

@@ -7,6 +7,7 @@
 #include <cstdint>
 #include <optional>
 #include <string>
+#include <vector>
 
 namespace vkfv {
 class TomlTable;
@@ -34,8 +35,10 @@ struct TracerIdentity {
     std::string traversal; // "quadtree", "bvh", "ray-query"; empty: the host
     std::string fourier;   // the library that transforms images for waves; empty: the host, or images of rays
     LightSorting sorting;
+    std::vector<LightSorting>
+        further_sortings{}; // of the light of further sources; none: images of rays, or one source
     std::string kernels;    // digest of the SPIR-V, whose source is that of the host's physics too
-    std::string instrument; // digest of the records that the instrument became
+    std::string instrument; // digest of the records that the instrument became; of several sources, of theirs
 
     std::string toml() const; // lines `key = value`
     // Of such lines. Throws InputError.

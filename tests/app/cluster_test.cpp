@@ -108,6 +108,45 @@ TEST_F(Cluster, ShardsMergeToTheBytesOfOneRun) {
     }
 }
 
+// What the traced instrument is besides that of the configuration: several, and of pixels without gaps.
+TEST_F(Cluster, ShardsOfSeveralSourcesAndPixelsWithGapsMergeToo) {
+    auto text = replaced(small_configuration, "[source]\n", "[[source]]\n");
+    text = replaced(text, "wavelength_um = 0.5876\n",
+                    "wavelength_um = 0.5876\n[[source]]\nkind = \"ring\"\ndistance_mm = 30\nelevation_deg = 45\n"
+                    "width_mm = 5\nflux_W = 20\nwavelength_um = 0.5\n");
+    write_file(folder_ / "c.toml", replaced(text, "pixels = 8\n", "pixels = 8\nfill_factor = 0.6\n"));
+    for (const char* estimator : {"forward", "backward"}) {
+        const Words by = {"--device", "host", "--estimator", estimator};
+        ASSERT_EQ(stack("one", by).exit_code, 0);
+        for (const char* shard : {"1/2", "2/2"}) {
+            Words words = by;
+            words.insert(words.end(), {"--shard", shard});
+            ASSERT_EQ(stack("shared", words).exit_code, 0);
+        }
+        const auto merged = run_program({"merge", out("shared")}, folder_);
+        EXPECT_EQ(merged.exit_code, 0) << merged.standard_error;
+        expect_same_results(out("one"), out("shared"));
+        fs::remove_all(folder_ / "one");
+        fs::remove_all(folder_ / "shared");
+    }
+}
+
+// The lights of a stack are told apart: another light of any source is another stack.
+TEST_F(Cluster, AnotherLightOfAnySourceIsAnotherStack) {
+    write_file(folder_ / "c.toml",
+               replaced(replaced(small_configuration, "[source]\n", "[[source]]\n"), "wavelength_um = 0.5876\n",
+                        "wavelength_um = 0.5876\n[[source]]\nkind = \"ring\"\ndistance_mm = 30\nelevation_deg = 45\n"
+                        "width_mm = 5\nwavelength_um = 0.5876\n"));
+    ASSERT_EQ(stack("one", {"--device", "host"}).exit_code, 0);
+    const auto before = result_bytes(out("one"));
+    for (const char* key : {"source.0.flux_W", "source.1.flux_W"}) {
+        const auto other = stack("one", {"--device", "host", "--set", std::string(key) + "=2"});
+        EXPECT_EQ(other.exit_code, 2) << key;
+        EXPECT_THAT(other.standard_error, HasSubstr(".flux_W: 1.0 there, 2.0 here")) << key;
+    }
+    EXPECT_EQ(result_bytes(out("one")), before);
+}
+
 TEST_F(Cluster, MergeNamesWhatIsMissingAndRefusesWhatDoesNotBelong) {
     ASSERT_EQ(stack("first", {"--shard", "1/3", "--quiet"}).exit_code, 0);
     ASSERT_EQ(stack("seed", {"--shard", "2/3", "--seed", "5", "--quiet"}).exit_code, 0);

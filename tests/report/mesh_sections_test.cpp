@@ -52,6 +52,24 @@ TEST(MeshSections, AnOpenMeshIsCutAsALineWithEnds) {
     EXPECT_NEAR(lines[0].points.back().y, 1, 1e-12);
 }
 
+// Time is not the square of their number: that would be minutes.
+TEST(MeshSections, ManyBodiesAreManyLines) {
+    optics::Facets bodies;
+    constexpr std::uint32_t count = 20000;
+    const auto cube = unit_cube();
+    for (std::uint32_t body = 0; body < count; ++body) {
+        for (const glm::dvec3& vertex : cube.vertices) {
+            bodies.vertices.push_back(vertex + glm::dvec3(0, 3.0 * body, 0));
+        }
+        for (const glm::uvec3& triangle : cube.triangles) {
+            bodies.triangles.push_back(triangle + 8 * body);
+        }
+    }
+    const auto lines = section_of(bodies);
+    ASSERT_EQ(lines.size(), count);
+    EXPECT_TRUE(std::ranges::all_of(lines, &SectionLine::closed));
+}
+
 TEST(MeshSections, WhatThePlaneDoesNotMeetIsNotCut) {
     auto aside = unit_cube();
     for (glm::dvec3& vertex : aside.vertices) {

@@ -3,6 +3,7 @@
 #include "core/error.hpp"
 #include "fake_stack.hpp"
 #include "scan/stack_file.hpp"
+#include "scan/stack_identity.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -238,6 +239,25 @@ TEST(ImageStore, ShardsTakeWholeImagesOfTheirStackAlone) {
     EXPECT_THROW(merged.take(2, seed.path()), InputError);
     EXPECT_NE(identity_differences(stored_identity(seed.path()), describe().identity), "");
     EXPECT_EQ(identity_differences(stored_identity(odd.path()), describe().identity), "");
+}
+
+// Tables of an array have the same keys: a difference in any of them is one.
+TEST(StackIdentity, TellsTheTablesOfAnArrayApart) {
+    const std::string two = "\n[[source]]\nflux_W = 1\n\n[source.spectrum]\nkind = \"lines\"\n"
+                            "\n[[source]]\nflux_W = 3\n\n[source.spectrum]\nkind = \"lines\"\n\n[trace]\nseed = 1\n";
+    EXPECT_EQ(identity_differences(two, two), "");
+    const auto with = [&](const std::string& from, const std::string& to) {
+        std::string other = two;
+        other.replace(other.find(from), from.size(), to);
+        return identity_differences(two, other);
+    };
+    EXPECT_EQ(with("flux_W = 1", "flux_W = 2"), "\n  source[0].flux_W: 1 there, 2 here");
+    EXPECT_EQ(with("flux_W = 3", "flux_W = 2"), "\n  source[1].flux_W: 3 there, 2 here");
+    EXPECT_EQ(with("\"lines\"", "\"table\""), "\n  source[0].spectrum.kind: \"lines\" there, \"table\" here");
+    EXPECT_EQ(with("[[source]]\nflux_W = 3", "[[source]]\nflux_W = 3\n[[source]]"),
+              "\n  source[1].spectrum.kind: \"lines\" there, absent here"
+              "\n  source[2].spectrum.kind: absent there, \"lines\" here");
+    EXPECT_EQ(with("seed = 1", "seed = 2"), "\n  trace.seed: 1 there, 2 here");
 }
 
 TEST(ImageStore, ShardsShareAFolder) {

@@ -1,0 +1,25 @@
+// What the images of a stack depend on, as stack.toml has it in its comments.
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <string_view>
+
+namespace vkfv::scan {
+
+struct StackDescription;
+
+inline constexpr std::string_view configuration_name = "stack.toml";
+
+// stack.toml: the configuration, and above it the identity as comments.
+std::string stack_text(const StackDescription& description);
+
+// The identity of the stack in a folder, as StackDescription has it. Throws InputError if there is none.
+std::string stored_identity(const std::filesystem::path& folder);
+// Its digest; empty if there is none. Throws InputError if the file cannot be read.
+std::string stored_digest(const std::filesystem::path& folder);
+
+// A line for each key in which two identities differ, "\n  trace.seed: 1 there, 2 here"; empty if they are the same.
+std::string identity_differences(std::string_view there, std::string_view here);
+
+} // namespace vkfv::scan
