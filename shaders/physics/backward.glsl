@@ -255,8 +255,7 @@ struct Connection {
 // balance heuristic.
 VKFV_SCENE_FUNCTION VKFV_FUNCTION Connection connect(VKFV_SCENE_PARAMETER Material material, BackwardOptics backward,
                                                      real plane, SeenPart part, uint cone_candidates, Hit hit,
-                                                     real3 outgoing, real u0, real u1, real choice,
-                                                     Scattered of_lobe) {
+                                                     real3 outgoing, real u0, real u1, real choice, Scattered of_lobe) {
     bool is_ring = (features(VKFV_SCENE_ALONE) & FEATURE_RING) != 0u;
     Connection connection;
     connection.weight = real(0.0);
@@ -455,8 +454,7 @@ VKFV_SCENE_FUNCTION VKFV_FUNCTION real trace_backward(VKFV_SCENE_PARAMETER Instr
                 if (blocker.found == 0u) {
                     query.position = origin;
                     query.direction = connection.direction;
-                    query.weight =
-                        throughput * connection.weight * (rim ? real(backward.rim_period) : real(1.0));
+                    query.weight = throughput * connection.weight * (rim ? real(backward.rim_period) : real(1.0));
                     value = value + collect(VKFV_SCENE instrument, backward, plane, specimen, exposure, query);
                 }
             }

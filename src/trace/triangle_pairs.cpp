@@ -109,8 +109,8 @@ std::vector<TrianglePair> pair_triangles(std::span<const glm::vec3> vertices, st
     // A thread takes so many triangles at a time, which find no partner beyond.
     constexpr std::size_t triangles_a_part = std::size_t{1} << 16;
     const Fans fans = fans_of(vertices.size(), triangles);
-    const auto parts = parallel_list(
-        static_cast<int>((triangles.size() + triangles_a_part - 1) / triangles_a_part), [&](int part) {
+    const auto parts =
+        parallel_list(static_cast<int>((triangles.size() + triangles_a_part - 1) / triangles_a_part), [&](int part) {
             const std::size_t begin = triangles_a_part * static_cast<std::size_t>(part);
             return pair_between(vertices, triangles, fans, begin, std::min(triangles.size(), begin + triangles_a_part));
         });

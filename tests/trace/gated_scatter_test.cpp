@@ -157,6 +157,29 @@ TEST(GatedScatter, IsUsedWhereItIsExactAlone) {
     EXPECT_FALSE(scatter_into_gate(hg(0.3), behind, disc_of_10x(), 0.5, 0.5, 0.5).applies);
 }
 
+// The share of a lobe that a cone holds, in a float as in double: of a lobe that is all but Lambertian its difference
+// of two nearly equal numbers would be noise.
+TEST(GatedScatter, KnowsTheShareWithinAConeInAFloat) {
+    for (const double g : {1e-8, 6e-8, 1e-6, 1e-3, 0.3, 0.9, 0.99}) {
+        const Lobe lobe = specimen::tabulated({SCATTER_HENYEY_GREENSTEIN, 1, g, 0, 0, 0, {}});
+        physics::f32::Lobe rounded{};
+        rounded.parameter_0 = static_cast<float>(g);
+        std::ranges::transform(lobe.table, std::begin(rounded.table),
+                               [](double value) { return static_cast<float>(value); });
+        const auto incidence = make_incidence(-up, up);
+        const auto same = physics::f32::make_incidence(-glm::vec3(up), glm::vec3(up));
+        for (const double versine : {0.1, 0.5, 2.0}) {
+            const double share = henyey_greenstein_cone(g, lobe.table, incidence, versine, 0.5, 0.5).bound;
+            const auto found = physics::f32::henyey_greenstein_cone(rounded.parameter_0, rounded.table, same,
+                                                                    static_cast<float>(versine), 0.5F, 0.5F);
+            EXPECT_NEAR(static_cast<double>(found.bound) / share, 1, 2e-5) << g << ' ' << versine;
+            // The whole sphere holds all of it: 1 / N.
+            const double all = 1 / henyey_greenstein_norm(g, lobe.table, 1);
+            EXPECT_TRUE(versine < 2 ? share < all : std::abs(share / all - 1) < 1e-12) << g;
+        }
+    }
+}
+
 // No direction is denser than the ceiling says for directions so far from the mirror's.
 TEST(GatedScatter, TheCeilingIsOne) {
     for (const Case& c : cases()) {

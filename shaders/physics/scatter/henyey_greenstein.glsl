@@ -101,8 +101,9 @@ VKFV_FUNCTION ConeDraw henyey_greenstein_cone(real g, real table[LOBE_TABLE_SIZE
     result.ratio = real(0.0);
     result.direction = incidence.mirror;
     if (g > real(0.0) && g < real(1.0)) {
-        real base = (real(1.0) - g) * (real(1.0) - g) + real(2.0) * g * versine;
-        real outside = ((real(1.0) - g) * (real(1.0) + g) * inversesqrt(base) - (real(1.0) - g)) / (real(2.0) * g);
+        // (1 - g) ((1 + g) / root - 1) / (2 g), without its cancellation for a small g.
+        real root = sqrt((real(1.0) - g) * (real(1.0) - g) + real(2.0) * g * versine);
+        real outside = (real(1.0) - g) * (real(2.0) - versine) / (root * (real(1.0) + g + root));
         real inside = real(1.0) - outside;
         result.bound = inside / henyey_greenstein_norm(g, table, -dot(incidence.incoming, incidence.normal));
         real drawn = draw_henyey_greenstein_versine(g, outside + inside * u0);
