@@ -10,6 +10,7 @@
 
 #include <algorithm>
 #include <cctype>
+#include <optional>
 #include <span>
 
 namespace vkfv {
@@ -67,12 +68,15 @@ std::string digest_of(const optics::Facets& facets) {
 // The file's mesh in mm.
 optics::Facets read_facets(const Section& section, const std::string& dotted_key) {
     const TomlTable& table = section.table();
-    const auto path = looked_for(table.file_path(mesh_file.name));
-    const bool is_stl = ends_with(path, {".stl"});
-    const bool has_unit = section.has(mesh_unit);
-    const double scale = has_unit ? section.choice(mesh_unit) : is_stl ? 1.0 : mm_per_gltf_unit;
+    std::optional<double> unit;
+    if (section.has(mesh_unit)) {
+        unit = section.choice(mesh_unit);
+    }
     optics::Facets facets;
     table.attempt(mesh_file.name, [&] {
+        const auto path = looked_for(table.file_path(mesh_file.name));
+        const bool is_stl = ends_with(path, {".stl"});
+        const double scale = unit.value_or(is_stl ? 1.0 : mm_per_gltf_unit);
         if (!is_stl && !ends_with(path, {".gltf", ".glb"})) {
             table.fail(mesh_file.name, "a file whose name ends in .stl, .gltf or .glb",
                        "Export the mesh as one of these.");

@@ -304,13 +304,13 @@ TEST(Configuration, SeveralSourcesAreRead) {
     EXPECT_TRUE(one.spectrum.monochromatic());
     const auto coloured = described("[source]\nradius_mm = 0.96\nflux_W = 1.0\nwavelength_um = 0.5876\n",
                                     rings + disc +
-                                        "[source.spectrum]\nkind = \"gaussian\"\ncentre_um = 0.5\n"
+                                        "[source.spectrum]\nkind = \"gaussian\"\ncentre_um = 0.52\n"
                                         "full_width_um = 0.02\n");
     ASSERT_TRUE(coloured.source.spectrum);
     ASSERT_TRUE(coloured.further_sources[0].spectrum);
-    EXPECT_EQ(coloured.source.spectrum->reference_um, 0.5);
+    EXPECT_EQ(coloured.source.spectrum->reference_um, 0.52);
     EXPECT_EQ(coloured.further_sources[0].spectrum->reference_um, 0.5876);
-    EXPECT_NEAR(coloured.spectrum.reference_um, (3 * 0.5 + 2 * 0.5876) / 5, 1e-12);
+    EXPECT_NEAR(coloured.spectrum.reference_um, (3 * 0.52 + 2 * 0.5876) / 5, 1e-12);
 }
 
 // One of several is changed by its number.

@@ -43,6 +43,9 @@ const std::map<std::string, std::string> beside_it = {
     {"specimen.material.lobe.weight", "scatter = \"mirror\"\n"},
 };
 
+// A table's kind, which has no default, for keys of every kind.
+const std::map<std::string, std::string> kind_of = {{"mesh_element", "mirror"}};
+
 struct Given {
     std::string text;
     int line; // at which the key stands
@@ -69,6 +72,8 @@ Given with(const KeyTable& table, const Key& key, const std::string& value) {
         text += (repeated ? "[[" : "[") + table.path + (repeated ? "]]\n" : "]\n");
         if (!key.kinds.empty()) {
             text += fmt::format("{} = \"{}\"\n", table.kind, key.kinds.front());
+        } else if (const auto kind = kind_of.find(table.path); kind != kind_of.end() && key.name != table.kind) {
+            text += fmt::format("{} = \"{}\"\n", table.kind, kind->second);
         }
         if (const auto beside = beside_it.find(table.path + "." + key.name); beside != beside_it.end()) {
             text += beside->second;
