@@ -129,8 +129,10 @@ const KeyTable& interfaces_keys() {
 
 void read_illumination(const TomlTable& root, Configuration& configuration) {
     auto& instrument = configuration.instrument;
-    if (instrument.source.ring) {
-        if (root.has("illumination")) {
+    const bool is_given = root.has("illumination");
+    // A source that could not be read may stand behind what is given.
+    if (instrument.source.ring && (root.sound("source") || !is_given)) {
+        if (is_given) {
             root.fail("illumination",
                       "no [illumination] with sources of kind \"ring\" alone, which shine past the objective",
                       "Remove it, or add a source of kind \"disc\" or \"rectangle\".");

@@ -161,7 +161,7 @@ TEST(GatedScatter, IsUsedWhereItIsExactAlone) {
 // of two nearly equal numbers would be noise.
 TEST(GatedScatter, KnowsTheShareWithinAConeInAFloat) {
     for (const double g : {1e-8, 6e-8, 1e-6, 1e-3, 0.3, 0.9, 0.99}) {
-        const Lobe lobe = specimen::tabulated({SCATTER_HENYEY_GREENSTEIN, 1, g, 0, 0, 0, {}});
+        Lobe lobe = specimen::tabulated({SCATTER_HENYEY_GREENSTEIN, 1, g, 0, 0, 0, {}});
         physics::f32::Lobe rounded{};
         rounded.parameter_0 = static_cast<float>(g);
         std::ranges::transform(lobe.table, std::begin(rounded.table),
