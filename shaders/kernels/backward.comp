@@ -18,6 +18,7 @@ layout(push_constant, scalar) uniform Push { BackwardBatch batch; };
 // Of BackwardOptics: loops of known length.
 layout(constant_id = CONSTANT_CONE_CANDIDATES) const uint cone_candidates = 1u;
 layout(constant_id = CONSTANT_LOBE_CANDIDATES) const uint lobe_candidates = 0u;
+layout(constant_id = CONSTANT_SURE_CANDIDATES) const uint sure_candidates = 1u;
 layout(constant_id = CONSTANT_RIM_PERIOD) const uint rim_period = 0u;
 
 // What only tracing can tell is kept until a lane has no room for more, or no more to come: few directions lie at the
@@ -55,6 +56,7 @@ void main() {
         BackwardOptics known = backward.optics;
         known.cone_candidates = cone_candidates;
         known.lobe_candidates = lobe_candidates;
+        known.sure_candidates = sure_candidates;
         known.rim_period = rim_period;
         uint most_queries = query_capacity - uint(specimen.max_bounces) - 1u;
         real sum = real(0.0);

@@ -32,6 +32,7 @@
     FIELD(uint, ring_is_bare)    /* 1: what is drawn is what shines */ \
     FIELD(uint, cone_candidates) /* directions towards the source that each scatter event weighs against each other */ \
     FIELD(uint, lobe_candidates) /* directions of the lobe besides, 0 or 1 */ \
+    FIELD(uint, sure_candidates) /* cone_candidates of what is seen for sure, where the rim is looked at by itself */ \
     FIELD(uint, rim_period)      /* a power of 2: every which path looks at the source's rim; 0: it is not told apart */
 struct BackwardOptics {
     VKFV_BACKWARD_OPTICS_FIELDS(VKFV_DECLARE)
@@ -446,9 +447,11 @@ VKFV_SCENE_FUNCTION VKFV_FUNCTION real trace_backward(VKFV_SCENE_PARAMETER Instr
             SeenPart seen = whole;
             seen.outer = part == 0u ? sure : whole.outer;
             seen.inner = rim ? sure : real(0.0);
-            Connection connection =
-                connect(VKFV_SCENE specimen.material, backward, plane, seen, rim ? 1u : backward.cone_candidates, hit,
-                        outgoing, draws.u0, draws.u1, draws.u2, scattered);
+            Connection connection = connect(VKFV_SCENE specimen.material, backward, plane, seen,
+                                            rim      ? 1u
+                                            : parted ? backward.sure_candidates
+                                                     : backward.cone_candidates,
+                                            hit, outgoing, draws.u0, draws.u1, draws.u2, scattered);
             if (connection.weight > real(0.0)) {
                 Hit blocker = displaced_hit(VKFV_SCENE exposure, origin, connection.direction);
                 if (blocker.found == 0u) {

@@ -59,7 +59,8 @@ physics::f64::BackwardOptics backward_optics(const optics::Instrument& instrumen
     // changes little over the cone, one direction keeps the lattice whole, which a choice among several does not.
     // Measured, signal to noise at 1024 paths a pixel: g = 0.3 (peak 0.06), with the rim 430, without it 517 by one
     // direction, 697 by four, 727 by eight; g = 0.8 (1.2), 101 and, by four, eight and sixteen, 107, 164 and 177.
-    optics.cone_candidates = peak >= 0.3 ? 8 : has_rim ? 4 : 1;
+    optics.cone_candidates = peak < 0.3 ? 1 : 8;
+    optics.sure_candidates = peak < 0.3 ? 4 : 8;
     return optics;
 }
 

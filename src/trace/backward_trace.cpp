@@ -44,6 +44,7 @@ std::vector<vulkan::SpecializationConstant> constants(const DeviceScene& scene,
                    : scene.kernel_constants();
     all.push_back({kernels::CONSTANT_CONE_CANDIDATES, optics.cone_candidates});
     all.push_back({kernels::CONSTANT_LOBE_CANDIDATES, optics.lobe_candidates});
+    all.push_back({kernels::CONSTANT_SURE_CANDIDATES, optics.sure_candidates});
     all.push_back({kernels::CONSTANT_RIM_PERIOD, optics.rim_period});
     constexpr std::uint32_t queries_at_hand = 11;
     all.push_back({kernels::CONSTANT_QUERY_CAPACITY,
