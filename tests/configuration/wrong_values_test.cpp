@@ -29,6 +29,7 @@ const std::map<std::string, std::string> least = {
 // A table that stands in another.
 const std::map<std::string, std::string> least_around = {
     {"source.spectrum", "[source]\nradius_mm = 0.96\n"},
+    {"illumination.field", ""},
     {"specimen.roughness", "[specimen]\nkind = \"plane\"\nsize_mm = 0.2\n"},
     {"specimen.material", "[specimen]\nkind = \"plane\"\nsize_mm = 0.2\n"},
     {"specimen.material.lobe", "[specimen]\nkind = \"plane\"\nsize_mm = 0.2\n[specimen.material]\n"},
