@@ -24,8 +24,26 @@ namespace {
 constexpr double level = 1e-3;  // false-positive rate of each chi-square test here
 constexpr double field = 0.032; // mm, of 16 pixels of 2 um
 
+// Condenser, field stop and field lens without aberrations: the stop is imaged into the specimen sharply.
+optics::Prescription ideal_illuminator() {
+    optics::Prescription illuminator = optics::ideal_lens(26);
+    illuminator.source_distance = 26;
+    optics::PrescribedSurface& condenser = illuminator.surfaces.front();
+    condenser.thickness = 30;
+    optics::PrescribedSurface stop;
+    stop.medium_after = condenser.medium_after;
+    stop.role = optics::SurfaceRole::field_stop;
+    stop.thickness = 150;
+    const optics::PrescribedSurface field_lens = optics::ideal_lens(150).surfaces.front();
+    illuminator.surfaces.push_back(stop);
+    illuminator.surfaces.push_back(field_lens);
+    return illuminator;
+}
+
 optics::InstrumentDescription small_description() {
     auto description = test::microscope_description();
+    description.illumination = ideal_illuminator();
+    description.source.radius = 1.1; // more than fills the pupil
     description.field_stop_radius = 0.3;
     description.detector_width = 0.32;
     description.detector_pixels = ImageSize::square(16);
@@ -163,9 +181,9 @@ TEST(LightField, falls_off_from_its_brightest_place) {
     light.record.brightest_y = 0.03;
     const auto instrument = with(light);
     const double m = instrument.first_order.field_stop_magnification;
-    EXPECT_NEAR(m, -20.0 / 150, 1e-3);
+    EXPECT_NEAR(m, -20.0 / 150, 1e-9);
     const auto white = flat("lambertian");
-    const auto by = options(Estimator::backward, 1 << 15);
+    const auto by = options(Estimator::backward, 1 << 13);
     for (const bool on_host : {false, true}) {
         const auto bare = expose(with(std::nullopt), white, by, on_host);
         const auto image = expose(instrument, white, by, on_host);
@@ -192,7 +210,7 @@ TEST(LightField, a_mirror_shows_a_grating_and_loses_it_out_of_focus) {
     const auto instrument = with(grating(with(std::nullopt).first_order.field_stop_magnification));
     const auto bare_instrument = with(std::nullopt);
     const auto mirror = flat("mirror");
-    const auto by = options(Estimator::backward, 1 << 16);
+    const auto by = options(Estimator::backward, 1 << 14);
     const auto sinc = [](double periods) { return std::sin(pi * periods / 16) / (pi * periods / 16); };
     const double period = field / std::hypot(periods_x, periods_y);
     const auto blurred = [&](double height) {
@@ -205,7 +223,7 @@ TEST(LightField, a_mirror_shows_a_grating_and_loses_it_out_of_focus) {
         }
         return sum;
     };
-    for (const double height : {0.0, 0.002, 0.004}) {
+    for (const double height : {0.0, 0.003}) {
         SCOPED_TRACE(height);
         const auto image = expose(instrument, mirror, by, false, height);
         const auto bare = expose(bare_instrument, mirror, by, false, height);
@@ -214,7 +232,7 @@ TEST(LightField, a_mirror_shows_a_grating_and_loses_it_out_of_focus) {
         EXPECT_LT(std::abs(coefficient(image, bare, periods_x, -periods_y) - expected), 0.012);
         EXPECT_LT(std::abs(coefficient(image, bare, periods_x, periods_y)), 0.012); // the twin that is not turned
     }
-    EXPECT_LT(blurred(0.004), 0.7 * blurred(0.002));
+    EXPECT_LT(blurred(0.003), 0.75);
 }
 
 // Forward from the source, backward from the pixels, and light that finds its own way.
@@ -255,7 +273,7 @@ TEST(LightField, the_ledger_counts_what_the_pattern_takes) {
     double taken = 0, before = 0, all = 0;
     int stop = -1;
     for (const auto& entry : image.ledger.entries) {
-        if (entry.status == Status::lost_in_reflection) {
+        if (entry.status == Status::lost_in_reflection && entry.rays > 0) {
             EXPECT_NE(entry.name.find("field stop"), std::string::npos) << entry.name;
             taken = static_cast<double>(entry.rays);
             stop = entry.surface;
