@@ -50,8 +50,10 @@ VKFV_SCENE_FUNCTION VKFV_FUNCTION real grid_value(VKFV_SCENE_PARAMETER Pattern p
     int lower = mirrored_point(first_row, pattern.rows);
     int upper = mirrored_point(first_row + real(1.0), pattern.rows);
     real across = column - first_column;
-    real below = mix(pattern_point(VKFV_SCENE pattern, left, lower), pattern_point(VKFV_SCENE pattern, right, lower), across);
-    real above = mix(pattern_point(VKFV_SCENE pattern, left, upper), pattern_point(VKFV_SCENE pattern, right, upper), across);
+    real below =
+        mix(pattern_point(VKFV_SCENE pattern, left, lower), pattern_point(VKFV_SCENE pattern, right, lower), across);
+    real above =
+        mix(pattern_point(VKFV_SCENE pattern, left, upper), pattern_point(VKFV_SCENE pattern, right, upper), across);
     return mix(below, above, row - first_row);
 }
 

@@ -21,12 +21,12 @@ const uint PATH_INTERFACE_LOSS = 12u;   // reflected at a refracting surface, or
 const int PATH_STATUS_COUNT = 13;
 const int SURFACE_STATUS_COUNT = 4; // statuses from PATH_VIGNETTED on
 
-const uint SURFACE_CLIPPED = 1u;     // semi_diameter_squared limits it; without the flag it is unbounded
-const uint SURFACE_ASPHERIC = 2u;    // the even coefficients are not all zero
-const uint SURFACE_FRESNEL = 4u;     // reflects by Fresnel's equations
-const uint SURFACE_LAYER = 8u;       // the same through one thin layer
-const uint SURFACE_MIRROR = 16u;     // plane; a train is unfolded at it
-const uint SURFACE_IDEAL_LENS = 32u; // of `power`, instead of an interface
+const uint SURFACE_CLIPPED = 1u;      // semi_diameter_squared limits it; without the flag it is unbounded
+const uint SURFACE_ASPHERIC = 2u;     // the even coefficients are not all zero
+const uint SURFACE_FRESNEL = 4u;      // reflects by Fresnel's equations
+const uint SURFACE_LAYER = 8u;        // the same through one thin layer
+const uint SURFACE_MIRROR = 16u;      // plane; a train is unfolded at it
+const uint SURFACE_IDEAL_LENS = 32u;  // of `power`, instead of an interface
 const uint SURFACE_LIGHT_FIELD = 64u; // lets through what the instrument's LightField says
 const uint SURFACE_TURNED = 128u;     // of that: its frame is the light field's turned half a turn about x
 

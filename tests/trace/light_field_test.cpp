@@ -42,8 +42,6 @@ optics::Prescription ideal_illuminator() {
 
 optics::InstrumentDescription small_description() {
     auto description = test::microscope_description();
-    description.illumination = ideal_illuminator();
-    description.source.radius = 1.1; // more than fills the pupil
     description.field_stop_radius = 0.3;
     description.detector_width = 0.32;
     description.detector_pixels = ImageSize::square(16);
@@ -55,6 +53,15 @@ optics::InstrumentDescription small_description() {
 
 optics::Instrument with(const std::optional<optics::LightField>& light) {
     auto description = small_description();
+    description.light_field = light;
+    return optics::assemble(description);
+}
+
+// The same by an illuminator without aberrations.
+optics::Instrument sharp(const std::optional<optics::LightField>& light) {
+    auto description = small_description();
+    description.illumination = ideal_illuminator();
+    description.source.radius = 1.1; // more than fills the pupil
     description.light_field = light;
     return optics::assemble(description);
 }
@@ -179,13 +186,13 @@ TEST(LightField, falls_off_from_its_brightest_place) {
     light.record.falloff = 10;
     light.record.brightest_x = 0.06;
     light.record.brightest_y = 0.03;
-    const auto instrument = with(light);
+    const auto instrument = sharp(light);
     const double m = instrument.first_order.field_stop_magnification;
     EXPECT_NEAR(m, -20.0 / 150, 1e-9);
     const auto white = flat("lambertian");
     const auto by = options(Estimator::backward, 1 << 13);
     for (const bool on_host : {false, true}) {
-        const auto bare = expose(with(std::nullopt), white, by, on_host);
+        const auto bare = expose(sharp(std::nullopt), white, by, on_host);
         const auto image = expose(instrument, white, by, on_host);
         double worst = 0, worst_twin = 0;
         for (int row = 0; row < 16; ++row) {
@@ -207,8 +214,8 @@ TEST(LightField, falls_off_from_its_brightest_place) {
 // A mirror shows the stop's plane: in focus a grating has the pixels' contrast alone. Out of focus by h its light comes
 // from within 2 h tan(theta), uniform over the aperture's direction cosines.
 TEST(LightField, a_mirror_shows_a_grating_and_loses_it_out_of_focus) {
-    const auto instrument = with(grating(with(std::nullopt).first_order.field_stop_magnification));
-    const auto bare_instrument = with(std::nullopt);
+    const auto bare_instrument = sharp(std::nullopt);
+    const auto instrument = sharp(grating(bare_instrument.first_order.field_stop_magnification));
     const auto mirror = flat("mirror");
     const auto by = options(Estimator::backward, 1 << 14);
     const auto sinc = [](double periods) { return std::sin(pi * periods / 16) / (pi * periods / 16); };
