@@ -1,5 +1,5 @@
-// What the plane of the illumination's field stop lets through: a pattern, which the lenses image onto the specimen, and
-// light that falls off with the square of the distance from its brightest place.
+// What the plane of the illumination's field stop lets through: a pattern, which the lenses image onto the specimen,
+// and light that falls off with the square of the distance from its brightest place.
 
 #ifdef __cplusplus
 template <class Scene>
