@@ -41,6 +41,10 @@ const std::map<std::string, std::string> least_around = {
 const std::map<std::string, std::string> beside_it = {
     {"specimen.font", "text = \"a\"\n"},
     {"specimen.text_width_mm", "text = \"a\"\n"},
+    {"illumination.field.falloff", "kind = \"even\"\n"},
+    {"illumination.field.falloff_radius_mm", "kind = \"even\"\n"},
+    {"illumination.field.brightest_x_mm", "kind = \"even\"\n"},
+    {"illumination.field.brightest_y_mm", "kind = \"even\"\n"},
     {"specimen.material.lobe.weight", "scatter = \"mirror\"\n"},
 };
 
