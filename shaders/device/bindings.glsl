@@ -18,6 +18,7 @@ layout(constant_id = CONSTANT_FEATURES) const uint scene_features = 0u; // FEATU
 
 Surface surface_at(int index) { return surfaces[index]; }
 SpectralBin spectral_bin(int index) { return spectrum[index]; }
+LightField light_field() { return instrument.light_field; }
 uint features() { return scene_features; }
 
 // Both with what the kernel knows as constants.

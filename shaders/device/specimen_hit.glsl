@@ -15,7 +15,12 @@ real lattice_at(int column, int row) { return heights[row * specimen.columns + c
 // Rows as the heights'.
 layout(set = 0, binding = BINDING_REFLECTANCES, scalar) readonly buffer Reflectances { real reflectances[]; };
 
-real reflectance_at(int column, int row) { return reflectances[row * specimen.reflectance.columns + column]; }
+layout(set = 0, binding = BINDING_LIGHT_POINTS, scalar) readonly buffer LightPoints { real light_points[]; };
+
+real pattern_point(Pattern pattern, int column, int row) {
+    int place = row * pattern.columns + column;
+    return pattern.of_light != 0u ? light_points[place] : reflectances[place];
+}
 
 // A ray cut to what can meet the specimen. Its start is re-based, as the error of a distance grows with the distance.
 struct SpecimenRay {

@@ -16,7 +16,7 @@ Hit specimen_hit(real3 origin, real3 direction) {
     return hit;
 }
 real lattice_at(int column, int row) { return real(0.0); }
-real reflectance_at(int column, int row) { return real(0.0); }
+real pattern_point(Pattern pattern, int column, int row) { return real(0.0); }
 
 int count = 0;
 
@@ -42,10 +42,11 @@ void echo(SpectralBin record) { VKFV_SPECTRAL_BIN_FIELDS(VKFV_ECHO) }
 void echo(RingLight record) { VKFV_RING_LIGHT_FIELDS(VKFV_ECHO) }
 void echo(Element record) { VKFV_ELEMENT_FIELDS(VKFV_ECHO) }
 void echo(Facet record) { VKFV_FACET_FIELDS(VKFV_ECHO) }
+void echo(Pattern record) { VKFV_PATTERN_FIELDS(VKFV_ECHO) }
+void echo(LightField record) { VKFV_LIGHT_FIELD_FIELDS(VKFV_ECHO) }
 void echo(Instrument record) { VKFV_INSTRUMENT_FIELDS(VKFV_ECHO) }
 void echo(Lobe record) { VKFV_LOBE_FIELDS(VKFV_ECHO, VKFV_ECHO_ARRAY) }
 void echo(Material record) { VKFV_MATERIAL_FIELDS(VKFV_ECHO) }
-void echo(ReflectanceMap record) { VKFV_REFLECTANCE_MAP_FIELDS(VKFV_ECHO) }
 void echo(SpecimenRecord record) { VKFV_SPECIMEN_RECORD_FIELDS(VKFV_ECHO) }
 void echo(Exposure record) { VKFV_EXPOSURE_FIELDS(VKFV_ECHO) }
 void echo(PupilCells record) { VKFV_PUPIL_CELLS_FIELDS(VKFV_ECHO) }

@@ -11,6 +11,8 @@
 #include "physics/refraction.glsl"
 #include "physics/fresnel.glsl"
 #include "physics/ideal_lens.glsl"
+#include "physics/pattern.glsl"
+#include "physics/light_field.glsl"
 #include "physics/train.glsl"
 #include "physics/short_train.glsl"
 #include "physics/scatter_basis.glsl"

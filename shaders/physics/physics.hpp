@@ -6,7 +6,8 @@
 //   uint features() const;                             FEATURE_* of its trains
 //   SpectralBin spectral_bin(int index) const;         only with FEATURE_SPECTRUM
 //   Hit specimen_hit(real3 origin, real3 direction) const;
-//   real reflectance_at(int column, int row) const;    only with FEATURE_REFLECTANCE_MAP
+//   real pattern_point(Pattern pattern, int column, int row) const;   only of patterns with a grid
+//   LightField light_field() const;                    only with FEATURE_LIGHT_FIELD
 //   Element element_at(int index) const;              only for non-sequential paths
 //   ElementHit nearest_element(real3 origin, real3 direction, PathPlace from) const;   likewise
 //   Facet facet_at(int index) const;                  only with FEATURE_FACETS

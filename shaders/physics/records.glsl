@@ -21,12 +21,14 @@ const uint PATH_INTERFACE_LOSS = 12u;   // reflected at a refracting surface, or
 const int PATH_STATUS_COUNT = 13;
 const int SURFACE_STATUS_COUNT = 4; // statuses from PATH_VIGNETTED on
 
-const uint SURFACE_CLIPPED = 1u;     // semi_diameter_squared limits it; without the flag it is unbounded
-const uint SURFACE_ASPHERIC = 2u;    // the even coefficients are not all zero
-const uint SURFACE_FRESNEL = 4u;     // reflects by Fresnel's equations
-const uint SURFACE_LAYER = 8u;       // the same through one thin layer
-const uint SURFACE_MIRROR = 16u;     // plane; a train is unfolded at it
-const uint SURFACE_IDEAL_LENS = 32u; // of `power`, instead of an interface
+const uint SURFACE_CLIPPED = 1u;      // semi_diameter_squared limits it; without the flag it is unbounded
+const uint SURFACE_ASPHERIC = 2u;     // the even coefficients are not all zero
+const uint SURFACE_FRESNEL = 4u;      // reflects by Fresnel's equations
+const uint SURFACE_LAYER = 8u;        // the same through one thin layer
+const uint SURFACE_MIRROR = 16u;      // plane; a train is unfolded at it
+const uint SURFACE_IDEAL_LENS = 32u;  // of `power`, instead of an interface
+const uint SURFACE_LIGHT_FIELD = 64u; // lets through what the instrument's LightField says
+const uint SURFACE_TURNED = 128u;     // of that: its frame is the light field's turned half a turn about x
 
 // What some instruments have and most have not: kernels are compiled without what is absent.
 const uint FEATURE_PLACEMENT = 1u; // surfaces decentred or tilted against each other
@@ -39,6 +41,7 @@ const uint FEATURE_PUPIL_CELLS = 128u;     // likewise: light is sorted by where
 const uint FEATURE_REFLECTANCE_MAP = 64u;  // of the specimen
 const uint FEATURE_RECTANGLE = 256u;       // a rectangle instead of the disc
 const uint FEATURE_FACETS = 512u;          // elements whose form is a mesh
+const uint FEATURE_LIGHT_FIELD = 1024u;    // a pattern or uneven light in the plane of the field stop
 
 const int SURFACE_CAPACITY = 128;  // surfaces of both trains together that the device's uniform block holds
 const int KNOWN_SURFACES = 64;     // of them, that a kernel can have as constants (device/prescription.glsl)
@@ -205,6 +208,41 @@ struct SourceFrame {
     VKFV_SOURCE_FRAME_FIELDS(VKFV_DECLARE)
 };
 
+const uint PATTERN_GRATING = 0u;
+const uint PATTERN_CHECKERBOARD = 1u;
+const uint PATTERN_STAR = 2u;
+const uint PATTERN_GRID = 3u; // of an image's pixels, or of noise
+
+// Factors over a plane: pattern.glsl. Of the specimen's reflectance with FEATURE_REFLECTANCE_MAP, of the light in the
+// plane of the field stop with FEATURE_LIGHT_FIELD.
+#define VKFV_PATTERN_FIELDS(FIELD) \
+    FIELD(real, lowest)   /* factors, of the pattern's values 0 and 1 */ \
+    FIELD(real, highest) \
+    FIELD(real, centre_x) /* the pattern's origin, mm */ \
+    FIELD(real, centre_y) \
+    FIELD(real, axis_x)   /* unit vector along the pattern's x */ \
+    FIELD(real, axis_y) \
+    FIELD(real, per_mm)   /* periods of a grating, squares of a checkerboard, points of a grid; a star's: 1 */ \
+    FIELD(int, cycles)    /* of a star, in one turn */ \
+    FIELD(int, columns)   /* of a grid */ \
+    FIELD(int, rows) \
+    FIELD(uint, square)   /* 1: a grating or star of two levels, 0: sinusoidal */ \
+    FIELD(uint, of_light) /* whose grid it is: 1 the light field's, 0 the specimen's */ \
+    FIELD(uint, kind)     /* PATTERN_* */
+struct Pattern {
+    VKFV_PATTERN_FIELDS(VKFV_DECLARE)
+};
+
+// What the plane of the illumination's field stop lets through: light_field.glsl. In the frame of that surface.
+#define VKFV_LIGHT_FIELD_FIELDS(FIELD) \
+    FIELD(Pattern, pattern) \
+    FIELD(real, falloff)     /* 1/mm^2, of the square of the distance from the brightest place */ \
+    FIELD(real, brightest_x) /* mm */ \
+    FIELD(real, brightest_y)
+struct LightField {
+    VKFV_LIGHT_FIELD_FIELDS(VKFV_DECLARE)
+};
+
 // The chain that light goes through, but for the specimen and the scan's position. Its gate is the pupil's outline, made
 // linear and wide enough that no ray outside it reaches the detector:
 //   |gate_position * (x, y) + gate_slope * (dx/dz, dy/dz)| <= gate_radius,  x, y in mm on the specimen's top plane.
@@ -226,6 +264,7 @@ struct SourceFrame {
     FIELD(real, specimen_index)      /* of the medium over the specimen, at x = 0 */ \
     FIELD(Dispersion, specimen_dispersion) \
     FIELD(RingLight, ring) \
+    FIELD(LightField, light_field) \
     FIELD(int, spectral_bins) \
     FIELD(int, illumination_first)   /* indices into the surfaces */ \
     FIELD(int, illumination_count) \
@@ -274,29 +313,6 @@ struct Material {
     VKFV_MATERIAL_FIELDS(VKFV_DECLARE)
 };
 
-const uint REFLECTANCE_GRATING = 0u;
-const uint REFLECTANCE_CHECKERBOARD = 1u;
-const uint REFLECTANCE_STAR = 2u;
-const uint REFLECTANCE_GRID = 3u; // of an image's pixels, or of noise
-
-// What varies the reflectance over the specimen: reflectance.glsl. Read with FEATURE_REFLECTANCE_MAP alone.
-#define VKFV_REFLECTANCE_MAP_FIELDS(FIELD) \
-    FIELD(real, lowest)   /* factors, of the pattern's values 0 and 1 */ \
-    FIELD(real, highest) \
-    FIELD(real, centre_x) /* the pattern's origin, mm */ \
-    FIELD(real, centre_y) \
-    FIELD(real, axis_x)   /* unit vector along the pattern's x */ \
-    FIELD(real, axis_y) \
-    FIELD(real, per_mm)   /* periods of a grating, squares of a checkerboard, points of a grid; a star's: 1 */ \
-    FIELD(int, cycles)    /* of a star, in one turn */ \
-    FIELD(int, columns)   /* of a grid */ \
-    FIELD(int, rows) \
-    FIELD(uint, square)   /* 1: a grating or star of two levels, 0: sinusoidal */ \
-    FIELD(uint, kind)     /* REFLECTANCE_* */
-struct ReflectanceMap {
-    VKFV_REFLECTANCE_MAP_FIELDS(VKFV_DECLARE)
-};
-
 // The specimen in its own frame: x and y across, +z towards the objective, mm.
 #define VKFV_SPECIMEN_RECORD_FIELDS(FIELD) \
     FIELD(real, x_min)             /* footprint */ \
@@ -314,7 +330,7 @@ struct ReflectanceMap {
     FIELD(real, shape_parameter_3) \
     FIELD(real, lipschitz)         /* bound of the analytic function's slope */ \
     FIELD(Material, material) \
-    FIELD(ReflectanceMap, reflectance) \
+    FIELD(Pattern, reflectance) \
     FIELD(int, columns)            /* points of the height field or lattice; 0 x 0: none */ \
     FIELD(int, rows) \
     FIELD(int, max_bounces)        /* scatter events permitted */ \

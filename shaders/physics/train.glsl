@@ -90,6 +90,21 @@ VKFV_FUNCTION TrainResult trace_surface(Surface surface, int index, TrainResult 
     return result;
 }
 
+// As it was, but for what a pattern at the surface takes of the light that has come through.
+VKFV_SCENE_FUNCTION VKFV_FUNCTION TrainResult pass_light_field(VKFV_SCENE_PARAMETER Surface surface, int index,
+                                                               TrainResult behind, Light light) {
+    TrainResult result = behind;
+    if ((features(VKFV_SCENE_ALONE) & FEATURE_LIGHT_FIELD) != 0u) {
+        real share = light_field_at(VKFV_SCENE surface, behind.ray.position.x, behind.ray.position.y);
+        result.transmitted = behind.transmitted * share;
+        if (behind.status == PATH_ALIVE && result.transmitted < light.survival) {
+            result.status = PATH_INTERFACE_LOSS;
+            result.surface = index;
+        }
+    }
+    return result;
+}
+
 // ray enters in the frame of the first vertex (its z there, usually negative), its direction scaled by `index`, that of
 // the medium in front of the train. The train is gone through to its end for every ray: neighbouring rays seldom all
 // end, and a loop that all leave together reads each surface once for all of them.
@@ -108,7 +123,9 @@ VKFV_SCENE_FUNCTION VKFV_FUNCTION TrainResult trace_train_by_loop(VKFV_SCENE_PAR
                                                                   real index, bool apertures, Light light) {
     TrainResult result = enter_train(ray, index);
     for (int i = first; i < first + count; ++i) {
-        result = trace_surface(surface_at(VKFV_SCENE i), i, result, apertures, light, features(VKFV_SCENE_ALONE));
+        Surface surface = surface_at(VKFV_SCENE i);
+        result = trace_surface(surface, i, result, apertures, light, features(VKFV_SCENE_ALONE));
+        result = pass_light_field(VKFV_SCENE surface, i, result, light);
     }
     return result;
 }
@@ -125,6 +142,7 @@ VKFV_SCENE_FUNCTION VKFV_FUNCTION TrainResult trace_train(VKFV_SCENE_PARAMETER i
             Surface surface = surface_at(known_first + k); \
             VKFV_KNOW_SURFACE(k) \
             result = trace_surface(surface, known_first + k, result, apertures, light, features()); \
+            result = pass_light_field(surface, known_first + k, result, light); \
         } \
     }
     VKFV_EACH_KNOWN_SURFACE(VKFV_PASS_SURFACE)

@@ -46,6 +46,13 @@ struct Sweep {
     std::vector<Parameter> parameters;
 };
 
+// What the plane of the illumination's field stop lets through.
+struct LightFieldDescription {
+    specimen::Reflectance pattern;
+    double falloff = 0;      // 1/mm^2, of the square of the distance from the brightest place
+    glm::dvec2 brightest{0}; // mm
+};
+
 // Where a stack is evaluated. Automatic: on the device that traces, if it has cores of its own.
 enum class EvaluateOn { automatic, host, device };
 
@@ -61,7 +68,8 @@ enum class EvaluateOn { automatic, host, device };
 struct Configuration : ReadKeys {
     std::filesystem::path file;
     optics::GlassCatalog glasses = optics::GlassCatalog::builtin(); // with the file's glass_catalogs
-    optics::InstrumentDescription instrument;
+    optics::InstrumentDescription instrument;                       // without the light's field
+    std::optional<LightFieldDescription> light_field;
     std::optional<camera::CameraOptions> camera; // none: images are light
     std::optional<specimen::Description> specimen;
     std::optional<scan::ScanPlan> scan;

@@ -145,6 +145,9 @@ void read_illumination(const TomlTable& root, Configuration& configuration) {
     instrument.field_stop_radius = section.number_if_given(field_stop);
     instrument.illumination_aperture_radius = section.number_if_given(aperture);
     instrument.illumination_to_objective = section.number_if_given(objective_distance);
+    if (const auto field = root.table_or_empty("illumination").optional_table("field")) {
+        configuration.light_field = read_light_field(*field, configuration);
+    }
 }
 
 void read_beam_splitter(const TomlTable& root, Configuration& configuration) {

@@ -183,9 +183,9 @@ void add_to_schema(Json& properties, const KeyTable& table, const Key& key) {
 const std::vector<const KeyTable*>& key_tables() {
     static const std::vector<const KeyTable*> tables = [] {
         std::vector<const KeyTable*> all = {
-            &root_keys(),        &source_keys(),       &spectrum_keys(),  &illumination_keys(), &beam_splitter_keys(),
-            &fold_mirror_keys(), &interfaces_keys(),   &objective_keys(), &cover_glass_keys(),  &tube_lens_keys(),
-            &detector_keys(),    &mesh_element_keys(), &camera_keys()};
+            &root_keys(),          &source_keys(),      &spectrum_keys(),     &illumination_keys(), &light_field_keys(),
+            &beam_splitter_keys(), &fold_mirror_keys(), &interfaces_keys(),   &objective_keys(),    &cover_glass_keys(),
+            &tube_lens_keys(),     &detector_keys(),    &mesh_element_keys(), &camera_keys()};
         const auto specimens = specimen_key_tables();
         all.insert(all.end(), specimens.begin(), specimens.end());
         all.insert(all.end(), {&scan_keys(), &stage_keys(), &trace_keys(), &topography_keys(), &diffraction_keys(),

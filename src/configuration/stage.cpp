@@ -33,6 +33,11 @@ const NumberKey drift("drift_um_per_s", NumberRange::finite(), 0.0,
 const NumbersKey vibration("vibration_um", NumberRange::at_least(0), Default::in_words("none"),
                            "Amplitudes of sines along the axis, of random phases; no scale sees them.");
 const NumbersKey frequency("vibration_hz", NumberRange::positive(), Default::in_words("none"), "Their frequencies.");
+const NumbersKey spectrum_at("vibration_spectrum_hz", NumberRange::at_least(0), Default::in_words("none"),
+                             "Frequencies, ascending, at which the spectrum of further vibration is known.");
+const NumbersKey spectrum("vibration_spectrum_um2_per_hz", NumberRange::at_least(0), Default::in_words("none"),
+                          "One-sided power spectral density there; linear between, nothing beyond. The root of its "
+                          "integral is the vibration's root mean square.");
 const NumbersKey lateral_drift("lateral_drift_um_per_s", NumberRange::finite(), Default::in_words("none"),
                                "[x, y], of the specimen.");
 const NumbersKey tilt("tilt_deg", NumberRange::between(-45, 45), Default::in_words("none"),
@@ -58,7 +63,7 @@ const ChoiceKey<Positions> positions = without_influence(
                          {{Positions::nominal, "nominal", "heights by the positions asked for"},
                           {Positions::read, "read", "by what the scale read: without jitter and backlash"}},
                          Positions::nominal, "Which positions the heights are told by."));
-const IntegerKey stage_seed("seed", 0, largest_seed, 1, "Of jitter, readings, phases and the lamp.");
+const IntegerKey stage_seed("seed", 0, largest_seed, 1, "Of jitter, readings, vibrations and the lamp.");
 
 glm::dvec2 pair(const Section& section, const NumbersKey& key) {
     if (!section.has(key)) {
@@ -100,10 +105,13 @@ const KeyTable& stage_keys() {
                    "true.",
         .subject = "a stage",
         .kind = "",
-        .keys = {&scale_error, &linearity_at, &linearity,     &periodic_amplitude, &periodic_period, &periodic_phase,
-                 &jitter,      &backlash,     &drift,         &vibration,          &frequency,       &lateral_drift,
-                 &tilt,        &runout,       &runout_period, &light_noise,        &direction,       &interval,
-                 &exposure,    &moments,      &reading_noise, &positions,          &stage_seed}};
+        .keys = {&scale_error,     &linearity_at,   &linearity,     &periodic_amplitude,
+                 &periodic_period, &periodic_phase, &jitter,        &backlash,
+                 &drift,           &vibration,      &frequency,     &spectrum_at,
+                 &spectrum,        &lateral_drift,  &tilt,          &runout,
+                 &runout_period,   &light_noise,    &direction,     &interval,
+                 &exposure,        &moments,        &reading_noise, &positions,
+                 &stage_seed}};
     return table;
 }
 
@@ -134,6 +142,14 @@ void read_stage(const TomlTable& root, Configuration& configuration) {
     auto [amplitudes, frequencies] = lists(section, vibration, frequency);
     for (std::size_t k = 0; k < amplitudes.size(); ++k) {
         stage.vibrations.push_back({.amplitude = from_um(amplitudes[k]), .frequency = frequencies[k]});
+    }
+    auto [at, densities] = lists(section, spectrum_at, spectrum);
+    if (!std::ranges::is_sorted(at, std::less_equal<>()) || at.size() == 1) {
+        section.fail(spectrum_at, "two or more ascending numbers", "Order the table by frequency.");
+    }
+    stage.vibration_frequencies = std::move(at);
+    for (const double density : densities) {
+        stage.vibration_densities.push_back(density * mm_per_um * mm_per_um);
     }
     stage.lateral_drift = pair(section, lateral_drift) * mm_per_um;
     const glm::dvec2 degrees = pair(section, tilt);

@@ -4,6 +4,7 @@
 #include "core/section.hpp"
 #include "core/units.hpp"
 #include "images/image_file.hpp"
+#include "measurement/light_field.hpp"
 #include "measurement/specimen_view.hpp"
 
 #include <fmt/format.h>
@@ -12,6 +13,7 @@
 #include <algorithm>
 #include <cmath>
 #include <stdexcept>
+#include <utility>
 #include <vector>
 
 namespace vkfv::measurement {
@@ -19,7 +21,8 @@ namespace vkfv::measurement {
 namespace {
 
 optics::Instrument assemble_at_its_place(const Configuration& configuration,
-                                         const optics::InstrumentDescription& description) {
+                                         optics::InstrumentDescription description) {
+    description.light_field = make_light_field(configuration);
     optics::Instrument instrument;
     // The optics know keys, the configuration knows where they stand.
     at_its_place(configuration, {.file = configuration.file}, [&] { instrument = optics::assemble(description); });
@@ -80,7 +83,7 @@ optics::Instrument assemble_instrument(const Configuration& configuration, const
     for (auto& source : description.further_sources) {
         source.ring.value().lit_radius = lit_radius;
     }
-    auto instrument = assemble_at_its_place(configuration, description);
+    auto instrument = assemble_at_its_place(configuration, std::move(description));
     for (const auto& warning : instrument.warnings) {
         spdlog::warn(warning);
     }

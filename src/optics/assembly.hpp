@@ -90,6 +90,7 @@ struct Illumination {
     double to_objective = 0;        // these as in FirstOrder
     double source_magnification = 0;
     double pupil_radius_in_source = 0;
+    double field_stop_magnification = 0;
     std::vector<std::string> warnings;
 };
 Illumination place_ring(const InstrumentDescription& description, const AxialLayout& layout,

@@ -155,15 +155,17 @@ JoinedTrain join_train(const InstrumentDescription& description, const AxialLayo
     return train;
 }
 
-// What of the detector's field the field stop's image leaves dark.
-std::vector<std::string> warning_of_field_stop(const AxialLayout& layout, const std::vector<Surface>& train,
-                                               const Surface& stop, std::size_t stop_index) {
+// Of the field stop's image on the specimen.
+double field_stop_magnification(const AxialLayout& layout, const std::vector<Surface>& train, std::size_t stop_index) {
     const RayTransfer before = transfer_to_surface(train, stop_index);
     const RayTransfer whole =
         transfer_of_train(train).then(free_space(layout.working_distance, layout.object_index.centre));
-    // whole = after * before, so after = whole * before^-1; its first element is the stop's
-    // magnification.
-    const double magnification = whole.a * before.d - whole.b * before.c;
+    // whole = after * before, so after = whole * before^-1; its first element is the stop's magnification.
+    return whole.a * before.d - whole.b * before.c;
+}
+
+// What of the detector's field the field stop's image leaves dark.
+std::vector<std::string> warning_of_field_stop(const AxialLayout& layout, const Surface& stop, double magnification) {
     const double lit_radius = std::abs(magnification) * std::sqrt(stop.semi_diameter_squared);
     if (!(lit_radius < layout.field_half_diagonal)) {
         return {};
@@ -223,16 +225,24 @@ Illumination place_illuminator(const InstrumentDescription& description, const A
             result.illuminator.begin(),
             illumination_aperture(layout, result.source_pose, *description.illumination_aperture_radius));
     }
+    const auto field_stop = surface_with_role(result.illuminator, SurfaceRole::field_stop);
+    if (description.light_field) {
+        if (!field_stop) {
+            refuse("illumination.field", prescribed.name, "an illuminator with a field stop, in whose plane it stands",
+                   "Take another prescription, or give a surface of it role = \"field stop\".", prescribed.file);
+        }
+        result.illuminator[*field_stop].surface.flags |= physics::f64::SURFACE_LIGHT_FIELD;
+    }
     JoinedTrain train = join_train(description, layout, imaging, result.illuminator, result.folds, entry);
     result.train = std::move(train.surfaces);
     result.surfaces_before_splitter = train.before_splitter;
 
     const std::vector<Surface> surfaces = surfaces_of(result.train);
-    const auto field_stop = surface_with_role(result.illuminator, SurfaceRole::field_stop);
     if (field_stop) {
+        result.field_stop_magnification = field_stop_magnification(layout, surfaces, *field_stop);
         const Surface& stop = result.illuminator[*field_stop].surface;
         if ((stop.flags & physics::f64::SURFACE_CLIPPED) != 0) {
-            std::ranges::move(warning_of_field_stop(layout, surfaces, stop, *field_stop),
+            std::ranges::move(warning_of_field_stop(layout, stop, result.field_stop_magnification),
                               std::back_inserter(result.warnings));
         }
     }

@@ -40,7 +40,8 @@ FirstOrder first_order_of(const InstrumentDescription& description, const AxialL
             .field_corner = layout.field_corner,
             .pupil_radius_in_source = illumination.pupil_radius_in_source,
             .illumination_to_objective = illumination.to_objective,
-            .source_magnification = illumination.source_magnification};
+            .source_magnification = illumination.source_magnification,
+            .field_stop_magnification = illumination.field_stop_magnification};
 }
 
 physics::f64::Instrument constants_of(const InstrumentDescription& description, const AxialLayout& layout,
@@ -70,6 +71,7 @@ physics::f64::Instrument constants_of(const InstrumentDescription& description, 
     constants.gate_radius = gate_radius(imaging.imaging, 1.05 * layout.field_half_diagonal,
                                         measured.best_focus_offset - description.greatest_defocus,
                                         measured.best_focus_offset + description.greatest_defocus);
+    constants.light_field = description.light_field.value_or(LightField{}).record;
     constants.spectrum_centre = spectrum.centre();
     constants.spectrum_half_width = spectrum.half_width();
     constants.spectral_bins = static_cast<int>(source.spectrum.value_or(spectrum).bins.size());
@@ -92,6 +94,7 @@ std::uint32_t features_of(const InstrumentDescription& description, const std::v
         const bool lossy_mirror = (surface.flags & SURFACE_MIRROR) != 0 && surface.reflectance < 1;
         features |= is_displaced(surface) ? FEATURE_PLACEMENT : 0u;
         features |= (surface.flags & SURFACE_IDEAL_LENS) != 0 ? FEATURE_IDEAL_LENS : 0u;
+        features |= (surface.flags & SURFACE_LIGHT_FIELD) != 0 ? FEATURE_LIGHT_FIELD | FEATURE_LOSSES : 0u;
         features |= (surface.flags & (SURFACE_FRESNEL | SURFACE_LAYER)) != 0 || lossy_mirror ? FEATURE_LOSSES : 0u;
     }
     return features;
@@ -126,6 +129,9 @@ Instrument reduce(const InstrumentDescription& description, const AxialLayout& l
     instrument.spectral_bins = description.source.spectrum.value_or(description.spectrum).bins;
     instrument.constants = constants_of(description, layout, imaging, measured, illumination);
     instrument.features = features_of(description, instrument.surfaces);
+    if ((instrument.features & physics::f64::FEATURE_LIGHT_FIELD) != 0) { // a ring light passes it by
+        instrument.light_field = description.light_field;
+    }
     instrument.first_order = first_order_of(description, layout, measured, illumination);
     instrument.flux = description.source.flux;
     instrument.fill_factor = description.fill_factor;

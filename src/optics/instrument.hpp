@@ -83,6 +83,7 @@ struct InstrumentDescription {
     std::optional<double> illumination_to_objective;    // last illumination vertex to the objective's last (back)
                                                         // vertex; none: the source is imaged into the pupil
     std::optional<double> field_stop_radius;            // none: the prescription's
+    std::optional<LightField> light_field;              // of the field stop's plane; none: it lets all through
     std::optional<double> illumination_aperture_radius; // of a stop at the source
     BeamSplitter splitter;
     std::vector<FoldMirror> fold_mirrors;
@@ -128,6 +129,7 @@ struct FirstOrder {
     double pupil_radius_in_source = 0;    // radius of source that fills the objective's pupil; 0: a ring light
     double illumination_to_objective = 0; // as resolved
     double source_magnification = 0;      // paraxial, of the source's image in the objective's pupil
+    double field_stop_magnification = 0;  // paraxial, signed, of the field stop's image on the specimen; 0: no stop
 };
 
 // What an element belongs to.
@@ -161,7 +163,8 @@ struct Instrument {
     std::vector<std::string> surface_names; // for the ledger: "illumination 3 (koehler 1)", ...
     std::vector<physics::f64::SpectralBin> spectral_bins;
     physics::f64::Instrument constants{};
-    std::uint32_t features = 0; // physics::FEATURE_*
+    std::uint32_t features = 0;            // physics::FEATURE_*
+    std::optional<LightField> light_field; // its record is among the constants too
     FirstOrder first_order;
     double flux = 1;                     // W, emitted over the hemisphere
     double fill_factor = 1;              // of the pixels
@@ -182,7 +185,7 @@ struct Instrument {
     std::vector<Instrument> further_lights; // the same instrument in the light of each further source
 
     std::vector<const Instrument*> lights() const; // one a source, this one first
-    TrainScene scene() const { return {surfaces, features, spectral_bins}; }
+    TrainScene scene() const { return {surfaces, features, spectral_bins, light_field ? &*light_field : nullptr}; }
     ImageSize detector_pixels() const { return {constants.detector_columns, constants.detector_rows}; }
 };
 

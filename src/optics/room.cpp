@@ -83,7 +83,8 @@ Room furnish(const Instrument& instrument) {
         radius = std::max(radius, free_radius(element, instrument.constants));
     }
     for (const optics::Element& placed : instrument.elements) {
-        if (placed.kind == Kind::stop && !is_limited(placed.surface)) {
+        const bool patterned = (placed.surface.flags & SURFACE_LIGHT_FIELD) != 0;
+        if (placed.kind == Kind::stop && !is_limited(placed.surface) && !patterned) {
             continue; // an open stop affects no ray
         }
         physics::f64::Element element{};

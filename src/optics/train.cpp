@@ -103,6 +103,9 @@ std::vector<PlacedSurface> reversed(const std::vector<PlacedSurface>& part) {
         }
         std::swap(surface.index_before, surface.index_after);
         std::swap(surface.dispersion_before, surface.dispersion_after);
+        if ((surface.flags & physics::f64::SURFACE_LIGHT_FIELD) != 0) {
+            surface.flags ^= physics::f64::SURFACE_TURNED;
+        }
     }
     return result;
 }

@@ -1,6 +1,7 @@
 // Prescriptions as surfaces that stand somewhere, and the trains of them that light goes through in sequence.
 #pragma once
 
+#include "core/grid.hpp"
 #include "optics/pose.hpp"
 #include "optics/prescription.hpp"
 #include "optics/spectrum.hpp"
@@ -61,16 +62,27 @@ void set_interface(physics::f64::Surface& surface, const Interfaces& interfaces,
 
 std::optional<std::size_t> surface_with_role(const std::vector<PlacedSurface>& part, SurfaceRole role);
 
+// What the plane of the illumination's field stop lets through, in the frame of that surface.
+struct LightField {
+    physics::f64::LightField record{};
+    Grid<float> points{}; // of a pattern with a grid
+};
+
 // The scene that physics::trace_train needs on the host: monochromatic light unless bins are given.
 struct TrainScene {
     std::span<const physics::f64::Surface> surfaces;
     std::uint32_t present = physics::f64::FEATURE_PLACEMENT | physics::f64::FEATURE_LOSSES |
                             physics::f64::FEATURE_SPECTRUM | physics::f64::FEATURE_IDEAL_LENS;
     std::span<const physics::f64::SpectralBin> bins{};
+    const LightField* field = nullptr; // only with FEATURE_LIGHT_FIELD
 
     const physics::f64::Surface& surface_at(int index) const { return surfaces[static_cast<std::size_t>(index)]; }
     std::uint32_t features() const { return present; }
     const physics::f64::SpectralBin& spectral_bin(int index) const { return bins[static_cast<std::size_t>(index)]; }
+    const physics::f64::LightField& light_field() const { return field->record; }
+    double pattern_point(const physics::f64::Pattern& /*the light's*/, int column, int row) const {
+        return static_cast<double>(field->points(column, row));
+    }
 };
 
 // Through the whole train, from the entry's frame to the last vertex's. ray.direction is a unit vector; nothing is lost

@@ -12,6 +12,8 @@ namespace {
 
 // What random numbers are drawn for; vibrations count on from the last.
 enum Purpose : std::uint32_t { jitter, reading, lamp, moment, phase };
+// A spectrum is made of this many sines of equal power, whose sum is all but normal: its excess is -1.5 over them.
+constexpr std::size_t lines_of_spectrum = 256;
 constexpr std::uint32_t of_stage = 3; // keeps these counters apart from those of paths and lattices
 
 physics::f64::Draws draws_of(std::uint32_t seed, std::uint32_t image, std::uint32_t purpose) {
@@ -42,7 +44,36 @@ bool Stage::still() const {
 }
 
 StageMotion::StageMotion(const Stage& stage, std::vector<double> positions)
-    : stage_(stage), positions_(std::move(positions)) {}
+    : stage_(stage), positions_(std::move(positions)) {
+    add_spectrum();
+}
+
+// Each line stands somewhere in its own part of the power, so that no two seeds have the same frequencies. Amplitudes
+// add up to the spectrum's integral.
+void StageMotion::add_spectrum() {
+    const auto& f = stage_.vibration_frequencies;
+    const auto& density = stage_.vibration_densities;
+    std::vector<double> below = {0}; // power up to each point
+    for (std::size_t k = 1; k < f.size(); ++k) {
+        below.push_back(below.back() + 0.5 * (density[k - 1] + density[k]) * (f[k] - f[k - 1]));
+    }
+    if (!(below.back() > 0)) {
+        return;
+    }
+    const double a_line = below.back() / static_cast<double>(lines_of_spectrum);
+    for (std::size_t line = 0; line < lines_of_spectrum; ++line) {
+        const auto purpose = static_cast<std::uint32_t>(Purpose::phase + stage_.vibrations.size());
+        const double wanted = a_line * (static_cast<double>(line) + draws_of(stage_.seed, 0, purpose).u1);
+        const auto after = std::ranges::upper_bound(below, wanted);
+        const auto k = std::min(static_cast<std::size_t>(after - below.begin()), f.size() - 1);
+        // Within a trapezium the power grows with the square: its root as one that loses no digits.
+        const double rest = wanted - below[k - 1];
+        const double slope = (density[k] - density[k - 1]) / (f[k] - f[k - 1]);
+        const double root = std::sqrt(std::max(density[k - 1] * density[k - 1] + 2 * slope * rest, 0.0));
+        const double beyond = rest > 0 ? 2 * rest / (density[k - 1] + root) : 0;
+        stage_.vibrations.push_back({.amplitude = std::sqrt(2 * a_line), .frequency = f[k - 1] + beyond});
+    }
+}
 
 int StageMotion::moments() const {
     return !stage_.vibrations.empty() && stage_.exposure_time > 0 ? stage_.moments : 1;

@@ -34,6 +34,9 @@ struct Stage {
         bool operator==(const Vibration&) const = default;
     };
     std::vector<Vibration> vibrations; // of random phases
+    // One-sided power spectral density of further vibration: linear between its points, nothing beyond.
+    std::vector<double> vibration_frequencies; // Hz, ascending
+    std::vector<double> vibration_densities;   // mm^2/Hz
 
     // Of the specimen at right angles to the axis.
     glm::dvec2 lateral_drift{0}; // mm/s
@@ -77,12 +80,13 @@ class StageMotion {
     double light(std::uint32_t image) const;
 
   private:
+    void add_spectrum();
     double time_of(std::uint32_t image) const;
     double settled(double nominal, std::uint32_t image) const; // by jitter and backlash: what the scale should read
     double normal(std::uint32_t image, std::uint32_t purpose) const;
     double uniform(std::uint32_t image, std::uint32_t purpose) const;
 
-    Stage stage_;
+    Stage stage_; // its spectrum as vibrations too
     std::vector<double> positions_;
 };
 

@@ -14,10 +14,10 @@
 namespace vkfv::specimen {
 namespace {
 
-using physics::f64::REFLECTANCE_CHECKERBOARD;
-using physics::f64::REFLECTANCE_GRATING;
-using physics::f64::REFLECTANCE_GRID;
-using physics::f64::REFLECTANCE_STAR;
+using physics::f64::PATTERN_CHECKERBOARD;
+using physics::f64::PATTERN_GRATING;
+using physics::f64::PATTERN_GRID;
+using physics::f64::PATTERN_STAR;
 
 // The refusals of lengths.hpp, for keys of this table.
 void require_share(const char* key, double value, const SourceLocation& where) {
@@ -79,7 +79,7 @@ Grid<float> noise_values(const Reflectance& noise, const Rectangle& footprint, c
     }
     const auto count = static_cast<double>(values.values.size());
     const double mean = sum / count;
-    spdlog::info("reflectance: noise on {} x {} points, mean {:.4g}, standard deviation {:.4g}, {:.3g} % clipped",
+    spdlog::info("pattern: noise on {} x {} points, mean {:.4g}, standard deviation {:.4g}, {:.3g} % clipped",
                  values.columns, values.rows, mean, std::sqrt(std::max(0.0, squares / count - mean * mean)),
                  100.0 * static_cast<double>(clipped) / count);
     return values;
@@ -119,21 +119,26 @@ ReflectanceMap make_reflectance_map(const Reflectance& reflectance, const Rectan
                   .columns = 0,
                   .rows = 0,
                   .square = reflectance.square ? 1u : 0u,
-                  .kind = REFLECTANCE_GRID};
+                  .of_light = 0,
+                  .kind = PATTERN_GRID};
     switch (reflectance.kind) {
+    case even:
+        map.record.kind = PATTERN_GRATING;
+        map.record.lowest = map.record.highest;
+        return map;
     case grating:
         require_length("period_um", reflectance.period, where);
-        map.record.kind = REFLECTANCE_GRATING;
+        map.record.kind = PATTERN_GRATING;
         map.record.per_mm = 1 / reflectance.period;
         return map;
     case checkerboard:
         require_length("side_um", reflectance.side, where);
-        map.record.kind = REFLECTANCE_CHECKERBOARD;
+        map.record.kind = PATTERN_CHECKERBOARD;
         map.record.per_mm = 1 / reflectance.side;
         return map;
     case star:
         require(reflectance.cycles >= 1, where, "reflectance.cycles", reflectance.cycles, "at least 1");
-        map.record.kind = REFLECTANCE_STAR;
+        map.record.kind = PATTERN_STAR;
         return map;
     case noise:
         map.values = noise_values(reflectance, footprint, where);

@@ -10,9 +10,9 @@
 
 namespace vkfv::specimen {
 
-// What a configuration says of it. Lengths in mm, angles in rad, specimen frame.
+// What a configuration says of it. Lengths in mm, angles in rad, specimen frame. Of light: in the plane that it passes.
 struct Reflectance {
-    enum class Kind { grating, checkerboard, star, noise, image };
+    enum class Kind { even, grating, checkerboard, star, noise, image };
     Kind kind = Kind::grating;
     double lowest = 0; // factors of the material's reflectance, in [0, 1]; not of noise
     double highest = 1;
@@ -35,7 +35,7 @@ struct Reflectance {
 
 // The map as the trace takes it: shaders/physics/reflectance.glsl.
 struct ReflectanceMap {
-    physics::f64::ReflectanceMap record{};
+    physics::f64::Pattern record{};
     Grid<float> values{}; // of a grid, in [0, 1]; row 0 at the lowest y
 };
 
@@ -44,10 +44,10 @@ struct Rectangle {
     double x_min = 0, y_min = 0, x_max = 0, y_max = 0;
 };
 
-// footprint: the specimen's, which noise covers; beyond an image's edge its pixels go on mirrored. Noise is a normal
-// random field with the autocorrelation exp(-(r/l)^2), l the correlation length, clipped; its bits depend on its
-// numbers and the footprint alone. Throws InputError (keys of [specimen.reflectance]) for values that do not fit,
-// pixels outside [0, 1] and missing or damaged files. where: of the [specimen] table.
+// even: 1 everywhere. footprint: the specimen's, which noise covers; beyond an image's edge its pixels go on mirrored.
+// Noise is a normal random field with the autocorrelation exp(-(r/l)^2), l the correlation length, clipped; its bits
+// depend on its numbers and the footprint alone. Throws InputError (keys of [specimen.reflectance]) for values that do
+// not fit, pixels outside [0, 1] and missing or damaged files. where: of the [specimen] table.
 ReflectanceMap make_reflectance_map(const Reflectance& reflectance, const Rectangle& footprint,
                                     const SourceLocation& where);
 

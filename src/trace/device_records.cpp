@@ -48,6 +48,8 @@ std::uint32_t to_float(std::uint32_t number) {
 VKFV_TO_FLOAT(Dispersion, VKFV_DISPERSION_FIELDS)
 VKFV_TO_FLOAT(RingLight, VKFV_RING_LIGHT_FIELDS)
 VKFV_TO_FLOAT(SpectralBin, VKFV_SPECTRAL_BIN_FIELDS)
+VKFV_TO_FLOAT(Pattern, VKFV_PATTERN_FIELDS)
+VKFV_TO_FLOAT(LightField, VKFV_LIGHT_FIELD_FIELDS)
 
 physics::f32::Lobe to_float(const physics::f64::Lobe& record) {
     physics::f32::Lobe result{};
@@ -56,7 +58,6 @@ physics::f32::Lobe to_float(const physics::f64::Lobe& record) {
 }
 
 VKFV_TO_FLOAT(Material, VKFV_MATERIAL_FIELDS)
-VKFV_TO_FLOAT(ReflectanceMap, VKFV_REFLECTANCE_MAP_FIELDS)
 
 } // namespace
 

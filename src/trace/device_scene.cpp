@@ -43,6 +43,12 @@ ElementBuffers element_buffers(const vulkan::Device& device, const optics::Room&
     return {buffer_of(device, in_float(room.elements)), buffer_of(device, held), buffer_of(device, facets)};
 }
 
+vulkan::Buffer light_points_of(const vulkan::Device& device, const optics::Instrument& instrument) {
+    std::vector<float> points = instrument.light_field.value_or(optics::LightField{}).points.values;
+    points.resize(std::max<std::size_t>(points.size(), 1)); // a buffer holds something
+    return buffer_of(device, points);
+}
+
 } // namespace
 
 std::vector<vulkan::Box> boxes_of(const optics::Room& room) {
@@ -101,6 +107,7 @@ DeviceScene make_device_scene(const optics::Instrument& instrument, const specim
         parameters.emplace_back(*device, sizeof(kernels::Parameters), vulkan::Buffer::Memory::host);
     }
     vulkan::Buffer spectrum = buffer_of(*device, spectrum_block(instrument));
+    vulkan::Buffer light_points = light_points_of(*device, instrument);
     return {.device = std::move(device),
             .instrument = instrument,
             .seed = options.seed,
@@ -118,6 +125,7 @@ DeviceScene make_device_scene(const optics::Instrument& instrument, const specim
             .surfaces = std::move(surfaces),
             .parameters = std::move(parameters),
             .spectrum = std::move(spectrum),
+            .light_points = std::move(light_points),
             .elements = std::move(elements),
             .filter = std::move(filter),
             .cell_light = std::move(cell_light)};
@@ -143,7 +151,8 @@ void DeviceScene::clear_cell_light(vulkan::Commands& commands) const {
 std::vector<vulkan::Binding> DeviceScene::bindings(std::initializer_list<vulkan::Binding> further) const {
     std::vector<vulkan::Binding> all = {{kernels::BINDING_SURFACES, &surfaces},
                                         {kernels::BINDING_PARAMETERS, &parameters[slot]},
-                                        {kernels::BINDING_SPECTRUM, &spectrum}};
+                                        {kernels::BINDING_SPECTRUM, &spectrum},
+                                        {kernels::BINDING_LIGHT_POINTS, &light_points}};
     const auto of_specimen = device_specimen.bindings();
     all.insert(all.end(), of_specimen.begin(), of_specimen.end());
     if (elements) {
@@ -159,7 +168,8 @@ std::vector<vulkan::BindingDeclaration> DeviceScene::declarations(std::initializ
     using enum vulkan::BindingKind;
     std::vector<vulkan::BindingDeclaration> all = {{kernels::BINDING_SURFACES, uniform_buffer},
                                                    {kernels::BINDING_PARAMETERS, uniform_buffer},
-                                                   {kernels::BINDING_SPECTRUM, uniform_buffer}};
+                                                   {kernels::BINDING_SPECTRUM, uniform_buffer},
+                                                   {kernels::BINDING_LIGHT_POINTS, storage_buffer}};
     const auto of_specimen = device_specimen.declarations();
     all.insert(all.end(), of_specimen.begin(), of_specimen.end());
     if (elements) {

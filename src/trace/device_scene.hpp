@@ -78,6 +78,7 @@ struct DeviceScene {
     std::vector<vulkan::Buffer> parameters; // a slot each: `constants` as they were set
     std::size_t slot = 0;                   // set last
     vulkan::Buffer spectrum;
+    vulkan::Buffer light_points;               // of the light field's grid
     std::optional<ElementBuffers> elements;    // only for non-sequential paths
     std::optional<optics::PupilFilter> filter; // only for images as waves make them, with the light sorted for it
     std::optional<vulkan::Buffer> cell_light;

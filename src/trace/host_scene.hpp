@@ -17,7 +17,11 @@ struct HostScene {
     physics::f64::Hit specimen_hit(physics::f64::real3 origin, physics::f64::real3 direction) const {
         return intersector->hit(origin, direction);
     }
-    double reflectance_at(int column, int row) const { return intersector->reflectance_at(column, row); }
+    physics::f64::LightField light_field() const { return trains.light_field(); }
+    double pattern_point(const physics::f64::Pattern& pattern, int column, int row) const {
+        return pattern.of_light != 0 ? trains.pattern_point(pattern, column, row)
+                                     : intersector->reflectance_at(column, row);
+    }
     const physics::f64::Element& element_at(int index) const { return room->elements[static_cast<std::size_t>(index)]; }
     const physics::f64::Facet& facet_at(int index) const { return room->facets[static_cast<std::size_t>(index)]; }
     physics::f64::ElementHit nearest_element(physics::f64::real3 origin, physics::f64::real3 direction,

@@ -42,7 +42,7 @@ const char* name_of(Status status) {
     case Status::totally_reflected:
         return "totally reflected";
     case Status::lost_in_reflection:
-        return "lost in reflection";
+        return "lost in reflection"; // or absorbed there: by a mirror, or a pattern of light
     case Status::not_aimed_at:
         return "not aimed at";
     case Status::splitter_towards_specimen:

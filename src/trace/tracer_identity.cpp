@@ -90,10 +90,12 @@ std::string instrument_digest(const optics::Instrument& instrument) {
         surfaces.push_back(to_float(surface));
     }
     const auto spectrum = spectrum_block(instrument);
+    const auto points = instrument.light_field.value_or(optics::LightField{}).points.values;
     return Digest()
         .add_values(std::span<const physics::f32::Instrument>(&constants, 1))
         .add_values(std::span<const physics::f32::Surface>(surfaces))
         .add_values(std::span<const physics::f32::SpectralBin>(spectrum))
+        .add_values(std::span<const float>(points))
         .text();
 }
 

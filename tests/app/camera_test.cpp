@@ -5,6 +5,8 @@
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
 
+#include <algorithm>
+#include <cmath>
 #include <filesystem>
 
 namespace vkfv::test {
@@ -82,6 +84,30 @@ TEST(CameraStack, OtherSeedsMakeOtherImagesAndNoCameraMakesLight) {
     EXPECT_THAT(image("c.toml", {"--set", "camera.bit_depth=8", "--set", "camera.gain_dn_per_e=0.02", "--set",
                                  "camera.offset_dn=8", "--set", "output.images=\"uint8\""}),
                 HasSubstr("grey values in DN"));
+}
+
+// The tutorial's microscope: ring light, rectangular chip, camera, ideal 20x/0.45. A piece of 8 um across the step, its
+// texture as rough as in the tutorial's table. The error may be 4 standard errors, and no more than a third of the
+// depth of field of 2.6 um.
+TEST(CameraStack, ThePieceOfOnesOwnMicroscopeHasItsStep) {
+    const auto folder = fresh_folder("own_microscope");
+    const auto example = (fs::path(VKFV_SOURCE_DIR) / "assets/stacks/own_microscope.toml").string();
+    std::vector<std::string> words = {"stack", example, "--out", "out", "--quiet", "--rays", "184320"};
+    for (const char* setting : {"detector.pixels=[48,40]", "specimen.size_mm=0.012", "scan.z_step_um=1",
+                                "specimen.roughness.ra_um=0.1", "specimen.roughness.kernel_um=0.4"}) {
+        words.insert(words.end(), {"--set", setting});
+    }
+    expect_success(run_program(words, folder));
+    const auto results = nlohmann::json::parse(read_file(folder / "out/results.json"));
+    const auto& step = results.at("dimensions").at(1);
+    EXPECT_EQ(step.at("name"), "step height, areal");
+    EXPECT_EQ(step.at("nominal"), 10);
+    EXPECT_NEAR(step.at("true"), 10, 0.05);
+    const double error = step.at("error"), standard_error = step.at("standard_error");
+    EXPECT_LT(std::abs(error), std::min(4 * standard_error, 0.9));
+    EXPECT_LT(standard_error, 0.3);
+    EXPECT_GT(results.at("measured_share"), 0.7);
+    EXPECT_THAT(read_file(folder / "out/images/z_0000.tif"), HasSubstr("values=grey values in DN"));
 }
 
 // The type of the files' pixels is no part of what is measured: whole grey values are the same in float32.

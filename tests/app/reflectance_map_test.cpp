@@ -1,4 +1,4 @@
-// [specimen.reflectance] as it is read, and a flat that focus is seen on by it alone.
+// [specimen.reflectance] and [illumination.field] as they are read, and flats that focus is seen on by them alone.
 #include "app/program.hpp"
 #include "configuration/configuration.hpp"
 #include "core/units.hpp"
@@ -76,6 +76,57 @@ TEST(ReflectanceMap, APrintedFlatIsMeasuredFlat) {
     EXPECT_LT(printed["parameters"]["Sz_um"]["measured"], 3);
     const auto bare = results("bare", {"--set", "specimen.reflectance.standard_deviation=0"});
     EXPECT_LT(bare["measured_share"], 0.05);
+}
+
+TEST(LightField, IsReadAndWrittenOut) {
+    const auto with = [](const std::string& lines) {
+        return read(replaced(small_configuration, "[objective]\n", "[illumination.field]\n" + lines + "[objective]\n"));
+    };
+    EXPECT_FALSE(read(small_configuration).light_field);
+    const auto grating = with("kind = \"grating\"\nperiod_um = 80\nangle_deg = 30\nlowest = 0.2\nfalloff = 0.1\n"
+                              "falloff_radius_mm = 0.5\nbrightest_x_mm = 0.1\nbrightest_y_mm = -0.2\n");
+    ASSERT_TRUE(grating.light_field);
+    EXPECT_EQ(grating.light_field->pattern.kind, specimen::Reflectance::Kind::grating);
+    EXPECT_EQ(grating.light_field->pattern.period, 0.08);
+    EXPECT_EQ(grating.light_field->pattern.lowest, 0.2);
+    EXPECT_NEAR(grating.light_field->falloff, 0.4, 1e-15); // 1/mm^2
+    EXPECT_EQ(grating.light_field->brightest, glm::dvec2(0.1, -0.2));
+    const auto even = with("kind = \"even\"\nfalloff = 0.3\nfalloff_radius_mm = 1\n");
+    EXPECT_EQ(even.light_field->pattern.kind, specimen::Reflectance::Kind::even);
+    for (const auto& configuration : {grating, even}) {
+        const auto again = read(configuration.canonical);
+        EXPECT_EQ(again.canonical, configuration.canonical);
+        EXPECT_EQ(again.identity, configuration.identity);
+    }
+    EXPECT_NE(grating.identity, even.identity);
+}
+
+// A mirror-like flat under a pattern that the illumination projects. Without it, the wrong twin, nothing is seen.
+TEST(LightField, AMirrorIsMeasuredFlatByAProjectedPattern) {
+    const auto folder = fresh_folder("smooth_flat");
+    const auto example = (std::filesystem::path(VKFV_SOURCE_DIR) / "assets/stacks/projected_pattern.toml").string();
+    const auto results = [&](const std::string& name, std::vector<std::string> further) {
+        std::vector<std::string> arguments = {"--stack",
+                                              example,
+                                              "--out",
+                                              name,
+                                              "--quiet",
+                                              "--rays",
+                                              "65536",
+                                              "--set",
+                                              "scan.z_step_um=2",
+                                              "--set",
+                                              "detector.pixels=32"};
+        arguments.insert(arguments.end(), further.begin(), further.end());
+        const auto result = run_program(arguments, folder);
+        EXPECT_EQ(result.exit_code, 0) << result.standard_error;
+        return nlohmann::json::parse(read_file(folder / name / "results.json"));
+    };
+    const auto projected = results("projected", {});
+    EXPECT_GT(projected["measured_share"], 0.98);
+    EXPECT_LT(projected["sq_measured_um"], 0.3);
+    const auto bare = results("bare", {"--set", "illumination.field.standard_deviation=0"});
+    EXPECT_LT(bare["measured_share"], 0.1);
 }
 
 } // namespace

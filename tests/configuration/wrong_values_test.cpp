@@ -29,6 +29,7 @@ const std::map<std::string, std::string> least = {
 // A table that stands in another.
 const std::map<std::string, std::string> least_around = {
     {"source.spectrum", "[source]\nradius_mm = 0.96\n"},
+    {"illumination.field", ""},
     {"specimen.roughness", "[specimen]\nkind = \"plane\"\nsize_mm = 0.2\n"},
     {"specimen.material", "[specimen]\nkind = \"plane\"\nsize_mm = 0.2\n"},
     {"specimen.material.lobe", "[specimen]\nkind = \"plane\"\nsize_mm = 0.2\n[specimen.material]\n"},
@@ -40,6 +41,10 @@ const std::map<std::string, std::string> least_around = {
 const std::map<std::string, std::string> beside_it = {
     {"specimen.font", "text = \"a\"\n"},
     {"specimen.text_width_mm", "text = \"a\"\n"},
+    {"illumination.field.falloff", "kind = \"even\"\n"},
+    {"illumination.field.falloff_radius_mm", "kind = \"even\"\n"},
+    {"illumination.field.brightest_x_mm", "kind = \"even\"\n"},
+    {"illumination.field.brightest_y_mm", "kind = \"even\"\n"},
     {"specimen.material.lobe.weight", "scatter = \"mirror\"\n"},
 };
 

@@ -101,10 +101,13 @@ TEST(StageErrors, NoiseOfTheFocusValueMovesHeightsAsLeastSquaresSays) {
     EXPECT_NEAR(height_noise({}, 0.003) / (1.062 * 0.003 * std::sqrt(width * step)), 1, 0.05);
 }
 
-// On a slope a vibration is seen as a ripple of its aliased frequency.
-TEST(StageErrors, AVibrationRipples) {
+// On a slope a vibration is seen as a ripple of its aliased frequency, whatever its phase: ten seeds.
+class Ripple : public testing::TestWithParam<std::uint32_t> {};
+
+TEST_P(Ripple, OfAVibrationHasItsAliasedFrequency) {
     std::mt19937 random(1);
     scan::Stage stage;
+    stage.seed = GetParam();
     stage.interval = 0.01;
     const double remaining = 3; // Hz, of 203 Hz looked at 100 times a second
     stage.vibrations = {{.amplitude = 0.05 * step, .frequency = 203}};
@@ -130,5 +133,7 @@ TEST(StageErrors, AVibrationRipples) {
     }
     EXPECT_NEAR(rest, 0.5 * (cosine * cosine + sine * sine), 0.1 * rest);
 }
+
+INSTANTIATE_TEST_SUITE_P(StageErrors, Ripple, testing::Range(1u, 11u));
 
 } // namespace vkfv::measurement

@@ -17,24 +17,25 @@ constexpr double two_pi = 6.283185307179586;
 
 // A map over a grid of its own, in either precision.
 struct Map {
-    f64::ReflectanceMap record{.lowest = 0,
-                               .highest = 1,
-                               .centre_x = 0,
-                               .centre_y = 0,
-                               .axis_x = 1,
-                               .axis_y = 0,
-                               .per_mm = 1,
-                               .cycles = 1,
-                               .columns = 0,
-                               .rows = 0,
-                               .square = 0,
-                               .kind = f64::REFLECTANCE_GRATING};
+    f64::Pattern record{.lowest = 0,
+                        .highest = 1,
+                        .centre_x = 0,
+                        .centre_y = 0,
+                        .axis_x = 1,
+                        .axis_y = 0,
+                        .per_mm = 1,
+                        .cycles = 1,
+                        .columns = 0,
+                        .rows = 0,
+                        .square = 0,
+                        .of_light = 0,
+                        .kind = f64::PATTERN_GRATING};
     std::vector<double> values{};
 
-    double reflectance_at(int column, int row) const {
+    double pattern_point(const f64::Pattern&, int column, int row) const {
         return values[static_cast<std::size_t>(row * record.columns + column)];
     }
-    double operator()(double x, double y) const { return f64::reflectance_factor(*this, record, x, y); }
+    double operator()(double x, double y) const { return f64::pattern_factor(*this, record, x, y); }
     void turn(double angle) {
         record.axis_x = std::cos(angle);
         record.axis_y = std::sin(angle);
@@ -43,22 +44,25 @@ struct Map {
 
 struct FloatMap {
     const Map* map;
-    float reflectance_at(int column, int row) const { return static_cast<float>(map->reflectance_at(column, row)); }
+    float pattern_point(const f32::Pattern&, int column, int row) const {
+        return static_cast<float>(map->pattern_point(map->record, column, row));
+    }
     float operator()(float x, float y) const {
         const auto& r = map->record;
-        const f32::ReflectanceMap record{static_cast<float>(r.lowest),
-                                         static_cast<float>(r.highest),
-                                         static_cast<float>(r.centre_x),
-                                         static_cast<float>(r.centre_y),
-                                         static_cast<float>(r.axis_x),
-                                         static_cast<float>(r.axis_y),
-                                         static_cast<float>(r.per_mm),
-                                         r.cycles,
-                                         r.columns,
-                                         r.rows,
-                                         r.square,
-                                         r.kind};
-        return f32::reflectance_factor(*this, record, x, y);
+        const f32::Pattern record{static_cast<float>(r.lowest),
+                                  static_cast<float>(r.highest),
+                                  static_cast<float>(r.centre_x),
+                                  static_cast<float>(r.centre_y),
+                                  static_cast<float>(r.axis_x),
+                                  static_cast<float>(r.axis_y),
+                                  static_cast<float>(r.per_mm),
+                                  r.cycles,
+                                  r.columns,
+                                  r.rows,
+                                  r.square,
+                                  r.of_light,
+                                  r.kind};
+        return f32::pattern_factor(*this, record, x, y);
     }
 };
 
@@ -125,7 +129,7 @@ TEST(Reflectance, a_square_grating_has_odd_harmonics) {
 
 TEST(Reflectance, a_checkerboard_has_its_corner_at_the_origin) {
     Map board;
-    board.record.kind = f64::REFLECTANCE_CHECKERBOARD;
+    board.record.kind = f64::PATTERN_CHECKERBOARD;
     board.record.per_mm = 10;
     board.record.lowest = 0.1;
     for (const Point p : points(1000, 1)) {
@@ -138,7 +142,7 @@ TEST(Reflectance, a_checkerboard_has_its_corner_at_the_origin) {
 
 TEST(Reflectance, a_star_is_a_cosine_of_the_azimuth) {
     Map star;
-    star.record.kind = f64::REFLECTANCE_STAR;
+    star.record.kind = f64::PATTERN_STAR;
     star.record.centre_x = 0.1;
     for (const int cycles : {1, 2, 7, 36, 144, 1024}) {
         star.record.cycles = cycles;
@@ -159,7 +163,7 @@ TEST(Reflectance, a_star_is_a_cosine_of_the_azimuth) {
 // (scipy.ndimage: d c b a | a b c d | d c b a), here counted by hand.
 TEST(Reflectance, a_grid_is_linear_between_its_points_and_goes_on_mirrored) {
     Map grid;
-    grid.record.kind = f64::REFLECTANCE_GRID;
+    grid.record.kind = f64::PATTERN_GRID;
     grid.record.per_mm = 10;
     grid.record.columns = 4;
     grid.record.rows = 3;
@@ -172,8 +176,8 @@ TEST(Reflectance, a_grid_is_linear_between_its_points_and_goes_on_mirrored) {
     const std::array<int, 12> columns = {3, 2, 1, 0, 0, 1, 2, 3, 3, 2, 1, 0}; // of the numbers -4 to 7
     const std::array<int, 12> rows = {2, 2, 1, 0, 0, 1, 2, 2, 1, 0, 0, 1};    // of -4 to 7
     const auto value = [&](int column, int row) {
-        return grid.reflectance_at(columns[static_cast<std::size_t>(column + 4)],
-                                   rows[static_cast<std::size_t>(row + 4)]);
+        return grid.pattern_point(grid.record, columns[static_cast<std::size_t>(column + 4)],
+                                  rows[static_cast<std::size_t>(row + 4)]);
     };
     for (int row = -4; row < 7; ++row) {
         for (int column = -4; column < 7; ++column) {
@@ -195,7 +199,7 @@ namespace {
 struct Scene {
     f64::uint present;
     f64::uint features() const { return present; }
-    double reflectance_at(int, int) const { return 0.25; }
+    double pattern_point(const f64::Pattern&, int, int) const { return 0.25; }
 };
 
 } // namespace
@@ -206,7 +210,7 @@ TEST(Reflectance, scales_every_lobe_and_nothing_without_a_map) {
     specimen.material.lobe_1.weight = 0.3;
     specimen.material.lobe_2.weight = 0.2;
     specimen.material.lobe_3.weight = 0.1;
-    specimen.reflectance = {0, 1, 0, 0, 1, 0, 1, 1, 1, 1, 0, f64::REFLECTANCE_GRID};
+    specimen.reflectance = {0, 1, 0, 0, 1, 0, 1, 1, 1, 1, 0, 0, f64::PATTERN_GRID};
     const auto with = f64::material_at(Scene{f64::FEATURE_REFLECTANCE_MAP}, specimen, {0.3, 0.4, 0});
     EXPECT_DOUBLE_EQ(with.lobe_0.weight, 0.1);
     EXPECT_DOUBLE_EQ(with.lobe_1.weight, 0.075);

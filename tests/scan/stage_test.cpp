@@ -9,6 +9,7 @@
 #include <cmath>
 #include <numeric>
 #include <set>
+#include <utility>
 
 namespace vkfv::scan {
 namespace {
@@ -148,6 +149,48 @@ TEST(Stage, vibrates) {
         means.push_back(blurring.mean(positions[image], static_cast<std::uint32_t>(image)).height - positions[image]);
     }
     EXPECT_NEAR(deviation(means), 0.0002 / std::sqrt(2.0) * 2 / pi, 2e-6);
+}
+
+// The mean square is the spectrum's integral, and what lies below 40 Hz the integral to there: of 10 to 20 Hz flat, and
+// of a triangle over 60 to 80 Hz, of which a quarter lies below 70 Hz. Of a band B looked at for T seconds the mean
+// square is known to 1 / sqrt(B T) of it: the bounds are four times that, of four seeds together.
+TEST(Stage, vibrates_by_a_spectrum) {
+    constexpr int images = 8192, seeds = 4;
+    constexpr double interval = 0.005; // 41 s, up to 100 Hz
+    const auto positions = steps(images, 0.0001);
+    Stage stage;
+    stage.interval = interval;
+    stage.vibration_frequencies = {10, 20, 20.001, 60, 80};
+    stage.vibration_densities = {2e-9, 2e-9, 0, 0, 4e-9};
+    EXPECT_FALSE(stage.still());
+    // G. Goertzel, Am. Math. Monthly 65 (1958) 34.
+    const auto power_below = [&](const std::vector<double>& found, double limit) {
+        double power = 0;
+        for (int bin = 1; bin / (images * interval) < limit; ++bin) {
+            const double twice_cosine = 2 * std::cos(2 * pi * bin / images);
+            double before = 0, last = 0;
+            for (const double value : found) {
+                before = std::exchange(last, value + twice_cosine * last - before);
+            }
+            power += 2 * (last * last + before * before - twice_cosine * last * before) / images / images;
+        }
+        return power;
+    };
+    const double low = 2e-8, high = 0.5 * 20 * 4e-9;
+    double total = 0, below_40 = 0, below_70 = 0;
+    for (std::uint32_t seed = 1; seed <= seeds; ++seed) {
+        stage.seed = seed;
+        const auto found = errors(StageMotion(stage, positions), positions);
+        total += std::pow(deviation(found), 2) / seeds;
+        below_40 += power_below(found, 40) / seeds;
+        below_70 += power_below(found, 70) / seeds;
+    }
+    EXPECT_NEAR(total / (low + high), 1, 0.07);
+    EXPECT_NEAR(below_40 / low, 1, 0.1);
+    EXPECT_NEAR((below_70 - below_40) / high, 0.25, 0.03);
+    Stage other = stage; // wrong twin: half of the power that the flat part has
+    other.vibration_densities = {0, 2e-9, 0, 0, 4e-9};
+    EXPECT_LT(power_below(errors(StageMotion(other, positions), positions), 40) / low, 0.7);
 }
 
 TEST(Stage, moves_the_specimen_aside) {

@@ -139,7 +139,7 @@ TEST_F(ReflectanceImage, is_taken_pixel_by_pixel_and_enters_the_digest) {
     ASSERT_TRUE(specimen.reflectance);
     EXPECT_EQ(specimen.reflectance->values.values, pixels.values);
     const auto map = record(specimen, 1).reflectance;
-    EXPECT_EQ(map.kind, physics::f64::REFLECTANCE_GRID);
+    EXPECT_EQ(map.kind, physics::f64::PATTERN_GRID);
     EXPECT_EQ(map.columns, 3);
     EXPECT_EQ(map.rows, 2);
     EXPECT_DOUBLE_EQ(map.per_mm, 250);

@@ -55,7 +55,8 @@ struct Bench {
     std::uint32_t features() const { return room.facets.empty() ? 0u : FEATURE_FACETS; }
     SpectralBin spectral_bin(int) const { return {}; }
     Hit specimen_hit(real3, real3) const { return {}; }
-    double reflectance_at(int, int) const { return 1; }
+    double pattern_point(const Pattern&, int, int) const { return 1; }
+    LightField light_field() const { return {}; }
     Element element_at(int index) const { return room.elements[static_cast<std::size_t>(index)]; }
     Facet facet_at(int index) const { return room.facets[static_cast<std::size_t>(index)]; }
     ElementHit nearest_element(real3 origin, real3 direction, PathPlace from) const {

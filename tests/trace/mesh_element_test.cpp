@@ -259,7 +259,8 @@ struct SingleBench {
     std::uint32_t features() const { return FEATURE_FACETS; }
     physics::f32::SpectralBin spectral_bin(int) const { return {}; }
     physics::f32::Hit specimen_hit(glm::vec3, glm::vec3) const { return {}; }
-    float reflectance_at(int, int) const { return 1; }
+    float pattern_point(const physics::f32::Pattern&, int, int) const { return 1; }
+    physics::f32::LightField light_field() const { return {}; }
     physics::f32::Element element_at(int index) const { return elements[static_cast<std::size_t>(index)]; }
     physics::f32::Facet facet_at(int index) const { return facets[static_cast<std::size_t>(index)]; }
     physics::f32::ElementHit nearest_element(glm::vec3 origin, glm::vec3 direction,

@@ -50,6 +50,12 @@ class Filler {
     void fill(Facet& record) {
         VKFV_FACET_FIELDS(VKFV_FILL)
     }
+    void fill(Pattern& record) {
+        VKFV_PATTERN_FIELDS(VKFV_FILL)
+    }
+    void fill(LightField& record) {
+        VKFV_LIGHT_FIELD_FIELDS(VKFV_FILL)
+    }
     void fill(Instrument& record) {
         VKFV_INSTRUMENT_FIELDS(VKFV_FILL)
     }
@@ -58,9 +64,6 @@ class Filler {
     }
     void fill(Material& record) {
         VKFV_MATERIAL_FIELDS(VKFV_FILL)
-    }
-    void fill(ReflectanceMap& record) {
-        VKFV_REFLECTANCE_MAP_FIELDS(VKFV_FILL)
     }
     void fill(SpecimenRecord& record) {
         VKFV_SPECIMEN_RECORD_FIELDS(VKFV_FILL)
