@@ -2,6 +2,7 @@
 
 #include "core/units.hpp"
 #include "optics/detector_view.hpp"
+#include "optics/farthest.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -123,7 +124,7 @@ Wavefront::Wavefront(const Imaging& imaging, double magnification, double focus,
             rims_[i] =
                 farthest(
                     index_ + glm::length(chief_),
-                    [&](double radius) { return view.trace(chief_ + radius * direction, 1).has_value(); }, bisections)
+                    [&](double radius) { return view.excess(chief_ + radius * direction); }, bisections)
                     .value_or(0);
         }
     }
