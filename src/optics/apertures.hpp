@@ -1,5 +1,5 @@
-// What the real apertures let through, found by tracing: the cone from a point of the field, its best focus, the gate
-// that no useful light lies outside of. Lengths in mm.
+// The light that the real apertures let through, found by tracing: the cone from a point of the field, its best focus,
+// and the gate: all useful light lies inside it. Lengths in mm.
 #pragma once
 
 #include "optics/first_order.hpp"
@@ -40,7 +40,7 @@ struct Imaging {
 // The train for one wavelength, as if monochromatic.
 Imaging at_wavelength(Imaging imaging, double spectral);
 
-// Directions of the field or of the source that a search looks in; without symmetry all round.
+// Directions in which a search goes out from the axis: one for a symmetric train, else all round.
 std::vector<glm::dvec2> search_directions(bool symmetric);
 
 // The rim of the cone of light that passes all apertures from a point of the object plane, as radii in direction

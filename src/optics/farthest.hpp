@@ -13,10 +13,10 @@ struct Bracket {
     double outside;
 };
 
-// Narrows the bracket to `enough`: excess() <= 0 inside, > 0 outside; where it is finite on both sides the straight line
-// between them tells where to look next, else the middle. I. F. D. Oliveira, R. H. C. Takahashi, "An enhancement of the
-// bisection method average performance preserving minmax optimality", ACM Trans. Math. Softw. 47 (2021), with its
-// k1 = 0.2 / width, k2 = 2 and n0 = 1: never more than one step beyond bisection, and few where excess() is smooth.
+// Narrows the bracket to `enough`: excess() <= 0 inside, > 0 outside; where it is finite on both sides the straight
+// line between them tells where to look next, else the middle. I. F. D. Oliveira, R. H. C. Takahashi, "An enhancement
+// of the bisection method average performance preserving minmax optimality", ACM Trans. Math. Softw. 47 (2021), with
+// its k1 = 0.2 / width, k2 = 2 and n0 = 1: never more than one step beyond bisection, and few where excess() is smooth.
 template <class Excess>
 Bracket narrowed(Bracket bracket, double excess_inside, double excess_outside, const Excess& excess, double enough) {
     auto& [inside, outside] = bracket;
