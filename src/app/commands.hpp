@@ -35,7 +35,7 @@ Command help_command();
 Command completion_command();
 Command man_command();
 
-// To whoever reads the log as JSON: the folder that holds a command's results.
+// For programs that read the log as JSON: tells the folder that holds a command's results.
 void tell_results(const std::filesystem::path& folder);
 
 // A whole stack with its topography and deviation from truth; continues one that was interrupted.

@@ -1,4 +1,4 @@
-// Whether two images that share no random numbers have the same expectation.
+// Tests whether two images that were made with independent random numbers have the same expected value.
 #pragma once
 
 #include "core/grid.hpp"
@@ -20,9 +20,9 @@ struct Agreement {
     double total_z = 0;    // difference of the totals in standard errors
     double chi_square = 0; // of the differences of blocks of block_side x block_side pixels
     int degrees = 0;       // blocks that hold anything
-    double p = 1;          // of anything further off, by total or blocks, under the same expectation
+    double p = 1;          // probability of a larger difference if both have the same expected value
 
-    // false_alarms: probability of finding two images apart that are not.
+    // false_alarms: probability of calling two images different that have the same expected value.
     bool holds(double false_alarms) const { return p >= false_alarms; }
 };
 inline constexpr int block_side = 8;

@@ -42,8 +42,7 @@ struct CameraOptions {
     std::uint32_t noise_seed = 1; // of temporal noise
 };
 
-// What of an image's noise comes from where, in photoelectrons, and how bright it is: means over its pixels (noise:
-// root mean square).
+// An image's brightness, and its noise by source, in photoelectrons: means over its pixels (noise: root mean square).
 struct ImageLight {
     double mean = 0;            // e-
     double camera_noise = 0;    // e-, temporal: of shot, dark current, reading and quantisation, after averaging
@@ -51,7 +50,7 @@ struct ImageLight {
     double saturated_share = 0; // of the pixels, whose light is above the saturation capacity
 };
 
-// What pixels have of their own, the same in every image.
+// The fixed pattern: how each pixel differs from the others, the same in every image.
 struct FixedPattern {
     Grid<double> response;    // about 1
     Grid<double> dark_signal; // e-, about 0

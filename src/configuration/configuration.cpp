@@ -124,7 +124,7 @@ Configuration load_configuration(const std::filesystem::path& file, const std::v
     auto configuration = read_configuration(TomlTable::open(found, overrides), needs);
     // Beside an installed example nobody can write: its results go to the working directory.
     if (const auto beside = configuration.output_directory.lexically_relative(found.parent_path());
-        found != file && *beside.begin() != "..") {
+        found != file && !beside.empty() && *beside.begin() != "..") { // empty: --out, within the working directory
         configuration.output_directory = beside;
     }
     return configuration;

@@ -5,6 +5,7 @@
 #include <dlfcn.h>
 #include <fmt/format.h>
 #include <link.h>
+#include <sys/auxv.h>
 
 #include <cstdlib>
 
@@ -27,7 +28,12 @@ fs::path own_file() {
         map != nullptr && map->l_name != nullptr && *map->l_name != '\0') {
         return fs::canonical(map->l_name, none);
     }
-    return fs::read_symlink("/proc/self/exe", none);
+    if (fs::path program = fs::read_symlink("/proc/self/exe", none); !program.empty()) {
+        return program;
+    }
+    // Without /proc, in a bare chroot: the name that the program was started by.
+    const auto* started = reinterpret_cast<const char*>(getauxval(AT_EXECFN));
+    return started == nullptr ? fs::path() : fs::canonical(started, none);
 }
 
 // With those above it, the nearest first.

@@ -1,4 +1,4 @@
-// Standards whose place nobody tells: found in the map itself.
+// Standards whose position is not given: found in the map itself.
 #pragma once
 
 #include "dimensions/evaluate.hpp"

@@ -1,4 +1,4 @@
-// What an instrument leaves of waves of many periods: chirps and stars.
+// How much of waves of many periods an instrument transfers: chirps and stars.
 #pragma once
 
 #include "dimensions/feature.hpp"

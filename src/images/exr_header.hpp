@@ -1,4 +1,4 @@
-// What must hold of an OpenEXR file before the library may open it.
+// Checks of an OpenEXR file before the library opens it.
 #pragma once
 
 #include <filesystem>

@@ -1,4 +1,4 @@
-// What must hold of a PNM file (PBM, PGM, PPM, PFM) before the library may open it.
+// Checks of a PNM file (PBM, PGM, PPM, PFM) before the library opens it.
 #pragma once
 
 #include <filesystem>

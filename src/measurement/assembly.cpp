@@ -66,7 +66,7 @@ std::optional<scan::StageMotion> stage_motion(const Configuration& configuration
 optics::Instrument assemble_instrument(const Configuration& configuration, const specimen::Specimen& specimen,
                                        std::span<const double> focal_heights) {
     auto description = configuration.instrument;
-    const auto record = specimen::record(specimen, configuration.trace.max_bounces);
+    const auto record = specimen::record_of_geometry(specimen);
     description.greatest_defocus = 0;
     const auto stage = stage_motion(configuration);
     const double astray = stage ? stage->farthest() : 0;

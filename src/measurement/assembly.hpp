@@ -30,8 +30,8 @@ std::optional<scan::StageMotion> stage_motion(const Configuration& configuration
 // The configured specimen. Throws InputError at the place of the key that does not fit.
 specimen::Specimen make_specimen(const Configuration& configuration);
 
-// All that decides the bits of an image but its height: the configuration's part, the surface as made, instrument,
-// program and device, for another device rounds otherwise. TOML lines.
+// Everything that decides the bits of an image except its height: a part of the configuration, the surface as made,
+// the instrument, the program, and the device (another device rounds differently). TOML lines.
 std::string image_identity(const Configuration& configuration, const std::string& surface_digest,
                            const trace::TracerIdentity& tracer);
 
@@ -44,7 +44,7 @@ optics::Instrument instrument_for(const Configuration& configuration, const spec
 std::optional<optics::Diffraction> make_diffraction(const Configuration& configuration,
                                                     const optics::Instrument& instrument);
 
-// That of an evaluation: none with a camera, which sees blurred light already.
+// The blur that an evaluation applies: none with a camera, whose images are blurred already.
 std::optional<optics::Diffraction> diffraction_of_evaluation(const Configuration& configuration,
                                                              const optics::Instrument& instrument);
 

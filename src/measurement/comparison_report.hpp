@@ -1,4 +1,4 @@
-// What is said of a comparison.
+// The text, tables and files of a comparison.
 #pragma once
 
 #include "measurement/comparison.hpp"

@@ -1,4 +1,4 @@
-// What a stack takes of a disk.
+// How much disk space a stack needs.
 #pragma once
 
 #include "configuration/configuration.hpp"

@@ -27,13 +27,13 @@ struct Flat {
     double s_filter = 0;  // mm, nesting index of the S-filter before it
 };
 
-// That the configuration names, for stacks of this grid (pitch in mm); none if it names none. Throws InputError where
-// its grid is another, since it must have been measured by the same instrument, or where too little of it was measured.
-// The S-filter is that of topography.s_filter_um; where that is none, as long as the focus window is wide, since
-// shorter waves of heights are no instrument's form.
+// The flat that the configuration names, for stacks of this grid (pitch in mm); none if it names none. Throws
+// InputError where its grid is another, since it must have been measured by the same instrument, or where too little of
+// it was measured. The S-filter is that of topography.s_filter_um; where that is none, as long as the focus window is
+// wide, since shorter waves of heights are no instrument's form.
 std::optional<Flat> read_flat(const Configuration& configuration, ImageSize pixels, double pitch);
 
-// What it tells, and what it took off.
+// What a flatness correction found and removed.
 struct Flatness {
     std::filesystem::path file;
     double deviation = 0;                 // mm, z_FLT of the flat

@@ -1,4 +1,4 @@
-// What an evaluation says in numbers.
+// The figures of an evaluation.
 #pragma once
 
 #include "measurement/evaluation.hpp"

@@ -19,7 +19,7 @@ namespace vkfv::measurement {
 
 // What the topography is written to and what its files say of it, nothing that differs from run to run.
 struct TopographyFiles {
-    std::string image_unit = "W"; // of the images' values
+    std::string image_unit = "DN"; // of the images' values: what other instruments write are grey values
     std::vector<std::string> names = {"topography.tif", "topography.x3p"};
     surface::Provenance provenance = {.creator = "vkfv " VKFV_VERSION,
                                       .manufacturer = "vkfv",

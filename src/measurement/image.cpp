@@ -32,7 +32,7 @@ std::string text_of(const trace::Ledger& ledger) {
             continue; // ledger.csv of a stack lists them all
         }
         text +=
-            fmt::format("{:<52} {:>14.6e} {:>8.4f} %\n", entry.name, entry.power, 100 * entry.power / ledger.emitted);
+            fmt::format("{:<52} {:>14.6e} {:>8.4g} %\n", entry.name, entry.power, 100 * entry.power / ledger.emitted);
     }
     text += fmt::format("{:<52} {:>14.6e}\n", "emitted", ledger.emitted);
     text += fmt::format("{:<52} {:>14.6e}\n", "residual", ledger.residual());

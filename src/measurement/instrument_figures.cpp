@@ -171,8 +171,8 @@ SpecimenFigures figures_of_specimen(const Configuration& configuration, const op
         relief_of(specimen, configuration.instrument.detector_pixels, instrument.first_order.pixel_pitch);
     const auto sparse = warning_of_sparse_field(specimen, relief);
     warnings.insert(warnings.end(), sparse.begin(), sparse.end());
-    const auto record = specimen::record(specimen, configuration.trace.max_bounces);
-    return {.sides = {record.x_max - record.x_min, record.y_max - record.y_min}, .relief = relief};
+    const auto [x_min, y_min, x_max, y_max] = specimen::footprint(specimen);
+    return {.sides = {x_max - x_min, y_max - y_min}, .relief = relief};
 }
 
 void warn_of_step(const Configuration& configuration, const ScanFigures& scan, const optics::FirstOrder& first_order,

@@ -53,7 +53,7 @@ std::vector<std::string> warning_of_sparse_field(const specimen::Specimen& speci
     if (relief.seen_share >= least_seen_share) {
         return {};
     }
-    const auto record = specimen::record(specimen, 1);
+    const auto record = specimen::footprint(specimen);
     const bool of_mesh = std::holds_alternative<specimen::Mesh>(specimen.geometry);
     const char* remedy = of_mesh ? "Correct specimen.unit, set centre = true, or look for a vertex far off in the file"
                                  : "Correct the lengths of [specimen] or [detector]";

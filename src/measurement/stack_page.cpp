@@ -195,7 +195,9 @@ std::string stack_page(const StackPage& content) {
     page.section("distributions", "Distribution of heights");
     page.part("distributions.html");
     page.section("parameters", "ISO 25178-2 parameters");
-    page.paragraph("Nominal values are those of the true surface at the same points, treated alike.");
+    if (std::ranges::any_of(plain.figures, [](const Figures& each) { return !each.truth.empty(); })) {
+        page.paragraph("Nominal values are those of the true surface at the same points, treated alike.");
+    }
     const bool measured = add_parameters(page, "", plain.figures);
     if (!measured) {
         page.paragraph("Nothing was measured.");

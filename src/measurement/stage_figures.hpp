@@ -1,4 +1,4 @@
-// What a stage did to a stack's positions, for its results.
+// A stage's errors in a stack's positions, for its results.
 #pragma once
 
 #include "configuration/configuration.hpp"

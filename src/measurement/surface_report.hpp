@@ -1,4 +1,4 @@
-// What is said of one surface: its parameters and a profile's.
+// The text and JSON of one surface: its parameters, and those of a profile.
 #pragma once
 
 #include "measurement/standard.hpp"

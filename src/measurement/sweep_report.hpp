@@ -1,4 +1,4 @@
-// What a sweep found, a row a combination.
+// The results of a sweep, one row for each combination.
 #pragma once
 
 #include "configuration/configuration.hpp"
@@ -19,7 +19,7 @@ struct SweepRow {
     Grid<float> picture;             // for the contact sheet
 };
 
-// The combination's name, of which its folder is called: "g=0.3,N=1e7".
+// The combination's name, which is also the name of its folder: "g=0.3,N=1e7".
 std::string sweep_name(const Sweep& sweep, const std::vector<std::string>& values);
 
 // A value as a reader writes it: 1e+07 as 1e7, "backward" without its quotes.

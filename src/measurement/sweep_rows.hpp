@@ -16,8 +16,7 @@
 
 namespace vkfv::measurement {
 
-// Most sweeps vary something else than the surface, which may take longer to make than an image to trace: the last one
-// made is kept.
+// Most sweeps do not vary the surface, and making it may take longer than tracing an image: so the last one is kept.
 class Surfaces {
   public:
     struct Surface {

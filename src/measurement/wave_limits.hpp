@@ -1,5 +1,5 @@
-// How far images are from those of waves: what the filter of the axis leaves across the field, and what folds back
-// where light is sorted more coarsely than waves ask for.
+// How far vkfv's images of waves are from exact ones: the error of using the axis' filter across the whole field, and
+// aliasing where light is sorted more coarsely than the waves require.
 #pragma once
 
 #include "optics/filter_error.hpp"
@@ -25,7 +25,7 @@ struct WaveLimits {
     std::vector<Point> points;
 };
 
-// What the field makes of the instrument's wavefront: traced by threads of their own, while its filter is made.
+// The wavefronts at the edge and in the corner of the field: traced by other threads while the filter is made.
 struct FieldWaves {
     explicit FieldWaves(const optics::Instrument& instrument); // which must live as long
 

@@ -1,4 +1,4 @@
-// The devices of a run, as long as they work.
+// The devices of a run; one that fails is opened again, then left out.
 #pragma once
 
 #include "configuration/configuration.hpp"
@@ -53,7 +53,7 @@ class WorkingDevices {
     std::vector<Member> members_;
 };
 
-// What takes the configuration's images, where its stage really stands.
+// The tracer of the configuration's images, at the positions where its stage really stands.
 std::unique_ptr<trace::Tracer> make_tracer(const WorkingDevices& devices, const Configuration& configuration,
                                            const optics::Instrument& instrument, const specimen::Specimen& specimen);
 

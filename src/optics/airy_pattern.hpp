@@ -1,4 +1,4 @@
-// What diffraction at the pupil makes of a point.
+// The image of a point by diffraction at the pupil.
 #pragma once
 
 #include "optics/spectrum.hpp"

@@ -2,10 +2,12 @@
 
 #include "core/parallel_list.hpp"
 #include "core/units.hpp"
+#include "optics/farthest.hpp"
 
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
 #include <utility>
 
 namespace vkfv::optics {
@@ -21,6 +23,18 @@ using physics::f64::Surface;
 // outlines of pupils are smooth but for the corners where two edges meet.
 constexpr double search_margin = 1.02;
 
+// None: there is no such direction.
+std::optional<Ray> entering(const Imaging& imaging, glm::dvec2 position, double height, glm::dvec2 cosines) {
+    const double axial_squared = 1 - glm::dot(cosines, cosines);
+    if (axial_squared <= 0) {
+        return std::nullopt;
+    }
+    Ray ray{};
+    ray.position = real3(position, height - imaging.working_distance);
+    ray.direction = real3(cosines, std::sqrt(axial_squared));
+    return ray;
+}
+
 } // namespace
 
 std::vector<glm::dvec2> search_directions(bool symmetric) {
@@ -35,14 +49,11 @@ std::vector<glm::dvec2> search_directions(bool symmetric) {
 
 std::optional<Imaging::Landing> Imaging::trace(glm::dvec2 position, double height, glm::dvec2 cosines,
                                                std::uint32_t apertures, double spectral) const {
-    const double axial_squared = 1 - glm::dot(cosines, cosines);
-    if (axial_squared <= 0) {
+    const auto ray = entering(*this, position, height, cosines);
+    if (!ray) {
         return std::nullopt;
     }
-    Ray ray{};
-    ray.position = real3(position, height - working_distance);
-    ray.direction = real3(cosines, std::sqrt(axial_squared));
-    const auto result = trace_through(train, ray, apertures, spectral);
+    const auto result = trace_through(train, *ray, apertures, spectral);
     if (result.status != PATH_ALIVE) {
         return std::nullopt;
     }
@@ -50,6 +61,11 @@ std::optional<Imaging::Landing> Imaging::trace(glm::dvec2 position, double heigh
     return Landing{.position = {arrived.position.x, arrived.position.y},
                    .direction = arrived.direction,
                    .path_length = arrived.path_length};
+}
+
+double Imaging::excess(glm::dvec2 position, double height, glm::dvec2 cosines) const {
+    const auto ray = entering(*this, position, height, cosines);
+    return ray ? excess_of(train, *ray) : std::numeric_limits<double>::infinity();
 }
 
 glm::dvec2 Imaging::chief_cosines(glm::dvec2 position) const {
@@ -89,7 +105,7 @@ Outline outline_at(const Imaging& imaging, glm::dvec2 position) {
     for (std::size_t i = 0; i < (half ? azimuths / 2 : azimuths); ++i) {
         // Beyond 1 + |centre| no direction cosines exist.
         const auto radius = farthest(1 + glm::length(outline.centre), [&](double candidate) {
-            return imaging.trace(outline.position, 0, outline.cosines(i, candidate)).has_value();
+            return imaging.excess(outline.position, 0, outline.cosines(i, candidate));
         });
         outline.radii.push_back(radius.value_or(0));
     }

@@ -1,5 +1,5 @@
-// What the real apertures let through, found by tracing: the cone from a point of the field, its best focus, the gate
-// that no useful light lies outside of. Lengths in mm.
+// The light that the real apertures let through, found by tracing: the cone from a point of the field, its best focus,
+// and the gate: all useful light lies inside it. Lengths in mm.
 #pragma once
 
 #include "optics/first_order.hpp"
@@ -7,7 +7,6 @@
 
 #include <glm/glm.hpp>
 
-#include <algorithm>
 #include <optional>
 #include <vector>
 
@@ -33,34 +32,15 @@ struct Imaging {
     };
     std::optional<Landing> trace(glm::dvec2 position, double height, glm::dvec2 cosines, std::uint32_t apertures = 1,
                                  double spectral = 0) const;
+    // By how much it is beyond the edge that stops it: excess_of().
+    double excess(glm::dvec2 position, double height, glm::dvec2 cosines) const;
     glm::dvec2 chief_cosines(glm::dvec2 position) const;
 };
 
 // The train for one wavelength, as if monochromatic.
 Imaging at_wavelength(Imaging imaging, double spectral);
 
-// The largest t of [0, limit] at which the predicate holds, to rounding: looked for inward in steps of limit / 32, then
-// by bisection. Where it holds only between two steps, and not at 0, it is not found. None: it holds at no step.
-// bisections: what they leave of a step; 45 of them all but rounding.
-template <class Predicate>
-std::optional<double> farthest(double limit, Predicate holds, int bisections = 45) {
-    constexpr int steps = 32;
-    for (int step = steps; step >= 0; --step) {
-        double inside = limit * step / steps;
-        if (!holds(inside)) {
-            continue;
-        }
-        double outside = limit * std::min(step + 1, steps) / steps;
-        for (int i = 0; i < bisections; ++i) {
-            const double middle = 0.5 * (inside + outside);
-            (holds(middle) ? inside : outside) = middle;
-        }
-        return inside;
-    }
-    return std::nullopt;
-}
-
-// Directions of the field or of the source that a search looks in; without symmetry all round.
+// Directions in which a search goes out from the axis: one for a symmetric train, else all round.
 std::vector<glm::dvec2> search_directions(bool symmetric);
 
 // The rim of the cone of light that passes all apertures from a point of the object plane, as radii in direction

@@ -8,6 +8,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <future>
 
 namespace vkfv::optics {
 
@@ -146,12 +147,14 @@ MeasuredImaging measure_imaging(const InstrumentDescription& description, const 
     const auto focus = [&](const Outline& outline) {
         return best_focus(imaging, layout.magnification, outline, nodes);
     };
+    auto edge_focus = std::async(std::launch::async, [&] {
+        return focus(outline_at(imaging, {std::max(layout.field_corner.x, layout.field_corner.y), 0}));
+    });
     measured.best_focus_offset = focus(on_axis);
     measured.least_spot_offset = least_spot(imaging, on_axis);
-    measured.field_curvature = focus(outline_at(imaging, {std::max(layout.field_corner.x, layout.field_corner.y), 0})) -
-                               measured.best_focus_offset;
     const Outline at_corner = outline_at(imaging, {layout.field_half_diagonal, 0});
     measured.field_curvature_corner = focus(at_corner) - measured.best_focus_offset;
+    measured.field_curvature = edge_focus.get() - measured.best_focus_offset;
     const double relative_light = at_corner.area() / on_axis.area();
     if (relative_light < 0.9) {
         measured.warnings.push_back(

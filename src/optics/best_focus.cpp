@@ -1,5 +1,6 @@
 #include "optics/best_focus.hpp"
 
+#include "core/parallel_list.hpp"
 #include "optics/detector_view.hpp"
 
 #include <cmath>
@@ -55,10 +56,8 @@ double best_focus(const Imaging& imaging, double magnification, const Outline& o
         return NAN;
     }
     const auto cone = fill_cone(outline);
-    double numerator = 0;
-    double denominator = 0;
-    for (const SpectralNode& node : spectrum) {
-        const Imaging alone = at_wavelength(imaging, node.spectral);
+    const auto samples_of = [&](int k) {
+        const Imaging alone = at_wavelength(imaging, spectrum[static_cast<std::size_t>(k)].spectral);
         const double index = alone.train.front().index_before;
         const DetectorView view{.imaging = alone,
                                 .index = index,
@@ -77,7 +76,14 @@ double best_focus(const Imaging& imaging, double magnification, const Outline& o
             }
         }
         level(samples);
-        for (const Sample& sample : samples) {
+        return samples;
+    };
+    const auto all = parallel_list(static_cast<int>(spectrum.size()), samples_of);
+    double numerator = 0;
+    double denominator = 0;
+    for (std::size_t k = 0; k < all.size(); ++k) {
+        const SpectralNode& node = spectrum[k];
+        for (const Sample& sample : all[k]) {
             const double weight = node.weight * sample.weight / (node.wavelength_um * node.wavelength_um);
             numerator += weight * sample.path * sample.defocus;
             denominator += weight * sample.defocus * sample.defocus;

@@ -1,11 +1,12 @@
 #include "optics/detector_view.hpp"
 
+#include <limits>
+
 namespace vkfv::optics {
 
-std::optional<TracedWave> DetectorView::trace(glm::dvec2 p, std::uint32_t apertures) const {
+std::optional<DetectorView::Found> DetectorView::find(glm::dvec2 cosines) const {
     constexpr int most_steps = 25;
     constexpr double enough = 1e-11; // mm in the object; rounding leaves 1e-14 of a train's length
-    const glm::dvec2 cosines = p / index;
     glm::dvec2 point = guess;
     auto landing = imaging.trace(point, plane, cosines, 0);
     glm::dmat2 rate(magnification); // of the landing with the point
@@ -14,14 +15,7 @@ std::optional<TracedWave> DetectorView::trace(glm::dvec2 p, std::uint32_t apertu
         const glm::dvec2 move = -(glm::inverse(rate) * miss);
         const double length_squared = glm::dot(move, move);
         if (length_squared < enough * enough) {
-            if (apertures != 0u && !imaging.trace(point, plane, cosines, apertures)) {
-                return std::nullopt;
-            }
-            // What is missing to the point, to first order.
-            const double rest = glm::dot(glm::dvec2(landing->direction), miss);
-            return TracedWave{.object_point = point + move,
-                              .path_length = landing->path_length - rest - glm::dot(p, move),
-                              .slope = glm::dvec2(landing->direction) / landing->direction.z};
+            return Found{.point = point, .move = move, .landing = *landing};
         }
         const glm::dvec2 before = landing->position;
         point += move;
@@ -31,6 +25,23 @@ std::optional<TracedWave> DetectorView::trace(glm::dvec2 p, std::uint32_t apertu
         }
     }
     return std::nullopt;
+}
+
+std::optional<TracedWave> DetectorView::trace(glm::dvec2 p, std::uint32_t apertures) const {
+    const auto found = find(p / index);
+    if (!found || (apertures != 0u && !imaging.trace(found->point, plane, p / index, apertures))) {
+        return std::nullopt;
+    }
+    const auto& [point, move, landing] = *found;
+    const double rest = glm::dot(glm::dvec2(landing.direction), landing.position - detector);
+    return TracedWave{.object_point = point + move,
+                      .path_length = landing.path_length - rest - glm::dot(p, move),
+                      .slope = glm::dvec2(landing.direction) / landing.direction.z};
+}
+
+double DetectorView::excess(glm::dvec2 p) const {
+    const auto found = find(p / index);
+    return found ? imaging.excess(found->point, plane, p / index) : std::numeric_limits<double>::infinity();
 }
 
 } // namespace vkfv::optics

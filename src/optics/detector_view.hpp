@@ -24,6 +24,16 @@ struct DetectorView {
     // What leaves the object plane with the direction cosines p / index, by Broyden's method. None: there is no such
     // ray, or an aperture stops it.
     std::optional<TracedWave> trace(glm::dvec2 p, std::uint32_t apertures) const;
+    // By how much it is beyond the edge that stops it: excess_of(). <= 0: trace(p, 1) has a value.
+    double excess(glm::dvec2 p) const;
+
+  private:
+    struct Found {
+        glm::dvec2 point;
+        glm::dvec2 move; // what is missing to the point, to first order
+        Imaging::Landing landing;
+    };
+    std::optional<Found> find(glm::dvec2 cosines) const;
 };
 
 } // namespace vkfv::optics

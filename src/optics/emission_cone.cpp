@@ -4,10 +4,12 @@
 #include "core/units.hpp"
 #include "optics/apertures.hpp"
 #include "optics/bundle.hpp"
+#include "optics/farthest.hpp"
 #include "optics/train.hpp"
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <optional>
 #include <queue>
 #include <vector>
@@ -75,12 +77,12 @@ double largest_sampled_sine(std::span<const Surface> train, bool symmetric, cons
                 const glm::dvec2 direction = cosines(candidate);
                 const double axial_squared = 1 - glm::dot(direction, direction);
                 if (axial_squared <= 0) {
-                    return false;
+                    return std::numeric_limits<double>::infinity();
                 }
                 Ray ray{};
                 ray.position = glm::dvec3(position, -source.distance);
                 ray.direction = glm::dvec3(direction, std::sqrt(axial_squared));
-                return trace_through(train, ray, 1).status == PATH_ALIVE;
+                return excess_of(train, ray);
             });
             largest = radius ? std::max(largest, glm::length(cosines(*radius))) : largest;
         }

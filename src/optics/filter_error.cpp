@@ -63,33 +63,24 @@ class PupilLattice {
     PupilLattice(const Wavefront& wavefront, const physics::f64::PupilCells& cells, double unit, double reach)
         : half_(static_cast<int>(std::ceil(wavefront.largest_rim() / (wavefront.wavelength() * unit)))),
           side_(2 * half_), passes_(static_cast<std::size_t>(side_ * side_)), wave_(passes_.size()) {
-        const double wave_number = 2 * pi / wavefront.wavelength();
-        const Wavefront raised = wavefront.at_height(wavefront.height() + 1);
         const glm::dvec2 chief_slope =
             wavefront.chief_slope() - physics::f64::chief_slope(cells, wavefront.detector_point());
-        for (int j = -half_; j < half_; ++j) {
+        const auto rows = parallel_list(side_, [&](int row) {
+            const int j = row - half_;
+            std::vector<Point> points;
             for (int i = -half_; i < half_; ++i) {
                 const glm::dvec2 p = wavefront.chief() + wavefront.wavelength() * unit * glm::dvec2(i + 0.5, j + 0.5);
                 if (wavefront.passes(p)) {
-                    const std::size_t place = index(i, j);
-                    passes_[place] = 1;
-                    const double path = wavefront.path(p);
-                    const double defocus = raised.path(p) - path;
-                    Complex wave = std::polar(1.0, wave_number * (path + height_of(0, reach) * defocus));
-                    const Complex step = std::polar(1.0, wave_number * (reach / half_heights) * defocus);
-                    for (Complex& at_height : wave_[place]) {
-                        at_height = wave;
-                        wave = product(wave, step);
-                    }
-                    const glm::dvec2 displacement = wavefront.displacement(p);
-                    const glm::dvec2 spread = (raised.displacement(p) - displacement) * (reach / half_heights);
-                    const glm::dvec2 lowest = displacement - static_cast<double>(half_heights) * spread;
-                    const double turn = -4 * pi * unit;
-                    points_.push_back({.cell = physics::f64::pupil_cell(cells, wavefront.image_slope(p) + chief_slope),
-                                       .lowest = {Powers(turn * lowest.x), Powers(turn * lowest.y)},
-                                       .step = {Powers(turn * spread.x), Powers(turn * spread.y)}});
+                    passes_[index(i, j)] = 1;
+                    set_wave(wave_[index(i, j)], wavefront, p, reach);
+                    const std::uint32_t cell = physics::f64::pupil_cell(cells, wavefront.image_slope(p) + chief_slope);
+                    points.push_back(point_of(wavefront, p, cell, unit, reach));
                 }
             }
+            return points;
+        });
+        for (const auto& points : rows) {
+            points_.insert(points_.end(), points.begin(), points.end());
         }
     }
 
@@ -163,6 +154,26 @@ class PupilLattice {
         std::array<Powers, 2> lowest; // of a unit of frequency along x and along y
         std::array<Powers, 2> step;
     };
+
+    static void set_wave(AtHeights& waves, const Wavefront& wavefront, glm::dvec2 p, double reach) {
+        const double wave_number = 2 * pi / wavefront.wavelength();
+        const double defocus = wavefront.path_of_height(p);
+        Complex wave = std::polar(1.0, wave_number * (wavefront.path(p) + height_of(0, reach) * defocus));
+        const Complex step = std::polar(1.0, wave_number * (reach / half_heights) * defocus);
+        for (Complex& at_height : waves) {
+            at_height = wave;
+            wave = product(wave, step);
+        }
+    }
+
+    static Point point_of(const Wavefront& wavefront, glm::dvec2 p, std::uint32_t cell, double unit, double reach) {
+        const glm::dvec2 spread = wavefront.displacement_of_height(p) * (reach / half_heights);
+        const glm::dvec2 lowest = wavefront.displacement(p) - static_cast<double>(half_heights) * spread;
+        const double turn = -4 * pi * unit;
+        return {.cell = cell,
+                .lowest = {Powers(turn * lowest.x), Powers(turn * lowest.y)},
+                .step = {Powers(turn * spread.x), Powers(turn * spread.y)}};
+    }
 
     std::size_t index(int i, int j) const { return static_cast<std::size_t>((j + half_) * side_ + i + half_); }
     AtHeights mean(AtHeights sum) const {

@@ -5,6 +5,7 @@
 #include <fmt/format.h>
 
 #include <cmath>
+#include <future>
 #include <utility>
 
 namespace vkfv::optics {
@@ -206,12 +207,16 @@ Instrument assemble(const InstrumentDescription& description) {
     check(description);
     const AxialLayout layout = lay_out(description);
     const ImagingTrain imaging = place_imaging(description, layout);
+    // The two that take long, side by side. Only the first source may stand behind the illuminator.
+    std::future<Illumination> illuminator;
+    if (!description.source.ring) {
+        illuminator = std::async(std::launch::async, [&] { return place_illuminator(description, layout, imaging); });
+    }
     const MeasuredImaging measured = measure_imaging(description, layout, imaging);
     const auto in_light_of = [&](const SourceDescription& source) {
         InstrumentDescription lit = description;
         lit.source = source;
-        const Illumination illumination =
-            source.ring ? place_ring(lit, layout, measured) : place_illuminator(lit, layout, imaging);
+        const Illumination illumination = source.ring ? place_ring(lit, layout, measured) : illuminator.get();
         Instrument instrument = reduce(lit, layout, imaging, measured, illumination);
         if (lit.turned) {
             instrument.turned = turn_round(lit, layout, imaging, illumination, instrument);

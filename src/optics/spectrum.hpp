@@ -51,7 +51,7 @@ struct SpectralNode {
 std::vector<SpectralNode> spectral_nodes(const std::vector<physics::f64::SpectralBin>& bins, double centre,
                                          double half_width, int fewest = 32);
 
-// Neighbours put together, so that no more than so many are left, each with about the same share.
+// Neighbouring nodes joined, so that at most this many are left, each with about the same share.
 std::vector<SpectralNode> at_most(int most, const std::vector<SpectralNode>& nodes);
 
 // Index of a medium over a spectrum: at x = 0 exactly, and a polynomial that agrees at six wavelengths more.

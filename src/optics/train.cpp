@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 namespace vkfv::optics {
 
@@ -164,8 +165,12 @@ std::optional<std::size_t> surface_with_role(const std::vector<PlacedSurface>& p
     return found == part.end() ? std::nullopt : std::optional(static_cast<std::size_t>(found - part.begin()));
 }
 
-physics::f64::TrainResult trace_through(std::span<const Surface> train, physics::f64::Ray ray, std::uint32_t apertures,
-                                        double spectral) {
+namespace {
+
+// most_excess: excess_of(), of the edges that are met; none where nobody asks. In one function, so that the compiler
+// puts each surface's work into its loop.
+physics::f64::TrainResult go_through(std::span<const Surface> train, physics::f64::Ray ray, bool apertures,
+                                     double spectral, double* most_excess) {
     const double index =
         train.empty() ? 1 : index_at(train.front().index_before, train.front().dispersion_before, spectral);
     ray.direction *= index;
@@ -178,9 +183,29 @@ physics::f64::TrainResult trace_through(std::span<const Surface> train, physics:
             (is_displaced(surface) ? physics::f64::FEATURE_PLACEMENT : 0u) |
             (spectral != 0 ? physics::f64::FEATURE_SPECTRUM : 0u) |
             ((surface.flags & physics::f64::SURFACE_IDEAL_LENS) != 0 ? physics::f64::FEATURE_IDEAL_LENS : 0u);
-        result = physics::f64::trace_surface(surface, static_cast<int>(i), result, apertures != 0u, light, present);
+        result = physics::f64::trace_surface(surface, static_cast<int>(i), result, apertures, light, present);
+        if (most_excess != nullptr && (surface.flags & physics::f64::SURFACE_CLIPPED) != 0) {
+            const auto& point = result.ray.position;
+            const double square = point.x * point.x + point.y * point.y;
+            *most_excess =
+                std::max(*most_excess, (square - surface.semi_diameter_squared) / surface.semi_diameter_squared);
+        }
     }
     return result;
+}
+
+} // namespace
+
+physics::f64::TrainResult trace_through(std::span<const Surface> train, physics::f64::Ray ray, std::uint32_t apertures,
+                                        double spectral) {
+    return go_through(train, ray, apertures != 0u, spectral, nullptr);
+}
+
+double excess_of(std::span<const Surface> train, const physics::f64::Ray& ray, double spectral) {
+    double most = -1;
+    const auto status = go_through(train, ray, true, spectral, &most).status;
+    const bool measured = status == physics::f64::PATH_ALIVE || status == physics::f64::PATH_VIGNETTED;
+    return measured ? most : std::numeric_limits<double>::infinity();
 }
 
 } // namespace vkfv::optics

@@ -90,4 +90,8 @@ struct TrainScene {
 physics::f64::TrainResult trace_through(std::span<const physics::f64::Surface> train, physics::f64::Ray ray,
                                         std::uint32_t apertures, double spectral = 0);
 
+// By how much of the square of an edge's radius the ray is beyond the edge that stops it, or, at or below 0, short of
+// the edge that it comes nearest to. Infinite: it ends elsewhere. <= 0 is what PATH_ALIVE is to trace_through().
+double excess_of(std::span<const physics::f64::Surface> train, const physics::f64::Ray& ray, double spectral = 0);
+
 } // namespace vkfv::optics

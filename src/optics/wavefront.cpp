@@ -2,6 +2,7 @@
 
 #include "core/units.hpp"
 #include "optics/detector_view.hpp"
+#include "optics/farthest.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -120,11 +121,10 @@ Wavefront::Wavefront(const Imaging& imaging, double magnification, double focus,
             const glm::dvec2 direction = direction_of(2 * pi * static_cast<double>(i) / azimuths);
             // Images depend on the rim on the axis, to the last bit; in the field 5e-10 of the way is enough.
             const int bisections = field == glm::dvec2(0) ? 45 : 26;
-            rims_[i] =
-                farthest(
-                    index_ + glm::length(chief_),
-                    [&](double radius) { return view.trace(chief_ + radius * direction, 1).has_value(); }, bisections)
-                    .value_or(0);
+            rims_[i] = farthest(
+                           index_ + glm::length(chief_),
+                           [&](double radius) { return view.excess(chief_ + radius * direction); }, bisections)
+                           .value_or(0);
         }
     }
     largest_rim_ = *std::ranges::max_element(rims_);
@@ -317,6 +317,15 @@ double Wavefront::own_path(glm::dvec2 p) const {
     const glm::dvec2 place = (p - chief_) / largest_rim_;
     const double rest = round_ ? horner(round_path_, glm::dot(place, place)) : path_.value(place);
     return rest + (defocus_ + height_) * defocus(p);
+}
+
+double Wavefront::path_of_height(glm::dvec2 p) const {
+    return defocus(own(p));
+}
+
+glm::dvec2 Wavefront::displacement_of_height(glm::dvec2 of) const {
+    const glm::dvec2 p = own(of);
+    return turned(chief_ / axial_chief_ - p / axial(index_, p));
 }
 
 glm::dvec2 Wavefront::displacement(glm::dvec2 of) const {

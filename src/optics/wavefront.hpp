@@ -1,4 +1,4 @@
-// The wavefront of the imaging train, traced in double: what waves add to rays. Lengths in mm.
+// The wavefront of the imaging train, traced in double. Lengths in mm.
 //
 // All of it is in the object space. p = (px, py): direction cosines times the index n of the specimen's medium, of
 // light that leaves the specimen, axes of the specimen frame. For one point of the detector the light of every p comes
@@ -61,14 +61,17 @@ class Wavefront {
     // Of a p that passes.
     double path(glm::dvec2 p) const;             // W, mm; 0 at the chief ray
     glm::dvec2 displacement(glm::dvec2 p) const; // t, mm
+    // What an object plane higher by 1 mm adds to them.
+    double path_of_height(glm::dvec2 p) const;
+    glm::dvec2 displacement_of_height(glm::dvec2 p) const;
     // (dx/dz, dy/dz) of the light at the detector, in the frame of physics::Detection, less that of the chief ray.
     glm::dvec2 image_slope(glm::dvec2 p) const;
     glm::dvec2 chief_slope() const { return turned(chief_slope_); } // of the chief ray there
     glm::dvec2 detector_point() const { return detector_point_; }   // in the same frame, mm
 
   private:
-    // All below has p with x along the field, and turns back what it returns: a symmetric train images all points at
-    // one distance alike, and about that axis they have half the work.
+    // Internally the x axis of p points along the field, and results are turned back: a symmetric train images all
+    // points at one distance alike, and by mirror symmetry half of the pupil is enough.
     glm::dvec2 turned(glm::dvec2 own) const { return own.x * along_ + own.y * glm::dvec2(-along_.y, along_.x); }
     glm::dvec2 own(glm::dvec2 p) const { return {along_.x * p.x + along_.y * p.y, along_.x * p.y - along_.y * p.x}; }
     double own_rim(double azimuth) const;
@@ -97,7 +100,8 @@ class Wavefront {
     PlanePolynomial path_;
     PlanePolynomial slope_x_;
     PlanePolynomial slope_y_;
-    // About the axis W is a polynomial in the square, and the slope that times the place: what is asked for most, fast.
+    // On the axis W is a polynomial in the square of the place, and the slope is such a polynomial times the place: a
+    // fast form of what is computed most often.
     bool round_ = false;
     bool mirrored_ = false;
     std::vector<double> round_path_;

@@ -18,7 +18,7 @@ ZernikeOrder zernike_order(int number);
 // Z_number at a point of the unit disc.
 double zernike(int number, glm::dvec2 at);
 
-// "astigmatism at 45 degrees"; empty for higher ones than have names.
+// "astigmatism at 45 degrees"; empty for high orders, which have no names.
 const char* zernike_name(int number);
 
 // Of a wavefront, in wavelengths, of the numbers 1 to `count`: (1 / pi) times the integral of W Z_j over the unit disc,

@@ -1,4 +1,4 @@
-// Lens files of Zemax's sequential mode (.zmx), facts of the format read off files that Zemax wrote.
+// Lens files of Zemax's sequential mode (.zmx). The format was learnt from files that Zemax wrote.
 #pragma once
 
 #include "optics/glass_catalog.hpp"

@@ -1,4 +1,4 @@
-// A page that knows what it holds already, so that pictures and labels find room beside each other. Lengths in px.
+// A page that remembers what is drawn on it, so that pictures and labels do not overlap. Lengths in px.
 #pragma once
 
 #include "report/layout_drawing.hpp"

@@ -38,7 +38,7 @@ struct Drawing {
 
 Drawing draw_instrument(const optics::Instrument& instrument);
 
-// Where what is drawn but no element stands.
+// Places of things that are drawn but are not elements.
 struct DrawnBoxes {
     Box specimen;
     Box detector; // the camera's body
@@ -46,7 +46,7 @@ struct DrawnBoxes {
     std::vector<Box> ring_lights;
 };
 
-// What is called what; empty boxes have no label.
+// The labels and what they belong to; empty boxes have no label.
 std::vector<Label> label_parts(const optics::Instrument& instrument, const ElementSections& sections,
                                const DrawnBoxes& boxes);
 

@@ -33,5 +33,13 @@ surface::HeightMap truth(const Specimen& specimen, int columns, int rows, double
 
 // The record the trace takes (bounds, kind, shape, lattice); top and bottom enclose the surface.
 physics::f64::SpecimenRecord record(const Specimen& specimen, int max_bounces);
+// The same without the material.
+physics::f64::SpecimenRecord record_of_geometry(const Specimen& specimen);
+
+// What it covers of the object plane, mm.
+struct Footprint {
+    double x_min, y_min, x_max, y_max;
+};
+Footprint footprint(const Specimen& specimen);
 
 } // namespace vkfv::specimen

@@ -16,7 +16,7 @@ using Geometry = decltype(Specimen::geometry);
 
 // A surface that floats can hold, on the device too.
 void check_extent(const Specimen& specimen, const SourceLocation& where) {
-    const SpecimenRecord r = record(specimen, 1);
+    const SpecimenRecord r = record_of_geometry(specimen);
     const double farthest = std::max({std::abs(r.x_min), std::abs(r.x_max), std::abs(r.y_min), std::abs(r.y_max),
                                       std::abs(r.bottom), std::abs(r.top)});
     const double narrowest = std::min(r.x_max - r.x_min, r.y_max - r.y_min);
@@ -72,7 +72,7 @@ Geometry geometry_of(const OneKind& kind, const Description& d) {
 } // namespace
 
 Specimen make(const Description& d) {
-    (void)material_record(d.material, d.where);
+    check_material(d.material, d.where);
     if (d.roughness && !kinds()[d.shape.index()].takes_roughness) {
         throw InputError({d.where, "specimen.roughness", "roughness on a mesh", "a height field or a generated kind",
                           "Remove [specimen.roughness], or put the roughness into the mesh."});
@@ -82,7 +82,7 @@ Specimen make(const Description& d) {
     specimen.geometry = std::visit([&](const auto& kind) { return geometry_of(kind, d); }, d.shape);
     check_extent(specimen, d.where);
     if (d.reflectance) {
-        const SpecimenRecord r = record(specimen, 1);
+        const Footprint r = footprint(specimen);
         specimen.reflectance = make_reflectance_map(*d.reflectance, {r.x_min, r.y_min, r.x_max, r.y_max}, d.where);
     }
     return specimen;

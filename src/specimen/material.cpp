@@ -14,6 +14,7 @@ namespace {
 
 using physics::scatter_registry;
 
+// Without its tables.
 physics::f64::Lobe lobe_record(const Lobe& lobe, const SourceLocation& where) {
     const auto model = std::ranges::find(scatter_registry, lobe.model, &physics::ScatterModel::name);
     if (model == scatter_registry.end() || model->parameters.size() != lobe.parameters.size()) {
@@ -44,12 +45,11 @@ physics::f64::Lobe lobe_record(const Lobe& lobe, const SourceLocation& where) {
     result.parameter_1 = parameters[1];
     result.parameter_2 = parameters[2];
     result.parameter_3 = parameters[3];
-    return tabulated(result);
+    return result;
 }
 
-} // namespace
-
-physics::f64::Material material_record(const Material& material, const SourceLocation& where) {
+// Likewise.
+std::array<physics::f64::Lobe, most_lobes> lobe_records(const Material& material, const SourceLocation& where) {
     if (material.lobes.size() > most_lobes) {
         throw InputError({where, "specimen.material.lobe", fmt::format("{} lobes", material.lobes.size()),
                           fmt::format("at most {}", most_lobes), "Leave the weakest out."});
@@ -63,6 +63,20 @@ physics::f64::Material material_record(const Material& material, const SourceLoc
     if (reflectance > 1 + weight_rounding) {
         throw InputError({where, "specimen.material.lobe", fmt::format("weights that add up to {:.6g}", reflectance),
                           "at most 1", "Choose smaller weights; what they leave of 1 is absorbed."});
+    }
+    return lobes;
+}
+
+} // namespace
+
+void check_material(const Material& material, const SourceLocation& where) {
+    (void)lobe_records(material, where);
+}
+
+physics::f64::Material material_record(const Material& material, const SourceLocation& where) {
+    auto lobes = lobe_records(material, where);
+    for (std::size_t k = 0; k < material.lobes.size(); ++k) {
+        lobes[k] = tabulated(lobes[k]);
     }
     return {lobes[0], lobes[1], lobes[2], lobes[3]};
 }

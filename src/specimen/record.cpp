@@ -258,14 +258,12 @@ SpecimenRecord record_of_lattice(const HeightField& lattice) {
     return result;
 }
 
-SpecimenRecord record(const Specimen& specimen, int max_bounces) {
+SpecimenRecord record_of_geometry(const Specimen& specimen) {
     SpecimenRecord result{};
     std::visit(Recorder{result}, specimen.geometry);
-    result.material = material_record(specimen.material);
     if (specimen.reflectance) {
         result.reflectance = specimen.reflectance->record;
     }
-    result.max_bounces = max_bounces;
     // Rays start on the plane z = top and must find the surface ahead of them, also where it is level and
     // after rounding to float: 128 steps of a float of the largest coordinate.
     const double largest = std::max({std::abs(result.x_min), std::abs(result.x_max), std::abs(result.y_min),
@@ -274,6 +272,24 @@ SpecimenRecord record(const Specimen& specimen, int max_bounces) {
     result.bottom -= margin;
     result.top += margin;
     return result;
+}
+
+SpecimenRecord record(const Specimen& specimen, int max_bounces) {
+    SpecimenRecord result = record_of_geometry(specimen);
+    result.material = material_record(specimen.material);
+    result.max_bounces = max_bounces;
+    return result;
+}
+
+Footprint footprint(const Specimen& specimen) {
+    if (const auto* field = std::get_if<HeightField>(&specimen.geometry)) {
+        return {field->x_min, field->y_min, field->x_max(), field->y_max()};
+    }
+    if (const auto* analytic = std::get_if<Analytic>(&specimen.geometry)) {
+        return {analytic->x_min, analytic->y_min, analytic->x_max, analytic->y_max};
+    }
+    const SpecimenRecord r = record_of_geometry(specimen);
+    return {r.x_min, r.y_min, r.x_max, r.y_max};
 }
 
 } // namespace vkfv::specimen

@@ -72,6 +72,8 @@ struct Material {
 // The record the trace takes. Throws InputError (placed at `where`) for an unknown model, parameters out of
 // their ranges, and weights that add up to more than 1.
 physics::f64::Material material_record(const Material& material, const SourceLocation& where = {});
+// The same errors, without the tables of the record, which take milliseconds.
+void check_material(const Material& material, const SourceLocation& where);
 
 struct Specimen {
     std::variant<HeightField, Mesh, Analytic> geometry;

@@ -607,5 +607,22 @@ TEST(Configuration, GeometryDigestSeesOneBitOfOneHeight) {
     EXPECT_NE(geometry_digest(one), geometry_digest(other));
 }
 
+// What is not in the working directory and begins with assets/ came with the program.
+TEST(Configuration, ResultsOfAnInstalledExampleGoWhereTheyAreAskedFor) {
+    const auto before = std::filesystem::current_path();
+    const auto folder = fresh_folder("installed_example");
+    std::filesystem::current_path(folder);
+    const auto place = [](const std::vector<TomlOverride>& overrides) {
+        return load_configuration("assets/stacks/demo.toml", overrides).output_directory;
+    };
+    const auto usual = place({});
+    const auto named = place({{"output.directory", "\"demo\"", "--out"}});
+    const auto elsewhere = place({{"output.directory", "\"/tmp/demo\"", "--out"}});
+    std::filesystem::current_path(before);
+    EXPECT_EQ(usual, "demo-out"); // as the example says, here
+    EXPECT_EQ(named, "demo"); // was empty once, and could not be made
+    EXPECT_EQ(elsewhere, "/tmp/demo");
+}
+
 } // namespace
 } // namespace vkfv::measurement

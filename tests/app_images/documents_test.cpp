@@ -10,6 +10,8 @@
 #include "app/version.hpp"
 #include "command_line/command_line.hpp"
 #include "command_line/reference.hpp"
+#include "configuration/configuration.hpp"
+#include "core/error.hpp"
 
 #include <OpenImageIO/imageio.h>
 #include <fmt/format.h>
@@ -384,6 +386,24 @@ class DocumentCommands : public testing::TestWithParam<fs::path> {};
 
 TEST_P(DocumentCommands, Run) {
     EXPECT_THAT(failures_of(read_file(GetParam()), fresh_folder("furnished")), testing::IsEmpty()) << GetParam();
+}
+
+// The identity of what a reader gets who copies all tables of a document into one file.
+std::string identity_of_tables(const std::string& text) {
+    std::string all;
+    for (const auto& block : parse_document(text).blocks) {
+        all += block.language == "toml" ? block.text + "\n" : "";
+    }
+    const auto file = fresh_folder("tables") / "microscope.toml";
+    write_file(file, all);
+    return load_configuration(file).identity;
+}
+
+TEST(Documents, TheTutorialsTablesAreTheMicroscopeThatItNames) {
+    const std::string text = read_file(source / "docs/tutorial.md");
+    EXPECT_EQ(identity_of_tables(text), load_configuration(source / "assets/stacks/own_microscope.toml").identity);
+    EXPECT_NE(identity_of_tables(replaced(text, "height_um = 10.0", "height_um = 10.1")), identity_of_tables(text));
+    EXPECT_THROW(identity_of_tables(replaced(text, "focal_length_mm = 10.0", "focal_length_mn = 10.0")), InputError);
 }
 
 TEST(Documents, ABrokenCommandIsFound) {

@@ -1,4 +1,4 @@
-// Whether a header can be true to its file.
+// Whether an image of the size that a header states fits into its file.
 #pragma once
 
 #include <OpenImageIO/imageio.h>
@@ -8,8 +8,8 @@
 
 namespace vkfv::images::openimageio {
 
-// No packing in use makes images smaller than by this factor: a header that names more is a wrong one. Tiles count
-// whole, as they are read; small images have room for a large one.
+// No compression in use makes images smaller by more than this factor: a header that asks for more is wrong. Tiles
+// count whole, as they are read; small images have room for a large one.
 inline bool packing_is_possible(const OIIO::ImageSpec& spec, double file_bytes) {
     constexpr double impossible_packing = 1e4;
     constexpr double freely_given_tile = 1 << 24;

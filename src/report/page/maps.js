@@ -233,7 +233,7 @@ vkfv.parts.push(() => {
 
     function drawBars() {
         const scale = vkfv.chosen.scale;
-        const bars = [["Height, measured and true / µm", [scale.low, scale.high], viridis]];
+        const bars = [[map().layers.truth ? "Height, measured and true / µm" : "Height / µm", [scale.low, scale.high], viridis]];
         if (map().layers.deviation) {
             bars.push(["Deviation / µm", [-scale.deviation, scale.deviation], blueRed]);
         }
@@ -257,7 +257,7 @@ vkfv.parts.push(() => {
         const point = vkfv.chosen.cursor;
         const heights = Object.keys(titles).filter(name => map().layers[name])
             .map(name => `${{measured: "measured", truth: "true", deviation: "deviation"}[name]} ${number(vkfv.heights(map().layers[name])[point.index])} µm`);
-        d3.select("#readout").text(`x ${number(point.x)} µm, y ${number(point.y)} µm: ${heights.join(", ")}; ${point.state}`);
+        d3.select("#readout").text(`x ${number(point.x)} µm, y ${number(point.y)} µm: ${heights.join(", ")}${point.state === "measured" ? "" : `; ${point.state}`}`);
     }
 
     vkfv.mapPoint = (column, row) => {
