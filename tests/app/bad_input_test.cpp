@@ -770,7 +770,7 @@ std::vector<Case> cases() {
                     {"index of glass", "0.5876 um", "finite and positive", "Correct the numbers"}),
         // Elements that are meshes.
         mesh_element_fault("MeshElementOfNoKind", "kind = \"lens\"\nfile = \"a.stl\"\nposition_mm = [0, 0, 60]\n",
-                           {"mesh_element[0].kind", "\"glass\", \"mirror\" or \"absorber\""}),
+                           {"mesh_element[0].kind", "\"glass\" or \"mirror\" or \"absorber\""}),
         mesh_element_fault("MeshElementMissing", "kind = \"mirror\"\nfile = \"part.stl\"\nposition_mm = [0, 0, 60]\n",
                            {"mesh_element[0].file", "bad_input_MeshElementMissing/part.stl"}),
         mesh_element_fault("MeshElementOfAnImage", "kind = \"mirror\"\nfile = \"part.png\"\nposition_mm = [0, 0, 60]\n",
