@@ -39,8 +39,8 @@ struct BackwardOptics {
 };
 // clang-format on
 
-// Dimensions of the lattice: pixel 0 and 1, pupil 2 and 3, direction to the source 4 and 5, choice among candidates 6,
-// wavelength 7. What comes after the first scatter event is drawn from Philox.
+// Dimensions of the lattice: pixel 0 and 1, pupil 2 and 3, direction to the source 4 and 5 (to its rim: two of their
+// own), choice among candidates 6, wavelength 7. What comes after the first scatter event is drawn from Philox.
 
 // Light that is looked for backward, where it leaves the specimen.
 struct BackwardArrival {
@@ -441,23 +441,29 @@ VKFV_SCENE_FUNCTION VKFV_FUNCTION real trace_backward(VKFV_SCENE_PARAMETER Instr
         bool has_rim = backward.rim_period != 0u && (features(VKFV_SCENE_ALONE) & FEATURE_RING) == 0u;
         real sure = has_rim ? sure_radius(backward, plane, hit.position, whole) : real(0.0);
         bool parted = sure > real(0.0);
-        bool looks_further = !parted || point % max(backward.rim_period, 1u) == 0u;
+        uint rim_period = max(backward.rim_period, 1u);
+        bool looks_further = !parted || point % rim_period == 0u;
+        real2 at_rim = real2(draws.u0, draws.u1);
+        if (bounce == 0) {
+            at_rim = sparse_coordinates(lattice, point, rim_period, shift.second.x, shift.second.y);
+        }
         for (uint part = parted ? 0u : 1u; part < (looks_further ? 2u : 1u); ++part) {
             bool rim = parted && part == 1u;
             SeenPart seen = whole;
             seen.outer = part == 0u ? sure : whole.outer;
             seen.inner = rim ? sure : real(0.0);
-            Connection connection = connect(VKFV_SCENE specimen.material, backward, plane, seen,
-                                            rim      ? 1u
-                                            : parted ? backward.sure_candidates
-                                                     : backward.cone_candidates,
-                                            hit, outgoing, draws.u0, draws.u1, draws.u2, scattered);
+            Connection connection =
+                connect(VKFV_SCENE specimen.material, backward, plane, seen,
+                        rim      ? 1u
+                        : parted ? backward.sure_candidates
+                                 : backward.cone_candidates,
+                        hit, outgoing, rim ? at_rim.x : draws.u0, rim ? at_rim.y : draws.u1, draws.u2, scattered);
             if (connection.weight > real(0.0)) {
                 Hit blocker = displaced_hit(VKFV_SCENE exposure, origin, connection.direction);
                 if (blocker.found == 0u) {
                     query.position = origin;
                     query.direction = connection.direction;
-                    query.weight = throughput * connection.weight * (rim ? real(backward.rim_period) : real(1.0));
+                    query.weight = throughput * connection.weight * (rim ? real(rim_period) : real(1.0));
                     value = value + collect(VKFV_SCENE instrument, backward, plane, specimen, exposure, query);
                 }
             }

@@ -36,3 +36,12 @@ VKFV_FUNCTION real lattice_coordinate(Lattice lattice, uint point, uint z, uint 
     uint fraction = lattice.size_bits == 0u ? 0u : (point * z) << (32u - lattice.size_bits);
     return (real((fraction + shift) >> 9) + real(0.5)) * real(1.1920928955078125e-7);
 }
+
+// The same for two dimensions of every period-th point alone, which may make a poor lattice: k / n and k times the
+// golden ratio, of the k-th of n such points.
+VKFV_FUNCTION real2 sparse_coordinates(Lattice lattice, uint point, uint period, uint shift_0, uint shift_1) {
+    Lattice turns; // whose unit is 2^-32 of a turn
+    turns.size_bits = 32u;
+    return real2(lattice_coordinate(lattice, point, 1u, shift_0),
+                 lattice_coordinate(turns, point / period, 2654435769u, shift_1));
+}
