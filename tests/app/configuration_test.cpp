@@ -620,7 +620,7 @@ TEST(Configuration, ResultsOfAnInstalledExampleGoWhereTheyAreAskedFor) {
     const auto elsewhere = place({{"output.directory", "\"/tmp/demo\"", "--out"}});
     std::filesystem::current_path(before);
     EXPECT_EQ(usual, "demo-out"); // as the example says, here
-    EXPECT_EQ(named, "demo"); // was empty once, and could not be made
+    EXPECT_EQ(named, "demo");     // was empty once, and could not be made
     EXPECT_EQ(elsewhere, "/tmp/demo");
 }
 

@@ -115,8 +115,9 @@ TEST(Backward, another_specimen_does_not_pass) {
     EXPECT_LT(agreement(forward_image(instrument, steep, 4), backward_image(instrument, steep, 3)), level);
 }
 
-// What the source shows for sure is looked at apart from its rim: the same image. How much less noise that is depends on
-// the specimen; here it is no more, as it would be if the rim's directions were a poor lattice: ten times the variance.
+// What the source shows for sure is looked at apart from its rim: the same image. How much less noise that is depends
+// on the specimen; here it is no more, as it would be if the rim's directions were a poor lattice: ten times the
+// variance.
 TEST(Backward, tells_the_rim_of_the_source_apart) {
     auto description = small_description();
     description.field_stop_radius = 0.3; // so that all of the detector sees the source's middle for sure
