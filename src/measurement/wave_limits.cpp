@@ -30,8 +30,8 @@ WaveLimits wave_limits(const optics::PupilFilter& filter, const optics::Instrume
                       .asked_parts = optics::parts_for_waves(instrument),
                       .folded_contrast = filter.folded_contrast(),
                       .points = {}};
-    auto corner = std::async(std::launch::async,
-                             [&] { return optics::largest_filter_error(filter, waves.corner.get(), reach); });
+    auto corner =
+        std::async(std::launch::async, [&] { return optics::largest_filter_error(filter, waves.corner.get(), reach); });
     limits.points.push_back({.name = "axis", .error = optics::largest_filter_error(filter, instrument, glm::dvec2(0))});
     limits.points.push_back({.name = "edge", .error = optics::largest_filter_error(filter, waves.edge.get(), reach)});
     limits.points.push_back({.name = "corner", .error = corner.get()});
