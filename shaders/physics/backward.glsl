@@ -365,7 +365,8 @@ VKFV_FUNCTION CellPlace backward_place(BackwardOptics backward, PupilCells cells
     return place;
 }
 
-// The value of one path (see above): of one point of a pixel's lattice, whose number keys further draws.
+// The value of one path (see above): of one point of a pixel's lattice, whose number keys further draws. Asks for
+// the source once at each bounce at most, and once at its end.
 VKFV_SCENE_FUNCTION VKFV_FUNCTION real trace_backward(VKFV_SCENE_PARAMETER Instrument instrument,
                                                       BackwardOptics backward, SpecimenRecord specimen,
                                                       Exposure exposure, int column, int row, uint randomisation,
@@ -438,14 +439,13 @@ VKFV_SCENE_FUNCTION VKFV_FUNCTION real trace_backward(VKFV_SCENE_PARAMETER Instr
         // What the source shows for sure makes a smooth number of what the directions bring; its rim a rough one, which
         // weighs less and is asked for less often. Elsewhere all of the source is looked at as one.
         SeenPart whole = seen_whole(backward, plane, hit.position);
-        bool has_rim = backward.rim_period != 0u && (features(VKFV_SCENE_ALONE) & FEATURE_RING) == 0u;
-        real sure = has_rim ? sure_radius(backward, plane, hit.position, whole) : real(0.0);
+        real sure = backward.rim_period != 0u ? sure_radius(backward, plane, hit.position, whole) : real(0.0);
         bool parted = sure > real(0.0);
         uint rim_period = max(backward.rim_period, 1u);
         bool looks_further = !parted || point % rim_period == 0u;
         real2 at_rim = real2(draws.u0, draws.u1);
         if (bounce == 0) {
-            at_rim = sparse_coordinates(lattice, point, rim_period, shift.second.x, shift.second.y);
+            at_rim = sparse_coordinates(point / rim_period, shift.second.x, shift.second.y);
         }
         for (uint part = parted ? 0u : 1u; part < (looks_further ? 2u : 1u); ++part) {
             bool rim = parted && part == 1u;
@@ -464,7 +464,9 @@ VKFV_SCENE_FUNCTION VKFV_FUNCTION real trace_backward(VKFV_SCENE_PARAMETER Instr
                     query.position = origin;
                     query.direction = connection.direction;
                     query.weight = throughput * connection.weight * (rim ? real(rim_period) : real(1.0));
-                    value = value + collect(VKFV_SCENE instrument, backward, plane, specimen, exposure, query);
+                    value = value + (parted && !rim
+                                         ? query.weight
+                                         : collect(VKFV_SCENE instrument, backward, plane, specimen, exposure, query));
                 }
             }
         }

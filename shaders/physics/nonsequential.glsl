@@ -307,8 +307,8 @@ VKFV_SCENE_FUNCTION VKFV_FUNCTION Detection trace_nonsequential(VKFV_SCENE_PARAM
                 Draws turn = draw(exposure.seed, exposure.image, path, 1u + uint(k));
                 Passage passage = pass_element(element, met.index, meeting, emission.light, turn.u0);
                 detection.fate = passage.fate;
-                if (passage.fate.status == PATH_ALIVE && element.kind == ELEMENT_STOP &&
-                    turn.u0 >= light_field_at(VKFV_SCENE element.surface, meeting.point.x, meeting.point.y)) {
+                if (passage.fate.status == PATH_ALIVE &&
+                    turn.u1 >= light_field_at(VKFV_SCENE element.surface, meeting.point.x, meeting.point.y)) {
                     detection.fate = make_fate(PATH_INTERFACE_LOSS, met.index);
                 }
                 origin = passage.position;

@@ -60,7 +60,7 @@ void run_optics(const CommandOptions& options) {
     auto json = measurement::wave_json(figures);
     std::string text = measurement::summary(figures);
     if (const auto& waves = configuration.trace.waves) {
-        const auto limits = measurement::wave_limits(optics::PupilFilter(instrument, *waves), instrument);
+        const auto limits = measurement::worst_of(measurement::limits_of_lights(*waves, instrument));
         json["images"] = measurement::json_of(limits);
         text += measurement::summary(limits);
     }

@@ -73,8 +73,8 @@ Exposure expose(const Configuration& configuration, WorkingDevices& devices, con
             exposure.taken =
                 ImagingCamera(configuration, instrument, seconds).develop(static_cast<int>(image), exposure.image);
         }
-        if (const auto* filter = tracer->pupil_filter()) {
-            for (const auto& warning : warnings_of(wave_limits(*filter, instrument))) {
+        if (const auto filters = tracer->pupil_filters(); !filters.empty()) {
+            for (const auto& warning : warnings_of(worst_of(limits_of_lights(filters, instrument)))) {
                 spdlog::warn(warning);
             }
         }

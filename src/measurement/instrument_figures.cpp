@@ -113,14 +113,14 @@ FigureGroup aberrations(const optics::FirstOrder& first_order, const optics::Ima
 FigureGroup figures_of_waves(const optics::WaveOptions& options, const optics::Instrument& instrument,
                              std::vector<std::string>& warnings) {
     constexpr double bytes_per_gib = 1 << 30;
-    FieldWaves waves(instrument);
-    const optics::PupilFilter filter(instrument, options);
-    const WaveLimits limits = wave_limits(filter, instrument, std::move(waves));
+    const auto of_lights = limits_of_lights(options, instrument);
+    const WaveLimits limits = worst_of(of_lights);
     const auto further = warnings_of(limits);
     warnings.insert(warnings.end(), further.begin(), further.end());
-    // Each source's light is sorted by itself.
-    const auto memory =
-        instrument.lights().size() * trace::wave_memory(limits.cells, limits.parts, instrument.detector_pixels()).all();
+    std::uint64_t memory = 0; // each source's light is sorted by itself
+    for (const WaveLimits& light : of_lights) {
+        memory += trace::wave_memory(light.cells, light.parts, instrument.detector_pixels()).all();
+    }
     const auto error_of = [&](std::size_t point) { return limits.points[point].error.difference; };
     return {"Images as waves make them, within two depths of field",
             {{"wave_cells", static_cast<double>(limits.cells), "across the pupil that light is sorted by"},

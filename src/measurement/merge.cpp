@@ -15,6 +15,7 @@
 #include <spdlog/spdlog.h>
 
 #include <algorithm>
+#include <iterator>
 
 namespace vkfv::measurement {
 
@@ -68,6 +69,24 @@ topography::FocusPlanesMaker planes_of_run(const Configuration& configuration, c
         "a nanometre",
         tracer.device);
     return focus_planes_for(EvaluateOn::host, std::string("host"));
+}
+
+// One a light; none: images of rays.
+std::vector<optics::PupilFilter> filters_of_run(const Configuration& configuration, const trace::TracerIdentity& tracer,
+                                                const optics::Instrument& instrument) {
+    std::vector<optics::PupilFilter> filters;
+    if (tracer.sorting.pupil_cells != 0) {
+        std::vector<trace::LightSorting> sortings = tracer.further_sortings;
+        sortings.insert(sortings.begin(), tracer.sorting);
+        const auto lights = instrument.lights();
+        for (std::size_t k = 0; k < lights.size(); ++k) {
+            auto waves = configuration.trace.waves.value_or(optics::WaveOptions());
+            waves.cells = sortings.at(k).pupil_cells;
+            waves.parts = sortings.at(k).parts_per_pixel;
+            filters.emplace_back(*lights[k], waves);
+        }
+    }
+    return filters;
 }
 
 void require_same_stack(const fs::path& folder, const std::string& identity) {
@@ -125,15 +144,11 @@ StackResult merge_stack(const fs::path& folder, const std::vector<fs::path>& sha
     gather_images(store, shards);
     store.write_ledger();
 
-    std::optional<optics::PupilFilter> filter;
-    if (tracer.sorting.pupil_cells != 0) {
-        auto waves = configuration.trace.waves.value_or(optics::WaveOptions());
-        waves.cells = tracer.sorting.pupil_cells;
-        waves.parts = tracer.sorting.parts_per_pixel;
-        filter.emplace(scene.instrument, waves);
-    }
+    const auto filters = filters_of_run(configuration, tracer, scene.instrument);
+    std::vector<const optics::PupilFilter*> filters_at;
+    std::ranges::transform(filters, std::back_inserter(filters_at), [](const auto& filter) { return &filter; });
     enter_stage("images");
-    GrowingEvaluation evaluation(scene, planes_of_run(configuration, tracer), filter ? &*filter : nullptr);
+    GrowingEvaluation evaluation(scene, planes_of_run(configuration, tracer), filters_at);
     for (std::size_t image = 0; image < scene.positions.size(); ++image) {
         evaluation.add(static_cast<int>(image),
                        scan::read_frame(folder, static_cast<int>(image), scene.positions[image]));

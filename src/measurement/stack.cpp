@@ -39,7 +39,7 @@ StackResult trace_and_evaluate(const StackScene& scene, const WorkingDevices& de
     const auto developer = developer_of(scene, store, devices);
     // Evaluated as they are traced: no second pass over the disk.
     GrowingEvaluation evaluation(scene, focus_planes_for(configuration.evaluate_on, tracer->device()),
-                                 tracer->pupil_filter());
+                                 tracer->pupil_filters());
     enter_stage("images");
     const auto traced = scan::run_stack(
         *tracer, store, progress, [&](int image, Grid<float> values) { evaluation.add(image, std::move(values)); },

@@ -47,7 +47,7 @@ scan::StackDescription StackScene::description(const trace::TracerIdentity& trac
 }
 
 GrowingEvaluation::GrowingEvaluation(const StackScene& scene, topography::FocusPlanesMaker planes,
-                                     const optics::PupilFilter* filter)
+                                     const std::vector<const optics::PupilFilter*>& filters)
     : scene_(scene), flat_(read_flat(scene.configuration, scene.pixels(), scene.instrument.first_order.pixel_pitch)),
       evaluation_(evaluation_options(scene.configuration, scene.instrument), std::move(planes),
                   diffraction_of_evaluation(scene.configuration, scene.instrument),
@@ -55,9 +55,9 @@ GrowingEvaluation::GrowingEvaluation(const StackScene& scene, topography::FocusP
     truth_ = std::async(std::launch::async,
                         [&scene] { return truth_on_pixels(scene.instrument, scene.configuration, scene.specimen); });
     source_ = std::async(std::launch::async, [&scene] { return stack_source(scene.configuration, scene.instrument); });
-    if (filter != nullptr) {
-        wave_limits_ =
-            std::async(std::launch::async, [&scene, filter] { return wave_limits(*filter, scene.instrument); });
+    if (!filters.empty()) {
+        wave_limits_ = std::async(std::launch::async,
+                                  [&scene, filters] { return worst_of(limits_of_lights(filters, scene.instrument)); });
     }
 }
 

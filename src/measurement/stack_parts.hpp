@@ -33,8 +33,10 @@ struct StackScene {
 // A stack that is evaluated while its images come. What no image is needed for is made beside them.
 class GrowingEvaluation {
   public:
-    // filter: what makes the images as waves do; none: they are as rays make them. Scene and filter must outlive it.
-    GrowingEvaluation(const StackScene& scene, topography::FocusPlanesMaker planes, const optics::PupilFilter* filter);
+    // filters: what makes the images as waves do, one a light; none: they are as rays make them. Scene and filters must
+    // outlive it.
+    GrowingEvaluation(const StackScene& scene, topography::FocusPlanesMaker planes,
+                      const std::vector<const optics::PupilFilter*>& filters);
 
     // In the images' order.
     void add(int image, Grid<float> values);

@@ -5,6 +5,8 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <future>
+#include <utility>
 
 namespace vkfv::measurement {
 
@@ -12,18 +14,22 @@ namespace {
 
 constexpr double most_error = 0.1;
 
-} // namespace
+// The wavefronts at the edge and in the corner of the field: traced by other threads while the filter is made.
+struct FieldWaves {
+    explicit FieldWaves(const optics::Instrument& instrument) {
+        const auto begin = [&instrument](glm::dvec2 field) {
+            return std::async(std::launch::async,
+                              [&instrument, field] { return optics::point_for_filter(instrument, field); });
+        };
+        corner = begin(instrument.first_order.field_corner);
+        edge = begin({instrument.first_order.field_edge, 0});
+    }
 
-FieldWaves::FieldWaves(const optics::Instrument& instrument) {
-    const auto begin = [&instrument](glm::dvec2 field) {
-        return std::async(std::launch::async,
-                          [&instrument, field] { return optics::point_for_filter(instrument, field); });
-    };
-    corner = begin(instrument.first_order.field_corner);
-    edge = begin({instrument.first_order.field_edge, 0});
-}
+    std::future<optics::PointWaves> edge;
+    std::future<optics::PointWaves> corner;
+};
 
-WaveLimits wave_limits(const optics::PupilFilter& filter, const optics::Instrument& instrument, FieldWaves waves) {
+WaveLimits limits_of(const optics::PupilFilter& filter, const optics::Instrument& instrument, FieldWaves waves) {
     const double reach = optics::reach_of_filter(instrument);
     WaveLimits limits{.cells = static_cast<int>(filter.cells().side),
                       .parts = static_cast<int>(filter.cells().parts),
@@ -38,8 +44,57 @@ WaveLimits wave_limits(const optics::PupilFilter& filter, const optics::Instrume
     return limits;
 }
 
-WaveLimits wave_limits(const optics::PupilFilter& filter, const optics::Instrument& instrument) {
-    return wave_limits(filter, instrument, FieldWaves(instrument));
+bool have_one_spectrum(const optics::Instrument& a, const optics::Instrument& b) {
+    const auto same = [](const physics::f64::SpectralBin& one, const physics::f64::SpectralBin& other) {
+        return one.start == other.start && one.stop == other.stop && one.tilt == other.tilt &&
+               one.cumulative == other.cumulative;
+    };
+    return std::ranges::equal(a.spectral_bins, b.spectral_bins, same);
+}
+
+// filter_of(k): that of the k-th light.
+template <class FilterOf>
+std::vector<WaveLimits> limits_of_each(const optics::Instrument& instrument, const FilterOf& filter_of) {
+    std::vector<WaveLimits> all;
+    const auto lights = instrument.lights();
+    for (std::size_t k = 0; k < lights.size(); ++k) {
+        const auto alike = std::find_if(lights.begin(), lights.begin() + static_cast<std::ptrdiff_t>(k),
+                                        [&](const auto* earlier) { return have_one_spectrum(*earlier, *lights[k]); });
+        const auto place = static_cast<std::size_t>(alike - lights.begin());
+        if (place < k) {
+            all.push_back(all[place]);
+            continue;
+        }
+        FieldWaves waves(*lights[k]);
+        const optics::PupilFilter& filter = filter_of(k);
+        all.push_back(limits_of(filter, *lights[k], std::move(waves)));
+    }
+    return all;
+}
+
+} // namespace
+
+std::vector<WaveLimits> limits_of_lights(const std::vector<const optics::PupilFilter*>& filters,
+                                         const optics::Instrument& instrument) {
+    return limits_of_each(instrument, [&](std::size_t k) -> const optics::PupilFilter& { return *filters[k]; });
+}
+
+std::vector<WaveLimits> limits_of_lights(const optics::WaveOptions& options, const optics::Instrument& instrument) {
+    return limits_of_each(instrument,
+                          [&](std::size_t k) { return optics::PupilFilter(*instrument.lights()[k], options); });
+}
+
+WaveLimits worst_of(const std::vector<WaveLimits>& limits) {
+    WaveLimits worst = *std::ranges::max_element(limits, {}, &WaveLimits::asked_parts);
+    for (const WaveLimits& one : limits) {
+        worst.folded_contrast = std::max(worst.folded_contrast, one.folded_contrast);
+        for (std::size_t point = 0; point < worst.points.size(); ++point) {
+            if (one.points[point].error.difference > worst.points[point].error.difference) {
+                worst.points[point] = one.points[point];
+            }
+        }
+    }
+    return worst;
 }
 
 std::vector<std::string> warnings_of(const WaveLimits& limits) {

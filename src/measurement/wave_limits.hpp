@@ -7,7 +7,6 @@
 
 #include <nlohmann/json.hpp>
 
-#include <future>
 #include <string>
 #include <vector>
 
@@ -25,17 +24,15 @@ struct WaveLimits {
     std::vector<Point> points;
 };
 
-// The wavefronts at the edge and in the corner of the field: traced by other threads while the filter is made.
-struct FieldWaves {
-    explicit FieldWaves(const optics::Instrument& instrument); // which must live as long
+// Of the axis, the middle of a side and the corner of the field, within two depths of field, in the light of each
+// source: Instrument::lights(). filters: a light's each.
+std::vector<WaveLimits> limits_of_lights(const std::vector<const optics::PupilFilter*>& filters,
+                                         const optics::Instrument& instrument);
+std::vector<WaveLimits> limits_of_lights(const optics::WaveOptions& options, const optics::Instrument& instrument);
 
-    std::future<optics::PointWaves> edge;
-    std::future<optics::PointWaves> corner;
-};
-
-// Of the axis, the middle of a side and the corner of the field, within two depths of field.
-WaveLimits wave_limits(const optics::PupilFilter& filter, const optics::Instrument& instrument, FieldWaves waves);
-WaveLimits wave_limits(const optics::PupilFilter& filter, const optics::Instrument& instrument);
+// The largest error of any light at each point; cells and parts are those of the light with the most parts that its
+// aperture asks for.
+WaveLimits worst_of(const std::vector<WaveLimits>& limits);
 
 // Where the worst point's contrast is off by more than 0.1, and where light folds back; some sentences each.
 std::vector<std::string> warnings_of(const WaveLimits& limits);

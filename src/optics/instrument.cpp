@@ -213,6 +213,7 @@ Instrument assemble(const InstrumentDescription& description) {
         illuminator = std::async(std::launch::async, [&] { return place_illuminator(description, layout, imaging); });
     }
     const MeasuredImaging measured = measure_imaging(description, layout, imaging);
+    const std::vector<PlacedMesh> meshes = place_meshes(description, measured);
     const auto in_light_of = [&](const SourceDescription& source) {
         InstrumentDescription lit = description;
         lit.source = source;
@@ -224,7 +225,7 @@ Instrument assemble(const InstrumentDescription& description) {
         FoldedElements folded = fold(lit, layout, imaging, measured, illumination);
         instrument.elements = std::move(folded.elements);
         instrument.source_pose = folded.source_pose;
-        instrument.meshes = place_meshes(lit, measured);
+        instrument.meshes = meshes;
         instrument.features |= instrument.meshes.empty() ? 0u : physics::f64::FEATURE_FACETS;
         return instrument;
     };

@@ -1,8 +1,12 @@
 #include "optics/mesh_element.hpp"
 
+#include "core/box_tree.hpp"
+
 #include <algorithm>
 #include <bit>
+#include <cmath>
 #include <map>
+#include <numeric>
 #include <unordered_map>
 #include <utility>
 
@@ -55,6 +59,66 @@ void for_each_edge(const std::vector<Edge>& edges, Use use) {
     }
 }
 
+// Facets that hang together by edges.
+struct Shell {
+    std::vector<std::uint32_t> facets;
+    double six_volumes = 0; // positive: they go round counter-clockwise seen from outside
+    BoxTree::Box box{glm::dvec3(HUGE_VAL), glm::dvec3(-HUGE_VAL)};
+};
+
+std::vector<Shell> shells_of(const Facets& facets) {
+    std::vector<std::uint32_t> of(facets.triangles.size()); // a facet of the same shell, or itself
+    std::iota(of.begin(), of.end(), 0u);
+    const auto root = [&](std::uint32_t facet) {
+        while (of[facet] != facet) {
+            facet = of[facet] = of[of[facet]];
+        }
+        return facet;
+    };
+    const std::vector<Edge> edges = sorted_edges(facets.triangles);
+    for_each_edge(edges, [&](std::size_t first, std::size_t end) {
+        for (std::size_t other = first + 1; other < end; ++other) {
+            const std::uint32_t a = root(edges[first].facet), b = root(edges[other].facet);
+            of[std::max(a, b)] = std::min(a, b);
+        }
+    });
+    std::vector<Shell> shells;
+    std::vector<std::size_t> number(of.size());
+    for (std::uint32_t facet = 0; facet < of.size(); ++facet) {
+        if (of[facet] == facet) { // the first of its shell
+            number[facet] = shells.size();
+            shells.emplace_back();
+        }
+        Shell& shell = shells[number[root(facet)]];
+        shell.facets.push_back(facet);
+        const glm::uvec3& t = facets.triangles[facet];
+        const glm::dvec3 middle = facets.vertices[facets.triangles[shell.facets.front()].x]; // near: far ones round
+        const glm::dvec3 a = facets.vertices[t.x], b = facets.vertices[t.y], c = facets.vertices[t.z];
+        shell.six_volumes += glm::dot(a - middle, glm::cross(b - middle, c - middle));
+        shell.box = {glm::min(shell.box.lower, glm::min(a, glm::min(b, c))),
+                     glm::max(shell.box.upper, glm::max(a, glm::max(b, c)))};
+    }
+    return shells;
+}
+
+const glm::dvec3 any_direction = glm::normalize(glm::dvec3(0.4371, 0.7713, 0.4627)); // along no usual edge
+
+// How often a shell is crossed by the ray from a point in that direction (Moeller and Trumbore, "Fast, minimum storage
+// ray-triangle intersection", 1997).
+int crossings_of(const Facets& facets, const Shell& shell, const glm::dvec3& from) {
+    int crossings = 0;
+    for (const std::uint32_t facet : shell.facets) {
+        const glm::uvec3& t = facets.triangles[facet];
+        const glm::dvec3 a = facets.vertices[t.x], ab = facets.vertices[t.y] - a, ac = facets.vertices[t.z] - a;
+        const glm::dvec3 p = glm::cross(any_direction, ac), q = glm::cross(from - a, ab);
+        const double determinant = glm::dot(ab, p);
+        const double u = glm::dot(from - a, p) / determinant, v = glm::dot(any_direction, q) / determinant;
+        const bool meets = determinant != 0 && u >= 0 && v >= 0 && u + v <= 1;
+        crossings += meets && glm::dot(ac, q) / determinant > 0 ? 1 : 0;
+    }
+    return crossings;
+}
+
 } // namespace
 
 Facets welded(const std::vector<glm::dvec3>& vertices, const std::vector<glm::uvec3>& triangles) {
@@ -95,15 +159,29 @@ Openness openness_of(const Facets& facets) {
 }
 
 Facets turned_outward(Facets facets) {
-    double six_volumes = 0;
-    const glm::dvec3 middle = facets.vertices.front(); // near, or differences would round
-    for (const glm::uvec3& t : facets.triangles) {
-        six_volumes += glm::dot(facets.vertices[t.x] - middle,
-                                glm::cross(facets.vertices[t.y] - middle, facets.vertices[t.z] - middle));
+    const std::vector<Shell> shells = shells_of(facets);
+    std::vector<BoxTree::Box> boxes;
+    for (const Shell& shell : shells) {
+        boxes.push_back(shell.box);
     }
-    if (six_volumes < 0) {
-        for (glm::uvec3& triangle : facets.triangles) {
-            std::swap(triangle.y, triangle.z);
+    const BoxTree tree(boxes);
+    std::vector<bool> turns;
+    for (std::uint32_t one = 0; one < shells.size(); ++one) {
+        // Within an odd number of others it is a hole's wall.
+        const glm::dvec3 inside = facets.vertices[facets.triangles[shells[one].facets.front()].x];
+        int crossings = 0;
+        tree.walk(inside, any_direction, HUGE_VAL, [&](std::uint32_t other, double farthest) {
+            crossings += other == one ? 0 : crossings_of(facets, shells[other], inside);
+            return farthest;
+        });
+        const bool is_hole = crossings % 2 == 1;
+        turns.push_back(is_hole ? shells[one].six_volumes > 0 : shells[one].six_volumes < 0);
+    }
+    for (std::uint32_t one = 0; one < shells.size(); ++one) {
+        for (const std::uint32_t facet : shells[one].facets) {
+            if (turns[one]) {
+                std::swap(facets.triangles[facet].y, facets.triangles[facet].z);
+            }
         }
     }
     return facets;

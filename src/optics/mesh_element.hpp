@@ -53,7 +53,8 @@ struct Openness {
 };
 Openness openness_of(const Facets& facets);
 
-// Of a closed mesh: its facets go round counter-clockwise seen from outside. Shells of one file go round alike.
+// Of a closed mesh: its facets go round counter-clockwise seen from outside, those of a hole's wall seen from within
+// the hole. Each body and hole by itself, however the file has them.
 Facets turned_outward(Facets facets);
 
 // Unit vectors, to where the corners go round counter-clockwise. Slivers, of which rounding decides, have that of their

@@ -127,6 +127,12 @@ Room furnish(const Instrument& instrument) {
     for (const PlacedMesh& mesh : instrument.meshes) {
         room.add_mesh(mesh);
     }
+    std::map<std::string, int> meshes; // of one file
+    for (std::size_t k = room.surfaces; k < room.names.size(); ++k) {
+        if (const int number = ++meshes[room.names[k]]; number > 1) {
+            room.names[k] += fmt::format(" ({})", number);
+        }
+    }
     return room;
 }
 
@@ -156,6 +162,9 @@ void Room::add_mesh(const PlacedMesh& mesh) {
                           .element = index,
                           .closed = mesh.closed ? 1u : 0u});
     }
+}
+
+void Room::grow_facet_tree() {
     std::vector<Box> boxes;
     boxes.reserve(facets.size());
     for (const physics::f64::Facet& facet : facets) {

@@ -20,19 +20,21 @@ struct Room {
     // Of the meshes, element by element; corners are numbers of single precision, so that host and device meet the
     // same.
     std::vector<physics::f64::Facet> facets;
-    BoxTree facet_tree;
+    BoxTree facet_tree; // for the host alone: empty until it is grown
     physics::f64::SourceFrame source;
 
     using Box = BoxTree::Box;
     Box bounds(std::size_t element) const; // of a surface: encloses it, its mount and rim
     void add_mesh(const PlacedMesh& mesh);
+    void grow_facet_tree(); // of all meshes
 };
 
 BoxTree::Box bounds_of(const physics::f64::Facet& facet);
 
 Room furnish(const Instrument& instrument);
 
-// The nearest element that a ray meets, for physics::trace_nonsequential on the host. Tries every surface.
+// The nearest element that a ray meets, for physics::trace_nonsequential on the host. Tries every surface; needs the
+// facets' tree.
 physics::f64::ElementHit nearest_element(const Room& room, glm::dvec3 origin, glm::dvec3 direction,
                                          physics::f64::PathPlace from);
 

@@ -119,7 +119,7 @@ class BackwardTracer final : public DeviceExposures {
 
     TracerIdentity identity() const override { return scene_.identity(); }
     std::shared_ptr<const vulkan::Device> device() const override { return scene_.device; }
-    const optics::PupilFilter* pupil_filter() const override { return scene_.filter ? &*scene_.filter : nullptr; }
+    std::vector<const optics::PupilFilter*> pupil_filters() const override { return filters_of(scene_.filter); }
     std::uint64_t units() const override { return plan_.randomisations * trace_.chunks(); }
     std::uint64_t rays_per_unit() const override { return trace_.points_per_chunk(); }
     std::unique_ptr<DeviceExposure> prepare(FocalPosition position, std::uint32_t image,

@@ -47,7 +47,7 @@ class DeviceTracer final : public DeviceExposures {
 
     TracerIdentity identity() const override { return scene_.identity(); }
     std::shared_ptr<const vulkan::Device> device() const override { return scene_.device; }
-    const optics::PupilFilter* pupil_filter() const override { return scene_.filter ? &*scene_.filter : nullptr; }
+    std::vector<const optics::PupilFilter*> pupil_filters() const override { return filters_of(scene_.filter); }
     std::uint64_t units() const override { return rays_; }
     std::unique_ptr<DeviceExposure> prepare(FocalPosition position, std::uint32_t image,
                                             std::size_t slot) const override;

@@ -68,6 +68,7 @@ class HostTracer final : public Tracer {
           filter_(filter_for_waves(instrument, options)) {
         if (options.nonsequential) {
             room_ = optics::furnish(instrument);
+            room_.grow_facet_tree();
             accounts_ = Accounts(instrument, room_.names);
         }
     }
@@ -107,7 +108,7 @@ class HostTracer final : public Tracer {
     }
 
     TracerIdentity identity() const override { return host_identity(instrument_, LightSorting::of(filter_)); }
-    const optics::PupilFilter* pupil_filter() const override { return filter_ ? &*filter_ : nullptr; }
+    std::vector<const optics::PupilFilter*> pupil_filters() const override { return filters_of(filter_); }
 
   private:
     void trace_path(const HostScene& scene, const Exposure& exposure, std::uint64_t index,
@@ -191,6 +192,7 @@ std::vector<PathEnd> host_paths(const optics::Instrument& instrument, const spec
     optics::Room room;
     if (options.nonsequential) {
         room = optics::furnish(instrument);
+        room.grow_facet_tree();
     }
     const HostScene scene{trains_of(instrument, options), &intersector, &room};
     const SpecimenRecord record = specimen::record(specimen, options.max_bounces);

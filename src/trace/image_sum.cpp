@@ -2,7 +2,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstddef>
 #include <functional>
+#include <map>
+#include <string_view>
 
 namespace vkfv::trace {
 
@@ -11,9 +14,16 @@ namespace {
 void add(Ledger& sum, const Ledger& part) {
     sum.emitted += part.emitted;
     sum.residual_error = std::hypot(sum.residual_error, part.residual_error);
+    // By name, since other light may have other surfaces. Of equal names the first is the first's, and so on.
+    std::map<std::string_view, std::size_t> seen;
+    const auto known = static_cast<std::ptrdiff_t>(sum.entries.size());
     for (const Ledger::Entry& entry : part.entries) {
-        const auto same = std::ranges::find(sum.entries, entry.name, &Ledger::Entry::name);
-        if (same == sum.entries.end()) {
+        std::size_t before = seen[entry.name]++;
+        const auto end = sum.entries.begin() + known;
+        const auto same = std::find_if(sum.entries.begin(), end, [&](const Ledger::Entry& one) {
+            return one.name == entry.name && before-- == 0;
+        });
+        if (same == end) {
             sum.entries.push_back(entry);
         } else {
             same->power += entry.power;

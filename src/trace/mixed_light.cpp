@@ -32,6 +32,15 @@ std::string description_of(const std::vector<std::unique_ptr<AnyTracer>>& tracer
     return fmt::format("{}; {} sources", tracers.front()->description(), tracers.size());
 }
 
+template <class AnyTracer>
+std::vector<const optics::PupilFilter*> all_filters_of(const std::vector<std::unique_ptr<AnyTracer>>& tracers) {
+    std::vector<const optics::PupilFilter*> all;
+    for (const auto& tracer : tracers) {
+        std::ranges::copy(tracer->pupil_filters(), std::back_inserter(all));
+    }
+    return all;
+}
+
 class HostMixture final : public Tracer {
   public:
     explicit HostMixture(std::vector<std::unique_ptr<Tracer>> tracers) : tracers_(std::move(tracers)) {}
@@ -45,7 +54,7 @@ class HostMixture final : public Tracer {
     }
     std::string description() const override { return description_of(tracers_); }
     TracerIdentity identity() const override { return mixed_identity(identities_of(tracers_)); }
-    const optics::PupilFilter* pupil_filter() const override { return tracers_.front()->pupil_filter(); }
+    std::vector<const optics::PupilFilter*> pupil_filters() const override { return all_filters_of(tracers_); }
 
   private:
     std::vector<std::unique_ptr<Tracer>> tracers_;
@@ -63,7 +72,7 @@ class DeviceMixture final : public DeviceExposures {
     std::string description() const override { return description_of(tracers_); }
     TracerIdentity identity() const override { return mixed_identity(identities_of(tracers_)); }
     std::shared_ptr<const vulkan::Device> device() const override { return tracers_.front()->device(); }
-    const optics::PupilFilter* pupil_filter() const override { return tracers_.front()->pupil_filter(); }
+    std::vector<const optics::PupilFilter*> pupil_filters() const override { return all_filters_of(tracers_); }
     std::uint64_t units() const override { return std::accumulate(units_.begin(), units_.end(), std::uint64_t{0}); }
     std::uint64_t rays_per_unit() const override { return tracers_.front()->rays_per_unit(); }
 

@@ -145,8 +145,13 @@ class Tracer {
     virtual TracerIdentity identity() const = 0;
     // That it works on, for further work there; none: the host.
     virtual std::shared_ptr<const vulkan::Device> device() const { return nullptr; }
-    // What makes its images as waves do; none: they are as rays make them.
-    virtual const optics::PupilFilter* pupil_filter() const { return nullptr; }
+    // What makes its images as waves do, one a light of the instrument; none: they are as rays make them.
+    virtual std::vector<const optics::PupilFilter*> pupil_filters() const { return {}; }
+
+  protected:
+    static std::vector<const optics::PupilFilter*> filters_of(const std::optional<optics::PupilFilter>& filter) {
+        return filter ? std::vector{&*filter} : std::vector<const optics::PupilFilter*>{};
+    }
 };
 
 // The identity that a tracer would have, without opening the device. Throws DeviceError, InputError.

@@ -116,7 +116,7 @@ class TracerPool final : public Tracer {
     }
     TracerIdentity identity() const override { return tracers_.front()->identity(); }
     std::shared_ptr<const vulkan::Device> device() const override { return tracers_.front()->device(); }
-    const optics::PupilFilter* pupil_filter() const override { return tracers_.front()->pupil_filter(); }
+    std::vector<const optics::PupilFilter*> pupil_filters() const override { return tracers_.front()->pupil_filters(); }
 
   private:
     // An exposure, or one of its parts.

@@ -73,6 +73,10 @@ struct Bench {
         room.elements.push_back(element);
         room.surfaces = room.elements.size();
     }
+    void add_mesh(const optics::PlacedMesh& mesh) {
+        room.add_mesh(mesh);
+        room.grow_facet_tree();
+    }
     void add_plate(const optics::Pose& first, double thickness, double index) {
         Element face{};
         face.kind = ELEMENT_INTERFACE;

@@ -96,7 +96,7 @@ physics::f64::Instrument ray() {
 double y_at(double height, const PlacedMesh& mesh) {
     Bench bench;
     bench.add_detector(height);
-    bench.room.add_mesh(mesh);
+    bench.add_mesh(mesh);
     const Detection end = trace_bench(bench, ray(), 1).front();
     EXPECT_EQ(end.fate.status, PATH_DETECTED);
     return end.y;
@@ -148,7 +148,7 @@ TEST(MeshElement, ARoofOfTwoMirrorsSendsLightBack) {
         detector.kind = ELEMENT_DETECTOR;
         detector.surface.index_before = detector.surface.index_after = 1;
         bench.add(detector, optics::Pose{}.along_z(-20).half_turn()); // looks up
-        bench.room.add_mesh(
+        bench.add_mesh(
             placed(roof, optics::Pose{{0, 2, 30}, glm::dmat3(1)}.turned({.tilt_x = tilt}), MeshElement::Kind::mirror));
         const Detection end = trace_bench(bench, ray(), 1).front();
         EXPECT_EQ(end.fate.status, PATH_DETECTED);
@@ -163,9 +163,8 @@ TEST(MeshElement, ALensMakesSpotsAsWideAsItsFacets) {
     const auto spot = [&](int times) { // root mean square distance from the axis, mm
         Bench bench;
         bench.add_detector(10 + index * radius / (2 * (index - 1)));
-        bench.room.add_mesh(placed(ball(radius, times),
-                                   optics::Pose{}.along_z(10).turned({.tilt_x = 0.2, .tilt_y = 0.1}),
-                                   MeshElement::Kind::glass, index));
+        bench.add_mesh(placed(ball(radius, times), optics::Pose{}.along_z(10).turned({.tilt_x = 0.2, .tilt_y = 0.1}),
+                              MeshElement::Kind::glass, index));
         auto beam = pencil(100, 1);
         beam.source_radius = 1.2;
         double sum = 0;
@@ -193,8 +192,8 @@ TEST(MeshElement, FivePlatesPassWhatStokesSays) {
     Bench bench;
     bench.add_detector(20);
     for (int plate = 0; plate < 5; ++plate) {
-        bench.room.add_mesh(placed(box(10, 0, 1), optics::Pose{}.along_z(2.0 * plate), MeshElement::Kind::glass, 1.5168,
-                                   SURFACE_FRESNEL));
+        bench.add_mesh(placed(box(10, 0, 1), optics::Pose{}.along_z(2.0 * plate), MeshElement::Kind::glass, 1.5168,
+                              SURFACE_FRESNEL));
     }
     constexpr std::uint32_t paths = 30000;
     const double share = detected_share(trace_bench(bench, pencil(1, 4), paths));
@@ -207,6 +206,7 @@ TEST(MeshElement, FivePlatesPassWhatStokesSays) {
 TEST(MeshElement, NoRayPassesBetweenFacets) {
     optics::Room room;
     room.add_mesh(placed(ball(7, 2), optics::Pose{{1, 2, 300}, glm::dmat3(1)}, MeshElement::Kind::absorber));
+    room.grow_facet_tree();
     const glm::dvec3 origin(1.5, 1.25, 299);
     std::vector<glm::dvec3> aims;
     for (const Facet& facet : room.facets) {
@@ -334,6 +334,36 @@ TEST(MeshElement, OpenAndTurnedMeshesAreTold) {
     const auto normals = optics::normals_of(outward);
     for (std::size_t k = 0; k < normals.size(); ++k) {
         EXPECT_GT(glm::dot(normals[k], outward.vertices[outward.triangles[k].x]), 0.8);
+    }
+}
+
+// A ball with a hole in which another ball stands, and one beside them; each of them either way round.
+TEST(MeshElement, EachBodyOfAFileIsTurnedByItself) {
+    struct Body {
+        double radius, x;
+        bool hole;
+    };
+    const Body bodies[] = {{3, 0, false}, {2, 0, true}, {1, 0.2, false}, {1.5, 8, false}};
+    for (int ways = 0; ways < 16; ++ways) {
+        Facets file;
+        std::vector<const Body*> of;
+        for (int k = 0; k < 4; ++k) {
+            const Facets body = ball(bodies[k].radius, 1);
+            const auto first = static_cast<std::uint32_t>(file.vertices.size());
+            for (const glm::dvec3& vertex : body.vertices) {
+                file.vertices.push_back(vertex + glm::dvec3(bodies[k].x, 0, 0));
+            }
+            for (const glm::uvec3& t : body.triangles) {
+                file.triangles.push_back(first + ((ways >> k & 1) != 0 ? glm::uvec3(t.y, t.x, t.z) : t));
+                of.push_back(&bodies[k]);
+            }
+        }
+        const Facets turned = optics::turned_outward(file);
+        const auto normals = optics::normals_of(turned);
+        for (std::size_t k = 0; k < normals.size(); ++k) {
+            const glm::dvec3 from_centre = turned.vertices[turned.triangles[k].x] - glm::dvec3(of[k]->x, 0, 0);
+            EXPECT_GT(glm::dot(normals[k], from_centre) * (of[k]->hole ? -1 : 1), 0.5) << ways << ' ' << k;
+        }
     }
 }
 
