@@ -1,7 +1,7 @@
 # What `cmake --install` puts where, and the Debian package that `cpack -G DEB` makes of it (tools/package does both).
 include(GNUInstallDirs)
 
-set(assets objectives tube_lenses illuminators elements specimens stacks)
+set(assets objectives tube_lenses illuminators elements specimens stacks schemas)
 list(TRANSFORM assets PREPEND ${PROJECT_SOURCE_DIR}/assets/)
 # A build finds its assets as an installation does.
 file(MAKE_DIRECTORY ${PROJECT_BINARY_DIR}/share)
@@ -11,6 +11,9 @@ install(TARGETS vkfv RUNTIME)
 install(TARGETS vkfv_openimageio LIBRARY DESTINATION lib/vkfv)
 install(DIRECTORY ${assets} DESTINATION ${CMAKE_INSTALL_DATADIR}/vkfv
         PATTERN "*-out" EXCLUDE)
+
+# Where Debian's Python looks.
+install(DIRECTORY tools/python/vkfv DESTINATION lib/python3/dist-packages PATTERN "__pycache__" EXCLUDE)
 
 # The documents keep their places beside each other, so that their links hold.
 install(FILES README.md CHANGELOG.md CONTRIBUTING.md CITATION.cff DESTINATION ${CMAKE_INSTALL_DOCDIR})
@@ -51,4 +54,5 @@ set(CPACK_DEBIAN_FILE_NAME DEB-DEFAULT)
 set(CPACK_DEBIAN_PACKAGE_SECTION science)
 set(CPACK_DEBIAN_PACKAGE_SHLIBDEPS ON)
 set(CPACK_DEBIAN_PACKAGE_RECOMMENDS "mesa-vulkan-drivers | nvidia-driver-libs, fonts-dejavu-core")
+set(CPACK_DEBIAN_PACKAGE_SUGGESTS "python3-numpy, python3-tifffile") # of the Python package
 include(CPack)

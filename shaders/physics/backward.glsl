@@ -445,7 +445,7 @@ VKFV_SCENE_FUNCTION VKFV_FUNCTION real trace_backward(VKFV_SCENE_PARAMETER Instr
         bool looks_further = !parted || point % rim_period == 0u;
         real2 at_rim = real2(draws.u0, draws.u1);
         if (bounce == 0) {
-            at_rim = sparse_coordinates(point / rim_period, shift.second.x, shift.second.y);
+            at_rim = sparse_coordinates(lattice, point, rim_period, shift.second.x, shift.second.y);
         }
         for (uint part = parted ? 0u : 1u; part < (looks_further ? 2u : 1u); ++part) {
             bool rim = parted && part == 1u;
@@ -464,9 +464,11 @@ VKFV_SCENE_FUNCTION VKFV_FUNCTION real trace_backward(VKFV_SCENE_PARAMETER Instr
                     query.position = origin;
                     query.direction = connection.direction;
                     query.weight = throughput * connection.weight * (rim ? real(rim_period) : real(1.0));
-                    value = value + (parted && !rim
-                                         ? query.weight
-                                         : collect(VKFV_SCENE instrument, backward, plane, specimen, exposure, query));
+                    real seen_light = query.weight; // of what is seen for sure
+                    if (rim || !parted) {
+                        seen_light = collect(VKFV_SCENE instrument, backward, plane, specimen, exposure, query);
+                    }
+                    value = value + seen_light;
                 }
             }
         }

@@ -41,8 +41,10 @@ VKFV_FUNCTION real lattice_coordinate(Lattice lattice, uint point, uint z, uint 
     return shifted_coordinate(lattice.size_bits == 0u ? 0u : (point * z) << (32u - lattice.size_bits), shift);
 }
 
-// Two dimensions for some of the points alone, which may make a poor lattice: multiples of 1 / r and 1 / r^2, r the
-// real root of r^3 = r + 1 (M. Roberts, "The unreasonable effectiveness of quasirandom sequences", 2018), of the k-th.
-VKFV_FUNCTION real2 sparse_coordinates(uint k, uint shift_0, uint shift_1) {
-    return real2(shifted_coordinate(k * 3242174889u, shift_0), shifted_coordinate(k * 2447445414u, shift_1));
+// The same for two dimensions of every period-th point alone, which may make a poor lattice: k / n and k times the
+// golden ratio, of the k-th of n such points. Taken in another order, or as multiples of two irrational numbers, they
+// leave more noise.
+VKFV_FUNCTION real2 sparse_coordinates(Lattice lattice, uint point, uint period, uint shift_0, uint shift_1) {
+    return real2(lattice_coordinate(lattice, point, 1u, shift_0),
+                 shifted_coordinate(point / period * 2654435769u, shift_1));
 }

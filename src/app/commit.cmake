@@ -1,6 +1,9 @@
 # cmake -DSOURCE=... -DOUT=commit.h -P commit.cmake: the commit that is built, with "and changes" where files differ from
-# it; "unknown" outside of a repository. A file that would be the same is left alone.
+# it; outside of a repository what VKFV_COMMIT in the environment says, or "unknown". A file that would be the same is left alone.
 set(commit unknown)
+if(DEFINED ENV{VKFV_COMMIT})
+  set(commit $ENV{VKFV_COMMIT})
+endif()
 find_program(GIT git)
 if(GIT AND EXISTS ${SOURCE}/.git)
   execute_process(COMMAND ${GIT} -C ${SOURCE} rev-parse --short=12 HEAD

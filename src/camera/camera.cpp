@@ -99,8 +99,11 @@ ImageLight Camera::light_of(const Grid<double>& flux, const Grid<double>& standa
     for (const double power : flux.values) {
         const double electrons = std::max(0.0, power * electrons_per_watt); // waves of few rays dip below zero
         light.mean += electrons / count;
-        light.saturated_share += electrons > options_.full_well ? 1 / count : 0;
-        camera_variance += square(temporal_noise(electrons + options_.dark_current * exposure_time)) / count;
+        if (electrons > saturation_charge()) {
+            light.saturated_share += 1 / count;
+        } else {
+            camera_variance += square(temporal_noise(electrons + options_.dark_current * exposure_time)) / count;
+        }
     }
     for (const double error : standard_error.values) {
         ray_variance += square(error * electrons_per_watt) / count;
@@ -111,7 +114,7 @@ ImageLight Camera::light_of(const Grid<double>& flux, const Grid<double>& standa
 }
 
 double Camera::time_to(double share, double flux) const {
-    return share * options_.full_well / (flux * electrons_per_joule_);
+    return share * saturation_charge() / (flux * electrons_per_joule_);
 }
 
 Camera Camera::of_single_frames() const {
@@ -122,6 +125,10 @@ Camera Camera::of_single_frames() const {
 
 double Camera::converter_end() const {
     return (highest_ - options_.offset) / options_.gain;
+}
+
+double Camera::saturation_charge() const {
+    return std::min(options_.full_well, converter_end());
 }
 
 double Camera::quantisation_noise() const {

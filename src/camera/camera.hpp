@@ -36,7 +36,7 @@ struct CameraOptions {
     double photo_response = 0; // PRNU: standard deviation of the pixels' responses, a share of their mean
     ExposureControl control = ExposureControl::stack;
     double exposure_time = 0;     // s, of ExposureControl::time
-    double saturation = 0;        // a share of the capacity, of the others
+    double saturation = 0;        // a share of the saturation charge, of the others
     int frames = 1;               // averaged to one image
     std::uint32_t seed = 1;       // of the fixed patterns
     std::uint32_t noise_seed = 1; // of temporal noise
@@ -47,7 +47,7 @@ struct ImageLight {
     double mean = 0;            // e-
     double camera_noise = 0;    // e-, temporal: of shot, dark current, reading and quantisation, after averaging
     double ray_noise = 0;       // e-, Monte Carlo standard error of the light itself
-    double saturated_share = 0; // of the pixels, whose light is above the saturation capacity
+    double saturated_share = 0; // of the pixels, whose light is above the saturation charge; these have no noise
 };
 
 // The fixed pattern: how each pixel differs from the others, the same in every image.
@@ -69,7 +69,7 @@ class Camera {
                       const FixedPattern& pattern) const;
     // standard_error: of the flux, W; empty: not known, no ray noise.
     ImageLight light_of(const Grid<double>& flux, const Grid<double>& standard_error, double exposure_time) const;
-    // s, in which a pixel of this flux (W) collects this share of the saturation capacity.
+    // s, in which a pixel of this flux (W) collects this share of the saturation charge.
     double time_to(double share, double flux) const;
 
     // The same without averaging.
@@ -83,6 +83,7 @@ class Camera {
     double clip() const { return clip_; }             // e-, at which a pixel's charge ends
     double highest_value() const { return highest_; } // DN
     double converter_end() const;                     // e-, whose grey value is that: below the clip it saturates first
+    double saturation_charge() const;                 // e-, the capacity, or where grey values end before it
     double quantisation_noise() const;                // e-
     double temporal_noise(double electrons) const;    // e-, of one frame, of this mean charge
     // sqrt of the saturation capacity, and that over the charge whose signal to noise ratio is 1 (absolute sensitivity

@@ -41,9 +41,10 @@ const NumberKey read_noise("read_noise_e", NumberRange::at_least(0), of_preset,
 const NumberKey dark_current("dark_current_e_per_s", NumberRange::at_least(0), 0.0, "Electrons a second in the dark.");
 const NumberKey gain("gain_dn_per_e", NumberRange::positive(), of_preset, "Grey values (DN) an electron, K.");
 const NumberKey offset("offset_dn", NumberRange::at_least(0), of_preset, "Grey value without charge.");
-const IntegerKey bit_depth =
-    with_default(of_preset, IntegerKey("bit_depth", fewest_bits, most_bits, needed,
-                                       "Bits of a grey value, which is rounded and ends at 2^bit_depth - 1."));
+const IntegerKey bit_depth = with_default(
+    of_preset, IntegerKey("bit_depth", fewest_bits, most_bits, needed,
+                          "Bits of a grey value, which is rounded and ends at 2^bit_depth - 1. With other bits "
+                          "than the preset's its gain and offset change by as many powers of 2."));
 const NumberKey dark_signal("dsnu_e", NumberRange::at_least(0), of_preset,
                             "Dark signal nonuniformity: standard deviation of the pixels' dark signals in electrons.");
 const NumberKey photo_response("prnu_percent", NumberRange::within(0, largest_photo_response), of_preset,
@@ -59,7 +60,8 @@ const NumberKey exposure_time =
     of_kinds({"time"}, for_example("5.0", NumberKey("exposure_ms", NumberRange::positive(), needed, "Exposure time.")));
 const NumberKey saturation = of_kinds({"stack", "first"}, NumberKey("saturation", share_range, 0.8,
                                                                     "Share of full_well_e that the brightest light "
-                                                                    "takes, by a probe of few rays before the stack."));
+                                                                    "takes, or of the charge at which grey values end, "
+                                                                    "by a probe of few rays before the stack."));
 const IntegerKey frames("frames", 1, most_frames, 1, "Frames that are averaged to an image.");
 const IntegerKey seed("seed", 0, largest_seed, 1,
                       "Seed of the camera's fixed patterns and, with trace.seed, of its noise.");
@@ -117,20 +119,25 @@ void read_camera(const TomlTable& root, Configuration& configuration) {
     const Section section(*table, camera_keys(), configuration);
     const Preset chosen = section.choice(preset);
     table->require(preset.name); // decides which other keys must be given
-    const auto values = camera::preset_camera(chosen);
+    auto values = camera::preset_camera(chosen);
     const auto number = [&](const NumberKey& key, double camera::CameraOptions::*member, double unit = 1) {
         return values ? section.number(key, (*values).*member * unit) / unit : section.number(key) / unit;
     };
     using camera::CameraOptions;
     CameraOptions& camera = configuration.camera.emplace();
+    camera.bit_depth =
+        static_cast<int>(values ? section.integer(bit_depth, values->bit_depth) : section.integer(bit_depth));
+    if (values) { // the same charge at the end of another number of bits
+        const double range = std::exp2(camera.bit_depth - values->bit_depth);
+        values->gain *= range;
+        values->offset *= range;
+    }
     camera.quantum_efficiency = read_efficiency(section, configuration.instrument.spectrum, values);
     camera.full_well = number(full_well, &CameraOptions::full_well);
     camera.read_noise = number(read_noise, &CameraOptions::read_noise);
     camera.dark_current = section.number(dark_current);
     camera.gain = number(gain, &CameraOptions::gain);
     camera.offset = number(offset, &CameraOptions::offset);
-    camera.bit_depth =
-        static_cast<int>(values ? section.integer(bit_depth, values->bit_depth) : section.integer(bit_depth));
     camera.dark_signal = number(dark_signal, &CameraOptions::dark_signal);
     camera.photo_response = number(photo_response, &CameraOptions::photo_response, percent);
     camera.control = section.kind(exposure);

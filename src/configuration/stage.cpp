@@ -52,7 +52,7 @@ const ChoiceKey<Direction> direction("direction",
                                       {Direction::down, "down", "from the highest, after coming to it from below"}},
                                      Direction::up, "In which the images are taken.");
 const NumberKey interval("interval_s", NumberRange::positive(), 0.1, "From image to image.");
-const NumberKey exposure("exposure_s", NumberRange::at_least(0), 0.0,
+const NumberKey exposure("exposure_s", NumberRange::at_least(0), Default::in_words("camera.exposure_ms, or 0"),
                          "Within which vibrations blur; 0: they shift images whole.");
 const IntegerKey moments("moments", 2, 1000, 8, "Of an exposure at which a vibrating stage is looked at.");
 const NumberKey reading_noise =
@@ -159,7 +159,8 @@ void read_stage(const TomlTable& root, Configuration& configuration) {
     stage.light_noise = section.number(light_noise);
     stage.downwards = section.choice(direction) == Direction::down;
     stage.interval = section.number(interval);
-    stage.exposure_time = section.number(exposure);
+    const bool camera_tells = configuration.camera && configuration.camera->control == camera::ExposureControl::time;
+    stage.exposure_time = section.number(exposure, camera_tells ? configuration.camera->exposure_time : 0);
     stage.moments = static_cast<int>(section.integer(moments));
     stage.reading_noise = from_um(section.number(reading_noise));
     stage.evaluate_read = section.choice(positions) == Positions::read;

@@ -26,7 +26,8 @@ std::string Key::unit() const {
         return {};
     }
     // How a name ends, and what is said of it; the longer endings first.
-    constexpr std::array<std::pair<const char*, const char*>, 13> units = {{{"_e_per_s", "e-/s"},
+    constexpr std::array<std::pair<const char*, const char*>, 14> units = {{{"_um2_per_hz", "um2/Hz"},
+                                                                            {"_e_per_s", "e-/s"},
                                                                             {"_um_per_s", "um/s"},
                                                                             {"_hz", "Hz"},
                                                                             {"_dn_per_e", "DN/e-"},

@@ -3,6 +3,7 @@
 #include "core/units.hpp"
 #include "dimensions/least_squares.hpp"
 #include "dimensions/profiles.hpp"
+#include "dimensions/statistics.hpp"
 
 #include <algorithm>
 #include <array>
@@ -86,7 +87,8 @@ std::vector<Transfer> chirp_transfer(const HeightMap& map, const Chirp& chirp) {
 std::vector<Transfer> star_transfer(const HeightMap& map, const Star& star) {
     constexpr int rings = 12;
     constexpr double least_points = 4, half_width = 0.05;
-    const double outermost = star.radius / (1 + half_width);
+    constexpr double inner_share = 0.9; // of the radius: the rim is rounded in pixels and focus windows
+    const double outermost = inner_share * star.radius / (1 + half_width);
     const double innermost = least_points * std::max(map.pitch_x, map.pitch_y) * star.petals / (2 * pi);
     std::vector<Transfer> transfers;
     if (!(innermost < outermost))
@@ -116,10 +118,10 @@ std::vector<Transfer> star_transfer(const HeightMap& map, const Star& star) {
                     const double y = star.frame.v(map.x(column), map.y(row));
                     const double r = std::hypot(x, y);
                     if (const double z = map.height(column, row); r >= inner && r <= outer && std::isfinite(z))
-                        visit(functions(x, y), z);
+                        visit(functions(x, y), z, map.height.index(column, row));
                 }
         };
-        for_points([&](const std::vector<double>& values, double z) {
+        for_points([&](const std::vector<double>& values, double z, std::size_t) {
             squares.add(values, z);
             count += 1;
         });
@@ -127,14 +129,17 @@ std::vector<Transfer> star_transfer(const HeightMap& map, const Star& star) {
         const auto solution = count >= 0.5 * expected ? squares.solve() : std::nullopt;
         if (solution) {
             double rest = 0;
-            for_points([&](const std::vector<double>& values, double z) {
+            Grid<double> residues(map.columns(), map.rows(), surface::undefined);
+            for_points([&](const std::vector<double>& values, double z, std::size_t place) {
                 for (std::size_t k = 0; k < values.size(); ++k)
                     z -= values[k] * solution->unknowns[k];
+                residues.values[place] = z;
                 rest += z * z;
             });
             const double nominal = 2 * std::abs(star.height) / pi;
             transfer.ratio = std::hypot(solution->unknowns[3], solution->unknowns[4]) / nominal;
-            const double variance = rest / (count - static_cast<double>(3 + 2 * harmonics));
+            const double variance =
+                rest / (count - static_cast<double>(3 + 2 * harmonics)) * correlated_points(residues);
             transfer.standard_error =
                 std::sqrt(variance * std::max(solution->variances[3], solution->variances[4])) / nominal;
         }
@@ -146,6 +151,8 @@ std::vector<Transfer> star_transfer(const HeightMap& map, const Star& star) {
 std::optional<double> period_at_half(std::vector<Transfer> transfers) {
     std::erase_if(transfers, [](const Transfer& one) { return !std::isfinite(one.ratio); });
     std::ranges::sort(transfers, std::ranges::greater(), &Transfer::period);
+    // From the largest on: noise may lower a longer one.
+    transfers.erase(transfers.begin(), std::ranges::max_element(transfers, {}, &Transfer::ratio));
     if (transfers.empty() || transfers.front().ratio < 0.5)
         return std::nullopt;
     for (std::size_t k = 1; k < transfers.size(); ++k) {

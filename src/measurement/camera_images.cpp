@@ -2,6 +2,7 @@
 
 #include "core/error.hpp"
 #include "measurement/assembly.hpp"
+#include "measurement/camera_report.hpp"
 #include "measurement/exposure.hpp"
 
 #include <fmt/format.h>
@@ -9,6 +10,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <limits>
 
 namespace vkfv::measurement {
@@ -98,12 +100,15 @@ ImagingCamera::ImagingCamera(const Configuration& configuration, const optics::I
 
 scan::Frame ImagingCamera::develop(int image, const trace::Image& exposure) const {
     const auto take = [&](const Grid<double>& flux) {
+        auto light = camera_.light_of(flux, exposure.standard_error, exposure_time_);
+        if (configuration_.pixel_type != scan::PixelType::float32 && camera_.options().frames > 1) {
+            light.camera_noise =
+                std::hypot(light.camera_noise, camera_.quantisation_noise()); // the mean is rounded too
+        }
         return scan::Frame{
             .values = scan::as_stored(camera_.image(flux, exposure_time_, static_cast<std::uint32_t>(image), pattern_),
                                       configuration_.pixel_type),
-            .note = CameraNote{.exposure_time = exposure_time_,
-                               .light = camera_.light_of(flux, exposure.standard_error, exposure_time_)}
-                        .text()};
+            .note = CameraNote{.exposure_time = exposure_time_, .light = light}.text()};
     };
     return diffraction_ ? take(blurred(*diffraction_, exposure.flux)) : take(exposure.flux);
 }
@@ -215,6 +220,12 @@ nlohmann::ordered_json camera_json(const camera::CameraOptions& options, const C
             {"seed", options.seed}};
 }
 
+std::vector<std::string> warnings_of_images(const Configuration& configuration, const CameraFigures& figures) {
+    auto warnings = warnings_of(camera::Camera(configuration.camera.value(), configuration.instrument.spectrum));
+    std::ranges::copy(camera_warnings(configuration, figures), std::back_inserter(warnings));
+    return warnings;
+}
+
 std::vector<std::string> camera_warnings(const Configuration& configuration, const CameraFigures& figures) {
     std::vector<std::string> warnings;
     const double ratio = figures.ray_over_camera();
@@ -226,12 +237,11 @@ std::vector<std::string> camera_warnings(const Configuration& configuration, con
                                        remedy_of_noise(configuration, ratio, most_ray_noise)));
     }
     if (figures.largest_saturated_share > most_saturated) {
-        warnings.push_back(
-            fmt::format("Up to {:.2g} % of an image's pixels are above the camera's saturation capacity. {}",
-                        100 * figures.largest_saturated_share,
-                        configuration.camera->control == camera::ExposureControl::time
-                            ? "Take a shorter camera.exposure_ms or less source.flux_W"
-                            : "Take a smaller camera.saturation"));
+        warnings.push_back(fmt::format("Up to {:.3g} % of an image's pixels are saturated. {}",
+                                       100 * figures.largest_saturated_share,
+                                       configuration.camera->control == camera::ExposureControl::time
+                                           ? "Take a shorter camera.exposure_ms or less source.flux_W"
+                                           : "Take a smaller camera.saturation"));
     }
     return warnings;
 }

@@ -70,7 +70,9 @@ struct CameraFigures {
     double exposure_time = 0; // s
     camera::ImageLight light;
     double largest_saturated_share = 0; // of the images'
-    double ray_over_camera() const { return light.ray_noise / light.camera_noise; }
+    double ray_over_camera() const {    // 0 where all is saturated
+        return light.camera_noise > 0 ? light.ray_noise / light.camera_noise : 0;
+    }
 };
 CameraFigures camera_figures(std::span<const CameraNote> notes);
 // Of the images of a stack that is complete; none without a camera.
@@ -80,5 +82,7 @@ std::optional<CameraFigures> camera_figures(const scan::ImageStore& store);
 nlohmann::ordered_json camera_json(const camera::CameraOptions& options, const CameraFigures& figures);
 // Sentences on noise of rays that the camera's does not hide, and on light that saturates.
 std::vector<std::string> camera_warnings(const Configuration& configuration, const CameraFigures& figures);
+// The same after those on the camera itself.
+std::vector<std::string> warnings_of_images(const Configuration& configuration, const CameraFigures& figures);
 
 } // namespace vkfv::measurement

@@ -57,7 +57,7 @@ std::string text_of(const CameraNote& note) {
     const auto& light = note.light;
     return fmt::format(
         "exposed for {:.4g} ms: {:.4g} e- a pixel in the mean; noise of the camera {:.4g} e-, of the rays "
-        "{:.4g} e-; {:.2g} % saturated\n",
+        "{:.4g} e-; {:.3g} % saturated\n",
         1e3 * note.exposure_time, light.mean, light.camera_noise, light.ray_noise, 100 * light.saturated_share);
 }
 
@@ -107,7 +107,7 @@ ImageResult measure_image(const Configuration& configuration, double focal_heigh
     result.warnings = warning_of_lost_light(exposure.image);
     if (exposure.taken) {
         const auto figures = camera_figures(std::array{note_of(exposure).value()});
-        std::ranges::copy(camera_warnings(configuration, figures), std::back_inserter(result.warnings));
+        std::ranges::copy(warnings_of_images(configuration, figures), std::back_inserter(result.warnings));
     } else if (const double ratio = signal_to_noise(exposure.image); ratio < least_signal_to_noise) {
         result.warnings.push_back(fmt::format("noise is {:.0f} % of a pixel's mean light. {}", 100 / ratio,
                                               remedy_of_noise(configuration, 1 / ratio, 1 / least_signal_to_noise)));

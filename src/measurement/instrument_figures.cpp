@@ -3,6 +3,7 @@
 #include "core/units.hpp"
 #include "measurement/assembly.hpp"
 #include "measurement/camera_report.hpp"
+#include "measurement/stage_figures.hpp"
 #include "measurement/wave_limits.hpp"
 #include "optics/image_quality.hpp"
 #include "trace/wave_memory.hpp"
@@ -132,6 +133,22 @@ FigureGroup figures_of_waves(const optics::WaveOptions& options, const optics::I
              {"wave_contrast_error_corner", error_of(2), "the same in the corner"}}};
 }
 
+FigureGroup figures_of_stage(const Configuration& configuration, std::vector<std::string>& warnings) {
+    const auto errors = stage_errors(configuration);
+    const auto& stage = *configuration.stage;
+    if (stage.exposure_time > stage.interval) {
+        warnings.push_back(
+            fmt::format("An exposure of {:.4g} s takes longer than the {:.4g} s from image to image. Take "
+                        "a longer stage.interval_s.",
+                        stage.exposure_time, stage.interval));
+    }
+    return {"Stage, over the images of the scan",
+            {{"stage_position_error_rms_um", errors.rms * um_per_mm, "of the focal plane from its nominal height"},
+             {"stage_position_error_largest_um", errors.largest * um_per_mm, "likewise"},
+             {"stage_displacement_largest_um", errors.largest_aside * um_per_mm, "of the specimen across the axis"},
+             {"stage_exposure_s", stage.exposure_time, "in which vibrations blur; 0: they shift images"}}};
+}
+
 FigureGroup figures_of_camera(const camera::Camera& camera) {
     constexpr double decibels = 20, percent = 100;
     const auto& options = camera.options();
@@ -188,12 +205,14 @@ void warn_of_step(const Configuration& configuration, const ScanFigures& scan, c
 
 void warn_of_size(const SpecimenFigures& specimen, const optics::FirstOrder& first_order,
                   const optics::ImageQuality& quality, std::vector<std::string>& warnings) {
-    // A pixel more is its border, not its form.
+    // A rim around the field belongs to a good model: light that is scattered there comes into the field too.
+    constexpr double most = 2;
     for (const int axis : {0, 1}) {
-        if (specimen.sides[axis] > quality.field[axis] + first_order.pixel_pitch) {
-            warnings.push_back(fmt::format("The specimen, {:.4g} um across, is larger than the field of view, {:.4g} "
-                                           "um: what lies outside is not measured.",
-                                           specimen.sides[axis] * um_per_mm, quality.field[axis] * um_per_mm));
+        if (specimen.sides[axis] > most * quality.field[axis] + first_order.pixel_pitch) {
+            warnings.push_back(
+                fmt::format("The specimen, {:.4g} um across, is more than twice as large as the field of view, {:.4g} "
+                            "um: what lies outside is made and not measured.",
+                            specimen.sides[axis] * um_per_mm, quality.field[axis] * um_per_mm));
             break;
         }
     }
@@ -223,7 +242,8 @@ std::string line_of(const char* name, const std::string& value, const std::strin
 }
 
 std::string value_text(double value) {
-    return std::isfinite(value) ? fmt::format("{:.6g}", value) : "-";
+    constexpr double rounding = 1e-12; // of all figures, in their units
+    return std::isfinite(value) ? fmt::format("{:.6g}", std::abs(value) < rounding ? 0 : value) : "-";
 }
 
 } // namespace
@@ -260,6 +280,9 @@ InstrumentFigures instrument_figures(const Configuration& configuration) {
         figures.groups.push_back(figures_of_camera(camera));
         const auto further = warnings_of(camera);
         warnings.insert(warnings.end(), further.begin(), further.end());
+    }
+    if (configuration.stage && configuration.scan) {
+        figures.groups.push_back(figures_of_stage(configuration, warnings));
     }
     if (configuration.scan) {
         figures.scan = figures_of_scan(configuration);

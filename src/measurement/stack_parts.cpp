@@ -95,8 +95,9 @@ Evaluation GrowingEvaluation::write(scan::ImageStore& store, const trace::Tracer
     }
     if (camera) {
         stack.origin["camera"] = camera_json(*configuration.camera, *camera);
-        stack.origin["camera"]["warnings"] = camera_warnings(configuration, *camera);
-        for (const auto& warning : camera_warnings(configuration, *camera)) {
+        const auto warnings = warnings_of_images(configuration, *camera);
+        stack.origin["camera"]["warnings"] = warnings;
+        for (const auto& warning : warnings) {
             spdlog::warn(warning);
         }
     }

@@ -17,21 +17,29 @@ std::optional<double> reading_of(const Configuration& configuration, double posi
                : std::nullopt;
 }
 
-nlohmann::ordered_json stage_figures(const Configuration& configuration) {
+StageErrors stage_errors(const Configuration& configuration) {
     const auto motion = stage_motion(configuration).value();
     const auto positions = configuration.scan->positions();
-    double squares = 0, most = 0, aside = 0;
+    StageErrors errors;
+    double squares = 0;
     for (std::size_t image = 0; image < positions.size(); ++image) {
         const auto taken = motion.mean(positions[image], static_cast<std::uint32_t>(image));
         const double error = taken.height - positions[image];
         squares += error * error / static_cast<double>(positions.size());
-        most = std::max(most, std::abs(error));
-        aside = std::max(aside, glm::length(taken.beside));
+        errors.largest = std::max(errors.largest, std::abs(error));
+        errors.largest_aside = std::max(errors.largest_aside, glm::length(taken.beside));
     }
+    errors.rms = std::sqrt(squares);
+    return errors;
+}
+
+nlohmann::ordered_json stage_figures(const Configuration& configuration) {
+    const auto motion = stage_motion(configuration).value();
+    const auto errors = stage_errors(configuration);
     return {{"evaluated_positions", configuration.stage->evaluate_read ? "read" : "nominal"},
-            {"position_error_rms_um", std::sqrt(squares) * um_per_mm},
-            {"position_error_largest_um", most * um_per_mm},
-            {"displacement_largest_um", aside * um_per_mm},
+            {"position_error_rms_um", errors.rms * um_per_mm},
+            {"position_error_largest_um", errors.largest * um_per_mm},
+            {"displacement_largest_um", errors.largest_aside * um_per_mm},
             {"moments_per_exposure", motion.moments()},
             {"positions_file", stage_file}};
 }

@@ -14,6 +14,13 @@ namespace vkfv::measurement {
 // the nominal positions.
 std::optional<double> reading_of(const Configuration& configuration, double position, int image);
 
+// Over the images of a stack with a stage, mm: of the focal planes from the nominal positions, and of the specimen at
+// right angles to the axis.
+struct StageErrors {
+    double rms = 0, largest = 0, largest_aside = 0;
+};
+StageErrors stage_errors(const Configuration& configuration);
+
 // Of a stack with a stage: for results.json, and its file beside the heights, a line an image.
 inline constexpr const char* stage_file = "stage.csv";
 nlohmann::ordered_json stage_figures(const Configuration& configuration);

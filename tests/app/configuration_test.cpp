@@ -145,10 +145,33 @@ TEST(Configuration, IdentityHoldsWhatChangesImagesAndNothingElse) {
 
 // Every key of [stage] and [camera]: another value makes other images, but for those that are declared to influence
 // none.
+// A preset read out with fewer bits ends at the same charge.
+TEST(Configuration, PresetsOfOtherBitsKeepTheirRange) {
+    const auto text = replaced(small_configuration, "[output]\n", "[camera]\npreset = \"IMX900\"\n[output]\n");
+    EXPECT_DOUBLE_EQ(load("bits", text).camera->gain, 0.399);
+    const auto eight = load("bits", text, {{"camera.bit_depth", "8", ""}}).camera.value();
+    EXPECT_DOUBLE_EQ(eight.gain, 0.399 / 16);
+    EXPECT_DOUBLE_EQ(eight.offset, 60.0 / 16);
+    const auto own = load("bits", text, {{"camera.bit_depth", "8", ""}, {"camera.gain_dn_per_e", "0.02", ""}}).camera;
+    EXPECT_DOUBLE_EQ(own->gain, 0.02);
+}
+
+// The time in which a vibration blurs is the camera's, unless the stage has one of its own.
+TEST(Configuration, TheCamerasTimeIsTheStages) {
+    const auto text =
+        replaced(small_configuration, "[output]\n",
+                 "[camera]\npreset = \"IMX900\"\nexposure = \"time\"\nexposure_ms = 5\n[stage]\n[output]\n");
+    EXPECT_DOUBLE_EQ(load("time", text).stage->exposure_time, 0.005);
+    EXPECT_DOUBLE_EQ(load("time", text, {{"stage.exposure_s", "0.02", ""}}).stage->exposure_time, 0.02);
+    EXPECT_DOUBLE_EQ(load("time", text, {{"camera.exposure", "\"stack\"", ""}}).stage->exposure_time, 0);
+}
+
 TEST(Configuration, IdentityHoldsWhatStageAndCameraDoToImages) {
-    const auto stage = replaced(small_configuration, "[output]\n",
-                                "[stage]\nlinearity_at_um = [0, 1]\nlinearity_um = [0, 0]\nvibration_um = [0.1]\n"
-                                "vibration_hz = [203]\nlateral_drift_um_per_s = [0, 0]\ntilt_deg = [0, 0]\n[output]\n");
+    const auto stage =
+        replaced(small_configuration, "[output]\n",
+                 "[stage]\nlinearity_at_um = [0, 1]\nlinearity_um = [0, 0]\nvibration_um = [0.1]\n"
+                 "vibration_hz = [203]\nvibration_spectrum_hz = [10, 20]\nvibration_spectrum_um2_per_hz = [1, 1]\n"
+                 "lateral_drift_um_per_s = [0, 0]\ntilt_deg = [0, 0]\n[output]\n");
     const auto camera =
         replaced(small_configuration, "[output]\n", "[camera]\npreset = \"IMX900\"\nfull_well_e = 9000\n[output]\n");
     const auto timed = replaced(small_configuration, "[output]\n",
@@ -168,6 +191,8 @@ TEST(Configuration, IdentityHoldsWhatStageAndCameraDoToImages) {
         {stage, "stage.drift_um_per_s", "0.1"},
         {stage, "stage.vibration_um", "[0.2]"},
         {stage, "stage.vibration_hz", "[204]"},
+        {stage, "stage.vibration_spectrum_hz", "[10, 21]"},
+        {stage, "stage.vibration_spectrum_um2_per_hz", "[1, 2]"},
         {stage, "stage.lateral_drift_um_per_s", "[0, 1]"},
         {stage, "stage.tilt_deg", "[0, 1]"},
         {stage, "stage.runout_um", "1"},

@@ -183,8 +183,11 @@ TEST(Documents, EveryDocumentIsLinkedFromTheReadme) {
     EXPECT_LE(std::ranges::count(readme, '\n'), 150);
 }
 
-TEST(Documents, CitationIsOfThisVersion) {
+TEST(Documents, CitationPythonPackageAndChangelogAreOfThisVersion) {
     EXPECT_THAT(read_file(source / "CITATION.cff"), testing::HasSubstr("\nversion: " VKFV_VERSION "\n"));
+    EXPECT_THAT(read_file(source / "tools/python/vkfv/__init__.py"),
+                testing::HasSubstr("\n__version__ = \"" VKFV_VERSION "\"\n"));
+    EXPECT_THAT(read_file(source / "CHANGELOG.md"), testing::HasSubstr("\n## [" VKFV_VERSION "] - "));
 }
 
 // The words of a command of vkfv in backticks; empty if that is no whole command.

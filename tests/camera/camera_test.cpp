@@ -127,6 +127,22 @@ TEST(Camera, NoiseOfRaysAndOfTheCameraAreToldApart) {
 
 // The clips were found by a script of scipy: Poisson probabilities summed up, averaged over normal responses, the peak
 // of the variance on a grid of means. Of a clip without it: 2.8 to 3 % below, as cameras have it.
+// Of fewer bits grey values end before the charge does: there the image saturates, and by that an exposure is set.
+TEST(Camera, SaturatesWhereGreyValuesEnd) {
+    CameraOptions options = plain();
+    options.bit_depth = 14; // (16383 - 200) / 4 electrons
+    const Camera camera(options, green), of_more_bits(plain(), green);
+    EXPECT_DOUBLE_EQ(camera.saturation_charge(), 4045.75);
+    EXPECT_DOUBLE_EQ(of_more_bits.saturation_charge(), 10000);
+    const double flux = 1e-12;
+    EXPECT_NEAR(flux * camera.time_to(0.8, flux) * camera.electrons_per_joule(), 0.8 * 4045.75, 1e-6);
+    const Grid<double> bright(10, 10, 5000 / camera.electrons_per_joule() / 1e-3);
+    EXPECT_NEAR(camera.light_of(bright, {}, 1e-3).saturated_share, 1, 1e-12);
+    EXPECT_EQ(camera.light_of(bright, {}, 1e-3).camera_noise, 0);
+    EXPECT_EQ(of_more_bits.light_of(bright, {}, 1e-3).saturated_share, 0);
+    EXPECT_NEAR(of_more_bits.light_of(bright, {}, 1e-3).camera_noise, std::sqrt(5000 + 1.0 / 12 / 16), 1e-9);
+}
+
 TEST(Saturation, TheVarianceIsLargestAtTheFullWell) {
     EXPECT_NEAR(clip_of_capacity(10970, 0), 11281, 1);
     EXPECT_NEAR(clip_of_capacity(9458, 0), 9744, 1);

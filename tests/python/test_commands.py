@@ -156,7 +156,7 @@ class RunTest(unittest.TestCase):
         self.assertEqual(vkfv.check(shared.configuration(), **{"scan.z_step_um": 4, "trace": {"rays": 3e5}})["images"], 7)
 
     def test_warnings(self):
-        with self.assertWarnsRegex(vkfv.RunWarning, "above the camera's saturation"):
+        with self.assertWarnsRegex(vkfv.RunWarning, "saturated"):
             image = vkfv.image(
                 shared.configuration(), 0, out=shared.folder() / "grey.tif", camera={"preset": "IMX250"}, **SMALL
             )

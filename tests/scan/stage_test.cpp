@@ -118,6 +118,22 @@ TEST(Stage, lags_on_the_way_down) {
     }
 }
 
+// Images are taken one after the other, and the focal plane goes on upwards meanwhile.
+TEST(Stage, drifts_from_image_to_image) {
+    const auto positions = steps(21, 0.001);
+    Stage stage;
+    stage.drift = 0.0004;
+    stage.interval = 0.25;
+    for (const bool downwards : {false, true}) {
+        stage.downwards = downwards;
+        const auto found = errors(StageMotion(stage, positions), positions);
+        for (std::size_t image = 0; image < positions.size(); ++image) {
+            const std::size_t before = downwards ? positions.size() - 1 - image : image;
+            EXPECT_NEAR(found[image], 0.0001 * static_cast<double>(before), 1e-15) << image << ' ' << downwards;
+        }
+    }
+}
+
 // Looked at once an interval, a vibration has its aliased frequency; within an exposure it is averaged.
 TEST(Stage, vibrates) {
     const auto positions = steps(1000, 0.0001);

@@ -1,5 +1,6 @@
 // Patterns and uneven light in the plane of the field stop: what they look like on the specimen, in all ways of
 // tracing.
+#include "trace/agreement.hpp"
 #include "trace/device_tracer.hpp"
 #include "trace/elements.hpp"
 #include "trace/host_tracer.hpp"
@@ -16,6 +17,8 @@
 
 using namespace vkfv;
 using namespace vkfv::physics::f64;
+using test::agreement;
+using test::total;
 using trace::Estimator;
 using trace::Traversal;
 
@@ -127,28 +130,6 @@ specimen::Specimen flat(const std::string& scatter) {
     plane.x_min = plane.y_min = -0.05;
     plane.x_max = plane.y_max = 0.05;
     return {plane, specimen::Material{{{scatter, 1, {}}}}};
-}
-
-double total(const Grid<double>& grid) {
-    return std::accumulate(grid.values.begin(), grid.values.end(), 0.0);
-}
-
-// Probability of a greater sum over the pixels of (difference)^2 / variance, the variances shared out as the light is.
-double agreement(const trace::Image& one, const trace::Image& other) {
-    const auto variance_per_flux = [](const trace::Image& image) {
-        double squares = 0;
-        for (const double error : image.standard_error.values) {
-            squares += error * error;
-        }
-        return squares / total(image.flux);
-    };
-    const double variance = variance_per_flux(one) + variance_per_flux(other);
-    double chi_square = 0;
-    for (std::size_t k = 0; k < one.flux.values.size(); ++k) {
-        const double mean = 0.5 * (one.flux.values[k] + other.flux.values[k]);
-        chi_square += std::pow(one.flux.values[k] - other.flux.values[k], 2) / (variance * mean);
-    }
-    return test::chi_square_tail(chi_square, static_cast<double>(one.flux.values.size()));
 }
 
 // Of the image over that without a pattern: the coefficient of so many periods in the field.
@@ -264,6 +245,34 @@ TEST(LightField, all_ways_of_tracing_have_one_expectation) {
     for (const auto& twin : {uneven(true), centred}) {
         EXPECT_LT(agreement(forward, expose(with(twin), specimen, backward)), level);
     }
+}
+
+// A reticle: the pattern is on the first face of a plate of glass.
+TEST(LightField, is_met_on_glass_by_all_ways_of_tracing) {
+    auto description = small_description();
+    description.illumination = ideal_illuminator();
+    description.source.radius = 1.1;
+    auto& surfaces = description.illumination.surfaces;
+    optics::PrescribedSurface& front = surfaces.at(1);
+    optics::PrescribedSurface back;
+    back.medium_after = front.medium_after;
+    back.thickness = front.thickness - 3;
+    front.medium_after = optics::Medium::constant("glass", 1.5, "test");
+    front.thickness = 3;
+    surfaces.insert(surfaces.begin() + 2, back);
+    const auto lit_by = [&](const std::optional<optics::LightField>& light) {
+        description.light_field = light;
+        return optics::assemble(description);
+    };
+    const auto specimen = flat("lambertian");
+    auto own_way = options(Estimator::forward, 2'000'000);
+    own_way.nonsequential = true;
+    const auto nonsequential = expose(lit_by(uneven()), specimen, own_way);
+    ASSERT_GT(nonsequential.detected, 2000u);
+    const auto backward = options(Estimator::backward, 1 << 17);
+    EXPECT_GT(agreement(nonsequential, expose(lit_by(uneven()), specimen, backward)), level);
+    EXPECT_LT(agreement(nonsequential, expose(lit_by(uneven(true)), specimen, backward)), level);
+    EXPECT_LT(agreement(nonsequential, expose(lit_by(even()), specimen, backward)), level);
 }
 
 // What the pattern takes is an entry at the stop: half of what comes through the hole around it.

@@ -3,6 +3,7 @@
 #include "trace/device_tracer.hpp"
 #include "trace/elements.hpp"
 #include "trace/host_tracer.hpp"
+#include "trace/same_paths.hpp"
 
 #include <gtest/gtest.h>
 
@@ -400,25 +401,7 @@ optics::InstrumentDescription microscope_with_meshes() {
 } // namespace
 
 TEST(MeshElement, HostAndDeviceTraceTheSamePaths) {
-    const auto instrument = optics::assemble(microscope_with_meshes());
-    const auto specimen = smooth_specimen();
-    constexpr std::uint32_t paths = 3000;
-    const auto host = trace::host_paths(instrument, specimen, options(trace::Traversal::automatic), 0.002, 7, 0, paths);
-    for (const auto traversal : {trace::Traversal::bvh, trace::Traversal::ray_query}) {
-        const auto device = trace::device_paths(instrument, specimen, options(traversal), 0.002, 7, 0, paths);
-        int differing = 0, far = 0, detected = 0;
-        for (std::uint32_t k = 0; k < paths; ++k) {
-            const bool same = host[k].status == device[k].status && host[k].surface == device[k].surface;
-            differing += same ? 0 : 1;
-            if (same && host[k].status == PATH_DETECTED) {
-                ++detected;
-                far += std::hypot(host[k].x - device[k].x, host[k].y - device[k].y) > 1e-3 ? 1 : 0; // 1 um
-            }
-        }
-        EXPECT_GT(detected, 30);
-        EXPECT_LE(differing, static_cast<int>(paths / 500));
-        EXPECT_LE(far, 2);
-    }
+    expect_same_paths(optics::assemble(microscope_with_meshes()));
 }
 
 // A cover glass as two surfaces and as a box of six faces, in the same microscope: the same image, and the ledger of

@@ -1,6 +1,7 @@
 // Light of several sources: the image is the sum of what each gives, forward and backward, on device and host.
 #include "trace/mixed_light.hpp"
 
+#include "trace/agreement.hpp"
 #include "trace/device_tracer.hpp"
 #include "trace/host_tracer.hpp"
 #include "trace/microscope.hpp"
@@ -15,6 +16,8 @@
 #include <set>
 
 using namespace vkfv;
+using test::agreement;
+using test::total;
 
 namespace {
 
@@ -76,10 +79,6 @@ trace::Image expose(const optics::Instrument& instrument, const trace::TraceOpti
         ->expose(focal_height, 0);
 }
 
-double total(const Grid<double>& grid) {
-    return std::accumulate(grid.values.begin(), grid.values.end(), 0.0);
-}
-
 double variance(const trace::Image& image) {
     return std::inner_product(image.standard_error.values.begin(), image.standard_error.values.end(),
                               image.standard_error.values.begin(), 0.0);
@@ -94,18 +93,6 @@ double apart(const trace::Image& whole, const std::vector<trace::Image>& parts) 
         of_both += variance(part);
     }
     return std::abs(difference) / std::sqrt(of_both);
-}
-
-// p-value of the same, pixel by pixel: the errors' squares are shared out as the light is, as those of one pixel are
-// known badly.
-double agreement(const trace::Image& one, const trace::Image& other) {
-    const double per_flux = variance(one) / total(one.flux) + variance(other) / total(other.flux);
-    double chi_square = 0;
-    for (std::size_t pixel = 0; pixel < one.flux.values.size(); ++pixel) {
-        const double difference = one.flux.values[pixel] - other.flux.values[pixel];
-        chi_square += difference * difference / (0.5 * per_flux * (one.flux.values[pixel] + other.flux.values[pixel]));
-    }
-    return test::chi_square_tail(chi_square, static_cast<double>(one.flux.values.size()));
 }
 
 } // namespace

@@ -2,6 +2,7 @@
 // each other.
 #include "optics/ideal_lens.hpp"
 #include "support/statistics.hpp"
+#include "trace/agreement.hpp"
 #include "trace/device_tracer.hpp"
 #include "trace/host_tracer.hpp"
 #include "trace/microscope.hpp"
@@ -14,6 +15,8 @@
 #include <numeric>
 
 using namespace vkfv;
+using test::agreement;
+using test::total;
 using trace::Estimator;
 using trace::Traversal;
 
@@ -75,10 +78,6 @@ trace::Image expose(const optics::Instrument& instrument, const specimen::Specim
     const auto tracer = by.host ? trace::make_host_tracer(instrument, specimen, by.options)
                                 : trace::make_device_tracer(instrument, specimen, by.options);
     return tracer->expose(focal_height, image);
-}
-
-double total(const Grid<double>& grid) {
-    return std::accumulate(grid.values.begin(), grid.values.end(), 0.0);
 }
 
 // A level square of 0.1 mm at the height 0, white and Lambertian.
@@ -176,24 +175,6 @@ void expect_closed_form(const trace::Image& image, const trace::Image& bare, dou
     EXPECT_LT(std::abs(seen.value - fundamental), bound);
     EXPECT_LT(std::abs(across.value), bound);
     EXPECT_GT(std::abs(fundamental), 4 * bound) << "nothing is told apart";
-}
-
-// Probability of a greater sum over the pixels of (difference)^2 / variance, the variances shared out as the light is.
-double agreement(const trace::Image& one, const trace::Image& other) {
-    const auto variance_per_flux = [](const trace::Image& image) {
-        double squares = 0;
-        for (const double error : image.standard_error.values) {
-            squares += error * error;
-        }
-        return squares / total(image.flux);
-    };
-    const double variance = variance_per_flux(one) + variance_per_flux(other);
-    double chi_square = 0;
-    for (std::size_t k = 0; k < one.flux.values.size(); ++k) {
-        const double mean = 0.5 * (one.flux.values[k] + other.flux.values[k]);
-        chi_square += std::pow(one.flux.values[k] - other.flux.values[k], 2) / (variance * mean);
-    }
-    return test::chi_square_tail(chi_square, static_cast<double>(one.flux.values.size()));
 }
 
 // Sum of the pixels' differences as a share of the light.
