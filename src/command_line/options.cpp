@@ -76,13 +76,14 @@ std::vector<Option> configuration_options() {
              .choices_checked = false},
             {.name = "--estimator",
              .value = "NAME",
-             .description = "From where paths are traced",
+             .description = "Start of the paths, source or pixels",
              .target = to_key("--estimator", "trace.estimator", true),
              .choices = {"forward", "backward"},
              .choices_checked = false},
             {.name = "--device",
              .value = "DEVICE",
-             .description = "Index or part of a name; \"0,1\" or \"all\": several; \"host\": the reference in double",
+             .description = "Index or part of a name; \"0,1\" or \"all\": several; \"host\": the CPU reference in "
+                            "double precision",
              .target = to_key("--device", "trace.device", true)}};
 }
 

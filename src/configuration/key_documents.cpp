@@ -241,7 +241,7 @@ std::string keys_markdown() {
                        "`vkfv template` prints a configuration with all of them, `vkfv keys --schema` a JSON Schema "
                        "for editors.\n";
     for (const KeyTable* table : key_tables()) {
-        const char* presence = table->presence == KeyTable::Presence::needed     ? " Must be there."
+        const char* presence = table->presence == KeyTable::Presence::needed     ? " Required."
                                : table->presence == KeyTable::Presence::repeated ? " May be repeated."
                                                                                  : "";
         text += table->path.empty() ? "\n## Before the first table\n" : fmt::format("\n## `{}`\n", header_of(*table));

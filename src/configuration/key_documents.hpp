@@ -17,7 +17,7 @@ std::string keys_text();
 std::string keys_json();
 std::string keys_markdown();
 
-// The same of one key ("source.radius_mm") or of one table ("source"). Throws InputError for what there is not, and
+// The same of one key ("source.radius_mm") or of one table ("source"). Throws InputError if the name is unknown, and
 // names what was most likely meant.
 std::string explained(const std::string& key);
 

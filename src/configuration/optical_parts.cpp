@@ -65,7 +65,7 @@ const NumbersKey global("global_mm", offset_range, Default::in_words("where the 
 const KeyTable& root_keys() {
     static const KeyTable table{.path = "",
                                 .presence = KeyTable::Presence::optional,
-                                .meaning = "What stands before the first table.",
+                                .meaning = "Keys at the top of the file.",
                                 .subject = "",
                                 .kind = "",
                                 .keys = {&glass_catalogs}};

@@ -44,7 +44,7 @@ const IntegerKey batch =
 const TextKey device =
     without_influence(TextKey("device", Default::in_words("the best"),
                               "Index or part of the name of a Vulkan device; \"0,1\": both at a time; \"all\" that "
-                              "are like the best; \"host\": the reference in double."));
+                              "are like the best; \"host\": the CPU reference in double precision."));
 
 } // namespace
 

@@ -200,7 +200,7 @@ std::vector<std::string> words_of(const std::string& code) {
     return words.size() > 1 && words.front() == "vkfv" ? words : std::vector<std::string>();
 }
 
-// Options of a command in backticks that it does not take, and commands that there are not.
+// Options of a command in backticks that it does not take, and unknown commands.
 std::vector<std::string> unknown_words(const std::string& code) {
     auto words = words_of(code);
     std::vector<std::string> unknown;
