@@ -7,6 +7,9 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <cmath>
+
 namespace vkfv::dimensions {
 namespace {
 
@@ -120,6 +123,26 @@ TEST(Transfer, OfASharpStarIsOneAndOfAHalvedOneAHalf) {
     }
     star.height *= 2;
     EXPECT_NEAR(star_transfer(map, star).front().ratio, 0.5, 0.01);
+}
+
+// Pixels and focus windows round the rim: no ring reaches so far.
+TEST(Transfer, OfAStarDoesNotDependOnItsRim) {
+    const Star star{.frame = {}, .petals = 12, .radius = 0.11, .height = 0.004};
+    const HeightMap map = made(star.frame, [&](double u, double v) {
+        const double petal = std::atan2(v, u) / (2 * pi) * star.petals;
+        const double rounded = std::clamp((star.radius - std::hypot(u, v)) / 0.01, 0.0, 1.0);
+        return petal - std::floor(petal) < 0.5 ? star.height * rounded : 0.0;
+    });
+    EXPECT_NEAR(star_transfer(map, star).front().ratio, 1, 0.02);
+}
+
+// A long wave that noise lowers does not hide the limit.
+TEST(Transfer, FallsToAHalfBelowItsLargestValue) {
+    const auto half = period_at_half(
+        {{.period = 0.02, .ratio = 0.4}, {.period = 0.015, .ratio = 0.9}, {.period = 0.01, .ratio = 0.3}});
+    ASSERT_TRUE(half);
+    EXPECT_NEAR(*half, 0.015 - 0.005 * 0.4 / 0.6, 1e-12);
+    EXPECT_FALSE(period_at_half({{.period = 0.02, .ratio = 0.4}, {.period = 0.01, .ratio = 0.3}}));
 }
 
 TEST(SphereForm, ACapOnAPlaneWithoutItsFlanks) {
