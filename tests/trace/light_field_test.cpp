@@ -171,7 +171,7 @@ TEST(LightField, falls_off_from_its_brightest_place) {
     const double m = instrument.first_order.field_stop_magnification;
     EXPECT_NEAR(m, -20.0 / 150, 1e-9);
     const auto white = flat("lambertian");
-    const auto by = options(Estimator::backward, 1 << 13);
+    const auto by = options(Estimator::backward, 1 << 16);
     for (const bool on_host : {false, true}) {
         const auto bare = expose(sharp(std::nullopt), white, by, on_host);
         const auto image = expose(instrument, white, by, on_host);
@@ -187,7 +187,7 @@ TEST(LightField, falls_off_from_its_brightest_place) {
                 worst_twin = std::max(worst_twin, std::abs(seen - share(x / m, y / m)));
             }
         }
-        EXPECT_LT(worst, 0.01);
+        EXPECT_LT(worst, 0.015); // of 256 pixels with noise of 0.003, of the source's rim that the pupil cuts off
         EXPECT_GT(worst_twin, 0.05);
     }
 }
@@ -250,26 +250,27 @@ TEST(LightField, all_ways_of_tracing_have_one_expectation) {
 // A reticle: the pattern is on the first face of a plate of glass.
 TEST(LightField, is_met_on_glass_by_all_ways_of_tracing) {
     auto description = small_description();
-    description.illumination = ideal_illuminator();
-    description.source.radius = 1.1;
     auto& surfaces = description.illumination.surfaces;
-    optics::PrescribedSurface& front = surfaces.at(1);
+    const auto front = std::ranges::find(surfaces, optics::SurfaceRole::field_stop, &optics::PrescribedSurface::role);
+    ASSERT_NE(front, surfaces.end());
     optics::PrescribedSurface back;
-    back.medium_after = front.medium_after;
-    back.thickness = front.thickness - 3;
-    front.medium_after = optics::Medium::constant("glass", 1.5, "test");
-    front.thickness = 3;
-    surfaces.insert(surfaces.begin() + 2, back);
+    back.medium_after = front->medium_after;
+    back.thickness = front->thickness - 2;
+    ASSERT_GT(back.thickness, 0);
+    front->medium_after = optics::Medium::constant("glass", 1.5, "test");
+    front->thickness = 2;
+    surfaces.insert(front + 1, back);
     const auto lit_by = [&](const std::optional<optics::LightField>& light) {
         description.light_field = light;
         return optics::assemble(description);
     };
-    const auto specimen = flat("lambertian");
-    auto own_way = options(Estimator::forward, 2'000'000);
+    const auto specimen = test::smooth_specimen();
+    auto own_way = options(Estimator::forward, 2'000'000, 2);
     own_way.nonsequential = true;
+    own_way.traversal = Traversal::bvh;
     const auto nonsequential = expose(lit_by(uneven()), specimen, own_way);
-    ASSERT_GT(nonsequential.detected, 2000u);
-    const auto backward = options(Estimator::backward, 1 << 17);
+    ASSERT_GT(nonsequential.detected, 4000u);
+    const auto backward = options(Estimator::backward, 1 << 18, 2);
     EXPECT_GT(agreement(nonsequential, expose(lit_by(uneven()), specimen, backward)), level);
     EXPECT_LT(agreement(nonsequential, expose(lit_by(uneven(true)), specimen, backward)), level);
     EXPECT_LT(agreement(nonsequential, expose(lit_by(even()), specimen, backward)), level);
