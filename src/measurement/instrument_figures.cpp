@@ -206,13 +206,14 @@ void warn_of_step(const Configuration& configuration, const ScanFigures& scan, c
 void warn_of_size(const SpecimenFigures& specimen, const optics::FirstOrder& first_order,
                   const optics::ImageQuality& quality, std::vector<std::string>& warnings) {
     // A rim around the field belongs to a good model: light that is scattered there comes into the field too.
-    constexpr double most = 2;
+    constexpr double most = 2.5;
     for (const int axis : {0, 1}) {
         if (specimen.sides[axis] > most * quality.field[axis] + first_order.pixel_pitch) {
             warnings.push_back(
-                fmt::format("The specimen, {:.4g} um across, is more than twice as large as the field of view, {:.4g} "
+                fmt::format("The specimen, {:.4g} um across, is {:.2g} times as large as the field of view, {:.4g} "
                             "um: what lies outside is made and not measured.",
-                            specimen.sides[axis] * um_per_mm, quality.field[axis] * um_per_mm));
+                            specimen.sides[axis] * um_per_mm, specimen.sides[axis] / quality.field[axis],
+                            quality.field[axis] * um_per_mm));
             break;
         }
     }

@@ -110,7 +110,7 @@ TEST(MixedLight, GivesTheSumOfItsSources) {
     };
     for (const Way& way :
          {Way{trace::Estimator::forward, 2'000'000, false, 1.3}, Way{trace::Estimator::backward, 1 << 16, false, 1.05},
-          Way{trace::Estimator::backward, 1 << 13, true, 1.05}}) {
+          Way{trace::Estimator::backward, 1 << 15, true, 1.05}}) {
         SCOPED_TRACE(way.on_host);
         SCOPED_TRACE(static_cast<int>(way.estimator));
         std::vector<trace::Image> parts;
