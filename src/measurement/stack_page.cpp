@@ -8,6 +8,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 
 namespace vkfv::measurement {
 
@@ -43,16 +44,40 @@ std::string text_of(const nlohmann::ordered_json& value) {
                              : value.dump();
 }
 
-void add_deviations(Rows& rows, const std::string& prefix, const std::vector<Figures>& all) {
-    const auto length = [](double mm) { return report::reader_number(mm * um_per_mm); };
-    for (const auto& figures : all) {
-        if (const auto& deviation = figures.deviation) {
-            rows.push_back({prefix + treatment_of(figures.band), report::reader_number(100 * deviation->measured_share),
-                            length(deviation->sq_true), length(deviation->sq_measured),
-                            report::reader_number(deviation->sq_measured / deviation->sq_true), length(deviation->rms),
-                            report::reader_number(deviation->correlation)});
+// Columns of numbers behind those that the rows below the head have, each of them alike.
+void add_columns(Rows& rows, const std::vector<std::vector<double>>& columns) {
+    for (const auto& column : columns) {
+        const auto texts = report::reader_column(column);
+        for (std::size_t k = 0; k < texts.size(); ++k) {
+            rows[k + 1].push_back(texts[k]);
         }
     }
+}
+
+void add_deviations(report::Page& page, const StackPage& content) {
+    Rows rows{{"treatment of both surfaces", "measured / %", "true Sq / µm", "measured Sq / µm", "ratio",
+               "RMS deviation / µm", "correlation"}};
+    std::vector<std::vector<double>> columns(rows.front().size() - 1);
+    const auto add = [&](const std::string& prefix, const std::vector<Figures>& all) {
+        for (const auto& figures : all) {
+            if (const auto& deviation = figures.deviation) {
+                rows.push_back({prefix + treatment_of(figures.band)});
+                std::size_t column = 0;
+                for (const double value :
+                     {100 * deviation->measured_share, deviation->sq_true * um_per_mm,
+                      deviation->sq_measured * um_per_mm, deviation->sq_measured / deviation->sq_true,
+                      deviation->rms * um_per_mm, deviation->correlation}) {
+                    columns[column++].push_back(value);
+                }
+            }
+        }
+    };
+    add("", content.plain.figures);
+    if (content.diffracted) {
+        add("with diffraction, ", content.diffracted->figures);
+    }
+    add_columns(rows, columns);
+    page.table("Measured heights against true ones", rows);
 }
 
 void add_dimensions(report::Page& page, const char* caption, const std::vector<StandardDimension>& dimensions) {
@@ -60,12 +85,25 @@ void add_dimensions(report::Page& page, const char* caption, const std::vector<S
                "standard deviation"}};
     for (const auto& one : dimensions) {
         const auto row = one.in_unit();
-        rows.push_back({row.name, row.rule, report::reader_unit(row.unit), report::reader_number(row.nominal),
-                        report::reader_number(row.truth), report::reader_number(row.measured, row.standard_error),
-                        report::reader_number(row.deviation), report::reader_number(row.error),
-                        report::reader_number(row.standard_deviation)});
+        // Nominal and true values have no uncertainty: differences from them have that of the measured one.
+        const bool uncertain = row.standard_error > 0 && std::isfinite(row.measured);
+        const auto exact = report::form_for(uncertain ? std::vector{row.nominal, row.truth}
+                                                      : std::vector{row.nominal, row.truth, row.measured});
+        const auto spread = uncertain ? report::form_for(row.measured, row.standard_error) : exact;
+        const auto measured = [&](double value) {
+            return uncertain ? report::reader_number(value, row.standard_error) : report::reader_number(value, exact);
+        };
+        rows.push_back({row.name, row.rule, report::reader_unit(row.unit), report::reader_number(row.nominal, exact),
+                        report::reader_number(row.truth, exact), measured(row.measured), measured(row.deviation),
+                        measured(row.error), report::reader_number(row.standard_deviation, spread)});
     }
     page.table(caption, rows);
+}
+
+// "Sq / µm", "Vmp / (µm³/µm²)"
+std::string with_unit(const report::ParameterRow& row) {
+    const std::string unit = report::reader_unit(row.unit);
+    return row.name + (unit.empty() ? "" : unit.find('/') == std::string::npos ? " / " + unit : " / (" + unit + ")");
 }
 
 // A table a treatment; those that have none (nothing was measured) are left out.
@@ -77,15 +115,20 @@ bool add_parameters(report::Page& page, const std::string& prefix, const std::ve
         }
         any = true;
         const bool known = !figures.truth.empty();
-        Rows rows{known ? std::vector<std::string>{"parameter", "unit", "nominal", "measured", "deviation"}
-                        : std::vector<std::string>{"parameter", "unit", "measured"}};
+        Rows rows{known ? std::vector<std::string>{"parameter", "nominal", "measured", "deviation"}
+                        : std::vector<std::string>{"parameter", "measured"}};
         for (std::size_t k = 0; k < figures.measured.size(); ++k) {
             const auto& row = figures.measured[k];
-            const std::string unit = report::reader_unit(row.unit), measured = report::reader_number(row.value);
-            rows.push_back(known ? std::vector<std::string>{row.name, unit,
-                                                            report::reader_number(figures.truth[k].value), measured,
-                                                            report::reader_number(row.value - figures.truth[k].value)}
-                                 : std::vector<std::string>{row.name, unit, measured});
+            rows.push_back({with_unit(row)});
+            if (known) {
+                const double truth = figures.truth[k].value;
+                const auto form = report::form_for({truth, row.value});
+                for (const double value : {truth, row.value, row.value - truth}) {
+                    rows.back().push_back(report::reader_number(value, form));
+                }
+            } else {
+                rows.back().push_back(report::reader_figure(row.value));
+            }
         }
         page.table(prefix + treatment_of(figures.band), rows);
     }
@@ -126,13 +169,15 @@ void add_light(report::Page& page, const scan::MeanLedger& ledger) {
     page.section("light", "Light from the source to the detector");
     page.part("light.html");
     Rows rows{{"where it went", "power / W", "share of the emitted / %"}};
+    std::vector<std::vector<double>> columns(2);
     for (const auto& [name, power] : ledger.shares) {
         if (power != 0 || name == "detected") {
-            const bool check = name == "residual";
-            rows.push_back({check ? "residual: emitted less all of these" : name, report::reader_number(power),
-                            report::reader_number(100 * power / ledger.emitted)});
+            rows.push_back({name == "residual" ? "residual: emitted less all of these" : name});
+            columns[0].push_back(power);
+            columns[1].push_back(100 * power / ledger.emitted);
         }
     }
+    add_columns(rows, columns);
     page.table("Mean of all images; what is not listed took none", rows);
 }
 
@@ -167,16 +212,10 @@ std::string stack_page(const StackPage& content) {
     const auto& plain = content.plain;
     page.section("results", "Results");
     if (plain.figures.front().deviation) {
-        Rows rows{{"treatment of both surfaces", "measured / %", "true Sq / µm", "measured Sq / µm", "ratio",
-                   "RMS deviation / µm", "correlation"}};
-        add_deviations(rows, "", plain.figures);
-        if (content.diffracted) {
-            add_deviations(rows, "with diffraction, ", content.diffracted->figures);
-        }
-        page.table("Measured heights against true ones", rows);
+        add_deviations(page, content);
     } else {
         page.paragraph(fmt::format("Measured: {} % of the points.",
-                                   report::reader_number(100 * plain.figures.front().measured_share)));
+                                   report::reader_figure(100 * plain.figures.front().measured_share)));
     }
     if (!plain.dimensions.empty()) {
         add_dimensions(page, "Dimensions of the standard", plain.dimensions);

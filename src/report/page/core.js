@@ -18,33 +18,62 @@ const vkfv = (() => {
         return decoded.get(id);
     }
 
-    // At most four significant digits, as the tables have them.
+    // Numbers as src/report/reader_text writes them: four significant digits, a true minus, powers of ten beyond 10⁻⁴ and 10⁵.
+    const exponentOf = (value, digits) => value === 0 ? 0 : Number(value.toExponential(digits - 1).split("e")[1]);
+    const powerOf = exponent => exponent < -4 || exponent > 5 ? exponent : 0;
+    const raised = power => [...String(power)].map(c => c === "-" ? "⁻" : "⁰¹²³⁴⁵⁶⁷⁸⁹"[c]).join("");
+    const times = power => power ? `\u00a0×\u00a010${raised(power)}` : "";
+
+    // Digits alone. Fewer than no decimals: the last digits before the point are zeros.
+    function fixed(value, {power, decimals}) {
+        const shown = value / 10 ** power, unit = 10 ** -decimals;
+        const text = decimals < 0 ? String(Math.round(shown / unit) * unit) : shown.toFixed(decimals);
+        return Number(text) === 0 ? text.replace("-", "") : text.replace("-", "−");
+    }
+
+    // Of numbers that are compared: all have the decimals that the largest has.
+    function form(values, digits = 4) {
+        const exponent = exponentOf(d3.max(values.filter(Number.isFinite), Math.abs) || 0, digits);
+        const power = powerOf(exponent);
+        return {power, decimals: digits - 1 - exponent + power};
+    }
+    const alike = (value, how) => Number.isFinite(value) ? fixed(value, how) + times(how.power) : "–";
+
+    // What was measured keeps its zeros; what was set, and ticks, do not need them.
+    const figure = (value, digits = 4) => value === 0 ? "0" : alike(value, form([value], digits));
     function number(value, digits = 4) {
         if (!Number.isFinite(value)) {
             return "–";
         }
-        if (value === 0) {
-            return "0";
-        }
-        const [mantissa, exponent] = value.toExponential(digits - 1).split("e");
-        const short = String(Number(mantissa));
-        const power = Number(exponent);
-        const written = power < -4 || power > 5
-            ? `${short} × 10${[...String(power)].map(c => c === "-" ? "⁻" : "⁰¹²³⁴⁵⁶⁷⁸⁹"[c]).join("")}`
-            : String(Number(value.toPrecision(digits)));
-        return written.replace("-", "−");
+        const how = form([value], digits);
+        const text = fixed(value, how);
+        return (text.includes(".") ? text.replace(/\.?0+$/, "") : text) + times(how.power);
     }
 
-    // With its standard uncertainty, if that is known: two digits of it, and no more than four of the value.
+    // With its standard uncertainty, if that is known: two digits of it, and those of the value that it leaves.
     function uncertain(value, uncertainty) {
+        const most = 6; // digits of the value
         if (!Number.isFinite(value) || !(uncertainty > 0) || !Number.isFinite(uncertainty)) {
-            return number(value);
+            return figure(value);
         }
-        const decimals = Math.max(0, Math.min(1 - Math.floor(Math.log10(uncertainty)),
-                                              3 - Math.floor(Math.log10(Math.max(Math.abs(value), 1e-3)))));
-        const error = uncertainty.toFixed(decimals);
-        return `${value.toFixed(decimals).replace("-", "−")} ± ${Number(error) > 0 ? error : number(uncertainty, 1)}`;
+        const last = exponentOf(uncertainty, 2) - 1;
+        if (exponentOf(value, 4) - last >= most) {
+            return `${figure(value)} ± ${figure(uncertainty, 2)}`;
+        }
+        const power = powerOf(exponentOf(Math.max(Math.abs(value), uncertainty), 4));
+        const both = [value, uncertainty].map(one => fixed(one, {power, decimals: power - last})).join(" ± ");
+        return power ? `(${both})${times(power)}` : both;
     }
+
+    // Ticks of an axis in one notation, with no more decimals than they need.
+    function ticks(values) {
+        const {power, decimals} = form(values);
+        const whole = (value, k) => Math.abs(value / 10 ** power * 10 ** k - Math.round(value / 10 ** power * 10 ** k)) < 1e-6;
+        const least = d3.range(decimals).find(k => values.every(value => whole(value, k)));
+        return value => value === 0 ? "0" : alike(value, {power, decimals: least === undefined ? decimals : least});
+    }
+    // A power of ten; the first two in full.
+    const decade = value => [1, 10].includes(value) ? String(value) : `10${raised(Math.round(Math.log10(value)))}`;
 
     const states = ["measured", "no peak within the scan", "no better than chance", "poor fit", "many peaks",
                     "repaired from its neighbours", "low contrast", "dark"];
@@ -73,5 +102,5 @@ const vkfv = (() => {
     }
 
     const parts = []; // run by main.js once all are there
-    return {data, text, blob, number, uncertain, states, heights, chosen, events, choose, parts};
+    return {data, text, blob, number, figure, form, alike, uncertain, ticks, decade, states, heights, chosen, events, choose, parts};
 })();

@@ -22,7 +22,7 @@ vkfv.parts.push(() => {
         const z = `${number(frames.z[k])} µm`;
         picture.alt = `Image of the stack at z = ${z}`;
         slider.setAttribute("aria-valuetext", `z = ${z}`);
-        d3.select("#frame-text").text(`z = ${z}, image ${k * frames.every + 1}; white is ${number(frames.white)} ${frames.unit}${note}`);
+        d3.select("#frame-text").text(`z = ${z}, image ${k * frames.every + 1}; white is ${vkfv.figure(frames.white)} ${frames.unit}${note}`);
     });
     slider.addEventListener("input", () => vkfv.choose("frame", Number(slider.value)));
 

@@ -41,9 +41,10 @@ vkfv.parts.push(() => {
         const profile = vkfv.profile();
         const measured = profile.measured.filter(Number.isFinite);
         const deviations = (profile.deviation || []).filter(Number.isFinite);
+        const how = vkfv.form(d3.extent(measured));
         d3.select("#profile-text").text(
             `From (${number(from.x)}, ${number(from.y)}) to (${number(to.x)}, ${number(to.y)}) µm, ${profile.distance.length} points: measured ` +
-            (measured.length ? `${number(d3.min(measured))} to ${number(d3.max(measured))} µm` : "nothing") +
-            (deviations.length ? `, RMS deviation ${number(Math.sqrt(d3.mean(deviations, d => d * d)))} µm` : ""));
+            (measured.length ? `${vkfv.alike(d3.min(measured), how)} to ${vkfv.alike(d3.max(measured), how)} µm` : "nothing") +
+            (deviations.length ? `, RMS deviation ${vkfv.alike(Math.sqrt(d3.mean(deviations, d => d * d)), how)} µm` : ""));
     });
 });

@@ -2,12 +2,12 @@
 // The times of a run, from timings.js beside the page: the page itself has none, so that it is the same bytes each time.
 vkfv.timings = {
     show(csv) {
-        const {number} = vkfv;
+        const {figure} = vkfv;
         const rows = d3.csvParse(csv, row => ({what: row.what, seconds: Number(row.seconds), rays: Number(row.rays_per_s)}));
         const images = rows.filter(row => /^image \d+$/.test(row.what))
             .map(row => [Number(row.what.slice(6)), row.seconds]).sort((a, b) => a[0] - b[0]);
         d3.select("#timings-text").text(images.length
-            ? `${images.length} exposures took ${number(d3.sum(images, d => d[1]))} s together, ${number(d3.median(images, d => d[1]))} s in the median.` : "");
+            ? `${images.length} exposures took ${figure(d3.sum(images, d => d[1]))} s together, ${figure(d3.median(images, d => d[1]))} s in the median.` : "");
         if (images.length > 1) {
             vkfv.chart("#timings-chart", "Time of each exposure", () => ({x: {label: "image"}, y: {label: "time / s", zero: true}, height: 220,
                 series: [{name: "exposure", points: images}]}))();
@@ -17,7 +17,7 @@ vkfv.timings = {
         table.selectAll("tr").data(rows.filter(row => !/^image \d+$/.test(row.what))).enter().append("tr")
             .each(function (row) {
                 d3.select(this).append("th").attr("scope", "row").text(row.what);
-                d3.select(this).append("td").text(`${number(row.seconds)} s`);
+                d3.select(this).append("td").text(`${figure(row.seconds)} s`);
             });
         d3.select("#timings-load").attr("hidden", "hidden");
     },
