@@ -156,7 +156,8 @@ StackResult merge_stack(const fs::path& folder, const std::vector<fs::path>& sha
     return {.evaluation = evaluation.write(store, tracer),
             .traced = {.kept = static_cast<int>(scene.positions.size()), .complete = true},
             .rays_per_image = trace::launched_rays(configuration.trace, configuration.instrument),
-            .folder = folder};
+            .folder = folder,
+            .device = tracer.text()};
 }
 
 } // namespace vkfv::measurement

@@ -52,7 +52,8 @@ StackResult trace_and_evaluate(const StackScene& scene, const WorkingDevices& de
     return {.evaluation = evaluation.write(store, tracer->identity()),
             .traced = traced,
             .rays_per_image = trace::launched_rays(configuration.trace, configuration.instrument),
-            .folder = store.folder()};
+            .folder = store.folder(),
+            .device = tracer->identity().text()};
 }
 
 } // namespace

@@ -20,6 +20,7 @@ struct StackResult {
     scan::StackSummary traced;        // what this run traced, and what was there
     std::uint64_t rays_per_image = 0; // launched
     std::filesystem::path folder;     // that holds the images and all results
+    std::string device{};             // that traced it; empty: not known
 };
 
 // Traces what the output folder lacks of the stack that the configuration asks for, evaluates all of it, and writes the

@@ -87,7 +87,7 @@ SweepResult run_sweep(const std::filesystem::path& file, const std::vector<TomlO
     results.write("sweep.json", sweep_json(sweep, rows));
     results.write("sweep.svg", sweep_contact_sheet(sweep, rows, title));
     results.write("charts.svg", sweep_charts(sweep, rows, title));
-    results.write("report.html", sweep_page(sweep, rows, title, base.canonical));
+    results.write("report.html", sweep_page(sweep, rows, title, base));
     results.write_checksums();
     return {.sweep = sweep, .rows = std::move(rows), .folder = results.path()};
 }

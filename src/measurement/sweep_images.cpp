@@ -92,18 +92,19 @@ SweepRow image_row(const Configuration& configuration, ResultFolder& results, co
     const Json earlier = whole ? read_json(results.path() / figures_name) : Json::object();
     if (earlier.value("digest", "") == digest) {
         row.figures = earlier.at("figures");
+        row.device = earlier.value("device", "");
     } else {
         WorkingDevices devices(configuration.trace.device);
         const Exposure exposure = expose(configuration, devices, instrument, surface.specimen, focal_height);
         const bool tells =
             configuration.trace.estimator == trace::Estimator::forward && !configuration.trace.directed_scatter;
         row.figures = figures_of(exposure.image, tells);
+        row.device = exposure.tracer.text();
         for (const auto& [file, bytes] : image_files(image_name, exposure, focal_height)) {
             results.write(file, bytes);
         }
         results.write(figures_name,
-                      Json{{"digest", digest}, {"device", exposure.tracer.text()}, {"figures", row.figures}}.dump(2) +
-                          "\n");
+                      Json{{"digest", digest}, {"device", row.device}, {"figures", row.figures}}.dump(2) + "\n");
         results.write_checksums();
         scan::append_timing(results.path(), fmt::format("\"{}\"", name.string()), exposure.image.seconds,
                             static_cast<double>(exposure.image.rays));

@@ -7,10 +7,12 @@
 #include "report/reader_text.hpp"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
+#include <iterator>
 
 namespace vkfv::measurement {
 
@@ -54,40 +56,78 @@ Json links_of(const Sweep& sweep, const std::string& name) {
     return links;
 }
 
-std::string cell_of(const Json& value) {
-    return value.is_number() ? report::reader_number(value.get<double>())
-           : value.is_null() ? report::reader_number(NAN)
-                             : value.get<std::string>();
+// "height noise / um" with the unit as a reader writes it; sweep.js does the same.
+std::string title_of(std::string name) {
+    for (auto at = name.find(" um"); at != std::string::npos; at = name.find(" um", at)) {
+        name.replace(at, 3, " µm");
+    }
+    return name;
+}
+
+std::vector<std::string> plain_values(const std::vector<std::string>& values) {
+    std::vector<std::string> texts;
+    std::ranges::transform(values, std::back_inserter(texts), plain_text);
+    return texts;
 }
 
 void add_table(report::Page& page, const Sweep& sweep, const std::vector<SweepRow>& rows,
                const std::vector<std::string>& names) {
-    std::vector<std::vector<std::string>> table(1);
-    for (const auto& parameter : sweep.parameters) {
-        table.front().push_back(parameter.label);
+    std::vector<std::vector<std::string>> table(rows.size() + 1);
+    const auto add_column = [&](const std::string& head, const std::vector<std::string>& cells) {
+        table.front().push_back(head);
+        for (std::size_t k = 0; k < cells.size(); ++k) {
+            table[k + 1].push_back(cells[k]);
+        }
+    };
+    for (std::size_t k = 0; k < sweep.parameters.size(); ++k) {
+        std::vector<std::string> values;
+        std::ranges::transform(rows, std::back_inserter(values),
+                               [k](const SweepRow& row) { return plain_text(row.values[k]); });
+        add_column(sweep.parameters[k].label, report::reader_values(values));
     }
-    table.front().insert(table.front().end(), names.begin(), names.end());
+    for (const auto& name : names) {
+        std::vector<double> values;
+        std::ranges::transform(rows, std::back_inserter(values), [&](const SweepRow& row) {
+            const auto found = row.figures.find(name);
+            return found != row.figures.end() && found->is_number() ? found->get<double>() : NAN;
+        });
+        add_column(title_of(name), report::reader_column(values));
+    }
+    page.table("Every combination (sweep.json has all digits)", table);
+}
+
+void add_run(report::Page& page, const Sweep& sweep, const std::vector<SweepRow>& rows, const Configuration& base) {
+    std::vector<std::string> devices; // a sweep that went on elsewhere has several
     for (const auto& row : rows) {
-        auto& cells = table.emplace_back();
-        std::ranges::transform(row.values, std::back_inserter(cells), plain_text);
-        for (const auto& name : names) {
-            cells.push_back(cell_of(row.figures.contains(name) ? row.figures.at(name) : Json()));
+        if (!row.device.empty() && std::ranges::find(devices, row.device) == devices.end()) {
+            devices.push_back(row.device);
         }
     }
-    page.table("Every combination (sweep.csv has all digits)", table);
+    page.section("run", "Run and settings");
+    std::vector<std::vector<std::string>> table{{"", "value"}};
+    table.push_back({"combinations", report::reader_count(static_cast<std::int64_t>(rows.size()))});
+    table.push_back({"each of them", sweep.stacks ? "a stack" : "an image"});
+    if (sweep.repeats > 1) {
+        table.push_back({"repeats, with seeds that follow each other", report::reader_count(sweep.repeats)});
+    }
+    if (std::ranges::find(sweep.parameters, "trace.seed", &Sweep::Parameter::key) == sweep.parameters.end()) {
+        table.push_back({"seed", fmt::format("{}", base.trace.seed)});
+    }
+    table.push_back({"device", fmt::format("{}", fmt::join(devices, "; "))});
+    table.push_back({"version", "vkfv " VKFV_VERSION});
+    page.table("Sweep", table);
+    page.folded("Configuration", base.canonical);
 }
 
 } // namespace
 
 std::string sweep_page(const Sweep& sweep, const std::vector<SweepRow>& rows, const std::string& title,
-                       const std::string& configuration) {
+                       const Configuration& base) {
     Json data = {{"parameters", Json::array()}, {"rows", Json::array()}};
     for (const auto& parameter : sweep.parameters) {
-        Json values = Json::array();
-        for (const auto& value : parameter.values) {
-            values.push_back(plain_text(value));
-        }
-        data["parameters"].push_back({{"label", parameter.label}, {"values", values}});
+        const auto values = plain_values(parameter.values);
+        data["parameters"].push_back(
+            {{"label", parameter.label}, {"values", values}, {"written", report::reader_values(values)}});
     }
     report::Page page;
     std::vector<std::string> names;
@@ -95,12 +135,8 @@ std::string sweep_page(const Sweep& sweep, const std::vector<SweepRow>& rows, co
         const std::string name = sweep_name(sweep, row.values);
         const std::string picture = fmt::format("picture-{}", data["rows"].size());
         page.data(picture, picture_base64(row.picture, rows.size()));
-        Json values = Json::array();
-        for (const auto& value : row.values) {
-            values.push_back(plain_text(value));
-        }
         data["rows"].push_back({{"name", name},
-                                {"values", values},
+                                {"values", plain_values(row.values)},
                                 {"figures", row.figures},
                                 {"picture", picture},
                                 {"links", links_of(sweep, name)}});
@@ -118,7 +154,7 @@ std::string sweep_page(const Sweep& sweep, const std::vector<SweepRow>& rows, co
     page.part("sweep_chart.html");
     page.section("table", "Table");
     add_table(page, sweep, rows, names);
-    page.folded("Configuration", configuration);
+    add_run(page, sweep, rows, base);
     for (const char* file : {"d3.min.js", "core.js", "chart.js", "sweep.js", "main.js"}) {
         page.script(file);
     }

@@ -5,8 +5,8 @@
 
 namespace vkfv::measurement {
 
-// HTML. Each combination links to its own report, or to its image.
+// HTML. Each combination links to its own report, or to its image. base: with what is not swept.
 std::string sweep_page(const Sweep& sweep, const std::vector<SweepRow>& rows, const std::string& title,
-                       const std::string& configuration);
+                       const Configuration& base);
 
 } // namespace vkfv::measurement

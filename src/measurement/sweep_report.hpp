@@ -17,6 +17,7 @@ struct SweepRow {
     std::vector<std::string> values; // TOML texts, in the order of the parameters
     nlohmann::ordered_json figures;  // by name; numbers, or null where there is none
     Grid<float> picture;             // for the contact sheet
+    std::string device;              // that traced it, as the results have it
 };
 
 // The combination's name, which is also the name of its folder: "g=0.3,N=1e7".

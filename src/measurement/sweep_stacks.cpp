@@ -76,14 +76,15 @@ SweepRow stack_row(const std::vector<Configuration>& repeats, Progress& progress
     std::vector<Grid<double>> heights;
     std::vector<topography::Deviation> deviations;
     double rays_per_image = 0;
+    SweepRow row;
     for (const auto& configuration : repeats) {
         const auto stack = measure_stack(configuration, progress);
         after_stack(stack);
         heights.push_back(as_written(stack.evaluation.topography.height.height));
         deviations.push_back(stack.evaluation.deviation.value());
         rays_per_image = static_cast<double>(stack.rays_per_image);
+        row.device = stack.device;
     }
-    SweepRow row;
     row.figures["rms deviation / um"] =
         mean_of(deviations, [](const auto& deviation) { return deviation.rms * um_per_mm; });
     row.figures["Sq measured / Sq true"] =

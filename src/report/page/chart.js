@@ -1,75 +1,111 @@
 "use strict";
 // Curves over two axes, as wide as their place and drawn again when that changes.
-// content(): {x: {label, domain}, y: {label, domain, zero}, series: [{name, points: [[x, y] ...], kind}], marks: [{x, name,
-// quiet}], height, dots}; y of NaN leaves a gap; null: there is nothing to draw. kind: "line" (default), "steps", "plain" (a line without a legend).
+// content(): {x: {label, domain, log}, y: {label, domain, zero}, series: [{name, points: [[x, y] ...], kind, dots}], marks: [{x, name,
+// quiet}], height}; y of NaN leaves a gap; null: there is nothing to draw. kind: "line" (default), "steps".
 vkfv.chart = (place, label, content) => {
     const element = d3.select(place);
-    const margin = {top: 30, right: 16, bottom: 44, left: 62};
+    const styles = 6; // of series, in page.css
+    const line = 18;  // of text, in px
+    const margin = {right: 16, bottom: 44, left: 62};
 
     function padded([low, high]) {
         const pad = high > low ? 0.04 * (high - low) : Math.abs(low) * 0.05 || 1;
         return [low - pad, high + pad];
     }
 
+    // Name after name behind the axis' title, or below it where there is no room. Returns how many lines that takes.
+    function legend(svg, series, title, right) {
+        const named = series.map((one, k) => ({name: one.name, style: one.colour || k % styles + 1})).filter(one => one.name);
+        const entries = named.map(one => {
+            const group = svg.append("g");
+            group.append("line").attr("class", `series series-${one.style}`).attr("x2", 24).attr("y1", -4).attr("y2", -4);
+            const width = 30 + group.append("text").attr("x", 30).text(one.name).node().getComputedTextLength();
+            return {group, width};
+        });
+        const gap = 16;
+        const all = d3.sum(entries, d => d.width + gap);
+        const after = 4 + title.node().getComputedTextLength() + gap;
+        if (after + all <= right) {
+            let x = right - all + gap;
+            for (const {group, width} of entries) {
+                group.attr("transform", `translate(${x},14)`);
+                x += width + gap;
+            }
+            return 1;
+        }
+        let x = 4, row = 1;
+        for (const {group, width} of entries) {
+            if (x > 4 && x + width > right) {
+                x = 4;
+                row += 1;
+            }
+            group.attr("transform", `translate(${x},${14 + row * line})`);
+            x += width + gap;
+        }
+        return row + 1;
+    }
+
+    function axisTicks(scale, log, count) {
+        if (!log) {
+            const values = scale.ticks(count);
+            return {values, written: vkfv.ticks(values)};
+        }
+        const decades = scale.ticks(50).filter(value => Math.abs(Math.log10(value) - Math.round(Math.log10(value))) < 1e-9);
+        const every = Math.ceil(decades.length / (1.5 * count)); // short texts
+        return {values: decades.filter((unused, k) => k % every === 0), written: vkfv.decade};
+    }
+
     function draw() {
         const given = content();
+        element.selectAll("*").remove();
         if (!given) {
-            element.selectAll("*").remove();
             return;
         }
-        const {x, y, series, marks = [], height = 300, dots = false} = given;
+        const {x, y, series, marks = [], height = 300} = given;
         const width = Math.max(240, element.node().clientWidth);
-        element.selectAll("*").remove();
-        const svg = element.append("svg").attr("viewBox", `0 0 ${width} ${height}`).attr("width", width)
-            .attr("height", height).attr("role", "img").attr("aria-label", label);
+        const svg = element.append("svg").attr("role", "img").attr("aria-label", label);
+        const right = width - margin.right;
+        const title = svg.append("text").attr("x", 4).attr("y", 14).text(y.label);
+        // Names of marks stand above the plot, where they cover neither curves nor axes.
+        const lines = legend(svg, series, title, right) + (marks.some(mark => mark.name) ? 1 : 0);
+        const top = 12 + lines * line, bottom = top + height - 30 - margin.bottom, whole = bottom + margin.bottom;
+        svg.attr("viewBox", `0 0 ${width} ${whole}`).attr("width", width).attr("height", whole);
         const all = series.flatMap(one => one.points);
         const finite = k => all.map(point => point[k]).filter(Number.isFinite);
-        const right = width - margin.right, bottom = height - margin.bottom;
-        const across = d3.scaleLinear().domain(x.domain || d3.extent(finite(0))).range([margin.left, right]);
-        const up = d3.scaleLinear().domain(y.domain || padded(d3.extent(y.zero ? [0, ...finite(1)] : finite(1))))
-            .range([bottom, margin.top]);
-        const written = d => vkfv.number(d);
-        const columns = Math.max(3, width / 90), lines = Math.max(3, height / 60);
+        const across = (x.log ? d3.scaleLog() : d3.scaleLinear()).domain(x.domain || d3.extent(finite(0))).range([margin.left, right]);
+        const up = d3.scaleLinear().domain(y.domain || padded(d3.extent(y.zero ? [0, ...finite(1)] : finite(1)))).range([bottom, top]);
+        const columns = axisTicks(across, x.log, Math.max(3, width / 90)), rows = axisTicks(up, false, Math.max(3, height / 60));
         svg.append("g").attr("class", "grid").attr("transform", `translate(${margin.left},0)`)
-            .call(d3.axisLeft(up).ticks(lines).tickSize(margin.left - right).tickFormat(""));
+            .call(d3.axisLeft(up).tickValues(rows.values).tickSize(margin.left - right).tickFormat(""));
         svg.append("g").attr("transform", `translate(0,${bottom})`)
-            .call(d3.axisBottom(across).ticks(columns).tickFormat(written));
+            .call(d3.axisBottom(across).tickValues(columns.values).tickFormat(columns.written))
+            .selectAll(".tick text").each(function (value) { // the last one stays within the page
+                const over = across(value) + this.getComputedTextLength() / 2 - width;
+                d3.select(this).attr("dx", over > 0 ? -over : null);
+            });
         svg.append("g").attr("transform", `translate(${margin.left},0)`)
-            .call(d3.axisLeft(up).ticks(lines).tickFormat(written));
-        svg.append("text").attr("x", (margin.left + right) / 2).attr("y", height - 6).attr("text-anchor", "middle").text(x.label);
-        svg.append("text").attr("x", 4).attr("y", 14).text(y.label);
-        const line = d3.line().defined(d => Number.isFinite(d[1])).x(d => across(d[0])).y(d => up(d[1]));
-        const steps = d3.line().defined(d => Number.isFinite(d[1])).x(d => across(d[0])).y(d => up(d[1])).curve(d3.curveStep);
+            .call(d3.axisLeft(up).tickValues(rows.values).tickFormat(rows.written));
+        svg.append("text").attr("x", (margin.left + right) / 2).attr("y", whole - 6).attr("text-anchor", "middle").text(x.label);
+        const path = d3.line().defined(d => Number.isFinite(d[1])).x(d => across(d[0])).y(d => up(d[1]));
         const drawn = svg.append("g");
         series.forEach((one, k) => {
-            drawn.append("path").attr("class", `series series-${one.colour || k + 1}`)
-                .attr("d", (one.kind === "steps" ? steps : line)(one.points));
-            if (dots && k === 0) {
-                drawn.selectAll("circle").data(one.points).enter().append("circle").attr("class", "dots-1")
-                    .attr("r", 2.5).attr("cx", d => across(d[0])).attr("cy", d => up(d[1]));
+            const style = one.colour || k % styles + 1;
+            drawn.append("path").attr("class", `series series-${style}`)
+                .attr("d", path.curve(one.kind === "steps" ? d3.curveStep : d3.curveLinear)(one.points));
+            if (one.dots) {
+                drawn.append("g").attr("class", `dots-${style}`).selectAll("circle").data(one.points.filter(d => Number.isFinite(d[1])))
+                    .enter().append("circle").attr("r", 2.5).attr("cx", d => across(d[0])).attr("cy", d => up(d[1]));
             }
         });
         for (const mark of marks) {
-            drawn.append("line").attr("class", mark.quiet ? "mark-quiet" : "mark").attr("x1", across(mark.x))
-                .attr("x2", across(mark.x)).attr("y1", margin.top).attr("y2", bottom);
+            const at = across(mark.x);
+            drawn.append("line").attr("class", mark.quiet ? "mark-quiet" : "mark").attr("x1", at).attr("x2", at)
+                .attr("y1", top).attr("y2", bottom);
             if (mark.name) {
-                const left = across(mark.x) > (margin.left + right) / 2;
-                drawn.append("text").attr("class", "mark-text").attr("x", across(mark.x) + (left ? -6 : 6))
-                    .attr("y", bottom - 8).attr("text-anchor", left ? "end" : "start").text(mark.name);
+                const name = drawn.append("text").attr("class", "mark-text").attr("y", top - 6).attr("text-anchor", "middle").text(mark.name);
+                const half = name.node().getComputedTextLength() / 2;
+                name.attr("x", Math.max(margin.left + half, Math.min(right - half, at)));
             }
-        }
-        // The legend, from the right.
-        let end = right;
-        for (let k = series.length - 1; k >= 0; --k) {
-            if (series[k].kind === "plain" || !series[k].name) {
-                continue;
-            }
-            const name = svg.append("text").attr("y", 14).text(series[k].name);
-            end -= name.node().getComputedTextLength();
-            name.attr("x", end);
-            svg.append("line").attr("class", `series series-${series[k].colour || k + 1}`).attr("x1", end - 30)
-                .attr("x2", end - 6).attr("y1", 10).attr("y2", 10);
-            end -= 44;
         }
     }
     vkfv.events.on(`resize.${place}`, draw);

@@ -52,8 +52,8 @@ vkfv.parts.push(() => {
             marks.push({x: frames.z[vkfv.chosen.frame], quiet: true});
         }
         const extent = d3.extent([...curve.z, ...frames.z]);
-        return {x: {label: "z / µm", domain: extent}, y: {label: "focus measure", zero: true}, height: 340, dots: true, marks,
-                series: [{name: "curve", points: d3.zip(curve.z, curve.values)}, {name: "fit", points: curve.fit}]};
+        return {x: {label: "z / µm", domain: extent}, y: {label: "focus measure", zero: true}, height: 340, marks,
+                series: [{name: "curve", dots: true, points: d3.zip(curve.z, curve.values)}, {name: "fit", points: curve.fit}]};
     });
 
     function show() {
