@@ -6,7 +6,7 @@ vkfv.parts.push(() => {
     if (!place) {
         return;
     }
-    const {number} = vkfv;
+    const {figure} = vkfv;
     const power = name => d3.sum(shares.filter(d => d[0] === name), d => d[1]);
     const ways = [
         ["Illumination", name => / at illumination /.test(name) || name === "beam splitter, towards the specimen"],
@@ -14,62 +14,136 @@ vkfv.parts.push(() => {
         ["Imaging", name => / at imaging /.test(name) || ["beam splitter, towards the detector", "beside the detector"].includes(name)],
     ];
     const shown = 3; // of an element's losses, others together
+    const narrowest = 760; // px, of streams with their labels
     const notAimed = power("not aimed at");
     const aimed = emitted - notAimed;
     const detected = power("detected");
+    const percent = value => `${figure(100 * value / aimed, 3)} %`;
 
-    function graph() {
-        const nodes = [], links = [];
-        const node = (name, lost = false) => nodes.push({name, lost}) - 1;
+    // [{name, arriving, losses: [[name, power] ...]} ...]: source, elements, detector.
+    function stations() {
         const used = new Set(["detected", "not aimed at"]);
-        let left = aimed;
-        let before = node("Source");
-        for (const [name, belongs] of ways) {
-            const here = node(name);
-            links.push({source: before, target: here, value: left});
+        const found = ways.map(([name, belongs]) => {
             const losses = shares.filter(d => belongs(d[0]) && d[1] > 0).sort((a, b) => b[1] - a[1]);
             losses.forEach(d => used.add(d[0]));
             const rest = d3.sum(losses.slice(shown), d => d[1]);
-            for (const [loss, value] of [...losses.slice(0, shown), ...(rest > 0 ? [["other losses there", rest]] : [])]) {
-                links.push({source: here, target: node(loss, true), value, lost: true});
-                left -= value;
-            }
-            before = here;
-        }
+            return {name, losses: [...losses.slice(0, shown), ...(rest > 0 ? [["other losses there", rest]] : [])]};
+        });
         // Of the whole way: what an element of the non-sequential trace ends, and the estimator does not follow.
-        const others = shares.filter(d => !used.has(d[0]) && d[1] > 1e-9 * aimed).sort((a, b) => b[1] - a[1]);
-        for (const [loss, value] of others.slice(0, 8)) {
-            links.push({source: 0, target: node(loss, true), value, lost: true});
-            links.filter(link => !link.lost).forEach(link => { link.value -= value; });
+        const others = shares.filter(d => !used.has(d[0]) && d[1] > 1e-9 * aimed).sort((a, b) => b[1] - a[1]).slice(0, 8);
+        const all = [{name: "Source", losses: others}, ...found, {name: "Detector", losses: []}];
+        let left = aimed;
+        for (const one of all) {
+            one.arriving = one.name === "Detector" ? detected : left;
+            left -= d3.sum(one.losses, d => d[1]);
         }
-        links.push({source: before, target: node("Detector"), value: detected});
+        return all;
+    }
+
+    function graph(all) {
+        const nodes = all.map(({name}) => ({name})), links = [];
+        all.forEach(({losses}, k) => {
+            if (k + 1 < all.length) {
+                links.push({source: k, target: k + 1, value: all[k + 1].arriving});
+            }
+            for (const [name, value] of losses) {
+                links.push({source: k, target: nodes.push({name, lost: true}) - 1, value, lost: true});
+            }
+        });
         return {nodes, links: links.filter(link => link.value > 0)};
     }
 
+    // Words in lines of so many letters.
+    function wrapped(text, letters) {
+        const lines = [""];
+        for (const word of text.split(" ")) {
+            const last = lines[lines.length - 1];
+            if (last && last.length + 1 + word.length > letters) {
+                lines.push(word);
+            } else {
+                lines[lines.length - 1] = last ? `${last} ${word}` : word;
+            }
+        }
+        return lines;
+    }
+
+    // The stream runs along the top, under its own labels. Losses leave downwards, each element's in the room before the next one.
+    function streams(all) {
+        const width = Math.min(1500, place.clientWidth), bar = 12, top = 42, line = 15, letter = 7;
+        const svg = d3.select(place).append("svg").attr("width", width).attr("role", "img")
+            .attr("aria-label", `Of the light aimed at the instrument ${percent(detected)} is detected; the table below has every share`);
+        const sankey = d3.sankey().nodeWidth(bar).nodePadding(0).nodeSort(null).linkSort(null).extent([[0, top], [width, top + 240]]);
+        const laid = sankey(graph(all));
+        const main = laid.nodes.filter(node => !node.lost);
+        const rooms = main.map(node => node.sourceLinks.some(link => link.lost) ? 1 : 0.4).slice(0, -1);
+        const unit = (width - 4 - bar - 40) / d3.sum(rooms); // the last label is wider than its bar
+        let x = 2, lowest = top;
+        main.forEach((node, k) => {
+            const high = node.y1 - node.y0;
+            Object.assign(node, {x0: x, x1: x + bar, y0: top, y1: top + high});
+            const begin = x + bar + 0.3 * (unit - bar);
+            const lost = node.sourceLinks.filter(link => link.lost).map(link => link.target);
+            let y = top + (main[k + 1] ? main[k + 1].y1 - main[k + 1].y0 : 0) + 16;
+            for (const target of lost) {
+                const thick = target.y1 - target.y0;
+                target.lines = [...wrapped(target.name, Math.max(8, Math.floor((x + unit - begin - bar - 14) / letter))), percent(target.value)];
+                const tall = Math.max(thick, line * target.lines.length);
+                Object.assign(target, {x0: begin, x1: begin + bar, y0: y + (tall - thick) / 2, y1: y + (tall + thick) / 2});
+                y += tall + 10;
+            }
+            lowest = Math.max(lowest, node.y1, y);
+            x += unit * (rooms[k] || 0);
+        });
+        sankey.update(laid);
+        svg.attr("height", lowest + 6).attr("viewBox", `0 0 ${width} ${lowest + 6}`);
+        // As areas: a wide line that bends would fold.
+        const bend = d3.interpolateNumber;
+        const area = d3.area().x(d => d.x).y0(d => d.y - d.half).y1(d => d.y + d.half);
+        svg.selectAll("path").data(laid.links).enter().append("path").attr("class", d => d.lost ? "link lost" : "link")
+            .attr("d", d => area(d3.range(33).map(k => ({x: bend(d.source.x1, d.target.x0)(k / 32),
+                                                         y: bend(d.y0, d.y1)(d3.easeCubicInOut(k / 32)),
+                                                         half: Math.max(0.75, d.width / 2)}))));
+        svg.selectAll("rect").data(laid.nodes).enter().append("rect").attr("x", d => d.x0).attr("y", d => d.y0)
+            .attr("width", bar).attr("height", d => Math.max(1.5, d.y1 - d.y0));
+        for (const node of laid.nodes) {
+            const lines = node.lost ? node.lines : [node.name, percent(node.value)];
+            const y = node.lost ? (node.y0 + node.y1 - line * lines.length) / 2 + 12 : top - 6 - line;
+            svg.append("text").selectAll("tspan").data(lines).enter().append("tspan").attr("x", node.lost ? node.x1 + 6 : node.x0)
+                .attr("y", (unused, k) => y + k * line).text(d => d);
+        }
+    }
+
+    // Where streams have no room: a bar each, a loss where it leaves what the bar above it has.
+    function bars(all) {
+        const list = d3.select(place).append("ol").attr("class", "losses");
+        const row = (name, from, to, lost) => {
+            const item = list.append("li").attr("class", lost ? "lost" : null);
+            item.append("span").text(name);
+            item.append("span").attr("class", "share").text(percent(to - from));
+            item.append("span").attr("class", "bar").append("span").style("margin-left", `${Math.max(0, 100 * from / aimed)}%`)
+                .style("width", `${100 * (to - from) / aimed}%`);
+        };
+        for (const {name, arriving, losses} of all) {
+            row(name, 0, arriving, false);
+            let left = arriving;
+            for (const [loss, value] of losses) {
+                row(loss, left - value, left, true);
+                left -= value;
+            }
+        }
+    }
+
     function draw() {
-        const width = Math.max(320, place.clientWidth), narrow = width < 700, height = narrow ? 520 : 420;
         d3.select(place).selectAll("*").remove();
-        const svg = d3.select(place).append("svg").attr("width", width).attr("height", height).attr("viewBox", `0 0 ${width} ${height}`)
-            .attr("role", "img").attr("aria-label", `Of the light aimed at the instrument ${number(100 * detected / aimed)} % is detected; the table below has every share`);
-        const {nodes, links} = d3.sankey().nodeWidth(12).nodePadding(narrow ? 22 : 26).nodeAlign(d3.sankeyLeft)
-            .extent([[2, 14], [width - (narrow ? 95 : 280), height - 14]])(graph());
-        svg.selectAll("path").data(links).enter().append("path").attr("class", d => d.lost ? "link lost" : "link")
-            .attr("d", d3.sankeyLinkHorizontal()).attr("stroke-width", d => Math.max(1.5, d.width));
-        svg.selectAll("rect").data(nodes).enter().append("rect").attr("x", d => d.x0).attr("y", d => d.y0)
-            .attr("width", d => d.x1 - d.x0).attr("height", d => Math.max(1.5, d.y1 - d.y0));
-        const label = svg.selectAll("text").data(nodes).enter().append("text").attr("x", d => d.x1 + 5)
-            .attr("y", d => (d.y0 + d.y1) / 2 + 4);
-        const room = d => Math.max(12, Math.floor((width - d.x1 - 5) / 6.6)); // letters
-        label.append("tspan").text(d => d.name.length > room(d) ? `${d.name.slice(0, room(d) - 1)}…` : d.name);
-        label.append("tspan").attr("x", d => d.x1 + 5).attr("dy", "1.15em").text(d => `${number(100 * d.value / aimed, 3)} %`);
+        (place.clientWidth < narrowest ? bars : streams)(stations());
     }
     // The backward estimator follows what is detected alone.
     const followed = power("not followed backward") === 0;
     d3.select("#flow-note").text(
-        `${number(emitted)} W leave the source` + (notAimed > 0
-            ? `, ${number(100 * notAimed / emitted)} % of them in directions that never reach the first element: the streams are of the other ${number(aimed)} W`
-            : "") + `; ${number(detected)} W are detected. ` +
-        (followed ? "" : "The backward estimator follows no other light: forward tracing tells where it goes."));
+        `${vkfv.number(emitted)} W leave the source` + (notAimed > 0
+            ? `, ${figure(100 * notAimed / emitted)} % of them in directions that never reach the first element: shares are of the other ${figure(aimed)} W`
+            : "") + `; ${figure(detected)} W are detected. ` +
+        (followed ? "" : "The backward estimator follows no other light: forward tracing shows where it goes."));
     if (followed) {
         vkfv.events.on("resize.light", draw);
         draw();
