@@ -70,8 +70,11 @@ void Page::table(std::string_view caption, const std::vector<std::vector<std::st
 
 void Page::picture(std::string_view svg, std::string_view what_it_shows) {
     // An image of its own: identifiers within it do not meet those of other pictures.
-    body_ += fmt::format("<p><img class=\"drawing\" alt=\"{}\" src=\"data:image/svg+xml;base64,{}\"/></p>\n",
-                         escaped(what_it_shows), base64(std::string(svg)));
+    // It can be moved where the page is too narrow for its texts.
+    body_ +=
+        fmt::format("<p class=\"wide\" tabindex=\"0\" role=\"region\" aria-label=\"Drawing\"><img class=\"drawing\" "
+                    "alt=\"{}\" src=\"data:image/svg+xml;base64,{}\"/></p>\n",
+                    escaped(what_it_shows), base64(std::string(svg)));
 }
 
 void Page::folded(std::string_view title, std::string_view lines) {

@@ -2,7 +2,7 @@
 // Measured heights, truth and deviation side by side: one zoom, one cursor, one profile; measured and true in one scale.
 vkfv.parts.push(() => {
     const titles = {measured: "Measured height", truth: "True height", deviation: "Deviation, measured − true"};
-    const margin = {left: 48, right: 8, top: 6, bottom: 36};
+    const margin = {left: 48, right: 8, top: 20, bottom: 38};
     const palette = interpolate => d3.range(256).map(k => d3.rgb(interpolate(k / 255)));
     const viridis = palette(d3.interpolateViridis);
     const blueRed = palette(share => d3.interpolateRdBu(1 - share));
@@ -67,6 +67,11 @@ vkfv.parts.push(() => {
         panel.picture.getContext("2d").putImageData(picture, 0, 0);
     }
 
+    function withTicks(axis, count) {
+        const values = axis.scale().ticks(Math.max(2, count));
+        return axis.tickValues(values).tickFormat(vkfv.ticks(values));
+    }
+
     function drawPanel(panel) {
         const sharp = window.devicePixelRatio || 1;
         const transform = zoomed();
@@ -77,9 +82,8 @@ vkfv.parts.push(() => {
         context.imageSmoothingEnabled = transform.k * canvas.width < map().columns;
         context.drawImage(panel.picture, transform.x * sharp, transform.y * sharp, transform.k * canvas.width,
                           transform.k * canvas.height);
-        const ticks = Math.max(2, plot.width / 80);
-        panel.xAxis.call(d3.axisBottom(transform.rescaleX(x())).ticks(ticks).tickFormat(d => number(d)));
-        panel.yAxis.call(d3.axisLeft(transform.rescaleY(y())).ticks(Math.max(2, plot.height / 60)).tickFormat(d => number(d)));
+        panel.xAxis.call(withTicks(d3.axisBottom(transform.rescaleX(x())), plot.width / 80));
+        panel.yAxis.call(withTicks(d3.axisLeft(transform.rescaleY(y())), plot.height / 60));
         drawMarks(panel);
     }
 
@@ -197,8 +201,10 @@ vkfv.parts.push(() => {
             const clip = svg.append("clipPath").attr("id", `clip-${name}`).append("rect");
             const panel = {name, canvas, svg, clip, box, values: vkfv.heights(layers[name]),
                            picture: document.createElement("canvas"), xAxis: svg.append("g"), yAxis: svg.append("g"),
+                           bar: figure.append("div").attr("class", "panel"),
                            xLabel: svg.append("text").attr("text-anchor", "end").text("x / µm"),
                            yLabel: svg.append("text").text("y / µm")};
+            panel.gaps = panel.values.some(Number.isNaN);
             panel.marks = svg.append("g").attr("clip-path", `url(#clip-${name})`).append("g");
             panel.catch = svg.append("rect").attr("class", "catch");
             svg.call(zoom).on("dblclick.zoom", null);
@@ -224,30 +230,35 @@ vkfv.parts.push(() => {
             panel.xAxis.attr("transform", `translate(${margin.left},${margin.top + height})`);
             panel.yAxis.attr("transform", origin);
             panel.xLabel.attr("x", margin.left + width).attr("y", margin.top + height + 32);
-            panel.yLabel.attr("x", 0).attr("y", margin.top + height + 32);
+            panel.yLabel.attr("x", 0).attr("y", 12);
             Object.assign(panel.canvas.style, {left: `${margin.left}px`, top: `${margin.top}px`, width: `${width}px`, height: `${height}px`});
             zoom.extent([[0, 0], [width, height]]).translateExtent([[0, 0], [width, height]]);
         }
         vkfv.events.call("view");
     }
 
+    // Under each map its colours, as wide as the map, and what grey means.
     function drawBars() {
         const scale = vkfv.chosen.scale;
-        const bars = [[map().layers.truth ? "Height, measured and true / µm" : "Height / µm", [scale.low, scale.high], viridis]];
-        if (map().layers.deviation) {
-            bars.push(["Deviation / µm", [-scale.deviation, scale.deviation], blueRed]);
-        }
-        const place = d3.select("#bars");
-        place.selectAll("*").remove();
-        for (const [title, domain, colours] of bars) {
-            const figure = place.append("figure");
-            const width = Math.max(160, figure.node().clientWidth);
-            const svg = figure.append("svg").attr("viewBox", `0 0 ${width} 42`).attr("width", width).attr("height", 42).attr("role", "img").attr("aria-label", `Colours: ${title}, from ${number(domain[0])} to ${number(domain[1])}`);
-            svg.selectAll("rect").data(colours).enter().append("rect").attr("x", (d, k) => 8 + k * (width - 16) / 256)
-                .attr("width", (width - 16) / 256 + 0.6).attr("height", 14).attr("fill", d => d);
-            svg.append("g").attr("transform", "translate(0,14)")
-                .call(d3.axisBottom(d3.scaleLinear().domain(domain).range([8, width - 8])).ticks(width / 70).tickFormat(d => number(d)));
-            figure.append("figcaption").text(title);
+        for (const panel of panels) {
+            const deviation = panel.name === "deviation";
+            const [title, domain, colours] = deviation ? ["Deviation / µm", [-scale.deviation, scale.deviation], blueRed]
+                                                       : ["Height / µm", [scale.low, scale.high], viridis];
+            const {width} = plot, [first, last] = [margin.left, margin.left + width];
+            const below = panel.gaps && width < 200; // no room beside the title
+            const svg = panel.bar.html("").append("svg").attr("width", last + margin.right).attr("height", below ? 80 : 60).attr("role", "img")
+                .attr("aria-label", `Colours: ${title}, from ${number(domain[0])} to ${number(domain[1])}; grey: not measured`);
+            svg.append("text").attr("x", first).attr("y", 14).text(title);
+            svg.selectAll("rect").data(colours).enter().append("rect").attr("x", (d, k) => first + k * width / 256).attr("y", 20)
+                .attr("width", width / 256 + 0.6).attr("height", 14).attr("shape-rendering", "crispEdges").attr("fill", d => d);
+            svg.append("g").attr("transform", "translate(0,34)")
+                .call(withTicks(d3.axisBottom(d3.scaleLinear().domain(domain).range([first, last])), width / 70));
+            if (panel.gaps) {
+                const key = svg.append("g");
+                key.append("rect").attr("class", "unmeasured").attr("y", -10).attr("width", 12).attr("height", 12);
+                const name = key.append("text").attr("x", 18).text("not measured");
+                key.attr("transform", below ? `translate(${first},74)` : `translate(${last - 18 - name.node().getComputedTextLength()},14)`);
+            }
         }
         d3.select("#scale-low").property("value", scale.low);
         d3.select("#scale-high").property("value", scale.high);
@@ -255,8 +266,11 @@ vkfv.parts.push(() => {
 
     function readOut() {
         const point = vkfv.chosen.cursor;
-        const heights = Object.keys(titles).filter(name => map().layers[name])
-            .map(name => `${{measured: "measured", truth: "true", deviation: "deviation"}[name]} ${number(vkfv.heights(map().layers[name])[point.index])} µm`);
+        const names = Object.keys(titles).filter(name => map().layers[name]);
+        const values = names.map(name => vkfv.heights(map().layers[name])[point.index]);
+        const how = vkfv.form(values);
+        const heights = names.map((name, k) =>
+            `${{measured: "measured", truth: "true", deviation: "deviation"}[name]} ${vkfv.alike(values[k], how)} µm`);
         d3.select("#readout").text(`x ${number(point.x)} µm, y ${number(point.y)} µm: ${heights.join(", ")}${point.state === "measured" ? "" : `; ${point.state}`}`);
     }
 
@@ -271,8 +285,8 @@ vkfv.parts.push(() => {
         vkfv.chosen.scale = usualScale();
         const {columns, rows, block} = map();
         d3.select("#map-note").text(block > 1
-            ? `Shown are ${columns} × ${rows} means over ${block} × ${block} points each; the files have all. Hatched: not measured.`
-            : "Hatched: not measured.");
+            ? `Shown are ${columns} × ${rows} means over ${block} × ${block} points each; the files have all. Grey: not measured.`
+            : "Grey: not measured.");
         vkfv.chosen.cursor = vkfv.mapPoint(Math.floor(columns / 2), Math.floor(rows / 2));
         vkfv.chosen.profile = {from: vkfv.mapPoint(0, Math.floor(rows / 2)), to: vkfv.mapPoint(columns - 1, Math.floor(rows / 2))};
         build();
