@@ -252,7 +252,7 @@ vkfv.parts.push(() => {
             svg.selectAll("rect").data(colours).enter().append("rect").attr("x", (d, k) => first + k * width / 256).attr("y", 20)
                 .attr("width", width / 256 + 0.6).attr("height", 14).attr("shape-rendering", "crispEdges").attr("fill", d => d);
             svg.append("g").attr("transform", "translate(0,34)")
-                .call(withTicks(d3.axisBottom(d3.scaleLinear().domain(domain).range([first, last])), width / 70));
+                .call(withTicks(d3.axisBottom(d3.scaleLinear().domain(domain).range([first, last])), Math.max(4, width / 70)));
             if (panel.gaps) {
                 const key = svg.append("g");
                 key.append("rect").attr("class", "unmeasured").attr("y", -10).attr("width", 12).attr("height", 12);
@@ -284,12 +284,11 @@ vkfv.parts.push(() => {
     function changed() {
         vkfv.chosen.scale = usualScale();
         const {columns, rows, block} = map();
-        d3.select("#map-note").text(block > 1
-            ? `Shown are ${columns} × ${rows} means over ${block} × ${block} points each; the files have all. Grey: not measured.`
-            : "Grey: not measured.");
         vkfv.chosen.cursor = vkfv.mapPoint(Math.floor(columns / 2), Math.floor(rows / 2));
         vkfv.chosen.profile = {from: vkfv.mapPoint(0, Math.floor(rows / 2)), to: vkfv.mapPoint(columns - 1, Math.floor(rows / 2))};
         build();
+        const means = block > 1 ? `Shown are ${columns} × ${rows} means over ${block} × ${block} points each; the files have all. ` : "";
+        d3.select("#map-note").text(means + (panels.some(panel => panel.gaps) ? "Grey: not measured." : ""));
         vkfv.events.call("scale");
         vkfv.events.call("cursor");
         vkfv.events.call("profile");
