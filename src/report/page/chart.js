@@ -1,4 +1,15 @@
 "use strict";
+// Of a text that is seen, in px. Kept: asking the browser costs a layout, at every image that plays.
+vkfv.textWidth = (() => {
+    const known = new Map();
+    return node => {
+        const text = node.textContent;
+        const width = known.get(text) || node.getComputedTextLength();
+        known.set(text, width);
+        return width;
+    };
+})();
+
 // Curves over two axes, as wide as their place and drawn again when that changes.
 // content(): {x: {label, domain, log}, y: {label, domain, zero}, series: [{name, points: [[x, y] ...], kind, dots}], marks: [{x, name,
 // quiet}], height}; y of NaN leaves a gap; null: there is nothing to draw. kind: "line" (default), "steps".
@@ -19,12 +30,12 @@ vkfv.chart = (place, label, content) => {
         const entries = named.map(one => {
             const group = svg.append("g");
             group.append("line").attr("class", `series series-${one.style}`).attr("x2", 24).attr("y1", -4).attr("y2", -4);
-            const width = 30 + group.append("text").attr("x", 30).text(one.name).node().getComputedTextLength();
+            const width = 30 + vkfv.textWidth(group.append("text").attr("x", 30).text(one.name).node());
             return {group, width};
         });
         const gap = 16;
         const all = d3.sum(entries, d => d.width + gap);
-        const after = 4 + title.node().getComputedTextLength() + gap;
+        const after = 4 + vkfv.textWidth(title.node()) + gap;
         if (after + all <= right) {
             let x = right - all + gap;
             for (const {group, width} of entries) {
@@ -80,7 +91,7 @@ vkfv.chart = (place, label, content) => {
         svg.append("g").attr("transform", `translate(0,${bottom})`)
             .call(d3.axisBottom(across).tickValues(columns.values).tickFormat(columns.written))
             .selectAll(".tick text").each(function (value) { // the last one stays within the page
-                const over = across(value) + this.getComputedTextLength() / 2 - width;
+                const over = across(value) + vkfv.textWidth(this) / 2 - width;
                 d3.select(this).attr("dx", over > 0 ? -over : null);
             });
         svg.append("g").attr("transform", `translate(${margin.left},0)`)
@@ -103,7 +114,7 @@ vkfv.chart = (place, label, content) => {
                 .attr("y1", top).attr("y2", bottom);
             if (mark.name) {
                 const name = drawn.append("text").attr("class", "mark-text").attr("y", top - 6).attr("text-anchor", "middle").text(mark.name);
-                const half = name.node().getComputedTextLength() / 2;
+                const half = vkfv.textWidth(name.node()) / 2;
                 name.attr("x", Math.max(margin.left + half, Math.min(right - half, at)));
             }
         }
