@@ -243,13 +243,14 @@ void Commands::submit() {
 }
 
 void Commands::wait() {
-    if (!*done_) {
+    if (!*done_ || waited_) {
         return;
     }
     try {
         const vk::Fence fence = *done_;
         // Without a limit the wait ends in success or throws.
         static_cast<void>(device_->handle().waitForFences(fence, VK_TRUE, std::numeric_limits<std::uint64_t>::max()));
+        waited_ = true;
     } catch (const vk::SystemError& error) {
         throw run_error_of(error, device_->report().name);
     }

@@ -113,6 +113,7 @@ class Commands {
     vk::raii::CommandBuffers buffers_{nullptr};
     vk::raii::QueryPool queries_{nullptr};
     vk::raii::Fence done_{nullptr};
+    bool waited_ = false; // for it
     Device::Lane lane_;
     std::uint32_t timestamp_capacity_;
     std::uint32_t timestamps_ = 0;
