@@ -171,7 +171,7 @@ TEST(LightField, falls_off_from_its_brightest_place) {
     const double m = instrument.first_order.field_stop_magnification;
     EXPECT_NEAR(m, -20.0 / 150, 1e-9);
     const auto white = flat("lambertian");
-    const auto by = options(Estimator::backward, 1 << 16);
+    const auto by = options(Estimator::backward, 1 << 18);
     for (const bool on_host : {false, true}) {
         const auto bare = expose(sharp(std::nullopt), white, by, on_host);
         const auto image = expose(instrument, white, by, on_host);
@@ -187,7 +187,7 @@ TEST(LightField, falls_off_from_its_brightest_place) {
                 worst_twin = std::max(worst_twin, std::abs(seen - share(x / m, y / m)));
             }
         }
-        EXPECT_LT(worst, 0.015); // of 256 pixels with noise of 0.003, of the source's rim that the pupil cuts off
+        EXPECT_LT(worst, 0.01); // noise at these rays leaves 0.004 at the worst of 256 pixels
         EXPECT_GT(worst_twin, 0.05);
     }
 }
