@@ -135,9 +135,11 @@ Forecast forecast(const Configuration& configuration) {
         result.camera->light.saturated_share = result.camera->largest_saturated_share = saturated ? 1 : 0;
         result.warnings = camera_warnings(configuration, *result.camera);
     }
-    // Beside the rays an image takes a time that does not depend on their number.
+    // Beside the rays an image takes a time that does not depend on their number. But rays take most of a probe: a first
+    // exposure that other work held up must not make them look free.
     const double between = tried - static_cast<double>(first.image.rays);
-    const double seconds_a_ray = between > 0 ? std::max(0.0, probe.image.seconds - first.image.seconds) / between : 0;
+    const double slope = between > 0 ? (probe.image.seconds - first.image.seconds) / between : 0;
+    const double seconds_a_ray = std::max(slope, probe.image.seconds / tried / 2);
     result.seconds_per_image = probe.image.seconds + (rays - tried) * seconds_a_ray;
     result.seconds = result.seconds_per_image * result.images / result.devices;
     result.device = probe.device;
