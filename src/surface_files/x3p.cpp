@@ -12,6 +12,7 @@
 #include <array>
 #include <limits>
 #include <memory>
+#include <mutex>
 #include <sstream>
 
 namespace vkfv::surface {
@@ -42,6 +43,14 @@ struct Discard {
     void operator()(zip_file_t* entry) const { zip_fclose(entry); }
 };
 
+// One at a time: libzip (1.7.3, Debian 12) finds out at its first opening what a source must be capable of, and stores it
+// in two variables one after the other. A second thread that opens between the two gets a read-only archive.
+zip_t* open_archive(zip_source_t* source, int flags, zip_error_t* error) {
+    static std::mutex opening;
+    const std::lock_guard lock(opening);
+    return zip_open_from_source(source, flags, error);
+}
+
 class Archive {
   public:
     explicit Archive(const ByteReader& file) : file_(file) {
@@ -49,7 +58,7 @@ class Archive {
         zip_error_init(&error);
         zip_source_t* source = zip_source_buffer_create(file.bytes(0, file.size(), "").data(), file.size(), 0, &error);
         if (source)
-            archive_.reset(zip_open_from_source(source, ZIP_RDONLY, &error));
+            archive_.reset(open_archive(source, ZIP_RDONLY, &error));
         const std::string reason = zip_error_strerror(&error);
         zip_error_fini(&error);
         if (!archive_) {
@@ -287,7 +296,7 @@ std::string zip_of(const std::vector<std::pair<const char*, std::string_view>>& 
     zip_error_t error;
     zip_error_init(&error);
     zip_source_t* source = zip_source_buffer_create(nullptr, 0, 0, &error);
-    zip_t* archive = source ? zip_open_from_source(source, ZIP_TRUNCATE, &error) : nullptr;
+    zip_t* archive = source ? open_archive(source, ZIP_TRUNCATE, &error) : nullptr;
     zip_error_fini(&error);
     std::string bytes;
     bool good = archive != nullptr;
