@@ -9,6 +9,7 @@
 #include "spirv/focus_rows.h"
 #include "spirv/focus_select.h"
 #include "spirv/focus_single.h"
+#include "core/parallel_rows.hpp"
 #include "vulkan/kernel.hpp"
 
 #include <algorithm>
@@ -22,6 +23,7 @@ namespace {
 
 constexpr std::uint32_t workgroup = 128;
 constexpr std::size_t images_a_gathered_buffer = 64;
+constexpr std::size_t least_carrier_bytes = 1 << 16; // records go by them too
 
 using namespace focus::f32; // bindings and push constants: shaders/focus/interface.glsl
 
@@ -95,7 +97,8 @@ class DeviceFocusPlanes final : public FocusPlanes {
         brightness_.fill_zero();
         all_in_focus_.fill_zero();
         for (int k = 0; k < 2; ++k) {
-            carriers_.emplace_back(device_, channels_ * pixels_ * sizeof(float), vulkan::Buffer::Memory::host);
+            carriers_.emplace_back(device_, std::max(channels_ * pixels_ * sizeof(float), least_carrier_bytes),
+                                   vulkan::Buffer::Memory::host);
         }
         for (int k = 0; k < stack.images_kept; ++k) {
             images_.emplace_back(device_, channels_ * pixels_ * sizeof(float));
@@ -112,7 +115,7 @@ class DeviceFocusPlanes final : public FocusPlanes {
         for (std::size_t channel = 0; channel < channels.size(); ++channel) {
             carrier.write_values(std::span<const float>(channels[channel].values), channel * pixels_);
         }
-        commands().copy(carrier, image_at(image), carrier.bytes());
+        commands().copy(carrier, image_at(image), channels_ * pixels_ * sizeof(float));
         commands().barrier();
         dispatch(add_brightness_, {{BINDING_IMAGE, &image_at(image)}, {BINDING_BRIGHTNESS, &brightness_}},
                  ImageSize{static_cast<std::uint32_t>(pixels_), static_cast<std::uint32_t>(channels_)}, pixels_);
@@ -178,18 +181,15 @@ class DeviceFocusPlanes final : public FocusPlanes {
         if (submitted_) {
             submitted_->wait();
         }
-        const auto grid = [&](const auto& values) {
-            Grid<typename std::decay_t<decltype(values)>::value_type> result(plan_.columns, plan_.rows);
-            result.values = values;
+        const auto grid = [&](std::vector<float> values) {
+            Grid<float> result;
+            result.columns = plan_.columns;
+            result.rows = plan_.rows;
+            result.values = std::move(values);
             return result;
         };
         StackSummary result;
         result.brightness = grid(brightness_.read_values<float>(pixels_));
-        result.curves = Grid<focus::f64::CurveRecord>(plan_.columns, plan_.rows);
-        std::ranges::transform(records_.read_values<CurveRecord>(pixels_), result.curves.values.begin(), in_double);
-        result.singles = Grid<focus::f64::SingleRecord>(plan_.columns, plan_.rows);
-        std::ranges::transform(singles_.read_values<SingleRecord>(pixels_), result.singles.values.begin(),
-                               single_in_double);
         for (std::size_t channel = 0; channel < channels_; ++channel) {
             result.all_in_focus.push_back(grid(all_in_focus_.read_values<float>(pixels_, channel * pixels_)));
         }
@@ -200,6 +200,25 @@ class DeviceFocusPlanes final : public FocusPlanes {
             left -= images;
         }
         return result;
+    }
+
+    // Block by block through the carriers, which are there: host memory of the records' size takes as long to be made.
+    void visit_records(const RecordTask& task) override {
+        const std::size_t block = carriers_[0].bytes() / std::max(sizeof(CurveRecord), sizeof(SingleRecord));
+        for (std::size_t first = 0; first < pixels_; first += block) {
+            const std::size_t count = std::min(block, pixels_ - first);
+            vulkan::Commands copies(device_, 0, vulkan::Device::Lane::evaluation);
+            copies.copy(records_, carriers_[0], count * sizeof(CurveRecord), first * sizeof(CurveRecord), 0);
+            copies.copy(singles_, carriers_[1], count * sizeof(SingleRecord), first * sizeof(SingleRecord), 0);
+            copies.submit_and_wait();
+            const auto curves = carriers_[0].values<CurveRecord>(count);
+            const auto singles = carriers_[1].values<SingleRecord>(count);
+            parallel_rows(1, static_cast<int>(count), [&](int begin, int end) {
+                for (auto k = static_cast<std::size_t>(begin); k < static_cast<std::size_t>(end); ++k) {
+                    task(first + k, in_double(curves[k]), single_in_double(singles[k]));
+                }
+            });
+        }
     }
 
   private:

@@ -5,6 +5,7 @@
 #include "topography/axial_average.hpp"
 #include "topography/focus_measure.hpp"
 
+#include <cstddef>
 #include <functional>
 #include <memory>
 #include <span>
@@ -14,12 +15,14 @@ namespace vkfv::topography {
 
 // What one pass over a stack leaves of it, pixel by pixel.
 struct StackSummary {
-    Grid<float> brightness; // sum over the images of the channels' mean
-    Grid<focus::f64::CurveRecord> curves;
-    Grid<focus::f64::SingleRecord> singles;
+    Grid<float> brightness;      // sum over the images of the channels' mean
     Channels all_in_focus;       // each pixel from the images around its maximum
     std::vector<float> gathered; // averaged curves' values at the plan's pixels, one image after the other
 };
+
+// Of the pixel row * columns + column.
+using RecordTask =
+    std::function<void(std::size_t pixel, const focus::f64::CurveRecord& curve, const focus::f64::SingleRecord& single)>;
 
 struct FocusPlanesPlan {
     focus::f64::FocusPlan plan{};
@@ -47,6 +50,8 @@ class FocusPlanes {
     // follow_curve() of every pixel; `images` averaged curves are there.
     virtual void follow(int image, int images) = 0;
     virtual StackSummary summary() = 0;
+    // What is left of every pixel's curves, for `task` to look at once: from several threads, in any order.
+    virtual void visit_records(const RecordTask& task) = 0;
 };
 
 using FocusPlanesMaker = std::function<std::unique_ptr<FocusPlanes>(const FocusPlanesPlan&)>;

@@ -34,8 +34,8 @@ class HostFocusPlanes final : public FocusPlanes {
         : plan_(plan.plan), window_(plan.window), gathered_pixels_(plan.gathered_pixels), images_(plan.images_kept),
           curves_(plan.curves_kept), averaged_(plan.averaged_curves_kept) {
         summary_.brightness = Grid<float>(plan_.columns, plan_.rows);
-        summary_.curves = Grid<f64::CurveRecord>(plan_.columns, plan_.rows, f64::empty_curve());
-        summary_.singles = Grid<f64::SingleRecord>(plan_.columns, plan_.rows);
+        records_ = Grid<f64::CurveRecord>(plan_.columns, plan_.rows, f64::empty_curve());
+        singles_ = Grid<f64::SingleRecord>(plan_.columns, plan_.rows);
         summary_.all_in_focus.assign(static_cast<std::size_t>(plan_.channels), Grid<float>(plan_.columns, plan_.rows));
     }
 
@@ -63,7 +63,7 @@ class HostFocusPlanes final : public FocusPlanes {
     void measure_alone(int image) override {
         const Grid<float> values = alone_ ? curves_[image] : measure_of(images_[image]);
         pixels([&](std::size_t k) {
-            summary_.singles.values[k] = f64::follow_single(summary_.singles.values[k], values.values[k], image);
+            singles_.values[k] = f64::follow_single(singles_.values[k], values.values[k], image);
         });
     }
 
@@ -78,9 +78,8 @@ class HostFocusPlanes final : public FocusPlanes {
 
     void follow(int image, int images) override {
         pixels([&](std::size_t k) {
-            const auto step =
-                f64::follow_curve(CurveScene{averaged_, k}, plan_, summary_.curves.values[k], image, images);
-            summary_.curves.values[k] = step.curve;
+            const auto step = f64::follow_curve(CurveScene{averaged_, k}, plan_, records_.values[k], image, images);
+            records_.values[k] = step.curve;
             if (step.place == f64::NO_PLACE) {
                 return;
             }
@@ -97,6 +96,10 @@ class HostFocusPlanes final : public FocusPlanes {
     }
 
     StackSummary summary() override { return std::move(summary_); }
+
+    void visit_records(const RecordTask& task) override {
+        pixels([&](std::size_t k) { task(k, records_.values[k], singles_.values[k]); });
+    }
 
   private:
     Grid<float> measure_of(const Channels& image) const {
@@ -133,6 +136,8 @@ class HostFocusPlanes final : public FocusPlanes {
     Ring<Grid<float>> curves_;
     Ring<Grid<float>> averaged_;
     StackSummary summary_;
+    Grid<f64::CurveRecord> records_;
+    Grid<f64::SingleRecord> singles_;
     bool alone_ = false; // what was measured last is an image itself
 };
 

@@ -189,18 +189,17 @@ void StackEvaluator::begin(const Channels& first) {
     probes_.emplace(columns_, rows_, measure_, window_);
     if (const int wide = wide_window(options_.window_px, columns_, rows_); wide > 0 && options_.most_rival < 1)
         wide_.emplace(columns_, rows_, measure_, FocusWindow(wide, options_.window_shape), wide_places_a_side);
-    std::vector<std::uint32_t> gathered;
     for (const int row : curve_grid_.rows_of(rows_))
         for (const int column : curve_grid_.columns_of(columns_))
-            gathered.push_back(static_cast<std::uint32_t>(row) * static_cast<std::uint32_t>(columns_) +
-                               static_cast<std::uint32_t>(column));
+            curve_pixels_.push_back(static_cast<std::uint32_t>(row) * static_cast<std::uint32_t>(columns_) +
+                                    static_cast<std::uint32_t>(column));
     // An image is judged once the curve's average has passed it by the range: its own neighbours are asked for then.
     planes_ = make_planes_({.plan = plan,
                             .window = window_,
                             .images_kept = 2 * radius + 2 * plan.peak_range + 1,
                             .curves_kept = 2 * radius + 1,
                             .averaged_curves_kept = 2 * plan.peak_range + 1,
-                            .gathered_pixels = std::move(gathered)});
+                            .gathered_pixels = curve_pixels_});
 }
 
 void StackEvaluator::add(Channels image, double z, std::optional<double> reading) {
@@ -251,7 +250,9 @@ void StackEvaluator::advance(bool all_taken) {
         planes_->follow(followed_, averaged_);
 }
 
-FocusCurves StackEvaluator::curves_of(StackSummary& stack, const std::function<double(double)>& height_at) const {
+FocusCurves StackEvaluator::curves_of(const StackSummary& stack,
+                                      const std::vector<focus::f64::CurveRecord>& records,
+                                      const std::function<double(double)>& height_at) const {
     FocusCurves result{.columns = curve_grid_.columns_of(columns_), .rows = curve_grid_.rows_of(rows_)};
     const std::size_t points = result.columns.size() * result.rows.size();
     if (points == 0)
@@ -272,7 +273,7 @@ FocusCurves StackEvaluator::curves_of(StackSummary& stack, const std::function<d
                     const float value = stack.gathered[k * points + point];
                     curve[k] = result.values[point * heights + k] = value;
                 }
-                const auto& record = stack.curves(result.columns[column], result.rows[row]);
+                const auto& record = records[point];
                 result.peaks[point] =
                     record.found != 0 ? height_at(record.at + record.offset) : std::numeric_limits<double>::quiet_NaN();
                 if (record.found != 0 && curve_grid_.every == 1)
@@ -364,7 +365,6 @@ Topography StackEvaluator::finish(double x0, double y0, double pitch) {
     auto figures_of_probes = std::async(std::launch::async, [this] { return judge_stack(); });
     advance(true);
     StackSummary stack = planes_->summary();
-    planes_.reset();
 
     const int images = static_cast<int>(z_.size());
     const NoiseModel noise_model = noise_of_probes.get();
@@ -384,9 +384,11 @@ Topography StackEvaluator::finish(double x0, double y0, double pitch) {
     };
     Topography result =
         nothing_measured(columns_, rows_, {.height = {}, .x0 = x0, .y0 = y0, .pitch_x = pitch, .pitch_y = pitch});
-    result.curves = curves_of(stack, height_at);
-    const auto judge_point = [&](int column, int row) {
-        const auto& curve = stack.curves(column, row);
+    std::vector<focus::f64::CurveRecord> of_curves(curve_pixels_.size());
+    const auto judge_point = [&](std::size_t pixel, const focus::f64::CurveRecord& curve,
+                                 const focus::f64::SingleRecord& single) {
+        const int row = static_cast<int>(pixel / static_cast<std::size_t>(columns_));
+        const int column = static_cast<int>(pixel % static_cast<std::size_t>(columns_));
         const double pixels = window_.pixels(columns_, rows_, column, row);
         const double averaging = std::sqrt(points[static_cast<std::size_t>(curve.at)].variance);
         const double here = brightness_around(column, row) / images;
@@ -395,20 +397,22 @@ Topography StackEvaluator::finish(double x0, double y0, double pitch) {
         const double rise = curve.largest - curve.sum / images;
         result.contrast(column, row) = rise / (image_noise * averaging);
         result.fit_residual(column, row) = curve.residual;
+        if (const auto place = std::ranges::lower_bound(curve_pixels_, pixel);
+            place != curve_pixels_.end() && *place == pixel) {
+            of_curves[static_cast<std::size_t>(place - curve_pixels_.begin())] = curve;
+        }
         result.peaks(column, row) = static_cast<std::uint16_t>(focus::f64::count_peaks(curve, images));
         PointState& state = result.state(column, row);
-        state = here > dark * brightness ? judge(curve, stack.singles(column, row), image_noise, averaging, figures)
+        state = here > dark * brightness ? judge(curve, single, image_noise, averaging, figures)
                                          : PointState::dark;
         if (state == PointState::measured) {
             result.height.height(column, row) = height_at(curve.at + curve.offset);
             result.height_noise(column, row) = step * place_noise(curve.bend, image_noise, smoothed);
         }
     };
-    parallel_rows(columns_, rows_, [&](int first, int end) {
-        for (int row = first; row < end; ++row)
-            for (int column = 0; column < columns_; ++column)
-                judge_point(column, row);
-    });
+    planes_->visit_records(judge_point);
+    planes_.reset();
+    result.curves = curves_of(stack, of_curves, height_at);
     for (Grid<float>& channel : stack.all_in_focus)
         for (float& value : channel.values)
             value /= scale_;

@@ -143,7 +143,9 @@ class StackEvaluator {
     void check(const Channels& image, double z) const;
     void begin(const Channels& first);
     void advance(bool all_taken);
-    FocusCurves curves_of(StackSummary& stack, const std::function<double(double)>& height_at) const;
+    // records: of the curves' pixels, in their order.
+    FocusCurves curves_of(const StackSummary& stack, const std::vector<focus::f64::CurveRecord>& records,
+                          const std::function<double(double)>& height_at) const;
     StackFigures judge_stack() const;
     // noise: standard deviation of a single image's measure; averaging: the factor on it that both averages leave.
     PointState judge(const focus::f64::CurveRecord& curve, const focus::f64::SingleRecord& single, double noise,
@@ -158,6 +160,7 @@ class StackEvaluator {
     std::optional<FocusProbes> probes_;   // from the first image on
     std::optional<FocusProbes> wide_;     // likewise, by a window several times as wide
     std::unique_ptr<FocusPlanes> planes_; // from the first image on
+    std::vector<std::uint32_t> curve_pixels_; // of the curve grid, in ascending order
     int columns_ = 0;
     int rows_ = 0;
     std::size_t channels_ = 0;

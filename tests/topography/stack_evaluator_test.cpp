@@ -335,6 +335,7 @@ class WatchedPlanes final : public FocusPlanes {
         EXPECT_EQ(followed_, taken_);
         return planes_->summary();
     }
+    void visit_records(const RecordTask& task) override { planes_->visit_records(task); }
 
   private:
     FocusPlanesPlan plan_;
