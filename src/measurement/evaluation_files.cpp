@@ -113,7 +113,8 @@ surface::HeightMap with_values(surface::HeightMap map, Grid<double> values) {
 
 // Every map on the heights' grid. deviation: in the evaluation's band.
 std::vector<surface::GwyChannel> channels_of(const Evaluation& evaluation,
-                                             const std::optional<surface::HeightMap>& deviation) {
+                                             const std::optional<surface::HeightMap>& deviation,
+                                             const std::string& image_unit) {
     const auto& topography = evaluation.topography;
     const auto on_grid = [&](Grid<double> values) { return with_values(topography.height, std::move(values)); };
     std::vector<surface::GwyChannel> channels = {{.title = "Height", .map = topography.height}};
@@ -127,7 +128,7 @@ std::vector<surface::GwyChannel> channels_of(const Evaluation& evaluation,
     channels.push_back(
         {.title = "What became of the point", .unit = "", .map = on_grid(converted<double>(topography.state))});
     const auto grey = topography::grey(topography.all_in_focus);
-    channels.push_back({.title = "All in focus", .unit = "", .map = on_grid(converted<double>(grey))});
+    channels.push_back({.title = "All in focus", .unit = image_unit, .map = on_grid(converted<double>(grey))});
     return channels;
 }
 
@@ -199,8 +200,9 @@ EvaluationData write_maps(ResultFolder& results, const std::filesystem::path& fo
     }
     for (const std::string& file : files.names) {
         write(file, [&, file] {
-            return file.ends_with(".gwy") ? surface::gwy_bytes(channels_of(evaluation, deviation), files.provenance)
-                                          : surface::surface_bytes(file, topography.height, files.provenance);
+            return file.ends_with(".gwy")
+                       ? surface::gwy_bytes(channels_of(evaluation, deviation, files.image_unit), files.provenance)
+                       : surface::surface_bytes(file, topography.height, files.provenance);
         });
     }
     write("height_noise.tif",

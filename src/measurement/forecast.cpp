@@ -135,8 +135,8 @@ Forecast forecast(const Configuration& configuration) {
         result.camera->light.saturated_share = result.camera->largest_saturated_share = saturated ? 1 : 0;
         result.warnings = camera_warnings(configuration, *result.camera);
     }
-    // Beside the rays an image takes a time that does not depend on their number. But rays take most of a probe: a first
-    // exposure that other work held up must not make them look free.
+    // Beside the rays an image takes a time that does not depend on their number. But rays take most of a probe: a
+    // first exposure that other work held up must not make them look free.
     const double between = tried - static_cast<double>(first.image.rays);
     const double slope = between > 0 ? (probe.image.seconds - first.image.seconds) / between : 0;
     const double seconds_a_ray = std::max(slope, probe.image.seconds / tried / 2);

@@ -44,8 +44,8 @@ struct Discard {
     void operator()(zip_file_t* entry) const { zip_fclose(entry); }
 };
 
-// One at a time: libzip (1.7.3, Debian 12) finds out at its first opening what a source must be capable of, and stores it
-// in two variables one after the other. A second thread that opens between the two gets a read-only archive.
+// One at a time: libzip (1.7.3, Debian 12) finds out at its first opening what a source must be capable of, and stores
+// it in two variables one after the other. A second thread that opens between the two gets a read-only archive.
 zip_t* open_archive(zip_source_t* source, int flags, zip_error_t* error) {
     static std::mutex opening;
     const std::lock_guard lock(opening);
@@ -290,7 +290,8 @@ std::string main_xml(const HeightMap& map, const Provenance& provenance, const s
     return text.str();
 }
 
-// Whether to pack an entry is worth its time: digits of heights hardly shrink, points without one do. By a few parts of it.
+// Whether to pack an entry is worth its time: digits of heights hardly shrink, points without one do. By a few parts of
+// it.
 bool shrinks(std::string_view content) {
     constexpr std::size_t part = 1 << 13, parts = 8;
     if (content.size() < 2 * part * parts) {

@@ -1,5 +1,6 @@
 #include "topography/device_focus_planes.hpp"
 
+#include "core/parallel_rows.hpp"
 #include "spirv/focus_brightness.h"
 #include "spirv/focus_columns.h"
 #include "spirv/focus_follow.h"
@@ -9,7 +10,6 @@
 #include "spirv/focus_rows.h"
 #include "spirv/focus_select.h"
 #include "spirv/focus_single.h"
-#include "core/parallel_rows.hpp"
 #include "vulkan/kernel.hpp"
 
 #include <algorithm>

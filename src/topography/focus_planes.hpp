@@ -21,8 +21,8 @@ struct StackSummary {
 };
 
 // Of the pixel row * columns + column.
-using RecordTask =
-    std::function<void(std::size_t pixel, const focus::f64::CurveRecord& curve, const focus::f64::SingleRecord& single)>;
+using RecordTask = std::function<void(std::size_t pixel, const focus::f64::CurveRecord& curve,
+                                      const focus::f64::SingleRecord& single)>;
 
 struct FocusPlanesPlan {
     focus::f64::FocusPlan plan{};

@@ -250,8 +250,7 @@ void StackEvaluator::advance(bool all_taken) {
         planes_->follow(followed_, averaged_);
 }
 
-FocusCurves StackEvaluator::curves_of(const StackSummary& stack,
-                                      const std::vector<focus::f64::CurveRecord>& records,
+FocusCurves StackEvaluator::curves_of(const StackSummary& stack, const std::vector<focus::f64::CurveRecord>& records,
                                       const std::function<double(double)>& height_at) const {
     FocusCurves result{.columns = curve_grid_.columns_of(columns_), .rows = curve_grid_.rows_of(rows_)};
     const std::size_t points = result.columns.size() * result.rows.size();
@@ -403,8 +402,7 @@ Topography StackEvaluator::finish(double x0, double y0, double pitch) {
         }
         result.peaks(column, row) = static_cast<std::uint16_t>(focus::f64::count_peaks(curve, images));
         PointState& state = result.state(column, row);
-        state = here > dark * brightness ? judge(curve, single, image_noise, averaging, figures)
-                                         : PointState::dark;
+        state = here > dark * brightness ? judge(curve, single, image_noise, averaging, figures) : PointState::dark;
         if (state == PointState::measured) {
             result.height.height(column, row) = height_at(curve.at + curve.offset);
             result.height_noise(column, row) = step * place_noise(curve.bend, image_noise, smoothed);

@@ -157,9 +157,9 @@ class StackEvaluator {
     std::vector<double> axial_weights_;
     FocusPlanesMaker make_planes_;
     CurveGrid curve_grid_;
-    std::optional<FocusProbes> probes_;   // from the first image on
-    std::optional<FocusProbes> wide_;     // likewise, by a window several times as wide
-    std::unique_ptr<FocusPlanes> planes_; // from the first image on
+    std::optional<FocusProbes> probes_;       // from the first image on
+    std::optional<FocusProbes> wide_;         // likewise, by a window several times as wide
+    std::unique_ptr<FocusPlanes> planes_;     // from the first image on
     std::vector<std::uint32_t> curve_pixels_; // of the curve grid, in ascending order
     int columns_ = 0;
     int rows_ = 0;

@@ -258,6 +258,7 @@ TEST(Program, HeightsAreWrittenInEveryFormatAndAllMapsInOneFile) {
          {"Height", "True height", "Deviation", "Noise of the height", "Contrast", "All in focus"}) {
         EXPECT_THAT(all, HasSubstr(title));
     }
+    EXPECT_THAT(all, HasSubstr(std::string("unitstr\0sW\0", 11))); // of the all-in-focus image
 }
 
 TEST(Program, AStackOfAnotherConfigurationIsRefusedWithTheDifference) {
