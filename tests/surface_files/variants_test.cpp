@@ -11,11 +11,13 @@
 #include <unistd.h>
 #include <zip.h>
 
+#include <algorithm>
 #include <cmath>
 #include <cstring>
 #include <fstream>
 #include <functional>
 #include <iterator>
+#include <random>
 #include <utility>
 #include <vector>
 
@@ -119,6 +121,27 @@ TEST(SurfaceVariants, OtherZipsAreNotCalledX3p) {
          {ZipEntries{{"index.xml", "<xml/>"}, {"LAYER_0.raw", "1"}}, ZipEntries{{"[Content_Types].xml", "<Types/>"}}})
         expect_told([&] { x3p_heights(entries); }, "a ZIP archive of another kind", "n X3P");
     expect_told([] { (void)parse_x3p("PK\x03\x04", "a.xlsx"); }, "a whole ZIP archive", "X3P");
+}
+
+// Digits of heights are stored, equal values packed; a reader finds the same in both.
+TEST(SurfaceVariants, X3pPacksWhatShrinks) {
+    constexpr int side = 200;
+    constexpr std::size_t bytes_of_heights = std::size_t{side} * side * sizeof(double);
+    HeightMap rough{.height = Grid<double>(side, side), .pitch_x = 1e-3, .pitch_y = 1e-3};
+    const HeightMap flat = rough;
+    std::mt19937 random(1);
+    std::normal_distribution<double> normal;
+    std::ranges::generate(rough.height.values, [&] { return normal(random); });
+    const std::string of_rough = x3p_bytes(rough, {}), of_flat = x3p_bytes(flat, {});
+    EXPECT_GT(of_rough.size(), bytes_of_heights);
+    EXPECT_LT(of_rough.size(), bytes_of_heights + 4096);
+    EXPECT_LT(of_flat.size(), bytes_of_heights / 20);
+    EXPECT_EQ(parse_x3p(of_flat, "a.x3p").map.height.values, flat.height.values);
+    const auto read = parse_x3p(of_rough, "a.x3p").map.height.values;
+    ASSERT_EQ(read.size(), rough.height.values.size());
+    for (std::size_t k = 0; k < read.size(); ++k) {
+        ASSERT_NEAR(read[k], rough.height.values[k], 1e-12);
+    }
 }
 
 // pyx3p fails at empty elements.
