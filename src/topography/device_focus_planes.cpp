@@ -202,7 +202,7 @@ class DeviceFocusPlanes final : public FocusPlanes {
         return result;
     }
 
-    // Block by block through the carriers, which are there: host memory of the records' size takes as long to be made.
+    // Block by block through the carriers, so that no host memory for the records of all pixels has to be made.
     void visit_records(const RecordTask& task) override {
         const std::size_t block = carriers_[0].bytes() / std::max(sizeof(CurveRecord), sizeof(SingleRecord));
         for (std::size_t first = 0; first < pixels_; first += block) {

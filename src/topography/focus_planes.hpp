@@ -50,7 +50,8 @@ class FocusPlanes {
     // follow_curve() of every pixel; `images` averaged curves are there.
     virtual void follow(int image, int images) = 0;
     virtual StackSummary summary() = 0;
-    // What is left of every pixel's curves, for `task` to look at once: from several threads, in any order.
+    // What is left of every pixel's curves, once summary() has been asked for: calls `task` once a pixel, from several
+    // threads and in any order.
     virtual void visit_records(const RecordTask& task) = 0;
 };
 

@@ -333,14 +333,19 @@ class WatchedPlanes final : public FocusPlanes {
     }
     StackSummary summary() override {
         EXPECT_EQ(followed_, taken_);
+        summed_up_ = true;
         return planes_->summary();
     }
-    void visit_records(const RecordTask& task) override { planes_->visit_records(task); }
+    void visit_records(const RecordTask& task) override {
+        EXPECT_TRUE(summed_up_);
+        planes_->visit_records(task);
+    }
 
   private:
     FocusPlanesPlan plan_;
     std::unique_ptr<FocusPlanes> planes_;
     int taken_ = 0, measured_ = 0, averaged_ = 0, followed_ = 0;
+    bool summed_up_ = false;
 };
 
 TEST(Reconstruct, HoldsFewImagesHoweverLongTheStack) {
