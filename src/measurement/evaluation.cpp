@@ -34,6 +34,18 @@ class Stopwatch {
     std::chrono::steady_clock::time_point started_ = std::chrono::steady_clock::now();
 };
 
+// Of the finite values; NaN without any.
+double median_of(const Grid<double>& grid) {
+    std::vector<double> values;
+    std::ranges::copy_if(grid.values, std::back_inserter(values), [](double value) { return std::isfinite(value); });
+    if (values.empty()) {
+        return std::numeric_limits<double>::quiet_NaN();
+    }
+    const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
+    std::ranges::nth_element(values, middle);
+    return *middle;
+}
+
 std::string text_of(const char* treatment, const topography::Deviation& deviation) {
     return fmt::format("{:<30} Sq measured {:.4f} um, true {:.4f} um (ratio {:.3f}), RMS deviation {:.4f} um, "
                        "correlation {:.4f}\n",
@@ -50,6 +62,16 @@ std::string band_text(const topography::Band& band) {
         text += fmt::format(", L {:g} um", band.l_filter * um_per_mm);
     }
     return text + ":";
+}
+
+std::string uncertainty_text(const Evaluation& evaluation) {
+    std::string text = fmt::format("standard uncertainty of a height {:.3g} um, of it the images' noise {:.3g} um",
+                                   evaluation.height_uncertainty * um_per_mm, evaluation.height_noise * um_per_mm);
+    if (evaluation.beyond_uncertainty) {
+        text += fmt::format("; {:.1f} % of the points are more than {:g} times theirs from the truth",
+                            100 * evaluation.beyond_uncertainty.value(), coverage_factor);
+    }
+    return text + "\n";
 }
 
 struct Reason {
@@ -186,6 +208,9 @@ void StackEvaluation::add(topography::Channels image, double z, std::optional<do
 void StackEvaluation::reconstruct(double x0, double y0, double pitch, const std::optional<Flat>& flat) {
     auto frames = std::async(std::launch::async, [&] { return frames_ ? frames_->finish() : report::Frames(); });
     evaluation_.topography = evaluator_.finish(x0, y0, pitch);
+    auto noise = std::async(std::launch::async, [&] { return median_of(evaluation_.topography.height_noise); });
+    evaluation_.height_uncertainty = median_of(evaluation_.topography.height_uncertainty);
+    evaluation_.height_noise = noise.get();
     evaluation_.frames = frames.get();
     if (flat) {
         auto corrected = topography::correct_flatness(std::move(evaluation_.topography.height), flat->heights);
@@ -206,7 +231,10 @@ Evaluation StackEvaluation::finish(surface::HeightMap truth, const topography::B
         const Stopwatch stopwatch(evaluation_.seconds);
         reconstruct(truth.x0, truth.y0, truth.pitch_x, flat);
         const auto& measured = evaluation_.topography.height;
-        evaluation_.deviation = topography::compare(measured, truth, {.form = band.form});
+        const auto levelled = topography::levelled_pair(measured, truth, {.form = band.form});
+        evaluation_.deviation = topography::compare(levelled);
+        evaluation_.beyond_uncertainty = topography::share_beyond(
+            topography::deviation_map(levelled), evaluation_.topography.height_uncertainty, coverage_factor);
         evaluation_.band = band;
         if (band.limited()) {
             evaluation_.filtered_deviation = topography::compare(measured, truth, band);
@@ -253,6 +281,7 @@ std::string summary(const Evaluation& evaluation) {
                                                             : ("form " + form_name(evaluation.band.form) + ":").c_str(),
                     *evaluation.deviation);
     }
+    text += uncertainty_text(evaluation);
     if (evaluation.filtered_deviation) {
         text += text_of(band_text(evaluation.band).c_str(), *evaluation.filtered_deviation);
     }

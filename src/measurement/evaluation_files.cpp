@@ -50,18 +50,6 @@ Grid<To> converted(const Grid<From>& grid) {
     return result;
 }
 
-// Of the finite values; NaN without any.
-double median_of(const Grid<double>& grid) {
-    std::vector<double> values;
-    std::ranges::copy_if(grid.values, std::back_inserter(values), [](double value) { return std::isfinite(value); });
-    if (values.empty()) {
-        return std::numeric_limits<double>::quiet_NaN();
-    }
-    const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-    std::ranges::nth_element(values, middle);
-    return *middle;
-}
-
 // Levelled, with the filtered ones within.
 nlohmann::ordered_json json_of(const std::vector<Figures>& figures) {
     auto json = json_of(figures.front());
@@ -123,6 +111,7 @@ std::vector<surface::GwyChannel> channels_of(const Evaluation& evaluation,
         channels.push_back({.title = "Deviation from the true height", .map = deviation.value()});
     }
     channels.push_back({.title = "Noise of the height", .map = on_grid(topography.height_noise)});
+    channels.push_back({.title = "Uncertainty of the height", .map = on_grid(topography.height_uncertainty)});
     channels.push_back({.title = "Contrast", .unit = "", .map = on_grid(topography.contrast)});
     channels.push_back({.title = "Fit residual", .unit = "", .map = on_grid(topography.fit_residual)});
     channels.push_back(
@@ -207,6 +196,8 @@ EvaluationData write_maps(ResultFolder& results, const std::filesystem::path& fo
     }
     write("height_noise.tif",
           [&] { return surface::height_map_bytes(with_values(topography.height, topography.height_noise)); });
+    write("height_uncertainty.tif",
+          [&] { return surface::height_map_bytes(with_values(topography.height, topography.height_uncertainty)); });
     write("quality.tif", [&] { return images::tiff_bytes(converted<float>(topography.contrast), pitch); });
     write("fit_residual.tif", [&] { return images::tiff_bytes(converted<float>(topography.fit_residual), pitch); });
     write("mask.tif", [&] { return images::tiff_bytes(converted<std::uint16_t>(topography.state), pitch); });
@@ -246,6 +237,9 @@ void write_results(ResultFolder& folder, const EvaluatedStack& stack) {
                    .layout = stack.source.layout,
                    .configuration = stack.source.configuration};
     auto results = json_of(page.plain.figures);
+    if (evaluation.beyond_uncertainty) {
+        results["beyond_uncertainty_share"] = *evaluation.beyond_uncertainty;
+    }
     add_dimensions(results, evaluation.dimensions);
     if (evaluation.diffracted) {
         page.diffracted = {.figures = figures_of(*evaluation.diffracted),
@@ -274,7 +268,8 @@ void write_results(ResultFolder& folder, const EvaluatedStack& stack) {
                          {"rivalled_share", whole.rivalled_share},
                          {"image_noise", whole.image_noise},
                          {"noise_correlation", {whole.noise_correlation(1, 0), whole.noise_correlation(0, 1)}},
-                         {"height_noise_um", median_of(evaluation.topography.height_noise) * um_per_mm}};
+                         {"height_noise_um", evaluation.height_noise * um_per_mm},
+                         {"height_uncertainty_um", evaluation.height_uncertainty * um_per_mm}};
     results["focus_curves"] = places_json(evaluation.topography.curves, evaluation.topography.height.rows());
     results["points"] = point_counts(evaluation.topography.state);
     results["evaluated_by"] = fmt::format("vkfv {}", VKFV_VERSION);

@@ -153,12 +153,12 @@ Json curves_data(EvaluationData& data, const std::string& name, const Evaluation
             bytes.push_back(static_cast<std::uint8_t>(std::lround((curve[k] - low) * scale)));
         }
         const auto& fit = curves.fits[point];
-        const double noise = evaluation.topography.height_noise(curves.columns[point % curves.columns.size()],
-                                                                curves.rows[point / curves.columns.size()]);
+        const double uncertainty = evaluation.topography.height_uncertainty(
+            curves.columns[point % curves.columns.size()], curves.rows[point / curves.columns.size()]);
         for (const double number :
-             {static_cast<double>(low), static_cast<double>(high), curves.peaks[point] * um_per_mm, noise * um_per_mm,
-              static_cast<double>(fit.at), static_cast<double>(fit.range), fit.largest, fit.coefficients[0],
-              fit.coefficients[1], fit.coefficients[2]}) {
+             {static_cast<double>(low), static_cast<double>(high), curves.peaks[point] * um_per_mm,
+              uncertainty * um_per_mm, static_cast<double>(fit.at), static_cast<double>(fit.range), fit.largest,
+              fit.coefficients[0], fit.coefficients[1], fit.coefficients[2]}) {
             numbers.push_back(static_cast<float>(number));
         }
     }

@@ -89,4 +89,19 @@ HeightMap deviation_map(const HeightMap& measured, const HeightMap& truth, const
     return deviation_map(levelled_pair(measured, truth, band));
 }
 
+double share_beyond(const surface::HeightMap& deviation, const Grid<double>& uncertainty, double coverage_factor) {
+    if (uncertainty.columns != deviation.columns() || uncertainty.rows != deviation.rows()) {
+        throw std::invalid_argument("share_beyond: as many uncertainties as deviations are needed");
+    }
+    double points = 0, beyond = 0;
+    for (std::size_t k = 0; k < uncertainty.values.size(); ++k) {
+        const double off = std::abs(deviation.height.values[k]);
+        if (std::isfinite(off)) {
+            points += 1;
+            beyond += off <= coverage_factor * uncertainty.values[k] ? 0 : 1;
+        }
+    }
+    return beyond / points;
+}
+
 } // namespace vkfv::topography

@@ -1,5 +1,6 @@
 #include "core/error.hpp"
 #include "core/parallel_rows.hpp"
+#include "topography/height_uncertainty.hpp"
 #include "topography/texture_place.hpp"
 #include "topography/topography.hpp"
 
@@ -424,6 +425,8 @@ Topography StackEvaluator::finish(double x0, double y0, double pitch) {
         place_by_texture(result.height.height, result.all_in_focus, measure_, window_);
     if (options_.repair_outliers)
         repair_outliers(result);
+    result.height_uncertainty =
+        height_uncertainty(result.height.height, result.height_noise, options_.window_px, options_.window_shape);
     figures.image_noise = relative_noise(brightness, noise_model);
     figures.noise_correlation = correlation;
     result.stack = figures;

@@ -104,6 +104,9 @@ struct Topography {
     Grid<double> contrast;
     // Standard deviation of the height that the images' noise brings, mm; NaN: not measured.
     Grid<double> height_noise;
+    // Standard uncertainty of the height by what neighbouring windows do not agree on, noise with all the rest
+    // (height_uncertainty.hpp), mm; NaN: not measured.
+    Grid<double> height_uncertainty;
     // RMS distance of the curve from a Gaussian over the range around its maximum, in units of the maximum.
     Grid<double> fit_residual;
     // Local maxima, each the largest within the range around it, that stand at least half as high above the curve's

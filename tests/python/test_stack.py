@@ -128,7 +128,7 @@ class StackTest(unittest.TestCase):
 
     def test_maps_and_units(self):
         shapes = {
-            "heights": "um", "truth": "um", "deviation": "um", "height_noise": "um", "contrast": "", "fit_residual": "",
+            "heights": "um", "truth": "um", "deviation": "um", "height_noise": "um", "height_uncertainty": "um", "contrast": "", "fit_residual": "",
             "mask": "", "all_in_focus": "",
         }
         for name, unit in shapes.items():

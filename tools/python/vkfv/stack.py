@@ -93,6 +93,11 @@ class Stack:
         return self._map("height_noise.tif", "um", "noise of the height")
 
     @cached_property
+    def height_uncertainty(self) -> Array:
+        """Standard uncertainty of the height by what neighbouring windows do not agree on, um."""
+        return self._map("height_uncertainty.tif", "um", "uncertainty of the height")
+
+    @cached_property
     def mask(self) -> Array:
         """A PointState for each point."""
         return self._map("mask.tif", "", "state")

@@ -1,0 +1,156 @@
+// The uncertainty that heights tell of themselves: against windows of known errors, slopes, gaps and steps.
+#include "topography/height_uncertainty.hpp"
+
+#include "topography/compare.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <cstdlib>
+#include <limits>
+#include <random>
+#include <stdexcept>
+
+namespace vkfv::topography {
+namespace {
+
+constexpr double nothing = std::numeric_limits<double>::quiet_NaN();
+
+// Means over the window of independent errors of pixels, of standard deviation 1 each.
+Grid<double> windowed_errors(int side, const FocusWindow& window, unsigned seed) {
+    std::mt19937 random(seed);
+    std::normal_distribution<double> normal;
+    const int radius = window.radius();
+    Grid<double> white(side + 2 * radius, side + 2 * radius), height(side, side);
+    for (double& value : white.values) {
+        value = normal(random);
+    }
+    for (int row = 0; row < side; ++row) {
+        for (int column = 0; column < side; ++column) {
+            double sum = 0, total = 0;
+            for (int y = -radius; y <= radius; ++y) {
+                for (int x = -radius; x <= radius; ++x) {
+                    const double weight = window.weights()[static_cast<std::size_t>(std::abs(x))] *
+                                          window.weights()[static_cast<std::size_t>(std::abs(y))];
+                    sum += weight * white(column + x + radius, row + y + radius);
+                    total += weight;
+                }
+            }
+            height(column, row) = sum / total;
+        }
+    }
+    return height;
+}
+
+Grid<double> of(int side, double value) {
+    return Grid<double>(side, side, value);
+}
+
+double root_mean_square(const Grid<double>& grid, int border = 0) {
+    double sum = 0, count = 0;
+    for (int row = border; row < grid.rows - border; ++row) {
+        for (int column = border; column < grid.columns - border; ++column) {
+            sum += grid(column, row) * grid(column, row);
+            count += 1;
+        }
+    }
+    return std::sqrt(sum / count);
+}
+
+TEST(HeightUncertainty, ABoxLeavesHalfOfTheVariance) {
+    // Continuous boxes of widths 1 and b = 1.5, along either axis: |k|^2 = 1, k . k*m = (b - 1/4) / b^2 ... of the
+    // trapezoid k*m, level at 1/b over b - 1, with ramps of 1 at either side.
+    const double b = 1.5, level = b - 1;
+    const double both = (level + (1 - level) * (1 - (1 - level) / 4)) / b; // ramps of slope 1 within the box
+    const double twice = (level + 2.0 / 3) / (b * b);
+    EXPECT_NEAR(scatter_share(FocusWindow(401, WindowShape::box), reference_window(401, WindowShape::box)),
+                1 - 2 * both * both + twice * twice, 0.002);
+    EXPECT_EQ(reference_window(7, WindowShape::box).radius(), 5);
+}
+
+TEST(HeightUncertainty, IsTheErrorOfWindowsWhosePixelsErrAlone) {
+    constexpr int side = 160;
+    for (const auto shape : {WindowShape::box, WindowShape::gaussian}) {
+        for (const int width : {5, 9, 15}) {
+            SCOPED_TRACE(width);
+            const FocusWindow window(width, shape);
+            const Grid<double> height = windowed_errors(side, window, 1);
+            const double error = 1 / std::sqrt(window.pixels(side, side, side / 2, side / 2));
+            const auto found = height_uncertainty(height, of(side, 0), width, shape);
+            EXPECT_NEAR(root_mean_square(found, width) / error, 1, 0.04);
+            EXPECT_NEAR(root_mean_square(found) / error, 1, 0.05); // with the border
+            const double beyond = share_beyond({.height = height}, found, 3);
+            EXPECT_LT(beyond, 0.02); // of a normal error 0.003, were its standard deviation known
+        }
+    }
+}
+
+TEST(HeightUncertainty, ASlopeIsNoUncertaintyNorAreGapsOnIt) {
+    constexpr int side = 60;
+    const FocusWindow window(7, WindowShape::box);
+    const Grid<double> errors = windowed_errors(side, window, 2);
+    const auto level = height_uncertainty(errors, of(side, 0), 7, WindowShape::box);
+    std::mt19937 random(3);
+    Grid<double> ramp(side, side);
+    for (int row = 0; row < side; ++row) {
+        for (int column = 0; column < side; ++column) {
+            const bool gap = random() % 4 == 0;
+            ramp(column, row) = gap ? nothing : 1e4 + errors(column, row) + 5 * column - 3 * row;
+        }
+    }
+    const auto found = height_uncertainty(ramp, of(side, 0), 7, WindowShape::box);
+    double ratio = 0, count = 0;
+    for (std::size_t k = 0; k < found.values.size(); ++k) {
+        EXPECT_EQ(std::isfinite(found.values[k]), std::isfinite(ramp.values[k]));
+        if (std::isfinite(found.values[k])) {
+            ratio += found.values[k] / level.values[k];
+            count += 1;
+        }
+    }
+    EXPECT_NEAR(ratio / count, 1, 0.05);
+}
+
+TEST(HeightUncertainty, IsNotBelowTheNoise) {
+    constexpr int side = 20;
+    Grid<double> noise = of(side, 0.5);
+    noise(3, 4) = nothing;
+    const auto found = height_uncertainty(of(side, 1), noise, 5, WindowShape::box);
+    EXPECT_EQ(found(10, 10), 0.5);
+    EXPECT_EQ(found(3, 4), 0); // equal heights, and no noise known
+    EXPECT_THROW(height_uncertainty(of(side, 1), of(side + 1, 1), 5, WindowShape::box), std::invalid_argument);
+}
+
+TEST(HeightUncertainty, LonelyHeightsHaveThatOfTheMap) {
+    constexpr int side = 80;
+    const FocusWindow window(5, WindowShape::box);
+    Grid<double> height = windowed_errors(side, window, 4);
+    for (int row = 0; row < side; ++row) {
+        for (int column = 40; column < side; ++column) {
+            if (row != 40 || column != 60) {
+                height(column, row) = nothing;
+            }
+        }
+    }
+    const auto found = height_uncertainty(height, of(side, 0), 5, WindowShape::box);
+    EXPECT_NEAR(found(60, 40) * 5, 1, 0.1);
+    // Nothing but a lonely one: its noise is all that is known.
+    const auto alone = height_uncertainty(
+        [&] {
+            auto map = of(side, nothing);
+            map(7, 7) = 1;
+            return map;
+        }(),
+        of(side, 0.2), 5, WindowShape::box);
+    EXPECT_EQ(alone(7, 7), 0.2);
+}
+
+TEST(HeightUncertainty, CountsWhatLiesBeyond) {
+    surface::HeightMap deviation{.height = of(2, 0)};
+    deviation.height.values = {0.0, 3.1, -2.9, nothing};
+    EXPECT_NEAR(share_beyond(deviation, of(2, 1), 3), 1.0 / 3, 1e-12);
+    EXPECT_TRUE(std::isnan(share_beyond({.height = of(2, nothing)}, of(2, 1), 3)));
+    EXPECT_THROW(share_beyond(deviation, of(3, 1), 3), std::invalid_argument);
+}
+
+} // namespace
+} // namespace vkfv::topography
