@@ -1,11 +1,11 @@
 // How far a measured height may be off, told by the heights themselves: what windows side by side do not agree on.
 //
-// A window's height is a mean over its texture. It is off the window's mean height by the images' noise, by texture that
-// is in focus elsewhere than the surface (glints, unresolved structure), and by relief that the texture has an uneven
-// share of. All of these differ from pixel to pixel within the window, so windows that share only a part of their
-// pixels have other errors. Let the error of a height be the window's mean of independent errors of pixels, and r the
-// distance of a height from the mean of the heights around it, over a reference window half as wide again. With k and m
-// the weights of window and reference, of sum 1 each, and * convolution,
+// A window's height is a mean over its texture. It is off the window's mean height by the images' noise, by texture
+// that is in focus elsewhere than the surface (glints, unresolved structure), and by relief that the texture has an
+// uneven share of. All of these differ from pixel to pixel within the window, so windows that share only a part of
+// their pixels have other errors. Let the error of a height be the window's mean of independent errors of pixels, and r
+// the distance of a height from the mean of the heights around it, over a reference window half as wide again. With k
+// and m the weights of window and reference, of sum 1 each, and * convolution,
 //
 //   var(r) / var(error) = |k - k*m|^2 / |k|^2,
 //
