@@ -60,7 +60,8 @@ PlaneMoments PlaneRow::at(int column) const {
     const int reach = static_cast<int>(weights_.size()) - 1;
     PlaneMoments all;
     for (int d = -std::min(reach, column); d <= std::min(reach, height_.columns - 1 - column); ++d) {
-        const PlaneMoments& here = columns_[static_cast<std::size_t>(column + d)];
+        const int place = column + d;
+        const PlaneMoments& here = columns_[static_cast<std::size_t>(place)];
         const double weight = weights_[static_cast<std::size_t>(std::abs(d))];
         all.weight += weight * here.weight;
         all.y += weight * here.y;
