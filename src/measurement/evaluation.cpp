@@ -15,6 +15,8 @@
 #include <chrono>
 #include <cmath>
 #include <future>
+#include <iterator>
+#include <limits>
 #include <vector>
 
 namespace vkfv::measurement {

@@ -20,10 +20,8 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cmath>
 #include <future>
 #include <iterator>
-#include <limits>
 #include <optional>
 #include <thread>
 #include <utility>

@@ -15,6 +15,7 @@
 #include <array>
 #include <deque>
 #include <optional>
+#include <string>
 #include <utility>
 
 namespace vkfv::trace {

@@ -58,11 +58,11 @@ double root_mean_square(const Grid<double>& grid, int border = 0) {
 }
 
 TEST(HeightUncertainty, ABoxLeavesHalfOfTheVariance) {
-    // Continuous boxes of widths 1 and b = 1.5, along either axis: |k|^2 = 1, k . k*m = (b - 1/4) / b^2 ... of the
-    // trapezoid k*m, level at 1/b over b - 1, with ramps of 1 at either side.
+    // Continuous boxes k and m of widths 1 and b = 1.5, along either axis: |k|^2 = 1, and k*m is a trapezoid, level at
+    // 1/b over b - 1, with ramps of width 1 at either side. The sums over 401 points are off by a step's share, 1/401.
     const double b = 1.5, level = b - 1;
-    const double both = (level + (1 - level) * (1 - (1 - level) / 4)) / b; // ramps of slope 1 within the box
-    const double twice = (level + 2.0 / 3) / (b * b);
+    const double both = (level + (1 - level) * (1 - (1 - level) / 4)) / b; // k . k*m
+    const double twice = (level + 2.0 / 3) / (b * b);                      // |k*m|^2
     EXPECT_NEAR(scatter_share(FocusWindow(401, WindowShape::box), reference_window(401, WindowShape::box)),
                 1 - 2 * both * both + twice * twice, 0.002);
     EXPECT_EQ(reference_window(7, WindowShape::box).radius(), 5);
@@ -77,6 +77,9 @@ TEST(HeightUncertainty, IsTheErrorOfWindowsWhosePixelsErrAlone) {
             const Grid<double> height = windowed_errors(side, window, 1);
             const double error = 1 / std::sqrt(window.pixels(side, side, side / 2, side / 2));
             const auto found = height_uncertainty(height, of(side, 0), width, shape);
+            // Some 450 independent distances on the map of the widest window tell a standard deviation to 3 %. A
+            // wrong share of the variance, of the window as its own reference, would be off by 15 % at least.
+            EXPECT_GT(scatter_share(window, reference_window(width, shape)), 1.3 * scatter_share(window, window));
             EXPECT_NEAR(root_mean_square(found, width) / error, 1, 0.04);
             EXPECT_NEAR(root_mean_square(found) / error, 1, 0.05); // with the border
             const double beyond = share_beyond({.height = height}, found, 3);
