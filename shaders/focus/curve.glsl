@@ -110,7 +110,7 @@ VKFV_FUNCTION SingleRecord follow_single(SingleRecord before, real value, int at
 
 // How far the largest value of single images stands above their mean.
 VKFV_FUNCTION real single_rise(SingleRecord single, int images) {
-    return single.highest - single.first - single.sum / real(images);
+    return single.highest - single.first - quotient(single.sum, real(images));
 }
 
 // The curve with the image `at` added. images: how many values are there, at least to at + peak_range, or all.
@@ -153,8 +153,8 @@ VKFV_SCENE_FUNCTION CurveStep follow_curve(VKFV_SCENE_PARAMETER FocusPlan plan, 
 
 // Local maxima that stand at least half as high above the curve's mean as the largest, counted to 4.
 VKFV_FUNCTION int count_peaks(CurveRecord curve, int images) {
-    real mean = curve.sum / real(images);
-    real least = mean + (curve.largest - mean) / real(2.0);
+    real mean = quotient(curve.sum, real(images));
+    real least = mean + real(0.5) * (curve.largest - mean);
     return (curve.peak_1 >= least ? 1 : 0) + (curve.peak_2 >= least ? 1 : 0) + (curve.peak_3 >= least ? 1 : 0) +
            (curve.peak_4 >= least ? 1 : 0);
 }
@@ -162,13 +162,14 @@ VKFV_FUNCTION int count_peaks(CurveRecord curve, int images) {
 // How much of all that a curve rises and falls its largest maximum accounts for: 1 of a curve that rises to it and
 // falls from it, whatever its form and width; of values in random order, or of noise, little.
 VKFV_FUNCTION real unimodality(CurveRecord curve) {
-    return curve.variation > real(0.0) ? (real(2.0) * curve.highest - curve.first - curve.latest) / curve.variation
-                                       : real(0.0);
+    return curve.variation > real(0.0)
+               ? quotient(real(2.0) * curve.highest - curve.first - curve.latest, curve.variation)
+               : real(0.0);
 }
 
 VKFV_FUNCTION real variance_about(real sum, real squares, int images) {
-    real mean = sum / real(images);
-    return max(real(0.0), squares / real(images) - mean * mean);
+    real mean = quotient(sum, real(images));
+    return max(real(0.0), quotient(squares, real(images)) - mean * mean);
 }
 
 // How much of an order a curve shows: its unimodality; times its standard deviation over that of single images, which
@@ -183,10 +184,10 @@ VKFV_FUNCTION real order_shown(CurveRecord curve, SingleRecord single, int image
     }
     real averaged = variance_about(curve.sum - real(images) * curve.first, curve.squares, images);
     real twice = real(2 * images) * variance;
-    real correlation = (real(images - 1) / real(images) - single.steps_1 / twice) +
-                       real(0.8) * (real(images - 2) / real(images) - single.steps_2 / twice) +
-                       real(0.5) * (real(images - 3) / real(images) - single.steps_3 / twice);
-    return unimodality(curve) * sqrt(averaged / variance) * exp(correlation);
+    real correlation = (quotient(real(images - 1), real(images)) - quotient(single.steps_1, twice)) +
+                       real(0.8) * (quotient(real(images - 2), real(images)) - quotient(single.steps_2, twice)) +
+                       real(0.5) * (quotient(real(images - 3), real(images)) - quotient(single.steps_3, twice));
+    return unimodality(curve) * root(quotient(averaged, variance)) * exponential(correlation);
 }
 
 // The share of an image in a pixel of the all-in-focus image: of the two images around the place, linear between them,

@@ -1,6 +1,7 @@
 // What the kernels of the evaluation begin with: an invocation a pixel, workgroups in rows where one row holds too few.
 #extension GL_EXT_scalar_block_layout : require
 #include "physics/lang.glsl"
+#include "focus/arithmetic.glsl"
 #include "focus/all.glsl"
 #include "focus/interface.glsl"
 

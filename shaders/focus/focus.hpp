@@ -1,5 +1,6 @@
 // The C++ side of the common language (shaders/physics/lang.glsl) for the evaluation of focus stacks: the files of this
-// folder as vkfv::focus::f64 (double, the reference) and vkfv::focus::f32 (float, the device's arithmetic on the host).
+// folder as vkfv::focus::f64 (double, the reference) and vkfv::focus::f32 (float, to the device's bits; its callers are
+// compiled without contraction).
 //
 // A scene, handed to the functions that take one, has what they need of:
 //   real image_value(int channel, int column, int row) const;
@@ -9,6 +10,7 @@
 //   real curve_value(int image) const;
 #pragma once
 
+#include <cmath>
 #include <cstdint>
 
 #include <glm/glm.hpp>
@@ -21,26 +23,46 @@
 #define VKFV_FOCUS_LANGUAGE \
     using glm::abs; \
     using glm::clamp; \
-    using glm::exp; \
     using glm::floor; \
-    using glm::log; \
     using glm::max; \
-    using glm::min; \
-    using glm::sqrt;
+    using glm::min;
+// The names of a namespace, for what is written once for both.
+#define VKFV_FOCUS_ARITHMETIC \
+    struct Arithmetic { \
+        using Real = real; \
+        using Plan = FocusPlan; \
+        using Sums = WindowSums; \
+        using Curve = CurveRecord; \
+        using Single = SingleRecord; \
+        static real no_place() { return NO_PLACE; } \
+        static Curve empty() { return empty_curve(); } \
+        static real ratio(real a, real b) { return quotient(a, b); } \
+        static real share(real place, int image) { return share_in_focus(place, image); } \
+    };
 
 namespace vkfv::focus::f64 {
 using real = double;
 VKFV_FOCUS_LANGUAGE
+inline real quotient(real a, real b) { return a / b; }
+inline real root(real a) { return std::sqrt(a); }
+inline real natural_log(real a) { return std::log(a); }
+inline real exponential(real a) { return std::exp(a); }
 #include "focus/all.glsl"
+VKFV_FOCUS_ARITHMETIC
 } // namespace vkfv::focus::f64
 
 namespace vkfv::focus::f32 {
 using real = float;
 using uint = std::uint32_t;
 VKFV_FOCUS_LANGUAGE
+using glm::floatBitsToInt;
+using glm::intBitsToFloat;
+#include "focus/arithmetic.glsl"
+
 #include "focus/all.glsl"
 
 #include "focus/interface.glsl"
+VKFV_FOCUS_ARITHMETIC
 } // namespace vkfv::focus::f32
 
 #undef VKFV_FUNCTION
@@ -49,3 +71,4 @@ VKFV_FOCUS_LANGUAGE
 #undef VKFV_SCENE
 #undef VKFV_DECLARE
 #undef VKFV_FOCUS_LANGUAGE
+#undef VKFV_FOCUS_ARITHMETIC

@@ -25,5 +25,5 @@ VKFV_SCENE_FUNCTION real brightness_at(VKFV_SCENE_PARAMETER FocusPlan plan, int 
     for (int channel = 0; channel < plan.channels; ++channel) {
         sum = sum + image_value(VKFV_SCENE channel, column, row);
     }
-    return sum / real(plan.channels);
+    return quotient(sum, real(plan.channels));
 }

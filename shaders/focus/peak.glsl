@@ -17,13 +17,12 @@ real curve_value(int image);
 // ln(a / b) without the loss of digits where a and b are nearly equal, as the values around a maximum are: with
 // t = (a - b) / (a + b) it is 2 artanh t, whose series ends below the last digit of a double for |t| < 0.05.
 VKFV_FUNCTION real log_ratio(real a, real b) {
-    real t = (a - b) / (a + b);
+    real t = quotient(a - b, a + b);
     real s = t * t;
     real series =
-        real(1.0) +
-        s * (real(1.0) / real(3.0) +
-             s * (real(1.0) / real(5.0) + s * (real(1.0) / real(7.0) + s * (real(1.0) / real(9.0) + s / real(11.0)))));
-    return abs(t) < real(0.05) ? real(2.0) * t * series : log(a / b);
+        real(1.0) + s * (real(1.0 / 3.0) +
+                         s * (real(1.0 / 5.0) + s * (real(1.0 / 7.0) + s * (real(1.0 / 9.0) + s * real(1.0 / 11.0)))));
+    return abs(t) < real(0.05) ? real(2.0) * t * series : natural_log(quotient(a, b));
 }
 
 VKFV_FUNCTION PeakFit no_peak() {
@@ -43,7 +42,7 @@ VKFV_FUNCTION PeakFit gaussian_peak(real before, real at, real after) {
         real a = log_ratio(before, at);
         real c = log_ratio(after, at);
         if (a + c < real(0.0)) {
-            fit.offset = (a - c) / (real(2.0) * (a + c));
+            fit.offset = quotient(a - c, real(2.0) * (a + c));
             fit.found = true;
         }
     }
@@ -55,7 +54,7 @@ VKFV_FUNCTION PeakFit parabola_peak(real before, real at, real after) {
     PeakFit fit = no_peak();
     real curvature = (before - at) + (after - at);
     if (at >= before && at >= after && curvature < real(0.0)) {
-        fit.offset = (before - after) / (real(2.0) * curvature);
+        fit.offset = quotient(before - after, real(2.0) * curvature);
         fit.found = true;
     }
     return fit;
@@ -78,7 +77,7 @@ struct ParabolaFit {
 // the square of the value (H. Guo, "A simple algorithm for fitting a Gaussian function", 2011), since the logarithm's
 // noise is that of the value over the value.
 VKFV_SCENE_FUNCTION real fit_weight(VKFV_SCENE_PARAMETER int at, int step, bool logarithmic) {
-    real ratio = curve_value(VKFV_SCENE at + step) / curve_value(VKFV_SCENE at);
+    real ratio = quotient(curve_value(VKFV_SCENE at + step), curve_value(VKFV_SCENE at));
     return logarithmic ? (ratio > real(0.0) ? ratio * ratio : real(0.0)) : real(1.0);
 }
 
@@ -86,7 +85,7 @@ VKFV_SCENE_FUNCTION real fit_value(VKFV_SCENE_PARAMETER int at, int step, bool l
     real value = curve_value(VKFV_SCENE at + step);
     real largest = curve_value(VKFV_SCENE at);
     return logarithmic ? (value > real(0.0) ? log_ratio(value, largest) : real(0.0)) // of weight 0
-                       : (value - largest) / largest;
+                       : quotient(value - largest, largest);
 }
 
 VKFV_SCENE_FUNCTION ParabolaFit fit_parabola(VKFV_SCENE_PARAMETER int at, int range, bool logarithmic) {
@@ -100,8 +99,8 @@ VKFV_SCENE_FUNCTION ParabolaFit fit_parabola(VKFV_SCENE_PARAMETER int at, int ra
         level = level + weight * fit_value(VKFV_SCENE at, x, logarithmic);
     }
     ParabolaFit fit;
-    fit.middle_1 = first / total;
-    fit.level = level / total;
+    fit.middle_1 = quotient(first, total);
+    fit.level = quotient(level, total);
     real square_1 = real(0.0);
     real third = real(0.0);
     real slope = real(0.0);
@@ -112,9 +111,9 @@ VKFV_SCENE_FUNCTION ParabolaFit fit_parabola(VKFV_SCENE_PARAMETER int at, int ra
         third = third + weight * p * p * real(x);
         slope = slope + weight * p * (fit_value(VKFV_SCENE at, x, logarithmic) - fit.level);
     }
-    fit.middle_2 = third / square_1;
-    fit.overlap = square_1 / total;
-    fit.slope = slope / square_1;
+    fit.middle_2 = quotient(third, square_1);
+    fit.overlap = quotient(square_1, total);
+    fit.slope = quotient(slope, square_1);
     real square_2 = real(0.0);
     real bend = real(0.0);
     for (int x = -range; x <= range; ++x) {
@@ -124,7 +123,7 @@ VKFV_SCENE_FUNCTION ParabolaFit fit_parabola(VKFV_SCENE_PARAMETER int at, int ra
         square_2 = square_2 + weight * p2 * p2;
         bend = bend + weight * p2 * (fit_value(VKFV_SCENE at, x, logarithmic) - fit.level - fit.slope * p1);
     }
-    fit.bend = bend / square_2;
+    fit.bend = quotient(bend, square_2);
     return fit;
 }
 
@@ -132,7 +131,7 @@ VKFV_FUNCTION PeakFit fitted_peak(ParabolaFit parabola, int range) {
     PeakFit fit = no_peak();
     if (parabola.bend < real(0.0)) {
         real offset =
-            (parabola.middle_1 + parabola.middle_2) / real(2.0) - parabola.slope / (real(2.0) * parabola.bend);
+            real(0.5) * (parabola.middle_1 + parabola.middle_2) - quotient(parabola.slope, real(2.0) * parabola.bend);
         if (abs(offset) <= real(range)) {
             fit.offset = offset;
             fit.found = true;
@@ -157,7 +156,7 @@ VKFV_SCENE_FUNCTION PeakFit centre_of_gravity(VKFV_SCENE_PARAMETER int at, int r
     }
     PeakFit fit = no_peak();
     if (total > real(0.0)) {
-        fit.offset = first / total;
+        fit.offset = quotient(first, total);
         fit.found = true;
     }
     return fit;
@@ -197,8 +196,8 @@ VKFV_SCENE_FUNCTION real gaussian_residual(VKFV_SCENE_PARAMETER int at, int rang
     for (int x = -range; x <= range; ++x) {
         real p1 = real(x) - fit.middle_1;
         real exponent = fit.level + fit.slope * p1 + fit.bend * ((real(x) - fit.middle_2) * p1 - fit.overlap);
-        real distance = curve_value(VKFV_SCENE at + x) / largest - exp(min(exponent, real(1.0)));
+        real distance = quotient(curve_value(VKFV_SCENE at + x), largest) - exponential(min(exponent, real(1.0)));
         sum = sum + distance * distance;
     }
-    return sqrt(sum / real(2 * range + 1));
+    return root(quotient(sum, real(2 * range + 1)));
 }

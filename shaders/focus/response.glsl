@@ -17,8 +17,11 @@ VKFV_SCENE_FUNCTION real focus_response(VKFV_SCENE_PARAMETER FocusPlan plan, int
             energy = energy + wavelet_energy(VKFV_SCENE plan, channel, column, row);
         }
     }
-    return plan.measure == FOCUS_MODIFIED_LAPLACIAN ? sqrt(energy) : energy;
+    return plan.measure == FOCUS_MODIFIED_LAPLACIAN ? root(energy) : energy;
 }
 
+// False: the window makes the measure of the channels alone.
+VKFV_FUNCTION bool focus_responds(FocusPlan plan) { return plan.measure != FOCUS_STANDARD_DEVIATION; }
+
 // Fields that the window gathers apart: each channel for the standard deviation, else the response of all channels.
-VKFV_FUNCTION int focus_fields(FocusPlan plan) { return plan.measure == FOCUS_STANDARD_DEVIATION ? plan.channels : 1; }
+VKFV_FUNCTION int focus_fields(FocusPlan plan) { return focus_responds(plan) ? 1 : plan.channels; }

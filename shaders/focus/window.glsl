@@ -41,7 +41,7 @@ VKFV_SCENE_FUNCTION WindowSums window_along_row(VKFV_SCENE_PARAMETER FocusPlan p
         sums.level = sums.level + weight * source.level;
         sums.energy = sums.energy + weight * source.energy;
     }
-    sums.level = sums.level / total;
+    sums.level = quotient(sums.level, total);
     if (plan.measure == FOCUS_STANDARD_DEVIATION) {
         sums.energy = real(0.0);
         for (int d = first; d <= last; ++d) {
@@ -49,7 +49,7 @@ VKFV_SCENE_FUNCTION WindowSums window_along_row(VKFV_SCENE_PARAMETER FocusPlan p
             sums.energy = sums.energy + window_weight(VKFV_SCENE abs(d)) * squared_deviation(level, sums.level);
         }
     }
-    sums.energy = sums.energy / total;
+    sums.energy = quotient(sums.energy, total);
     return sums;
 }
 
@@ -68,14 +68,14 @@ VKFV_SCENE_FUNCTION WindowSums window_along_column(VKFV_SCENE_PARAMETER FocusPla
         sums.level = sums.level + weight * of_row.level;
         sums.energy = sums.energy + weight * of_row.energy;
     }
-    sums.level = sums.level / total;
+    sums.level = quotient(sums.level, total);
     if (plan.measure == FOCUS_STANDARD_DEVIATION) {
         for (int d = first; d <= last; ++d) {
             real level = window_row(VKFV_SCENE field, column, row + d).level;
             sums.energy = sums.energy + window_weight(VKFV_SCENE abs(d)) * squared_deviation(level, sums.level);
         }
     }
-    sums.energy = sums.energy / total;
+    sums.energy = quotient(sums.energy, total);
     return sums;
 }
 
@@ -87,9 +87,9 @@ VKFV_SCENE_FUNCTION real focus_value(VKFV_SCENE_PARAMETER FocusPlan plan, int co
     real energy = real(0.0);
     for (int field = 0; field < fields; ++field) {
         WindowSums sums = window_along_column(VKFV_SCENE plan, field, column, row);
-        level = level + sums.level / real(fields);
+        level = level + quotient(sums.level, real(fields));
         energy = energy + sums.energy;
     }
-    real amplitude = plan.measure == FOCUS_MODIFIED_LAPLACIAN ? energy : sqrt(energy);
-    return level > real(0.0) ? amplitude / (level * sqrt(real(plan.channels))) : real(0.0);
+    real amplitude = plan.measure == FOCUS_MODIFIED_LAPLACIAN ? energy : root(energy);
+    return level > real(0.0) ? quotient(amplitude, level * root(real(plan.channels))) : real(0.0);
 }

@@ -13,8 +13,9 @@ layout(push_constant, scalar) uniform Push { ImageSize size; };
 void main() {
     uint k = invocation();
     if (k < size.pixels) {
+        float share = quotient(1.0, float(size.channels));
         for (uint channel = 0u; channel < size.channels; ++channel) {
-            brightness[k] += latest[channel * size.pixels + k] / float(size.channels);
+            brightness[k] += latest[channel * size.pixels + k] * share;
         }
     }
 }

@@ -13,7 +13,7 @@ layout(push_constant, scalar) uniform Push { MeanTerm term; };
 void main() {
     uint k = invocation();
     if (k < term.count) {
-        precise float value = term.weight * from_values[k]; // rounded as on the host
+        float value = term.weight * from_values[k];
         to_values[term.first_to + k] = term.first == 1u ? value : to_values[term.first_to + k] + value;
     }
 }

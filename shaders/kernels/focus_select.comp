@@ -18,7 +18,7 @@ void main() {
         bool first = int(floor(places[k])) == selected.wanted; // images come in ascending order
         for (uint channel = 0u; channel < selected.channels && share > 0.0; ++channel) {
             uint at = channel * selected.pixels + k;
-            precise float value = share * image[at];
+            float value = share * image[at];
             all_in_focus[at] = first ? value : all_in_focus[at] + value;
         }
     }

@@ -81,7 +81,7 @@ const ChoiceKey<EvaluateOn> evaluate_on =
                                             {{EvaluateOn::automatic, "auto", "on a device that has cores of its own"},
                                              {EvaluateOn::host, "host", "on the processor"},
                                              {EvaluateOn::device, "device", "on the device that traces"}},
-                                            EvaluateOn::automatic, "Where the stack is evaluated."));
+                                            EvaluateOn::automatic, "Where the stack is evaluated, to the same bits."));
 const FileKey flatness_file = without_influence(
     FileKey("flatness_file", Default::in_words("\"none\""),
             "Heights of a flat measured by the same instrument, whose field curvature is taken off."));

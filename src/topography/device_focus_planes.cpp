@@ -10,6 +10,7 @@
 #include "spirv/focus_rows.h"
 #include "spirv/focus_select.h"
 #include "spirv/focus_single.h"
+#include "topography/focus_records.hpp"
 #include "vulkan/kernel.hpp"
 
 #include <algorithm>
@@ -30,26 +31,6 @@ using namespace focus::f32; // bindings and push constants: shaders/focus/interf
 static_assert(alignof(FollowedImage) == 4 && alignof(CurveRecord) == 4 && alignof(SingleRecord) == 4 &&
               alignof(WindowSums) == 4); // nothing is padded
 
-#define VKFV_CONVERT(type, name) result.name = record.name;
-
-focus::f32::FocusPlan on_device(const focus::f64::FocusPlan& record) {
-    focus::f32::FocusPlan result{};
-    VKFV_FOCUS_PLAN_FIELDS(VKFV_CONVERT)
-    return result;
-}
-
-focus::f64::CurveRecord in_double(const focus::f32::CurveRecord& record) {
-    focus::f64::CurveRecord result{};
-    VKFV_CURVE_RECORD_FIELDS(VKFV_CONVERT)
-    return result;
-}
-
-focus::f64::SingleRecord single_in_double(const focus::f32::SingleRecord& record) {
-    focus::f64::SingleRecord result{};
-    VKFV_SINGLE_RECORD_FIELDS(VKFV_CONVERT)
-    return result;
-}
-
 std::vector<vulkan::BindingDeclaration> storage_buffers(std::initializer_list<std::uint32_t> slots) {
     std::vector<vulkan::BindingDeclaration> all;
     for (const std::uint32_t slot : slots) {
@@ -61,7 +42,7 @@ std::vector<vulkan::BindingDeclaration> storage_buffers(std::initializer_list<st
 class DeviceFocusPlanes final : public FocusPlanes {
   public:
     DeviceFocusPlanes(std::shared_ptr<const vulkan::Device> device, const FocusPlanesPlan& stack)
-        : plan_(on_device(stack.plan)), averaged_curves_(stack.averaged_curves_kept),
+        : plan_(plan_in<focus::f32::Arithmetic>(stack.plan)), averaged_curves_(stack.averaged_curves_kept),
           pixels_(static_cast<std::size_t>(plan_.columns) * static_cast<std::size_t>(plan_.rows)),
           channels_(static_cast<std::size_t>(plan_.channels)), shared_(std::move(device)), device_(*shared_),
           mean_(device_, "focus_mean", ::focus_mean, storage_buffers({BINDING_FROM, BINDING_TO}), sizeof(MeanTerm)),
@@ -215,7 +196,7 @@ class DeviceFocusPlanes final : public FocusPlanes {
             const auto singles = carriers_[1].values<SingleRecord>(count);
             parallel_rows(1, static_cast<int>(count), [&](int begin, int end) {
                 for (auto k = static_cast<std::size_t>(begin); k < static_cast<std::size_t>(end); ++k) {
-                    task(first + k, in_double(curves[k]), single_in_double(singles[k]));
+                    task(first + k, in_double(curves[k]), in_double(singles[k]));
                 }
             });
         }
@@ -234,7 +215,7 @@ class DeviceFocusPlanes final : public FocusPlanes {
     }
 
     void measure(const vulkan::Buffer& image, const vulkan::Buffer& curve) {
-        if (plan_.measure != FOCUS_STANDARD_DEVIATION) {
+        if (focus_responds(plan_)) {
             dispatch(response_, {{BINDING_IMAGE, &image}, {BINDING_RESPONSES, &responses_}}, plan_, pixels_);
         }
         dispatch(rows_,

@@ -1,6 +1,6 @@
 #include "topography/focus_measure.hpp"
 
-#include "core/parallel_rows.hpp"
+#include "topography/focus_windows.hpp"
 #include "topography/names.hpp"
 
 #include <algorithm>
@@ -10,39 +10,7 @@ namespace vkfv::topography {
 namespace {
 
 namespace f64 = focus::f64;
-
-struct ImageScene {
-    const Channels& image;
-    double image_value(int channel, int column, int row) const {
-        return image[static_cast<std::size_t>(channel)](column, row);
-    }
-};
-
-// The standard deviation gathers the channels; all other measures their mean and the response.
-struct ChannelSource {
-    const Channels& image;
-    const std::vector<double>& weights;
-    double window_weight(int distance) const { return weights[static_cast<std::size_t>(distance)]; }
-    f64::WindowSums window_source(int field, int column, int row) const {
-        return {image[static_cast<std::size_t>(field)](column, row), 0};
-    }
-};
-
-struct ResponseSource {
-    const Grid<f64::WindowSums>& pixels;
-    const std::vector<double>& weights;
-    double window_weight(int distance) const { return weights[static_cast<std::size_t>(distance)]; }
-    f64::WindowSums window_source(int, int column, int row) const { return pixels(column, row); }
-};
-
-struct RowScene {
-    const std::vector<Grid<f64::WindowSums>>& fields;
-    const std::vector<double>& weights;
-    double window_weight(int distance) const { return weights[static_cast<std::size_t>(distance)]; }
-    f64::WindowSums window_row(int field, int column, int row) const {
-        return fields[static_cast<std::size_t>(field)](column, row);
-    }
-};
+using f64::Arithmetic;
 
 // Both at once, computed where they are asked for: of few pixels.
 struct PixelScene {
@@ -63,28 +31,6 @@ struct PixelScene {
         return f64::window_along_row(*this, plan, field, column, row);
     }
 };
-
-// Calls task(column, row) for every pixel.
-template <class Task>
-void every_pixel(int columns, int rows, const Task& task) {
-    parallel_rows(columns, rows, [&](int first, int end) {
-        for (int row = first; row < end; ++row)
-            for (int column = 0; column < columns; ++column)
-                task(column, row);
-    });
-}
-
-template <class Source>
-std::vector<Grid<f64::WindowSums>> along_rows(const f64::FocusPlan& plan, const Source& source) {
-    std::vector<Grid<f64::WindowSums>> fields;
-    for (int field = 0; field < f64::focus_fields(plan); ++field) {
-        Grid<f64::WindowSums>& sums = fields.emplace_back(plan.columns, plan.rows);
-        every_pixel(plan.columns, plan.rows, [&](int column, int row) {
-            sums(column, row) = f64::window_along_row(source, plan, field, column, row);
-        });
-    }
-    return fields;
-}
 
 f64::FocusPlan plan_of(const Channels& image, FocusMeasure measure, const FocusWindow& window) {
     f64::FocusPlan plan{};
@@ -156,25 +102,7 @@ double FocusWindow::pixels(int columns, int rows, int column, int row) const {
 }
 
 Grid<float> focus_measure(const Channels& image, FocusMeasure measure, const FocusWindow& window) {
-    const f64::FocusPlan plan = plan_of(image, measure, window);
-    std::vector<Grid<f64::WindowSums>> fields;
-    if (measure == FocusMeasure::standard_deviation) {
-        fields = along_rows(plan, ChannelSource{image, window.weights()});
-    } else {
-        const ImageScene scene{image};
-        Grid<f64::WindowSums> responses(plan.columns, plan.rows);
-        every_pixel(plan.columns, plan.rows, [&](int column, int row) {
-            responses(column, row) = {f64::brightness_at(scene, plan, column, row),
-                                      f64::focus_response(scene, plan, column, row)};
-        });
-        fields = along_rows(plan, ResponseSource{responses, window.weights()});
-    }
-    const RowScene rows{fields, window.weights()};
-    Grid<float> result(plan.columns, plan.rows);
-    every_pixel(plan.columns, plan.rows, [&](int column, int row) {
-        result(column, row) = static_cast<float>(f64::focus_value(rows, plan, column, row));
-    });
-    return result;
+    return focus_values<Arithmetic>(image, plan_of(image, measure, window), window.weights());
 }
 
 double focus_at(const Channels& image, FocusMeasure measure, const FocusWindow& window, int column, int row) {
@@ -194,7 +122,7 @@ Grid<double> focus_responses(const Channels& image, FocusMeasure measure, const 
         }
         return responses;
     }
-    const ImageScene scene{image};
+    const ImageScene<Arithmetic> scene{image};
     every_pixel(plan.columns, plan.rows,
                 [&](int column, int row) { responses(column, row) = f64::focus_response(scene, plan, column, row); });
     return responses;
@@ -203,8 +131,8 @@ Grid<double> focus_responses(const Channels& image, FocusMeasure measure, const 
 Grid<float> window_mean(const Grid<float>& image, const FocusWindow& window) {
     const Channels channels = {image};
     const f64::FocusPlan plan = plan_of(channels, FocusMeasure::standard_deviation, window);
-    const auto fields = along_rows(plan, ChannelSource{channels, window.weights()});
-    const RowScene rows{fields, window.weights()};
+    const auto fields = along_rows<Arithmetic>(plan, ChannelSource<Arithmetic>{channels, window.weights()});
+    const RowScene<Arithmetic> rows{fields, window.weights()};
     Grid<float> result(plan.columns, plan.rows);
     every_pixel(plan.columns, plan.rows, [&](int column, int row) {
         result(column, row) = static_cast<float>(f64::window_along_column(rows, plan, 0, column, row).level);

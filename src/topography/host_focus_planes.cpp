@@ -1,14 +1,13 @@
 #include "topography/host_focus_planes.hpp"
 
-#include "core/parallel_rows.hpp"
+#include "topography/focus_records.hpp"
+#include "topography/focus_windows.hpp"
 
 #include <algorithm>
 #include <cmath>
 
 namespace vkfv::topography {
 namespace {
-
-namespace f64 = focus::f64;
 
 // The last few of a series.
 template <class Item>
@@ -22,26 +21,31 @@ class Ring {
     std::vector<Item> items_;
 };
 
+template <class Real>
 struct CurveScene {
     const Ring<Grid<float>>& curves;
     std::size_t pixel;
-    double curve_value(int image) const { return curves[image].values[pixel]; }
+    Real curve_value(int image) const { return curves[image].values[pixel]; }
 };
 
+template <class Arithmetic>
 class HostFocusPlanes final : public FocusPlanes {
+    using Real = typename Arithmetic::Real;
+
   public:
     explicit HostFocusPlanes(const FocusPlanesPlan& plan)
-        : plan_(plan.plan), window_(plan.window), gathered_pixels_(plan.gathered_pixels), images_(plan.images_kept),
-          curves_(plan.curves_kept), averaged_(plan.averaged_curves_kept) {
+        : plan_(plan_in<Arithmetic>(plan.plan)), weights_(plan.window.weights().begin(), plan.window.weights().end()),
+          gathered_pixels_(plan.gathered_pixels), images_(plan.images_kept), curves_(plan.curves_kept),
+          averaged_(plan.averaged_curves_kept) {
         summary_.brightness = Grid<float>(plan_.columns, plan_.rows);
-        records_ = Grid<f64::CurveRecord>(plan_.columns, plan_.rows, f64::empty_curve());
-        singles_ = Grid<f64::SingleRecord>(plan_.columns, plan_.rows);
+        records_ = Grid<typename Arithmetic::Curve>(plan_.columns, plan_.rows, Arithmetic::empty());
+        singles_ = Grid<typename Arithmetic::Single>(plan_.columns, plan_.rows);
         summary_.all_in_focus.assign(static_cast<std::size_t>(plan_.channels), Grid<float>(plan_.columns, plan_.rows));
     }
 
     void take(int image, Channels channels) override {
         images_[image] = std::move(channels);
-        const float share = 1.0f / static_cast<float>(plan_.channels);
+        const auto share = static_cast<float>(Arithmetic::ratio(1, static_cast<Real>(plan_.channels)));
         for (std::size_t channel = 0; channel < images_[image].size(); ++channel)
             pixels([&, channel](std::size_t k) {
                 summary_.brightness.values[k] += share * images_[image][channel].values[k];
@@ -63,7 +67,7 @@ class HostFocusPlanes final : public FocusPlanes {
     void measure_alone(int image) override {
         const Grid<float> values = alone_ ? curves_[image] : measure_of(images_[image]);
         pixels([&](std::size_t k) {
-            singles_.values[k] = f64::follow_single(singles_.values[k], values.values[k], image);
+            singles_.values[k] = follow_single(singles_.values[k], static_cast<Real>(values.values[k]), image);
         });
     }
 
@@ -78,9 +82,9 @@ class HostFocusPlanes final : public FocusPlanes {
 
     void follow(int image, int images) override {
         pixels([&](std::size_t k) {
-            const auto step = f64::follow_curve(CurveScene{averaged_, k}, plan_, records_.values[k], image, images);
+            const auto step = follow_curve(CurveScene<Real>{averaged_, k}, plan_, records_.values[k], image, images);
             records_.values[k] = step.curve;
-            if (step.place == f64::NO_PLACE) {
+            if (step.place == Arithmetic::no_place()) {
                 return;
             }
             const int before = static_cast<int>(std::floor(step.place));
@@ -88,8 +92,7 @@ class HostFocusPlanes final : public FocusPlanes {
                 float& value = summary_.all_in_focus[channel].values[k];
                 value = 0;
                 for (int near = before; near <= std::min(before + 1, images - 1); ++near) {
-                    value +=
-                        static_cast<float>(f64::share_in_focus(step.place, near)) * images_[near][channel].values[k];
+                    value += static_cast<float>(Arithmetic::share(step.place, near)) * images_[near][channel].values[k];
                 }
             }
         });
@@ -98,13 +101,11 @@ class HostFocusPlanes final : public FocusPlanes {
     StackSummary summary() override { return std::move(summary_); }
 
     void visit_records(const RecordTask& task) override {
-        pixels([&](std::size_t k) { task(k, records_.values[k], singles_.values[k]); });
+        pixels([&](std::size_t k) { task(k, in_double(records_.values[k]), in_double(singles_.values[k])); });
     }
 
   private:
-    Grid<float> measure_of(const Channels& image) const {
-        return focus_measure(image, static_cast<FocusMeasure>(plan_.measure), window_);
-    }
+    Grid<float> measure_of(const Channels& image) const { return focus_values<Arithmetic>(image, plan_, weights_); }
 
     template <class Task>
     void pixels(const Task& task) const {
@@ -129,22 +130,26 @@ class HostFocusPlanes final : public FocusPlanes {
         return mean;
     }
 
-    f64::FocusPlan plan_;
-    FocusWindow window_;
+    typename Arithmetic::Plan plan_;
+    std::vector<Real> weights_;
     std::vector<std::uint32_t> gathered_pixels_;
     Ring<Channels> images_;
     Ring<Grid<float>> curves_;
     Ring<Grid<float>> averaged_;
     StackSummary summary_;
-    Grid<f64::CurveRecord> records_;
-    Grid<f64::SingleRecord> singles_;
+    Grid<typename Arithmetic::Curve> records_;
+    Grid<typename Arithmetic::Single> singles_;
     bool alone_ = false; // what was measured last is an image itself
 };
 
 } // namespace
 
 std::unique_ptr<FocusPlanes> make_host_focus_planes(const FocusPlanesPlan& plan) {
-    return std::make_unique<HostFocusPlanes>(plan);
+    return std::make_unique<HostFocusPlanes<focus::f32::Arithmetic>>(plan);
+}
+
+std::unique_ptr<FocusPlanes> make_reference_focus_planes(const FocusPlanesPlan& plan) {
+    return std::make_unique<HostFocusPlanes<focus::f64::Arithmetic>>(plan);
 }
 
 } // namespace vkfv::topography

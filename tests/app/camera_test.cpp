@@ -110,12 +110,13 @@ TEST(CameraStack, ThePieceOfOnesOwnMicroscopeHasItsStep) {
     EXPECT_THAT(read_file(folder / "out/images/z_0000.tif"), HasSubstr("values=grey values in DN"));
 }
 
-// The type of the files' pixels is no part of what is measured: whole grey values are the same in float32.
+// Neither the type of the files' pixels, since whole grey values are the same in float32, nor where they are evaluated
+// is a part of what is measured.
 TEST(CameraStack, IsEvaluatedToTheSameBitsOfAnyPixelTypeOnHostAndDevice) {
     const auto folder = fresh_folder("camera_types");
     write_file(folder / "c.toml", with_camera());
+    std::string first;
     for (const char* where : {"host", "device"}) {
-        std::string first;
         for (const char* type : {"float32", "uint16", "uint8"}) {
             const std::string out = std::string(where) + type;
             expect_success(run_program({"stack",    "c.toml",

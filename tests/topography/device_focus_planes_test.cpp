@@ -1,4 +1,4 @@
-// The evaluation of stacks on a device, against the host's in double.
+// The evaluation of stacks in float: to the same bits on host and device, and right by the reference in double.
 #include "topography/device_focus_planes.hpp"
 #include "topography/topography.hpp"
 #include "vulkan/device.hpp"
@@ -7,6 +7,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstring>
 #include <random>
 
 namespace vkfv::topography {
@@ -56,7 +57,7 @@ topography::Topography evaluated(const std::vector<Channels>& stack, const topog
 // to 1.2e-5 * 15 = 2e-4 steps.
 constexpr double value_bound = 1.2e-5, position_bound = 2e-4;
 
-void expect_same(const topography::Topography& host, const topography::Topography& device, const std::string& which) {
+void expect_near(const topography::Topography& host, const topography::Topography& device, const std::string& which) {
     int compared = 0, other_image = 0;
     for (std::size_t k = 0; k < host.state.values.size(); ++k) {
         const double a = host.height.height.values[k], b = device.height.height.values[k];
@@ -86,30 +87,83 @@ void expect_same(const topography::Topography& host, const topography::Topograph
     EXPECT_LE(other_image, 2) << which; // of 1073
 }
 
-TEST(DeviceFocusPlanes, GiveTheHostsHeightsByEveryMeasureAndPeakMethod) {
+// Bit by bit; what is not a number is alike too.
+template <class Number>
+void expect_bits(const Grid<Number>& a, const Grid<Number>& b, const std::string& which) {
+    ASSERT_EQ(a.values.size(), b.values.size());
+    EXPECT_EQ(std::memcmp(a.values.data(), b.values.data(), a.values.size() * sizeof(Number)), 0) << which;
+}
+
+void expect_bits(const Topography& a, const Topography& b, const std::string& which) {
+    expect_bits(a.height.height, b.height.height, which + ": height");
+    expect_bits(a.height_noise, b.height_noise, which + ": height noise");
+    expect_bits(a.height_uncertainty, b.height_uncertainty, which + ": height uncertainty");
+    expect_bits(a.contrast, b.contrast, which + ": contrast");
+    expect_bits(a.fit_residual, b.fit_residual, which + ": fit residual");
+    expect_bits(a.state, b.state, which + ": state");
+    for (std::size_t channel = 0; channel < a.all_in_focus.size(); ++channel) {
+        expect_bits(a.all_in_focus[channel], b.all_in_focus[channel], which + ": all in focus");
+    }
+    EXPECT_EQ(a.curves.values, b.curves.values) << which;
+}
+
+// Host and device alike, and both near the reference.
+void expect_alike(const std::vector<Channels>& images, const TopographyOptions& options, const std::string& which) {
+    const auto host = evaluated(images, options, make_host_focus_planes);
+    expect_bits(host, evaluated(images, options, device_focus_planes(std::make_shared<const vulkan::Device>())), which);
+    expect_near(evaluated(images, options, make_reference_focus_planes), host, which);
+}
+
+TEST(DeviceFocusPlanes, GiveTheHostsBitsByEveryMeasureAndPeakMethod) {
     const auto grey = stack(1);
     for (const auto& measure : topography::focus_measure_names())
         for (const auto& peak : topography::peak_method_names()) {
-            const topography::TopographyOptions options{.focus_measure = focus_measure_from_name(measure),
-                                                        .peak = peak_method_from_name(peak),
-                                                        .peak_range_steps = 3,
-                                                        .smoothing_steps = 0.9,
-                                                        .false_peak_rate = 1};
-            expect_same(evaluated(grey, options, topography::make_host_focus_planes),
-                        evaluated(grey, options, device_focus_planes(std::make_shared<const vulkan::Device>())),
-                        measure + " " + peak);
+            expect_alike(grey,
+                         {.focus_measure = focus_measure_from_name(measure),
+                          .peak = peak_method_from_name(peak),
+                          .peak_range_steps = 3,
+                          .smoothing_steps = 0.9,
+                          .false_peak_rate = 1},
+                         measure + " " + peak);
         }
 }
 
-TEST(DeviceFocusPlanes, GiveTheHostsHeightsOfColourAndWithAGaussianWindow) {
+TEST(DeviceFocusPlanes, GiveTheHostsBitsOfColourAndWithAGaussianWindow) {
     const auto colour = stack(3);
     for (const auto measure : {FocusMeasure::standard_deviation, FocusMeasure::tenengrad}) {
-        const topography::TopographyOptions options{
-            .focus_measure = measure, .window_px = 7, .window_shape = WindowShape::gaussian, .smoothing_steps = 0};
-        expect_same(evaluated(colour, options, topography::make_host_focus_planes),
-                    evaluated(colour, options, device_focus_planes(std::make_shared<const vulkan::Device>())),
-                    name_of(measure));
+        expect_alike(
+            colour,
+            {.focus_measure = measure, .window_px = 7, .window_shape = WindowShape::gaussian, .smoothing_steps = 0},
+            name_of(measure));
     }
+}
+
+// In units in the last place of float, 2^-23 of the number to 2^-24.
+TEST(FocusArithmetic, IsNearlyAsGoodAsFloatsOwn) {
+    std::mt19937 random(8);
+    std::uniform_real_distribution<float> exponent(-99, 99), small(-86, 1);
+    const auto units = [](float found, double exact) { return std::abs(found / exact - 1) * 0x1p23; };
+    double division = 0, root = 0, logarithm = 0, exponential = 0;
+    for (int k = 0; k < 200'000; ++k) {
+        const float a = std::exp2(exponent(random)),
+                    b = std::exp2(exponent(random) / 99 * (99 - std::abs(std::log2(a))));
+        const double exact_a = a;
+        division = std::max(division, units(focus::f32::quotient(-a, b), -exact_a / b));
+        root = std::max(root, units(focus::f32::root(a), std::sqrt(exact_a)));
+        logarithm = std::max(logarithm, std::abs(focus::f32::natural_log(a) - std::log(exact_a)) /
+                                            std::max(1.0, std::abs(std::log(exact_a))) * 0x1p23);
+        const float power = small(random);
+        exponential = std::max(exponential, units(focus::f32::exponential(power), std::exp(double{power})));
+    }
+    EXPECT_LT(division, 2);
+    EXPECT_LT(root, 2);
+    EXPECT_LT(logarithm, 2);
+    EXPECT_LT(exponential, 2);
+    EXPECT_EQ(focus::f32::root(0), 0);
+    EXPECT_EQ(focus::f32::quotient(0, 3), 0);
+    EXPECT_EQ(focus::f32::exponential(-200), 0);
+    EXPECT_EQ(focus::f32::exponential(0), 1);
+    EXPECT_EQ(focus::f32::natural_log(1), 0);
 }
 
 // The wrong twin: another method is told apart.

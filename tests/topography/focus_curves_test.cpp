@@ -37,7 +37,7 @@ std::vector<Grid<float>> tilted_stack() {
 }
 
 Topography evaluated_with(const TopographyOptions& options, const CurveGrid& grid) {
-    StackEvaluator evaluator(options, make_host_focus_planes, grid);
+    StackEvaluator evaluator(options, make_reference_focus_planes, grid); // to the digits of double
     const auto images = tilted_stack();
     for (int k = 0; k < curve_images; ++k)
         evaluator.add(images[static_cast<std::size_t>(k)], k * curve_step);
