@@ -20,7 +20,26 @@ namespace vkfv::measurement {
 
 namespace {
 
+// Shares: of an image's brightness; of the focus curves' standard deviation.
 constexpr double most_image_noise = 0.5, good_image_noise = 0.1;
+constexpr double most_height_noise = 0.1, good_height_noise = 0.05;
+
+// How noisy the rays left the images, where that is most of what is measured, or coarse beside the focus curves.
+void warn_of_noise(const Configuration& configuration, const Evaluation& evaluation) {
+    const auto& whole = evaluation.topography.stack;
+    const double width = whole.curve_width_steps * configuration.scan->z_step;
+    const double height_noise = width > 0 ? evaluation.height_noise / width : 0;
+    if (whole.image_noise > most_image_noise) {
+        spdlog::warn("The images' noise is {:.0f} % of their brightness: what is measured is little or rough. {}",
+                     100 * whole.image_noise, remedy_of_noise(configuration, whole.image_noise, good_image_noise));
+    } else if (!configuration.camera && height_noise > most_height_noise) { // a camera's own noise is no lack of rays
+        spdlog::warn(
+            "The images' noise is {:.2g} % of their brightness, and scatters the heights by {:.2g} um, {:.0f} % "
+            "of their focus curves' width. {}",
+            100 * whole.image_noise, evaluation.height_noise * um_per_mm, 100 * height_noise,
+            remedy_of_noise(configuration, height_noise, good_height_noise));
+    }
+}
 
 } // namespace
 
@@ -101,10 +120,7 @@ Evaluation GrowingEvaluation::write(scan::ImageStore& store, const trace::Tracer
             spdlog::warn(warning);
         }
     }
-    if (const double noise = stack.evaluation.topography.stack.image_noise; noise > most_image_noise) {
-        spdlog::warn("The images' noise is {:.0f} % of their brightness: what is measured is little or rough. {}",
-                     100 * noise, remedy_of_noise(configuration, noise, good_image_noise));
-    }
+    warn_of_noise(configuration, stack.evaluation);
     if (configuration.stage) {
         stack.origin["stage"] = stage_figures(configuration);
         store.results().write(stage_file, stage_table(configuration));

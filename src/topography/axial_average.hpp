@@ -1,8 +1,8 @@
 // The Gaussian average along z: image k becomes the mean of images k + d with weights exp(-d^2 / (2 s^2)), |d| <= 3 s
 // (where the weight is 1 %), over the images there are: at the ends of the stack the weights present are normalised to
-// one. There the mean stands for a place further inside, which averaged_points() tells. (A local line instead of the
-// mean would stand for k itself, but with several times the noise, whose energy passes for texture: weak texture in the
-// middle of the scan would be lost.)
+// one. There the mean stands for a place further inside, which averaged_points() tells, and averages less
+// (places_of_maxima.hpp). (A local line instead of the mean would stand for k itself, but with several times the noise,
+// whose energy passes for texture: weak texture in the middle of the scan would be lost.)
 #pragma once
 
 #include <vector>

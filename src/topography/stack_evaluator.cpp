@@ -1,6 +1,7 @@
 #include "core/error.hpp"
 #include "core/parallel_rows.hpp"
 #include "topography/height_uncertainty.hpp"
+#include "topography/places_of_maxima.hpp"
 #include "topography/texture_place.hpp"
 #include "topography/topography.hpp"
 
@@ -126,13 +127,17 @@ double place_noise(double bend, double image_noise, const SmoothedNoise& smoothe
     return image_noise * smoothed.difference / (2 * std::max(without, 1e-30));
 }
 
-// What the averages of images and curve make of the places that the images were taken at.
-std::vector<double> averaged(const std::vector<double>& readings, const std::vector<double>& weights) {
+// At these places of the scan, in steps, by the readings around each: their averages, which stand for `averaged`.
+std::vector<double> readings_at(const std::vector<double>& places, const std::vector<AveragedPoint>& averaged,
+                                const std::vector<double>& readings, const std::vector<double>& weights) {
     const auto images = static_cast<int>(readings.size());
+    const double step = (readings.back() - readings.front()) / (images - 1);
     std::vector<double> result;
     for (int at = 0; at < images; ++at) {
+        const auto point = static_cast<std::size_t>(at);
         const auto shares = twice_averaged(weights, at, images);
-        result.push_back(std::inner_product(shares.begin(), shares.end(), readings.begin(), 0.0));
+        result.push_back(std::inner_product(shares.begin(), shares.end(), readings.begin(), 0.0) +
+                         step * (places[point] - averaged[point].position));
     }
     return result;
 }
@@ -373,14 +378,15 @@ Topography StackEvaluator::finish(double x0, double y0, double pitch) {
     StackFigures figures = figures_of_probes.get();
     const SmoothedNoise smoothed = smoothed_noise(axial_weights_);
     const std::vector<AveragedPoint> points = averaged_points(axial_weights_, images);
-    const std::vector<double> read = averaged(readings_, axial_weights_);
+    const std::vector<double> places = places_of_maxima(axial_weights_, images, figures.curve_width_steps);
     const double brightness = mean_of(stack.brightness) / images;
     const Grid<float> brightness_around = window_mean(stack.brightness, window_); // of all images together
     const double step = (z_.back() - z_.front()) / (images - 1);
+    const auto read =
+        readings_.empty() ? std::vector<double>() : readings_at(places, points, readings_, axial_weights_);
     const auto height_at = [&](double at) {
-        return read.empty()
-                   ? z_.front() + step * between(at, images, [&](std::size_t point) { return points[point].position; })
-                   : between(at, images, [&](std::size_t point) { return read[point]; });
+        return read.empty() ? z_.front() + step * between(at, images, [&](std::size_t point) { return places[point]; })
+                            : between(at, images, [&](std::size_t point) { return read[point]; });
     };
     Topography result =
         nothing_measured(columns_, rows_, {.height = {}, .x0 = x0, .y0 = y0, .pitch_x = pitch, .pitch_y = pitch});

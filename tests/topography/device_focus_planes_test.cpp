@@ -3,6 +3,7 @@
 #include "topography/topography.hpp"
 #include "vulkan/device.hpp"
 
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -124,7 +125,7 @@ TEST(DeviceFocusPlanes, GiveTheHostsBitsByEveryMeasureAndPeakMethod) {
                           .peak_range_steps = 3,
                           .smoothing_steps = 0.9,
                           .false_peak_rate = 1},
-                         measure + " " + peak);
+                         fmt::format("{} {}", measure, peak));
         }
 }
 

@@ -1,0 +1,88 @@
+// The places of focus curves' maxima near the ends of a scan.
+#include "topography/places_of_maxima.hpp"
+
+#include "topography/axial_average.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+namespace vkfv::topography {
+namespace {
+
+// Where the maximum of a Gaussian about `place` comes out, in points of the curve, averaged as single images and as a
+// curve by the shares that the evaluation uses; the other program of the test. 0 or images - 1: at an end.
+double found(double place, double width, const std::vector<double>& weights, int images) {
+    std::vector<double> curve;
+    for (int k = 0; k < images; ++k)
+        curve.push_back(std::exp(-std::pow(k - place, 2) / (2 * width * width)));
+    for (int average = 0; average < 2; ++average) {
+        const auto before = curve;
+        for (int k = 0; k < images; ++k) {
+            curve[static_cast<std::size_t>(k)] = 0;
+            for (const Share& share : axial_shares(weights, k, images))
+                curve[static_cast<std::size_t>(k)] +=
+                    static_cast<double>(share.weight) * before[static_cast<std::size_t>(share.image)];
+        }
+    }
+    const auto largest = std::ranges::max_element(curve);
+    const auto at = static_cast<double>(largest - curve.begin());
+    if (largest == curve.begin() || largest + 1 == curve.end())
+        return at;
+    const double before = std::log(largest[-1]), here = std::log(largest[0]), after = std::log(largest[1]);
+    return at + 0.5 * (before - after) / (before - 2 * here + after);
+}
+
+double between(const std::vector<double>& places, double at) {
+    const auto before = static_cast<std::size_t>(at);
+    return std::lerp(places[before], places[before + 1], at - std::floor(at));
+}
+
+struct Stack {
+    int images;
+    double smoothing, width; // in steps
+};
+
+// Of a curve as wide as the stack's, and of one a quarter wider: its place, and how far off a straight line puts it.
+TEST(PlacesOfMaxima, AreThoseOfTheCurvesNearBothEnds) {
+    for (const Stack stack :
+         {Stack{10, 0.66, 1}, Stack{21, 2, 3}, Stack{31, 3, 4}, Stack{60, 2, 3}, Stack{101, 4, 6}}) {
+        const auto weights = axial_weights(stack.smoothing);
+        const auto places = places_of_maxima(weights, stack.images, stack.width);
+        const auto line = places_of_maxima(weights, stack.images, 0);
+        double worst = 0, worst_wider = 0, worst_of_line = 0;
+        for (double place = 0; place <= stack.images - 1; place += 0.1) {
+            const double at = found(place, stack.width, weights, stack.images);
+            if (at == 0 || at == stack.images - 1)
+                continue;
+            worst = std::max(worst, std::abs(between(places, at) - place));
+            worst_of_line = std::max(worst_of_line, std::abs(between(line, at) - place));
+            const double wider = found(place, 1.25 * stack.width, weights, stack.images);
+            if (wider > 0 && wider < stack.images - 1)
+                worst_wider = std::max(worst_wider, std::abs(between(places, wider) - place));
+        }
+        EXPECT_LT(worst, 0.06) << stack.images;
+        EXPECT_LT(worst_wider, 0.15) << stack.images;
+        EXPECT_GT(worst_of_line, 0.15) << stack.images;
+    }
+}
+
+TEST(PlacesOfMaxima, AreThePointsAwayFromTheEndsAndMirrorImages) {
+    const auto places = places_of_maxima(axial_weights(2), 60, 3);
+    for (std::size_t k = 12; k < 48; ++k)
+        EXPECT_EQ(places[k], static_cast<double>(k));
+    for (std::size_t k = 0; k < 60; ++k)
+        EXPECT_NEAR(places[k] + places[59 - k], 59, 1e-12);
+    for (std::size_t k = 1; k < 60; ++k)
+        EXPECT_GT(places[k], places[k - 1]);
+    // Without averages, and of curves of no form, there is nothing to put right.
+    for (const double smoothing : {0.0, 2.0}) {
+        const auto points = averaged_points(axial_weights(smoothing), 15);
+        const auto unknown = places_of_maxima(axial_weights(smoothing), 15, smoothing > 0 ? 0 : 3);
+        for (std::size_t k = 0; k < 15; ++k)
+            EXPECT_EQ(unknown[k], points[k].position);
+    }
+}
+
+} // namespace
+} // namespace vkfv::topography
