@@ -234,9 +234,12 @@ Evaluation StackEvaluation::finish(surface::HeightMap truth, const topography::B
         reconstruct(truth.x0, truth.y0, truth.pitch_x, flat);
         const auto& measured = evaluation_.topography.height;
         const auto levelled = topography::levelled_pair(measured, truth, {.form = band.form});
+        auto beyond = std::async(std::launch::async, [&] {
+            return topography::share_beyond(topography::deviation_map(levelled),
+                                            evaluation_.topography.height_uncertainty, coverage_factor);
+        });
         evaluation_.deviation = topography::compare(levelled);
-        evaluation_.beyond_uncertainty = topography::share_beyond(
-            topography::deviation_map(levelled), evaluation_.topography.height_uncertainty, coverage_factor);
+        evaluation_.beyond_uncertainty = beyond.get();
         evaluation_.band = band;
         if (band.limited()) {
             evaluation_.filtered_deviation = topography::compare(measured, truth, band);

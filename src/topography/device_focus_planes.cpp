@@ -25,6 +25,7 @@ namespace {
 constexpr std::uint32_t workgroup = 128;
 constexpr std::size_t images_a_gathered_buffer = 64;
 constexpr std::size_t least_carrier_bytes = 1 << 16; // records go by them too
+constexpr int records_a_thread = 1 << 12;
 
 using namespace focus::f32; // bindings and push constants: shaders/focus/interface.glsl
 
@@ -194,7 +195,7 @@ class DeviceFocusPlanes final : public FocusPlanes {
             copies.submit_and_wait();
             const auto curves = carriers_[0].values<CurveRecord>(count);
             const auto singles = carriers_[1].values<SingleRecord>(count);
-            parallel_rows(1, static_cast<int>(count), [&](int begin, int end) {
+            parallel_bands(static_cast<int>(count), records_a_thread, [&](int begin, int end) {
                 for (auto k = static_cast<std::size_t>(begin); k < static_cast<std::size_t>(end); ++k) {
                     task(first + k, in_double(curves[k]), in_double(singles[k]));
                 }

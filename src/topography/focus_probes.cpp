@@ -272,18 +272,43 @@ FocusProbes::Differences FocusProbes::differences(const Probe& probe, std::size_
     return found;
 }
 
+std::vector<FocusProbes::Differences> FocusProbes::all_differences() const {
+    const auto channels = static_cast<std::size_t>(channels_);
+    std::vector<Differences> found(probes_.size() * channels);
+    in_parallel(static_cast<int>(found.size()), [&](int k) {
+        const auto patch = static_cast<std::size_t>(k);
+        found[patch] = differences(probes_[patch / channels], patch % channels);
+    });
+    return found;
+}
+
 NoiseModel FocusProbes::noise() const {
     std::vector<double> levels, variances;
-    for (const Probe& probe : probes_) {
-        for (std::size_t channel = 0; channel < static_cast<std::size_t>(channels_); ++channel) {
-            const Differences found = differences(probe, channel);
-            if (!found.variances.empty()) {
-                levels.push_back(found.level);
-                variances.push_back(found.variance);
-            }
+    for (const Differences& found : all_differences()) {
+        if (!found.variances.empty()) {
+            levels.push_back(found.level);
+            variances.push_back(found.variance);
         }
     }
     return levels.empty() ? NoiseModel{} : fitted(levels, variances);
+}
+
+FocusProbes::Products FocusProbes::products_of(const Probe& probe, std::size_t channel) const {
+    const auto pixels = probe.pixels();
+    const auto stride = static_cast<std::size_t>(channels_) * pixels;
+    const Differences found = differences(probe, channel);
+    Products products{.images = quiet_images(found.variances, found.sparse),
+                      .sums = Grid<double>(2 * NoiseCorrelation::reach + 1, NoiseCorrelation::reach + 1)};
+    std::vector<double> second;
+    for (const int image : products.images) {
+        const float* here = probe.values.data() + static_cast<std::size_t>(image) * stride + channel * pixels;
+        second.clear();
+        for (std::size_t k = 0; k < pixels; ++k) {
+            second.push_back(here[k - stride] - 2.0 * here[k] + here[k + stride]);
+        }
+        add_products(second, probe.columns, probe.rows, products.sums);
+    }
+    return products;
 }
 
 NoiseCorrelation FocusProbes::noise_correlation() const {
@@ -291,37 +316,29 @@ NoiseCorrelation FocusProbes::noise_correlation() const {
     if (images_ < least_images_for_correlation) {
         return correlation;
     }
+    const auto channels = static_cast<std::size_t>(channels_);
+    std::vector<Products> of_patches(probes_.size() * channels);
+    in_parallel(static_cast<int>(of_patches.size()), [&](int k) {
+        const auto patch = static_cast<std::size_t>(k);
+        of_patches[patch] = products_of(probes_[patch / channels], patch % channels);
+    });
     constexpr int reach = NoiseCorrelation::reach;
     // Of pairs (dx, dy) apart: mean products over each patch's variance, with the number of pairs in all patches.
     Grid<double> products(2 * reach + 1, reach + 1), pairs = products;
     double patches = 0;
-    std::vector<double> second;
-    for (const Probe& probe : probes_) {
-        const auto pixels = probe.pixels();
-        const auto stride = static_cast<std::size_t>(channels_) * pixels;
-        for (std::size_t channel = 0; channel < static_cast<std::size_t>(channels_); ++channel) {
-            const Differences found = differences(probe, channel);
-            Grid<double> sums(products.columns, products.rows);
-            const auto images = quiet_images(found.variances, found.sparse);
-            for (const int image : images) {
-                const float* here = probe.values.data() + static_cast<std::size_t>(image) * stride + channel * pixels;
-                second.clear();
-                for (std::size_t k = 0; k < pixels; ++k) {
-                    second.push_back(here[k - stride] - 2.0 * here[k] + here[k + stride]);
-                }
-                add_products(second, probe.columns, probe.rows, sums);
-            }
-            const double variance = sums(reach, 0) / static_cast<double>(pixels);
-            if (!(variance > 0)) {
-                continue;
-            }
-            patches += 1;
-            for (int dy = 0; dy <= reach; ++dy) {
-                for (int dx = -reach; dx <= reach; ++dx) {
-                    const double here = std::max(0, probe.columns - std::abs(dx)) * std::max(0, probe.rows - dy);
-                    products(dx + reach, dy) += here > 0 ? sums(dx + reach, dy) / (variance * here) : 0;
-                    pairs(dx + reach, dy) += here * static_cast<double>(images.size());
-                }
+    for (std::size_t patch = 0; patch < of_patches.size(); ++patch) {
+        const Probe& probe = probes_[patch / channels];
+        const auto& [images, sums] = of_patches[patch];
+        const double variance = sums(reach, 0) / static_cast<double>(probe.pixels());
+        if (!(variance > 0)) {
+            continue;
+        }
+        patches += 1;
+        for (int dy = 0; dy <= reach; ++dy) {
+            for (int dx = -reach; dx <= reach; ++dx) {
+                const double here = std::max(0, probe.columns - std::abs(dx)) * std::max(0, probe.rows - dy);
+                products(dx + reach, dy) += here > 0 ? sums(dx + reach, dy) / (variance * here) : 0;
+                pairs(dx + reach, dy) += here * static_cast<double>(images.size());
             }
         }
     }

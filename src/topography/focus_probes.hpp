@@ -86,6 +86,15 @@ class FocusProbes {
         bool sparse = false;             // most of the values are 0
     };
     Differences differences(const Probe& probe, std::size_t channel) const;
+    std::vector<Differences> all_differences() const; // channel by channel of probe by probe
+
+    // Of second differences that are noise: their images, and sums of products of those (dx, dy) apart,
+    // 0 <= dy <= reach, -reach <= dx <= reach.
+    struct Products {
+        std::vector<int> images{};
+        Grid<double> sums{};
+    };
+    Products products_of(const Probe& probe, std::size_t channel) const;
 
     // What every mean is made of: of the images, then of the curve's values.
     struct Means {

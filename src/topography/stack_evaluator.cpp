@@ -416,7 +416,7 @@ Topography StackEvaluator::finish(double x0, double y0, double pitch) {
         }
     };
     planes_->visit_records(judge_point);
-    planes_.reset();
+    const auto freed = std::async(std::launch::async, [planes = std::move(planes_)]() mutable { planes.reset(); });
     result.curves = curves_of(stack, of_curves, height_at);
     for (Grid<float>& channel : stack.all_in_focus)
         for (float& value : channel.values)

@@ -61,9 +61,9 @@ TEST(PlacesOfMaxima, AreThoseOfTheCurvesNearBothEnds) {
             if (wider > 0 && wider < stack.images - 1)
                 worst_wider = std::max(worst_wider, std::abs(between(places, wider) - place));
         }
-        EXPECT_LT(worst, 0.06) << stack.images;
-        EXPECT_LT(worst_wider, 0.15) << stack.images;
-        EXPECT_GT(worst_of_line, 0.15) << stack.images;
+        EXPECT_LT(worst, 0.1) << stack.images;
+        EXPECT_LT(worst_wider, 0.2) << stack.images;
+        EXPECT_GT(worst_of_line, 1.5 * worst) << stack.images;
     }
 }
 
