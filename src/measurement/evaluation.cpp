@@ -233,13 +233,16 @@ Evaluation StackEvaluation::finish(surface::HeightMap truth, const topography::B
         const Stopwatch stopwatch(evaluation_.seconds);
         reconstruct(truth.x0, truth.y0, truth.pitch_x, flat);
         const auto& measured = evaluation_.topography.height;
-        const auto levelled = topography::levelled_pair(measured, truth, {.form = band.form});
+        auto& levelled = evaluation_.levelled;
+        auto whole_truth = std::async(std::launch::async, [&] { return surface::remove_form(truth, band.form); });
+        levelled.pair = topography::levelled_pair(measured, truth, {.form = band.form});
+        const auto& deviation = levelled.deviation.emplace(topography::deviation_map(levelled.pair));
         auto beyond = std::async(std::launch::async, [&] {
-            return topography::share_beyond(topography::deviation_map(levelled),
-                                            evaluation_.topography.height_uncertainty, coverage_factor);
+            return topography::share_beyond(deviation, evaluation_.topography.height_uncertainty, coverage_factor);
         });
-        evaluation_.deviation = topography::compare(levelled);
+        evaluation_.deviation = topography::compare(levelled.pair, deviation);
         evaluation_.beyond_uncertainty = beyond.get();
+        levelled.truth = whole_truth.get();
         evaluation_.band = band;
         if (band.limited()) {
             evaluation_.filtered_deviation = topography::compare(measured, truth, band);
@@ -258,6 +261,7 @@ Evaluation StackEvaluation::finish(double pitch, const surface::Form& form, cons
         const Stopwatch stopwatch(evaluation_.seconds);
         const auto grid = PixelGrid::centred(columns_, rows_, pitch);
         reconstruct(grid.x0, grid.y0, pitch, flat);
+        evaluation_.levelled.pair.measured = surface::remove_form(evaluation_.topography.height, form);
     }
     return std::move(evaluation_);
 }

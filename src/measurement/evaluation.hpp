@@ -44,13 +44,21 @@ struct Flatness {
 // Of an expanded uncertainty: a normal error is beyond it in 3 points of 1000 (JCGM 100:2008, 6.3).
 inline constexpr double coverage_factor = 3;
 
+// As the comparison treats them, levelled but not filtered.
+struct LevelledMaps {
+    topography::LevelledPair pair;           // without a truth, that of the pair is empty
+    std::optional<surface::HeightMap> truth; // also where nothing was measured
+    std::optional<surface::HeightMap> deviation;
+};
+
 struct Evaluation {
     topography::TopographyOptions options; // that the heights were found by
     topography::Topography topography;
-    double height_noise = 0;                        // mm, median of the measured points'; NaN without any
-    double height_uncertainty = 0;                  // likewise
-    std::optional<Flatness> flatness;               // of `diffracted` too, by the same flat; none: no correction
-    std::optional<surface::HeightMap> truth;        // none of a stack that another instrument took; nor deviations
+    double height_noise = 0;                 // mm, median of the measured points'; NaN without any
+    double height_uncertainty = 0;           // likewise
+    std::optional<Flatness> flatness;        // of `diffracted` too, by the same flat; none: no correction
+    std::optional<surface::HeightMap> truth; // none of a stack that another instrument took; nor deviations
+    LevelledMaps levelled;
     std::optional<topography::Deviation> deviation; // levelled
     std::optional<double> beyond_uncertainty;       // share of the points levelled beyond coverage_factor times theirs
     std::optional<topography::Deviation> filtered_deviation; // and filtered; none if the band has no limit

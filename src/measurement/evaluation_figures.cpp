@@ -4,6 +4,7 @@
 #include "surface/areal_parameters.hpp"
 
 #include <future>
+#include <optional>
 
 namespace vkfv::measurement {
 
@@ -27,7 +28,11 @@ Figures figures_in(const topography::Band& band, const Evaluation& evaluation,
     if (!evaluation.truth) {
         figures.measured = parameters_of(surface::scale_limited(measured, band));
     } else if (deviation && deviation->measured_share > 0) {
-        const auto pair = topography::levelled_pair(measured, *evaluation.truth, band);
+        std::optional<topography::LevelledPair> in_band;
+        if (band.limited()) {
+            in_band = topography::levelled_pair(measured, *evaluation.truth, band);
+        }
+        const auto& pair = in_band ? *in_band : evaluation.levelled.pair;
         auto truth = std::async(std::launch::async, [&] { return parameters_of(pair.truth); });
         figures.measured = parameters_of(pair.measured);
         figures.truth = truth.get();

@@ -79,13 +79,13 @@ std::string name_of(const std::filesystem::path& folder) {
     return (whole.has_filename() ? whole : whole.parent_path()).filename().string();
 }
 
-std::string picture_of(const std::filesystem::path& folder, const Evaluation& evaluation, const LevelledMaps& maps,
+std::string picture_of(const std::filesystem::path& folder, const Evaluation& evaluation,
                        const std::string& image_unit) {
     report::TopographyPicture picture;
     picture.title = name_of(folder);
-    picture.measured = maps.measured;
-    picture.truth = maps.truth;
-    picture.deviation = maps.deviation;
+    picture.measured = evaluation.levelled.pair.measured;
+    picture.truth = evaluation.levelled.truth;
+    picture.deviation = evaluation.levelled.deviation;
     picture.image_unit = image_unit;
     picture.all_in_focus = topography::grey(evaluation.topography.all_in_focus);
     return report::topography_picture(picture);
@@ -157,22 +157,20 @@ EvaluationData write_maps(ResultFolder& results, const std::filesystem::path& fo
         .pitch_x = topography.height.pitch_x, .pitch_y = topography.height.pitch_y, .description = {}};
     std::optional<surface::HeightMap> deviation;
     EvaluationData data;
-    const LevelledMaps levelled = levelled_maps(evaluation);
     JobQueue jobs(static_cast<int>(std::max(1u, std::thread::hardware_concurrency())), 100);
     const auto write = [&](const std::string& name, const auto& bytes_of) {
         jobs.add([&results, path = folder / name, bytes_of] { results.write(path, bytes_of()); });
     };
     jobs.add([&] {
-        results.write(folder / "topography.svg",
-                      picture_of(results.path() / folder, evaluation, levelled, files.image_unit));
+        results.write(folder / "topography.svg", picture_of(results.path() / folder, evaluation, files.image_unit));
     });
-    jobs.add([&] { data = evaluation_data(folder.empty() ? "plain" : "diffracted", evaluation, levelled, count); });
+    jobs.add([&] { data = evaluation_data(folder.empty() ? "plain" : "diffracted", evaluation, count); });
     write("curves.npy", [&] { return curves_bytes(topography.curves); });
     if (evaluation.truth) {
         write("truth.tif", [&] { return surface::height_map_bytes(*evaluation.truth); });
         deviation = evaluation.band.limited()
                         ? topography::deviation_map(topography.height, *evaluation.truth, evaluation.band)
-                        : levelled.deviation;
+                        : evaluation.levelled.deviation;
         write("deviation.tif", [&] { return surface::height_map_bytes(*deviation); });
     }
     // The format that laboratories exchange has all heights. What is no height, X3P cannot hold: it is in GWY.

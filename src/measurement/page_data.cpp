@@ -100,9 +100,9 @@ std::string texture_png(const Grid<float>& image) {
     return report::grey_png_bytes(bytes);
 }
 
-Json map_data(EvaluationData& data, const std::string& name, const Evaluation& evaluation, const LevelledMaps& maps,
-              int count) {
-    const auto& place = maps.measured;
+Json map_data(EvaluationData& data, const std::string& name, const Evaluation& evaluation, int count) {
+    const LevelledMaps& maps = evaluation.levelled;
+    const auto& place = maps.pair.measured;
     const int block = report::block_for(place.columns(), place.rows(), most_map_points / count, most_map_side);
     const auto measured = report::block_means(place.height, block);
     const double beside = (block - 1) / 2.0;
@@ -207,7 +207,7 @@ Distribution distribution_of(const surface::HeightMap& map, const Extent& extent
 }
 
 Json distributions_data(const LevelledMaps& maps) {
-    Extent extent = extent_of(maps.measured.height);
+    Extent extent = extent_of(maps.pair.measured.height);
     if (maps.truth) {
         const Extent truth = extent_of(maps.truth->height);
         extent.include(truth.low);
@@ -221,7 +221,7 @@ Json distributions_data(const LevelledMaps& maps) {
     if (maps.truth) {
         truth = std::async(std::launch::async, [&] { return distribution_of(*maps.truth, extent); });
     }
-    const auto measured = distribution_of(maps.measured, extent);
+    const auto measured = distribution_of(maps.pair.measured, extent);
     json["measured"] = {{"shares", measured.shares}, {"heights", measured.heights}};
     if (truth.valid()) {
         const auto of_truth = truth.get();
@@ -232,22 +232,10 @@ Json distributions_data(const LevelledMaps& maps) {
 
 } // namespace
 
-LevelledMaps levelled_maps(const Evaluation& evaluation) {
-    const surface::Form& form = evaluation.band.form;
-    if (!evaluation.truth) {
-        return {.measured = surface::remove_form(evaluation.topography.height, form), .truth = {}, .deviation = {}};
-    }
-    auto truth = std::async(std::launch::async, [&] { return surface::remove_form(*evaluation.truth, form); });
-    auto pair = topography::levelled_pair(evaluation.topography.height, *evaluation.truth, {.form = form});
-    auto deviation = topography::deviation_map(pair);
-    return {.measured = std::move(pair.measured), .truth = truth.get(), .deviation = std::move(deviation)};
-}
-
-EvaluationData evaluation_data(const std::string& name, const Evaluation& evaluation, const LevelledMaps& maps,
-                               int count) {
+EvaluationData evaluation_data(const std::string& name, const Evaluation& evaluation, int count) {
     EvaluationData data;
     const auto& height = evaluation.topography.height;
-    auto distributions = std::async(std::launch::async, [&] { return distributions_data(maps); });
+    auto distributions = std::async(std::launch::async, [&] { return distributions_data(evaluation.levelled); });
     data.json = {{"name", name},
                  {"pixels",
                   {{"columns", height.columns()},
@@ -255,7 +243,7 @@ EvaluationData evaluation_data(const std::string& name, const Evaluation& evalua
                    {"x0", height.x0 * um_per_mm},
                    {"y0", height.y0 * um_per_mm},
                    {"pitch", {height.pitch_x * um_per_mm, height.pitch_y * um_per_mm}}}},
-                 {"map", map_data(data, name, evaluation, maps, count)},
+                 {"map", map_data(data, name, evaluation, count)},
                  {"curves", curves_data(data, name, evaluation, count)}};
     data.json["distributions"] = distributions.get();
     return data;

@@ -7,18 +7,9 @@
 
 #include <nlohmann/json.hpp>
 
-#include <optional>
 #include <string>
 
 namespace vkfv::measurement {
-
-// As the comparison treats them, levelled but not filtered.
-struct LevelledMaps {
-    surface::HeightMap measured;
-    std::optional<surface::HeightMap> truth; // also where nothing was measured
-    std::optional<surface::HeightMap> deviation;
-};
-LevelledMaps levelled_maps(const Evaluation& evaluation);
 
 // An evaluation for the page: what is in JSON, and base64 that stands apart from it, by id.
 struct EvaluationData {
@@ -27,8 +18,7 @@ struct EvaluationData {
 };
 
 // name: of the evaluation among `count` of a page, which share its room.
-EvaluationData evaluation_data(const std::string& name, const Evaluation& evaluation, const LevelledMaps& maps,
-                               int count);
+EvaluationData evaluation_data(const std::string& name, const Evaluation& evaluation, int count);
 
 // The images of a stack. unit: of their values.
 EvaluationData frames_data(const report::Frames& frames, const std::string& unit);

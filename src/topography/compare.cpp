@@ -49,10 +49,9 @@ LevelledPair levelled_pair(HeightMap measured, HeightMap truth, const Band& band
             .form_removed = band.form.kind != surface::Form::Kind::none};
 }
 
-Deviation compare(const LevelledPair& treated) {
+Deviation compare(const LevelledPair& treated, const HeightMap& deviation) {
     auto of_truth = std::async(std::launch::async, [&] { return surface::height_parameters(treated.truth); });
-    auto of_difference =
-        std::async(std::launch::async, [&] { return surface::height_parameters(deviation_map(treated)); });
+    auto of_difference = std::async(std::launch::async, [&] { return surface::height_parameters(deviation); });
     const auto a = surface::height_parameters(treated.measured);
     const auto b = of_truth.get();
     double covariance = 0, count = 0;
@@ -73,6 +72,10 @@ Deviation compare(const LevelledPair& treated) {
         result.correlation = covariance / count / (a.sq * b.sq);
     result.measured_share = a.measured_share;
     return result;
+}
+
+Deviation compare(const LevelledPair& treated) {
+    return compare(treated, deviation_map(treated));
 }
 
 Deviation compare(const HeightMap& measured, const HeightMap& truth, const Band& band) {

@@ -30,6 +30,8 @@ struct LevelledPair {
 // below.
 LevelledPair levelled_pair(surface::HeightMap measured, surface::HeightMap truth, const Band& band = {});
 
+// deviation: of deviation_map().
+Deviation compare(const LevelledPair& treated, const surface::HeightMap& deviation);
 Deviation compare(const LevelledPair& treated);
 Deviation compare(const surface::HeightMap& measured, const surface::HeightMap& truth, const Band& band = {});
 

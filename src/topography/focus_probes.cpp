@@ -145,6 +145,7 @@ void FocusProbes::add(const Channels& image) {
         }
         held += probe.values.size();
     }
+    follow_singles();
     while (held > most_values && probes_.size() > 1) {
         held = 0;
         std::vector<Probe> every_second;
@@ -153,6 +154,30 @@ void FocusProbes::add(const Channels& image) {
             every_second.push_back(std::move(probes_[k]));
         }
         probes_ = std::move(every_second);
+    }
+}
+
+// While the next image is traced, rather than at the end, where all waits for it.
+void FocusProbes::follow_singles() {
+    const auto follow = [&](int k) {
+        Probe& probe = probes_[static_cast<std::size_t>(k)];
+        const auto pixels = probe.pixels();
+        Channels patch(static_cast<std::size_t>(channels_), Grid<float>(probe.columns, probe.rows));
+        auto from = probe.values.end() - static_cast<std::ptrdiff_t>(patch.size() * pixels);
+        for (auto& channel : patch) {
+            std::copy_n(from, pixels, channel.values.begin());
+            from += static_cast<std::ptrdiff_t>(pixels);
+        }
+        probe.singles.push_back(focus_at(patch, measure_, window_, probe.middle_column, probe.middle_row));
+    };
+    constexpr std::size_t least_pixels = std::size_t{1} << 14; // worth threads
+    const int count = static_cast<int>(probes_.size());
+    if (probes_.size() * probes_.front().pixels() < least_pixels) {
+        for (int k = 0; k < count; ++k) {
+            follow(k);
+        }
+    } else {
+        in_parallel(count, follow);
     }
 }
 
@@ -200,7 +225,8 @@ double FocusProbes::curve_width() const {
     constexpr int most_lags = 200;
     const int lags = std::min(most_lags, images_ / 2);
     std::vector<double> structure(static_cast<std::size_t>(lags));
-    for (const auto& values : curves_in_order(means_of({1}, images_))) {
+    for (const Probe& probe : probes_) {
+        const std::vector<double>& values = probe.singles;
         const double mean = std::accumulate(values.begin(), values.end(), 0.0) / images_;
         double variance = 0, steps = 0;
         for (std::size_t k = 0; k < values.size(); ++k) {
@@ -361,14 +387,13 @@ NoiseCorrelation FocusProbes::noise_correlation() const {
 std::vector<Evidence> FocusProbes::by_chance(const std::vector<double>& axial_weights, double rate) const {
     const Means means = means_of(axial_weights, images_);
     const bool alone = axial_weights.size() == 1; // an image's own value, in whatever order
-    const auto in_order = curves_in_order(means_of({1}, images_));
     std::vector<Evidence> result(static_cast<std::size_t>(random_orders(rate, alone, images_)));
     in_parallel(static_cast<int>(result.size()), [&](int sample) {
         const auto probe = static_cast<std::size_t>(sample) % probes_.size();
         const std::vector<int> order = random_order(images_, static_cast<std::uint64_t>(sample));
         std::vector<double> singles;
         for (const int image : order) {
-            singles.push_back(in_order[probe][static_cast<std::size_t>(image)]);
+            singles.push_back(probes_[probe].singles[static_cast<std::size_t>(image)]);
         }
         result[static_cast<std::size_t>(sample)] =
             evidence_of(alone ? singles : curve(probes_[probe], order, means), singles);
@@ -377,7 +402,6 @@ std::vector<Evidence> FocusProbes::by_chance(const std::vector<double>& axial_we
 }
 
 double FocusProbes::share_with_rival(const std::vector<double>& axial_weights, double most_rival) const {
-    const auto singles = curves_in_order(means_of({1}, images_));
     // The floor of noise must not pass for a maximum at either end.
     const auto curves = curves_in_order({.images = all_shares(even_shares, axial_weights, images_),
                                          .curve = all_shares(axial_shares, axial_weights, images_)});
@@ -393,7 +417,7 @@ double FocusProbes::share_with_rival(const std::vector<double>& axial_weights, d
         for (std::size_t k = 0; k < curves[probe].size(); ++k) {
             curve = focus::f64::follow_shape(curve, curves[probe][k], static_cast<int>(k));
         }
-        const std::vector<double>& single = singles[probe];
+        const std::vector<double>& single = probes_[probe].singles;
         double differences = 0;
         for (std::size_t k = 2; k < single.size(); ++k) {
             const double second = single[k - 2] - 2 * single[k - 1] + single[k];
@@ -408,12 +432,10 @@ double FocusProbes::share_with_rival(const std::vector<double>& axial_weights, d
 
 std::vector<std::vector<double>> FocusProbes::some_curves() const {
     constexpr std::size_t every = 7; // in another column each row
-    const Means alone = means_of({1}, images_);
-    std::vector<std::vector<double>> curves((probes_.size() + every - 1) / every);
-    in_parallel(static_cast<int>(curves.size()), [&](int k) {
-        const auto at = static_cast<std::size_t>(k);
-        curves[at] = curve(probes_[every * at], images_in_order(images_), alone);
-    });
+    std::vector<std::vector<double>> curves;
+    for (std::size_t k = 0; k < probes_.size(); k += every) {
+        curves.push_back(probes_[k].singles);
+    }
     return curves;
 }
 

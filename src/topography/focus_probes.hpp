@@ -73,10 +73,14 @@ class FocusProbes {
         int rows = 0;
         int middle_column = 0; // in the patch
         int middle_row = 0;
-        std::vector<float> values; // image by image, channel by channel, row by row
+        std::vector<float> values;   // image by image, channel by channel, row by row
+        std::vector<double> singles; // focus measure of each image
 
         std::size_t pixels() const { return static_cast<std::size_t>(columns) * static_cast<std::size_t>(rows); }
     };
+
+    // Of the image whose patches were added last.
+    void follow_singles();
 
     // Second differences along z of a channel.
     struct Differences {
