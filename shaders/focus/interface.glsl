@@ -1,7 +1,6 @@
 // What host and kernels of the evaluation share besides the records: where buffers are bound (set 0), push constants.
 
-const uint BINDING_FROM = 0u; // planes of a mean: what is added to it,
-const uint BINDING_TO = 1u;   //   and the mean
+const uint BINDING_TO = 1u; // a mean of planes
 const uint BINDING_IMAGE = 2u;
 const uint BINDING_BRIGHTNESS = 3u;
 const uint BINDING_RESPONSES = 4u;
@@ -15,13 +14,18 @@ const uint BINDING_ALL_IN_FOCUS = 11u;
 const uint BINDING_SINGLES = 12u;
 const uint BINDING_PIXELS = 13u;
 const uint BINDING_GATHERED = 14u;
+const uint BINDING_PLANE = 15u; // the first of MOST_PLANES
 
-// focus_mean.comp: a term of a weighted mean of planes.
-struct MeanTerm {
+// That a dispatch reads at most (planes.glsl).
+const int MOST_PLANES = 8;
+
+// focus_mean.comp: terms of a weighted mean of planes.
+struct MeanTerms {
     uint count;
     uint first_to; // where the mean begins
-    real weight;
-    uint first; // 1: the first term
+    uint first;    // 1: with the mean's first term
+    int planes;
+    real weights[MOST_PLANES];
 };
 
 // focus_brightness.comp
@@ -51,9 +55,10 @@ struct GatheredImage {
     uint first_to;
 };
 
-// focus_select.comp
-struct SelectedImage {
+// focus_select.comp: images that follow each other.
+struct SelectedImages {
     uint pixels;
     uint channels;
-    int wanted;
+    int first;
+    int planes;
 };

@@ -137,14 +137,28 @@ topography::FocusPlanesMaker focus_planes_for(EvaluateOn evaluate_on, std::share
     return topography::device_focus_planes(traces ? std::move(traces) : std::make_shared<const vulkan::Device>());
 }
 
-topography::FocusPlanesMaker focus_planes_for(EvaluateOn evaluate_on, const std::string& device_selector) {
-    const bool on_host = device_selector == "host";
-    if (evaluate_on == EvaluateOn::host ||
-        (evaluate_on == EvaluateOn::automatic && (on_host || !vulkan::is_hardware(device_selector)))) {
+topography::FocusPlanesMaker focus_planes_for_files(EvaluateOn evaluate_on, const std::string& device_selector,
+                                                    std::size_t images) {
+    if (evaluate_on == EvaluateOn::host || (evaluate_on == EvaluateOn::automatic && device_selector == "host")) {
         return topography::make_host_focus_planes;
     }
-    return topography::device_focus_planes(
-        std::make_shared<const vulkan::Device>(vulkan::DeviceOptions{on_host ? std::string() : device_selector}));
+    const bool any = device_selector == "host" || device_selector == "all";
+    const std::string selector = any ? std::string() : device_selector.substr(0, device_selector.find(','));
+    if (evaluate_on == EvaluateOn::device) {
+        return topography::device_focus_planes(std::make_shared<const vulkan::Device>(vulkan::DeviceOptions{selector}));
+    }
+    return [selector, images](const topography::FocusPlanesPlan& stack) {
+        constexpr std::size_t worth_a_device = 30'000'000; // whose opening takes half a second
+        const auto pixels = static_cast<std::size_t>(stack.plan.columns) * static_cast<std::size_t>(stack.plan.rows);
+        try {
+            if (images * pixels >= worth_a_device && vulkan::is_hardware(selector)) {
+                return topography::device_focus_planes(
+                    std::make_shared<const vulkan::Device>(vulkan::DeviceOptions{selector}))(stack);
+            }
+        } catch (const DeviceError&) { // none here, or too little memory: the host gives the same bits
+        }
+        return topography::make_host_focus_planes(stack);
+    };
 }
 
 std::optional<Flat> read_flat(const Configuration& configuration, ImageSize pixels, double pitch) {

@@ -73,8 +73,10 @@ struct Evaluation {
 // the host) if it has cores of its own; on the host's own cores the host's code takes a third of lavapipe's time at
 // 1000 x 1000 pixels. Throws DeviceError.
 topography::FocusPlanesMaker focus_planes_for(EvaluateOn evaluate_on, std::shared_ptr<const vulkan::Device> traces);
-// Of a stack that was traced elsewhere; selector: of the device that would trace, or "host".
-topography::FocusPlanesMaker focus_planes_for(EvaluateOn evaluate_on, const std::string& device_selector);
+// Of so many images that are in files. selector: of the device that would trace, or "host". "auto" means that device if
+// it is here, has cores of its own and the stack is worth opening it; else the host.
+topography::FocusPlanesMaker focus_planes_for_files(EvaluateOn evaluate_on, const std::string& device_selector,
+                                                    std::size_t images);
 
 // Takes a stack's images in their order, as they come, and keeps the time that this takes.
 class StackEvaluation {

@@ -32,12 +32,6 @@ std::vector<int> order_of_images(std::size_t count, const Shuffle& shuffle) {
     return order;
 }
 
-// Images from a disk come slower than the host evaluates them: a device only when asked for.
-topography::FocusPlanesMaker planes_for(const Configuration& configuration) {
-    return focus_planes_for(configuration.evaluate_on == EvaluateOn::device ? EvaluateOn::device : EvaluateOn::host,
-                            configuration.trace.device);
-}
-
 // The first line of what the images depend on that overrides change: "key = value", as it is then.
 std::optional<std::string> changed_line(const Configuration& configuration, const Configuration& overridden) {
     if (configuration.identity == overridden.identity) {
@@ -146,9 +140,10 @@ EvaluatedStack evaluate_own_stack(const OwnStack& stack) {
     const ImageSize pixels = configuration.instrument.detector_pixels;
     const auto flat = read_flat(configuration, pixels, instrument.first_order.pixel_pitch);
     const auto order = order_of_images(positions.size(), stack.shuffle);
-    StackEvaluation evaluation(evaluation_options(configuration, instrument), planes_for(configuration),
-                               diffraction_of_evaluation(configuration, instrument),
-                               static_cast<int>(positions.size()));
+    StackEvaluation evaluation(
+        evaluation_options(configuration, instrument),
+        focus_planes_for_files(configuration.evaluate_on, configuration.trace.device, positions.size()),
+        diffraction_of_evaluation(configuration, instrument), static_cast<int>(positions.size()));
     for (std::size_t place = 0; place < positions.size(); ++place) {
         const int image = order[place];
         evaluation.add({scan::read_frame(stack.folder, image, positions[static_cast<std::size_t>(image)])},
@@ -183,7 +178,9 @@ EvaluatedStack evaluate_images(const scan::ImageSeries& series, const ForeignSta
     if (!options.smoothing_steps) {
         options.smoothing_steps = smoothing_of(images, order, options);
     }
-    StackEvaluation evaluation(options, planes_for(configuration), std::nullopt, series.size());
+    StackEvaluation evaluation(
+        options, focus_planes_for_files(configuration.evaluate_on, configuration.trace.device, order.size()),
+        std::nullopt, series.size());
     spdlog::info("{} images, {} to {}", series.size(), series.name(0), series.name(series.size() - 1));
     std::optional<Flat> flat;
     bool negative = false;

@@ -8,7 +8,6 @@
 #include "measurement/stack_parts.hpp"
 #include "scan/stack_identity.hpp"
 #include "trace/mixed_light.hpp"
-#include "vulkan/device.hpp"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -46,29 +45,6 @@ trace::TracerIdentity tracer_of(const std::string& identity, const StackScene& s
     tracer.kernels = trace::kernels_digest();
     tracer.instrument = trace::traced_digest(scene.instrument, scene.configuration.trace);
     return tracer;
-}
-
-// Where the run that traces all would evaluate: its device's rounding is the results'. Elsewhere they are not its
-// bytes.
-topography::FocusPlanesMaker planes_of_run(const Configuration& configuration, const trace::TracerIdentity& tracer) {
-    if (configuration.evaluate_on == EvaluateOn::host || tracer.device == "host") {
-        return focus_planes_for(configuration.evaluate_on, std::string("host"));
-    }
-    std::vector<vulkan::DeviceReport> devices;
-    try {
-        devices = vulkan::list_devices();
-    } catch (const DeviceError&) { // none here
-    }
-    for (const auto& device : devices) {
-        if (device.name == tracer.device && device.driver == tracer.driver && device.lacking.empty()) {
-            return focus_planes_for(configuration.evaluate_on, fmt::format("{}", device.index));
-        }
-    }
-    spdlog::warn(
-        "{} is not here: the heights are found on the host, and may differ from a single run's by some tenths of "
-        "a nanometre",
-        tracer.device);
-    return focus_planes_for(EvaluateOn::host, std::string("host"));
 }
 
 // One a light; none: images of rays.
@@ -148,7 +124,10 @@ StackResult merge_stack(const fs::path& folder, const std::vector<fs::path>& sha
     std::vector<const optics::PupilFilter*> filters_at;
     std::ranges::transform(filters, std::back_inserter(filters_at), [](const auto& filter) { return &filter; });
     enter_stage("images");
-    GrowingEvaluation evaluation(scene, planes_of_run(configuration, tracer), filters_at);
+    // Everywhere to the same bits: a device that is not here is not missed.
+    const auto evaluate_on = configuration.evaluate_on == EvaluateOn::host ? EvaluateOn::host : EvaluateOn::automatic;
+    GrowingEvaluation evaluation(
+        scene, focus_planes_for_files(evaluate_on, configuration.trace.device, scene.positions.size()), filters_at);
     for (std::size_t image = 0; image < scene.positions.size(); ++image) {
         evaluation.add(static_cast<int>(image),
                        scan::read_frame(folder, static_cast<int>(image), scene.positions[image]));

@@ -40,13 +40,31 @@ std::vector<vulkan::BindingDeclaration> storage_buffers(std::initializer_list<st
     return all;
 }
 
+// With those of planes.glsl.
+std::vector<vulkan::BindingDeclaration> with_planes(std::initializer_list<std::uint32_t> slots) {
+    auto all = storage_buffers(slots);
+    for (std::uint32_t plane = 0; plane < MOST_PLANES; ++plane) {
+        all.push_back({BINDING_PLANE + plane, vulkan::BindingKind::storage_buffer});
+    }
+    return all;
+}
+
+// planes: MOST_PLANES at most; slots without one see the first again.
+std::vector<vulkan::Binding> with_planes(std::vector<vulkan::Binding> others,
+                                         std::span<const vulkan::Buffer* const> planes) {
+    for (std::uint32_t plane = 0; plane < MOST_PLANES; ++plane) {
+        others.push_back({BINDING_PLANE + plane, planes[plane < planes.size() ? plane : 0]});
+    }
+    return others;
+}
+
 class DeviceFocusPlanes final : public FocusPlanes {
   public:
     DeviceFocusPlanes(std::shared_ptr<const vulkan::Device> device, const FocusPlanesPlan& stack)
         : plan_(plan_in<focus::f32::Arithmetic>(stack.plan)), averaged_curves_(stack.averaged_curves_kept),
           pixels_(static_cast<std::size_t>(plan_.columns) * static_cast<std::size_t>(plan_.rows)),
           channels_(static_cast<std::size_t>(plan_.channels)), shared_(std::move(device)), device_(*shared_),
-          mean_(device_, "focus_mean", ::focus_mean, storage_buffers({BINDING_FROM, BINDING_TO}), sizeof(MeanTerm)),
+          mean_(device_, "focus_mean", ::focus_mean, with_planes({BINDING_TO}), sizeof(MeanTerms)),
           add_brightness_(device_, "focus_brightness", ::focus_brightness,
                           storage_buffers({BINDING_IMAGE, BINDING_BRIGHTNESS}), sizeof(ImageSize)),
           response_(device_, "focus_response", ::focus_response, storage_buffers({BINDING_IMAGE, BINDING_RESPONSES}),
@@ -62,8 +80,8 @@ class DeviceFocusPlanes final : public FocusPlanes {
                   storage_buffers({BINDING_CURVES, BINDING_RECORDS, BINDING_PLACES}), sizeof(FollowedImage)),
           gather_(device_, "focus_gather", ::focus_gather,
                   storage_buffers({BINDING_CURVES, BINDING_PIXELS, BINDING_GATHERED}), sizeof(GatheredImage)),
-          select_(device_, "focus_select", ::focus_select,
-                  storage_buffers({BINDING_IMAGE, BINDING_PLACES, BINDING_ALL_IN_FOCUS}), sizeof(SelectedImage)),
+          select_(device_, "focus_select", ::focus_select, with_planes({BINDING_PLACES, BINDING_ALL_IN_FOCUS}),
+                  sizeof(SelectedImages)),
           mean_image_(device_, channels_ * pixels_ * sizeof(float)), responses_(device_, pixels_ * sizeof(WindowSums)),
           row_sums_(device_, static_cast<std::size_t>(focus_fields(plan_)) * pixels_ * sizeof(WindowSums)),
           weights_(device_, stack.window.weights().size() * sizeof(float)),
@@ -150,11 +168,15 @@ class DeviceFocusPlanes final : public FocusPlanes {
                  FollowedImage{plan_, image, images, averaged_curves_}, pixels_);
         const int first = std::max(0, image - plan_.peak_range);
         const int last = std::min(images - 1, image + plan_.peak_range);
-        for (int k = first; k <= last; ++k) {
-            dispatch(
-                select_,
-                {{BINDING_IMAGE, &image_at(k)}, {BINDING_PLACES, &places_}, {BINDING_ALL_IN_FOCUS, &all_in_focus_}},
-                SelectedImage{static_cast<std::uint32_t>(pixels_), static_cast<std::uint32_t>(channels_), k}, pixels_);
+        for (int from = first; from <= last; from += MOST_PLANES) {
+            std::vector<const vulkan::Buffer*> planes;
+            for (int k = from; k <= std::min(last, from + MOST_PLANES - 1); ++k) {
+                planes.push_back(&image_at(k));
+            }
+            dispatch(select_, with_planes({{BINDING_PLACES, &places_}, {BINDING_ALL_IN_FOCUS, &all_in_focus_}}, planes),
+                     SelectedImages{static_cast<std::uint32_t>(pixels_), static_cast<std::uint32_t>(channels_), from,
+                                    static_cast<int>(planes.size())},
+                     pixels_);
         }
     }
 
@@ -233,11 +255,18 @@ class DeviceFocusPlanes final : public FocusPlanes {
     template <class Plane>
     void weighted_mean(std::span<const Share> shares, const Plane& plane, const vulkan::Buffer& to,
                        std::size_t first_to, std::size_t count) {
-        for (std::size_t k = 0; k < shares.size(); ++k) {
-            dispatch(mean_, {{BINDING_FROM, &plane(shares[k].image)}, {BINDING_TO, &to}},
-                     MeanTerm{static_cast<std::uint32_t>(count), static_cast<std::uint32_t>(first_to), shares[k].weight,
-                              k == 0 ? 1u : 0u},
-                     count);
+        for (std::size_t from = 0; from < shares.size(); from += MOST_PLANES) {
+            MeanTerms terms{.count = static_cast<std::uint32_t>(count),
+                            .first_to = static_cast<std::uint32_t>(first_to),
+                            .first = from == 0 ? 1u : 0u,
+                            .planes = 0,
+                            .weights = {}};
+            std::vector<const vulkan::Buffer*> planes;
+            for (const Share& share : shares.subspan(from, std::min<std::size_t>(MOST_PLANES, shares.size() - from))) {
+                terms.weights[terms.planes++] = share.weight;
+                planes.push_back(&plane(share.image));
+            }
+            dispatch(mean_, with_planes({{BINDING_TO, &to}}, planes), terms, count);
         }
     }
 
