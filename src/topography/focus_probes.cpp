@@ -392,6 +392,7 @@ std::vector<Evidence> FocusProbes::by_chance(const std::vector<double>& axial_we
         const auto probe = static_cast<std::size_t>(sample) % probes_.size();
         const std::vector<int> order = random_order(images_, static_cast<std::uint64_t>(sample));
         std::vector<double> singles;
+        singles.reserve(order.size());
         for (const int image : order) {
             singles.push_back(probes_[probe].singles[static_cast<std::size_t>(image)]);
         }

@@ -35,9 +35,11 @@ std::vector<Maximum> maxima_near_the_end(const std::vector<double>& weights, int
     }
     const double last = std::min<double>(reach, 0.5 * (images - 1));
     constexpr double finest = 0.25; // steps; finer than the averages change
-    constexpr int places = 48;
+    constexpr int most_places = 48;
+    const int places = std::min(most_places, static_cast<int>(std::ceil(last / finest)));
     std::vector<Maximum> maxima;
-    for (double place = 0; place < last; place += std::max(finest, last / places)) {
+    for (int k = 0; k < places; ++k) {
+        const double place = last * k / places;
         std::vector<double> single, curve;
         for (int image = 0; image < images; ++image) {
             const double distance = (image - place) / curve_width;

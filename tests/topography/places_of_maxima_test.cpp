@@ -5,6 +5,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 
 namespace vkfv::topography {
@@ -51,7 +52,8 @@ TEST(PlacesOfMaxima, AreThoseOfTheCurvesNearBothEnds) {
         const auto places = places_of_maxima(weights, stack.images, stack.width);
         const auto line = places_of_maxima(weights, stack.images, 0);
         double worst = 0, worst_wider = 0, worst_of_line = 0;
-        for (double place = 0; place <= stack.images - 1; place += 0.1) {
+        for (int tenths = 0; tenths <= 10 * (stack.images - 1); ++tenths) {
+            const double place = 0.1 * tenths;
             const double at = found(place, stack.width, weights, stack.images);
             if (at == 0 || at == stack.images - 1)
                 continue;
