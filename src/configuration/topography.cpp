@@ -76,12 +76,13 @@ const BooleanKey place_by_texture = without_influence(
                "middle along the surface's slope."));
 const BooleanKey repair_outliers = without_influence(
     BooleanKey("repair_outliers", defaults.repair_outliers, "Whether outliers become the median of their neighbours."));
-const ChoiceKey<EvaluateOn> evaluate_on =
-    without_influence(ChoiceKey<EvaluateOn>("evaluate_on",
-                                            {{EvaluateOn::automatic, "auto", "on a device that has cores of its own"},
-                                             {EvaluateOn::host, "host", "on the processor"},
-                                             {EvaluateOn::device, "device", "on the device that traces"}},
-                                            EvaluateOn::automatic, "Where the stack is evaluated, to the same bits."));
+const ChoiceKey<EvaluateOn> evaluate_on = without_influence(
+    ChoiceKey<EvaluateOn>("evaluate_on",
+                          {{EvaluateOn::automatic, "auto",
+                            "on a device that has cores of its own, stacks of files if they have 3e7 pixels or more"},
+                           {EvaluateOn::host, "host", "on the processor"},
+                           {EvaluateOn::device, "device", "on the device that traces"}},
+                          EvaluateOn::automatic, "Where the stack is evaluated, to the same bits."));
 const FileKey flatness_file = without_influence(
     FileKey("flatness_file", Default::in_words("\"none\""),
             "Heights of a flat measured by the same instrument, whose field curvature is taken off."));

@@ -10,6 +10,7 @@
 #include "vulkan/device.hpp"
 
 #include <fmt/format.h>
+#include <spdlog/spdlog.h>
 
 #include <algorithm>
 #include <chrono>
@@ -142,20 +143,29 @@ topography::FocusPlanesMaker focus_planes_for_files(EvaluateOn evaluate_on, cons
     if (evaluate_on == EvaluateOn::host || (evaluate_on == EvaluateOn::automatic && device_selector == "host")) {
         return topography::make_host_focus_planes;
     }
-    const bool any = device_selector == "host" || device_selector == "all";
-    const std::string selector = any ? std::string() : device_selector.substr(0, device_selector.find(','));
+    const vulkan::DeviceOptions device{device_selector == "host" ? std::string() : device_selector};
     if (evaluate_on == EvaluateOn::device) {
-        return topography::device_focus_planes(std::make_shared<const vulkan::Device>(vulkan::DeviceOptions{selector}));
+        return topography::device_focus_planes(std::make_shared<const vulkan::Device>(device));
     }
-    return [selector, images](const topography::FocusPlanesPlan& stack) {
+    // Opened once, for images with and without diffraction.
+    return [device, images, opened = std::make_shared<std::shared_ptr<const vulkan::Device>>()](
+               const topography::FocusPlanesPlan& stack) {
         constexpr std::size_t worth_a_device = 30'000'000; // whose opening takes half a second
         const auto pixels = static_cast<std::size_t>(stack.plan.columns) * static_cast<std::size_t>(stack.plan.rows);
+        const auto without = [](const std::exception& reason) {
+            spdlog::debug("evaluated on the host, to the same bits: {}", reason.what());
+        };
         try {
-            if (images * pixels >= worth_a_device && vulkan::is_hardware(selector)) {
-                return topography::device_focus_planes(
-                    std::make_shared<const vulkan::Device>(vulkan::DeviceOptions{selector}))(stack);
+            if (images * pixels >= worth_a_device && vulkan::is_hardware(device.selector)) {
+                if (!*opened) {
+                    *opened = std::make_shared<const vulkan::Device>(device);
+                }
+                return topography::device_focus_planes(*opened)(stack);
             }
-        } catch (const DeviceError&) { // none here, or too little memory: the host gives the same bits
+        } catch (const DeviceError& none) {
+            without(none);
+        } catch (const RunError& failed) { // too little memory, for one
+            without(failed);
         }
         return topography::make_host_focus_planes(stack);
     };

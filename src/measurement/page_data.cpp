@@ -3,7 +3,6 @@
 #include "core/units.hpp"
 #include "report/markup.hpp"
 #include "report/png.hpp"
-#include "surface/filter.hpp"
 #include "surface/material_ratio.hpp"
 
 #include <fmt/format.h>

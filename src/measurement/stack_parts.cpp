@@ -2,6 +2,7 @@
 
 #include "core/digest.hpp"
 #include "core/stages.hpp"
+#include "core/units.hpp"
 #include "measurement/assembly.hpp"
 #include "measurement/camera_images.hpp"
 #include "measurement/exposure.hpp"

@@ -157,7 +157,7 @@ void FocusProbes::add(const Channels& image) {
     }
 }
 
-// While the next image is traced, rather than at the end, where all waits for it.
+// As images come rather than at the end, which all wait for.
 void FocusProbes::follow_singles() {
     const auto follow = [&](int k) {
         Probe& probe = probes_[static_cast<std::size_t>(k)];
@@ -170,15 +170,9 @@ void FocusProbes::follow_singles() {
         }
         probe.singles.push_back(focus_at(patch, measure_, window_, probe.middle_column, probe.middle_row));
     };
-    constexpr std::size_t least_pixels = std::size_t{1} << 14; // worth threads
-    const int count = static_cast<int>(probes_.size());
-    if (probes_.size() * probes_.front().pixels() < least_pixels) {
-        for (int k = 0; k < count; ++k) {
-            follow(k);
-        }
-    } else {
-        in_parallel(count, follow);
-    }
+    constexpr std::size_t pixels_a_thread = std::size_t{1} << 15; // some milliseconds
+    const std::size_t threads = probes_.size() * probes_.front().pixels() / pixels_a_thread;
+    in_parallel(static_cast<int>(probes_.size()), follow, std::max(1, static_cast<int>(threads)));
 }
 
 FocusProbes::Means FocusProbes::means_of(const std::vector<double>& axial_weights, int count) {

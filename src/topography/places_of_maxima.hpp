@@ -3,13 +3,22 @@
 // end, by up to a third of the curve's standard deviation.
 #pragma once
 
+#include "topography/peak_method.hpp"
+
 #include <vector>
 
 namespace vkfv::topography {
 
-// For every point of the curve, in steps of the scan: the middle of that Gaussian of the standard deviation curve_width
-// (steps) whose maximum both averages by these weights (axial_weights()) bring there. curve_width 0, and points that no
-// maximum comes to: what the averages make of a straight line (AveragedPoint::position).
-std::vector<double> places_of_maxima(const std::vector<double>& weights, int images, double curve_width);
+// How the maximum of a curve is found.
+struct PeakFinder {
+    PeakMethod method = PeakMethod::gaussian;
+    int range = 1; // steps on either side
+};
+
+// For every point of the curve, in steps of the scan and inside it: the middle of that Gaussian of the standard
+// deviation curve_width (steps) whose maximum, after both averages by these weights (axial_weights()), is found there.
+// Points that none comes to follow in the distances of averaged_points(). curve_width 0: those points themselves.
+std::vector<double> places_of_maxima(const std::vector<double>& weights, int images, double curve_width,
+                                     const PeakFinder& finder);
 
 } // namespace vkfv::topography

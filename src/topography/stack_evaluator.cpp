@@ -378,7 +378,8 @@ Topography StackEvaluator::finish(double x0, double y0, double pitch) {
     StackFigures figures = figures_of_probes.get();
     const SmoothedNoise smoothed = smoothed_noise(axial_weights_);
     const std::vector<AveragedPoint> points = averaged_points(axial_weights_, images);
-    const std::vector<double> places = places_of_maxima(axial_weights_, images, figures.curve_width_steps);
+    const std::vector<double> places = places_of_maxima(axial_weights_, images, figures.curve_width_steps,
+                                                        {.method = options_.peak, .range = options_.peak_range_steps});
     const double brightness = mean_of(stack.brightness) / images;
     const Grid<float> brightness_around = window_mean(stack.brightness, window_); // of all images together
     const double step = (z_.back() - z_.front()) / (images - 1);

@@ -23,10 +23,10 @@
 // - The height is that of the window's texture, wherever in the window this lies: it is carried to the window's middle
 //   along the surface's slope (texture_place.hpp).
 //
-// Near the ends of the scan the averages hold only the images there are. The places that they stand for, and their
-// larger noise, are reckoned with, but a curve is blunted less there than elsewhere, which draws peaks towards the end.
-// The two averages reach 6 smoothing_steps: plan the scan so much wider than the specimen at either side, and a depth
-// of focus at least.
+// Near the ends of the scan the averages hold only the images there are. Their larger noise is reckoned with, and
+// heights are put right for curves as wide as the stack's (places_of_maxima.hpp); others, and those cut off by the end,
+// keep a part of what is drawn towards it. The two averages reach 6 smoothing_steps: plan the scan so much wider than
+// the specimen at either side, and a depth of focus at least.
 #pragma once
 
 #include "core/grid.hpp"

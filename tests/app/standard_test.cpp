@@ -2,6 +2,7 @@
 #include "app/program.hpp"
 
 #include <fmt/format.h>
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
 
@@ -9,9 +10,14 @@
 #include <cmath>
 #include <filesystem>
 #include <numbers>
+#include <string>
 
 namespace vkfv::test {
 namespace {
+
+using testing::AllOf;
+using testing::HasSubstr;
+using testing::Not;
 
 // NA 0.45, pixels of 1 um in the object, texture of a micrometre, 32 paths a pixel.
 std::string stack_of(const std::string& specimen, double reach_um) {
@@ -63,11 +69,14 @@ nlohmann::json dimension(const nlohmann::json& results, const std::string& name)
     return found == all.end() ? nlohmann::json() : *found;
 }
 
+constexpr const char* of_noise = "scatters the heights by";
+
 nlohmann::json results_of(const std::string& kind, const std::string& specimen, double reach_um) {
     const auto folder = fresh_folder("standard_" + kind);
     write_file(folder / "c.toml", stack_of("kind = \"" + kind + "\"\n" + specimen, reach_um));
     const auto result = run_program({"stack", "c.toml", "--out", "out", "--quiet", "--device", "host"}, folder);
     EXPECT_EQ(result.exit_code, 0) << result.standard_error;
+    EXPECT_THAT(result.standard_error, Not(HasSubstr(of_noise)));
     return nlohmann::json::parse(read_file(folder / "out/results.json"));
 }
 
@@ -93,7 +102,7 @@ TEST(Standard, ATracedGrooveHasItsDepthAndWidth) {
 TEST(Standard, ATracedSphereHasItsRadius) {
     const auto results = results_of("sphere", "representation = \"analytic\"\nradius_um = 120\nheight_um = 6", 10);
     expect_dimension(results, "radius", 120, 120);
-    EXPECT_LT(dimension(results, "form deviation Sq").at("measured"), 0.2);
+    EXPECT_LT(dimension(results, "form deviation Sq").at("measured").get<double>(), 0.2);
 }
 
 // The mean over a window of 7 um takes a part of the waves.
@@ -102,6 +111,16 @@ TEST(Standard, ATracedSinusoidHasItsPeriodAndWhatTheWindowLeavesOfItsAmplitude) 
     const double waves = 7.0 / 30 * std::numbers::pi;
     expect_dimension(results, "amplitude", 3, 3 * std::sin(waves) / waves);
     expect_dimension(results, "period", 30, 30);
+}
+
+// A quarter of the rays: a warning, with how many more of them help.
+TEST(Standard, HeightsThatRaysScatterAreWarnedOf) {
+    const auto folder = fresh_folder("standard_few_rays");
+    write_file(folder / "c.toml", stack_of("kind = \"sinusoid\"\nperiod_um = 30\namplitude_um = 3", 8));
+    const auto result =
+        run_program({"stack", "c.toml", "--out", "out", "--quiet", "--device", "host", "--rays", "12288"}, folder);
+    EXPECT_EQ(result.exit_code, 0) << result.standard_error;
+    EXPECT_THAT(result.standard_error, AllOf(HasSubstr(of_noise), HasSubstr("times as many rays (--rays")));
 }
 
 } // namespace

@@ -53,7 +53,7 @@ topography::Topography evaluated(const std::vector<Channels>& stack, const topog
     return evaluator.finish(0, 0, 0.002);
 }
 
-// u = 2^-24. A value of a curve is a chain of at most 150 float operations without cancellation (means of at most 7
+// u = 2^-24. A value of a curve is a chain of at most 160 float operations without cancellation (means of at most 11
 // images and curves, masks of 25 pixels, two windows of 7 and their squares) on positive numbers, except that masks
 // subtract pixels of 1 that differ by 0.02 or more over a window: their differences have u / 0.02 = 50 u each, at
 // random. So a curve's values are right to 200 u = 1.2e-5. Around the maximum the curve bends by 1 / 3^2 a step^2, or

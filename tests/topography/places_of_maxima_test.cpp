@@ -7,6 +7,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <vector>
 
 namespace vkfv::topography {
 namespace {
@@ -49,8 +50,8 @@ TEST(PlacesOfMaxima, AreThoseOfTheCurvesNearBothEnds) {
     for (const Stack stack :
          {Stack{10, 0.66, 1}, Stack{21, 2, 3}, Stack{31, 3, 4}, Stack{60, 2, 3}, Stack{101, 4, 6}}) {
         const auto weights = axial_weights(stack.smoothing);
-        const auto places = places_of_maxima(weights, stack.images, stack.width);
-        const auto line = places_of_maxima(weights, stack.images, 0);
+        const auto places = places_of_maxima(weights, stack.images, stack.width, {});
+        const auto line = places_of_maxima(weights, stack.images, 0, {});
         double worst = 0, worst_wider = 0, worst_of_line = 0;
         for (int tenths = 0; tenths <= 10 * (stack.images - 1); ++tenths) {
             const double place = 0.1 * tenths;
@@ -70,7 +71,7 @@ TEST(PlacesOfMaxima, AreThoseOfTheCurvesNearBothEnds) {
 }
 
 TEST(PlacesOfMaxima, AreThePointsAwayFromTheEndsAndMirrorImages) {
-    const auto places = places_of_maxima(axial_weights(2), 60, 3);
+    const auto places = places_of_maxima(axial_weights(2), 60, 3, {});
     for (std::size_t k = 12; k < 48; ++k)
         EXPECT_EQ(places[k], static_cast<double>(k));
     for (std::size_t k = 0; k < 60; ++k)
@@ -80,7 +81,7 @@ TEST(PlacesOfMaxima, AreThePointsAwayFromTheEndsAndMirrorImages) {
     // Without averages, and of curves of no form, there is nothing to put right.
     for (const double smoothing : {0.0, 2.0}) {
         const auto points = averaged_points(axial_weights(smoothing), 15);
-        const auto unknown = places_of_maxima(axial_weights(smoothing), 15, smoothing > 0 ? 0 : 3);
+        const auto unknown = places_of_maxima(axial_weights(smoothing), 15, smoothing > 0 ? 0 : 3, {});
         for (std::size_t k = 0; k < 15; ++k)
             EXPECT_EQ(unknown[k], points[k].position);
     }
