@@ -55,8 +55,9 @@ std::vector<Maximum> maxima_near_the_end(const std::vector<double>& weights, int
     for (int at = 0; at < averages; ++at) {
         shares.push_back(axial_shares(weights, at, images));
     }
-    constexpr double finest = 0.25; // steps; finer than the averages change
-    constexpr int most_places = 48;
+    // Straight lines between places so close leave out a thousandth of a step.
+    constexpr double finest = 0.05; // steps
+    constexpr int most_places = 240;
     const int places = std::min(most_places, static_cast<int>(std::ceil(last / finest)));
     std::vector<Maximum> maxima;
     for (int k = 0; k < places; ++k) {
