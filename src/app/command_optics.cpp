@@ -44,7 +44,7 @@ void run_optics(const CommandOptions& options) {
                         "Correct it, or leave it out for two depths of field.");
     }
     const auto configuration = load_configuration(options.file, options.overrides, Needs::instrument);
-    const auto instrument = measurement::assemble_instrument(configuration);
+    const auto instrument = measurement::assemble_for_figures(configuration);
     const std::string name = options.file.stem().string();
     ResultFolder results(options.out.value_or(name + "-optics"));
     const auto figures =

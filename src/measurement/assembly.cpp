@@ -55,6 +55,12 @@ optics::Instrument assemble_instrument(const Configuration& configuration) {
     return assemble_at_its_place(configuration, configuration.instrument);
 }
 
+optics::Instrument assemble_for_figures(const Configuration& configuration) {
+    auto description = configuration.instrument;
+    description.directed_emission = false;
+    return assemble_at_its_place(configuration, std::move(description));
+}
+
 std::optional<scan::StageMotion> stage_motion(const Configuration& configuration) {
     if (!configuration.stage) {
         return std::nullopt;

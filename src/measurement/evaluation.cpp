@@ -231,31 +231,35 @@ void StackEvaluation::add(topography::Channels image, double z, std::optional<do
     evaluator_.add(std::move(image), z, reading);
 }
 
-void StackEvaluation::reconstruct(double x0, double y0, double pitch, const std::optional<Flat>& flat) {
+void StackEvaluation::reconstruct(double x0, double y0, double pitch, const KnownField& field) {
     auto frames = std::async(std::launch::async, [&] { return frames_ ? frames_->finish() : report::Frames(); });
     evaluation_.topography = evaluator_.finish(x0, y0, pitch);
     auto noise = std::async(std::launch::async, [&] { return median_of(evaluation_.topography.height_noise); });
-    evaluation_.height_uncertainty = median_of(evaluation_.topography.height_uncertainty);
-    evaluation_.height_noise = noise.get();
-    evaluation_.frames = frames.get();
-    if (flat) {
+    if (const auto& flat = field.flat) {
         auto corrected = topography::correct_flatness(std::move(evaluation_.topography.height), flat->heights);
         evaluation_.topography.height = std::move(corrected.heights);
         evaluation_.flatness = {.file = flat->file,
                                 .deviation = flat->deviation,
                                 .s_filter = flat->s_filter,
                                 .polynomial_peak_to_valley = corrected.polynomial_peak_to_valley};
+    } else if (const auto& design = field.design) {
+        evaluation_.field_curvature =
+            topography::add_curvature(evaluation_.topography.height_uncertainty, evaluation_.topography.height,
+                                      [&](double x, double y) { return -design->height(x, y); });
     }
+    evaluation_.height_uncertainty = median_of(evaluation_.topography.height_uncertainty);
+    evaluation_.height_noise = noise.get();
+    evaluation_.frames = frames.get();
 }
 
-Evaluation StackEvaluation::finish(surface::HeightMap truth, const topography::Band& band,
-                                   const std::optional<Flat>& flat, const std::optional<dimensions::Feature>& feature) {
+Evaluation StackEvaluation::finish(surface::HeightMap truth, const topography::Band& band, const KnownField& field,
+                                   const std::optional<dimensions::Feature>& feature) {
     if (diffracted_) {
-        evaluation_.diffracted = std::make_shared<Evaluation>(diffracted_->finish(truth, band, flat, feature));
+        evaluation_.diffracted = std::make_shared<Evaluation>(diffracted_->finish(truth, band, field, feature));
     }
     {
         const Stopwatch stopwatch(evaluation_.seconds);
-        reconstruct(truth.x0, truth.y0, truth.pitch_x, flat);
+        reconstruct(truth.x0, truth.y0, truth.pitch_x, field);
         const auto& measured = evaluation_.topography.height;
         auto& levelled = evaluation_.levelled;
         auto whole_truth = std::async(std::launch::async, [&] { return surface::remove_form(truth, band.form); });
@@ -279,12 +283,12 @@ Evaluation StackEvaluation::finish(surface::HeightMap truth, const topography::B
     return std::move(evaluation_);
 }
 
-Evaluation StackEvaluation::finish(double pitch, const surface::Form& form, const std::optional<Flat>& flat) {
+Evaluation StackEvaluation::finish(double pitch, const surface::Form& form, const KnownField& field) {
     evaluation_.band.form = form;
     {
         const Stopwatch stopwatch(evaluation_.seconds);
         const auto grid = PixelGrid::centred(columns_, rows_, pitch);
-        reconstruct(grid.x0, grid.y0, pitch, flat);
+        reconstruct(grid.x0, grid.y0, pitch, field);
         evaluation_.levelled.pair.measured = surface::remove_form(evaluation_.topography.height, form);
     }
     return std::move(evaluation_);
@@ -307,6 +311,13 @@ std::string summary(const Evaluation& evaluation) {
                         "flat is {:.3g} um (S-filter {:g} um)\n",
                         evaluation.flatness->polynomial_peak_to_valley * um_per_mm,
                         evaluation.flatness->deviation * um_per_mm, evaluation.flatness->s_filter * um_per_mm);
+    }
+    constexpr double worth_a_flat = 0.5; // of the uncertainty: less is lost in it
+    if (evaluation.field_curvature && *evaluation.field_curvature > worth_a_flat * evaluation.height_uncertainty) {
+        text +=
+            fmt::format("the field is curved by {:.3g} um peak to valley, by the instrument's design: the heights hold "
+                        "this, and their uncertainty counts it. A flat takes it off (topography.flatness_file)\n",
+                        *evaluation.field_curvature * um_per_mm);
     }
     if (evaluation.deviation) {
         text +=

@@ -4,6 +4,7 @@
 #include "configuration/configuration.hpp"
 #include "measurement/standard.hpp"
 #include "optics/diffraction.hpp"
+#include "optics/field_curvature.hpp"
 #include "report/frames.hpp"
 #include "topography/compare.hpp"
 #include "topography/topography.hpp"
@@ -33,6 +34,13 @@ struct Flat {
 // wide, since shorter waves of heights are no instrument's form.
 std::optional<Flat> read_flat(const Configuration& configuration, ImageSize pixels, double pitch);
 
+// What is known of how the instrument's field is curved. A flat takes it off; what its design tells counts as
+// uncertainty where there is no flat (topography/flatness.hpp). Neither: nothing is known.
+struct KnownField {
+    std::optional<Flat> flat;
+    std::optional<optics::FieldCurvature> design;
+};
+
 // What a flatness correction found and removed.
 struct Flatness {
     std::filesystem::path file;
@@ -57,6 +65,7 @@ struct Evaluation {
     double height_noise = 0;                 // mm, median of the measured points'; NaN without any
     double height_uncertainty = 0;           // likewise
     std::optional<Flatness> flatness;        // of `diffracted` too, by the same flat; none: no correction
+    std::optional<double> field_curvature;   // mm peak-to-valley over the measured points, by design, not corrected
     std::optional<surface::HeightMap> truth; // none of a stack that another instrument took; nor deviations
     LevelledMaps levelled;
     std::optional<topography::Deviation> deviation; // levelled
@@ -89,15 +98,14 @@ class StackEvaluation {
 
     // As StackEvaluator::add().
     void add(topography::Channels image, double z, std::optional<double> reading = {});
-    // On the truth's grid, with the deviation from it. Flat: topography/flatness.hpp; none: no correction. Feature:
-    // what is measured on the specimen.
-    Evaluation finish(surface::HeightMap truth, const topography::Band& band, const std::optional<Flat>& flat = {},
+    // On the truth's grid, with the deviation from it. Feature: what is measured on the specimen.
+    Evaluation finish(surface::HeightMap truth, const topography::Band& band, const KnownField& field = {},
                       const std::optional<dimensions::Feature>& feature = {});
     // Without a truth; the grid's middle is the origin, pitch in mm.
-    Evaluation finish(double pitch, const surface::Form& form, const std::optional<Flat>& flat = {});
+    Evaluation finish(double pitch, const surface::Form& form, const KnownField& field = {});
 
   private:
-    void reconstruct(double x0, double y0, double pitch, const std::optional<Flat>& flat);
+    void reconstruct(double x0, double y0, double pitch, const KnownField& field);
 
     topography::StackEvaluator evaluator_;
     std::optional<optics::Diffraction> diffraction_;

@@ -138,7 +138,8 @@ EvaluatedStack evaluate_own_stack(const OwnStack& stack) {
     const auto specimen = make_specimen(configuration);
     const auto instrument = assemble_instrument(configuration, specimen, positions);
     const ImageSize pixels = configuration.instrument.detector_pixels;
-    const auto flat = read_flat(configuration, pixels, instrument.first_order.pixel_pitch);
+    const KnownField field{.flat = read_flat(configuration, pixels, instrument.first_order.pixel_pitch),
+                           .design = optics::field_curvature(instrument.first_order)};
     const auto order = order_of_images(positions.size(), stack.shuffle);
     StackEvaluation evaluation(
         evaluation_options(configuration, instrument),
@@ -160,7 +161,7 @@ EvaluatedStack evaluate_own_stack(const OwnStack& stack) {
                   {"seed", configuration.trace.seed}};
     }
     return {.evaluation = evaluation.finish(truth_on_pixels(instrument, configuration, specimen), configuration.band,
-                                            flat, specimen::feature_of(configuration.specimen->shape)),
+                                            field, specimen::feature_of(configuration.specimen->shape)),
             .origin = std::move(origin),
             .source = std::move(source),
             .files = topography_files(configuration)};
@@ -182,13 +183,13 @@ EvaluatedStack evaluate_images(const scan::ImageSeries& series, const ForeignSta
         options, focus_planes_for_files(configuration.evaluate_on, configuration.trace.device, order.size()),
         std::nullopt, series.size());
     spdlog::info("{} images, {} to {}", series.size(), series.name(0), series.name(series.size() - 1));
-    std::optional<Flat> flat;
+    KnownField field;
     bool negative = false;
     for (int place = 0; place < series.size(); ++place) {
         const int image = at_place(place);
         auto channels = images.read(order[static_cast<std::size_t>(image)]);
         if (place == 0) {
-            flat = read_flat(configuration, {channels.front().columns, channels.front().rows}, stack.pitch);
+            field.flat = read_flat(configuration, {channels.front().columns, channels.front().rows}, stack.pitch);
         }
         negative = negative || any_negative(channels);
         evaluation.add(std::move(channels), stack.z_start + image * stack.z_step);
@@ -207,7 +208,7 @@ EvaluatedStack evaluate_images(const scan::ImageSeries& series, const ForeignSta
     if (configuration.registration != topography::Registration::none) {
         origin["registration"] = images.json();
     }
-    return {.evaluation = evaluation.finish(stack.pitch, configuration.band.form, flat),
+    return {.evaluation = evaluation.finish(stack.pitch, configuration.band.form, field),
             .origin = std::move(origin),
             .source = {},
             .files = {}};

@@ -255,7 +255,7 @@ InstrumentFigures instrument_figures(const Configuration& configuration) {
     if (configuration.specimen) {
         specimen = std::async(std::launch::async, [&] { return make_specimen(configuration); });
     }
-    const auto instrument = assemble_instrument(configuration);
+    const auto instrument = assemble_for_figures(configuration);
     const auto& first_order = instrument.first_order;
     auto measured =
         std::async(std::launch::async, [&] { return optics::image_quality(configuration.instrument, instrument); });

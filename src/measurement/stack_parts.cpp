@@ -68,7 +68,9 @@ scan::StackDescription StackScene::description(const trace::TracerIdentity& trac
 
 GrowingEvaluation::GrowingEvaluation(const StackScene& scene, topography::FocusPlanesMaker planes,
                                      const std::vector<const optics::PupilFilter*>& filters)
-    : scene_(scene), flat_(read_flat(scene.configuration, scene.pixels(), scene.instrument.first_order.pixel_pitch)),
+    : scene_(scene), field_{.flat = read_flat(scene.configuration, scene.pixels(),
+                                              scene.instrument.first_order.pixel_pitch),
+                            .design = optics::field_curvature(scene.instrument.first_order)},
       evaluation_(evaluation_options(scene.configuration, scene.instrument), std::move(planes),
                   diffraction_of_evaluation(scene.configuration, scene.instrument),
                   static_cast<int>(scene.positions.size())) {
@@ -95,7 +97,7 @@ Evaluation GrowingEvaluation::write(scan::ImageStore& store, const trace::Tracer
     }
     enter_stage("heights and truth");
     EvaluatedStack stack{
-        .evaluation = evaluation_.finish(truth_.get(), configuration.band, flat_,
+        .evaluation = evaluation_.finish(truth_.get(), configuration.band, field_,
                                          specimen::feature_of(configuration.specimen->shape)),
         .origin = {{"device", tracer.text()},
                    {"stack_digest", store.description().digest},

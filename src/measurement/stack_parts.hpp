@@ -47,7 +47,7 @@ class GrowingEvaluation {
 
   private:
     const StackScene& scene_;
-    std::optional<Flat> flat_;
+    KnownField field_;
     StackEvaluation evaluation_;
     bool any_light_ = false;
     std::future<surface::HeightMap> truth_;

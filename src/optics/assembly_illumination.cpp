@@ -184,8 +184,11 @@ double aimed_sine_of(const InstrumentDescription& description, const Prescriptio
                                .monochromatic = description.spectrum.monochromatic()};
     const RayTransfer towards_stop =
         free_space(source_distance + train.front().distance).then(transfer_to_surface(train, stop));
-    const double sine =
-        emission_sine(train, straight, source, largest_sampled_sine(train, straight, source, towards_stop));
+    const double sampled = largest_sampled_sine(train, straight, source, towards_stop);
+    if (!description.directed_emission && sampled > 0) {
+        return 1; // the hemisphere; that some light passes is all there is to know
+    }
+    const double sine = emission_sine(train, straight, source, sampled);
     if (!(sine > 0)) {
         refuse("illumination.prescription", prescribed.name, "an illuminator whose light passes the objective",
                "Check distances and semi-diameters.", prescribed.file);

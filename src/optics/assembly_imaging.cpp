@@ -1,5 +1,6 @@
 #include "optics/assembly.hpp"
 
+#include "core/parallel_list.hpp"
 #include "core/units.hpp"
 #include "optics/best_focus.hpp"
 #include "optics/first_order.hpp"
@@ -9,6 +10,7 @@
 #include <algorithm>
 #include <cmath>
 #include <future>
+#include <numeric>
 
 namespace vkfv::optics {
 
@@ -147,14 +149,21 @@ MeasuredImaging measure_imaging(const InstrumentDescription& description, const 
     const auto focus = [&](const Outline& outline) {
         return best_focus(imaging, layout.magnification, outline, nodes);
     };
-    auto edge_focus = std::async(std::launch::async, [&] {
-        return focus(outline_at(imaging, {std::max(layout.field_corner.x, layout.field_corner.y), 0}));
-    });
+    // In opposite directions, so that a tilted field is no curved one.
+    const auto focus_all_round = [&](double distance) {
+        const auto directions = search_directions(imaging.symmetric);
+        const auto heights = parallel_list(static_cast<int>(directions.size()), [&](int i) {
+            return focus(outline_at(imaging, distance * directions[static_cast<std::size_t>(i)]));
+        });
+        return std::accumulate(heights.begin(), heights.end(), 0.0) / static_cast<double>(heights.size());
+    };
+    auto edge_focus =
+        std::async(std::launch::async, focus_all_round, std::max(layout.field_corner.x, layout.field_corner.y));
     measured.best_focus_offset = focus(on_axis);
     measured.least_spot_offset = least_spot(imaging, on_axis);
-    const Outline at_corner = outline_at(imaging, {layout.field_half_diagonal, 0});
-    measured.field_curvature_corner = focus(at_corner) - measured.best_focus_offset;
+    measured.field_curvature_corner = focus_all_round(layout.field_half_diagonal) - measured.best_focus_offset;
     measured.field_curvature = edge_focus.get() - measured.best_focus_offset;
+    const Outline at_corner = outline_at(imaging, {layout.field_half_diagonal, 0});
     const double relative_light = at_corner.area() / on_axis.area();
     if (relative_light < 0.9) {
         measured.warnings.push_back(

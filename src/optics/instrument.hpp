@@ -122,7 +122,8 @@ struct FirstOrder {
     // apertures with uniform density in direction cosines, as a Lambertian specimen's does.
     double best_focus_offset = 0;         // its wavefront has the least variance, over the spectrum: z = 0 of a scan
     double least_spot_offset = 0;         // its rays have the least RMS distance from their centroid on the detector
-    double field_curvature = 0;           // the same at the field's edge, from the on-axis best focus (+z)
+    // Best focus from that on the axis (+z); of displaced parts the mean all round.
+    double field_curvature = 0;           // at the field's edge
     double field_curvature_corner = 0;    // in the field's corners
     double field_edge = 0;                // the field height that belongs to it: half the longer side in the object
     glm::dvec2 field_corner{0};           // half of both sides of the field, in the object

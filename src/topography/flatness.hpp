@@ -2,7 +2,10 @@
 // correction of its field curvature.
 #pragma once
 
+#include "core/grid.hpp"
 #include "surface/height_map.hpp"
+
+#include <functional>
 
 namespace vkfv::topography {
 
@@ -25,5 +28,12 @@ struct FlatnessCorrected {
 
 // Both on one grid (std::invalid_argument otherwise). A flat without measured points leaves none.
 FlatnessCorrected correct_flatness(surface::HeightMap measured, const surface::HeightMap& flat);
+
+// What a curved field that stays in the heights adds to their standard uncertainty: its distance from its own mean over
+// the measured points is an error of known size that is not corrected, and adds by squares (JCGM 100:2008, F.2.4.5).
+// curvature: height of a level surface at (x, y) as the instrument sees it; all in mm. Gives the curvature's
+// peak-to-valley over the measured points, 0 without any. Both grids of one size: std::invalid_argument otherwise.
+double add_curvature(Grid<double>& uncertainty, const surface::HeightMap& measured,
+                     const std::function<double(double x, double y)>& curvature);
 
 } // namespace vkfv::topography

@@ -78,5 +78,30 @@ TEST(Flatness, CorrectionTellsWhatItTookOff) {
     EXPECT_THROW(correct_flatness(measured, surface::HeightMap{}), std::invalid_argument);
 }
 
+// Of a tilted field its deviation from the mean over the measured points alone, by squares.
+TEST(Flatness, CurvatureThatStaysAddsToTheUncertainty) {
+    auto heights = flat_of([](int, int) { return 7.0; });
+    for (int row = 0; row < points; ++row) {
+        for (int column = points - 20; column < points; ++column) {
+            heights.height(column, row) = std::numeric_limits<double>::quiet_NaN(); // not measured
+        }
+    }
+    const auto field = [](double x, double y) { return 5 + 0.01 * (x - 3) + 0 * y; };
+    Grid<double> uncertainty(points, points, 3e-4);
+    const int last = points - 21;
+    EXPECT_NEAR(add_curvature(uncertainty, heights, field), 0.01 * last * spacing, 1e-12);
+    for (const int column : {0, 31, last}) {
+        EXPECT_NEAR(uncertainty(column, 9), std::hypot(3e-4, 0.01 * spacing * (column - 0.5 * last)), 1e-12);
+    }
+    EXPECT_NEAR(uncertainty(last / 2, 9), 3e-4, 1e-12); // none at the mean
+    EXPECT_TRUE(std::isnan(uncertainty(points - 1, 9)));
+
+    for (double& height : heights.height.values) {
+        height = std::numeric_limits<double>::quiet_NaN();
+    }
+    EXPECT_EQ(add_curvature(uncertainty, heights, field), 0);
+    EXPECT_THROW(add_curvature(uncertainty, surface::HeightMap{}, field), std::invalid_argument);
+}
+
 } // namespace
 } // namespace vkfv::topography

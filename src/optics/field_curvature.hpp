@@ -1,0 +1,23 @@
+// The surface of best focus over the field: what an instrument takes off every height unless a flat corrects it.
+#pragma once
+
+namespace vkfv::optics {
+
+struct FirstOrder;
+
+// An even polynomial of the distance from the axis, since the third-order field curvature goes with its square and the
+// next order with its fourth power (Welford, "Aberrations of Optical Systems", sections 7.6 and 10.4).
+struct FieldCurvature {
+    double quadratic = 0; // 1/mm
+    double quartic = 0;   // 1/mm^3
+
+    // Of best focus above that on the axis, mm; x and y from the axis on the object plane, mm.
+    double height(double x, double y) const;
+};
+
+// Through the best focus that was traced at the edge and in the corner of the field (best_focus.hpp: by waves). A
+// detector so narrow that both are alike, or a corner without light, leaves the quadratic term. What is not even,
+// of displaced parts, is not in it.
+FieldCurvature field_curvature(const FirstOrder& first_order);
+
+} // namespace vkfv::optics
