@@ -120,8 +120,8 @@ struct FirstOrder {
     double pixel_pitch = 0;        // in the object plane
     // Heights above the paraxial plane, towards the objective (+z), of a point on the axis; its light fills the real
     // apertures with uniform density in direction cosines, as a Lambertian specimen's does.
-    double best_focus_offset = 0;         // its wavefront has the least variance, over the spectrum: z = 0 of a scan
-    double least_spot_offset = 0;         // its rays have the least RMS distance from their centroid on the detector
+    double best_focus_offset = 0; // its wavefront has the least variance, over the spectrum: z = 0 of a scan
+    double least_spot_offset = 0; // its rays have the least RMS distance from their centroid on the detector
     // Best focus from that on the axis (+z); of displaced parts the mean all round.
     double field_curvature = 0;           // at the field's edge
     double field_curvature_corner = 0;    // in the field's corners

@@ -93,9 +93,9 @@ TEST(CameraStack, ThePieceOfOnesOwnMicroscopeHasItsStep) {
     const auto folder = fresh_folder("own_microscope");
     const auto example = (fs::path(VKFV_SOURCE_DIR) / "assets/stacks/own_microscope.toml").string();
     std::vector<std::string> words = {"stack", example, "--out", "out", "--quiet", "--rays", "184320"};
-    for (const char* setting : {"detector.pixels=[48,40]", "specimen.size_mm=0.012", "scan.z_step_um=1",
-                                "specimen.roughness.ra_um=0.1", "specimen.roughness.kernel_um=0.4", "topography.window_px=15",
-                                "topography.focus_measure=wavelet"}) {
+    for (const char* setting :
+         {"detector.pixels=[48,40]", "specimen.size_mm=0.012", "scan.z_step_um=1", "specimen.roughness.ra_um=0.1",
+          "specimen.roughness.kernel_um=0.4", "topography.window_px=15", "topography.focus_measure=wavelet"}) {
         words.insert(words.end(), {"--set", setting});
     }
     expect_success(run_program(words, folder));
