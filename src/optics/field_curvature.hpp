@@ -5,8 +5,8 @@ namespace vkfv::optics {
 
 struct FirstOrder;
 
-// An even polynomial of the distance from the axis, since the third-order field curvature goes with its square and the
-// next order with its fourth power (Welford, "Aberrations of Optical Systems", sections 7.6 and 10.4).
+// An even polynomial of the distance from the axis: curvature of the field goes with its square in the third order
+// (Born and Wolf, "Principles of Optics", section 5.3), and with its fourth power too in the next.
 struct FieldCurvature {
     double quadratic = 0; // 1/mm
     double quartic = 0;   // 1/mm^3
