@@ -19,13 +19,13 @@ namespace vkfv::measurement {
 
 // The configured instrument. Throws InputError at the place of the key that does not fit.
 optics::Instrument assemble_instrument(const Configuration& configuration);
-// For its figures alone, in two thirds of the time: its source lights the hemisphere, since the proof of a
-// narrower cone that holds all useful light is what takes longest.
-optics::Instrument assemble_for_figures(const Configuration& configuration);
 // The same for exposures of a specimen at these heights of the focal plane (mm), with its warnings in the
 // log.
 optics::Instrument assemble_instrument(const Configuration& configuration, const specimen::Specimen& specimen,
                                        std::span<const double> focal_heights);
+// The instrument for its figures alone, not for tracing: its source lights the hemisphere, since the proof of a
+// narrower cone that holds all useful light takes time, and no figure depends on it.
+optics::Instrument assemble_for_figures(const Configuration& configuration);
 
 // Where the configuration's images are really taken; none: at their nominal positions.
 std::optional<scan::StageMotion> stage_motion(const Configuration& configuration);

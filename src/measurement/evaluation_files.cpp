@@ -253,7 +253,7 @@ void write_results(ResultFolder& folder, const EvaluatedStack& stack) {
             {"polynomial_peak_to_valley_um", evaluation.flatness->polynomial_peak_to_valley * um_per_mm}};
     }
     if (evaluation.field_curvature) {
-        results["field_curvature_left_um"] = *evaluation.field_curvature * um_per_mm;
+        results["field_curvature_uncorrected_um"] = *evaluation.field_curvature * um_per_mm;
     }
     const auto& whole = evaluation.topography.stack;
     results["curves"] = {{"curve_width_steps", whole.curve_width_steps},

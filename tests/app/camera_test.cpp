@@ -87,8 +87,8 @@ TEST(CameraStack, OtherSeedsMakeOtherImagesAndNoCameraMakesLight) {
 }
 
 // The tutorial's microscope: ring light, rectangular chip, camera, ideal 20x/0.45. A piece of 8 um across the step, its
-// texture as rough as in the tutorial's table. The error may be 4 standard errors, and no more than a third of the
-// depth of field of 2.6 um.
+// texture as rough as in the tutorial's table, by a window that fits into it. The error may be 4 standard errors, and
+// no more than a third of the depth of field of 2.6 um.
 TEST(CameraStack, ThePieceOfOnesOwnMicroscopeHasItsStep) {
     const auto folder = fresh_folder("own_microscope");
     const auto example = (fs::path(VKFV_SOURCE_DIR) / "assets/stacks/own_microscope.toml").string();
