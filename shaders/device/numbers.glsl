@@ -68,3 +68,17 @@ const uint CONSTANT_KNOWN_COUNT = 89u;
 // clang-format on
 const uint CONSTANT_KNOWN_SURFACES = 100u; // from here on, those of each known surface:
 const uint KNOWN_FIELD_CAPACITY = 16u;     // so many numbers for each, of which a field has that of its place
+
+// Polynomials of the illumination (device/train_polynomials.glsl), fields of TrainPolynomials; then of each polynomial
+// its terms and its degree, and of those of edges what EdgePolynomial has besides.
+const uint CONSTANT_POLYNOMIAL_EDGES = 12u;
+const uint CONSTANT_POLYNOMIAL_PER_RADIUS = 13u;
+const uint CONSTANT_POLYNOMIAL_PER_SINE = 14u;
+const uint CONSTANT_POLYNOMIAL_PLANE = 15u;
+const uint CONSTANT_POLYNOMIALS = 1200u;    // from here on, to 1839; glslang takes numbers below 2048
+const uint KNOWN_POLYNOMIAL_CAPACITY = 64u; // numbers for each: its terms, and from here on
+const uint KNOWN_DEGREE = 56u;
+const uint KNOWN_EDGE_SURFACE = 57u;
+const uint KNOWN_EDGE_INSIDE_BELOW = 58u;
+const uint KNOWN_EDGE_ENDS_FROM = 59u;
+const uint KNOWN_EDGE_ENDS_BELOW = 60u;

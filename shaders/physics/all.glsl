@@ -15,6 +15,10 @@
 #include "physics/light_field.glsl"
 #include "physics/train.glsl"
 #include "physics/short_train.glsl"
+#include "physics/train_polynomials.glsl"
+#ifdef VKFV_POLYNOMIALS
+#include "device/train_polynomials.glsl"
+#endif
 #include "physics/scatter_basis.glsl"
 #include "physics/scatter_models.glsl"
 #include "physics/scatter.glsl"

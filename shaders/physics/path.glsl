@@ -104,6 +104,27 @@ VKFV_SCENE_FUNCTION VKFV_FUNCTION Emission emit(VKFV_SCENE_PARAMETER Instrument 
     return emission;
 }
 
+// Through the illumination, to some plane behind it. ray: in the frame of its first vertex.
+VKFV_SCENE_FUNCTION VKFV_FUNCTION TrainResult pass_illumination(VKFV_SCENE_PARAMETER Instrument instrument, Ray ray,
+                                                                real index, Light light) {
+    TrainResult train = enter_train(ray, index);
+    bool known = false;
+#ifdef VKFV_POLYNOMIALS
+    if (known_edges >= 0) {
+        PolynomialPassage passage = pass_by_polynomials(known_illumination(), ray, instrument.specimen_index);
+        train.ray = passage.ray;
+        train.status = passage.status;
+        train.surface = passage.surface < 0 ? -1 : instrument.illumination_first + passage.surface;
+        known = passage.known;
+    }
+#endif
+    if (!known) {
+        train = trace_short_train(VKFV_SCENE instrument.illumination_first, instrument.illumination_count, ray, index,
+                                  light, SHORT_TRAIN_PLAIN);
+    }
+    return train;
+}
+
 VKFV_SCENE_FUNCTION VKFV_FUNCTION Arrival illuminate(VKFV_SCENE_PARAMETER Instrument instrument,
                                                      SpecimenRecord specimen, Exposure exposure, uvec2 path) {
     Emission emission = emit(VKFV_SCENE instrument, draw(exposure.seed, exposure.image, path, 0u));
@@ -116,8 +137,7 @@ VKFV_SCENE_FUNCTION VKFV_FUNCTION Arrival illuminate(VKFV_SCENE_PARAMETER Instru
     real specimen_index = specimen_medium_index(instrument, arrival.light);
     real index = is_ring ? specimen_index : real(1.0);
     ray.direction = ray.direction * index;
-    TrainResult train = trace_short_train(VKFV_SCENE instrument.illumination_first, instrument.illumination_count, ray,
-                                          index, arrival.light, SHORT_TRAIN_PLAIN);
+    TrainResult train = pass_illumination(VKFV_SCENE instrument, ray, index, arrival.light);
     Ray down = fly_to_top(train.ray, exposure, specimen_index);
     arrival.fate = make_fate(train.status, train.surface);
     // The specimen frame is the illumination's turned half a turn about x.

@@ -38,6 +38,7 @@
     using glm::ceil; \
     using glm::clamp; \
     using glm::cos; \
+    using glm::dot; \
     using glm::exp; \
     using glm::floor; \
     using glm::fract; \

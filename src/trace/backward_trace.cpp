@@ -49,9 +49,8 @@ std::vector<vulkan::SpecializationConstant> constants(const DeviceScene& scene,
                                                       const physics::f64::BackwardOptics& optics) {
     // The way to the source is traced by a loop.
     const auto& trains = scene.instrument.constants;
-    auto all = scene.is_specialised()
-                   ? scene.specialised_constants(trains.illumination_first, trains.illumination_count)
-                   : scene.kernel_constants();
+    auto all = scene.specialised ? scene.specialised_constants(trains.illumination_first, trains.illumination_count)
+                                 : scene.kernel_constants();
     all.push_back({kernels::CONSTANT_CONE_CANDIDATES, optics.cone_candidates});
     all.push_back({kernels::CONSTANT_LOBE_CANDIDATES, optics.lobe_candidates});
     all.push_back({kernels::CONSTANT_SURE_CANDIDATES, optics.sure_candidates});
@@ -63,7 +62,7 @@ std::vector<vulkan::SpecializationConstant> constants(const DeviceScene& scene,
 }
 
 std::span<const std::uint32_t> variant(const DeviceScene& scene) {
-    return scene.is_specialised()
+    return scene.specialised
                ? scene.variant(backward_specialised_quadtree, backward_specialised_ray_query, backward_specialised_bvh)
                : scene.variant(backward_quadtree, backward_ray_query, backward_bvh);
 }

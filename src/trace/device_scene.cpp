@@ -1,10 +1,12 @@
 #include "trace/device_scene.hpp"
+#include "optics/train_polynomials.hpp"
 #include "trace/outward.hpp"
 #include "trace/wave_image.hpp"
 #include "trace/wave_memory.hpp"
 
 #include <bit>
 #include <cmath>
+#include <future>
 #include <limits>
 #include <utility>
 
@@ -43,6 +45,18 @@ ElementBuffers element_buffers(const vulkan::Device& device, const optics::Room&
     return {buffer_of(device, in_float(room.elements)), buffer_of(device, held), buffer_of(device, facets)};
 }
 
+// Whether the forward and backward kernels have the instrument as constants: if it is small enough, and where that pays
+// or is asked for.
+bool pays_in_constants(const vulkan::Device& device, const optics::Instrument& instrument,
+                       const TraceOptions& options) {
+    // A processor compiles such kernels in 2 to 3 s at every start and then saves about 0.4 us a ray; a GPU compiles
+    // them in 1.4 s once, as they are kept (vulkan/pipeline_cache.hpp), and saves 25 ps a ray.
+    constexpr std::uint64_t rays_that_pay = 20000000;
+    const bool pays = !vulkan::is_software(device.report()) || options.rays >= rays_that_pay;
+    return instrument.surfaces.size() <= std::size_t{physics::f32::KNOWN_SURFACES} &&
+           options.instrument_in_constants.value_or(pays);
+}
+
 vulkan::Buffer light_points_of(const vulkan::Device& device, const optics::Instrument& instrument) {
     std::vector<float> points = instrument.light_field.value_or(optics::LightField{}).points.values;
     points.resize(std::max<std::size_t>(points.size(), 1)); // a buffer holds something
@@ -75,6 +89,15 @@ DeviceScene make_device_scene(const optics::Instrument& instrument, const specim
                               const TraceOptions& options, const optics::Instrument* seen) {
     auto device =
         options.opened ? options.opened : std::make_shared<const vulkan::Device>(vulkan::DeviceOptions{options.device});
+    const bool specialised = pays_in_constants(*device, instrument, options);
+    std::future<std::optional<physics::f64::TrainPolynomials>> polynomials;
+    if (specialised && options.polynomials && options.estimator == Estimator::forward && !options.nonsequential) {
+        // Beside the specimen, which takes longer.
+        polynomials = std::async(std::launch::async, [&instrument] {
+            const auto fitted = optics::fit_illumination(instrument);
+            return fitted ? std::optional(fitted->polynomials) : std::nullopt;
+        });
+    }
     optics::Room room = options.nonsequential ? optics::furnish(instrument) : optics::Room{};
     Accounts accounts =
         options.nonsequential ? Accounts(instrument, room.names) : Accounts(instrument, options.directed_scatter);
@@ -112,12 +135,13 @@ DeviceScene make_device_scene(const optics::Instrument& instrument, const specim
             .instrument = instrument,
             .seed = options.seed,
             .rays = options.rays,
-            .instrument_in_constants = options.instrument_in_constants,
+            .specialised = specialised,
             .room = std::move(room),
             .accounts = std::move(accounts),
             .features = instrument.features | (options.directed_scatter ? physics::f32::FEATURE_DIRECTED_SCATTER : 0u) |
                         (filter ? physics::f32::FEATURE_PUPIL_CELLS : 0u) |
                         (specimen.reflectance ? physics::f32::FEATURE_REFLECTANCE_MAP : 0u),
+            .illumination = polynomials.valid() ? polynomials.get() : std::nullopt,
             .traversal = std::move(traversal),
             .device_specimen = std::move(device_specimen),
             .constants = constants,
@@ -190,15 +214,6 @@ std::vector<vulkan::SpecializationConstant> DeviceScene::kernel_constants() cons
     return all;
 }
 
-bool DeviceScene::is_specialised() const {
-    // A processor compiles such kernels in 2 to 3 s at every start and then saves about 0.4 us a ray; a GPU compiles
-    // them in 1.4 s once, as they are kept (vulkan/pipeline_cache.hpp), and saves 25 ps a ray.
-    constexpr std::uint64_t rays_that_pay = 20000000;
-    const bool pays = !software() || rays >= rays_that_pay;
-    return instrument.surfaces.size() <= std::size_t{physics::f32::KNOWN_SURFACES} &&
-           instrument_in_constants.value_or(pays);
-}
-
 std::vector<vulkan::SpecializationConstant> DeviceScene::specialised_constants(int first, int count) const {
     auto all = kernel_constants();
     const auto add = [&](std::uint32_t id, auto value) { all.push_back({id, std::bit_cast<std::uint32_t>(value)}); };
@@ -218,6 +233,42 @@ std::vector<vulkan::SpecializationConstant> DeviceScene::specialised_constants(i
 #define VKFV_LEAVE(type, name)
 #define VKFV_ADD_OF_SURFACE(id, place, type, name) add(id + place, surface.name);
         VKFV_SURFACE_FIELDS(VKFV_LEAVE, VKFV_ADD_OF_SURFACE, id)
+    }
+    return all;
+}
+
+std::vector<vulkan::SpecializationConstant> DeviceScene::illumination_polynomials() const {
+    if (!illumination) {
+        return {};
+    }
+    std::vector<vulkan::SpecializationConstant> all;
+    const auto add = [&](std::uint32_t id, int value) { all.push_back({id, static_cast<std::uint32_t>(value)}); };
+    const auto add_real = [&](std::uint32_t id, double value) {
+        all.push_back({id, std::bit_cast<std::uint32_t>(static_cast<float>(value))});
+    };
+    add(kernels::CONSTANT_POLYNOMIAL_EDGES, illumination->edges);
+    add_real(kernels::CONSTANT_POLYNOMIAL_PER_RADIUS, illumination->per_radius);
+    add_real(kernels::CONSTANT_POLYNOMIAL_PER_SINE, illumination->per_sine);
+    add_real(kernels::CONSTANT_POLYNOMIAL_PLANE, illumination->plane);
+    std::uint32_t id = kernels::CONSTANT_POLYNOMIALS;
+    const auto add_polynomial = [&](const physics::f64::Polynomial& polynomial) {
+        for (std::uint32_t term = 0; term < physics::f64::POLYNOMIAL_TERMS; ++term) {
+            add_real(id + term, polynomial.terms[term]);
+        }
+        add(id + kernels::KNOWN_DEGREE, polynomial.degree);
+    };
+    for (const physics::f64::Polynomial* polynomial :
+         {&illumination->place_r, &illumination->place_s, &illumination->direction_r, &illumination->direction_s}) {
+        add_polynomial(*polynomial);
+        id += kernels::KNOWN_POLYNOMIAL_CAPACITY;
+    }
+    for (const physics::f64::EdgePolynomial& edge : illumination->edge) {
+        add_polynomial(edge.distance_squared);
+        add(id + kernels::KNOWN_EDGE_SURFACE, edge.surface);
+        add_real(id + kernels::KNOWN_EDGE_INSIDE_BELOW, edge.inside_below);
+        add_real(id + kernels::KNOWN_EDGE_ENDS_FROM, edge.ends_from);
+        add_real(id + kernels::KNOWN_EDGE_ENDS_BELOW, edge.ends_below);
+        id += kernels::KNOWN_POLYNOMIAL_CAPACITY;
     }
     return all;
 }

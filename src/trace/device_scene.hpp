@@ -47,12 +47,11 @@ struct DeviceScene {
 
     // Of all kernels: the specimen's, the number of ledger slots, the features.
     std::vector<vulkan::SpecializationConstant> kernel_constants() const;
-    // Whether the forward and backward kernels have the instrument as constants: if it is small enough, and where that
-    // pays or is asked for.
-    bool is_specialised() const;
-    // For such kernels: those of all kernels and of shaders/device/prescription.glsl, for the surfaces first ...
-    // first + count - 1 that the kernel traces through.
+    // For kernels that have the instrument as constants: those of all kernels and of shaders/device/prescription.glsl,
+    // for the surfaces first ... first + count - 1 that the kernel traces through.
     std::vector<vulkan::SpecializationConstant> specialised_constants(int first, int count) const;
+    // Of shaders/device/train_polynomials.glsl; empty where the illumination is traced surface by surface.
+    std::vector<vulkan::SpecializationConstant> illumination_polynomials() const;
 
     // The variant of a kernel for the traversal.
     std::span<const std::uint32_t> variant(std::span<const std::uint32_t> by_quadtree,
@@ -65,11 +64,12 @@ struct DeviceScene {
     std::shared_ptr<const vulkan::Device> device; // buffers point to it
     const optics::Instrument& instrument;
     std::uint32_t seed;
-    std::uint64_t rays;                          // of an image
-    std::optional<bool> instrument_in_constants; // see TraceOptions
-    optics::Room room;                           // of elements; without any for sequential paths
+    std::uint64_t rays; // of an image
+    bool specialised;   // forward and backward kernels have the instrument as constants
+    optics::Room room;  // of elements; without any for sequential paths
     Accounts accounts;
-    std::uint32_t features; // FEATURE_* of instrument, trace and specimen
+    std::uint32_t features;                                     // FEATURE_* of instrument, trace and specimen
+    std::optional<physics::f64::TrainPolynomials> illumination; // in place of its surfaces
     ChosenTraversal traversal;
     DeviceSpecimen device_specimen;
     kernels::Parameters constants;            // with the last exposure

@@ -24,23 +24,30 @@ namespace {
 
 std::vector<vulkan::SpecializationConstant> constants_for(const DeviceScene& scene, std::uint32_t stop_after, int first,
                                                           int count) {
-    auto all = scene.is_specialised() ? scene.specialised_constants(first, count) : scene.kernel_constants();
+    auto all = scene.specialised ? scene.specialised_constants(first, count) : scene.kernel_constants();
     all.push_back({kernels::CONSTANT_STOP_AFTER, stop_after});
     return all;
 }
 
 std::span<const std::uint32_t> illumination_variant(const DeviceScene& scene) {
-    return scene.is_specialised()
+    return scene.specialised
                ? scene.variant(forward_illumination_specialised_quadtree, forward_illumination_specialised_ray_query,
                                forward_illumination_specialised_bvh)
                : scene.variant(forward_illumination_quadtree, forward_illumination_ray_query, forward_illumination_bvh);
 }
 
 std::span<const std::uint32_t> imaging_variant(const DeviceScene& scene) {
-    return scene.is_specialised()
-               ? scene.variant(forward_imaging_specialised_quadtree, forward_imaging_specialised_ray_query,
-                               forward_imaging_specialised_bvh)
-               : scene.variant(forward_imaging_quadtree, forward_imaging_ray_query, forward_imaging_bvh);
+    return scene.specialised ? scene.variant(forward_imaging_specialised_quadtree,
+                                             forward_imaging_specialised_ray_query, forward_imaging_specialised_bvh)
+                             : scene.variant(forward_imaging_quadtree, forward_imaging_ray_query, forward_imaging_bvh);
+}
+
+std::vector<vulkan::SpecializationConstant> illumination_constants(const DeviceScene& scene, std::uint32_t stop_after) {
+    const auto& instrument = scene.instrument.constants;
+    auto all = constants_for(scene, stop_after, instrument.illumination_first, instrument.illumination_count);
+    const auto polynomials = scene.illumination_polynomials();
+    all.insert(all.end(), polynomials.begin(), polynomials.end());
+    return all;
 }
 
 } // namespace
@@ -51,9 +58,7 @@ ForwardTrace::ForwardTrace(const DeviceScene& scene, std::uint32_t batch, std::u
       survivor_count_(*scene.device, sizeof(std::uint32_t)),
       illumination_(*scene.device, "forward_illumination", illumination_variant(scene),
                     scene.declarations({BINDING_SURVIVORS, BINDING_LEDGER, BINDING_SURVIVOR_COUNT}),
-                    sizeof(kernels::Batch),
-                    constants_for(scene, stop_illumination, scene.instrument.constants.illumination_first,
-                                  scene.instrument.constants.illumination_count)),
+                    sizeof(kernels::Batch), illumination_constants(scene, stop_illumination)),
       imaging_(*scene.device, "forward_imaging", imaging_variant(scene),
                scene.declarations({BINDING_SURVIVORS, BINDING_PIXELS, BINDING_LEDGER, BINDING_SURVIVOR_COUNT}), 0,
                constants_for(scene, stop_imaging, scene.instrument.constants.imaging_first,
