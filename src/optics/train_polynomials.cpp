@@ -183,15 +183,11 @@ std::vector<Sample> nodes_coming_to(const Train& train, int surface, const std::
         widest = comes_to(trial, surface) ? glm::max(widest, trial.invariants) : widest;
     }
     constexpr int nodes = 14; // each way
-    std::vector<Sample> samples(nodes * nodes * nodes);
-    parallel_bands(nodes, 1, [&](int first, int end) {
-        for (int i = first; i < end; ++i) {
-            const auto node = [](int k) { return 0.5 - 0.5 * std::cos(std::numbers::pi * (k + 0.5) / nodes); };
-            for (int j = 0; j < nodes * nodes; ++j) {
-                samples[static_cast<std::size_t>(i * nodes * nodes + j)] = train.sample(
-                    widest.x * node(i), widest.z * node(j / nodes), std::numbers::pi * (j % nodes + 0.5) / nodes);
-            }
-        }
+    constexpr int sheet = nodes * nodes;
+    const auto node = [](int k) { return 0.5 - 0.5 * std::cos(std::numbers::pi * (k + 0.5) / nodes); };
+    std::vector<Sample> samples = parallel_list(nodes * sheet, [&](int k) {
+        return train.sample(widest.x * node(k / sheet), widest.z * node(k % sheet / nodes),
+                            std::numbers::pi * (k % nodes + 0.5) / nodes);
     });
     std::erase_if(samples, [&](const Sample& node) { return !comes_to(node, surface); });
     return samples;
@@ -242,7 +238,7 @@ EdgePolynomial fit_edge(const Train& train, int surface, const std::vector<Sampl
     for (const Sample& node : coming) {
         squares.push_back(node.filled[static_cast<std::size_t>(surface)] * edge.semi_diameter_squared);
     }
-    EdgePolynomial result;
+    EdgePolynomial result{};
     result.surface = surface;
     double error = 0;
     for (int degree = 1; degree <= POLYNOMIAL_DEGREE; ++degree) {
@@ -272,6 +268,9 @@ std::pair<Factors, double> fit_factors(const std::vector<Sample>& passing, const
                                        glm::dvec2 (*value)(const Sample&), double allowed) {
     // With the place along x: y is the direction's factor alone.
     std::vector<double> of_place, of_direction, by_place, by_direction;
+    for (std::vector<double>* column : {&of_place, &of_direction, &by_place, &by_direction}) {
+        column->reserve(passing.size());
+    }
     for (const Sample& sample : passing) {
         const glm::dvec2 wanted = value(sample);
         of_direction.push_back(wanted.y / sample.across.y);
