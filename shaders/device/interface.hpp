@@ -12,6 +12,7 @@
 namespace vkfv::kernels {
 
 using glm::uvec2;
+using glm::uvec4;
 using uint = std::uint32_t;
 using real = physics::f32::real;
 using real3 = physics::f32::real3;

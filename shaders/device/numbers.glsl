@@ -22,6 +22,8 @@ const uint BINDING_BACKWARD = 17u;
 const uint BINDING_REFLECTANCES = 18u; // of a specimen: the grid of its reflectance map
 const uint BINDING_FACETS = 19u;
 const uint BINDING_LIGHT_POINTS = 20u; // the grid of what the plane of the field stop lets through
+const uint BINDING_EMISSION_CELLS = 21u;
+const uint BINDING_EMISSION_FIRST = 22u;
 
 const uint FACET_BIT = 0x80000000u; // in the order of the elements' boxes: it is a facet's, whose index follows
 

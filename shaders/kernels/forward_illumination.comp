@@ -5,6 +5,7 @@
 layout(local_size_x = 128) in;
 
 #include "device/kernel.glsl"
+#include "device/emission_cell.glsl"
 #include "device/tally.glsl"
 #include "device/survivors.glsl"
 
@@ -57,14 +58,15 @@ void main() {
             uint low = uaddCarry(batch.first_path.x, index, carry);
             uvec2 path = uvec2(low, batch.first_path.y + carry);
             if (stop_after == STOP_AFTER_SOURCE) {
-                Emission emission = emit(known_instrument(), draw(exposure.seed, exposure.image, path, 0u));
+                Emission emission = emit_path(known_instrument(), exposure, path);
                 departure.fate = make_fate(PATH_ALIVE, -1);
                 // As below.
                 survives = emission.ray.position.x + emission.ray.position.y + emission.ray.direction.x +
                                emission.ray.direction.y + emission.ray.direction.z >
                            real(1e30);
             } else if (stop_after == STOP_AFTER_TRAIN) {
-                Arrival arrival = illuminate(known_instrument(), known_specimen(), exposure, path);
+                Arrival arrival = illuminate(known_instrument(), known_specimen(), exposure,
+                                             emit_path(known_instrument(), exposure, path));
                 departure.fate = arrival.fate;
                 departure.survives = false;
                 // Never so far off; keeps the compiler from dropping what is timed.

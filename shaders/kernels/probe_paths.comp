@@ -2,6 +2,9 @@
 #extension GL_GOOGLE_include_directive : require
 // Every path of a batch by itself: how and where it ended. Tests compare it with the host's reference.
 #include "device/kernel.glsl"
+#ifndef VKFV_NONSEQUENTIAL
+#include "device/emission_cell.glsl"
+#endif
 
 layout(local_size_x = 64) in;
 

@@ -4,6 +4,7 @@
 #include "device/prescription.glsl"
 #endif
 #include "physics/random.glsl"
+#include "physics/emission_cell.glsl"
 #include "physics/spectrum.glsl"
 #include "physics/source.glsl"
 #include "physics/conic.glsl"

@@ -5,8 +5,13 @@ template <class Scene>
 Hit specimen_hit(const Scene& scene, real3 origin, real3 direction) {
     return scene.specimen_hit(origin, direction);
 }
+template <class Scene>
+EmissionCell emission_cell(const Scene& scene, uvec2 path) {
+    return scene.emission_cell(path);
+}
 #else
 Hit specimen_hit(real3 origin, real3 direction); // device/specimen_hit.glsl
+EmissionCell emission_cell(uvec2 path);          // device/emission_cell.glsl
 #endif
 
 // How far the stage holds the specimen beside its place. Rays keep to the specimen frame of a true stage.
@@ -125,9 +130,15 @@ VKFV_SCENE_FUNCTION VKFV_FUNCTION TrainResult pass_illumination(VKFV_SCENE_PARAM
     return train;
 }
 
+// As light of the path leaves the source.
+VKFV_SCENE_FUNCTION VKFV_FUNCTION Emission emit_path(VKFV_SCENE_PARAMETER Instrument instrument, Exposure exposure,
+                                                     uvec2 path) {
+    return emit(VKFV_SCENE instrument,
+                draw_in_cell(exposure.seed, exposure.image, path, emission_cell(VKFV_SCENE path)));
+}
+
 VKFV_SCENE_FUNCTION VKFV_FUNCTION Arrival illuminate(VKFV_SCENE_PARAMETER Instrument instrument,
-                                                     SpecimenRecord specimen, Exposure exposure, uvec2 path) {
-    Emission emission = emit(VKFV_SCENE instrument, draw(exposure.seed, exposure.image, path, 0u));
+                                                     SpecimenRecord specimen, Exposure exposure, Emission emission) {
     Arrival arrival;
     arrival.light = emission.light;
     Ray ray = emission.ray;
@@ -355,7 +366,8 @@ VKFV_SCENE_FUNCTION VKFV_FUNCTION Departure scatter_at_specimen(VKFV_SCENE_PARAM
 
 VKFV_SCENE_FUNCTION VKFV_FUNCTION Departure trace_to_departure(VKFV_SCENE_PARAMETER Instrument instrument,
                                                                SpecimenRecord specimen, Exposure exposure, uvec2 path) {
-    Arrival arrival = illuminate(VKFV_SCENE instrument, specimen, exposure, path);
+    Arrival arrival =
+        illuminate(VKFV_SCENE instrument, specimen, exposure, emit_path(VKFV_SCENE instrument, exposure, path));
     Departure departure;
     departure.fate = arrival.fate;
     departure.survives = false;

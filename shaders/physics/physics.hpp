@@ -3,6 +3,7 @@
 //
 // A scene, handed to the functions that take one, has:
 //   Surface surface_at(int index) const;
+//   EmissionCell emission_cell(uvec2 path) const;      only for forward paths
 //   uint features() const;                             FEATURE_* of its trains
 //   SpectralBin spectral_bin(int index) const;         only with FEATURE_SPECTRUM
 //   Hit specimen_hit(real3 origin, real3 direction) const;

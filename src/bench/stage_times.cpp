@@ -20,8 +20,9 @@ constexpr std::chrono::milliseconds warm_up{500}; // clocks of an idle GPU take 
 StageTimes time_stages(const optics::Instrument& instrument, const specimen::Specimen& specimen,
                        const trace::TraceOptions& options, double focal_height, int runs) {
     trace::DeviceScene scene = trace::make_device_scene(instrument, specimen, options);
-    scene.set_exposure(focal_height, 0);
     const std::uint32_t batch = trace::suitable_batch(scene, options);
+    scene.order_emission(batch); // which then is an image
+    scene.set_exposure(focal_height, 0);
     const trace::ForwardTrace whole(scene, batch);
     const trace::ForwardTrace emission(scene, batch, kernels::STOP_AFTER_SOURCE);
     const trace::ForwardTrace to_specimen(scene, batch, kernels::STOP_AFTER_TRAIN);
@@ -31,6 +32,7 @@ StageTimes time_stages(const optics::Instrument& instrument, const specimen::Spe
     // Both halves of one form of the trace, s.
     const auto time = [&](const trace::ForwardTrace& trace) {
         vulkan::Commands commands(*scene.device, 3);
+        scene.give_emission_order(commands);
         trace.clear(commands);
         trace.record(commands, 0, batch, true);
         commands.submit_and_wait();

@@ -1,14 +1,17 @@
 #include "camera/camera.hpp"
 
-#include "camera/poisson.hpp"
-#include "camera/random_stream.hpp"
 #include "camera/saturation.hpp"
 #include "core/parallel_rows.hpp"
+#include "statistics/poisson.hpp"
+#include "statistics/random_stream.hpp"
 
 #include <algorithm>
 #include <cmath>
 
 namespace vkfv::camera {
+
+using statistics::Purpose;
+using statistics::RandomStream;
 
 namespace {
 
@@ -80,7 +83,7 @@ Grid<float> Camera::image(const Grid<double>& flux, double exposure_time, std::u
             for (int frame = 0; frame < options_.frames; ++frame) {
                 RandomStream random(options_.noise_seed, image, pixel, static_cast<std::uint32_t>(frame),
                                     Purpose::temporal_noise);
-                const double charge = std::min(poisson_count(mean, random), clip_);
+                const double charge = std::min(statistics::poisson_count(mean, random), clip_);
                 const double read = charge + pattern.dark_signal.values[k] + options_.read_noise * random.normal();
                 sum += std::clamp(std::floor(options_.gain * read + options_.offset + 0.5), 0.0, highest_);
             }

@@ -1,6 +1,6 @@
 #include "camera/saturation.hpp"
 
-#include "camera/poisson.hpp"
+#include "statistics/poisson.hpp"
 
 #include <cmath>
 
@@ -15,13 +15,13 @@ double probability_below(double n, double mean) {
         return 0;
     }
     if (n - 1 > mean) { // the few above, summed upwards
-        double term = std::exp(log_poisson_probability(n, mean)), above = 0;
+        double term = std::exp(statistics::log_poisson_probability(n, mean)), above = 0;
         for (double k = n; term > negligible * above && term > 0; k += 1, term *= mean / k) {
             above += term;
         }
         return 1 - above;
     }
-    double term = std::exp(log_poisson_probability(n - 1, mean)), below = 0;
+    double term = std::exp(statistics::log_poisson_probability(n - 1, mean)), below = 0;
     for (double k = n - 1; k >= 0 && term > negligible * below; term *= k / mean, k -= 1) {
         below += term;
     }

@@ -57,6 +57,18 @@ bool pays_in_constants(const vulkan::Device& device, const optics::Instrument& i
            options.instrument_in_constants.value_or(pays);
 }
 
+EmissionBuffers emission_buffers(const vulkan::Device& device, EmissionOrder order) {
+    const std::size_t bytes = (order.cells() + 1) * sizeof(std::uint64_t);
+    vulkan::Buffer given(device, order.given().size_bytes());
+    given.write_values(order.given());
+    std::vector<vulkan::Buffer> of_slots;
+    of_slots.reserve(most_exposures);
+    for (std::size_t slot = 0; slot < most_exposures; ++slot) {
+        of_slots.emplace_back(device, bytes, vulkan::Buffer::Memory::host);
+    }
+    return {std::move(order), std::move(given), vulkan::Buffer(device, bytes), std::move(of_slots)};
+}
+
 vulkan::Buffer light_points_of(const vulkan::Device& device, const optics::Instrument& instrument) {
     std::vector<float> points = instrument.light_field.value_or(optics::LightField{}).points.values;
     points.resize(std::max<std::size_t>(points.size(), 1)); // a buffer holds something
@@ -131,34 +143,59 @@ DeviceScene make_device_scene(const optics::Instrument& instrument, const specim
     }
     vulkan::Buffer spectrum = buffer_of(*device, spectrum_block(instrument));
     vulkan::Buffer light_points = light_points_of(*device, instrument);
-    return {.device = std::move(device),
-            .instrument = instrument,
-            .seed = options.seed,
-            .rays = options.rays,
-            .specialised = specialised,
-            .room = std::move(room),
-            .accounts = std::move(accounts),
-            .features = instrument.features | (options.directed_scatter ? physics::f32::FEATURE_DIRECTED_SCATTER : 0u) |
-                        (filter ? physics::f32::FEATURE_PUPIL_CELLS : 0u) |
-                        (specimen.reflectance ? physics::f32::FEATURE_REFLECTANCE_MAP : 0u),
-            .illumination = polynomials.valid() ? polynomials.get() : std::nullopt,
-            .traversal = std::move(traversal),
-            .device_specimen = std::move(device_specimen),
-            .constants = constants,
-            .host_record = host_record,
-            .surfaces = std::move(surfaces),
-            .parameters = std::move(parameters),
-            .spectrum = std::move(spectrum),
-            .light_points = std::move(light_points),
-            .elements = std::move(elements),
-            .filter = std::move(filter),
-            .cell_light = std::move(cell_light)};
+    DeviceScene scene{.device = std::move(device),
+                      .instrument = instrument,
+                      .seed = options.seed,
+                      .rays = options.rays,
+                      .specialised = specialised,
+                      .room = std::move(room),
+                      .accounts = std::move(accounts),
+                      .features = instrument.features |
+                                  (options.directed_scatter ? physics::f32::FEATURE_DIRECTED_SCATTER : 0u) |
+                                  (filter ? physics::f32::FEATURE_PUPIL_CELLS : 0u) |
+                                  (specimen.reflectance ? physics::f32::FEATURE_REFLECTANCE_MAP : 0u),
+                      .illumination = polynomials.valid() ? polynomials.get() : std::nullopt,
+                      .traversal = std::move(traversal),
+                      .device_specimen = std::move(device_specimen),
+                      .constants = constants,
+                      .host_record = host_record,
+                      .surfaces = std::move(surfaces),
+                      .parameters = std::move(parameters),
+                      .spectrum = std::move(spectrum),
+                      .light_points = std::move(light_points),
+                      .elements = std::move(elements),
+                      .emission = {},
+                      .filter = std::move(filter),
+                      .cell_light = std::move(cell_light)};
+    if (options.estimator == Estimator::forward && !options.nonsequential) {
+        scene.order_emission(options.rays);
+    }
+    return scene;
+}
+
+void DeviceScene::order_emission(std::uint64_t paths) {
+    const EmissionOrder& order =
+        emission.emplace(emission_buffers(*device, EmissionOrder(instrument, paths, seed))).order;
+    constants.emission_drawn = order.drawn();
+    constants.emission_cells = static_cast<std::uint32_t>(order.cells());
+    constants.emission_cells_per_path = static_cast<float>(order.cells_per_path());
 }
 
 void DeviceScene::set_exposure(FocalPosition position, std::uint32_t image, std::size_t for_slot) {
     constants.exposure = to_float(make_exposure(instrument, host_record, position, seed, image));
     slot = for_slot;
     parameters.at(slot).write_values(std::span<const kernels::Parameters>(&constants, 1));
+    if (emission) {
+        emission->first_paths_of_slots.at(slot).write_values(
+            std::span<const std::uint64_t>(emission->order.first_paths(image)));
+    }
+}
+
+void DeviceScene::give_emission_order(vulkan::Commands& commands) const {
+    if (emission) {
+        commands.copy(emission->first_paths_of_slots.at(slot), emission->first_paths, emission->first_paths.bytes());
+        commands.barrier();
+    }
 }
 
 std::vector<const vulkan::Buffer*> DeviceScene::light_buffers() const {

@@ -5,6 +5,7 @@
 #include "specimen/description.hpp"
 #include "trace/device_records.hpp"
 #include "trace/device_specimen.hpp"
+#include "trace/emission_order.hpp"
 #include "trace/host_tracer.hpp"
 #include "trace/ledger.hpp"
 #include "trace/tracer_identity.hpp"
@@ -31,13 +32,25 @@ struct ElementBuffers {
 // Exposures that a device is given at a time: while the host takes one, the device has another.
 inline constexpr std::size_t most_exposures = 3;
 
+// The order of forward paths.
+struct EmissionBuffers {
+    EmissionOrder order;
+    vulkan::Buffer given;                             // of each cell
+    vulkan::Buffer first_paths;                       // of each cell, of the exposure under way on the device
+    std::vector<vulkan::Buffer> first_paths_of_slots; // as the host wrote them
+};
+
 // make_device_scene() makes it. The instrument must outlive it.
 struct DeviceScene {
+    // Of the paths of an image, of which there are as many; what is recorded from the next set_exposure() on has it.
+    void order_emission(std::uint64_t paths);
     // For what is recorded from now on. slot: of those under way at a time, below most_exposures; what was recorded for
     // the slot before must have been done.
     void set_exposure(FocalPosition position, std::uint32_t image, std::size_t slot = 0);
     // Of an image before its first path.
     void clear_cell_light(vulkan::Commands& commands) const;
+    // Before what an exposure submits first: the order of its paths, for the device. Forward alone.
+    void give_emission_order(vulkan::Commands& commands) const;
     // Where light is sorted for waves; none: it is not.
     std::vector<const vulkan::Buffer*> light_buffers() const;
 
@@ -80,6 +93,7 @@ struct DeviceScene {
     vulkan::Buffer spectrum;
     vulkan::Buffer light_points;               // of the light field's grid
     std::optional<ElementBuffers> elements;    // only for non-sequential paths
+    std::optional<EmissionBuffers> emission;   // only for forward ones that are sequential
     std::optional<optics::PupilFilter> filter; // only for images as waves make them, with the light sorted for it
     std::optional<vulkan::Buffer> cell_light;
 };

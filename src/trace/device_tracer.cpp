@@ -92,6 +92,9 @@ class DeviceTracer::Exposure final : public SingleExposure {
     std::uint64_t submit(std::uint64_t first, std::uint64_t end) override {
         const PathTrace& trace = *tracer_.trace_;
         vulkan::Commands& commands = work.open();
+        if (std::exchange(begins_, false)) {
+            tracer_.scene_.give_emission_order(commands);
+        }
         if (std::exchange(clears_, false)) {
             trace.clear(commands);
             tracer_.scene_.clear_cell_light(commands);
@@ -128,6 +131,7 @@ class DeviceTracer::Exposure final : public SingleExposure {
   private:
     const DeviceTracer& tracer_;
     const vulkan::Buffer& for_host_;
+    bool begins_ = true;
     bool clears_ = true;
 };
 
@@ -206,15 +210,22 @@ std::vector<PathEnd> device_paths(const optics::Instrument& instrument, const sp
         *scene.device, "probe_paths",
         nonsequential ? scene.variant({}, probe_nonsequential_ray_query, probe_nonsequential_bvh)
                       : scene.variant(probe_paths_quadtree, probe_paths_ray_query, probe_paths_bvh),
-        scene.declarations({kernels::BINDING_FOUND}),
+        nonsequential ? scene.declarations({kernels::BINDING_FOUND})
+                      : scene.declarations(
+                            {kernels::BINDING_FOUND, kernels::BINDING_EMISSION_CELLS, kernels::BINDING_EMISSION_FIRST}),
         nonsequential ? sizeof(kernels::NonsequentialBatch) : sizeof(kernels::Batch), scene.kernel_constants());
     vulkan::Commands commands(*scene.device);
     const std::uint32_t groups = (count + 63) / 64;
-    const auto bindings = scene.bindings({{kernels::BINDING_FOUND, &ends}});
     if (nonsequential) {
-        commands.dispatch(kernel, bindings, make_nonsequential_batch(scene, first, count), groups);
+        commands.dispatch(kernel, scene.bindings({{kernels::BINDING_FOUND, &ends}}),
+                          make_nonsequential_batch(scene, first, count), groups);
     } else {
-        commands.dispatch(kernel, bindings, make_batch(first, count), groups);
+        scene.give_emission_order(commands);
+        commands.dispatch(kernel,
+                          scene.bindings({{kernels::BINDING_FOUND, &ends},
+                                          {kernels::BINDING_EMISSION_CELLS, &scene.emission->given},
+                                          {kernels::BINDING_EMISSION_FIRST, &scene.emission->first_paths}}),
+                          make_batch(first, count), groups);
     }
     commands.barrier();
     commands.submit_and_wait();

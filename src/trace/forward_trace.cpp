@@ -15,6 +15,8 @@
 
 namespace vkfv::trace {
 
+using kernels::BINDING_EMISSION_CELLS;
+using kernels::BINDING_EMISSION_FIRST;
 using kernels::BINDING_LEDGER;
 using kernels::BINDING_PIXELS;
 using kernels::BINDING_SURVIVOR_COUNT;
@@ -57,7 +59,8 @@ ForwardTrace::ForwardTrace(const DeviceScene& scene, std::uint32_t batch, std::u
     : PathTrace(scene, batch), survivors_(*scene.device, std::size_t{batch} * sizeof(physics::f32::Survivor)),
       survivor_count_(*scene.device, sizeof(std::uint32_t)),
       illumination_(*scene.device, "forward_illumination", illumination_variant(scene),
-                    scene.declarations({BINDING_SURVIVORS, BINDING_LEDGER, BINDING_SURVIVOR_COUNT}),
+                    scene.declarations({BINDING_SURVIVORS, BINDING_LEDGER, BINDING_SURVIVOR_COUNT,
+                                        BINDING_EMISSION_CELLS, BINDING_EMISSION_FIRST}),
                     sizeof(kernels::Batch), illumination_constants(scene, stop_illumination)),
       imaging_(*scene.device, "forward_imaging", imaging_variant(scene),
                scene.declarations({BINDING_SURVIVORS, BINDING_PIXELS, BINDING_LEDGER, BINDING_SURVIVOR_COUNT}), 0,
@@ -70,11 +73,13 @@ void ForwardTrace::record(vulkan::Commands& commands, std::uint64_t first, std::
     if (timed) {
         commands.timestamp();
     }
-    commands.dispatch(
-        illumination_,
-        scene_.bindings(
-            {{BINDING_SURVIVORS, &survivors_}, {BINDING_LEDGER, &fates_}, {BINDING_SURVIVOR_COUNT, &survivor_count_}}),
-        make_batch(first, count), (count + paths_per_group - 1) / paths_per_group);
+    commands.dispatch(illumination_,
+                      scene_.bindings({{BINDING_SURVIVORS, &survivors_},
+                                       {BINDING_LEDGER, &fates_},
+                                       {BINDING_SURVIVOR_COUNT, &survivor_count_},
+                                       {BINDING_EMISSION_CELLS, &scene_.emission->given},
+                                       {BINDING_EMISSION_FIRST, &scene_.emission->first_paths}}),
+                      make_batch(first, count), (count + paths_per_group - 1) / paths_per_group);
     commands.barrier();
     if (timed) {
         commands.timestamp();

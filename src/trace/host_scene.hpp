@@ -3,15 +3,20 @@
 
 #include "optics/room.hpp"
 #include "specimen/intersector.hpp"
+#include "trace/emission_order.hpp"
 
 namespace vkfv::trace {
 
 struct HostScene {
     optics::TrainScene trains;
     const specimen::Intersector* intersector;
-    const optics::Room* room = nullptr; // only for non-sequential paths
+    const optics::Room* room = nullptr;      // only for non-sequential paths
+    const EmissionCells* emission = nullptr; // only for forward paths
 
     const physics::f64::Surface& surface_at(int index) const { return trains.surface_at(index); }
+    physics::f64::EmissionCell emission_cell(glm::uvec2 path) const {
+        return emission->of((std::uint64_t{path.y} << 32) | path.x);
+    }
     std::uint32_t features() const { return trains.features() | intersector->features(); }
     const physics::f64::SpectralBin& spectral_bin(int index) const { return trains.spectral_bin(index); }
     physics::f64::Hit specimen_hit(physics::f64::real3 origin, physics::f64::real3 direction) const {

@@ -70,13 +70,16 @@ class HostTracer final : public Tracer {
             room_ = optics::furnish(instrument);
             room_.grow_facet_tree();
             accounts_ = Accounts(instrument, room_.names);
+        } else {
+            order_ = EmissionOrder(instrument, options.rays, options.seed);
         }
     }
 
     Image expose(FocalPosition position, std::uint32_t image) const override {
         const auto start = std::chrono::steady_clock::now();
         const Exposure exposure = make_exposure(instrument_, record_, position, options_.seed, image);
-        const HostScene scene{trains_of(instrument_, options_), &intersector_, &room_};
+        const EmissionCells emission(order_, image);
+        const HostScene scene{trains_of(instrument_, options_), &intersector_, &room_, &emission};
         const unsigned workers = std::max(1u, std::thread::hardware_concurrency());
         std::vector<std::vector<std::uint64_t>> counts(workers, std::vector<std::uint64_t>(accounts_.pixel_numbers()));
         std::vector<std::vector<std::uint64_t>> fates(workers, std::vector<std::uint64_t>(accounts_.ledger_numbers()));
@@ -153,6 +156,7 @@ class HostTracer final : public Tracer {
     specimen::Intersector intersector_;
     TraceOptions options_;
     optics::Room room_;
+    EmissionOrder order_;
     Accounts accounts_;
     std::optional<optics::PupilFilter> filter_;
 };
@@ -194,7 +198,10 @@ std::vector<PathEnd> host_paths(const optics::Instrument& instrument, const spec
         room = optics::furnish(instrument);
         room.grow_facet_tree();
     }
-    const HostScene scene{trains_of(instrument, options), &intersector, &room};
+    const EmissionOrder order =
+        options.nonsequential ? EmissionOrder() : EmissionOrder(instrument, options.rays, options.seed);
+    const EmissionCells emission(order, image);
+    const HostScene scene{trains_of(instrument, options), &intersector, &room, &emission};
     const SpecimenRecord record = specimen::record(specimen, options.max_bounces);
     const Exposure exposure = make_exposure(instrument, record, position, options.seed, image);
     physics::f64::Instrument constants = instrument.constants;

@@ -310,12 +310,12 @@ TEST(EmissionCone, HoldsThinConesOfAnAssembledIlluminator) {
     const auto arrived = [&](const Instrument& instrument, auto&& each) {
         int count = 0;
         for (std::uint32_t k = 0; k < rays; ++k) {
+            const auto emission = physics::f64::emit(instrument.scene(), instrument.constants,
+                                                     physics::f64::draw(exposure.seed, exposure.image, {k, 0}, 0u));
             const auto arrival =
-                physics::f64::illuminate(instrument.scene(), instrument.constants, specimen, exposure, {k, 0});
+                physics::f64::illuminate(instrument.scene(), instrument.constants, specimen, exposure, emission);
             if (arrival.fate.status == PATH_ALIVE) {
-                const auto draws = physics::f64::draw(exposure.seed, exposure.image, {k, 0}, 0u);
-                const auto ray = physics::f64::emit(instrument.scene(), instrument.constants, draws).ray;
-                each(std::hypot(ray.direction.x, ray.direction.y));
+                each(std::hypot(emission.ray.direction.x, emission.ray.direction.y));
                 ++count;
             }
         }

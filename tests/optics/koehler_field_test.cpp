@@ -38,8 +38,10 @@ std::vector<double> arrivals(const Instrument& instrument, std::uint32_t paths) 
                                           .beside_y = 0};
     std::vector<double> cells(rings * sectors);
     for (std::uint32_t k = 0; k < paths; ++k) {
+        const auto emission = physics::f64::emit(instrument.scene(), instrument.constants,
+                                                 physics::f64::draw(exposure.seed, exposure.image, {k, 0}, 0u));
         const auto arrival =
-            physics::f64::illuminate(instrument.scene(), instrument.constants, specimen, exposure, {k, 0});
+            physics::f64::illuminate(instrument.scene(), instrument.constants, specimen, exposure, emission);
         const auto& p = arrival.position;
         const double share = (p.x * p.x + p.y * p.y) / (field_radius * field_radius);
         if (arrival.fate.status == PATH_ALIVE && share < 1) {

@@ -1,4 +1,4 @@
-#include "camera/poisson.hpp"
+#include "statistics/poisson.hpp"
 
 #include "core/units.hpp"
 
@@ -6,7 +6,7 @@
 #include <array>
 #include <cmath>
 
-namespace vkfv::camera {
+namespace vkfv::statistics {
 
 namespace {
 
@@ -74,4 +74,4 @@ double log_poisson_probability(double count, double mean) {
     return -deviance - 0.5 * std::log(2 * pi * count) - stirling_remainder(count);
 }
 
-} // namespace vkfv::camera
+} // namespace vkfv::statistics

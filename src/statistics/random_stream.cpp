@@ -1,8 +1,8 @@
-#include "camera/random_stream.hpp"
+#include "statistics/random_stream.hpp"
 
 #include "core/units.hpp"
 
-namespace vkfv::camera {
+namespace vkfv::statistics {
 
 namespace {
 
@@ -26,4 +26,4 @@ double RandomStream::normal() {
     return std::sqrt(-2 * std::log(radius)) * std::cos(2 * pi * angle);
 }
 
-} // namespace vkfv::camera
+} // namespace vkfv::statistics

@@ -1,9 +1,9 @@
 // Counts of independent events: electrons.
 #pragma once
 
-#include "camera/random_stream.hpp"
+#include "statistics/random_stream.hpp"
 
-namespace vkfv::camera {
+namespace vkfv::statistics {
 
 // Of a Poisson distribution, exact at every mean: by inversion below 10, above by W. Hörmann's transformed rejection
 // with squeeze, "The transformed rejection method for generating Poisson random variables", Insurance: Mathematics and
@@ -15,4 +15,4 @@ inline constexpr double largest_mean = 1e12;
 // (2000), parts it, so that nothing cancels at large means. mean > 0.
 double log_poisson_probability(double count, double mean);
 
-} // namespace vkfv::camera
+} // namespace vkfv::statistics

@@ -1,6 +1,6 @@
 // Electrons and normal deviates against their distributions, computed otherwise: probabilities by std::lgamma, and
 // Pearson's chi-square over 10^6 draws at each mean.
-#include "camera/poisson.hpp"
+#include "statistics/poisson.hpp"
 
 #include <gtest/gtest.h>
 
@@ -8,7 +8,7 @@
 #include <numbers>
 #include <vector>
 
-namespace vkfv::camera {
+namespace vkfv::statistics {
 namespace {
 
 constexpr int draws = 1'000'000;
@@ -99,4 +99,4 @@ TEST(RandomStream, EveryIndexMakesOtherNumbers) {
 }
 
 } // namespace
-} // namespace vkfv::camera
+} // namespace vkfv::statistics

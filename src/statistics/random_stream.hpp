@@ -1,0 +1,40 @@
+// Random numbers of an image without a state that images share: a number is a function of the seed, the image, the
+// element (a camera's pixel, or whatever the image has many of), the round (a camera's frame) and what it is for
+// (shaders/physics/random.glsl, Philox), so that an image has the same bits whichever is taken first, and on however
+// many threads.
+#pragma once
+
+#include "physics/physics.hpp"
+
+#include <array>
+#include <cstdint>
+
+namespace vkfv::statistics {
+
+// What numbers are for: the last word of the generator's counter, which is 0 for the paths of light.
+enum class Purpose : std::uint32_t {
+    temporal_noise = 1, // of a camera, as the next two
+    photo_response = 2,
+    dark_signal = 3,
+    emission_order = 4, // of the trace, as the next
+    emission_order_rest = 5
+};
+
+class RandomStream {
+  public:
+    // Of a pixel's fixed patterns image and round are 0.
+    RandomStream(std::uint32_t seed, std::uint32_t image, std::uint32_t element, std::uint32_t round, Purpose purpose)
+        : seed_(seed), image_(image), counter_(element, round, 0, static_cast<std::uint32_t>(purpose)) {}
+
+    // Two independent numbers, uniform in (0, 1): the middles of 2^52 equal cells.
+    std::array<double, 2> uniforms();
+    // Of mean 0 and standard deviation 1.
+    double normal();
+
+  private:
+    std::uint32_t seed_;
+    std::uint32_t image_;
+    glm::uvec4 counter_;
+};
+
+} // namespace vkfv::statistics
