@@ -1,24 +1,30 @@
 // In which cell of the emission a path is (physics/emission_cell.glsl): of cells in the order of their paths, the
 // last that begins at or before the path.
-layout(set = 0, binding = BINDING_EMISSION_CELLS, scalar) readonly buffer EmissionCells { uvec4 emission_given[]; };
+layout(set = 0, binding = BINDING_EMISSION_CELLS, scalar) readonly buffer EmissionCells { uvec2 emission_given[]; };
 layout(set = 0, binding = BINDING_EMISSION_FIRST, scalar) readonly buffer EmissionFirst {
     uint64_t emission_first[]; // path of each cell
 };
 
+uint emission_place = 0xFFFFFFFFu; // of the invocation's last path; at first none
+
 EmissionCell emission_cell(uvec2 path) {
     uint64_t number = packUint2x32(path);
-    // Cells have nearly equal numbers of paths: from where it is on average, mostly within two steps.
-    real average = (real(path.y) * real(4294967296.0) + real(path.x)) * emission_cells_per_path;
     uint last = emission_cells - 1u;
-    uint place = uint(min(average, real(last)));
-    while (place < last && emission_first[place + 1u] <= number) {
-        ++place;
+    if (emission_place > last) {
+        // Cells have nearly equal numbers of paths: where it is on average, mostly two steps off at most.
+        real average = (real(path.y) * real(4294967296.0) + real(path.x)) * emission_cells_per_path;
+        emission_place = uint(min(average, real(last)));
+        while (emission_first[emission_place] > number) {
+            --emission_place;
+        }
     }
-    while (emission_first[place] > number) {
-        --place;
+    // An invocation's paths ascend.
+    while (emission_place < last && emission_first[emission_place + 1u] <= number) {
+        ++emission_place;
     }
+    uvec2 given = emission_given[emission_place];
     EmissionCell cell;
-    cell.given = emission_given[place];
+    cell.given = uvec4(given.x & 0xFFFFu, given.x >> 16, given.y & 0xFFFFu, given.y >> 16) << 5;
     cell.drawn = emission_drawn;
     return cell;
 }

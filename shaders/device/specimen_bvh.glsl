@@ -6,13 +6,37 @@
 // them.
 layout(set = 0, binding = BINDING_VERTICES, scalar) readonly buffer Pairs { vec4 pair_parts[]; };
 
+// EntryNodes of src/trace/entry_nodes.hpp.
+layout(set = 0, binding = BINDING_ENTRY_NODES, scalar) readonly buffer Entries {
+    int finest_entries; // level
+    uint entry_nodes[];
+};
+
 // The rounding of a box's distance is below this many of specimen_rounding(): some ten steps of the coordinates.
 const real BVH_MARGIN = real(4.0);
 
-BvhWalk specimen_walk(real3 origin, real3 direction, real start) {
+// The node of the tree that holds whatever a ray may meet: the further up, the longer it is across, on whose way from
+// bottom to top most surfaces are flat. margin: mm, of rounding.
+uint entry_node(real3 origin, real3 direction, RayInterval over, real margin) {
+    real half_length = real(0.5) * (over.stop - over.start);
+    real middle = over.start + half_length;
+    real width = specimen.x_max - specimen.x_min;
+    real height = specimen.y_max - specimen.y_min;
+    real cells =
+        min(width / (abs(direction.x) * half_length + margin), height / (abs(direction.y) * half_length + margin));
+    int level = findMSB(uint(clamp(cells, real(1.0), real(1 << finest_entries))));
+    int side = 1 << level;
+    int column = clamp(int((origin.x + middle * direction.x - specimen.x_min) * (real(side) / width)), 0, side - 1);
+    int row = clamp(int((origin.y + middle * direction.y - specimen.y_min) * (real(side) / height)), 0, side - 1);
+    return entry_nodes[((1 << (2 * level)) - 1) / 3 + row * side + column];
+}
+
+BvhWalk specimen_walk(real3 origin, real3 direction, RayInterval over) {
     real reach = max(abs(origin.x), max(abs(origin.y), abs(origin.z)));
     real margin = BVH_MARGIN * (specimen_rounding() + real(4.0) * SURFACE_EPSILON * reach);
-    return bvh_walk(0u, origin, direction, max(start, real(0.0)), margin);
+    RayInterval ahead = over;
+    ahead.start = max(over.start, real(0.0));
+    return bvh_walk(entry_node(origin, direction, ahead, margin), origin, direction, ahead.start, margin);
 }
 
 struct NearestTriangle {
@@ -40,7 +64,7 @@ void consider_triangle(inout NearestTriangle nearest, real u, real v, real w, re
 
 Hit meet_triangles(real3 origin, real3 direction, RayInterval over) {
     RayFrame frame = ray_frame(origin, direction);
-    BvhWalk walk = specimen_walk(origin, direction, over.start);
+    BvhWalk walk = specimen_walk(origin, direction, over);
     NearestTriangle nearest;
     nearest.found = false;
     nearest.distance = over.stop;
@@ -84,7 +108,7 @@ Hit meet_triangles(real3 origin, real3 direction, RayInterval over) {
 }
 
 Hit meet_tiles(SpecimenRay ray, real rounding) {
-    BvhWalk walk = specimen_walk(ray.origin, ray.direction, ray.over.start);
+    BvhWalk walk = specimen_walk(ray.origin, ray.direction, ray.over);
     Hit hit = no_hit();
     hit.distance = ray.over.stop;
     while (bvh_proceed(walk, hit.distance)) {

@@ -47,10 +47,11 @@ void main() {
         kept_count = 0u;
     }
     tally_clear(); // with a barrier
+    // Consecutive paths, whose light is close together.
     uint stride = gl_NumWorkGroups.x * gl_WorkGroupSize.x;
     uint rounds = (batch.count + stride - 1u) / stride;
     for (uint round = 0u; round < rounds; ++round) {
-        uint index = round * stride + gl_GlobalInvocationID.x;
+        uint index = (gl_WorkGroupID.x * rounds + round) * gl_WorkGroupSize.x + gl_LocalInvocationIndex;
         bool survives = false;
         Departure departure;
         if (index < batch.count) {

@@ -59,8 +59,11 @@ bool pays_in_constants(const vulkan::Device& device, const optics::Instrument& i
 
 EmissionBuffers emission_buffers(const vulkan::Device& device, EmissionOrder order) {
     const std::size_t bytes = (order.cells() + 1) * sizeof(std::uint64_t);
-    vulkan::Buffer given(device, order.given().size_bytes());
-    given.write_values(order.given());
+    std::vector<glm::uvec2> packed;
+    for (const auto& cell : order.given()) {
+        packed.emplace_back((cell.x >> 5) | ((cell.y >> 5) << 16), (cell.z >> 5) | ((cell.w >> 5) << 16));
+    }
+    vulkan::Buffer given = buffer_of(device, packed);
     std::vector<vulkan::Buffer> of_slots;
     of_slots.reserve(most_exposures);
     for (std::size_t slot = 0; slot < most_exposures; ++slot) {
@@ -103,7 +106,7 @@ DeviceScene make_device_scene(const optics::Instrument& instrument, const specim
         options.opened ? options.opened : std::make_shared<const vulkan::Device>(vulkan::DeviceOptions{options.device});
     const bool specialised = pays_in_constants(*device, instrument, options);
     std::future<std::optional<physics::f64::TrainPolynomials>> polynomials;
-    if (specialised && options.polynomials && options.estimator == Estimator::forward && !options.nonsequential) {
+    if (!getenv("XNP") && specialised && options.polynomials && options.estimator == Estimator::forward && !options.nonsequential) {
         // Beside the specimen, which takes longer.
         polynomials = std::async(std::launch::async, [&instrument] {
             const auto fitted = optics::fit_illumination(instrument);

@@ -4,6 +4,7 @@
 #include "specimen/description.hpp"
 #include "trace/bounding_volume_hierarchy.hpp"
 #include "trace/device_records.hpp"
+#include "trace/entry_nodes.hpp"
 #include "trace/mesh_lattice.hpp"
 #include "trace/pyramid.hpp"
 #include "trace/triangle_pairs.hpp"
@@ -146,6 +147,14 @@ class Uploader {
                                          sizeof ceilings.header + ceilings.heights.size() * sizeof(float));
         buffer.write(std::as_bytes(std::span(&ceilings.header, 1)));
         buffer.write(std::as_bytes(std::span(ceilings.heights)), sizeof ceilings.header);
+    }
+
+    void put_entries(const EntryNodes& entries) {
+        const auto finest = static_cast<std::int32_t>(entries.finest_level);
+        vulkan::Buffer& buffer = reserve(kernels::BINDING_ENTRY_NODES, "entries into the hierarchy",
+                                         sizeof finest + entries.nodes.size() * sizeof(std::uint32_t));
+        buffer.write(std::as_bytes(std::span(&finest, 1)));
+        buffer.write(std::as_bytes(std::span(entries.nodes)), sizeof finest);
     }
 
     void leave_unread(std::uint32_t slot) {
@@ -352,6 +361,10 @@ DeviceSpecimen::DeviceSpecimen(const vulkan::Device& device, const specimen::Spe
         hierarchy = upload_as(as_field);
     } else {
         hierarchy = upload_as(specimen);
+    }
+    if (traversal == Traversal::bvh) {
+        uploader.put_entries(
+            entry_nodes(hierarchy.nodes, {record_.x_min, record_.y_min}, {record_.x_max, record_.y_max}));
     }
     if (!elements.empty() && traversal == Traversal::ray_query) {
         std::vector<vulkan::AccelerationStructure> parts;

@@ -81,9 +81,9 @@ bool places_are_the_field(const optics::Instrument& instrument) {
 EmissionOrder::EmissionOrder(const optics::Instrument& instrument, std::uint64_t paths, std::uint32_t seed)
     : paths_(std::max<std::uint64_t>(paths, 1)), seed_(seed) {
     // With 2 sqrt(paths) cells where a cell begins varies by about one cell, so that it is found near its average.
-    const int bits =
-        std::clamp(static_cast<int>(std::log2(2 * std::sqrt(static_cast<double>(paths_)))), 0, most_cell_bits);
-    const int pupil_bits = std::min(most_pupil_bits, bits / 4);
+    const int bits = std::clamp(static_cast<int>(std::log2(2 * std::sqrt(static_cast<double>(paths_)))), 0,
+                                most_cell_bits);
+    const int pupil_bits = std::min(most_pupil_bits, bits / 3);
     const Plane at_source = places(instrument);
     const bool places_first = places_are_the_field(instrument);
     const Plane field = places_first ? at_source : directions, pupil = places_first ? directions : at_source;
