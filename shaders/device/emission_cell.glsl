@@ -1,11 +1,13 @@
 // In which cell of the emission a path is (physics/emission_cell.glsl): of cells in the order of their paths, the
 // last that begins at or before the path.
-layout(set = 0, binding = BINDING_EMISSION_CELLS, scalar) readonly buffer EmissionCells { uvec2 emission_given[]; };
+layout(set = 0, binding = BINDING_EMISSION_CELLS, scalar) readonly buffer EmissionCells {
+    uvec2 emission_given[]; // the upper 16 bits of each number, lower half of a word first
+};
 layout(set = 0, binding = BINDING_EMISSION_FIRST, scalar) readonly buffer EmissionFirst {
     uint64_t emission_first[]; // path of each cell
 };
 
-uint emission_place = 0xFFFFFFFFu; // of the invocation's last path; at first none
+uint emission_place = 0xFFFFFFFFu; // cell of the invocation's last path, which ascend; at first none
 
 EmissionCell emission_cell(uvec2 path) {
     uint64_t number = packUint2x32(path);
@@ -18,7 +20,6 @@ EmissionCell emission_cell(uvec2 path) {
             --emission_place;
         }
     }
-    // An invocation's paths ascend.
     while (emission_place < last && emission_first[emission_place + 1u] <= number) {
         ++emission_place;
     }

@@ -37,7 +37,11 @@ int cells_of(const WaveOptions& options, const Instrument& instrument) {
 
 PupilFilter::PupilFilter(const Instrument& instrument, const WaveOptions& options)
     : PupilFilter(options.cells > 0 ? unparted(instrument, options.cells) : filter_for_waves(instrument)) {
-    cells_.parts = static_cast<std::uint32_t>(parts_of(options, instrument));
+    set_parts(instrument, parts_of(options, instrument));
+}
+
+void PupilFilter::set_parts(const Instrument& instrument, int parts) {
+    cells_.parts = static_cast<std::uint32_t>(parts);
     part_pitch_ = instrument.first_order.pixel_pitch / cells_.parts;
     parted_ = true;
 }

@@ -57,6 +57,9 @@ class PupilFilter {
     static PupilFilter unparted(const Instrument& instrument, int cells);
     static PupilFilter unparted(const Instrument& instrument, std::vector<Wavefront> wavefronts, int cells);
 
+    // Of its instrument's pixels, before noise() is asked for.
+    void set_parts(const Instrument& instrument, int parts);
+
     const physics::f64::PupilCells& cells() const { return cells_; }
     int cell_count() const { return static_cast<int>(physics::f64::pupil_cell_count(cells_)); }
     // Its error on the axis, where that decided how many cells there are.

@@ -49,9 +49,9 @@ ElementBuffers element_buffers(const vulkan::Device& device, const optics::Room&
 // or is asked for.
 bool pays_in_constants(const vulkan::Device& device, const optics::Instrument& instrument,
                        const TraceOptions& options) {
-    // A processor compiles such kernels in 2 to 3 s at every start and then saves about 0.4 us a ray; a GPU compiles
-    // them in 1.4 s once, as they are kept (vulkan/pipeline_cache.hpp), and saves 25 ps a ray.
-    constexpr std::uint64_t rays_that_pay = 20000000;
+    // Of a microscope with 38 surfaces a processor compiles such kernels in 25 s at every start and then saves 0.15 us
+    // a ray; a GPU compiles them in 1.4 s once, as they are kept (vulkan/pipeline_cache.hpp), and saves 25 ps a ray.
+    constexpr std::uint64_t rays_that_pay = 200000000;
     const bool pays = !vulkan::is_software(device.report()) || options.rays >= rays_that_pay;
     return instrument.surfaces.size() <= std::size_t{physics::f32::KNOWN_SURFACES} &&
            options.instrument_in_constants.value_or(pays);
@@ -59,7 +59,8 @@ bool pays_in_constants(const vulkan::Device& device, const optics::Instrument& i
 
 EmissionBuffers emission_buffers(const vulkan::Device& device, EmissionOrder order) {
     const std::size_t bytes = (order.cells() + 1) * sizeof(std::uint64_t);
-    std::vector<glm::uvec2> packed;
+    std::vector<glm::uvec2> packed; // the upper 16 of 21 bits, two numbers a word
+    packed.reserve(order.cells());
     for (const auto& cell : order.given()) {
         packed.emplace_back((cell.x >> 5) | ((cell.y >> 5) << 16), (cell.z >> 5) | ((cell.w >> 5) << 16));
     }
@@ -102,11 +103,20 @@ std::vector<vulkan::Box> boxes_of(const optics::Room& room) {
 
 DeviceScene make_device_scene(const optics::Instrument& instrument, const specimen::Specimen& specimen,
                               const TraceOptions& options, const optics::Instrument* seen) {
+    std::future<optics::PupilFilter> asked_filter;
+    if (seen != nullptr && options.waves && !options.nonsequential) {
+        // Beside device and specimen.
+        asked_filter = std::async(std::launch::async, [seen, &options] {
+            optics::PupilFilter made(*seen, *options.waves);
+            made.table();
+            return made;
+        });
+    }
     auto device =
         options.opened ? options.opened : std::make_shared<const vulkan::Device>(vulkan::DeviceOptions{options.device});
     const bool specialised = pays_in_constants(*device, instrument, options);
     std::future<std::optional<physics::f64::TrainPolynomials>> polynomials;
-    if (!getenv("XNP") && specialised && options.polynomials && options.estimator == Estimator::forward && !options.nonsequential) {
+    if (specialised && options.polynomials && options.estimator == Estimator::forward && !options.nonsequential) {
         // Beside the specimen, which takes longer.
         polynomials = std::async(std::launch::async, [&instrument] {
             const auto fitted = optics::fit_illumination(instrument);
@@ -131,8 +141,11 @@ DeviceScene make_device_scene(const optics::Instrument& instrument, const specim
     }
     std::optional<optics::PupilFilter> filter;
     std::optional<vulkan::Buffer> cell_light;
-    if (seen != nullptr && options.waves && !options.nonsequential) {
-        filter.emplace(*seen, waves_on_device(*options.waves, *seen, device->report()));
+    if (asked_filter.valid()) {
+        filter = asked_filter.get();
+        optics::WaveOptions waves = *options.waves;
+        waves.cells = static_cast<int>(filter->cells().side);
+        filter->set_parts(*seen, waves_on_device(waves, *seen, device->report()).parts);
         cell_light.emplace(*device, WaveImage(*filter, instrument.detector_pixels()).numbers() * sizeof(std::uint64_t),
                            vulkan::Buffer::Memory::device, wave_memory_remedy);
         constants.pupil_cells = to_float(filter->cells());

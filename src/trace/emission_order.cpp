@@ -14,8 +14,8 @@ namespace {
 using namespace physics::f64;
 
 constexpr int bits_of_number = 21; // in each of which the four numbers of an emission are drawn
-constexpr int most_cell_bits = 16; // a megabyte of cells, which stays in a GPU's cache
-constexpr int most_pupil_bits = 4; // of them
+constexpr int most_cell_bits = 16; // a megabyte, which stays in a GPU's cache; shaders/device/emission_cell.glsl
+constexpr int most_pupil_bits = 4; // of them; 2 or 6 are slower
 constexpr int sector_bits = 3;     // a ring of a disc is about 4 pi times as long as the disc is wide
 
 // Two of the four numbers, which cut a disc, a rectangle or a ring into pieces about as wide as long.
@@ -81,8 +81,8 @@ bool places_are_the_field(const optics::Instrument& instrument) {
 EmissionOrder::EmissionOrder(const optics::Instrument& instrument, std::uint64_t paths, std::uint32_t seed)
     : paths_(std::max<std::uint64_t>(paths, 1)), seed_(seed) {
     // With 2 sqrt(paths) cells where a cell begins varies by about one cell, so that it is found near its average.
-    const int bits = std::clamp(static_cast<int>(std::log2(2 * std::sqrt(static_cast<double>(paths_)))), 0,
-                                most_cell_bits);
+    const int bits =
+        std::clamp(static_cast<int>(std::log2(2 * std::sqrt(static_cast<double>(paths_)))), 0, most_cell_bits);
     const int pupil_bits = std::min(most_pupil_bits, bits / 3);
     const Plane at_source = places(instrument);
     const bool places_first = places_are_the_field(instrument);

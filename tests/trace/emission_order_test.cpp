@@ -1,0 +1,182 @@
+// Paths in an order are what independent paths are, and stand close together.
+#include "trace/emission_order.hpp"
+#include "trace/microscope.hpp"
+
+#include "support/statistics.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+#include <set>
+
+namespace vkfv::trace {
+namespace {
+
+using namespace physics::f64;
+
+constexpr std::uint32_t seed = 11;
+
+// Pearson's chi-square of the cells' paths in many images, less its mean, over its standard deviation.
+template <class Counts>
+double excess_of(std::size_t cells, double paths, int images, const Counts& counts_of) {
+    double chi = 0;
+    for (int image = 0; image < images; ++image) {
+        for (const double count : counts_of(static_cast<std::uint32_t>(image))) {
+            const double expected = paths / static_cast<double>(cells);
+            chi += (count - expected) * (count - expected) / expected;
+        }
+    }
+    const double freedom = static_cast<double>(images) * static_cast<double>(cells - 1);
+    return (chi - freedom) / std::sqrt(2 * freedom);
+}
+
+optics::Instrument ring_microscope() {
+    auto description = test::microscope_description();
+    description.source.ring = optics::RingLightDescription{.distance = 25,
+                                                           .elevation = 0.6,
+                                                           .width = 2,
+                                                           .segments = 4,
+                                                           .fill = 1,
+                                                           .on = {true, false, true, true},
+                                                           .lit_radius = 0.3};
+    return optics::assemble(description);
+}
+
+Arrival arrival(const optics::Instrument& instrument, const Draws& draws) {
+    Exposure exposure{};
+    exposure.top_distance = instrument.front_vertex_height;
+    return illuminate(instrument.scene(), instrument.constants, SpecimenRecord{}, exposure,
+                      emit(instrument.scene(), instrument.constants, draws));
+}
+
+// Mean distance of light that arrives from the next path's, mm.
+template <class DrawsOf>
+double mean_step(const optics::Instrument& instrument, std::uint32_t paths, const DrawsOf& draws_of) {
+    double sum = 0;
+    int steps = 0;
+    Arrival last{};
+    for (std::uint32_t path = 0; path < paths; ++path) {
+        const Arrival next = arrival(instrument, draws_of(path));
+        if (next.fate.status == PATH_ALIVE) {
+            sum += steps > 0 ? glm::length(next.position - last.position) : 0.0;
+            ++steps;
+            last = next;
+        }
+    }
+    return sum / (steps - 1);
+}
+
+} // namespace
+
+TEST(EmissionOrder, cells_have_as_many_paths_as_independent_ones_would_bring) {
+    const auto instrument = test::microscope();
+    for (const std::uint64_t paths : {60, 3000, 100000}) {
+        const EmissionOrder order(instrument, paths, seed);
+        const int images = 400;
+        const auto counts = [&](std::uint32_t image) {
+            const auto first = order.first_paths(image);
+            EXPECT_EQ(first.size(), order.cells() + 1);
+            EXPECT_EQ(first.front(), 0U);
+            EXPECT_EQ(first.back(), paths);
+            std::vector<double> result;
+            for (std::size_t cell = 0; cell < order.cells(); ++cell) {
+                result.push_back(static_cast<double>(first[cell + 1]) - static_cast<double>(first[cell]));
+            }
+            return result;
+        };
+        const double all = static_cast<double>(paths);
+        EXPECT_LT(std::abs(excess_of(order.cells(), all, images, counts)), 4) << paths;
+        // Halves of the field: what a binomial number of paths has of variance.
+        const auto halves = [&](std::uint32_t image) {
+            const auto cells = counts(image);
+            const double half =
+                std::accumulate(cells.begin(), cells.begin() + static_cast<std::ptrdiff_t>(cells.size() / 2), 0.0);
+            return std::vector{half, all - half};
+        };
+        EXPECT_LT(std::abs(excess_of(2, all, images, halves)), 4) << paths;
+        // Wrong twin: shared out evenly, the rest by chance.
+        const auto even = [&](std::uint32_t image) {
+            std::vector<double> result(order.cells(), std::floor(all / static_cast<double>(order.cells())));
+            result[image % result.size()] += all - std::accumulate(result.begin(), result.end(), 0.0);
+            return result;
+        };
+        EXPECT_GT(std::abs(excess_of(order.cells(), all, images, even)), 10) << paths;
+    }
+}
+
+TEST(EmissionOrder, images_and_seeds_differ_and_the_same_are_the_same) {
+    const auto instrument = test::microscope();
+    const EmissionOrder order(instrument, 10000, seed);
+    EXPECT_EQ(order.first_paths(3), EmissionOrder(instrument, 10000, seed).first_paths(3));
+    EXPECT_NE(order.first_paths(3), order.first_paths(4));
+    EXPECT_NE(order.first_paths(3), EmissionOrder(instrument, 10000, seed + 1).first_paths(3));
+}
+
+TEST(EmissionOrder, cells_are_all_of_the_cube_and_apart) {
+    for (const auto& instrument : {test::microscope(), ring_microscope()}) {
+        const EmissionOrder order(instrument, 1000000, seed);
+        ASSERT_EQ(order.cells(), 1024U);
+        std::set<std::array<std::uint32_t, 4>> seen;
+        for (const glm::uvec4& given : order.given()) {
+            seen.insert({given.x, given.y, given.z, given.w});
+            EXPECT_EQ(given & order.drawn(), glm::uvec4(0));
+            // Sixteen upper bits of 21, as the kernels have them.
+            EXPECT_EQ(given & ~glm::uvec4(0x1FFFE0), glm::uvec4(0));
+        }
+        EXPECT_EQ(seen.size(), order.cells());
+    }
+}
+
+TEST(EmissionOrder, a_path_is_in_the_cell_of_its_number) {
+    const EmissionOrder order(test::microscope(), 5000, seed);
+    const EmissionCells cells(order, 2);
+    const auto first = order.first_paths(2);
+    for (std::uint64_t path = 0; path < 5000; ++path) {
+        std::size_t cell = 0;
+        while (first[cell + 1] <= path) {
+            ++cell;
+        }
+        EXPECT_EQ(cells.of(path).given, order.given()[cell]) << path;
+    }
+    EXPECT_EQ(cells.of(1000000).given, order.given().back());
+    EXPECT_EQ(EmissionCells(EmissionOrder(), 0).of(7).drawn, all_emission().drawn);
+}
+
+TEST(EmissionOrder, numbers_are_uniform_over_all_paths) {
+    constexpr std::uint32_t paths = 200000;
+    constexpr int bins = 64;
+    const EmissionOrder order(test::microscope(), paths, seed);
+    const EmissionCells cells(order, 5);
+    std::array<std::vector<double>, 6> counts;
+    counts.fill(std::vector<double>(bins));
+    for (std::uint32_t path = 0; path < paths; ++path) {
+        const Draws draws = draw_in_cell(seed, 5, {path, 0}, cells.of(path));
+        const std::array numbers{draws.u0, draws.u1, draws.u2, draws.u3, draws.u4, draws.u5};
+        for (std::size_t k = 0; k < numbers.size(); ++k) {
+            counts[k][static_cast<std::size_t>(numbers[k] * bins)] += 1;
+        }
+    }
+    for (const auto& of_number : counts) {
+        EXPECT_LT(std::abs(excess_of(bins, paths, 1, [&](std::uint32_t) { return of_number; })), 4);
+    }
+}
+
+TEST(EmissionOrder, consecutive_paths_arrive_close_together) {
+    constexpr std::uint32_t paths = 20000;
+    for (const auto& instrument : {test::microscope(), ring_microscope()}) {
+        const EmissionOrder order(instrument, paths, seed);
+        const EmissionCells cells(order, 0);
+        const double ordered = mean_step(instrument, paths, [&](std::uint32_t path) {
+            return draw_in_cell(seed, 0, {path, 0}, cells.of(path));
+        });
+        const double free = mean_step(instrument, paths, [&](std::uint32_t path) {
+            return draw(seed, 0, {path, 0}, 0);
+        });
+        // 2^8 cells, of which 2^6 divide the field: an eighth across.
+        EXPECT_LT(ordered, 0.2 * free);
+    }
+}
+
+} // namespace vkfv::trace
