@@ -41,8 +41,12 @@ int number_of_bit(const Plane& plane, int k) {
     return plane.number[k < plane.leading ? 0 : static_cast<std::size_t>((k - plane.leading) % 2)];
 }
 
-// Whether the place at the source, more than the direction there, says where light arrives on the specimen.
-bool places_are_the_field(const optics::Instrument& instrument) {
+// How far light arrives from where it did if its place at the source is another, or its direction; sums in mm^2.
+struct Displacements {
+    double by_place = 0;
+    double by_direction = 0;
+};
+Displacements displacements(const optics::Instrument& instrument) {
     constexpr std::uint32_t trials = 512;
     const Exposure exposure{.top_distance = instrument.front_vertex_height,
                             .seed = 1,
@@ -58,7 +62,7 @@ bool places_are_the_field(const optics::Instrument& instrument) {
     const auto square_between = [](const Arrival& a, const Arrival& b) {
         return dot(a.position - b.position, a.position - b.position);
     };
-    double by_place = 0, by_direction = 0;
+    Displacements all;
     for (std::uint32_t k = 0; k < trials; ++k) {
         const Draws one = draw(exposure.seed, exposure.image, {k, 0}, 0),
                     other = draw(exposure.seed, exposure.image, {k, 1}, 0);
@@ -69,11 +73,11 @@ bool places_are_the_field(const optics::Instrument& instrument) {
         other_direction.u3 = other.u3;
         const Arrival from = arrival(one), moved = arrival(other_place), turned = arrival(other_direction);
         if (from.fate.status == PATH_ALIVE && moved.fate.status == PATH_ALIVE && turned.fate.status == PATH_ALIVE) {
-            by_place += std::min(1.0, square_between(moved, from));
-            by_direction += std::min(1.0, square_between(turned, from));
+            all.by_place += std::min(1.0, square_between(moved, from));
+            all.by_direction += std::min(1.0, square_between(turned, from));
         }
     }
-    return by_place > by_direction;
+    return all;
 }
 
 } // namespace
@@ -83,9 +87,12 @@ EmissionOrder::EmissionOrder(const optics::Instrument& instrument, std::uint64_t
     // With 2 sqrt(paths) cells where a cell begins varies by about one cell, so that it is found near its average.
     const int bits =
         std::clamp(static_cast<int>(std::log2(2 * std::sqrt(static_cast<double>(paths_)))), 0, most_cell_bits);
-    const int pupil_bits = std::min(most_pupil_bits, bits / 3);
     const Plane at_source = places(instrument);
-    const bool places_first = places_are_the_field(instrument);
+    const auto [by_place, by_direction] = displacements(instrument);
+    const bool places_first = by_place > by_direction;
+    // Of a ring light both say where.
+    const bool both = std::min(by_place, by_direction) > 0.1 * std::max(by_place, by_direction);
+    const int pupil_bits = both ? bits / 2 : std::min(most_pupil_bits, bits / 3);
     const Plane field = places_first ? at_source : directions, pupil = places_first ? directions : at_source;
 
     std::vector<int> numbers; // of each bit of a cell's index, from the highest

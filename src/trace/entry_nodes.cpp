@@ -56,16 +56,18 @@ EntryNodes entry_nodes(const std::vector<HierarchyNode>& nodes, glm::dvec2 lower
         const int side = 1 << level;
         const glm::dvec2 cell = (upper - lower) / static_cast<double>(side);
         const std::size_t first = entry_level_begin(level);
+        // What the coarser cell's node holds is all that is over a cell of it.
+        const auto from = [&](int row, int column) {
+            return level == 0 ? 0
+                              : entries.nodes[entry_level_begin(level - 1) +
+                                              static_cast<std::size_t>((row / 2) * (side / 2) + column / 2)];
+        };
         const auto fill = [&](int first_row, int end_row) {
             for (int row = first_row; row < end_row; ++row) {
                 for (int column = 0; column < side; ++column) {
-                    // What the coarser cell's node holds is all that is over this one.
-                    const std::size_t above =
-                        entry_level_begin(level - 1) + static_cast<std::size_t>((row / 2) * (side / 2) + column / 2);
-                    const std::uint32_t from = level == 0 ? 0 : entries.nodes[above];
                     const glm::dvec2 corner = lower + cell * glm::dvec2(column, row);
                     entries.nodes[first + static_cast<std::size_t>(row * side + column)] =
-                        descend(nodes, from, {corner - cell, corner + 2.0 * cell});
+                        descend(nodes, from(row, column), {corner - cell, corner + 2.0 * cell});
                 }
             }
         };

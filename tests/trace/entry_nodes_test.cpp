@@ -41,7 +41,8 @@ void add_primitives(const BoundingVolumeHierarchy& tree, std::uint32_t index, st
         if ((node.inner >> slot & 1U) != 0) {
             add_primitives(tree, child++, primitives);
         } else if (node.slots[slot] != 0) {
-            for (unsigned k = 0; k < static_cast<unsigned>(std::popcount(node.slots[slot] >> 5U)); ++k) {
+            for (unsigned k = 0;
+                 k < static_cast<unsigned>(std::popcount(static_cast<unsigned>(node.slots[slot]) >> 5U)); ++k) {
                 primitives.insert(tree.order.at(node.first_primitive + (node.slots[slot] & 31U) + k));
             }
         }
