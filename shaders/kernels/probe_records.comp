@@ -61,6 +61,11 @@ void main() {
     echo(pupil_cells);
     echo(cell_light.x);
     echo(cell_light.y);
+    for (int word = 0; word < 4; ++word) {
+        echo(emission_drawn[word]);
+    }
+    echo(emission_cells);
+    echo(emission_cells_per_path);
     echo(spectrum[2]);
     echo(survivors[2]);
     echo(elements[2]);

@@ -369,7 +369,7 @@ TEST(Backward, knows_a_ring_light) {
                                                            .lit_radius = 0.05};
     const auto rough = test::rough_specimen();
     const auto instrument = optics::assemble(description);
-    const auto forward = forward_image(instrument, rough, 1, 8'000'000);
+    const auto forward = forward_image(instrument, rough, 1, 12'000'000);
     expect_agreement(forward, backward_image(instrument, rough, 1));
     // Wrong twins: a ring a little lower, and one whose gaps stand elsewhere.
     for (const bool lower : {true, false}) {

@@ -291,11 +291,12 @@ TEST(Image, what_the_specimen_does_not_reflect_is_absorbed) {
     }
 }
 
-// White furnace with every bounce permitted: whatever reaches the specimen leaves it again.
+// White furnace with every bounce permitted: whatever reaches the specimen leaves it again. Of 400 000 paths about 7
+// are under way after 16 bounces, 1 after 32 and one in six times 1 after 64: at 256 chance has no say.
 TEST(Image, a_rough_specimen_loses_nothing_to_bounces) {
     const auto instrument = test::microscope();
     auto with = options();
-    with.max_bounces = 64;
+    with.max_bounces = 256;
     const auto image = expose(instrument, test::steep_specimen(0.0), with);
     const auto rays_of = [&](const std::string& name) {
         for (const auto& entry : image.ledger.entries) {

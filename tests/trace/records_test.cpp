@@ -110,6 +110,11 @@ TEST(Records, the_device_sees_every_field_where_the_host_wrote_it) {
     filler.fill(parameters.pupil_cells);
     filler.fill(parameters.cell_light.x);
     filler.fill(parameters.cell_light.y);
+    for (int word = 0; word < 4; ++word) {
+        filler.fill(parameters.emission_drawn[word]);
+    }
+    filler.fill(parameters.emission_cells);
+    filler.fill(parameters.emission_cells_per_path);
     filler.fill(bins[2]);
     filler.fill(survivors[2]);
     filler.fill(elements[2]);
