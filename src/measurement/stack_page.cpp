@@ -122,8 +122,10 @@ bool add_parameters(report::Page& page, const std::string& prefix, const std::ve
             rows.push_back({with_unit(row)});
             if (known) {
                 const double truth = figures.truth[k].value;
-                const auto form = report::form_for({truth, row.value});
-                for (const double value : {truth, row.value, row.value - truth}) {
+                // The deviation of values of either sign is the largest of the three.
+                const std::vector values{truth, row.value, row.value - truth};
+                const auto form = report::form_for(values);
+                for (const double value : values) {
                     rows.back().push_back(report::reader_number(value, form));
                 }
             } else {
