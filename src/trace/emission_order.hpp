@@ -11,10 +11,9 @@
 namespace vkfv::trace {
 
 // Cells of the emission along a curve on which what lies close together in the field is close together, and in the
-// pupil within that; which of the two belongs to the places at the source and which to the directions is seen by rays. Where both say where
-// light arrives they take equal shares.
-// All paths of an image together are distributed as independent ones: how many lie in a cell is drawn, not shared out,
-// from the multinomial distribution.
+// pupil within that; which of the two belongs to the places at the source and which to the directions is seen by rays.
+// Where both say where light arrives they take equal shares. All paths of an image together are distributed as
+// independent ones: how many lie in a cell is drawn, not shared out, from the multinomial distribution.
 class EmissionOrder {
   public:
     // A single cell: no order.
