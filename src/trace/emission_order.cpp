@@ -1,6 +1,7 @@
 #include "trace/emission_order.hpp"
 
 #include "statistics/poisson.hpp"
+#include "trace/host_tracer.hpp"
 
 #include <algorithm>
 #include <array>
@@ -48,15 +49,10 @@ struct Displacements {
 };
 Displacements displacements(const optics::Instrument& instrument) {
     constexpr std::uint32_t trials = 512;
-    const Exposure exposure{.top_distance = instrument.front_vertex_height,
-                            .seed = 1,
-                            .image = 0,
-                            .focal_height = 0,
-                            .top_distance_residual = 0,
-                            .beside_x = 0,
-                            .beside_y = 0};
+    const SpecimenRecord plane{};
+    const Exposure exposure = make_exposure(instrument, plane, 0.0, 1, 0);
     const auto arrival = [&](const Draws& draws) {
-        return illuminate(instrument.scene(), instrument.constants, SpecimenRecord{}, exposure,
+        return illuminate(instrument.scene(), instrument.constants, plane, exposure,
                           emit(instrument.scene(), instrument.constants, draws));
     };
     const auto square_between = [](const Arrival& a, const Arrival& b) {

@@ -10,8 +10,7 @@ namespace vkfv::trace {
 
 namespace {
 
-// A cell of the finest level for about as many nodes: with smaller ones the tables outgrow what they save.
-constexpr int most_levels = 10;
+constexpr int most_levels = 10; // 1.4 million cells, 6 MB
 
 struct Rectangle {
     glm::dvec2 lower;
@@ -50,6 +49,7 @@ std::uint32_t descend(const std::vector<HierarchyNode>& nodes, std::uint32_t fro
 
 EntryNodes entry_nodes(const std::vector<HierarchyNode>& nodes, glm::dvec2 lower, glm::dvec2 upper) {
     EntryNodes entries;
+    // As many of the finest cells as nodes: smaller ones would seldom be over fewer nodes.
     entries.finest_level = std::min(most_levels, static_cast<int>(std::bit_width(nodes.size())) / 2);
     entries.nodes.resize(entry_level_begin(entries.finest_level + 1));
     for (int level = 0; level <= entries.finest_level; ++level) {
