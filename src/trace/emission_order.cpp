@@ -92,6 +92,7 @@ EmissionOrder::EmissionOrder(const optics::Instrument& instrument, std::uint64_t
     const Plane field = places_first ? at_source : directions, pupil = places_first ? directions : at_source;
 
     std::vector<int> numbers; // of each bit of a cell's index, from the highest
+    numbers.reserve(static_cast<std::size_t>(bits));
     for (int k = 0; k < bits - pupil_bits; ++k) {
         numbers.push_back(number_of_bit(field, k));
     }
@@ -137,7 +138,7 @@ std::vector<std::uint64_t> EmissionOrder::first_paths(std::uint32_t image) const
 
 EmissionCell EmissionCells::of(std::uint64_t path) const {
     const auto after = std::upper_bound(first_paths_.begin(), first_paths_.end() - 1, path);
-    EmissionCell cell;
+    EmissionCell cell{};
     cell.given = order_->given()[static_cast<std::size_t>(after - first_paths_.begin()) - 1];
     cell.drawn = order_->drawn();
     return cell;

@@ -103,9 +103,9 @@ TEST(EmissionOrder, cells_have_as_many_paths_as_independent_ones_would_bring) {
         // Wrong twin: shared out evenly, the rest by chance.
         const auto even = [&](std::uint32_t image) {
             std::vector<double> result(order.cells(), std::floor(all / static_cast<double>(order.cells())));
-            double rest = all - std::accumulate(result.begin(), result.end(), 0.0);
-            for (std::size_t cell = image; rest > 0; ++cell, --rest) {
-                result[cell % result.size()] += 1;
+            const auto rest = static_cast<std::size_t>(all - std::accumulate(result.begin(), result.end(), 0.0));
+            for (std::size_t k = 0; k < rest; ++k) {
+                result[(image + k) % result.size()] += 1;
             }
             return result;
         };
@@ -168,6 +168,7 @@ TEST(EmissionOrder, numbers_are_uniform_over_all_paths) {
             }
         }
         std::vector<double> result;
+        result.reserve(counts.size());
         for (const auto& of_number : counts) {
             result.push_back(std::abs(excess_of(bins, first_paths, 1, [&](std::uint32_t) { return of_number; })));
         }
