@@ -40,15 +40,16 @@ Json figures_of(const trace::Image& image, bool ledger_tells) {
     const auto pixels = static_cast<double>(image.flux.values.size());
     const double mean = flux / pixels, ratio = signal_to_noise(image);
     Json figures;
-    figures["signal to noise"] = ratio;
+    figures["signal to noise"] = sweep_figure(ratio);
     // What is left of the spread of the pixels without the noise.
-    figures["contrast"] = std::sqrt(std::max(0.0, square / pixels / (mean * mean) - 1 - 1 / (ratio * ratio)));
+    const double variance = square / pixels / (mean * mean) - 1 - 1 / (ratio * ratio);
+    figures["contrast"] = sweep_figure(std::isnan(variance) ? variance : std::sqrt(std::max(0.0, variance)));
     const auto share = ledger_tells ? trace::share_collected(image.ledger) : std::nullopt;
     figures["share collected"] = share ? Json(*share) : Json();
     figures["detected / emitted"] = flux / image.ledger.emitted;
     figures["detected rays a pixel"] = static_cast<double>(image.detected) / pixels;
     figures[fmt::format("rays for a ratio of {:g}", wanted_ratio)] =
-        static_cast<double>(image.rays) * std::pow(wanted_ratio / ratio, 2);
+        sweep_figure(static_cast<double>(image.rays) * std::pow(wanted_ratio / ratio, 2));
     return figures;
 }
 

@@ -97,6 +97,10 @@ std::string table_text(const Sweep& sweep, const std::vector<SweepRow>& rows, bo
 
 } // namespace
 
+nlohmann::ordered_json sweep_figure(double value) {
+    return std::isfinite(value) ? nlohmann::ordered_json(value) : nlohmann::ordered_json();
+}
+
 std::string plain_text(const std::string& toml_text) {
     if (const auto value = number_of(toml_text)) {
         const double decade = *value > 0 ? std::log10(*value) : 0;

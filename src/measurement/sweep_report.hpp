@@ -20,6 +20,9 @@ struct SweepRow {
     std::string device;              // that traced it, as the results have it
 };
 
+// A figure of a row: null where it has no value (the noise of an image without light, say), as it is when read again.
+nlohmann::ordered_json sweep_figure(double value);
+
 // The combination's name, which is also the name of its folder: "g=0.3,N=1e7".
 std::string sweep_name(const Sweep& sweep, const std::vector<std::string>& values);
 

@@ -93,9 +93,9 @@ SweepRow stack_row(const std::vector<Configuration>& repeats, Progress& progress
     row.figures["share measured"] = mean_of(deviations, [](const auto& deviation) { return deviation.measured_share; });
     if (repeats.size() > 1) {
         const double noise = height_noise(heights) * um_per_mm;
-        row.figures["height noise / um"] = noise;
+        row.figures["height noise / um"] = sweep_figure(noise);
         row.figures[fmt::format("rays for {:g} um", wanted_height_noise)] =
-            rays_per_image * std::pow(noise / wanted_height_noise, 2);
+            sweep_figure(rays_per_image * std::pow(noise / wanted_height_noise, 2));
     }
     row.picture = picture_of(heights.front());
     return row;

@@ -119,6 +119,21 @@ TEST(Sweep, ImagesAtSeveralHeightsAreThoseImages) {
     EXPECT_NE(images::read_image(folder / "out/z=0/image.tif").values, images::read_image(folder / "one.tif").values);
 }
 
+// What has no value is not drawn, and is none too when the image is taken over from an earlier run.
+TEST(Sweep, AnImageWithoutLightHasNoNoise) {
+    const auto folder = fresh_folder("dark");
+    write_file(folder / "c.toml", with_sweep(replaced(of_rays, "[2e4, 3.2e5]", "[1, 2e4]")));
+    const std::vector<std::string> command = {"--sweep", "c.toml", "--out", "out", "--quiet", "--device", "host"};
+    ASSERT_EQ(run_program(command, folder).exit_code, 0);
+    const auto rows = table(folder / "out/sweep.csv");
+    ASSERT_EQ(rows[0][3], "contrast");
+    EXPECT_EQ(rows[1][2] + rows[1][3], "");
+    EXPECT_NE(rows[2][2], "");
+    const auto charts = read_file(folder / "out/charts.svg");
+    ASSERT_EQ(run_program(command, folder).exit_code, 0);
+    EXPECT_EQ(read_file(folder / "out/charts.svg"), charts);
+}
+
 TEST(Sweep, StacksTellTheNoiseOfHeights) {
     const auto folder = fresh_folder("stacks");
     write_file(folder / "c.toml", with_sweep(R"([sweep]
