@@ -2,17 +2,38 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstddef>
 #include <functional>
+#include <span>
+#include <thread>
 
 namespace vkfv::surface {
-namespace {} // namespace
+namespace {
+
+// Parts are sorted by threads of their own and then merged, two by two.
+void sort_downwards(std::span<double> values) {
+    constexpr std::size_t worth_a_thread = std::size_t{1} << 16;
+    if (values.size() <= worth_a_thread) {
+        std::ranges::sort(values, std::greater<>());
+        return;
+    }
+    const std::size_t half = values.size() / 2;
+    {
+        const std::jthread first([&] { sort_downwards(values.first(half)); });
+        sort_downwards(values.subspan(half));
+    }
+    std::inplace_merge(values.begin(), values.begin() + static_cast<std::ptrdiff_t>(half), values.end(),
+                       std::greater<>());
+}
+
+} // namespace
 
 MaterialRatioCurve::MaterialRatioCurve(const HeightMap& map) {
     heights_.reserve(map.height.values.size());
     for (const double z : map.height.values)
         if (std::isfinite(z))
             heights_.push_back(z);
-    std::sort(heights_.begin(), heights_.end(), std::greater<>());
+    sort_downwards(heights_);
 }
 
 double MaterialRatioCurve::height(double ratio) const {

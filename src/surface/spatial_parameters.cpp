@@ -1,6 +1,7 @@
 #include "surface/spatial_parameters.hpp"
 
 #include "core/fourier.hpp"
+#include "core/parallel_list.hpp"
 #include "core/units.hpp"
 #include "surface/height_parameters.hpp"
 
@@ -8,6 +9,7 @@
 #include <cmath>
 #include <complex>
 #include <cstdlib>
+#include <future>
 #include <vector>
 
 namespace vkfv::surface {
@@ -70,21 +72,23 @@ Falls falls_of_autocorrelation(const HeightMap& map, const HeightParameters& par
     constexpr double rounding = 1e-9; // of a lag along an axis, whose other part is hardly ever zero
     // A point apart at the greatest lag; opposite lags are alike.
     const int directions = 4 * std::max({columns, rows, 1});
-    Falls falls;
-    bool every = true;
-    for (int direction = 0; direction < directions; ++direction) {
+    const auto found = parallel_list(directions, [&](int direction) {
         const double angle = pi * direction / directions;
         const double step_x = 0.5 * std::cos(angle), step_y = 0.5 * std::sin(angle);
-        double fall = undefined, before = 1;
+        double before = 1;
         for (int k = 1; std::abs(k * step_x) <= columns + rounding && std::abs(k * step_y) <= rows + rounding; ++k) {
             const double here = bilinear(sums, k * step_x, k * step_y, normalised);
             if (here < s) {
                 const double steps = k - 1 + (before - s) / (before - here);
-                fall = steps * std::hypot(step_x * map.pitch_x, step_y * map.pitch_y);
-                break;
+                return steps * std::hypot(step_x * map.pitch_x, step_y * map.pitch_y);
             }
             before = here;
         }
+        return undefined;
+    });
+    Falls falls;
+    bool every = true;
+    for (const double fall : found) {
         every = every && !std::isnan(fall);
         falls.shortest = std::fmin(falls.shortest, fall);
         falls.longest = std::fmax(falls.longest, fall);
@@ -114,16 +118,15 @@ double texture_direction(const HeightMap& map, double mean) {
     const int directions = static_cast<int>(std::ceil(2 * pi * highest / (2 * step)));
     if (!(highest > lowest))
         return undefined;
-    std::vector<double> power(static_cast<std::size_t>(directions));
-    for (int direction = 0; direction < directions; ++direction) {
+    const auto power = parallel_list(directions, [&](int direction) {
         const double angle = pi * direction / directions;
         const double cosine = std::cos(angle), sine = std::sin(angle);
         double sum = 0;
         for (double frequency = lowest; frequency <= highest; frequency += step)
             sum += frequency * bilinear(spectrum, frequency * cosine * extent_x, frequency * sine * extent_y,
                                         [](Complex value) { return std::norm(value); });
-        power[static_cast<std::size_t>(direction)] = sum;
-    }
+        return sum;
+    });
     const auto greatest = std::max_element(power.begin(), power.end());
     const double angle = pi * static_cast<double>(greatest - power.begin()) / directions; // of the waves, 0 to pi
     return angle > 0 ? angle - pi / 2 : pi / 2;
@@ -141,8 +144,9 @@ SpatialParameters spatial_parameters(const HeightMap& map) {
     if (!(highest > lowest))
         return {undefined, undefined, undefined};
     const HeightParameters parameters = height_parameters(map);
+    auto direction = std::async(std::launch::async, [&] { return texture_direction(map, parameters.mean); });
     const Falls falls = falls_of_autocorrelation(map, parameters);
-    return {falls.shortest, falls.shortest / falls.longest, texture_direction(map, parameters.mean)};
+    return {falls.shortest, falls.shortest / falls.longest, direction.get()};
 }
 
 } // namespace vkfv::surface

@@ -372,16 +372,18 @@ Topography StackEvaluator::finish(double x0, double y0, double pitch) {
     StackSummary stack = planes_->summary();
 
     const int images = static_cast<int>(z_.size());
+    const SmoothedNoise smoothed = smoothed_noise(axial_weights_);
+    const std::vector<AveragedPoint> points = averaged_points(axial_weights_, images);
+    const double brightness = mean_of(stack.brightness) / images;
+    const Grid<float> brightness_around = window_mean(stack.brightness, window_); // of all images together
+    Topography result =
+        nothing_measured(columns_, rows_, {.height = {}, .x0 = x0, .y0 = y0, .pitch_x = pitch, .pitch_y = pitch});
     const NoiseModel noise_model = noise_of_probes.get();
     const NoiseCorrelation correlation = correlation_of_probes.get();
     const double gain = noise_gain(measure_, 1, correlation);
     StackFigures figures = figures_of_probes.get();
-    const SmoothedNoise smoothed = smoothed_noise(axial_weights_);
-    const std::vector<AveragedPoint> points = averaged_points(axial_weights_, images);
     const std::vector<double> places = places_of_maxima(axial_weights_, images, figures.curve_width_steps,
                                                         {.method = options_.peak, .range = options_.peak_range_steps});
-    const double brightness = mean_of(stack.brightness) / images;
-    const Grid<float> brightness_around = window_mean(stack.brightness, window_); // of all images together
     const double step = (z_.back() - z_.front()) / (images - 1);
     const auto read =
         readings_.empty() ? std::vector<double>() : readings_at(places, points, readings_, axial_weights_);
@@ -389,8 +391,6 @@ Topography StackEvaluator::finish(double x0, double y0, double pitch) {
         return read.empty() ? z_.front() + step * between(at, images, [&](std::size_t point) { return places[point]; })
                             : between(at, images, [&](std::size_t point) { return read[point]; });
     };
-    Topography result =
-        nothing_measured(columns_, rows_, {.height = {}, .x0 = x0, .y0 = y0, .pitch_x = pitch, .pitch_y = pitch});
     std::vector<focus::f64::CurveRecord> of_curves(curve_pixels_.size());
     const auto judge_point = [&](std::size_t pixel, const focus::f64::CurveRecord& curve,
                                  const focus::f64::SingleRecord& single) {
