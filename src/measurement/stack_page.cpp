@@ -9,6 +9,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <iterator>
 
 namespace vkfv::measurement {
 
@@ -121,13 +122,8 @@ bool add_parameters(report::Page& page, const std::string& prefix, const std::ve
             const auto& row = figures.measured[k];
             rows.push_back({with_unit(row)});
             if (known) {
-                const double truth = figures.truth[k].value;
-                // The deviation of values of either sign is the largest of the three.
-                const std::vector values{truth, row.value, row.value - truth};
-                const auto form = report::form_for(values);
-                for (const double value : values) {
-                    rows.back().push_back(report::reader_number(value, form));
-                }
+                std::ranges::move(report::reader_deviation(figures.truth[k].value, row.value),
+                                  std::back_inserter(rows.back()));
             } else {
                 rows.back().push_back(report::reader_figure(row.value));
             }

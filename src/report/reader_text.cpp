@@ -137,6 +137,14 @@ std::string reader_number(double value, const NumberForm& form) {
     return std::isfinite(value) ? digits_of(value, form) + times(form.power) : "–";
 }
 
+std::vector<std::string> reader_deviation(double nominal, double measured) {
+    const std::vector values{nominal, measured, measured - nominal};
+    std::vector<std::string> texts;
+    std::ranges::transform(values, std::back_inserter(texts),
+                           [form = form_for(values)](double value) { return reader_number(value, form); });
+    return texts;
+}
+
 std::vector<std::string> reader_column(const std::vector<double>& values) {
     const auto form = form_for(values);
     const double two_digits = 10 * std::pow(10.0, form.power - form.decimals);

@@ -26,6 +26,9 @@ NumberForm form_for(const std::vector<double>& values);
 // With the decimals of a value that has this standard uncertainty.
 NumberForm form_for(double value, double uncertainty);
 std::string reader_number(double value, const NumberForm& form);
+// A nominal value, the measured one, and their deviation; all alike, in the decimals of the largest of the three, which
+// is the deviation where their signs differ.
+std::vector<std::string> reader_deviation(double nominal, double measured);
 // Alike, unless the least would keep fewer than two digits: then each as a figure.
 std::vector<std::string> reader_column(const std::vector<double>& values);
 // All digits, in groups of three.

@@ -10,17 +10,17 @@
 namespace vkfv::surface {
 namespace {
 
-// Parts are sorted by threads of their own and then merged, two by two.
-void sort_downwards(std::span<double> values) {
+// Parts are sorted by so many threads and then merged, two by two.
+void sort_downwards(std::span<double> values, unsigned threads) {
     constexpr std::size_t worth_a_thread = std::size_t{1} << 16;
-    if (values.size() <= worth_a_thread) {
+    if (threads <= 1 || values.size() <= worth_a_thread) {
         std::ranges::sort(values, std::greater<>());
         return;
     }
     const std::size_t half = values.size() / 2;
     {
-        const std::jthread first([&] { sort_downwards(values.first(half)); });
-        sort_downwards(values.subspan(half));
+        const std::jthread first([&] { sort_downwards(values.first(half), threads / 2); });
+        sort_downwards(values.subspan(half), threads - threads / 2);
     }
     std::inplace_merge(values.begin(), values.begin() + static_cast<std::ptrdiff_t>(half), values.end(),
                        std::greater<>());
@@ -33,7 +33,7 @@ MaterialRatioCurve::MaterialRatioCurve(const HeightMap& map) {
     for (const double z : map.height.values)
         if (std::isfinite(z))
             heights_.push_back(z);
-    sort_downwards(heights_);
+    sort_downwards(heights_, std::thread::hardware_concurrency());
 }
 
 double MaterialRatioCurve::height(double ratio) const {

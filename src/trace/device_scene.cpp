@@ -116,7 +116,8 @@ DeviceScene make_device_scene(const optics::Instrument& instrument, const specim
         options.opened ? options.opened : std::make_shared<const vulkan::Device>(vulkan::DeviceOptions{options.device});
     const bool specialised = pays_in_constants(*device, instrument, options);
     std::future<std::optional<physics::f64::TrainPolynomials>> polynomials;
-    if (specialised && options.polynomials && options.estimator == Estimator::forward && !options.nonsequential) {
+    if (specialised && options.illumination_polynomials && options.estimator == Estimator::forward &&
+        !options.nonsequential) {
         // Beside the specimen, which takes longer.
         polynomials = std::async(std::launch::async, [&instrument] {
             const auto fitted = optics::fit_illumination(instrument);

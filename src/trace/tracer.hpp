@@ -39,8 +39,8 @@ struct TraceOptions {
     bool nonsequential = false;                   // light finds its own way, and interfaces split it
     bool directed_scatter = false; // forward, sequential: every bounce also aims at the pupil, and light has weights
     std::optional<bool> instrument_in_constants; // of the forward kernels; none: where it pays
-    bool polynomials = true; // such kernels have the illumination as polynomials (optics/train_polynomials.hpp)
-    std::optional<optics::WaveOptions> waves; // sequential: images as waves make them; none: as rays do
+    bool illumination_polynomials = true;        // where it is in constants: optics/train_polynomials.hpp
+    std::optional<optics::WaveOptions> waves;    // sequential: images as waves make them; none: as rays do
 };
 
 // How many rays an exposure launches: those asked for, or what each pixel's share is rounded up to backward, for each

@@ -1,7 +1,7 @@
 // Preloaded before tests that open devices (tests/CMakeLists.txt): what the Vulkan driver and its layers allocate comes
 // from a heap here, all else from the address sanitizer. lavapipe compiles kernels by LLVM, millions of allocations a
-// kernel, which take five times as long by the sanitizer's, and hold no fault of vkfv. Built without sanitizers, since
-// it is loaded before them.
+// kernel: with the sanitizer's heap that takes five times as long. What vkfv does wrong with Vulkan's objects is for
+// the validation layer to find. Built without sanitizers, since it is loaded before them.
 //
 // Which heap a piece is of follows from its address, so that it may be freed by anyone.
 #include <dlfcn.h>
@@ -20,6 +20,7 @@
 #include <new>
 #include <string_view>
 #include <type_traits>
+#include <utility>
 
 namespace {
 
@@ -99,7 +100,8 @@ std::size_t& number_before(void* piece) {
     return *reinterpret_cast<std::size_t*>(static_cast<char*>(piece) - header_bytes);
 }
 
-// Objects of the sanitizer's heap that only the driver knows are no leaks.
+// Objects of the sanitizer's heap that only the driver knows are no leaks. Freed pieces count too: they are not
+// cleared.
 void tell_the_leak_check(Address begin) {
     using Register = void(const void*, std::size_t);
     if (auto* const tell = reinterpret_cast<Register*>(dlsym(RTLD_DEFAULT, "__lsan_register_root_region"))) {
@@ -162,11 +164,11 @@ void* own_allocate(std::size_t bytes) {
     return result;
 }
 
-// Alignments above 16 bytes: a piece within a larger one, whose header tells how far in.
-constexpr std::size_t is_within = std::size_t{1} << 63;
+// In a header. Alignments above 16 bytes: a piece within a larger one, whose header tells how far in.
+constexpr std::size_t is_within = std::size_t{1} << 63, is_free = std::size_t{1} << 62;
 
 void* own_allocate_aligned(std::size_t alignment, std::size_t bytes) {
-    if (alignment <= 16) {
+    if (alignment <= 16 || bytes > reserved_bytes / 2) { // the latter fails there
         return own_allocate(bytes);
     }
     auto* const whole = static_cast<char*>(own_allocate(bytes + alignment));
@@ -194,11 +196,28 @@ std::size_t own_usable(void* piece) {
 void own_free(void* piece) {
     std::size_t in = 0;
     auto* const whole = static_cast<Freed*>(whole_of(piece, in));
-    SizeList& list = lists[number_before(whole)];
+    std::size_t& number = number_before(whole);
+    if ((number & is_free) != 0) {
+        __builtin_trap(); // freed twice
+    }
+    SizeList& list = lists[number];
+    number |= is_free;
     list.spin.lock();
     whole->next = list.first;
     list.first = whole;
     list.spin.unlock();
+}
+
+void* own_reallocate(void* piece, std::size_t bytes) {
+    if (piece != nullptr && bytes > 0 && bytes <= own_usable(piece)) {
+        return piece;
+    }
+    void* const larger = own_allocate(bytes);
+    if (larger != nullptr && piece != nullptr) {
+        std::memcpy(larger, piece, std::min(bytes, own_usable(piece)));
+        own_free(piece);
+    }
+    return larger;
 }
 
 // ---- Who calls: the code of the driver, of LLVM and of the validation layer, known once they are loaded.
@@ -206,9 +225,9 @@ void own_free(void* piece) {
 struct Code {
     std::atomic<Address> begin{0}, bytes{0};
 };
-constinit std::array<Code, 3> drivers{};
-constexpr std::array<std::string_view, 3> driver_files = {"/libLLVM", "/libvulkan_lvp",
-                                                          "/libVkLayer_khronos_validation"};
+constinit std::array<Code, 4> drivers{};
+constexpr std::array<std::string_view, 4> driver_files = {"/libLLVM-", "/libLLVM.so", "/libvulkan_lvp.",
+                                                          "/libVkLayer_khronos_validation."};
 
 bool is_driver(const void* caller) {
     const auto at = reinterpret_cast<Address>(caller);
@@ -219,21 +238,34 @@ bool is_driver(const void* caller) {
     return found;
 }
 
-int find_driver(dl_phdr_info* library, std::size_t, void*) {
-    for (std::size_t k = 0; k < drivers.size(); ++k) {
+using Ranges = std::array<std::pair<Address, Address>, 4>; // begin and bytes
+
+int find_driver(dl_phdr_info* library, std::size_t, void* ranges) {
+    for (std::size_t k = 0; k < driver_files.size(); ++k) {
         if (std::string_view(library->dlpi_name).find(driver_files[k]) == std::string_view::npos) {
             continue;
         }
         for (int segment = 0; segment < library->dlpi_phnum; ++segment) {
             const auto& part = library->dlpi_phdr[segment];
             if (part.p_type == PT_LOAD && (part.p_flags & PF_X) != 0) {
-                drivers[k].bytes = 0; // no half-told range meanwhile
-                drivers[k].begin = library->dlpi_addr + part.p_vaddr;
-                drivers[k].bytes = part.p_memsz;
+                (*static_cast<Ranges*>(ranges))[k] = {library->dlpi_addr + part.p_vaddr, part.p_memsz};
             }
         }
     }
     return 0;
+}
+
+// Also forgets those that are no longer there.
+void find_drivers() {
+    Ranges ranges{};
+    dl_iterate_phdr(find_driver, &ranges);
+    for (std::size_t k = 0; k < drivers.size(); ++k) {
+        if (drivers[k].begin != ranges[k].first) {
+            drivers[k].bytes = 0; // no half-told range meanwhile
+            drivers[k].begin = ranges[k].first;
+        }
+        drivers[k].bytes = ranges[k].second;
+    }
 }
 
 // ---- The functions that are called in place of the sanitizer's.
@@ -263,10 +295,15 @@ Function* next(std::atomic<Function*>& known, const char* name) {
 
 extern "C" {
 
+// How many bytes the heap has had in use, so that a test sees that it serves.
+VKFV_EXPORT std::size_t vkfv_driver_heap_bytes() {
+    return unused - heap_begin;
+}
+
 VKFV_EXPORT void* dlopen(const char* file, int mode) {
     VKFV_NEXT("dlopen", void*(const char*, int));
     void* const library = onward(file, mode);
-    dl_iterate_phdr(find_driver, nullptr);
+    find_drivers();
     return library;
 }
 
@@ -292,18 +329,21 @@ VKFV_EXPORT void* calloc(std::size_t count, std::size_t bytes) {
 VKFV_EXPORT void* realloc(void* piece, std::size_t bytes) {
     VKFV_NEXT("realloc", void*(void*, std::size_t));
     const bool own = piece == nullptr ? onward == nullptr || is_driver(VKFV_CALLER) : is_own(piece);
+    return own ? own_reallocate(piece, bytes) : onward(piece, bytes);
+}
+
+VKFV_EXPORT void* reallocarray(void* piece, std::size_t count, std::size_t bytes) {
+    VKFV_NEXT("reallocarray", void*(void*, std::size_t, std::size_t));
+    const bool own = piece == nullptr ? onward == nullptr || is_driver(VKFV_CALLER) : is_own(piece);
     if (!own) {
-        return onward(piece, bytes);
+        return onward(piece, count, bytes);
     }
-    if (piece != nullptr && bytes <= own_usable(piece) && bytes > 0) {
-        return piece;
+    std::size_t all = 0;
+    if (__builtin_mul_overflow(count, bytes, &all)) {
+        errno = ENOMEM;
+        return nullptr;
     }
-    void* const larger = own_allocate(bytes);
-    if (larger != nullptr && piece != nullptr) {
-        std::memcpy(larger, piece, std::min(bytes, own_usable(piece)));
-        own_free(piece);
-    }
-    return larger;
+    return own_reallocate(piece, all);
 }
 
 VKFV_EXPORT void free(void* piece) {

@@ -43,6 +43,14 @@ TEST(ReaderText, ADifferenceHasTheDecimalsOfItsOperands) {
     EXPECT_EQ(reader_number(2.0991, form_for(7.3286, 0.7129)), "2.10");
 }
 
+TEST(ReaderText, ADeviationHasFourDigitsToo) {
+    using testing::ElementsAre;
+    EXPECT_THAT(reader_deviation(2.741, 2.733037), ElementsAre("2.741", "2.733", "−0.008"));
+    EXPECT_THAT(reader_deviation(0.51234, -0.50736), ElementsAre("0.512", "−0.507", "−1.020"));
+    EXPECT_THAT(reader_deviation(-9.9996, 0.0124), ElementsAre("−10.00", "0.01", "10.01"));
+    EXPECT_THAT(reader_deviation(NAN, 0.25), ElementsAre("–", "0.2500", "–"));
+}
+
 TEST(ReaderText, NumbersOfAColumnAreAlikeWhereNoneIsLost) {
     using testing::ElementsAre;
     EXPECT_THAT(reader_column({16.602, 17.914, NAN}), ElementsAre("16.60", "17.91", "–"));

@@ -208,7 +208,7 @@ TEST(Image, an_instrument_in_constants_gives_the_image_of_one_in_a_buffer) {
     const auto specimen = test::rough_specimen();
     auto in_constants = options();
     in_constants.instrument_in_constants = true;
-    in_constants.polynomials = false;
+    in_constants.illumination_polynomials = false;
     const auto known = expose(instrument, specimen, in_constants);
     const auto buffered = expose(padded, specimen, options());
     double differing = 0;
