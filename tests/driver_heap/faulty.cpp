@@ -5,27 +5,47 @@
 
 #include <cstddef>
 #include <cstdio>
-#include <memory>
 #include <string>
 
+namespace {
+
+constexpr std::size_t length = 1000;
+
+void use_after_free() {
+    const char* left = nullptr;
+    {
+        const std::string text(length, 'x');
+        left = text.c_str();
+    }
+    std::puts(left);
+}
+
+void overflow() {
+    std::string text(length, 'x');
+    volatile char* last = text.data() + text.capacity();
+    last[1] = 'x';
+}
+
+void leak() {
+    std::string* volatile text = new std::string(length, 'x');
+    text = nullptr;
+}
+
+} // namespace
+
 int main(int argc, char** argv) {
-    const std::string fault = argc > 1 ? argv[1] : "";
-    const auto* device = std::make_unique<const vkfv::vulkan::Device>().release();
+    const std::string fault = argc > 1 ? argv[1] : "none";
+    const vkfv::vulkan::Device device;
     auto* const bytes = reinterpret_cast<std::size_t (*)()>(dlsym(RTLD_DEFAULT, "vkfv_driver_heap_bytes"));
     std::printf("the driver has %s\n", bytes != nullptr && bytes() > 1000000 ? "a heap of its own" : "no heap");
-    auto* text = new std::string(1000, 'x');
     if (fault == "use-after-free") {
-        delete text;
-        std::puts(text->c_str());
-    } else if (fault == "leak") {
-        text = nullptr;
-    } else if (fault == "overflow") {
-        const std::unique_ptr<std::string> owner(text);
-        char* const end = owner->data() + owner->capacity() + 1;
-        *const_cast<volatile char*>(end) = 'x';
-    } else {
-        delete text;
+        use_after_free();
     }
-    delete device;
+    if (fault == "overflow") {
+        overflow();
+    }
+    if (fault == "leak") {
+        leak();
+    }
     return 0;
 }
