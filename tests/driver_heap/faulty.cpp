@@ -26,9 +26,11 @@ void overflow() {
     last[1] = 'x';
 }
 
+std::string* volatile lost = nullptr; // so that no compiler leaves the allocation out
+
 void leak() {
-    std::string* volatile text = new std::string(length, 'x');
-    text = nullptr;
+    lost = new std::string(length, 'x');
+    lost = nullptr;
 }
 
 } // namespace
