@@ -22,6 +22,9 @@
 #include <type_traits>
 #include <utility>
 
+// A heap makes pointers of addresses, and the macros below make whole functions.
+// NOLINTBEGIN(performance-no-int-to-ptr, bugprone-macro-parentheses)
+
 namespace {
 
 using Address = std::uintptr_t;
@@ -420,3 +423,5 @@ VKFV_NEWS(w)
 VKFV_NEWS(a)
 VKFV_DELETES(l)
 VKFV_DELETES(a)
+
+// NOLINTEND(performance-no-int-to-ptr, bugprone-macro-parentheses)

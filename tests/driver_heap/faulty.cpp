@@ -17,7 +17,7 @@ void use_after_free() {
         const std::string text(length, 'x');
         left = text.c_str();
     }
-    std::puts(left);
+    std::puts(left); // NOLINT(clang-analyzer-cplusplus.InnerPointer): the fault
 }
 
 void overflow() {
