@@ -76,8 +76,9 @@ const uint KNOWN_FIELD_CAPACITY = 16u;     // so many numbers for each, of which
 // its terms and its degree, and of those of edges what EdgePolynomial has besides.
 const uint CONSTANT_POLYNOMIAL_EDGES = 12u;
 const uint CONSTANT_POLYNOMIAL_PER_RADIUS = 13u;
-const uint CONSTANT_POLYNOMIAL_PER_SINE = 14u;
-const uint CONSTANT_POLYNOMIAL_PLANE = 15u;
+const uint CONSTANT_POLYNOMIAL_SHIFT = 14u;
+const uint CONSTANT_POLYNOMIAL_PER_SINE = 15u;
+const uint CONSTANT_POLYNOMIAL_PLANE = 16u;
 const uint CONSTANT_POLYNOMIALS = 1200u;    // from here on, to 1839; glslang takes numbers below 2048
 const uint KNOWN_POLYNOMIAL_CAPACITY = 64u; // numbers for each: its terms, and from here on
 const uint KNOWN_DEGREE = 56u;

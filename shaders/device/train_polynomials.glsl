@@ -1,6 +1,7 @@
 // Polynomials of the illumination as constants of the kernel; DeviceScene gives the values.
 layout(constant_id = CONSTANT_POLYNOMIAL_EDGES) const int known_edges = -1; // of none
 layout(constant_id = CONSTANT_POLYNOMIAL_PER_RADIUS) const real known_per_radius = real(1);
+layout(constant_id = CONSTANT_POLYNOMIAL_SHIFT) const real known_shift = real(0);
 layout(constant_id = CONSTANT_POLYNOMIAL_PER_SINE) const real known_per_sine = real(1);
 layout(constant_id = CONSTANT_POLYNOMIAL_PLANE) const real known_plane = real(0);
 
@@ -58,6 +59,7 @@ TrainPolynomials known_illumination() {
     TrainPolynomials known;
     known.edges = known_edges;
     known.per_radius = known_per_radius;
+    known.shift = known_shift;
     known.per_sine = known_per_sine;
     known.plane = known_plane;
     known.place_r = known_polynomial_0();

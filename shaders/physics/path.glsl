@@ -100,11 +100,12 @@ VKFV_SCENE_FUNCTION VKFV_FUNCTION Emission emit(VKFV_SCENE_PARAMETER Instrument 
         emission.ray =
             emit_from_ring(instrument.ring, instrument.emission_sine, draws.u0, draws.u1, draws.u2, draws.u3);
     } else if ((present & FEATURE_RECTANGLE) != 0u) {
-        emission.ray = emit_from_rectangle(instrument.source_half_width, instrument.source_half_height,
-                                           instrument.emission_sine, draws.u0, draws.u1, draws.u2, draws.u3);
-    } else {
         emission.ray =
-            emit_from_disc(instrument.source_radius, instrument.emission_sine, draws.u0, draws.u1, draws.u2, draws.u3);
+            emit_from_rectangle(instrument.source_half_width, instrument.source_half_height, instrument.emission_sine,
+                                instrument.emission_shift, draws.u0, draws.u1, draws.u2, draws.u3);
+    } else {
+        emission.ray = emit_from_disc(instrument.source_radius, instrument.emission_sine, instrument.emission_shift,
+                                      draws.u0, draws.u1, draws.u2, draws.u3);
     }
     return emission;
 }

@@ -251,7 +251,8 @@ struct LightField {
     FIELD(real, source_half_width)   /* mm, a rectangle in its place: along x of the source's frame */ \
     FIELD(real, source_half_height)  /* along y */ \
     FIELD(real, source_distance)     /* mm, from the source to the first vertex of the illumination train */ \
-    FIELD(real, emission_sine)       /* sine of the half-angle of the cone aimed into; 1 is the whole hemisphere */ \
+    FIELD(real, emission_sine)       /* of the directions aimed into: source.glsl; 1 is the whole hemisphere */ \
+    FIELD(real, emission_shift)      /* 1/mm, by which their middle moves with the place; 0 for a ring light */ \
     FIELD(real, magnification)       /* lateral, signed: detector over object */ \
     FIELD(real, detector_distance)   /* mm, from the last vertex of the imaging train to the detector */ \
     FIELD(real, detector_half_width)  /* mm, along x */ \

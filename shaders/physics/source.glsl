@@ -1,7 +1,9 @@
-// Light sources, all Lambertian: uniform radiance, so position is uniform over the area and the direction has the
-// density cos(theta) / (pi sin^2(theta_max)) within the cone sin(theta) <= emission_sine about the normal: the unit
-// disc of (l, m), scaled. With emission_sine = 1 this is the whole hemisphere; less aims at a cone, which holds the
-// share emission_sine^2 of the flux, exactly and from every point. Directions are unit vectors.
+// Light sources, all Lambertian: uniform radiance, so that the position is uniform over the area and the direction,
+// a unit vector (l, m, n), is uniform in (l, m): the unit disc is the whole hemisphere. A source is aimed where only
+// the disc of radius emission_sine about a middle is drawn from; where it lies within the unit disc it holds the share
+// emission_sine^2 of the flux, exactly and from every point. The middle is emission_shift times the place at the
+// source, so that light from all of it goes where the optics take light from; with 0 the disc is a cone about the
+// normal.
 
 // cos and sin of 2 pi u, for any u: GLSL's own are bounded to 2^-11 alone, and beyond [-pi, pi] not at all. Polynomials
 // in r^2 for |r| <= 1/8, r the share of a turn from the nearest quarter, through the functions' values at Chebyshev's
@@ -51,24 +53,34 @@ VKFV_FUNCTION real3 lambertian_direction(real emission_sine, real u0, real u1) {
     return real3(sine * psi.cosine, sine * psi.sine, sqrt(real(1.0) - sine_squared));
 }
 
+// The same about a middle other than the normal.
+VKFV_FUNCTION real3 aimed_direction(real2 middle, real emission_sine, real u0, real u1) {
+    real3 beside = lambertian_direction(emission_sine, u0, u1);
+    real2 across = middle + real2(beside.x, beside.y);
+    // 1 - |across|^2, with the digits of what is near 1 kept.
+    real axial_squared = beside.z * beside.z - dot(middle, middle + real(2.0) * real2(beside.x, beside.y));
+    return real3(across.x, across.y, sqrt(max(axial_squared, real(0.0))));
+}
+
 // A flat disc about the origin in z = 0.
-VKFV_FUNCTION Ray emit_from_disc(real radius, real emission_sine, real u0, real u1, real u2, real u3) {
+VKFV_FUNCTION Ray emit_from_disc(real radius, real emission_sine, real emission_shift, real u0, real u1, real u2,
+                                 real u3) {
     real rho = radius * sqrt(u0);
     Turn phi = turn_of(u1);
     Ray ray;
     ray.position = real3(rho * phi.cosine, rho * phi.sine, real(0.0));
-    ray.direction = lambertian_direction(emission_sine, u2, u3);
+    ray.direction = aimed_direction(real2(ray.position.x, ray.position.y) * emission_shift, emission_sine, u2, u3);
     ray.path_length = real(0.0);
     return ray;
 }
 
 // A flat rectangle about the origin in z = 0.
-VKFV_FUNCTION Ray emit_from_rectangle(real half_width, real half_height, real emission_sine, real u0, real u1, real u2,
-                                      real u3) {
+VKFV_FUNCTION Ray emit_from_rectangle(real half_width, real half_height, real emission_sine, real emission_shift,
+                                      real u0, real u1, real u2, real u3) {
     Ray ray;
     ray.position =
         real3(half_width * (real(2.0) * u0 - real(1.0)), half_height * (real(2.0) * u1 - real(1.0)), real(0.0));
-    ray.direction = lambertian_direction(emission_sine, u2, u3);
+    ray.direction = aimed_direction(real2(ray.position.x, ray.position.y) * emission_shift, emission_sine, u2, u3);
     ray.path_length = real(0.0);
     return ray;
 }

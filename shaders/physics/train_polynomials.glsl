@@ -68,7 +68,8 @@ struct EdgePolynomial {
 struct TrainPolynomials {
     int edges;       // that are asked; -1: these are no polynomials of a train
     real per_radius; // 1/mm, of r: the source's own is 1
-    real per_sine;   // of s: the widest that is emitted is 1
+    real shift;      // 1/mm: s is what the direction is off this times the place
+    real per_sine;   // of s: the farthest off that is emitted is 1
     real plane;      // mm
     // The factors of r and of s in the place, mm, and in the direction of the length of the index.
     Polynomial place_r;
@@ -117,8 +118,9 @@ VKFV_FUNCTION PolynomialPassage meet_edges(TrainPolynomials train, real u, real 
 
 // index: of the medium behind the train.
 VKFV_FUNCTION PolynomialPassage pass_by_polynomials(TrainPolynomials train, Ray ray, real index) {
-    real2 r = real2(ray.position.x, ray.position.y) * train.per_radius;
-    real2 s = real2(ray.direction.x, ray.direction.y) * train.per_sine;
+    real2 from = real2(ray.position.x, ray.position.y);
+    real2 r = from * train.per_radius;
+    real2 s = (real2(ray.direction.x, ray.direction.y) - from * train.shift) * train.per_sine;
     real u = dot(r, r);
     real v = dot(r, s);
     real w = dot(s, s);

@@ -25,7 +25,7 @@ const ChoiceKey<Estimator>
                {Estimator::backward, "backward", "from the detector to the source: less noise for the same rays"}},
               Estimator::forward, "Which end paths start from.");
 const ChoiceKey<bool> emission("emission",
-                               {{true, "directed", "only into the cone that can pass the illuminator"},
+                               {{true, "directed", "only into directions that can pass the illuminator"},
                                 {false, "analog", "into the half space"}},
                                true, "Where the source sends rays; what is not aimed at is in the ledger.");
 const ChoiceKey<bool> scattering("scattering",

@@ -3,6 +3,7 @@
 // with its origin in the paraxial object plane (mm), unfolded: in the straight space that mirrors show.
 #pragma once
 
+#include "optics/aim.hpp"
 #include "optics/apertures.hpp"
 #include "optics/instrument.hpp"
 
@@ -86,7 +87,7 @@ struct Illumination {
     Pose source_pose;
     double source_distance = 0;     // of the disc, to the first vertex
     physics::f64::RingLight ring{}; // instead of the disc
-    double aimed_sine = 1;          // of the cone that the source must fill
+    Aim aim;                        // of the source
     double to_objective = 0;        // these as in FirstOrder
     double source_magnification = 0;
     double pupil_radius_in_source = 0;

@@ -1,6 +1,6 @@
 #include "optics/assembly.hpp"
 
-#include "optics/emission_cone.hpp"
+#include "optics/aim.hpp"
 #include "optics/first_order.hpp"
 
 #include <fmt/format.h>
@@ -176,24 +176,24 @@ std::vector<std::string> warning_of_field_stop(const AxialLayout& layout, const 
 }
 
 // stop: that the samples of the light are taken about.
-double aimed_sine_of(const InstrumentDescription& description, const Prescription& prescribed,
-                     const std::vector<Surface>& train, std::size_t stop, double source_distance) {
+Aim aim_of(const InstrumentDescription& description, const Prescription& prescribed, const std::vector<Surface>& train,
+           std::size_t stop, double source_distance) {
     const bool straight = !has_displaced(train);
     const DiscSource source = {.radius = description.source.outer_radius(),
                                .distance = source_distance,
                                .monochromatic = description.spectrum.monochromatic()};
     const RayTransfer towards_stop =
         free_space(source_distance + train.front().distance).then(transfer_to_surface(train, stop));
-    const double sampled = largest_sampled_sine(train, straight, source, towards_stop);
-    if (!description.directed_emission && sampled > 0) {
-        return 1; // the hemisphere; that some light passes is all there is to know
+    const std::vector<RimRay> rim = sampled_rim(train, straight, source, towards_stop);
+    if (!description.directed_emission && !rim.empty()) {
+        return {}; // the hemisphere; that some light passes is all there is to know
     }
-    const double sine = emission_sine(train, straight, source, sampled);
-    if (!(sine > 0)) {
+    const Aim aim = best_aim(train, straight, source, rim);
+    if (!(aim.sine > 0)) {
         refuse("illumination.prescription", prescribed.name, "an illuminator whose light passes the objective",
                "Check distances and semi-diameters.", prescribed.file);
     }
-    return sine;
+    return aim;
 }
 
 } // namespace
@@ -250,8 +250,8 @@ Illumination place_illuminator(const InstrumentDescription& description, const A
         }
     }
     // Without a field stop the last surface limits the field as well as any.
-    result.aimed_sine = aimed_sine_of(description, prescribed, surfaces,
-                                      field_stop.value_or(result.illuminator.size() - 1), result.source_distance);
+    result.aim = aim_of(description, prescribed, surfaces, field_stop.value_or(result.illuminator.size() - 1),
+                        result.source_distance);
     return result;
 }
 

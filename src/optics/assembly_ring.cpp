@@ -86,7 +86,7 @@ Illumination place_ring(const InstrumentDescription& description, const AxialLay
     link(result.train, entry);
     result.ring = ring_constants(*description.source.ring, entry.origin.z - measured.best_focus_offset);
     check_ring(description.source, result.ring, !layout.cover.empty());
-    result.aimed_sine = ring_emission_sine(description, layout);
+    result.aim.sine = ring_emission_sine(description, layout);
     result.source_pose = downward(0);
     return result;
 }

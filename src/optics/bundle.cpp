@@ -379,7 +379,7 @@ EmissionCoordinate best_cut(const EmissionBox& box, const Conditions& conditions
     }
     const auto influences = conditions.influences(bounded || conditions.middle_is_excluded());
     const auto most = std::ranges::max_element(influences);
-    return *most > 0 ? static_cast<EmissionCoordinate>(most - influences.begin()) : polar_angle;
+    return *most > 0 ? static_cast<EmissionCoordinate>(most - influences.begin()) : from_middle;
 }
 
 double at(const Range& range, double place) {
@@ -388,21 +388,28 @@ double at(const Range& range, double place) {
 
 } // namespace
 
-EmittedRay ray_in(const EmissionBox& box, const std::array<double, Affine::coordinates>& place) {
+std::optional<EmittedRay> ray_in(const EmissionBox& box, const EmissionMiddle& middle,
+                                 const std::array<double, Affine::coordinates>& place) {
     const auto value = [&](EmissionCoordinate which) { return at(box[which], place[which]); };
     const double angle = value(turn);
-    const double sine_of_polar = std::sin(value(polar_angle));
+    const glm::dvec2 start = value(from_axis) * glm::dvec2(std::cos(angle), std::sin(angle));
+    const double direction = angle + value(azimuth);
+    const glm::dvec2 across =
+        middle.shift * start + value(from_middle) * glm::dvec2(std::cos(direction), std::sin(direction));
+    const double sine_squared = glm::dot(across, across);
+    if (!(sine_squared <= middle.reach * middle.reach && sine_squared < 1)) {
+        return std::nullopt;
+    }
     EmittedRay result;
     result.ray = {};
-    result.ray.position = {value(from_axis) * std::cos(angle), value(from_axis) * std::sin(angle), 0};
-    result.ray.direction = {sine_of_polar * std::cos(angle + value(azimuth)),
-                            sine_of_polar * std::sin(angle + value(azimuth)), std::cos(value(polar_angle))};
+    result.ray.position = glm::dvec3(start, 0);
+    result.ray.direction = glm::dvec3(across, std::sqrt(1 - sine_squared));
     result.spectral = value(spectral);
     return result;
 }
 
-BundleTracer::BundleTracer(std::span<const Surface> train, double source_distance)
-    : train_(train), source_distance_(source_distance),
+BundleTracer::BundleTracer(std::span<const Surface> train, double source_distance, const EmissionMiddle& middle)
+    : train_(train), source_distance_(source_distance), middle_(middle),
       first_displaced_(static_cast<std::size_t>(std::ranges::find_if(train, is_displaced) - train.begin())) {
     for (const Surface& surface : train) {
         apertures_.emplace_back();
@@ -417,9 +424,17 @@ std::optional<EmissionCoordinate> BundleTracer::may_pass(const EmissionBox& box)
     const auto of = [&](EmissionCoordinate which) { return coordinate(which, box[which]); };
     Conditions conditions;
     Bundle bundle;
-    const Affine across = sine(of(polar_angle));
     bundle.position = {of(from_axis), {}, constant(-source_distance_)};
-    bundle.direction = {across * cosine(of(azimuth)), across * sine(of(azimuth)), cosine(of(polar_angle))};
+    const Affine middle = middle_.shift * of(from_axis);
+    const Affine along = of(from_middle) * cosine(of(azimuth));
+    bundle.direction.x = middle + along;
+    bundle.direction.y = of(from_middle) * sine(of(azimuth));
+    const Affine sine_squared = square(of(from_middle)) + middle * (middle + 2.0 * along);
+    if (!conditions.require_not_positive(sine_squared - constant(middle_.reach * middle_.reach)) ||
+        !(sine_squared.low() < 1)) {
+        return std::nullopt;
+    }
+    bundle.direction.z = square_root(constant(1) - sine_squared);
     const Affine x = of(spectral);
     bundle.index =
         train_.empty() ? constant(1) : index_of(train_.front().index_before, train_.front().dispersion_before, x);

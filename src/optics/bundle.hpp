@@ -15,20 +15,29 @@ namespace vkfv::optics {
 // The coordinates of a ray of a disc source: indices into EmissionBox and Affine::slopes.
 enum EmissionCoordinate : std::size_t {
     from_axis,   // mm, its start
-    polar_angle, // rad, its direction against the normal
-    azimuth,     // rad, of its direction, against that of its start
+    from_middle, // its direction's cosines across the normal, from their middle
+    azimuth,     // rad, of what they are off, against that of its start
     turn,        // rad, of both about the normal
     spectral,    // x of physics::Light
 };
 
 using EmissionBox = std::array<Range, Affine::coordinates>;
 
-// A ray in the source's frame, starting on z = 0. `at`: its place in the box, each coordinate in [-1, 1].
+// The directions that are asked about, by their cosines across the normal: counted from `shift` (1/mm) times the place
+// at the source; what is farther than `reach` from the normal is left out.
+struct EmissionMiddle {
+    double shift = 0;
+    double reach = 1;
+};
+
+// A ray in the source's frame, starting on z = 0. `at`: its place in the box, each coordinate in [-1, 1]. None: what is
+// there is no direction, or beyond reach.
 struct EmittedRay {
     physics::f64::Ray ray;
     double spectral = 0;
 };
-EmittedRay ray_in(const EmissionBox& box, const std::array<double, Affine::coordinates>& at);
+std::optional<EmittedRay> ray_in(const EmissionBox& box, const EmissionMiddle& middle,
+                                 const std::array<double, Affine::coordinates>& at);
 
 // An aperture (mm), and the heights in the surface's frame at which light can meet the surface within it: about its
 // vertex, and on a conic's other side, beyond the equator or on the other sheet. Aspheres have none.
@@ -41,7 +50,8 @@ struct ApertureBounds {
 class BundleTracer {
   public:
     // `train` as in trace_through, entered source_distance behind the source; it must outlive this.
-    BundleTracer(std::span<const physics::f64::Surface> train, double source_distance);
+    BundleTracer(std::span<const physics::f64::Surface> train, double source_distance,
+                 const EmissionMiddle& middle = {});
 
     // None: it is proved that no ray of the box passes the whole train. The proof uses the equations of the trace
     // (physics/train.glsl) with apertures, total reflection and missed surfaces, but not losses at interfaces.
@@ -51,6 +61,7 @@ class BundleTracer {
   private:
     std::span<const physics::f64::Surface> train_;
     double source_distance_;
+    EmissionMiddle middle_;
     std::vector<std::optional<ApertureBounds>> apertures_; // none: unbounded
     std::size_t first_displaced_;                          // before it, turning a ray about the normal changes nothing
 };

@@ -57,7 +57,9 @@ physics::f64::Instrument constants_of(const InstrumentDescription& description, 
     constants.source_half_height = 0.5 * sides.y;
     constants.source_distance = illumination.source_distance;
     constants.ring = illumination.ring;
-    constants.emission_sine = description.directed_emission ? illumination.aimed_sine : 1;
+    const Aim aim = description.directed_emission ? illumination.aim : Aim{};
+    constants.emission_sine = aim.sine;
+    constants.emission_shift = aim.shift;
     constants.magnification = layout.magnification;
     constants.detector_distance = imaging.imaging.detector_distance;
     const ImageSize& pixels = description.detector_pixels;

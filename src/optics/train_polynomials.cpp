@@ -46,7 +46,7 @@ constexpr double clear_of_edge = 2e-3;
 struct Sample {
     glm::dvec3 invariants{0}; // u, v, w
     glm::dvec2 place{0};      // at the source, 1: its radius
-    glm::dvec2 across{0};     // direction there, 1: the widest
+    glm::dvec2 across{0};     // direction there from its middle, 1: the farthest
     glm::dvec2 end{0};        // mm, on the plane
     glm::dvec2 direction{0};
     std::vector<double> filled; // of each edge's radius the square that the ray is at; infinite without an edge before
@@ -63,6 +63,7 @@ class Train {
 
     double radius() const { return radius_; }
     double sine() const { return instrument_.constants.emission_sine; }
+    double shift() const { return instrument_.constants.emission_shift; }
     int surfaces() const { return instrument_.constants.illumination_count; }
     const Surface& surface(int k) const { return instrument_.surfaces[static_cast<std::size_t>(k)]; }
     bool has_edge(int k) const { return (surface(k).flags & physics::f64::SURFACE_CLIPPED) != 0; }
@@ -73,10 +74,10 @@ class Train {
         result.place = {std::sqrt(u), 0};
         result.across = std::sqrt(w) * glm::dvec2(std::cos(turn), std::sin(turn));
         result.invariants = {u, glm::dot(result.place, result.across), w};
-        const glm::dvec2 sine = result.across * this->sine();
+        const glm::dvec2 sine = result.place * radius_ * shift() + result.across * this->sine();
         Ray ray{};
         ray.position = {result.place.x * radius_, 0, -instrument_.constants.source_distance};
-        ray.direction = {sine.x, sine.y, std::sqrt(1 - glm::dot(sine, sine))};
+        ray.direction = {sine.x, sine.y, std::sqrt(std::max(0.0, 1 - glm::dot(sine, sine)))};
         TrainResult light = physics::f64::enter_train(ray, 1);
         result.filled.assign(static_cast<std::size_t>(surfaces()), 0.0);
         for (int k = 0; k < surfaces(); ++k) {
@@ -360,6 +361,7 @@ std::optional<FittedTrain> fit_illumination(const Instrument& instrument) {
     FittedTrain result;
     TrainPolynomials& polynomials = result.polynomials;
     polynomials.per_radius = 1 / train.radius();
+    polynomials.shift = train.shift();
     polynomials.per_sine = 1 / train.sine();
     polynomials.plane = instrument.front_vertex_height;
     const auto end = +[](const Sample& sample) { return sample.end; };

@@ -214,8 +214,9 @@ void add_disc(std::vector<RoomRay>& rays, const optics::Instrument& instrument) 
     const double half_height = is_rectangle ? constants.source_half_height : constants.source_radius;
     RoomTracer tracer(instrument.elements, illumination_way(instrument.elements, false));
     const optics::Pose& source = instrument.source_pose;
-    const double greatest = std::min(constants.emission_sine, steepest_sine);
     const auto from = [&](double height, Bundle bundle, int count) {
+        const double greatest =
+            std::min(constants.emission_sine + std::abs(constants.emission_shift * height), steepest_sine);
         return fan(
             [&](double sine) {
                 return tracer.trace_to_focus(source.point({0, height, 0}), source.direction(in_plane(sine)), 1, bundle);

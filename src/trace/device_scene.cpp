@@ -302,6 +302,7 @@ std::vector<vulkan::SpecializationConstant> DeviceScene::illumination_polynomial
     };
     add(kernels::CONSTANT_POLYNOMIAL_EDGES, illumination->edges);
     add_real(kernels::CONSTANT_POLYNOMIAL_PER_RADIUS, illumination->per_radius);
+    add_real(kernels::CONSTANT_POLYNOMIAL_SHIFT, illumination->shift);
     add_real(kernels::CONSTANT_POLYNOMIAL_PER_SINE, illumination->per_sine);
     add_real(kernels::CONSTANT_POLYNOMIAL_PLANE, illumination->plane);
     std::uint32_t id = kernels::CONSTANT_POLYNOMIALS;

@@ -352,8 +352,8 @@ TEST(BeamSplitter, LeavesTheImage) {
     }
 }
 
-// The cone that the source is aimed into is found with a stop at the source as without: about a pinhole for a field
-// stop, which a search about the wrong direction misses.
+// The source is aimed at the field stop with a stop at the source as without. A pinhole in the focal plane of the lens
+// in front of it takes light of one direction from all of the source; a search about another misses it.
 TEST(IlluminationAperture, LeavesTheAim) {
     const auto pinhole = [](std::optional<double> aperture) {
         return ideal([&](auto& d) {

@@ -28,9 +28,10 @@ struct Gate {
         double largest = 0;
         for (const double height : heights) {
             for (const double start : {box[from_axis].low, box[from_axis].high}) {
-                for (const double angle : {box[polar_angle].low, box[polar_angle].high}) {
+                for (const double sine : {box[from_middle].low, box[from_middle].high}) {
+                    const double cosine = std::sqrt(std::max(1 - sine * sine, 1e-32));
                     for (const double between : {low, high}) {
-                        const double slope = (1 + position * height) * std::tan(angle);
+                        const double slope = (1 + position * height) * sine / cosine;
                         largest = std::max(largest, std::hypot(position * start + slope * std::cos(between),
                                                                slope * std::sin(between)));
                     }
@@ -49,9 +50,12 @@ struct FieldLight {
 
     // Of the ray in the middle of a box.
     bool passes_from(const EmissionBox& box) const {
-        auto ray = ray_in(box, {}).ray;
-        ray.position.z -= working_distance;
-        return trace_through(train, ray, 1).status == physics::f64::PATH_ALIVE;
+        auto emitted = ray_in(box, {}, {});
+        if (!emitted) {
+            return false;
+        }
+        emitted->ray.position.z -= working_distance;
+        return trace_through(train, emitted->ray, 1).status == physics::f64::PATH_ALIVE;
     }
 };
 
@@ -62,7 +66,7 @@ Verdict holds_all(const FieldLight& light, const Gate& gate, double radius) {
     const BundleTracer tracer(light.train, light.working_distance);
     EmissionBox whole{};
     whole[from_axis] = {0, light.field_radius};
-    whole[polar_angle] = {0, 0.5 * pi};
+    whole[from_middle] = {0, 1};
     whole[azimuth] = {0, pi};
     const auto is_nearer = [&](const EmissionBox& a, const EmissionBox& b) {
         return gate.largest_in(a) < gate.largest_in(b);
@@ -76,14 +80,14 @@ Verdict holds_all(const FieldLight& light, const Gate& gate, double radius) {
         if (gate.largest_in(box) <= radius) {
             continue;
         }
-        // Angles below which the whole box is within the gate need not be excluded.
-        Range within = {box[polar_angle].low, box[polar_angle].high};
+        // Sines below which the whole box is within the gate need not be excluded.
+        Range within = {box[from_middle].low, box[from_middle].high};
         for (int bisection = 0; bisection < 30; ++bisection) {
             EmissionBox part = box;
-            part[polar_angle].high = within.middle();
+            part[from_middle].high = within.middle();
             (gate.largest_in(part) <= radius ? within.low : within.high) = within.middle();
         }
-        box[polar_angle].low = within.low;
+        box[from_middle].low = within.low;
         if (const auto cut = tracer.may_pass(box)) {
             EmissionBox middle = box;
             for (Range& side : middle) {

@@ -31,6 +31,7 @@ physics::f32::TrainPolynomials in_float(const TrainPolynomials& train) {
     physics::f32::TrainPolynomials result{};
     result.edges = train.edges;
     result.per_radius = static_cast<float>(train.per_radius);
+    result.shift = static_cast<float>(train.shift);
     result.per_sine = static_cast<float>(train.per_sine);
     result.plane = static_cast<float>(train.plane);
     result.place_r = polynomial(train.place_r);
@@ -65,9 +66,9 @@ Compared compare(const optics::Instrument& instrument, const TrainPolynomials& p
     Compared result;
     for (int k = 0; k < count; ++k) {
         const std::array u = {uniform(generator), uniform(generator), uniform(generator), uniform(generator)};
-        const auto emitted =
-            physics::f32::emit_from_disc(static_cast<float>(constants.source_radius),
-                                         static_cast<float>(constants.emission_sine), u[0], u[1], u[2], u[3]);
+        const auto emitted = physics::f32::emit_from_disc(
+            static_cast<float>(constants.source_radius), static_cast<float>(constants.emission_sine),
+            static_cast<float>(constants.emission_shift), u[0], u[1], u[2], u[3]);
         const auto told = physics::f32::pass_by_polynomials(rounded, emitted, 1);
         if (!told.known) {
             continue;

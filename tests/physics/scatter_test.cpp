@@ -418,7 +418,7 @@ TEST(Scatter, a_tilted_mirror_returns_the_overlap_of_two_cones) {
         double inside = 0;
         for (uint k = 0; k < draws_made; ++k) {
             const Draws u = draw(26u, 0u, uvec2(k, 0u), 0u);
-            const Ray ray = emit_from_disc(0.0, sine, u.u0, u.u1, u.u2, u.u3);
+            const Ray ray = emit_from_disc(0.0, sine, 0.0, u.u0, u.u1, u.u2, u.u3);
             const real3 down{ray.direction.x, ray.direction.y, -ray.direction.z};
             const Scattered s = scatter(mirror, down, normal, 26u, 0u, uvec2(k, 0u), 1u);
             inside += s.accepted == 1u && std::hypot(s.direction.x, s.direction.y) < sine ? 1 : 0;

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 #include <functional>
+#include <numeric>
 
 using namespace vkfv::physics::f64;
 using vkfv::test::chi_square_p;
@@ -22,7 +23,7 @@ std::vector<double> land_in_rings(double radius, double distance, double outermo
     std::vector<double> seen(annuli + 1);
     for (uint k = 0; k < rays; ++k) {
         const Draws u = draw(seed, 0u, uvec2(k, 0u), 0u);
-        const Ray ray = fly_to_plane(emit_from_disc(radius, 1.0, u.u0, u.u1, u.u2, u.u3), distance, 1.0);
+        const Ray ray = fly_to_plane(emit_from_disc(radius, 1.0, 0.0, u.u0, u.u1, u.u2, u.u3), distance, 1.0);
         const double r = std::hypot(ray.position.x, ray.position.y);
         seen[static_cast<std::size_t>(std::min<double>(annuli, r / outermost * annuli))] += 1;
     }
@@ -87,7 +88,7 @@ TEST(Source, a_rectangle_obeys_the_configuration_factor) {
     for (uint k = 0; k < rays; ++k) {
         const Draws u = draw(14u, 0u, uvec2(k, 0u), 0u);
         const Ray ray =
-            fly_to_plane(emit_from_rectangle(half_width, half_height, 1.0, u.u0, u.u1, u.u2, u.u3), 1.0, 1.0);
+            fly_to_plane(emit_from_rectangle(half_width, half_height, 1.0, 0.0, u.u0, u.u1, u.u2, u.u3), 1.0, 1.0);
         const double column = std::floor((ray.position.x / width + 0.5) * columns);
         const double row = std::floor((ray.position.y / height + 0.5) * rows);
         const bool inside = column >= 0 && column < columns && row >= 0 && row < rows;
@@ -131,8 +132,8 @@ TEST(Source, an_aimed_disc_is_the_cone_cut_out_of_the_whole) {
     double inside = 0;
     for (uint k = 0; k < rays; ++k) {
         const Draws u = draw(13u, 0u, uvec2(k, 0u), 0u);
-        const double a = emit_from_disc(1.0, 1.0, u.u0, u.u1, u.u2, u.u3).direction.z;
-        const double b = emit_from_disc(1.0, sine, u.u0, u.u1, u.u2, u.u3).direction.z;
+        const double a = emit_from_disc(1.0, 1.0, 0.0, u.u0, u.u1, u.u2, u.u3).direction.z;
+        const double b = emit_from_disc(1.0, sine, 0.0, u.u0, u.u1, u.u2, u.u3).direction.z;
         const auto bin = [&](double cosine) {
             return static_cast<std::size_t>((1 - cosine * cosine) / (sine * sine) * 20);
         };
@@ -147,6 +148,50 @@ TEST(Source, an_aimed_disc_is_the_cone_cut_out_of_the_whole) {
     const std::vector<double> uniform_aimed(20, rays / 20.0), uniform_whole(20, inside / 20.0);
     EXPECT_GT(chi_square_p(aimed, uniform_aimed), false_positive_rate);
     EXPECT_GT(chi_square_p(whole, uniform_whole), false_positive_rate);
+}
+
+// The same where the middle moves with the place: about it the part cut out of the whole is as even, from every part of
+// the source. Bins of equal light: by the place, and by the distance from the middle and the side of it.
+TEST(Source, an_aim_that_moves_with_the_place_is_cut_out_of_the_whole) {
+    constexpr double sine = 0.3, shift = -0.6;
+    constexpr int places = 5, distances = 6, sides = 8, bins = places * distances * sides;
+    double off_unit = 0;
+    const auto in_bins = [&](double emission_sine, double emission_shift, double middle, bool rectangle, uint seed) {
+        std::vector<double> seen(bins);
+        for (uint k = 0; k < rays; ++k) {
+            const Draws u = draw(seed, 0u, uvec2(k, 0u), 0u);
+            const Ray ray = rectangle
+                                ? emit_from_rectangle(0.8, 0.5, emission_sine, emission_shift, u.u0, u.u1, u.u2, u.u3)
+                                : emit_from_disc(1.0, emission_sine, emission_shift, u.u0, u.u1, u.u2, u.u3);
+            off_unit = std::max(off_unit, std::abs(glm::length(ray.direction) - 1));
+            const glm::dvec2 place(ray.position);
+            const glm::dvec2 beside = glm::dvec2(ray.direction) - middle * place;
+            const double distance = glm::dot(beside, beside) / (sine * sine);
+            if (distance < 1) {
+                const double share = rectangle ? 0.5 + place.x / 1.6 : glm::dot(place, place);
+                const double side = std::atan2(beside.y, beside.x) / (2 * M_PI) + 0.5;
+                seen[static_cast<std::size_t>(
+                    (std::min(int(share * places), places - 1) * distances + int(distance * distances)) * sides +
+                    std::min(int(side * sides), sides - 1))] += 1;
+            }
+        }
+        return seen;
+    };
+    const auto p_of = [&](const std::vector<double>& seen) {
+        const double inside = std::accumulate(seen.begin(), seen.end(), 0.0);
+        return chi_square_p(seen, std::vector<double>(bins, inside / bins));
+    };
+    for (const bool rectangle : {false, true}) {
+        const auto whole = in_bins(1, 0, shift, rectangle, 23u);
+        const double inside = std::accumulate(whole.begin(), whole.end(), 0.0);
+        EXPECT_LT(vkfv::test::share_z(inside, rays, sine * sine), 4.0);
+        EXPECT_GT(p_of(whole), false_positive_rate);
+        const auto aimed = in_bins(sine, shift, shift, rectangle, 24u);
+        EXPECT_GE(std::accumulate(aimed.begin(), aimed.end(), 0.0), rays - 1); // but for rounding on the rim
+        EXPECT_GT(p_of(aimed), false_positive_rate);
+        EXPECT_LT(p_of(in_bins(sine, shift, 0.99 * shift, rectangle, 25u)), false_positive_rate); // wrong twin
+    }
+    EXPECT_LT(off_unit, 1e-15);
 }
 
 namespace {

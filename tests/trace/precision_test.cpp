@@ -45,16 +45,17 @@ Ray start(double x, double y, double z, double l, double m) {
     return ray;
 }
 
-// Uniform over a square field or a round source, and over a cone.
+// Uniform over a square field or a round source, and over the directions of an aim.
 template <class Accept>
-std::vector<Ray> filling(std::size_t count, double reach, double height, double sine, Accept accept) {
+std::vector<Ray> filling(std::size_t count, double reach, double height, double sine, double shift, Accept accept) {
     std::mt19937_64 generator(17);
     std::uniform_real_distribution<double> uniform(-1, 1);
     std::vector<Ray> rays;
     while (rays.size() < count) {
         const double x = uniform(generator), y = uniform(generator), l = uniform(generator), m = uniform(generator);
         if (l * l + m * m <= 1 && accept(x, y)) {
-            rays.push_back(start(reach * x, reach * y, height, sine * l, sine * m));
+            rays.push_back(
+                start(reach * x, reach * y, height, shift * reach * x + sine * l, shift * reach * y + sine * m));
         }
     }
     return rays;
@@ -147,7 +148,7 @@ TEST_P(Precision, of_the_imaging_train_in_float) {
     const auto instrument = optics::assemble(described(objective, tube_lens));
     const auto& first_order = instrument.first_order;
     const auto rays = filling(4000, first_order.field_edge, -instrument.front_vertex_height,
-                              1.02 * first_order.numerical_aperture, [](double, double) { return true; });
+                              1.02 * first_order.numerical_aperture, 0, [](double, double) { return true; });
     const double scale = 1 / std::abs(first_order.magnification);
     expect_precise(instrument, Train::imaging, rays, scale, bounds(objective), 0);
     expect_precise(instrument, Train::imaging, rays, scale, bounds(objective), physics::f64::SHORT_TRAIN_FINE);
@@ -168,9 +169,10 @@ class IlluminationPrecision : public ::testing::TestWithParam<const char*> {};
 TEST_P(IlluminationPrecision, of_the_illumination_train_in_float) {
     const auto instrument = optics::assemble(described(GetParam(), "200mm"));
     const auto& constants = instrument.constants;
-    const auto rays = filling(
-        30000, std::min(constants.source_radius, 1.05 * instrument.first_order.pupil_radius_in_source),
-        -constants.source_distance, constants.emission_sine, [](double x, double y) { return x * x + y * y <= 1; });
+    const auto rays =
+        filling(30000, std::min(constants.source_radius, 1.05 * instrument.first_order.pupil_radius_in_source),
+                -constants.source_distance, constants.emission_sine, constants.emission_shift,
+                [](double x, double y) { return x * x + y * y <= 1; });
     expect_precise(instrument, Train::illumination, rays, 1, bounds(GetParam()), 0);
     // Where a tenth of a micrometre is enough.
     expect_precise(instrument, Train::illumination, rays, 1, {.rms = 20 * nm, .worst = 100 * nm},

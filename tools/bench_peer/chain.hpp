@@ -25,7 +25,8 @@ struct Surface {
 struct Chain {
     double source_radius = 0;          // Lambertian disc
     double source_distance = 0;        // to the first vertex of the illumination
-    double emission_sine = 1;          // of the cone emitted into
+    double emission_sine = 1;          // of the disc of directions emitted into
+    double emission_shift = 0;         // 1/mm, of its middle, over the place at the source
     std::vector<Surface> illumination; // ends at the objective's front vertex, light downwards
     std::vector<Surface> imaging;      // begins there, light upwards
     double top_distance = 0;           // from there to the specimen's top plane

@@ -72,6 +72,7 @@ peer::Chain make_chain(const vkfv::app::Configuration& configuration, const vkfv
     chain.source_radius = constants.source_radius;
     chain.source_distance = constants.source_distance;
     chain.emission_sine = constants.emission_sine;
+    chain.emission_shift = constants.emission_shift;
     chain.illumination = train(instrument, constants.illumination_first, constants.illumination_count);
     chain.imaging = train(instrument, constants.imaging_first, constants.imaging_count);
     chain.top = record.top;

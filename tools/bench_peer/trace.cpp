@@ -229,7 +229,7 @@ void turn(const Lane& u, int count, Lane& cosine, Lane& sine) {
     }
 }
 
-// Lambertian disc: uniform in area, and in the unit disc of the direction's tangential part, within the cone.
+// Lambertian disc: uniform in area, and in the direction's tangential part, within a disc about its middle.
 void emit(const Chain& chain, Generator& generator, int count, Rays& rays) {
     alignas(64) Lane u0, u1, u2, u3;
     for (Lane* u : {&u0, &u1, &u2, &u3}) {
@@ -244,9 +244,9 @@ void emit(const Chain& chain, Generator& generator, int count, Rays& rays) {
         rays.x[k] *= radius;
         rays.y[k] *= radius;
         rays.z[k] = -chain.source_distance;
-        rays.dx[k] *= sine;
-        rays.dy[k] *= sine;
-        rays.dz[k] = std::sqrt(1 - sine * sine);
+        rays.dx[k] = chain.emission_shift * rays.x[k] + sine * rays.dx[k];
+        rays.dy[k] = chain.emission_shift * rays.y[k] + sine * rays.dy[k];
+        rays.dz[k] = std::sqrt(1 - rays.dx[k] * rays.dx[k] - rays.dy[k] * rays.dy[k]);
     }
     rays.count = count;
 }

@@ -1,6 +1,6 @@
-// The cones that sources are aimed into hold all light that passes: of a few hundred illuminators that nobody would
-// build.
-#include "optics/emission_cone.hpp"
+// The directions that sources are aimed into hold all light that passes: of a few hundred illuminators that nobody
+// would build.
+#include "optics/aim.hpp"
 
 #include "core/units.hpp"
 #include "optics/bundle.hpp"
@@ -112,10 +112,11 @@ Illuminator random_illuminator(Random& random, bool symmetric) {
     return result;
 }
 
+// Of the hemisphere, about the normal.
 EmissionBox whole_of(const DiscSource& source) {
     EmissionBox whole;
     whole[from_axis] = {0, source.radius};
-    whole[polar_angle] = {0, 0.5 * pi};
+    whole[from_middle] = {0, 1};
     whole[azimuth] = {-pi, pi};
     whole[turn] = {-pi, pi};
     whole[spectral] = source.monochromatic ? Range{} : Range{-1, 1};
@@ -132,22 +133,29 @@ Place random_place(Random& random) {
     return place;
 }
 
-bool passes(const Illuminator& illuminator, const EmissionBox& box, const Place& place) {
-    auto [ray, x] = ray_in(box, place);
-    ray.position.z -= illuminator.source.distance;
-    return trace_through(illuminator.train, ray, 1, x).status == PATH_ALIVE;
+bool passes(const Illuminator& illuminator, EmittedRay emitted) {
+    emitted.ray.position.z -= illuminator.source.distance;
+    return trace_through(illuminator.train, emitted.ray, 1, emitted.spectral).status == PATH_ALIVE;
+}
+
+double distance_from_middle(const physics::f64::Ray& ray, double shift) {
+    return glm::length(glm::dvec2(ray.direction) - shift * glm::dvec2(ray.position));
 }
 
 // Analog light of the hemisphere, and what of it an adversary makes of it: from each ray that passes, steps of ever
-// smaller size towards larger angles. The largest sine that passes; 0: none does.
-double largest_passing_sine(const Illuminator& illuminator, Random& random) {
+// smaller size away from the middle of this shift. The largest distance from it that passes; 0: none does.
+double farthest_passing(const Illuminator& illuminator, double shift, Random& random) {
     const EmissionBox whole = whole_of(illuminator.source);
     Place best{};
     double largest = 0;
     const auto offer = [&](const Place& place) {
-        const double sine = std::sin(0.25 * pi * (1 + place[polar_angle]));
-        if (sine > largest && passes(illuminator, whole, place)) {
-            largest = sine;
+        const auto emitted = ray_in(whole, {}, place);
+        if (!emitted) {
+            return false;
+        }
+        const double distance = distance_from_middle(emitted->ray, shift);
+        if (distance > largest && passes(illuminator, *emitted)) {
+            largest = distance;
             best = place;
             return true;
         }
@@ -157,7 +165,7 @@ double largest_passing_sine(const Illuminator& illuminator, Random& random) {
     for (int i = 0; i < rays; ++i) {
         Place place = random_place(random);
         if (i % 2 == 0) { // thin cones: about the axis, from all sizes of angle
-            place[polar_angle] = 2 * random.of_any_size(1e-3, 1) - 1;
+            place[from_middle] = 2 * random.of_any_size(1e-3, 1) - 1;
         }
         offer(place);
     }
@@ -174,75 +182,96 @@ double largest_passing_sine(const Illuminator& illuminator, Random& random) {
 }
 
 // Sampling alone, as a wrong twin: it must be seen to lose light.
-TEST(EmissionCone, HoldsAllThatPassesRandomIlluminators) {
+TEST(Aim, HoldsAllThatPassesRandomIlluminators) {
     Random random(31);
     constexpr int illuminators = 200;
     int lit = 0;
     int narrow = 0;
     int close = 0;
     int lost_by_samples = 0;
+    int shifted = 0;
+    int close_and_shifted = 0;
+    int lost_by_half_the_shift = 0;
     for (int i = 0; i < illuminators; ++i) {
         const bool symmetric = i % 3 != 0;
         const Illuminator illuminator = random_illuminator(random, symmetric);
-        const double aim = emission_sine(illuminator.train, symmetric, illuminator.source, 0);
-        const double passing = largest_passing_sine(illuminator, random);
+        const double aim = proved_aim(illuminator.train, symmetric, illuminator.source, {.shift = 0, .sine = 0}).sine;
+        const double passing = farthest_passing(illuminator, 0, random);
         EXPECT_LE(passing, aim) << i;
         lit += passing > 0;
         narrow += passing > 0 && aim < 0.9;
         close += passing > 0 && aim < 1.1 * passing;
+        const std::vector<RimRay> rim =
+            sampled_rim(illuminator.train, symmetric, illuminator.source, free_space(illuminator.source.distance));
         if (symmetric && i % 5 == 0) {
-            const RayTransfer towards_stop = free_space(illuminator.source.distance);
-            lost_by_samples +=
-                passing > 1.02 * largest_sampled_sine(illuminator.train, true, illuminator.source, towards_stop);
+            lost_by_samples += passing > 1.02 * aim_at(rim, 0).sine;
+        }
+        const Aim best = best_aim(illuminator.train, symmetric, illuminator.source, rim);
+        EXPECT_LE(std::abs(best.shift) * illuminator.source.radius + best.sine, 1) << i; // within the hemisphere
+        if (best.shift != 0) {
+            const double farthest = farthest_passing(illuminator, best.shift, random);
+            EXPECT_LE(farthest, best.sine) << i;
+            EXPECT_LT(best.sine, aim * (1 + 1e-12)) << i;
+            ++shifted;
+            close_and_shifted += farthest > best.sine / 1.1;
+            lost_by_half_the_shift += farthest_passing(illuminator, 0.5 * best.shift, random) > best.sine;
         }
     }
     EXPECT_GT(lit, illuminators / 2);
     EXPECT_GT(narrow, lit / 4);
     EXPECT_GT(close, lit / 3);
     EXPECT_GT(lost_by_samples, 0);
+    EXPECT_GT(shifted, lit / 4);
+    EXPECT_GT(close_and_shifted, shifted / 3);
+    EXPECT_GT(lost_by_half_the_shift, shifted / 4);
 }
 
-// Share of the source's light that passes, and its standard error, of rays emitted into a cone.
+// Share of the source's light that passes, and its standard error, of rays that are aimed.
 struct Passing {
     double share = 0;
     double error = 0;
 };
-Passing passing_share(const Illuminator& illuminator, double emission_sine, int rays, Random& random) {
+Passing passing_share(const Illuminator& illuminator, const Aim& aim, int rays, Random& random) {
     const auto uniform = [&] { return random.between(0, 1); };
     int passed = 0;
     for (int i = 0; i < rays; ++i) {
         const double x = illuminator.source.monochromatic ? 0 : random.between(-1, 1);
         const std::array draws = {uniform(), uniform(), uniform(), uniform()};
-        auto ray = physics::f64::emit_from_disc(illuminator.source.radius, emission_sine, draws[0], draws[1], draws[2],
-                                                draws[3]);
+        auto ray = physics::f64::emit_from_disc(illuminator.source.radius, aim.sine, aim.shift, draws[0], draws[1],
+                                                draws[2], draws[3]);
         ray.position.z -= illuminator.source.distance;
         passed += trace_through(illuminator.train, ray, 1, x).status == PATH_ALIVE;
     }
-    const double aimed = emission_sine * emission_sine;
+    const double aimed = aim.sine * aim.sine;
     return {.share = aimed * passed / rays, .error = aimed * std::sqrt(passed) / rays};
 }
 
-TEST(EmissionCone, KeepsThePowerOfAnalogEmission) {
+TEST(Aim, KeepsThePowerOfAnalogEmission) {
     Random random(33);
     int compared = 0;
     int rejected_twins = 0;
+    int shifted = 0;
     for (int i = 0; i < 200 && compared < 30; ++i) {
         const Illuminator illuminator = random_illuminator(random, i % 3 != 0);
         constexpr int rays = 10000;
-        const Passing analog = passing_share(illuminator, 1, rays, random);
+        const Passing analog = passing_share(illuminator, Aim{}, rays, random);
         if (!(analog.error < 0.1 * analog.share)) {
             continue; // nothing could be seen
         }
-        const double aim = emission_sine(illuminator.train, illuminator.symmetric, illuminator.source, 0);
-        const auto deviation = [&](double sine) {
-            const Passing directed = passing_share(illuminator, sine, rays, random);
+        const Aim aim = best_aim(illuminator.train, illuminator.symmetric, illuminator.source,
+                                 sampled_rim(illuminator.train, illuminator.symmetric, illuminator.source,
+                                             free_space(illuminator.source.distance)));
+        const auto deviation = [&](const Aim& aimed) {
+            const Passing directed = passing_share(illuminator, aimed, rays, random);
             return std::abs(directed.share - analog.share) / std::hypot(directed.error, analog.error);
         };
         EXPECT_LT(deviation(aim), 4.5) << i; // 3e-4 for all of them
-        rejected_twins += deviation(0.5 * aim) > 4.5;
+        rejected_twins += deviation({.shift = aim.shift, .sine = 0.5 * aim.sine}) > 4.5;
+        shifted += aim.shift != 0;
         ++compared;
     }
     EXPECT_EQ(compared, 30);
+    EXPECT_GT(shifted, 5);
     EXPECT_GT(rejected_twins, 15);
 }
 
@@ -255,18 +284,24 @@ TEST(BundleTracer, ExcludesOnlyWhatIsStopped) {
     int dark_and_excluded = 0;
     for (int i = 0; i < 3000; ++i) {
         const Illuminator illuminator = random_illuminator(random, i % 3 != 0);
-        const BundleTracer tracer(illuminator.train, illuminator.source.distance);
+        EmissionMiddle middle;
+        if (i % 2 == 1) {
+            middle = {.shift = random.between(-1, 1) / illuminator.source.radius, .reach = random.between(0.2, 1)};
+        }
+        const BundleTracer tracer(illuminator.train, illuminator.source.distance, middle);
         EmissionBox box = whole_of(illuminator.source);
+        box[from_middle].high = middle.reach + std::abs(middle.shift) * illuminator.source.radius;
         const double share = random.of_any_size(1e-3, 1);
         for (Range& side : box) {
-            const double middle = side.middle() + (1 - share) * side.radius() * random.between(-1, 1);
+            const double centre = side.middle() + (1 - share) * side.radius() * random.between(-1, 1);
             const double radius = share * side.radius();
-            side = {middle - radius, middle + radius};
+            side = {centre - radius, centre + radius};
         }
         const bool is_excluded = !tracer.may_pass(box);
         int passing = 0;
         for (int ray = 0; ray < 100; ++ray) {
-            passing += passes(illuminator, box, random_place(random));
+            const auto emitted = ray_in(box, middle, random_place(random));
+            passing += emitted && passes(illuminator, *emitted);
         }
         const bool is_dark = passing == 0;
         EXPECT_TRUE(is_dark || !is_excluded) << i;
@@ -280,7 +315,7 @@ TEST(BundleTracer, ExcludesOnlyWhatIsStopped) {
 
 // A source of 1 mm, a field stop as large 1 mm behind it and a field lens without edge: what passes from one rim of the
 // source to the other of the stop is a thin cone far off the axis.
-TEST(EmissionCone, HoldsThinConesOfAnAssembledIlluminator) {
+TEST(Aim, HoldsThinConesOfAnAssembledIlluminator) {
     PrescribedSurface stop;
     stop.medium_after = Medium::air();
     stop.semi_diameter = 1;
