@@ -430,8 +430,7 @@ std::optional<EmissionCoordinate> BundleTracer::may_pass(const EmissionBox& box)
     bundle.direction.x = middle + along;
     bundle.direction.y = of(from_middle) * sine(of(azimuth));
     const Affine sine_squared = square(of(from_middle)) + middle * (middle + 2.0 * along);
-    if (!conditions.require_not_positive(sine_squared - constant(middle_.reach * middle_.reach)) ||
-        !(sine_squared.low() < 1)) {
+    if (sine_squared.low() > middle_.reach * middle_.reach + rounding || !(sine_squared.low() < 1)) {
         return std::nullopt;
     }
     bundle.direction.z = square_root(constant(1) - sine_squared);
