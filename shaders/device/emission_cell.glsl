@@ -13,7 +13,7 @@ EmissionCell emission_cell(uvec2 path) {
     uint64_t number = packUint2x32(path);
     uint last = emission_cells - 1u;
     if (emission_place > last) {
-        // Cells have nearly equal numbers of paths: where it is on average, mostly two steps off at most.
+        // Cells have nearly equal numbers of paths: where it is on average, mostly eight steps off at most.
         real average = (real(path.y) * real(4294967296.0) + real(path.x)) * emission_cells_per_path;
         emission_place = uint(min(average, real(last)));
         while (emission_first[emission_place] > number) {

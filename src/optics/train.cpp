@@ -183,9 +183,15 @@ physics::f64::TrainResult go_through(std::span<const Surface> train, physics::f6
             (is_displaced(surface) ? physics::f64::FEATURE_PLACEMENT : 0u) |
             (spectral != 0 ? physics::f64::FEATURE_SPECTRUM : 0u) |
             ((surface.flags & physics::f64::SURFACE_IDEAL_LENS) != 0 ? physics::f64::FEATURE_IDEAL_LENS : 0u);
-        result = physics::f64::trace_surface(surface, static_cast<int>(i), result, apertures, light, present);
+        const physics::f64::TrainResult before = result;
+        result = physics::f64::trace_surface(surface, static_cast<int>(i), before, apertures, light, present);
         if (most_excess != nullptr && (surface.flags & physics::f64::SURFACE_CLIPPED) != 0) {
-            const auto& point = result.ray.position;
+            // An ideal lens puts the ray on its focal plane: where it met the lens is where it meets a plane there.
+            const bool is_lens = (present & physics::f64::FEATURE_IDEAL_LENS) != 0;
+            const auto point = is_lens ? physics::f64::trace_surface(surface, static_cast<int>(i), before, apertures,
+                                                                     light, present & ~physics::f64::FEATURE_IDEAL_LENS)
+                                             .ray.position
+                                       : result.ray.position;
             const double square = point.x * point.x + point.y * point.y;
             *most_excess =
                 std::max(*most_excess, (square - surface.semi_diameter_squared) / surface.semi_diameter_squared);

@@ -1,5 +1,6 @@
 #include "trace/emission_order.hpp"
 
+#include "core/parallel_rows.hpp"
 #include "statistics/poisson.hpp"
 #include "trace/host_tracer.hpp"
 
@@ -15,8 +16,8 @@ namespace {
 using namespace physics::f64;
 
 constexpr int bits_of_number = 21; // in each of which the four numbers of an emission are drawn
-constexpr int most_cell_bits = 16; // a megabyte, which stays in a GPU's cache; shaders/device/emission_cell.glsl
-constexpr int most_pupil_bits = 4; // of them; 2 or 6 are slower
+constexpr int most_cell_bits = 17; // two megabytes, which stay in a GPU's cache; shaders/device/emission_cell.glsl
+constexpr int most_pupil_bits = 2; // of them; 4 or 6 are slower
 constexpr int sector_bits = 3;     // a ring of a disc is about 4 pi times as long as the disc is wide
 
 // Two of the four numbers, which cut a disc, a rectangle or a ring into pieces about as wide as long.
@@ -80,9 +81,9 @@ Displacements displacements(const optics::Instrument& instrument) {
 
 EmissionOrder::EmissionOrder(const optics::Instrument& instrument, std::uint64_t paths, std::uint32_t seed)
     : paths_(std::max<std::uint64_t>(paths, 1)), seed_(seed) {
-    // With 2 sqrt(paths) cells where a cell begins varies by about one cell, so that it is found near its average.
+    // With 8 sqrt(paths) cells where a cell begins varies by about four cells, so that it is found near its average.
     const int bits =
-        std::clamp(static_cast<int>(std::log2(2 * std::sqrt(static_cast<double>(paths_)))), 0, most_cell_bits);
+        std::clamp(static_cast<int>(std::log2(8 * std::sqrt(static_cast<double>(paths_)))), 0, most_cell_bits);
     const Plane at_source = places(instrument);
     const auto [by_place, by_direction] = displacements(instrument);
     const bool places_first = by_place > by_direction;
@@ -118,13 +119,16 @@ std::vector<std::uint64_t> EmissionOrder::first_paths(std::uint32_t image) const
     std::vector<std::uint64_t> counts(cells() + 1);
     std::uint64_t sum = 0;
     for (std::uint32_t attempt = 0; attempt == 0 || sum > paths_; ++attempt) {
-        sum = 0;
-        for (std::size_t cell = 0; cell < cells(); ++cell) {
-            statistics::RandomStream random(seed_, image, static_cast<std::uint32_t>(cell), attempt,
-                                            statistics::Purpose::emission_order);
-            counts[cell] = static_cast<std::uint64_t>(statistics::poisson_count(mean, random));
-            sum += counts[cell];
-        }
+        constexpr int band = 8192; // 0.3 ms
+        parallel_bands(static_cast<int>(cells()), band, [&](int first, int end) {
+            for (int cell = first; cell < end; ++cell) {
+                statistics::RandomStream random(seed_, image, static_cast<std::uint32_t>(cell), attempt,
+                                                statistics::Purpose::emission_order);
+                counts[static_cast<std::size_t>(cell)] =
+                    static_cast<std::uint64_t>(statistics::poisson_count(mean, random));
+            }
+        });
+        sum = std::accumulate(counts.begin(), counts.end(), std::uint64_t{0});
     }
     for (std::uint64_t lacking = 0; lacking < paths_ - sum; ++lacking) {
         const auto bits = philox_4x32({static_cast<std::uint32_t>(lacking), static_cast<std::uint32_t>(lacking >> 32),

@@ -211,7 +211,6 @@ TEST(Aim, HoldsAllThatPassesRandomIlluminators) {
         if (best.shift != 0) {
             const double farthest = farthest_passing(illuminator, best.shift, random);
             EXPECT_LE(farthest, best.sine) << i;
-            EXPECT_LT(best.sine, aim * (1 + 1e-12)) << i;
             ++shifted;
             close_and_shifted += farthest > best.sine / 1.1;
             lost_by_half_the_shift += farthest_passing(illuminator, 0.5 * best.shift, random) > best.sine;
@@ -224,6 +223,31 @@ TEST(Aim, HoldsAllThatPassesRandomIlluminators) {
     EXPECT_GT(shifted, lit / 4);
     EXPECT_GT(close_and_shifted, shifted / 3);
     EXPECT_GT(lost_by_half_the_shift, shifted / 4);
+}
+
+// The edge that sampled rims are found by: of what passes everything is inside it, of what an edge stops something is
+// not.
+TEST(Aim, KnowsHowFarLightIsFromItsEdges) {
+    Random random(35);
+    int passing = 0;
+    int stopped = 0;
+    for (int i = 0; i < 2000; ++i) {
+        const Illuminator illuminator = random_illuminator(random, i % 3 != 0);
+        for (int ray = 0; ray < 30; ++ray) {
+            const auto emitted = ray_in(whole_of(illuminator.source), {}, random_place(random));
+            if (!emitted) {
+                continue;
+            }
+            physics::f64::Ray entering = emitted->ray;
+            entering.position.z -= illuminator.source.distance;
+            const auto status = trace_through(illuminator.train, entering, 1, emitted->spectral).status;
+            EXPECT_EQ(excess_of(illuminator.train, entering, emitted->spectral) <= 0, status == PATH_ALIVE) << i;
+            passing += status == PATH_ALIVE;
+            stopped += status == physics::f64::PATH_VIGNETTED;
+        }
+    }
+    EXPECT_GT(passing, 500);
+    EXPECT_GT(stopped, 500);
 }
 
 // Share of the source's light that passes, and its standard error, of rays that are aimed.

@@ -352,8 +352,8 @@ TEST(BeamSplitter, LeavesTheImage) {
     }
 }
 
-// The source is aimed at the field stop with a stop at the source as without. A pinhole in the focal plane of the lens
-// in front of it takes light of one direction from all of the source; a search about another misses it.
+// The source is aimed at the field stop with a stop at the source as without: at a pinhole, which a search about the
+// wrong direction misses.
 TEST(IlluminationAperture, LeavesTheAim) {
     const auto pinhole = [](std::optional<double> aperture) {
         return ideal([&](auto& d) {
@@ -362,9 +362,15 @@ TEST(IlluminationAperture, LeavesTheAim) {
             d.illumination_aperture_radius = aperture;
         });
     };
-    const double open = pinhole({}).constants.emission_sine;
-    EXPECT_NEAR(pinhole(2.0).constants.emission_sine, open, 1e-6);
-    EXPECT_LT(pinhole(0.3).constants.emission_sine, 0.5 * open);
+    const auto open = pinhole({}).constants;
+    const auto wide = pinhole(2.0).constants;
+    const auto narrow = pinhole(0.3).constants;
+    // The source has a radius of 1 mm: a cone about the normal would be ten times as wide.
+    EXPECT_GT(std::abs(open.emission_shift) * open.source_radius, 10 * open.emission_sine);
+    EXPECT_NEAR(wide.emission_sine, open.emission_sine, 1e-6);
+    EXPECT_NEAR(wide.emission_shift, open.emission_shift, 1e-6);
+    EXPECT_NEAR(narrow.emission_shift, open.emission_shift, 0.05 * std::abs(open.emission_shift)); // aberrations
+    EXPECT_LT(narrow.emission_sine, open.emission_sine);
 }
 
 TEST(RingLight, StandsAboveTheCoverGlass) {

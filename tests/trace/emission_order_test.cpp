@@ -124,7 +124,7 @@ TEST(EmissionOrder, images_and_seeds_differ_and_the_same_are_the_same) {
 TEST(EmissionOrder, cells_are_all_of_the_cube_and_apart) {
     for (const auto& instrument : {test::microscope(), ring_microscope()}) {
         const EmissionOrder order(instrument, 1000000, seed);
-        ASSERT_EQ(order.cells(), 1024U);
+        ASSERT_EQ(order.cells(), 4096U);
         std::set<std::array<std::uint32_t, 4>> seen;
         for (const glm::uvec4& given : order.given()) {
             seen.insert({given.x, given.y, given.z, given.w});
@@ -179,8 +179,8 @@ TEST(EmissionOrder, numbers_are_uniform_over_all_paths) {
 }
 
 TEST(EmissionOrder, consecutive_paths_arrive_close_together) {
-    // 2^15 cells, of which 2^11 divide the disc's field. Of a ring light place and direction both say where light
-    // arrives: 2^(15 / 4) pieces of each of the four numbers, all of which move it.
+    // 2^17 cells, of which 2^15 divide the disc's field. Of a ring light place and direction both say where light
+    // arrives: 2^(17 / 4) pieces of each of the four numbers, all of which move it.
     for (const auto& [instrument, most] : {std::pair(test::microscope(), 0.1), std::pair(ring_microscope(), 0.25)}) {
         const EmissionOrder order(instrument, 1000000000, seed);
         const EmissionCells cells(order, 0);
