@@ -45,21 +45,19 @@ VKFV_FUNCTION Turn turn_of(real u) {
     return turn;
 }
 
-// In the frame of the emitting area, towards +z.
-VKFV_FUNCTION real3 lambertian_direction(real emission_sine, real u0, real u1) {
+// In the frame of the emitting area, towards +z. middle: (l, m).
+VKFV_FUNCTION real3 aimed_direction(real2 middle, real emission_sine, real u0, real u1) {
     real sine_squared = emission_sine * emission_sine * u0;
     real sine = sqrt(sine_squared);
     Turn psi = turn_of(u1);
-    return real3(sine * psi.cosine, sine * psi.sine, sqrt(real(1.0) - sine_squared));
+    real2 beside = real2(sine * psi.cosine, sine * psi.sine);
+    // |middle + beside|^2, taken from 1 at once: in float each rounding near 1 turns the direction by its own size.
+    real across_squared = sine_squared + dot(middle, middle + beside + beside);
+    return real3(middle.x + beside.x, middle.y + beside.y, sqrt(max(real(1.0) - across_squared, real(0.0))));
 }
 
-// The same about a middle other than the normal.
-VKFV_FUNCTION real3 aimed_direction(real2 middle, real emission_sine, real u0, real u1) {
-    real3 beside = lambertian_direction(emission_sine, u0, u1);
-    real2 across = middle + real2(beside.x, beside.y);
-    // 1 - |across|^2, with the digits of what is near 1 kept.
-    real axial_squared = beside.z * beside.z - dot(middle, middle + real(2.0) * real2(beside.x, beside.y));
-    return real3(across.x, across.y, sqrt(max(axial_squared, real(0.0))));
+VKFV_FUNCTION real3 lambertian_direction(real emission_sine, real u0, real u1) {
+    return aimed_direction(real2(real(0.0), real(0.0)), emission_sine, u0, u1);
 }
 
 // A flat disc about the origin in z = 0.
