@@ -148,7 +148,8 @@ TEST(Backward, knows_every_material) {
          {mixture, specimen::Material::henyey_greenstein(1), specimen::Material::henyey_greenstein(-0.4),
           specimen::Material::henyey_greenstein(0.97)}) {
         const auto specimen = with_material(rough, material);
-        expect_agreement(forward_image(instrument, specimen, 2), backward_image(instrument, specimen, 2));
+        // Of a mirror among other lobes backward's own noise is the larger one otherwise.
+        expect_agreement(forward_image(instrument, specimen, 2), backward_image(instrument, specimen, 2, 1 << 20));
     }
     // One event alone takes fewer numbers, but the lobe is still chosen.
     const specimen::Material sharp_and_wide{{{"henyey-greenstein", 0.5, {0.3}}, {"henyey-greenstein", 0.4, {0.95}}}};
@@ -331,7 +332,7 @@ TEST(Backward, knows_a_rectangular_source) {
     description.source.rectangle = glm::dvec2(2.4, 0.9);
     const auto rough = test::rough_specimen();
     const auto instrument = optics::assemble(description);
-    const auto forward = forward_image(instrument, rough, 1, 1'800'000);
+    const auto forward = forward_image(instrument, rough, 1, 3'000'000);
     expect_agreement(forward, backward_image(instrument, rough, 1));
     // Wrong twins: wider, so that more of the same flux passes beside the pupil, and with its sides exchanged.
     for (const glm::dvec2 sides : {glm::dvec2(2.54, 0.9), glm::dvec2(0.9, 2.4)}) {
