@@ -51,7 +51,7 @@ VKFV_FUNCTION real3 aimed_direction(real2 middle, real emission_sine, real u0, r
     real sine = sqrt(sine_squared);
     Turn psi = turn_of(u1);
     real2 beside = real2(sine * psi.cosine, sine * psi.sine);
-    // |middle + beside|^2, taken from 1 at once: in float each rounding near 1 turns the direction by its own size.
+    // |middle + beside|^2, which is small: what is taken from 1 is rounded once.
     real across_squared = sine_squared + dot(middle, middle + beside + beside);
     return real3(middle.x + beside.x, middle.y + beside.y, sqrt(max(real(1.0) - across_squared, real(0.0))));
 }

@@ -1,6 +1,6 @@
 // A centred train in light of one wavelength as polynomials of the ray that enters it, instead of surface by surface.
-// What a train of revolution makes of a ray with the place r and the direction's part s across the axis are sums of
-// those two vectors, with factors that depend on u = r.r, v = r.s and w = s.s alone; so do the squares of its distances
+// What a train of revolution makes of a ray with the place r and the direction's part s across the axis, counted from
+// some multiple of r, are sums of those two vectors, with factors that depend on u = r.r, v = r.s and w = s.s alone; so do the squares of its distances
 // from the axis at the surfaces. The factors are polynomials (M. B. Hullin, J. Hanika, W. Heidrich, "Polynomial
 // optics", Computer Graphics Forum 31 (2012) 1375). Near an edge they do not tell: such light is traced.
 // src/optics/train_polynomials.hpp finds them and says how far they are off.
@@ -68,7 +68,7 @@ struct EdgePolynomial {
 struct TrainPolynomials {
     int edges;       // that are asked; -1: these are no polynomials of a train
     real per_radius; // 1/mm, of r: the source's own is 1
-    real shift;      // 1/mm: s is what the direction is off this times the place
+    real shift;      // 1/mm: s is the direction less this times the place
     real per_sine;   // of s: the farthest off that is emitted is 1
     real plane;      // mm
     // The factors of r and of s in the place, mm, and in the direction of the length of the index.

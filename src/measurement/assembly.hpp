@@ -23,8 +23,8 @@ optics::Instrument assemble_instrument(const Configuration& configuration);
 // log.
 optics::Instrument assemble_instrument(const Configuration& configuration, const specimen::Specimen& specimen,
                                        std::span<const double> focal_heights);
-// The instrument for its figures alone, not for tracing: its source lights the hemisphere, since the proof of a
-// narrower cone that holds all useful light takes time, and no figure depends on it.
+// The instrument for its figures alone, not for tracing: its source lights the hemisphere, since the proof of an
+// aim that holds all useful light takes time, and no figure depends on it.
 optics::Instrument assemble_for_figures(const Configuration& configuration);
 
 // Where the configuration's images are really taken; none: at their nominal positions.

@@ -70,7 +70,7 @@ std::vector<std::string> warning_of_lost_light(const trace::Image& image) {
     const double detected = std::accumulate(image.flux.values.begin(), image.flux.values.end(), 0.0);
     if (!(detected > 0)) {
         const auto most = std::ranges::max_element(ledger.entries, {}, [](const auto& entry) {
-            return entry.status == Status::not_aimed_at ? 0.0 : entry.power; // outside the cone that can pass at all
+            return entry.status == Status::not_aimed_at ? 0.0 : entry.power; // what cannot pass at all
         });
         const std::string where = most == ledger.entries.end() || !(most->power > 0)
                                       ? ""

@@ -8,10 +8,11 @@
 #include "optics/train.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
-#include <optional>
 #include <queue>
+#include <utility>
 #include <vector>
 
 namespace vkfv::optics {
@@ -37,8 +38,8 @@ EmissionBox all_rays(bool symmetric, const DiscSource& source, const EmissionMid
     return whole;
 }
 
-// How far from the middle the farthest of a few sampled rays of a box is that pass; 0 if none does. It often starts at
-// the source's rim, towards it or away from it.
+// Distance from the middle of the farthest ray that passes among a few sampled in a box; 0 if none does. It often
+// starts at the source's rim, towards it or away from it.
 double sampled_distance(std::span<const Surface> train, double source_distance, const EmissionMiddle& middle,
                         const EmissionBox& box) {
     std::array<double, Affine::coordinates> at{};
@@ -60,18 +61,38 @@ double sampled_distance(std::span<const Surface> train, double source_distance, 
     return 0;
 }
 
-// The shift by which the rim's smallest disc is smallest. The disc's size is a convex function of the shift, as the
-// largest of many distances: search by thirds.
-double best_shift(std::span<const RimRay> rim, double source_radius) {
+bool is_within_hemisphere(const Aim& aim, double source_radius) {
+    return std::abs(aim.shift) * source_radius + aim.sine <= 1;
+}
+
+// The smallest disc that holds the rim, of those that are within the hemisphere. The size of a disc is a convex
+// function of its shift, as the largest of many distances: search by thirds.
+Aim smallest_aim(std::span<const RimRay> rim, double source_radius) {
     double low = -1 / source_radius; // beyond it the middle leaves the hemisphere
     double high = 1 / source_radius;
     constexpr int rounds = 40;
     for (int round = 0; round < rounds; ++round) {
         const double a = low + (high - low) / 3;
         const double b = high - (high - low) / 3;
-        (aim_at(rim, a).sine < aim_at(rim, b).sine ? high : low) = aim_at(rim, a).sine < aim_at(rim, b).sine ? b : a;
+        if (aim_at(rim, a).sine < aim_at(rim, b).sine) {
+            high = b;
+        } else {
+            low = a;
+        }
     }
-    return 0.5 * (low + high);
+    double shift = 0.5 * (low + high);
+    const auto fits = [&](double candidate) {
+        return is_within_hemisphere({.shift = candidate, .sine = margin * aim_at(rim, candidate).sine}, source_radius);
+    };
+    if (!fits(shift)) { // the nearest one that does, if any
+        double inside = 0;
+        for (int round = 0; round < rounds; ++round) {
+            const double middle = 0.5 * (inside + shift);
+            (fits(middle) ? inside : shift) = middle;
+        }
+        shift = inside;
+    }
+    return aim_at(rim, shift);
 }
 
 } // namespace
@@ -187,13 +208,12 @@ Aim best_aim(std::span<const Surface> train, bool symmetric, const DiscSource& s
     if (rim.empty() || !(source.radius > 0)) {
         return cone;
     }
-    const Aim sampled = aim_at(rim, best_shift(rim, source.radius));
+    const Aim sampled = smallest_aim(rim, source.radius);
     if (!(margin * sampled.sine < cone.sine)) {
         return cone;
     }
     const Aim shifted = proved_aim(train, symmetric, source, sampled, cone.sine);
-    const bool is_within_hemisphere = std::abs(shifted.shift) * source.radius + shifted.sine <= 1;
-    return shifted.sine < cone.sine && is_within_hemisphere ? shifted : cone;
+    return shifted.sine < cone.sine && is_within_hemisphere(shifted, source.radius) ? shifted : cone;
 }
 
 } // namespace vkfv::optics

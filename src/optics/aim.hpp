@@ -38,10 +38,10 @@ std::vector<RimRay> sampled_rim(std::span<const physics::f64::Surface> train, bo
 // The smallest disc of this shift that holds them; its sine is 0 if there are none.
 Aim aim_at(std::span<const RimRay> rim, double shift);
 
-// A small aim with this shift that no ray which passes the train lies outside of, which bounds prove (BundleTracer). As
-// small as can be proved within a bounded time, but, to save time, not smaller than 1.02 times that of rays known to
-// pass (`known_sine`, 0: none is known). Its sine is 0 if nothing passes. `reach`: the sine of a cone about the normal
-// that is known to hold everything.
+// An aim that holds every ray which passes the train, as bounds prove (BundleTracer). `known` has its shift, and the
+// sine that rays known to pass have with it (0: none is known): to save time, the aim's is not less than 1.02 times
+// that. Otherwise it is as small as can be proved within a bounded time, and 0 if nothing passes. `reach`: the sine of
+// a cone about the normal that is known to hold everything.
 Aim proved_aim(std::span<const physics::f64::Surface> train, bool symmetric, const DiscSource& source, const Aim& known,
                double reach = 1);
 

@@ -15,8 +15,8 @@ namespace vkfv::optics {
 // The coordinates of a ray of a disc source: indices into EmissionBox and Affine::slopes.
 enum EmissionCoordinate : std::size_t {
     from_axis,   // mm, its start
-    from_middle, // its direction's cosines across the normal, from their middle
-    azimuth,     // rad, of what they are off, against that of its start
+    from_middle, // distance of its direction's cosines across the normal from their middle
+    azimuth,     // rad, of that offset, against that of its start
     turn,        // rad, of both about the normal
     spectral,    // x of physics::Light
 };
@@ -53,9 +53,9 @@ class BundleTracer {
     BundleTracer(std::span<const physics::f64::Surface> train, double source_distance,
                  const EmissionMiddle& middle = {});
 
-    // None: it is proved that no ray of the box passes the whole train. The proof uses the equations of the trace
-    // (physics/train.glsl) with apertures, total reflection and missed surfaces, but not losses at interfaces.
-    // Otherwise some rays may pass, and the result is the coordinate in which halving the box tells most.
+    // None: it is proved that no ray of the box, within reach, passes the whole train. The proof uses the equations of
+    // the trace (physics/train.glsl) with apertures, total reflection and missed surfaces, but not losses at
+    // interfaces. Otherwise some rays may pass, and the result is the coordinate in which halving the box tells most.
     std::optional<EmissionCoordinate> may_pass(const EmissionBox& box) const;
 
   private:

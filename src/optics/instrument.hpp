@@ -101,7 +101,7 @@ struct InstrumentDescription {
     double fill_factor = 1; // share of a pixel's area, a square in its middle, that is sensitive
     Placement detector_placement;
     std::vector<MeshElement> meshes; // the non-sequential mode's alone
-    bool directed_emission = true;   // aim the source at the cone that can pass the illumination train
+    bool directed_emission = true;   // aim the source at what can pass the illumination train
     bool turned = false;             // the backward estimator's form is wanted too
     double greatest_defocus = 0.2;   // of the specimen's top plane from the plane of best focus, for the gate
 

@@ -165,6 +165,17 @@ std::optional<std::size_t> surface_with_role(const std::vector<PlacedSurface>& p
     return found == part.end() ? std::nullopt : std::optional(static_cast<std::size_t>(found - part.begin()));
 }
 
+glm::dvec2 meeting_place(const Surface& surface, const physics::f64::TrainResult& before,
+                         const physics::f64::TrainResult& behind, const physics::f64::Light& light,
+                         std::uint32_t present) {
+    if ((surface.flags & physics::f64::SURFACE_IDEAL_LENS) == 0) {
+        return glm::dvec2(behind.ray.position);
+    }
+    // As a plane without power it is met at the same place.
+    const std::uint32_t plane = present & ~physics::f64::FEATURE_IDEAL_LENS;
+    return glm::dvec2(physics::f64::trace_surface(surface, 0, before, false, light, plane).ray.position);
+}
+
 namespace {
 
 // most_excess: excess_of(), of the edges that are met; none where nobody asks. In one function, so that the compiler
@@ -186,15 +197,9 @@ physics::f64::TrainResult go_through(std::span<const Surface> train, physics::f6
         const physics::f64::TrainResult before = result;
         result = physics::f64::trace_surface(surface, static_cast<int>(i), before, apertures, light, present);
         if (most_excess != nullptr && (surface.flags & physics::f64::SURFACE_CLIPPED) != 0) {
-            // An ideal lens puts the ray on its focal plane: where it met the lens is where it meets a plane there.
-            const bool is_lens = (present & physics::f64::FEATURE_IDEAL_LENS) != 0;
-            const auto point = is_lens ? physics::f64::trace_surface(surface, static_cast<int>(i), before, apertures,
-                                                                     light, present & ~physics::f64::FEATURE_IDEAL_LENS)
-                                             .ray.position
-                                       : result.ray.position;
-            const double square = point.x * point.x + point.y * point.y;
-            *most_excess =
-                std::max(*most_excess, (square - surface.semi_diameter_squared) / surface.semi_diameter_squared);
+            const glm::dvec2 place = meeting_place(surface, before, result, light, present);
+            *most_excess = std::max(*most_excess, (glm::dot(place, place) - surface.semi_diameter_squared) /
+                                                      surface.semi_diameter_squared);
         }
     }
     return result;

@@ -85,6 +85,12 @@ struct TrainScene {
     }
 };
 
+// Where light met a surface, in the surface's frame. `behind` is what trace_surface() made of `before`, of all that is
+// `present`: an ideal lens puts the ray on its focal plane.
+glm::dvec2 meeting_place(const physics::f64::Surface& surface, const physics::f64::TrainResult& before,
+                         const physics::f64::TrainResult& behind, const physics::f64::Light& light,
+                         std::uint32_t present);
+
 // Through the whole train, from the entry's frame to the last vertex's. ray.direction is a unit vector; nothing is lost
 // at interfaces. spectral: x of physics::Light. A ray that ends is traced no further than to the surface where it does.
 physics::f64::TrainResult trace_through(std::span<const physics::f64::Surface> train, physics::f64::Ray ray,

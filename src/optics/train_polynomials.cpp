@@ -2,6 +2,7 @@
 
 #include "core/parallel_list.hpp"
 #include "core/parallel_rows.hpp"
+#include "optics/train.hpp"
 
 #include <Eigen/Dense>
 
@@ -81,8 +82,9 @@ class Train {
         TrainResult light = physics::f64::enter_train(ray, 1);
         result.filled.assign(static_cast<std::size_t>(surfaces()), 0.0);
         for (int k = 0; k < surfaces(); ++k) {
-            light = physics::f64::trace_surface(surface(k), k, light, true, {}, instrument_.features);
-            const glm::dvec2 at(light.ray.position);
+            const TrainResult before = light;
+            light = physics::f64::trace_surface(surface(k), k, before, true, {}, instrument_.features);
+            const glm::dvec2 at = meeting_place(surface(k), before, light, {}, instrument_.features);
             const bool met = light.status == physics::f64::PATH_ALIVE || light.status == physics::f64::PATH_VIGNETTED;
             result.filled[static_cast<std::size_t>(k)] = !met ? std::numeric_limits<double>::infinity()
                                                          : has_edge(k)
@@ -249,7 +251,9 @@ EdgePolynomial fit_edge(const Train& train, int surface, const std::vector<Sampl
             break;
         }
     }
-    const double margin = 2 * error + float_margin * edge.semi_diameter_squared;
+    // What is counted from the middle has the rounding of the whole direction.
+    const double whole = 1 + std::abs(train.shift()) * train.radius() / train.sine();
+    const double margin = 2 * error + float_margin * whole * edge.semi_diameter_squared;
     result.inside_below = edge.semi_diameter_squared - margin;
     result.ends_from = edge.semi_diameter_squared + margin;
     result.ends_below = std::numeric_limits<float>::max();

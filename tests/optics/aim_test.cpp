@@ -164,7 +164,7 @@ double farthest_passing(const Illuminator& illuminator, double shift, Random& ra
     constexpr int rays = 2000;
     for (int i = 0; i < rays; ++i) {
         Place place = random_place(random);
-        if (i % 2 == 0) { // thin cones: about the axis, from all sizes of angle
+        if (i % 2 == 0) { // thin cones: about the axis, from all sizes of sine
             place[from_middle] = 2 * random.of_any_size(1e-3, 1) - 1;
         }
         offer(place);
@@ -203,9 +203,7 @@ TEST(Aim, HoldsAllThatPassesRandomIlluminators) {
         close += passing > 0 && aim < 1.1 * passing;
         const std::vector<RimRay> rim =
             sampled_rim(illuminator.train, symmetric, illuminator.source, free_space(illuminator.source.distance));
-        if (symmetric && i % 5 == 0) {
-            lost_by_samples += passing > 1.02 * aim_at(rim, 0).sine;
-        }
+        lost_by_samples += passing > 1.02 * aim_at(rim, 0).sine;
         const Aim best = best_aim(illuminator.train, symmetric, illuminator.source, rim);
         EXPECT_LE(std::abs(best.shift) * illuminator.source.radius + best.sine, 1) << i; // within the hemisphere
         if (best.shift != 0) {
@@ -219,7 +217,9 @@ TEST(Aim, HoldsAllThatPassesRandomIlluminators) {
     EXPECT_GT(lit, illuminators / 2);
     EXPECT_GT(narrow, lit / 4);
     EXPECT_GT(close, lit / 3);
-    EXPECT_GT(lost_by_samples, 0);
+    EXPECT_GT(lost_by_samples, 5);
+    printf("LOST %d half %d shifted %d close %d\n", lost_by_samples, lost_by_half_the_shift, shifted,
+           close_and_shifted);
     EXPECT_GT(shifted, lit / 4);
     EXPECT_GT(close_and_shifted, shifted / 3);
     EXPECT_GT(lost_by_half_the_shift, shifted / 4);
@@ -380,6 +380,7 @@ TEST(Aim, HoldsThinConesOfAnAssembledIlluminator) {
         }
         return count;
     };
+    ASSERT_EQ(directed.constants.emission_shift, 0); // a middle that moved would leave the hemisphere
     const double aim = directed.constants.emission_sine;
     constexpr double aim_by_samples = 0.7882; // wrong twin: what a search in steps of 1/32 finds
     int lost = 0;

@@ -129,7 +129,7 @@ TEST(Image, the_ledger_gives_each_loss_the_power_it_carried) {
     EXPECT_NEAR(power_per_ray("detected"), 0.21, 1e-12);
 }
 
-// Analog emission and emission into the cone that can arrive have the same expectation of detected power.
+// Analog emission and emission into what can arrive have the same expectation of detected power.
 TEST(Image, aimed_emission_detects_the_power_of_the_whole_source) {
     auto description = test::microscope_description();
     description.source.radius = 0.2;

@@ -222,7 +222,7 @@ TEST(MixedLight, RaysAreSharedOutAmongTheSources) {
     const auto parts = trace::one_by_one(mixed, with);
     ASSERT_EQ(parts.size(), 2u);
     EXPECT_EQ(parts[0].options.rays + parts[1].options.rays, with.rays);
-    // Power a ray, of a Lambertian source into a cone.
+    // Power a ray, of a Lambertian source that is aimed.
     const auto power = [](const trace::OneLight& part) {
         return part.instrument.flux * std::pow(part.instrument.constants.emission_sine, 2) /
                static_cast<double>(part.options.rays);

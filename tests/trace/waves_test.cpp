@@ -385,7 +385,8 @@ TEST(Waves, sort_light_alike_forward_and_backward_on_device_and_host) {
     std::vector<trace::Image> images;
     for (const auto estimator : {trace::Estimator::forward, trace::Estimator::backward}) {
         auto options = with_waves(estimator);
-        // A thousandth of the paths round otherwise: enough of them for their share to be told below.
+        // A thousandth of the paths round otherwise. Of 400 000 a dozen do, which differ by 0.017 to 0.024 of the mean
+        // from image to image.
         options.rays *= estimator == trace::Estimator::forward ? 2 : 1;
         images.push_back(trace::make_device_tracer(instrument, specimen, options)->expose(z, 1));
         images.push_back(trace::make_host_tracer(instrument, specimen, options)->expose(z, 1));

@@ -246,7 +246,7 @@ void emit(const Chain& chain, Generator& generator, int count, Rays& rays) {
         rays.z[k] = -chain.source_distance;
         rays.dx[k] = chain.emission_shift * rays.x[k] + sine * rays.dx[k];
         rays.dy[k] = chain.emission_shift * rays.y[k] + sine * rays.dy[k];
-        rays.dz[k] = std::sqrt(1 - rays.dx[k] * rays.dx[k] - rays.dy[k] * rays.dy[k]);
+        rays.dz[k] = std::sqrt(std::max(0.0, 1 - rays.dx[k] * rays.dx[k] - rays.dy[k] * rays.dy[k]));
     }
     rays.count = count;
 }

@@ -141,7 +141,7 @@ vkfv.parts.push(() => {
     const followed = power("not followed backward") === 0;
     d3.select("#flow-note").text(
         `${vkfv.number(emitted)} W leave the source` + (notAimed > 0
-            ? `, ${figure(100 * notAimed / emitted)} % of them in directions that never reach the first element: shares are of the other ${figure(aimed)} W`
+            ? `, ${figure(100 * notAimed / emitted)} % of them in directions that cannot pass the illuminator: shares are of the other ${figure(aimed)} W`
             : "") + `; ${figure(detected)} W are detected. ` +
         (followed ? "" : "The backward estimator follows no other light: forward tracing shows where it goes."));
     if (followed) {
