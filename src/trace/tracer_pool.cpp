@@ -5,6 +5,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <chrono>
 #include <condition_variable>
 #include <cstddef>
 #include <deque>
@@ -48,6 +49,7 @@ class Counted final : public Checkpoints {
 // An exposure whose parts several devices count.
 struct Parted {
     std::promise<Image> done;
+    std::chrono::steady_clock::time_point begun = std::chrono::steady_clock::now();
     std::mutex mutex; // of what follows
     ExposurePart sum;
     std::size_t missing = 0; // parts
@@ -132,7 +134,8 @@ class TracerPool final : public Tracer {
     struct Begun {
         std::promise<Image> done;
         std::future<Image> image;
-        ExposurePart parts{}; // that it was made of
+        ExposurePart parts{};                                          // that it was made of
+        std::optional<std::chrono::steady_clock::time_point> parted{}; // when its parts were begun
     };
 
     // None: the pool ends, or the device has begun others and may finish them meanwhile.
@@ -178,7 +181,8 @@ class TracerPool final : public Tracer {
         }
         auto counted = std::make_shared<const Counted>(Checkpoint{tracer.units(), std::move(sum.numbers)});
         auto image = tracer.begin(job.position, job.image, std::move(counted));
-        return Begun{.done = std::move(parted.done), .image = std::move(image), .parts = std::move(sum)};
+        return Begun{
+            .done = std::move(parted.done), .image = std::move(image), .parts = std::move(sum), .parted = parted.begun};
     }
 
     // A device's thread.
@@ -224,6 +228,10 @@ class TracerPool final : public Tracer {
                 image.device = static_cast<int>(place);
                 image.device_seconds += first.parts.device_seconds / static_cast<double>(tracers_.size());
                 image.longest_submission = std::max(image.longest_submission, first.parts.longest_submission);
+                if (first.parted) {
+                    image.seconds =
+                        std::chrono::duration<double>(std::chrono::steady_clock::now() - *first.parted).count();
+                }
                 first.done.set_value(std::move(image));
             } catch (...) {
                 fail(first.done);
