@@ -305,6 +305,7 @@ TEST(ReflectanceMap, the_ledger_counts_what_the_map_absorbs) {
         double absorbed = 0, rays = 0, left = 0;
         for (const auto& entry : image.ledger.entries) {
             const bool leaves = entry.status == Status::outside_pupil || entry.status == Status::detected ||
+                                entry.status == Status::splitter_towards_detector ||
                                 entry.status == Status::beside_detector || entry.train == trace::Train::imaging;
             absorbed += entry.status == Status::absorbed ? entry.power : 0;
             rays += entry.status == Status::absorbed ? static_cast<double>(entry.rays) : 0;
