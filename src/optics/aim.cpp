@@ -101,13 +101,13 @@ Aim smallest_aim(std::span<const RimRay> rim, double source_radius) {
 std::vector<RimRay> sampled_rim(std::span<const Surface> train, bool symmetric, const DiscSource& source,
                                 const RayTransfer& towards_stop) {
     const auto rim_from = [&](glm::dvec2 position) {
-        constexpr int azimuths = 26;
+        const int azimuths = symmetric ? 13 : 26; // over half a turn, or all of it
         const double slope = -towards_stop.a / towards_stop.b;
         const glm::dvec2 centre = slope * position / std::sqrt(1 + slope * slope * glm::dot(position, position));
         std::vector<RimRay> rim;
         // Mirrored azimuths are the same for a symmetric train and a point of the x axis.
-        for (int i = 0; i < (symmetric ? azimuths / 2 : azimuths); ++i) {
-            const double angle = symmetric ? pi * i / (azimuths / 2 - 1) : 2 * pi * i / azimuths;
+        for (int i = 0; i < azimuths; ++i) {
+            const double angle = symmetric ? pi * i / (azimuths - 1) : 2 * pi * i / azimuths;
             const auto cosines = [&](double radius) {
                 return centre + radius * glm::dvec2(std::cos(angle), std::sin(angle));
             };

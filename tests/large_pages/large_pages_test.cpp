@@ -54,7 +54,7 @@ int main() {
         expect(block != nullptr && is_aligned(block, alignof(std::max_align_t)), "not aligned", size);
         std::memset(block, 7, size);
         expect(is_in_large_pages(block) == (size >= large), "pages of another size than expected", size);
-        ::operator delete(block, size);
+        ::operator delete(block);
     }
     // Two at a time do not share a byte, whichever is freed first.
     for (const bool first : {true, false}) {

@@ -170,9 +170,9 @@ TEST(Source, an_aim_that_moves_with_the_place_is_cut_out_of_the_whole) {
             if (distance < 1) {
                 const double share = rectangle ? 0.5 + place.x / 1.6 : glm::dot(place, place);
                 const double side = std::atan2(beside.y, beside.x) / (2 * M_PI) + 0.5;
-                seen[static_cast<std::size_t>(
-                    (std::min(int(share * places), places - 1) * distances + int(distance * distances)) * sides +
-                    std::min(int(side * sides), sides - 1))] += 1;
+                const int ring = std::min(int(share * places), places - 1) * distances + int(distance * distances);
+                const int bin = ring * sides + std::min(int(side * sides), sides - 1);
+                seen[static_cast<std::size_t>(bin)] += 1;
             }
         }
         return seen;
