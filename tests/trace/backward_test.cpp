@@ -48,6 +48,7 @@ trace::Image backward_image(const optics::Instrument& instrument, const specimen
         ->expose(focal_height, image);
 }
 
+// So many rays that forward's noise, whose distribution is known, is the larger one in what is compared.
 trace::Image forward_image(const optics::Instrument& instrument, const specimen::Specimen& specimen, int max_bounces,
                            std::uint64_t rays = 1'200'000) {
     return trace::make_device_tracer(instrument, specimen, options(trace::Estimator::forward, rays, max_bounces))
@@ -148,7 +149,7 @@ TEST(Backward, knows_every_material) {
          {mixture, specimen::Material::henyey_greenstein(1), specimen::Material::henyey_greenstein(-0.4),
           specimen::Material::henyey_greenstein(0.97)}) {
         const auto specimen = with_material(rough, material);
-        // Of a mirror among other lobes backward's own noise is the larger one otherwise.
+        // Of a mirror among other lobes backward's own noise would be half of forward's.
         expect_agreement(forward_image(instrument, specimen, 2), backward_image(instrument, specimen, 2, 1 << 20));
     }
     // One event alone takes fewer numbers, but the lobe is still chosen.
