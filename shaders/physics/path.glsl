@@ -107,6 +107,11 @@ VKFV_SCENE_FUNCTION VKFV_FUNCTION Emission emit(VKFV_SCENE_PARAMETER Instrument 
         emission.ray = emit_from_disc(instrument.source_radius, instrument.emission_sine, instrument.emission_shift,
                                       draws.u0, draws.u1, draws.u2, draws.u3);
     }
+    if ((present & FEATURE_AIMED_RECTANGLE) != 0u) {
+        real2 middle = real2(emission.ray.position.x, emission.ray.position.y) * instrument.emission_shift;
+        real2 half_sides = real2(instrument.emission_half_width, instrument.emission_half_height);
+        emission.ray.direction = direction_in_rectangle(middle, half_sides, draws.u2, draws.u3);
+    }
     return emission;
 }
 

@@ -35,13 +35,14 @@ const uint FEATURE_PLACEMENT = 1u; // surfaces decentred or tilted against each 
 const uint FEATURE_LOSSES = 2u;    // interfaces that reflect, mirrors that absorb
 const uint FEATURE_SPECTRUM = 4u;  // more than one wavelength
 const uint FEATURE_IDEAL_LENS = 8u;
-const uint FEATURE_RING = 16u;             // a ring light instead of the disc
-const uint FEATURE_DIRECTED_SCATTER = 32u; // of the trace, not of the instrument: survivors have weights
-const uint FEATURE_PUPIL_CELLS = 128u;     // likewise: light is sorted by where it crosses the pupil
-const uint FEATURE_REFLECTANCE_MAP = 64u;  // of the specimen
-const uint FEATURE_RECTANGLE = 256u;       // a rectangle instead of the disc
-const uint FEATURE_FACETS = 512u;          // elements whose form is a mesh
-const uint FEATURE_LIGHT_FIELD = 1024u;    // a pattern or uneven light in the plane of the field stop
+const uint FEATURE_RING = 16u;              // a ring light instead of the disc
+const uint FEATURE_DIRECTED_SCATTER = 32u;  // of the trace, not of the instrument: survivors have weights
+const uint FEATURE_PUPIL_CELLS = 128u;      // likewise: light is sorted by where it crosses the pupil
+const uint FEATURE_REFLECTANCE_MAP = 64u;   // of the specimen
+const uint FEATURE_RECTANGLE = 256u;        // a rectangle instead of the disc
+const uint FEATURE_FACETS = 512u;           // elements whose form is a mesh
+const uint FEATURE_LIGHT_FIELD = 1024u;     // a pattern or uneven light in the plane of the field stop
+const uint FEATURE_AIMED_RECTANGLE = 2048u; // directions of the source are a rectangle instead of a disc
 
 const int SURFACE_CAPACITY = 128;  // surfaces of both trains together that the device's uniform block holds
 const int KNOWN_SURFACES = 64;     // of them, that a kernel can have as constants (device/prescription.glsl)
@@ -253,6 +254,8 @@ struct LightField {
     FIELD(real, source_distance)     /* mm, from the source to the first vertex of the illumination train */ \
     FIELD(real, emission_sine)       /* of the directions aimed into: source.glsl; 1 is the whole hemisphere */ \
     FIELD(real, emission_shift)      /* 1/mm, by which their middle moves with the place; 0 for a ring light */ \
+    FIELD(real, emission_half_width) /* of the rectangle that is aimed into instead; emission_sine is its corners' */ \
+    FIELD(real, emission_half_height) \
     FIELD(real, magnification)       /* lateral, signed: detector over object */ \
     FIELD(real, detector_distance)   /* mm, from the last vertex of the imaging train to the detector */ \
     FIELD(real, detector_half_width)  /* mm, along x */ \

@@ -3,7 +3,7 @@
 // the disc of radius emission_sine about a middle is drawn from; where it lies within the unit disc it holds the share
 // emission_sine^2 of the flux, exactly and from every point. The middle is emission_shift times the place at the
 // source, so that light from all of it goes where the optics take light from; with 0 the disc is a cone about the
-// normal.
+// normal. In place of the disc may stand a rectangle.
 
 // cos and sin of 2 pi u, for any u: GLSL's own are bounded to 2^-11 alone, and beyond [-pi, pi] not at all. Polynomials
 // in r^2 for |r| <= 1/8, r the share of a turn from the nearest quarter, through the functions' values at Chebyshev's
@@ -53,6 +53,13 @@ VKFV_FUNCTION real3 aimed_direction(real2 middle, real emission_sine, real u0, r
     real2 beside = real2(sine * psi.cosine, sine * psi.sine);
     // |middle + beside|^2, which is small: what is taken from 1 is rounded once.
     real across_squared = sine_squared + dot(middle, middle + beside + beside);
+    return real3(middle.x + beside.x, middle.y + beside.y, sqrt(max(real(1.0) - across_squared, real(0.0))));
+}
+
+// middle, half_sides: (l, m), the rectangle's sides along x and y.
+VKFV_FUNCTION real3 direction_in_rectangle(real2 middle, real2 half_sides, real u0, real u1) {
+    real2 beside = real2(half_sides.x * (real(2.0) * u0 - real(1.0)), half_sides.y * (real(2.0) * u1 - real(1.0)));
+    real across_squared = dot(beside, beside) + dot(middle, middle + beside + beside);
     return real3(middle.x + beside.x, middle.y + beside.y, sqrt(max(real(1.0) - across_squared, real(0.0))));
 }
 

@@ -1,4 +1,5 @@
 #include "bench/bench_parts.hpp"
+#include "trace/traced_instrument.hpp"
 
 #include <fmt/format.h>
 
@@ -50,7 +51,7 @@ Json head_of(const BenchScene& scene) {
     report["driver"] = scene.device().driver;
     report["device_type"] = scene.device().type;
     report["configuration"] = scene.options().file.string();
-    report["aimed_share"] = std::pow(scene.instrument().constants.emission_sine, 2);
+    report["aimed_share"] = trace::as_traced(scene.instrument(), scene.configuration().trace).aimed_share();
     report["runs"] = scene.options().runs;
     return report;
 }

@@ -146,9 +146,10 @@ std::vector<Way> BenchScene::estimators() const {
 }
 
 optics::Instrument instrument_of(const Configuration& configuration, const specimen::Specimen& specimen) {
-    auto turned = configuration; // for the backward estimator
-    turned.instrument.turned = true;
-    return measurement::assemble_instrument(turned, specimen, std::span(&in_focus, 1));
+    auto whole = configuration; // for both estimators and any number of bounces
+    whole.instrument.turned = true;
+    whole.instrument.single_scatter = true;
+    return measurement::assemble_instrument(whole, specimen, std::span(&in_focus, 1));
 }
 
 } // namespace vkfv::bench

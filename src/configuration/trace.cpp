@@ -84,6 +84,7 @@ void read_trace(const TomlTable& root, Configuration& configuration) {
         }
     }
     configuration.instrument.directed_emission = section.choice(emission);
+    configuration.instrument.single_scatter = trace.max_bounces == 1 && trace.estimator == Estimator::forward;
     trace.directed_scatter = section.choice(scattering);
     if (trace.directed_scatter && trace.nonsequential) {
         section.fail(scattering, "\"analog\" with mode = \"nonsequential\", whose light finds the pupil by itself",

@@ -6,6 +6,7 @@
 #include <fmt/format.h>
 #include <spdlog/spdlog.h>
 #include <sys/file.h>
+#include <sys/stat.h>
 #include <unistd.h>
 
 #include <algorithm>
@@ -147,7 +148,20 @@ ResultFolder::Turn::~Turn() {
     ::close(lock_);
 }
 
+// A folder that is made anew would lack what was written before.
+void ResultFolder::require_still_there() const {
+    struct stat held {};
+    struct stat found {};
+    if (::fstat(lock_, &held) != 0 || ::stat((folder_ / lock_name).c_str(), &found) != 0 ||
+        held.st_ino != found.st_ino || held.st_dev != found.st_dev) {
+        throw RunError(fmt::format("{}: was removed, or is another folder by now. Give the same command again to begin "
+                                   "anew",
+                                   folder_.string()));
+    }
+}
+
 void ResultFolder::write(const fs::path& name, std::string_view bytes) {
+    require_still_there();
     const fs::path path = folder_ / name;
     make_folder(path.parent_path());
     write_file(path, bytes);
@@ -155,6 +169,7 @@ void ResultFolder::write(const fs::path& name, std::string_view bytes) {
 }
 
 void ResultFolder::write_in_parts(const fs::path& name, const std::function<void(const AddBytes&)>& parts) {
+    require_still_there();
     make_folder((folder_ / name).parent_path());
     std::string sum = write_file_in_parts(folder_ / name, parts);
     const std::scoped_lock lock(mutex_);
@@ -175,6 +190,7 @@ bool ResultFolder::holds(const fs::path& name) const {
 }
 
 void ResultFolder::write_checksums() const {
+    require_still_there();
     auto sums = sums_;
     std::error_code none;
     for (const auto& [name, sum] : earlier_) {

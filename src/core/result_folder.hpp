@@ -37,7 +37,8 @@ class ResultFolder {
     const std::filesystem::path& path() const { return folder_; }
 
     // Files by names relative to the folder, with sub-folders where they have some. write_file() of core/file.hpp, and
-    // a line of the list to be. Several threads may write, each its own files.
+    // a line of the list to be. Several threads may write, each its own files. Throws RunError, also where the folder
+    // was removed since.
     void write(const std::filesystem::path& name, std::string_view bytes);
     // The same by write_file_in_parts().
     void write_in_parts(const std::filesystem::path& name, const std::function<void(const AddBytes&)>& parts);
@@ -63,6 +64,8 @@ class ResultFolder {
     void write_checksums() const;
 
   private:
+    void require_still_there() const;
+
     std::filesystem::path folder_;
     int lock_ = -1;                              // file descriptor
     int part_lock_ = -1;                         // of the part; -1: alone

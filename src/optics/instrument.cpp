@@ -1,11 +1,15 @@
 #include "optics/instrument.hpp"
 
+#include "core/units.hpp"
 #include "optics/assembly.hpp"
+#include "optics/detector_aim.hpp"
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <future>
+#include <span>
 #include <utility>
 
 namespace vkfv::optics {
@@ -148,6 +152,31 @@ Instrument reduce(const InstrumentDescription& description, const AxialLayout& l
     return instrument;
 }
 
+std::optional<glm::dvec2> single_scatter_aim(const InstrumentDescription& description, const Imaging& imaging,
+                                             const Instrument& instrument) {
+    const auto& constants = instrument.constants;
+    const std::span<const Surface> surfaces = instrument.surfaces;
+    const auto illumination = surfaces.first(static_cast<std::size_t>(constants.illumination_count));
+    if (!description.directed_emission || description.source.ring || !imaging.symmetric ||
+        std::ranges::any_of(illumination, is_displaced)) {
+        return std::nullopt;
+    }
+    const double radius = description.source.outer_radius();
+    const auto sides =
+        aim_at_detector({.illumination = illumination,
+                         .imaging = imaging.train,
+                         .source = {.radius = radius,
+                                    .distance = constants.source_distance,
+                                    .monochromatic = description.spectrum.monochromatic()},
+                         .front_vertex_height = instrument.front_vertex_height,
+                         .greatest_defocus = description.greatest_defocus,
+                         .detector_distance = constants.detector_distance,
+                         .detector_half_sides = {constants.detector_half_width, constants.detector_half_height}},
+                        {.shift = constants.emission_shift, .sine = constants.emission_sine});
+    const bool within_hemisphere = sides && std::abs(constants.emission_shift) * radius + glm::length(*sides) <= 1;
+    return within_hemisphere ? sides : std::nullopt;
+}
+
 } // namespace
 
 const char* name_of(Part part) {
@@ -168,6 +197,25 @@ const char* name_of(Part part) {
         break;
     }
     return "detector";
+}
+
+double Instrument::aimed_share() const {
+    const bool rectangle = (features & physics::f64::FEATURE_AIMED_RECTANGLE) != 0;
+    return rectangle ? 4 / pi * constants.emission_half_width * constants.emission_half_height
+                     : constants.emission_sine * constants.emission_sine;
+}
+
+Instrument aimed_for_single_scatter(Instrument instrument) {
+    for (Instrument& further : instrument.further_lights) {
+        further = aimed_for_single_scatter(std::move(further));
+    }
+    if (const auto& sides = instrument.single_scatter_aim) {
+        instrument.constants.emission_half_width = sides->x;
+        instrument.constants.emission_half_height = sides->y;
+        instrument.constants.emission_sine = glm::length(*sides);
+        instrument.features |= physics::f64::FEATURE_AIMED_RECTANGLE;
+    }
+    return instrument;
 }
 
 Instrument with_whole_pixels(Instrument instrument) {
@@ -221,6 +269,9 @@ Instrument assemble(const InstrumentDescription& description) {
         lit.source = source;
         const Illumination illumination = source.ring ? place_ring(lit, layout, measured) : illuminator.get();
         Instrument instrument = reduce(lit, layout, imaging, measured, illumination);
+        if (lit.single_scatter) {
+            instrument.single_scatter_aim = single_scatter_aim(lit, imaging.imaging, instrument);
+        }
         if (lit.turned) {
             instrument.turned = turn_round(lit, layout, imaging, illumination, instrument);
         }

@@ -102,6 +102,7 @@ struct InstrumentDescription {
     Placement detector_placement;
     std::vector<MeshElement> meshes; // the non-sequential mode's alone
     bool directed_emission = true;   // aim the source at what can pass the illumination train
+    bool single_scatter = false;     // the aim at what the detector sees of light scattered once is wanted too
     bool turned = false;             // the backward estimator's form is wanted too
     double greatest_defocus = 0.2;   // of the specimen's top plane from the plane of best focus, for the gate
 
@@ -181,17 +182,22 @@ struct Instrument {
         elements; // in the order of the light: illuminator, splitter, cover glass, objective, ... detector
     std::vector<PlacedMesh> meshes; // in the same frame; only light without a given sequence meets them
     Pose source_pose; // of the source's frame, light towards its z (a ring light's: its aim), in the elements' frame
-    std::optional<TurnedInstrument> turned; // where the description asks for it
+    std::optional<TurnedInstrument> turned;       // where the description asks for it
+    std::optional<glm::dvec2> single_scatter_aim; // aim_at_detector(), where the description asks for it
     std::vector<std::string> warnings;
     std::vector<Instrument> further_lights; // the same instrument in the light of each further source
 
     std::vector<const Instrument*> lights() const; // one a source, this one first
     TrainScene scene() const { return {surfaces, features, spectral_bins, light_field ? &*light_field : nullptr}; }
+    double aimed_share() const; // of the flux, that leaves in the directions aimed into
     ImageSize detector_pixels() const { return {constants.detector_columns, constants.detector_rows}; }
 };
 
 // With the trains and constants of the turned form.
 Instrument turned_round(const Instrument& instrument);
+
+// For paths that meet the specimen once. With the aim at the detector, if there is one.
+Instrument aimed_for_single_scatter(Instrument instrument);
 
 // With pixels that count all of their light, for images that the waves' filter shares out (PupilFilter).
 Instrument with_whole_pixels(Instrument instrument);

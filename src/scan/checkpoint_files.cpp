@@ -85,8 +85,7 @@ void CheckpointFiles::save(std::uint32_t image, const trace::Checkpoint& checkpo
                                     sum_line(checkpoint.done, numbers));
     bytes += numbers;
     try {
-        make_folder(name_(image).parent_path());
-        write_file(name_(image), bytes);
+        write_file(name_(image), bytes); // a folder that was removed is not made anew
     } catch (const RunError& error) {
         spdlog::warn("{}. The exposure goes on without a checkpoint", error.what());
     }

@@ -7,6 +7,7 @@
 #include "trace/mixed_light.hpp"
 #include "trace/nonsequential_trace.hpp"
 #include "trace/scene_waves.hpp"
+#include "trace/traced_instrument.hpp"
 #include "trace/wave_image.hpp"
 #include "trace/wave_memory.hpp"
 

@@ -26,7 +26,12 @@ struct Plane {
     int leading = 0;           // bits of the first before the two take turns
 };
 
-constexpr Plane directions{.number = {3, 2}, .leading = sector_bits};
+Plane directions(const optics::Instrument& instrument) {
+    if ((instrument.features & FEATURE_AIMED_RECTANGLE) != 0) {
+        return {.number = {2, 3}};
+    }
+    return {.number = {3, 2}, .leading = sector_bits};
+}
 
 Plane places(const optics::Instrument& instrument) {
     if ((instrument.features & FEATURE_RING) != 0) {
@@ -84,13 +89,13 @@ EmissionOrder::EmissionOrder(const optics::Instrument& instrument, std::uint64_t
     // With 8 sqrt(paths) cells where a cell begins varies by about four cells, so that it is found near its average.
     const int bits =
         std::clamp(static_cast<int>(std::log2(8 * std::sqrt(static_cast<double>(paths_)))), 0, most_cell_bits);
-    const Plane at_source = places(instrument);
+    const Plane at_source = places(instrument), towards = directions(instrument);
     const auto [by_place, by_direction] = displacements(instrument);
     const bool places_first = by_place > by_direction;
     // Of a ring light both say where.
     const bool both = std::min(by_place, by_direction) > 0.1 * std::max(by_place, by_direction);
     const int pupil_bits = both ? bits / 2 : std::min(most_pupil_bits, bits / 3);
-    const Plane field = places_first ? at_source : directions, pupil = places_first ? directions : at_source;
+    const Plane field = places_first ? at_source : towards, pupil = places_first ? towards : at_source;
 
     std::vector<int> numbers; // of each bit of a cell's index, from the highest
     numbers.reserve(static_cast<std::size_t>(bits));

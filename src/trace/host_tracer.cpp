@@ -7,6 +7,7 @@
 #include "trace/host_scene.hpp"
 #include "trace/ledger.hpp"
 #include "trace/mixed_light.hpp"
+#include "trace/traced_instrument.hpp"
 #include "trace/wave_image.hpp"
 
 #include <fmt/format.h>
@@ -209,6 +210,8 @@ std::vector<PathEnd> host_paths(const optics::Instrument& instrument, const spec
     constants.source_half_width *= source_scale;
     constants.source_half_height *= source_scale;
     constants.emission_sine = std::min(1.0, constants.emission_sine * source_scale);
+    constants.emission_half_width *= source_scale;
+    constants.emission_half_height *= source_scale;
     std::vector<PathEnd> ends(count);
     for (std::uint64_t index = 0; index < count; ++index) {
         const HostPath path =

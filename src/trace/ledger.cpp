@@ -85,8 +85,9 @@ double Ledger::residual() const {
 }
 
 Accounts::Accounts(const optics::Instrument& instrument, bool directed_scatter)
-    : flux_(instrument.flux), aimed_(instrument.constants.emission_sine * instrument.constants.emission_sine),
-      left_{1.0, instrument.splitter_reflectance, instrument.splitter_reflectance * instrument.splitter_transmittance},
+    : flux_(instrument.flux),
+      aimed_(instrument.aimed_share()), left_{1.0, instrument.splitter_reflectance,
+                                              instrument.splitter_reflectance * instrument.splitter_transmittance},
       pixels_(instrument.detector_pixels()), weighted_(directed_scatter) {
     const auto& constants = instrument.constants;
     add_slots(surfaces_of(instrument), constants.illumination_count,
@@ -94,8 +95,7 @@ Accounts::Accounts(const optics::Instrument& instrument, bool directed_scatter)
 }
 
 Accounts::Accounts(const optics::Instrument& instrument, const std::vector<std::string>& element_names)
-    : flux_(instrument.flux), aimed_(instrument.constants.emission_sine * instrument.constants.emission_sine),
-      pixels_(instrument.detector_pixels()) {
+    : flux_(instrument.flux), aimed_(instrument.aimed_share()), pixels_(instrument.detector_pixels()) {
     std::vector<Surface> elements;
     for (const std::string& name : element_names) {
         elements.push_back({.name = name, .index = static_cast<int>(elements.size())});

@@ -3,6 +3,7 @@
 #include "core/digest.hpp"
 #include "trace/backward_image.hpp"
 #include "trace/image_sum.hpp"
+#include "trace/traced_instrument.hpp"
 #include "trace/wave_image.hpp"
 
 #include <fmt/format.h>
@@ -217,8 +218,7 @@ std::vector<OneLight> one_by_one(const optics::Instrument& instrument, const Tra
     const auto lights = instrument.lights();
     std::vector<double> shares;
     for (const auto* light : lights) {
-        const double sine = light->constants.emission_sine;
-        shares.push_back(options.estimator == Estimator::backward ? 1 : light->flux * sine * sine);
+        shares.push_back(options.estimator == Estimator::backward ? 1 : light->flux * light->aimed_share());
     }
     const auto rays = rays_of_sources(options.rays, shares);
     std::vector<OneLight> alone;

@@ -177,10 +177,6 @@ std::optional<optics::PupilFilter> filter_for_waves(const optics::Instrument& in
                : std::nullopt;
 }
 
-optics::Instrument as_traced(const optics::Instrument& instrument, const TraceOptions& options) {
-    return options.waves && !options.nonsequential ? optics::with_whole_pixels(instrument) : instrument;
-}
-
 Image with_waves(Image image, const Grid<double>& light, double power_per_number, const optics::PupilFilter& filter) {
     const double noise = filter.noise();
     for (std::size_t pixel = 0; pixel < light.values.size(); ++pixel) {

@@ -60,10 +60,6 @@ class CellLight {
 // The filter that the options ask for, of an instrument that is not turned round; none: images as rays make them.
 std::optional<optics::PupilFilter> filter_for_waves(const optics::Instrument& instrument, const TraceOptions& options);
 
-// The instrument as its light is traced: where waves come after, its pixels count all of their light, and the filter
-// tells what of it falls on what is sensitive.
-optics::Instrument as_traced(const optics::Instrument& instrument, const TraceOptions& options);
-
 // The same exposure with its light as waves make it, in W, from that of WaveImage::apply().
 Image with_waves(Image image, const Grid<double>& light, double power_per_number, const optics::PupilFilter& filter);
 

@@ -96,6 +96,20 @@ TEST_F(ResultFolderTest, LaterRunsKeepWhatTheyDoNotWrite) {
     EXPECT_FALSE(ResultFolder(folder).holds("kept.txt"));
 }
 
+// What was written before would be missing, and nobody would know.
+TEST_F(ResultFolderTest, IsNotMadeAnewOnceItIsRemoved) {
+    ResultFolder results(folder);
+    results.write("one.txt", "x");
+    fs::remove_all(folder);
+    EXPECT_THROW(results.write("sub/two.txt", "x"), vkfv::RunError);
+    EXPECT_THROW(results.write_in_parts("three.txt", [](const vkfv::AddBytes& add) { add("x"); }), vkfv::RunError);
+    EXPECT_THROW(results.write_checksums(), vkfv::RunError);
+    EXPECT_FALSE(fs::exists(folder));
+    const ResultFolder another(folder); // in its place
+    EXPECT_THROW(results.write("two.txt", "x"), vkfv::RunError);
+    EXPECT_FALSE(fs::exists(folder / "two.txt"));
+}
+
 // A list that another program wrote does not lead out of the folder.
 TEST_F(ResultFolderTest, NamesOutsideAreNotFollowed) {
     vkfv::make_folder(folder);

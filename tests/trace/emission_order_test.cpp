@@ -45,6 +45,12 @@ optics::Instrument ring_microscope() {
     return optics::assemble(description);
 }
 
+optics::Instrument aimed_microscope() {
+    auto description = test::microscope_description();
+    description.single_scatter = true;
+    return optics::aimed_for_single_scatter(optics::assemble(description));
+}
+
 Arrival arrival(const optics::Instrument& instrument, const Draws& draws) {
     Exposure exposure{};
     exposure.top_distance = instrument.front_vertex_height;
@@ -182,7 +188,8 @@ TEST(EmissionOrder, consecutive_paths_arrive_close_together) {
     // 2^17 cells, of which 2^15 divide the disc's field. Of a ring light place and direction both say where light
     // arrives: 2^(17 / 4) pieces of each of the four numbers, all of which move it. A quarter
     // of the cells would be too few: steps of 0.06 and 0.23.
-    for (const auto& [instrument, most] : {std::pair(test::microscope(), 0.03), std::pair(ring_microscope(), 0.2)}) {
+    for (const auto& [instrument, most] : {std::pair(test::microscope(), 0.03), std::pair(aimed_microscope(), 0.03),
+                                           std::pair(ring_microscope(), 0.2)}) {
         const EmissionOrder order(instrument, 1000000000, seed);
         const EmissionCells cells(order, 0);
         const auto ordered = [&](std::uint32_t path) { return draw_in_cell(seed, 0, {path, 0}, cells.of(path)); };

@@ -1,0 +1,198 @@
+// The rectangle of directions that a source is aimed into holds all light which a single scatter brings to the
+// detector.
+#include "optics/detector_aim.hpp"
+
+#include "optics/ideal_lens.hpp"
+#include "optics/train.hpp"
+#include "parts.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <random>
+#include <string>
+#include <vector>
+
+namespace vkfv::optics {
+namespace {
+
+using physics::f64::PATH_ALIVE;
+using physics::f64::real2;
+using physics::f64::real3;
+
+struct Named {
+    std::string name;
+    InstrumentDescription description;
+};
+
+std::vector<Named> microscopes() {
+    std::vector<Named> all;
+    const auto add = [&](const std::string& name, InstrumentDescription description) {
+        description.single_scatter = true;
+        all.push_back({name, std::move(description)});
+    };
+    const auto microscope = [] {
+        auto description = test::microscope();
+        description.greatest_defocus = 0.01;
+        return description;
+    };
+    add("demo's", microscope());
+    auto wide = microscope();
+    wide.detector_width = 1.5;
+    wide.detector_pixels = {.columns = 60, .rows = 30};
+    wide.greatest_defocus = 0.03;
+    add("wide detector, far out of focus", wide);
+    auto strip = microscope();
+    strip.detector_width = 0.1;
+    strip.detector_pixels = {.columns = 4, .rows = 64};
+    strip.greatest_defocus = 0.06;
+    add("upright strip", strip);
+    auto rectangle = microscope();
+    rectangle.source.rectangle = glm::dvec2(1.6, 0.7);
+    add("source a rectangle", rectangle);
+    auto coloured = microscope();
+    coloured.spectrum = Spectrum::gaussian(0.55, 0.15);
+    add("white light", coloured);
+    auto field = microscope(); // to its corners, where it is distorted and curved
+    field.field_stop_radius = 8;
+    field.detector_width = 9;
+    add("whole field", field);
+    auto large = test::ideal_microscope(0.28);
+    large.greatest_defocus = 0.1;
+    add("ideal lenses", large);
+    auto steep = test::ideal_microscope(0.8);
+    steep.source.radius = 2.5;
+    steep.greatest_defocus = 0.02;
+    add("aperture of 0.8", steep);
+    return all;
+}
+
+// Of light that is emitted into the disc and meets the detector after one scatter at some height: how far it leaves
+// from its middle, both ways, in half sides of the rectangle.
+std::vector<glm::dvec2> seen_directions(const Instrument& instrument, double greatest_height) {
+    const auto& constants = instrument.constants;
+    const glm::dvec2 sides = instrument.single_scatter_aim.value();
+    const std::span<const physics::f64::Surface> imaging =
+        std::span(instrument.surfaces)
+            .subspan(std::size_t(constants.imaging_first), std::size_t(constants.imaging_count));
+    std::mt19937_64 generator(5);
+    std::uniform_real_distribution<double> uniform(0, 1);
+    const physics::f64::SpecimenRecord plane{};
+    std::vector<glm::dvec2> seen;
+    constexpr std::uint32_t rays = 300000;
+    for (std::uint32_t k = 0; k < rays; ++k) {
+        // The ends decide.
+        const double height = greatest_height * std::clamp(3 * uniform(generator) - 1.5, -1.0, 1.0);
+        const physics::f64::Exposure exposure{.top_distance = instrument.front_vertex_height - height,
+                                              .seed = 43,
+                                              .image = 0,
+                                              .focal_height = 0,
+                                              .top_distance_residual = 0,
+                                              .beside_x = 0,
+                                              .beside_y = 0};
+        const auto emission = physics::f64::emit(instrument.scene(), constants,
+                                                 physics::f64::draw(exposure.seed, exposure.image, {k, 0}, 0u));
+        const auto arrival = physics::f64::illuminate(instrument.scene(), constants, plane, exposure, emission);
+        if (arrival.fate.status != PATH_ALIVE) {
+            continue;
+        }
+        const auto gate = physics::f64::gate_disc(constants, 0, arrival.position);
+        const real3 scattered = physics::f64::direction_in_disc(gate, uniform(generator), uniform(generator));
+        physics::f64::Ray ray{};
+        ray.position = real3(arrival.position.x, arrival.position.y, -exposure.top_distance);
+        ray.direction = scattered;
+        const auto landed = trace_through(imaging, ray, 1, emission.light.spectral);
+        const auto end = physics::f64::fly_to_plane(landed.ray, constants.detector_distance, landed.index);
+        if (landed.status == PATH_ALIVE && std::abs(end.position.x) < constants.detector_half_width &&
+            std::abs(end.position.y) < constants.detector_half_height) {
+            const glm::dvec2 middle = constants.emission_shift * glm::dvec2(emission.ray.position);
+            seen.push_back(glm::abs(glm::dvec2(emission.ray.direction) - middle) / sides);
+        }
+    }
+    return seen;
+}
+
+TEST(DetectorAim, HoldsAllThatTheDetectorSees) {
+    for (const auto& [name, description] : microscopes()) {
+        SCOPED_TRACE(name);
+        const Instrument instrument = assemble(description);
+        ASSERT_TRUE(instrument.single_scatter_aim);
+        const auto seen = seen_directions(instrument, description.greatest_defocus);
+        EXPECT_GT(seen.size(), 1000u);
+        glm::dvec2 farthest(0);
+        int lost_by_narrower = 0; // wrong twins: a tenth less of either side
+        int lost_by_lower = 0;
+        for (const glm::dvec2& direction : seen) {
+            farthest = glm::max(farthest, direction);
+            lost_by_narrower += direction.x > 0.9;
+            lost_by_lower += direction.y > 0.9;
+        }
+        EXPECT_LE(farthest.x, 1);
+        EXPECT_LE(farthest.y, 1);
+        EXPECT_GT(lost_by_narrower, 0);
+        EXPECT_GT(lost_by_lower, 0);
+        const Instrument aimed = aimed_for_single_scatter(instrument);
+        EXPECT_LT(aimed.aimed_share(), 0.98 * instrument.aimed_share());
+    }
+}
+
+// In and out of the rectangle: what is emitted there is uniform, and no more than asked for.
+TEST(DetectorAim, IsWhatTheSourceEmitsInto) {
+    auto description = test::microscope();
+    description.detector_pixels = {.columns = 64, .rows = 32};
+    description.greatest_defocus = 0.01;
+    description.single_scatter = true;
+    const Instrument instrument = aimed_for_single_scatter(assemble(description));
+    const auto& constants = instrument.constants;
+    const glm::dvec2 sides = instrument.single_scatter_aim.value();
+    EXPECT_EQ(constants.emission_sine, glm::length(sides));
+    EXPECT_NEAR(instrument.aimed_share(), 4 * sides.x * sides.y / M_PI, 1e-15);
+    glm::dvec2 sum(0), squares(0);
+    constexpr int rays = 100000;
+    for (std::uint32_t k = 0; k < rays; ++k) {
+        const auto ray = physics::f64::emit(instrument.scene(), constants, physics::f64::draw(7, 0, {k, 0}, 0u)).ray;
+        EXPECT_NEAR(glm::length(ray.direction), 1, 1e-15);
+        EXPECT_LE(glm::length(glm::dvec2(ray.position)), description.source.radius);
+        const glm::dvec2 beside =
+            (glm::dvec2(ray.direction) - constants.emission_shift * glm::dvec2(ray.position)) / sides;
+        EXPECT_LE(std::max(std::abs(beside.x), std::abs(beside.y)), 1 + 1e-12);
+        sum += beside;
+        squares += beside * beside;
+    }
+    for (const int axis : {0, 1}) {
+        EXPECT_LT(std::abs(sum[axis]) / std::sqrt(rays / 3.0), 4);
+        EXPECT_LT(std::abs(squares[axis] - rays / 3.0) / std::sqrt(rays * 4 / 45.0), 4);
+    }
+}
+
+// Where it would not be true there is none: light from beside the field, as an aim of all that passes has it.
+TEST(DetectorAim, IsLeftOutWhereItSavesNothingOrIsNotKnown) {
+    const auto aim_of = [](InstrumentDescription description) {
+        description.single_scatter = true;
+        description.greatest_defocus = std::min(description.greatest_defocus, 0.01);
+        return assemble(description).single_scatter_aim;
+    };
+    auto small = test::microscope();
+    small.field_stop_radius = 0.3;
+    EXPECT_FALSE(aim_of(small));
+    auto analog = test::microscope();
+    analog.directed_emission = false;
+    EXPECT_FALSE(aim_of(analog));
+    auto tilted = test::microscope();
+    tilted.detector_placement.change.tilt_x = 0.1;
+    EXPECT_FALSE(aim_of(tilted));
+    auto ring = test::ideal_microscope(0.28);
+    ring.source.ring = RingLightDescription{
+        .distance = 12, .elevation = 0.5, .width = 2, .segments = 1, .fill = 1, .on = {true}, .lit_radius = 0.3};
+    EXPECT_FALSE(aim_of(ring));
+    auto far = test::microscope();
+    far.single_scatter = true;
+    far.greatest_defocus = 0.2;
+    EXPECT_FALSE(assemble(far).single_scatter_aim);
+    EXPECT_TRUE(aim_of(test::microscope()));
+    EXPECT_FALSE(assemble(test::microscope()).single_scatter_aim); // not asked for
+}
+
+} // namespace
+} // namespace vkfv::optics
