@@ -154,9 +154,9 @@ void ResultFolder::require_still_there() const {
     struct stat found {};
     if (::fstat(lock_, &held) != 0 || ::stat((folder_ / lock_name).c_str(), &found) != 0 ||
         held.st_ino != found.st_ino || held.st_dev != found.st_dev) {
-        throw RunError(fmt::format("{}: was removed, or is another folder by now. Give the same command again to begin "
-                                   "anew",
-                                   folder_.string()));
+        throw FolderRemoved(fmt::format("{}: was removed, or is another folder by now. Give the same command again to "
+                                        "begin anew",
+                                        folder_.string()));
     }
 }
 

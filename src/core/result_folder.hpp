@@ -21,6 +21,12 @@ class FolderInUse : public RunError {
     using RunError::RunError;
 };
 
+// Nothing of what was written there is left.
+class FolderRemoved : public RunError {
+  public:
+    using RunError::RunError;
+};
+
 // Its list of checksums, which sha256sum(1) checks too.
 inline constexpr std::string_view checksums_name = "checksums.sha256";
 
@@ -37,8 +43,8 @@ class ResultFolder {
     const std::filesystem::path& path() const { return folder_; }
 
     // Files by names relative to the folder, with sub-folders where they have some. write_file() of core/file.hpp, and
-    // a line of the list to be. Several threads may write, each its own files. Throws RunError, also where the folder
-    // was removed since.
+    // a line of the list to be. Several threads may write, each its own files. Throws RunError, and
+    // FolderRemoved where the folder was removed since.
     void write(const std::filesystem::path& name, std::string_view bytes);
     // The same by write_file_in_parts().
     void write_in_parts(const std::filesystem::path& name, const std::function<void(const AddBytes&)>& parts);

@@ -86,6 +86,8 @@ StackSummary run_stack(const trace::Tracer& tracer, ImageStore& store, Progress&
     const auto write = [&](int image, const trace::Image& exposure, const Frame& frame) {
         try {
             store.store(image, exposure, frame);
+        } catch (const FolderRemoved&) {
+            throw;
         } catch (const std::runtime_error& error) {
             const std::scoped_lock lock(counting);
             throw RunError(fmt::format("{}. {} of {} images are stored in {}: free the disk, then give the same "

@@ -101,12 +101,12 @@ TEST_F(ResultFolderTest, IsNotMadeAnewOnceItIsRemoved) {
     ResultFolder results(folder);
     results.write("one.txt", "x");
     fs::remove_all(folder);
-    EXPECT_THROW(results.write("sub/two.txt", "x"), vkfv::RunError);
-    EXPECT_THROW(results.write_in_parts("three.txt", [](const vkfv::AddBytes& add) { add("x"); }), vkfv::RunError);
-    EXPECT_THROW(results.write_checksums(), vkfv::RunError);
+    EXPECT_THROW(results.write("sub/two.txt", "x"), vkfv::FolderRemoved);
+    EXPECT_THROW(results.write_in_parts("three.txt", [](const vkfv::AddBytes& add) { add("x"); }), vkfv::FolderRemoved);
+    EXPECT_THROW(results.write_checksums(), vkfv::FolderRemoved);
     EXPECT_FALSE(fs::exists(folder));
     const ResultFolder another(folder); // in its place
-    EXPECT_THROW(results.write("two.txt", "x"), vkfv::RunError);
+    EXPECT_THROW(results.write("two.txt", "x"), vkfv::FolderRemoved);
     EXPECT_FALSE(fs::exists(folder / "two.txt"));
 }
 
