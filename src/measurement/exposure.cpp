@@ -1,6 +1,7 @@
 #include "measurement/exposure.hpp"
 
 #include "core/digest.hpp"
+#include "core/file.hpp"
 #include "core/pixel_grid.hpp"
 #include "core/stages.hpp"
 #include "core/units.hpp"
@@ -60,6 +61,7 @@ Exposure expose(const Configuration& configuration, WorkingDevices& devices, con
         if (checkpoint.empty() || configuration.checkpoint_interval == 0) {
             exposure.image = tracer->expose(focal_height, image);
         } else {
+            make_folder(checkpoint.parent_path());
             const auto identity = image_identity(configuration, specimen::geometry_digest(specimen), exposure.tracer);
             auto kept = std::make_shared<const scan::CheckpointFiles>(
                 [checkpoint](std::uint32_t) { return checkpoint; },

@@ -84,7 +84,6 @@ ImageResult measure_image(const Configuration& configuration, double focal_heigh
     const auto specimen = make_specimen(configuration);
     enter_stage("instrument");
     const auto instrument = instrument_for(configuration, specimen, focal_height);
-    make_folder(file.parent_path());
     auto checkpoint = file;
     checkpoint += ".partial";
     ImageResult result{.exposure = expose(configuration, devices, instrument, specimen, focal_height, checkpoint),
@@ -97,6 +96,7 @@ ImageResult measure_image(const Configuration& configuration, double focal_heigh
     const auto& exposure = result.exposure;
     const auto title = fmt::format("{}, z = {:g} um", configuration.file.stem().string(), focal_height * um_per_mm);
     auto picture = std::async(std::launch::async, [&] { return picture_of(exposure, title); });
+    make_folder(file.parent_path());
     for (const auto& [name, bytes] : image_files(file, exposure, focal_height)) {
         write_file(name, bytes);
     }
