@@ -146,10 +146,10 @@ std::vector<Way> BenchScene::estimators() const {
 }
 
 optics::Instrument instrument_of(const Configuration& configuration, const specimen::Specimen& specimen) {
-    auto whole = configuration; // for both estimators and any number of bounces
-    whole.instrument.turned = true;
-    whole.instrument.single_scatter = true;
-    return measurement::assemble_instrument(whole, specimen, std::span(&in_focus, 1));
+    auto for_all_ways = configuration; // both estimators, any number of bounces
+    for_all_ways.instrument.turned = true;
+    for_all_ways.instrument.single_scatter = true;
+    return measurement::assemble_instrument(for_all_ways, specimen, std::span(&in_focus, 1));
 }
 
 } // namespace vkfv::bench

@@ -24,10 +24,12 @@ const ChoiceKey<Estimator>
               {{Estimator::forward, "forward", "from the source to the detector"},
                {Estimator::backward, "backward", "from the detector to the source: less noise for the same rays"}},
               Estimator::forward, "Which end paths start from.");
-const ChoiceKey<bool> emission("emission",
-                               {{true, "directed", "only into directions that can pass the illuminator"},
-                                {false, "analog", "into the half space"}},
-                               true, "Where the source sends rays; what is not aimed at is in the ledger.");
+const ChoiceKey<bool>
+    emission("emission",
+             {{true, "directed",
+               "only into directions that can pass the illuminator, and with max_bounces = 1 can reach the detector"},
+              {false, "analog", "into the half space"}},
+             true, "Where the source sends rays; what is not aimed at is in the ledger.");
 const ChoiceKey<bool> scattering("scattering",
                                  {{false, "analog", "by the material's lobe alone"},
                                   {true, "directed", "every bounce also aims at the pupil, with weights"}},
@@ -84,7 +86,8 @@ void read_trace(const TomlTable& root, Configuration& configuration) {
         }
     }
     configuration.instrument.directed_emission = section.choice(emission);
-    configuration.instrument.single_scatter = trace.max_bounces == 1 && trace.estimator == Estimator::forward;
+    configuration.instrument.single_scatter =
+        trace.max_bounces == 1 && trace.estimator == Estimator::forward && !trace.nonsequential;
     trace.directed_scatter = section.choice(scattering);
     if (trace.directed_scatter && trace.nonsequential) {
         section.fail(scattering, "\"analog\" with mode = \"nonsequential\", whose light finds the pupil by itself",

@@ -109,6 +109,7 @@ void remove_part_locks(const fs::path& folder) {
 ResultFolder::ResultFolder(fs::path folder, const std::string& part) : folder_(std::move(folder)) {
     make_folder(folder_);
     lock_ = lock_folder(folder_, lock_name, part.empty() ? LOCK_EX : LOCK_SH);
+    held_ = ::open(folder_.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
     try {
         if (part.empty()) {
             remove_part_locks(folder_);
@@ -124,19 +125,21 @@ ResultFolder::ResultFolder(fs::path folder, const std::string& part) : folder_(s
             }
         }
     } catch (...) {
-        if (part_lock_ >= 0) {
-            ::close(part_lock_);
-        }
-        ::close(lock_);
+        close_all();
         throw;
     }
 }
 
 ResultFolder::~ResultFolder() {
-    if (part_lock_ >= 0) {
-        ::close(part_lock_);
+    close_all();
+}
+
+void ResultFolder::close_all() const {
+    for (const int file : {part_lock_, held_, lock_}) {
+        if (file >= 0) {
+            ::close(file);
+        }
     }
-    ::close(lock_);
 }
 
 ResultFolder::Turn::Turn(const ResultFolder& folder) : lock_(open_lock(folder.path(), turn_name)) {
@@ -152,25 +155,39 @@ ResultFolder::Turn::~Turn() {
 void ResultFolder::require_still_there() const {
     struct stat held {};
     struct stat found {};
-    if (::fstat(lock_, &held) != 0 || ::stat((folder_ / lock_name).c_str(), &found) != 0 ||
-        held.st_ino != found.st_ino || held.st_dev != found.st_dev) {
-        throw FolderRemoved(fmt::format("{}: was removed, or is another folder by now. Give the same command again to "
-                                        "begin anew",
-                                        folder_.string()));
+    if (held_ < 0 || ::fstat(held_, &held) != 0) {
+        return;
+    }
+    const bool is_found = ::stat(folder_.c_str(), &found) == 0;
+    if (is_found ? held.st_ino != found.st_ino || held.st_dev != found.st_dev
+                 : errno == ENOENT || errno == ENOTDIR || errno == ESTALE) {
+        throw FolderRemoved(
+            fmt::format("{}: was removed or renamed while vkfv wrote there. Give the same command again "
+                        "to begin anew, or give the folder its name back before",
+                        folder_.string()));
     }
 }
 
-void ResultFolder::write(const fs::path& name, std::string_view bytes) {
+void ResultFolder::require_folder_of(const fs::path& name) {
     require_still_there();
-    const fs::path path = folder_ / name;
-    make_folder(path.parent_path());
-    write_file(path, bytes);
+    const fs::path folder = (folder_ / name).parent_path();
+    const std::scoped_lock lock(mutex_);
+    std::error_code none;
+    if (!made_.insert(folder).second && !fs::exists(folder, none) && !none) {
+        throw FolderRemoved(
+            fmt::format("{}: was removed while vkfv wrote there. Give the same command again", folder.string()));
+    }
+    make_folder(folder);
+}
+
+void ResultFolder::write(const fs::path& name, std::string_view bytes) {
+    require_folder_of(name);
+    write_file(folder_ / name, bytes);
     note(name, bytes);
 }
 
 void ResultFolder::write_in_parts(const fs::path& name, const std::function<void(const AddBytes&)>& parts) {
-    require_still_there();
-    make_folder((folder_ / name).parent_path());
+    require_folder_of(name);
     std::string sum = write_file_in_parts(folder_ / name, parts);
     const std::scoped_lock lock(mutex_);
     sums_[name.generic_string()] = std::move(sum);

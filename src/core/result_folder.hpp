@@ -9,6 +9,7 @@
 #include <functional>
 #include <map>
 #include <mutex>
+#include <set>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -21,7 +22,7 @@ class FolderInUse : public RunError {
     using RunError::RunError;
 };
 
-// Nothing of what was written there is left.
+// What was written there is gone, or elsewhere.
 class FolderRemoved : public RunError {
   public:
     using RunError::RunError;
@@ -44,7 +45,7 @@ class ResultFolder {
 
     // Files by names relative to the folder, with sub-folders where they have some. write_file() of core/file.hpp, and
     // a line of the list to be. Several threads may write, each its own files. Throws RunError, and
-    // FolderRemoved where the folder was removed since.
+    // FolderRemoved where the folder was removed since, or one in it.
     void write(const std::filesystem::path& name, std::string_view bytes);
     // The same by write_file_in_parts().
     void write_in_parts(const std::filesystem::path& name, const std::function<void(const AddBytes&)>& parts);
@@ -70,14 +71,18 @@ class ResultFolder {
     void write_checksums() const;
 
   private:
+    void close_all() const;
     void require_still_there() const;
+    void require_folder_of(const std::filesystem::path& name);
 
     std::filesystem::path folder_;
+    int held_ = -1;                              // the folder, by whatever name; -1: it cannot be held
     int lock_ = -1;                              // file descriptor
     int part_lock_ = -1;                         // of the part; -1: alone
     std::map<std::string, std::string> earlier_; // sums by name, of the list that was there
     std::mutex mutex_;                           // of what follows
     std::map<std::string, std::string> sums_;    // of this run
+    std::set<std::filesystem::path> made_;       // folders in this one
 };
 
 // A file that is not the one that was written.

@@ -28,7 +28,7 @@ constexpr double margin = 1.25;
 constexpr double rounding = 1e-3;
 
 // Light of a disc through a train of revolution, to a plane.
-struct Way {
+struct SampledLight {
     std::span<const Surface> train;
     DiscSource source;
     double shift = 0;    // of directions' middles, 1/mm
@@ -42,47 +42,69 @@ struct PassedRay {
     glm::dvec2 end{0};
 };
 
-// From the axis outwards to the rim of what passes, all round. As everything is the same all round, places are on the
-// x axis.
-std::vector<PassedRay> sampled(const Way& way) {
-    constexpr int starts = 13, azimuths = 13, distances = 12;
+// From a place on the x axis, at an angle to it: from the middle outwards to the rim of what passes.
+std::vector<PassedRay> sampled_from(const SampledLight& way, double distance_from_axis, double angle) {
+    constexpr int distances = 12;
     const std::vector<double> wavelengths =
         way.source.monochromatic ? std::vector{0.0} : std::vector{-1.0, -0.5, 0.0, 0.5, 1.0};
-    const auto rays_from = [&](int k) {
-        std::vector<PassedRay> passed;
-        const glm::dvec2 place = {way.source.radius * (k % starts) / (starts - 1), 0};
-        const double angle = pi * (k / starts) / (azimuths - 1);
-        const glm::dvec2 towards = {std::cos(angle), std::sin(angle)};
-        const auto ray_at = [&](double distance) {
-            const glm::dvec2 cosines = way.shift * place + distance * towards;
-            Ray ray{};
-            ray.position = glm::dvec3(place, -way.source.distance);
-            ray.direction = glm::dvec3(cosines, std::sqrt(std::max(0.0, 1 - glm::dot(cosines, cosines))));
-            return ray;
-        };
-        for (const double spectral : wavelengths) {
-            const auto add = [&](double distance) {
-                const auto light = trace_through(way.train, ray_at(distance), 1, spectral);
-                if (light.status == PATH_ALIVE) {
-                    const Ray ended = physics::f64::fly_to_plane(light.ray, way.plane, light.index);
-                    passed.push_back({place, distance * towards, glm::dvec2(ended.position)});
-                }
-            };
-            for (int step = 0; step <= distances; ++step) {
-                add(way.farthest * step / distances);
+    std::vector<PassedRay> passed;
+    const glm::dvec2 place = {distance_from_axis, 0};
+    const glm::dvec2 towards = {std::cos(angle), std::sin(angle)};
+    const auto ray_at = [&](double distance) {
+        const glm::dvec2 cosines = way.shift * place + distance * towards;
+        Ray ray{};
+        ray.position = glm::dvec3(place, -way.source.distance);
+        ray.direction = glm::dvec3(cosines, std::sqrt(std::max(0.0, 1 - glm::dot(cosines, cosines))));
+        return ray;
+    };
+    for (const double spectral : wavelengths) {
+        const auto add = [&](double distance) {
+            const auto light = trace_through(way.train, ray_at(distance), 1, spectral);
+            if (light.status == PATH_ALIVE) {
+                const Ray ended = physics::f64::fly_to_plane(light.ray, way.plane, light.index);
+                passed.push_back({place, distance * towards, glm::dvec2(ended.position)});
             }
-            if (const auto rim = farthest(way.farthest, [&](double distance) {
-                    const Ray ray = ray_at(distance);
-                    return ray.direction.z > 0 ? excess_of(way.train, ray, spectral)
-                                               : std::numeric_limits<double>::infinity();
-                })) {
-                add(*rim);
+        };
+        for (int step = 0; step <= distances; ++step) {
+            add(way.farthest * step / distances);
+        }
+        if (const auto rim = farthest(way.farthest, [&](double distance) {
+                const Ray ray = ray_at(distance);
+                return ray.direction.z > 0 ? excess_of(way.train, ray, spectral)
+                                           : std::numeric_limits<double>::infinity();
+            })) {
+            add(*rim);
+        }
+    }
+    return passed;
+}
+
+// From the axis to the outermost place whose light passes, which may be far within the source, and all round. As
+// everything is the same all round, places are on the x axis.
+std::vector<PassedRay> sampled(const SampledLight& way) {
+    constexpr int starts = 13, azimuths = 13, steps = 64, halvings = 6;
+    const auto angle = [](int k) { return pi * k / (azimuths - 1); };
+    const auto passes_from = [&](double distance_from_axis) {
+        for (int k = 0; k < azimuths; ++k) {
+            if (!sampled_from(way, distance_from_axis, angle(k)).empty()) {
+                return true;
             }
         }
-        return passed;
+        return false;
     };
+    const auto passes =
+        parallel_list(steps + 1, [&](int k) -> int { return passes_from(way.source.radius * k / steps); });
+    const auto last = std::find(passes.rbegin(), passes.rend(), 1);
+    double inside = way.source.radius * std::max(0.0, static_cast<double>(passes.rend() - last - 1)) / steps;
+    double outside = std::min(way.source.radius, inside + way.source.radius / steps);
+    for (int k = 0; k < halvings && outside > inside; ++k) {
+        const double middle = std::midpoint(inside, outside);
+        (passes_from(middle) ? inside : outside) = middle;
+    }
     std::vector<PassedRay> all;
-    for (const auto& part : parallel_list(starts * azimuths, rays_from)) {
+    for (const auto& part : parallel_list(starts * azimuths, [&](int k) {
+             return sampled_from(way, inside * (k % starts) / (starts - 1), angle(k / starts));
+         })) {
         all.insert(all.end(), part.begin(), part.end());
     }
     return all;
@@ -115,7 +137,7 @@ Proportion proportion_of(const Vectors& vectors) {
     }
     double low = 0.9 * products / squares;
     double high = 1.1 * products / squares;
-    constexpr int rounds = 25; // each leaves two thirds
+    constexpr int rounds = 40; // each leaves two thirds
     for (int round = 0; round < rounds; ++round) {
         const double a = low + (high - low) / 3;
         const double b = high - (high - low) / 3;
@@ -155,11 +177,11 @@ std::optional<glm::dvec2> aim_at_detector(const SingleScatter& light, const Aim&
     }
     const double lit_radius = (disc.sine + direction_error) / std::abs(per_length.factor);
 
-    Way imaging = {.train = light.imaging,
-                   .source = {.radius = lit_radius,
-                              .distance = light.front_vertex_height,
-                              .monochromatic = light.source.monochromatic},
-                   .plane = light.detector_distance};
+    SampledLight imaging = {.train = light.imaging,
+                            .source = {.radius = lit_radius,
+                                       .distance = light.front_vertex_height,
+                                       .monochromatic = light.source.monochromatic},
+                            .plane = light.detector_distance};
     double sine = 0;
     for (const PassedRay& ray : sampled(imaging)) {
         sine = std::max(sine, glm::length(ray.direction));
@@ -178,7 +200,9 @@ std::optional<glm::dvec2> aim_at_detector(const SingleScatter& light, const Aim&
     const glm::dvec2 field =
         (light.detector_half_sides + margin * magnification.error) / std::abs(magnification.factor);
     const glm::dvec2 wanted = (1 + rounding) * (std::abs(per_length.factor) * field + direction_error);
-    const glm::dvec2 sides = glm::min(wanted, glm::dvec2(disc.sine));
+    // In steps, so that machines whose libraries round otherwise agree; they are parts of one stack.
+    constexpr double steps = 1 << 20;
+    const glm::dvec2 sides = glm::min(glm::ceil(wanted * steps) / steps, glm::dvec2(disc.sine));
     const double share = 4 * sides.x * sides.y / (pi * disc.sine * disc.sine);
     return share < worthwhile ? std::optional(sides) : std::nullopt;
 }

@@ -22,9 +22,9 @@ struct SingleScatter {
     glm::dvec2 detector_half_sides{0};
 };
 
-// Half the sides of the rectangle that, beside the middles of `disc`, holds the directions of all light which can meet
-// the detector: by sampled rays and a quarter more than they are off from magnifications. disc: holds what passes the
-// illumination. None: the rectangle would save nothing.
+// Half the sides of the rectangle that, about the middles of `disc`, holds the directions of all light which can meet
+// the detector. Blur and distortion are those of sampled rays, times 1.25. disc: holds what passes the illumination.
+// None: the rectangle would save nothing.
 std::optional<glm::dvec2> aim_at_detector(const SingleScatter& light, const Aim& disc);
 
 } // namespace vkfv::optics

@@ -189,7 +189,7 @@ struct Instrument {
 
     std::vector<const Instrument*> lights() const; // one a source, this one first
     TrainScene scene() const { return {surfaces, features, spectral_bins, light_field ? &*light_field : nullptr}; }
-    double aimed_share() const; // of the flux, that leaves in the directions aimed into
+    double aimed_share() const; // share of the flux that leaves in the directions aimed into
     ImageSize detector_pixels() const { return {constants.detector_columns, constants.detector_rows}; }
 };
 

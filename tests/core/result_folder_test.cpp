@@ -110,6 +110,22 @@ TEST_F(ResultFolderTest, IsNotMadeAnewOnceItIsRemoved) {
     EXPECT_FALSE(fs::exists(folder / "two.txt"));
 }
 
+TEST_F(ResultFolderTest, FoldersInItAreNotMadeAnewEither) {
+    ResultFolder results(folder);
+    results.write("sub/one.txt", "x");
+    fs::remove_all(folder / "sub");
+    EXPECT_THROW(results.write("sub/two.txt", "x"), vkfv::FolderRemoved);
+    EXPECT_FALSE(fs::exists(folder / "sub"));
+    EXPECT_NO_THROW(results.write("other/two.txt", "x"));
+    fs::remove(folder / ".lock"); // nothing that was written
+    EXPECT_NO_THROW(results.write("other/three.txt", "x"));
+    const fs::path elsewhere = folder.string() + "_renamed";
+    fs::rename(folder, elsewhere);
+    EXPECT_THROW(results.write("other/four.txt", "x"), vkfv::FolderRemoved);
+    fs::rename(elsewhere, folder);
+    EXPECT_NO_THROW(results.write("other/four.txt", "x"));
+}
+
 // A list that another program wrote does not lead out of the folder.
 TEST_F(ResultFolderTest, NamesOutsideAreNotFollowed) {
     vkfv::make_folder(folder);

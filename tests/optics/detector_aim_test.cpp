@@ -52,6 +52,12 @@ std::vector<Named> microscopes() {
     auto rectangle = microscope();
     rectangle.source.rectangle = glm::dvec2(1.6, 0.7);
     add("source a rectangle", rectangle);
+    auto overfilled = microscope(); // only the middle of the source fills the pupil
+    overfilled.source.radius = 6;
+    overfilled.greatest_defocus = 0.03;
+    add("source too large", overfilled);
+    overfilled.source.radius = 15;
+    add("source far too large", overfilled);
     auto coloured = microscope();
     coloured.spectrum = Spectrum::lines({0.486, 0.5876, 0.656}, {1, 1, 1});
     add("white light", coloured, 0.8);

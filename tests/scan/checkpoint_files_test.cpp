@@ -65,6 +65,9 @@ TEST_F(HalfDone, ADiskThatRefusesThemEndsNothing) {
     const CheckpointFiles nowhere([](std::uint32_t) { return std::filesystem::path("/proc/vkfv/partial_0"); },
                                   "0123456789abcdef", 60);
     EXPECT_NO_THROW(nowhere.save(0, checkpoint_));
+    std::filesystem::remove_all(folder_.path());
+    EXPECT_NO_THROW(files().save(7, checkpoint_));
+    EXPECT_FALSE(std::filesystem::exists(folder_.path())); // which would lack all else
 }
 
 } // namespace

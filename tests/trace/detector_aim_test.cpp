@@ -100,6 +100,7 @@ TEST(DetectorAim, is_taken_for_single_scatter_alone) {
 // Fates as the host's in double; those within float rounding of an edge may differ (Paths.*).
 TEST(DetectorAim, host_and_device_trace_the_same_paths) {
     const auto instrument = optics::aimed_for_single_scatter(aimed_microscope());
+    ASSERT_NE(instrument.features & FEATURE_AIMED_RECTANGLE, 0u);
     const auto specimen = high_specimen();
     constexpr std::uint32_t paths = 60000;
     auto with = once();

@@ -47,8 +47,11 @@ optics::Instrument ring_microscope() {
 
 optics::Instrument aimed_microscope() {
     auto description = test::microscope_description();
+    description.greatest_defocus = 0.01;
     description.single_scatter = true;
-    return optics::aimed_for_single_scatter(optics::assemble(description));
+    auto instrument = optics::aimed_for_single_scatter(optics::assemble(description));
+    EXPECT_NE(instrument.features & FEATURE_AIMED_RECTANGLE, 0u);
+    return instrument;
 }
 
 Arrival arrival(const optics::Instrument& instrument, const Draws& draws) {
