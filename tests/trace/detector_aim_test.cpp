@@ -102,7 +102,7 @@ TEST(DetectorAim, host_and_device_trace_the_same_paths) {
     const auto instrument = optics::aimed_for_single_scatter(aimed_microscope());
     ASSERT_NE(instrument.features & FEATURE_AIMED_RECTANGLE, 0u);
     const auto specimen = high_specimen();
-    constexpr std::uint32_t paths = 60000;
+    constexpr std::uint32_t paths = 1'000'000;
     auto with = once();
     with.rays = paths; // of all of the image
     const auto host = trace::host_paths(instrument, specimen, with, 0.002, 7, 0, paths);
@@ -116,6 +116,6 @@ TEST(DetectorAim, host_and_device_trace_the_same_paths) {
             EXPECT_LT(std::hypot(host[k].x - device[k].x, host[k].y - device[k].y), 1e-3) << k;
         }
     }
-    EXPECT_GT(detected, 500u);
+    EXPECT_GT(detected, 10000u);
     EXPECT_LE(differing, paths / 2000);
 }
