@@ -173,7 +173,7 @@ TEST(DetectorAim, IsWhatTheSourceEmitsInto) {
     }
 }
 
-// Where it would not be true there is none: light from beside the field, as an aim of all that passes has it.
+// There the disc stays.
 TEST(DetectorAim, IsLeftOutWhereItSavesNothingOrIsNotKnown) {
     const auto aim_of = [](InstrumentDescription description) {
         description.single_scatter = true;

@@ -189,8 +189,8 @@ TEST(EmissionOrder, numbers_are_uniform_over_all_paths) {
 
 TEST(EmissionOrder, consecutive_paths_arrive_close_together) {
     // 2^17 cells, of which 2^15 divide the disc's field. Of a ring light place and direction both say where light
-    // arrives: 2^(17 / 4) pieces of each of the four numbers, all of which move it. A quarter
-    // of the cells would be too few: steps of 0.06 and 0.23.
+    // arrives: 2^(17 / 4) pieces of each of the four numbers, all of which move it. A quarter of
+    // the cells would be too few: steps of 0.06 and 0.23.
     for (const auto& [instrument, most] : {std::pair(test::microscope(), 0.03), std::pair(aimed_microscope(), 0.03),
                                            std::pair(ring_microscope(), 0.2)}) {
         const EmissionOrder order(instrument, 1000000000, seed);
