@@ -16,6 +16,10 @@ namespace {
 // What every Vulkan device grants; more would run here and fail elsewhere.
 constexpr std::uint32_t portable_push_constant_bytes = 128;
 
+// Mesa puts every call of a kernel in its place before it looks at constants. With tens of surfaces that may or may not be
+// there this takes half a minute at every start, as only what comes of it is kept.
+constexpr std::size_t constants_to_put_in = 100;
+
 vk::DescriptorType type_of(BindingKind kind) {
     switch (kind) {
     case BindingKind::storage_buffer:
@@ -76,6 +80,11 @@ Kernel::Kernel(const Device& device, std::string name, std::span<const std::uint
     }
     const vk::SpecializationInfo specialization(static_cast<std::uint32_t>(entries.size()), entries.data(),
                                                 values.size() * sizeof(std::uint32_t), values.data());
+    std::vector<std::uint32_t> specialised;
+    if (constants.size() >= constants_to_put_in && is_software(device.report())) {
+        specialised = specialised_spirv(spirv, constants);
+        spirv = specialised.empty() ? spirv : specialised;
+    }
     vk::ShaderModuleCreateInfo module_info;
     module_info.setCodeSize(spirv.size_bytes()).setPCode(spirv.data());
     try {

@@ -3,6 +3,7 @@
 
 #include "vulkan/acceleration_structure.hpp"
 #include "vulkan/buffer.hpp"
+#include "vulkan/specialised_spirv.hpp"
 
 #include <cstdint>
 #include <span>
@@ -16,11 +17,6 @@ namespace vkfv::vulkan {
 struct Binding {
     std::uint32_t slot;
     std::variant<const Buffer*, const AccelerationStructure*> resource;
-};
-
-struct SpecializationConstant {
-    std::uint32_t id;
-    std::uint32_t value;
 };
 
 enum class BindingKind { storage_buffer, uniform_buffer, acceleration_structure };

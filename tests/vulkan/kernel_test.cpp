@@ -34,12 +34,16 @@ struct Sums {
 
 constexpr std::uint32_t workgroup = 64;
 
+Kernel arithmetic_kernel(std::span<const std::uint32_t> spirv, std::span<const SpecializationConstant> constants) {
+    return Kernel(
+        shared_device(), "probe_vulkan_arithmetic", spirv,
+        {{5, BindingKind::storage_buffer}, {0, BindingKind::uniform_buffer}, {2, BindingKind::storage_buffer}},
+        sizeof(Push), constants);
+}
+
 Kernel arithmetic_kernel(std::uint32_t factor) {
     const SpecializationConstant constant{3, factor};
-    return Kernel(
-        shared_device(), "probe_vulkan_arithmetic", probe_vulkan_arithmetic,
-        {{5, BindingKind::storage_buffer}, {0, BindingKind::uniform_buffer}, {2, BindingKind::storage_buffer}},
-        sizeof(Push), std::span(&constant, 1));
+    return arithmetic_kernel(probe_vulkan_arithmetic, std::span(&constant, 1));
 }
 
 struct Arithmetic {
@@ -114,12 +118,14 @@ TEST(Buffers, LargerThanTheDeviceAreRefusedWithSizes) {
     EXPECT_THROW(Buffer(shared_device(), std::numeric_limits<std::size_t>::max()), RunError);
 }
 
-TEST(Kernels, ComputeWithEveryFeatureTheTraceNeeds) {
+constexpr std::uint32_t large_factor = 3'000'000'019U; // the products need 64 bits
+
+// kernel: with the factor above.
+void expect_products(const Kernel& kernel) {
     constexpr std::uint32_t count = 1000; // not a multiple of the workgroup
     constexpr std::uint64_t base = std::uint64_t{1} << 40U;
     constexpr std::uint64_t offset = 77;
-    constexpr std::uint32_t factor = 3'000'000'019U; // the products need 64 bits
-    const Kernel kernel = arithmetic_kernel(factor);
+    constexpr std::uint32_t factor = large_factor;
     Arithmetic memory;
     memory.offset.write_values(std::span(&offset, 1));
     const Buffer values(shared_device(), count * sizeof(std::uint64_t));
@@ -141,6 +147,22 @@ TEST(Kernels, ComputeWithEveryFeatureTheTraceNeeds) {
     EXPECT_EQ(sums.of_invocations, count);
     EXPECT_EQ(sums.of_indices, sum_of_indices);
     EXPECT_EQ(sums.length_of_padded, 7U); // the allocation's padding does not show
+}
+
+TEST(Kernels, ComputeWithEveryFeatureTheTraceNeeds) {
+    expect_products(arithmetic_kernel(large_factor));
+}
+
+TEST(Kernels, ComputeTheSameWithTheirConstantsPutInBefore) {
+    const SpecializationConstant constant{3, large_factor};
+    const std::vector<std::uint32_t> spirv = specialised_spirv(probe_vulkan_arithmetic, std::span(&constant, 1));
+    EXPECT_FALSE(spirv.empty());
+    expect_products(arithmetic_kernel(spirv, {}));
+}
+
+TEST(Kernels, StayAsTheyAreIfTheyCannotBeRead) {
+    const std::vector<std::uint32_t> spirv(100, 7);
+    EXPECT_TRUE(specialised_spirv(spirv, {}).empty());
 }
 
 TEST(Kernels, RefuseBindingsAndConstantsTheyDoNotDeclare) {

@@ -1,0 +1,36 @@
+#include "vulkan/specialised_spirv.hpp"
+
+#include <spirv-tools/optimizer.hpp>
+
+#include <unordered_map>
+
+namespace vkfv::vulkan {
+
+std::vector<std::uint32_t> specialised_spirv(std::span<const std::uint32_t> spirv,
+                                             std::span<const SpecializationConstant> constants) {
+    std::unordered_map<std::uint32_t, std::vector<std::uint32_t>> values;
+    for (const SpecializationConstant& constant : constants) {
+        values.emplace(constant.id, std::vector{constant.value});
+    }
+    spvtools::Optimizer optimizer(SPV_ENV_VULKAN_1_2);
+    optimizer.RegisterPass(spvtools::CreateSetSpecConstantDefaultValuePass(values))
+        .RegisterPass(spvtools::CreateFreezeSpecConstantValuePass())
+        .RegisterPass(spvtools::CreateFoldSpecConstantOpAndCompositePass())
+        .RegisterPass(spvtools::CreateUnifyConstantPass())
+        // First what does not run, by constants through all calls: then there is little to put in their places.
+        .RegisterPass(spvtools::CreateCCPPass())
+        .RegisterPass(spvtools::CreateDeadBranchElimPass())
+        .RegisterPass(spvtools::CreateAggressiveDCEPass())
+        .RegisterPass(spvtools::CreateEliminateDeadFunctionsPass())
+        .RegisterPass(spvtools::CreateInlineExhaustivePass())
+        .RegisterPass(spvtools::CreateEliminateDeadFunctionsPass());
+    spvtools::OptimizerOptions options;
+    options.set_run_validator(false); // the build has validated the module
+    std::vector<std::uint32_t> specialised;
+    if (!optimizer.Run(spirv.data(), spirv.size(), &specialised, options)) {
+        return {};
+    }
+    return specialised;
+}
+
+} // namespace vkfv::vulkan

@@ -1,0 +1,20 @@
+// Kernels whose constants are put in before a driver has them.
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+namespace vkfv::vulkan {
+
+struct SpecializationConstant {
+    std::uint32_t id;
+    std::uint32_t value; // the bits of an int, uint, float or bool
+};
+
+// The module with these constants in place: what they exclude is gone, and calls have become what they call. Each operation
+// that is left is as it was, so values and roundings are too. Empty if the module cannot be changed so.
+std::vector<std::uint32_t> specialised_spirv(std::span<const std::uint32_t> spirv,
+                                             std::span<const SpecializationConstant> constants);
+
+} // namespace vkfv::vulkan
