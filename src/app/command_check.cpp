@@ -1,7 +1,7 @@
 #include "app/commands.hpp"
 #include "core/error.hpp"
 #include "measurement/forecast.hpp"
-#include "measurement/instrument_figures.hpp"
+#include "measurement/instrument_report.hpp"
 
 #include <fmt/format.h>
 
@@ -40,20 +40,18 @@ void run_check(const CommandOptions& options) {
     }
     const auto configuration =
         load_configuration(options.file, options.overrides, with_forecast ? Needs::exposure : Needs::instrument);
-    const auto figures = measurement::instrument_figures(configuration);
+    auto report = measurement::instrument_report(configuration, options.file);
     std::optional<measurement::Forecast> forecast;
     if (with_forecast) {
         forecast = measurement::forecast(configuration);
     }
     if (options.json) {
-        auto all = measurement::instrument_json(figures, options.file);
         if (forecast) {
-            all["forecast"] = measurement::json_of(*forecast);
+            report.json["forecast"] = measurement::json_of(*forecast);
         }
-        fmt::print("{}\n", all.dump(2));
+        fmt::print("{}\n", report.json.dump(2));
     } else {
-        fmt::print("{}{}", measurement::instrument_text(figures, options.file),
-                   forecast ? measurement::summary(*forecast) : "");
+        fmt::print("{}{}", report.text, forecast ? measurement::summary(*forecast) : "");
     }
     if (forecast && !forecast->fits()) {
         throw RunError("This stack does not fit on the host's memory or the disk. Take fewer images or pixels, another "

@@ -2,6 +2,7 @@
 
 #include "core/digest.hpp"
 #include "core/error.hpp"
+#include "core/files_read.hpp"
 
 #include <fmt/format.h>
 
@@ -241,6 +242,7 @@ InputFile::InputFile(const fs::path& path, const FileRequest& request) : path_(p
     if (const std::string kind = kind_of(status); !kind.empty()) {
         refuse(kind);
     }
+    note_file_read(path.string(), status);
     bytes_ = static_cast<std::uint64_t>(status.st_size);
     stream_.reset(::fdopen(file.number(), "rb"));
     if (!stream_) {

@@ -3,11 +3,17 @@
 #include "core/error.hpp"
 
 #include <dlfcn.h>
+#include <elf.h>
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 #include <link.h>
 #include <sys/auxv.h>
 
+#include <algorithm>
+#include <cstdint>
 #include <cstdlib>
+#include <cstring>
+#include <span>
 
 namespace vkfv {
 
@@ -126,6 +132,43 @@ fs::path given_or_installed(const fs::path& path) {
         }
     }
     return path;
+}
+
+std::string build_id() {
+    std::string id;
+    // Of the file that holds this code: the one of whose segments one is where this function is.
+    const auto look = [](dl_phdr_info* info, std::size_t, void* result) {
+        const auto headers = std::span(info->dlpi_phdr, info->dlpi_phnum);
+        const auto here = reinterpret_cast<std::uintptr_t>(&build_id);
+        const bool own = std::ranges::any_of(headers, [&](const ElfW(Phdr) & header) {
+            const std::uintptr_t begin = info->dlpi_addr + header.p_vaddr;
+            return header.p_type == PT_LOAD && here >= begin && here < begin + header.p_memsz;
+        });
+        if (!own) {
+            return 0;
+        }
+        for (const auto& header : headers) {
+            if (header.p_type != PT_NOTE) {
+                continue;
+            }
+            const auto notes = std::span(reinterpret_cast<const unsigned char*>(info->dlpi_addr + header.p_vaddr),
+                                         header.p_memsz);
+            const auto padded = [](std::size_t bytes) { return (bytes + 3) / 4 * 4; };
+            for (std::size_t at = 0; at + sizeof(ElfW(Nhdr)) <= notes.size();) {
+                ElfW(Nhdr) note;
+                std::memcpy(&note, notes.data() + at, sizeof note);
+                const std::size_t text = at + sizeof note + padded(note.n_namesz);
+                if (note.n_type == NT_GNU_BUILD_ID && text + note.n_descsz <= notes.size()) {
+                    *static_cast<std::string*>(result) =
+                        fmt::format("{:02x}", fmt::join(notes.subspan(text, note.n_descsz), ""));
+                }
+                at = text + padded(note.n_descsz);
+            }
+        }
+        return 1;
+    };
+    dl_iterate_phdr(look, &id);
+    return id;
 }
 
 } // namespace vkfv

@@ -28,4 +28,8 @@ std::string searched_for_asset(const std::filesystem::path& relative, const std:
 // name, so that an example can be named from any folder.
 std::filesystem::path given_or_installed(const std::filesystem::path& path);
 
+// What the linker made of the code that this is part of, in hexadecimal digits: another code has another. Empty if it
+// was linked without.
+std::string build_id();
+
 } // namespace vkfv

@@ -4,12 +4,14 @@
 
 #include <fmt/chrono.h>
 #include <nlohmann/json.hpp>
+#include <spdlog/sinks/base_sink.h>
 #include <spdlog/sinks/stdout_color_sinks.h>
 #include <spdlog/spdlog.h>
 
 #include <chrono>
 #include <cstdio>
 #include <memory>
+#include <mutex>
 
 namespace vkfv {
 
@@ -17,7 +19,7 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-bool as_json = false;
+bool lines_as_json = false;
 
 std::string now_text() {
     const auto now = std::chrono::time_point_cast<std::chrono::milliseconds>(std::chrono::system_clock::now());
@@ -44,19 +46,46 @@ class JsonFormatter final : public spdlog::formatter {
 
 } // namespace
 
+struct MessagesHeard::Ear final : spdlog::sinks::base_sink<std::mutex> {
+    std::vector<Message> messages;
+
+    std::vector<Message> heard() {
+        const std::scoped_lock lock(mutex_);
+        return messages;
+    }
+
+  private:
+    void sink_it_(const spdlog::details::log_msg& message) override {
+        messages.push_back({static_cast<int>(message.level), {message.payload.data(), message.payload.size()}});
+    }
+    void flush_() override {}
+};
+
+MessagesHeard::MessagesHeard() : ear_(std::make_shared<Ear>()) {
+    spdlog::default_logger()->sinks().push_back(ear_);
+}
+
+MessagesHeard::~MessagesHeard() {
+    std::erase(spdlog::default_logger()->sinks(), ear_);
+}
+
+std::vector<MessagesHeard::Message> MessagesHeard::messages() const {
+    return ear_->heard();
+}
+
 void open_log() {
     spdlog::set_default_logger(spdlog::stderr_color_mt("vkfv"));
     spdlog::set_pattern("%^%l%$: %v");
 }
 
 void log_as_json() {
-    as_json = true;
+    lines_as_json = true;
     spdlog::set_formatter(std::make_unique<JsonFormatter>());
     interruptions_as_json();
 }
 
 bool logs_json() {
-    return as_json;
+    return lines_as_json;
 }
 
 std::string json_line(std::string_view kind, std::string_view name, const LogFields& fields) {
@@ -68,7 +97,7 @@ std::string json_line(std::string_view kind, std::string_view name, const LogFie
 }
 
 void log_event(std::string_view name, const LogFields& fields) {
-    if (as_json) {
+    if (lines_as_json) {
         std::fputs((json_line("event", name, fields) + "\n").c_str(), stderr);
     }
 }
@@ -78,7 +107,7 @@ std::string json_quoted(std::string_view text) {
 }
 
 void log_failure(const std::string& message, int exit_code) {
-    if (as_json) {
+    if (lines_as_json) {
         std::fputs(
             (json_line("level", "error", {{"text", message}, {"exit_code", std::int64_t{exit_code}}}) + "\n").c_str(),
             stderr);

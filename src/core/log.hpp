@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <memory>
 #include <string>
 #include <string_view>
 #include <utility>
@@ -17,6 +18,26 @@ void open_log();
 // "text", and what core/progress.hpp tells. Interruptions too, without a time, which a signal handler cannot tell.
 void log_as_json();
 bool logs_json();
+
+// The log's messages since this was made, in whatever thread, beside where they go else.
+class MessagesHeard {
+  public:
+    struct Message {
+        int level; // spdlog's
+        std::string text;
+    };
+    // While no other thread writes to the log; likewise where it ends.
+    MessagesHeard();
+    ~MessagesHeard();
+    MessagesHeard(const MessagesHeard&) = delete;
+    MessagesHeard& operator=(const MessagesHeard&) = delete;
+
+    std::vector<Message> messages() const;
+
+  private:
+    struct Ear;
+    std::shared_ptr<Ear> ear_;
+};
 
 using LogValue = std::variant<std::int64_t, double, std::string>;
 using LogFields = std::vector<std::pair<std::string, LogValue>>;

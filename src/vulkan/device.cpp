@@ -1,9 +1,9 @@
 #include "vulkan/device.hpp"
 
 #include "core/error.hpp"
+#include "core/user_cache.hpp"
 #include "vulkan/failure.hpp"
 #include "vulkan/loader.hpp"
-#include "vulkan/pipeline_cache.hpp"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>

@@ -72,7 +72,7 @@ class Device {
     void submit(Lane lane, const vk::SubmitInfo& info, vk::Fence done) const;
     // For a library that submits by itself: of Lane::trace, and while nobody else submits.
     const vk::raii::Queue& queue() const;
-    // What the driver has compiled, here and in earlier runs on this device and driver (pipeline_cache.hpp); kept on
+    // What the driver has compiled, here and in earlier runs on this device and driver (core/user_cache.hpp); kept on
     // disk when the device closes.
     const vk::raii::PipelineCache& pipelines() const;
     std::uint32_t queue_family() const;

@@ -2,7 +2,7 @@
 
 #include "core/digest.hpp"
 #include "core/error.hpp"
-#include "vulkan/pipeline_cache.hpp"
+#include "core/user_cache.hpp"
 
 #define VKFFT_BACKEND 0
 #include <vkFFT.h>

@@ -6,7 +6,9 @@
 #include <nlohmann/json.hpp>
 
 #include <cmath>
+#include <map>
 #include <sstream>
+#include <sys/stat.h>
 
 namespace vkfv::test {
 namespace {
@@ -187,6 +189,95 @@ TEST(Check, TheDemoHasNoWarning) {
         run_program({"--check", std::string(VKFV_SOURCE_DIR) + "/assets/stacks/demo.toml", "--json"}, folder);
     ASSERT_EQ(result.exit_code, 0) << result.standard_error;
     EXPECT_THAT(warnings_of(nlohmann::json::parse(result.standard_output)), ::testing::IsEmpty());
+}
+
+// A check that was made before: what it said is said again, and computed again when anything has changed.
+class KeptCheck : public ::testing::Test {
+  protected:
+    KeptCheck() { write_file(folder_ / "c.toml", small_configuration); }
+
+    ProgramResult check(const std::vector<std::string>& more = {}) const {
+        std::vector<std::string> arguments = {"check", "c.toml"};
+        arguments.insert(arguments.end(), more.begin(), more.end());
+        auto result = run_program(arguments, folder_, {{"XDG_CACHE_HOME", (folder_ / "cache").string()}});
+        EXPECT_EQ(result.exit_code, 0) << result.standard_error;
+        return result;
+    }
+    // Kept figures, with the number that the file system gave each file: another one has been written anew.
+    std::map<std::string, ino_t> kept() const {
+        std::map<std::string, ino_t> files;
+        for (const auto& entry : std::filesystem::directory_iterator(folder_ / "cache" / "vkfv")) {
+            struct stat status {};
+            EXPECT_EQ(stat(entry.path().c_str(), &status), 0);
+            if (entry.path().filename().string().starts_with("figures-")) {
+                files[entry.path().filename().string()] = status.st_ino;
+            }
+        }
+        return files;
+    }
+
+    std::filesystem::path folder_ = fresh_folder("kept_check");
+};
+
+TEST_F(KeptCheck, SaysTheSameAgain) {
+    const auto first = check();
+    EXPECT_THAT(first.standard_error, HasSubstr("roughness: Sq"));
+    const auto files = kept();
+    EXPECT_EQ(files.size(), 1u);
+    const auto second = check();
+    EXPECT_EQ(second.standard_output, first.standard_output);
+    EXPECT_EQ(second.standard_error, first.standard_error);
+    EXPECT_EQ(nlohmann::json::parse(check({"--json"}).standard_output)["efl_objective_mm"].get<double>(), 20);
+    EXPECT_THAT(check({"--quiet"}).standard_error, Not(HasSubstr("roughness")));
+    EXPECT_EQ(kept(), files);
+}
+
+TEST_F(KeptCheck, IsMadeAnewWhereTheConfigurationDiffers) {
+    const auto first = check();
+    const auto other = check({"--set", "specimen.roughness.seed=3"});
+    EXPECT_NE(other.standard_output, first.standard_output);
+    EXPECT_EQ(kept().size(), 2u);
+    EXPECT_EQ(check().standard_output, first.standard_output);
+    EXPECT_EQ(kept().size(), 2u);
+}
+
+TEST_F(KeptCheck, IsMadeAnewWhereAFileHasChanged) {
+    const auto objective = std::filesystem::path(VKFV_SOURCE_DIR) / "assets" / "objectives" / "10x_0.28.toml";
+    const auto own = folder_ / "assets" / "objectives" / "mine.toml";
+    const auto points = folder_ / "points.csv";
+    const auto square_with_corner = [&](const std::string& height) {
+        write_file(points, "x,y,z\n-60,-60,0\n60,-60,0\n60,60,0\n-60,60," + height + "\n");
+    };
+    std::filesystem::create_directories(own.parent_path());
+    write_file(own, read_file(objective));
+    square_with_corner("1");
+    const std::string text = small_configuration;
+    write_file(folder_ / "c.toml", text.substr(0, text.find("[specimen]")) +
+                                       "[specimen]\nkind = \"points\"\nfile = \"points.csv\"\nunit = \"um\"\n" +
+                                       text.substr(text.find("[scan]")));
+    const std::vector<std::string> with_own = {"--set", "objective.prescription=\"mine\""};
+    const auto first = check(with_own);
+    EXPECT_THAT(first.standard_output, HasSubstr("highest 1 um"));
+    const auto files = kept();
+    EXPECT_EQ(check(with_own).standard_output, first.standard_output);
+    EXPECT_EQ(kept(), files);
+    square_with_corner("2"); // as many bytes
+    const auto second = check(with_own);
+    EXPECT_THAT(second.standard_output, HasSubstr("highest 2 um"));
+    EXPECT_EQ(kept().size(), 1u);
+    EXPECT_NE(kept(), files);
+    write_file(own, replaced(read_file(objective), "title", "# ...\ntitle"));
+    EXPECT_EQ(check(with_own).standard_output, second.standard_output);
+}
+
+TEST_F(KeptCheck, IsMadeAnewWhereWhatWasKeptIsDamaged) {
+    const auto first = check();
+    const auto files = kept();
+    ASSERT_EQ(files.size(), 1u);
+    const auto path = folder_ / "cache" / "vkfv" / files.begin()->first;
+    write_file(path, replaced(read_file(path), "Lenses", "lenses"));
+    EXPECT_EQ(check().standard_output, first.standard_output);
+    EXPECT_NE(kept(), files);
 }
 
 // Beside the configuration, though it is named without its folder.

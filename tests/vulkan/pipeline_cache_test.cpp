@@ -1,6 +1,6 @@
 // What is kept of compiled kernels: given back unharmed, or not at all.
+#include "core/user_cache.hpp"
 #include "vulkan/kernel.hpp"
-#include "vulkan/pipeline_cache.hpp"
 
 #include "spirv/probe_vulkan_arithmetic.h"
 
@@ -92,6 +92,18 @@ TEST_F(PipelineCache, what_cannot_be_written_is_not) {
     EXPECT_TRUE(compile().empty());
     setenv("XDG_CACHE_HOME", "relative", 1); // to be ignored
     EXPECT_EQ(cache_folder(), std::filesystem::path(std::getenv("HOME")) / ".cache" / "vkfv");
+}
+
+TEST_F(PipelineCache, keeps_those_that_were_written_last) {
+    for (const char* name : {"some-1", "some-2", "some-3", "other"}) {
+        write_cached(name, data_);
+        usleep(20000); // a tick of the file system's clock
+    }
+    thin_out_cached("some-", 2);
+    EXPECT_TRUE(read_cached("some-1").empty());
+    for (const char* name : {"some-2", "some-3", "other"}) {
+        EXPECT_EQ(read_cached(name), data_) << name;
+    }
 }
 
 TEST_F(PipelineCache, a_device_keeps_its_kernels_and_survives_a_damaged_file) {

@@ -1,23 +1,26 @@
-#include "vulkan/pipeline_cache.hpp"
+#include "core/user_cache.hpp"
 
 #include "core/digest.hpp"
 #include "core/error.hpp"
 #include "core/file.hpp"
 
+#include <algorithm>
 #include <cstddef>
 #include <cstdlib>
+#include <functional>
 #include <system_error>
+#include <utility>
 
-namespace vkfv::vulkan {
+namespace vkfv {
 
 namespace {
 
-constexpr std::string_view file_mark = "vkfv pipelines 2\n";
+constexpr std::string_view file_mark = "vkfv cache 3\n";
 constexpr std::size_t sum_digits = 64;
 // A file of many instruments' kernels is begun anew rather than read beyond this.
 constexpr std::size_t most_bytes = std::size_t{64} << 20;
 
-// A driver need not survive data that it did not write.
+// A driver need not survive data that it did not write, and no reader data that the disk has changed.
 std::string checksum(std::span<const std::byte> data) {
     return Digest().add(data).sha256();
 }
@@ -75,8 +78,27 @@ void write_cached(std::string_view name, std::span<const std::byte> data) {
     try {
         make_folder(*folder);
         write_file(*folder / name, bytes);
-    } catch (const RunError&) { // compiling again is all it costs
+    } catch (const RunError&) { // to do it again is all it costs
     }
 }
 
-} // namespace vkfv::vulkan
+void thin_out_cached(std::string_view beginning, std::size_t most) {
+    namespace fs = std::filesystem;
+    const auto folder = cache_folder();
+    if (!folder) {
+        return;
+    }
+    std::error_code none; // another process may remove them at the same time
+    std::vector<std::pair<fs::file_time_type, fs::path>> files;
+    for (const auto& entry : fs::directory_iterator(*folder, none)) {
+        if (entry.path().filename().string().starts_with(beginning)) {
+            files.emplace_back(entry.last_write_time(none), entry.path());
+        }
+    }
+    std::ranges::sort(files, std::greater{});
+    for (std::size_t k = most; k < files.size(); ++k) {
+        fs::remove(files[k].second, none);
+    }
+}
+
+} // namespace vkfv

@@ -1,4 +1,4 @@
-// Compiled kernels kept on disk from run to run.
+// What is kept on disk from run to run and costs only time where it is lost: compiled kernels, figures.
 #pragma once
 
 #include <cstddef>
@@ -9,7 +9,7 @@
 #include <string_view>
 #include <vector>
 
-namespace vkfv::vulkan {
+namespace vkfv {
 
 // The folder for files that may be lost: XDG_CACHE_HOME/vkfv, else HOME/.cache/vkfv, else none.
 std::optional<std::filesystem::path> cache_folder();
@@ -21,4 +21,7 @@ std::vector<std::byte> read_cached(std::string_view name);
 // kept (no folder, no rights, a full disk) is not: that costs time, nothing else.
 void write_cached(std::string_view name, std::span<const std::byte> data);
 
-} // namespace vkfv::vulkan
+// Of those whose names begin so, all but the `most` that were written last are removed.
+void thin_out_cached(std::string_view beginning, std::size_t most);
+
+} // namespace vkfv
