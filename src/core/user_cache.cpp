@@ -4,10 +4,16 @@
 #include "core/error.hpp"
 #include "core/file.hpp"
 
+#include <fmt/format.h>
+
+#include <unistd.h>
+
 #include <algorithm>
 #include <cstddef>
 #include <cstdlib>
+#include <fstream>
 #include <functional>
+#include <iterator>
 #include <system_error>
 #include <utility>
 
@@ -75,10 +81,17 @@ void write_cached(std::string_view name, std::span<const std::byte> data) {
     }
     std::string bytes = std::string(file_mark) + checksum(data);
     bytes.append(reinterpret_cast<const char*>(data.data()), data.size());
-    try {
-        make_folder(*folder);
-        write_file(*folder / name, bytes);
-    } catch (const RunError&) { // to do it again is all it costs
+    // Not synced: what a power cut leaves of it has another checksum.
+    std::error_code failed;
+    std::filesystem::create_directories(*folder, failed);
+    const auto aside = *folder / fmt::format("{}.part-{}", name, ::getpid());
+    if (std::ofstream file(aside, std::ios::binary); !file.write(bytes.data(), std::ssize(bytes)) || !file.flush()) {
+        std::filesystem::remove(aside, failed);
+        return;
+    }
+    std::filesystem::rename(aside, *folder / name, failed);
+    if (failed) {
+        std::filesystem::remove(aside, failed);
     }
 }
 
