@@ -346,11 +346,7 @@ std::vector<Complex> CellTransfer::at(double fx, double fy) const {
 }
 
 std::vector<Wavefront> wavefronts_for_cells(const Instrument& instrument) {
-    std::vector<Wavefront> wavefronts;
-    for (const SpectralNode& node : at_most(most_wavelengths, spectral_nodes(instrument))) {
-        wavefronts.emplace_back(instrument, node);
-    }
-    return wavefronts;
+    return wavefronts_of(instrument, at_most(most_wavelengths, spectral_nodes(instrument)));
 }
 
 } // namespace vkfv::optics

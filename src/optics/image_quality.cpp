@@ -1,5 +1,6 @@
 #include "optics/image_quality.hpp"
 
+#include "core/parallel_list.hpp"
 #include "core/units.hpp"
 #include "optics/best_focus.hpp"
 #include "optics/first_order.hpp"
@@ -11,6 +12,7 @@
 #include <cmath>
 #include <complex>
 #include <cstdint>
+#include <future>
 
 namespace vkfv::optics {
 
@@ -149,11 +151,13 @@ PointImage point_image(const Imaging& imaging, const Outline& outline, double he
         return image;
     }
     const auto cone = fill_cone(outline, cone_panels);
-    std::vector<std::vector<Arrival>> light;
-    for (const SpectralNode& node : spectrum) {
-        light.push_back(arrivals(at_wavelength(imaging, node.spectral), outline, cone, height));
-        for (const Arrival& ray : light.back()) {
-            image.centroid += node.weight * ray.weight * ray.position;
+    auto light = parallel_list(static_cast<int>(spectrum.size()), [&](int node) {
+        return arrivals(at_wavelength(imaging, spectrum[static_cast<std::size_t>(node)].spectral), outline, cone,
+                        height);
+    });
+    for (std::size_t node = 0; node < light.size(); ++node) {
+        for (const Arrival& ray : light[node]) {
+            image.centroid += spectrum[node].weight * ray.weight * ray.position;
         }
     }
 
@@ -297,17 +301,18 @@ struct Worst {
 // The point with the largest spot.
 Worst worst_of(const Setting& setting, const std::vector<glm::dvec2>& points, glm::dvec2 axis_centroid) {
     const Imaging& imaging = setting.imaging;
-    Worst worst;
-    for (const glm::dvec2& point : points) {
-        const Outline outline = outline_at(imaging, point);
+    const auto all = parallel_list(static_cast<int>(points.size()), [&](int k) {
+        const Outline outline = outline_at(imaging, points[static_cast<std::size_t>(k)]);
         PointImage image = point_image(imaging, outline, setting.height, setting.nodes);
         image.relative_light = outline.area() / setting.on_axis.area();
-        if (worst.outline.radii.empty() || image.rms_spot > worst.image.rms_spot) {
-            worst = {image, outline,
+        return Worst{image, outline,
                      real_magnification(setting, imaging, outline, axis_centroid) /
                              setting.instrument.first_order.magnification -
                          1};
-        }
+    });
+    Worst worst = all.front();
+    for (const Worst& one : all) {
+        worst = one.image.rms_spot > worst.image.rms_spot ? one : worst;
     }
     return worst;
 }
@@ -401,8 +406,9 @@ ImageQuality image_quality(const InstrumentDescription& description, const Instr
         edges = {{far.x, 0}, {0, far.y}, {-far.x, 0}, {0, -far.y}};
         corners = {far, {-far.x, far.y}, -far, {far.x, -far.y}};
     }
-    const Worst edge = worst_of(setting, edges, axis_centroid);
+    auto at_edge = std::async(std::launch::async, [&] { return worst_of(setting, edges, axis_centroid); });
     const Worst corner = worst_of(setting, corners, axis_centroid);
+    const Worst edge = at_edge.get();
     quality.edge = edge.image;
     quality.edge_distortion = edge.distortion;
     quality.corner = corner.image;

@@ -60,11 +60,8 @@ glm::dvec2 centre_of(const PointWaves& image) {
 
 } // namespace
 
-PointWaves::PointWaves(const Instrument& instrument, glm::dvec2 field, int most) {
-    for (const SpectralNode& node : at_most(most, spectral_nodes(instrument, most))) {
-        wavefronts_.emplace_back(instrument, node, field);
-    }
-}
+PointWaves::PointWaves(const Instrument& instrument, glm::dvec2 field, int most)
+    : wavefronts_(wavefronts_of(instrument, at_most(most, spectral_nodes(instrument, most)), field)) {}
 
 PointWaves PointWaves::at_height(double height) const {
     PointWaves other = *this;

@@ -1,5 +1,6 @@
 #include "optics/wavefront.hpp"
 
+#include "core/parallel_list.hpp"
 #include "core/units.hpp"
 #include "optics/detector_view.hpp"
 #include "optics/farthest.hpp"
@@ -8,6 +9,7 @@
 #include <cmath>
 #include <limits>
 #include <optional>
+#include <utility>
 
 namespace vkfv::optics {
 
@@ -112,20 +114,19 @@ Wavefront::Wavefront(const Imaging& imaging, double magnification, double focus,
             object_point_ = view.trace(chief_, 0)->object_point;
         }
     }
+    // Images depend on the rim on the axis, to the last bit; in the field 5e-10 of the way is enough.
+    const int bisections = field == glm::dvec2(0) ? 45 : 26;
+    const auto rim_at = [&](int azimuth) {
+        const glm::dvec2 direction = direction_of(2 * pi * azimuth / static_cast<double>(azimuths));
+        return farthest(
+                   index_ + glm::length(chief_),
+                   [&](double radius) { return view.excess(chief_ + radius * direction); }, bisections)
+            .value_or(0);
+    };
+    const auto own_rims =
+        parallel_list(round_ ? 1 : static_cast<int>(mirrored_ ? azimuths / 2 + 1 : azimuths), rim_at);
     for (std::size_t i = 0; i < azimuths; ++i) {
-        if (round_ && i > 0) {
-            rims_[i] = rims_[0];
-        } else if (mirrored_ && i > azimuths / 2) {
-            rims_[i] = rims_[azimuths - i];
-        } else {
-            const glm::dvec2 direction = direction_of(2 * pi * static_cast<double>(i) / azimuths);
-            // Images depend on the rim on the axis, to the last bit; in the field 5e-10 of the way is enough.
-            const int bisections = field == glm::dvec2(0) ? 45 : 26;
-            rims_[i] = farthest(
-                           index_ + glm::length(chief_),
-                           [&](double radius) { return view.excess(chief_ + radius * direction); }, bisections)
-                           .value_or(0);
-        }
+        rims_[i] = own_rims[round_ ? 0 : mirrored_ ? std::min(i, azimuths - i) : i];
     }
     largest_rim_ = *std::ranges::max_element(rims_);
     smallest_rim_ = *std::ranges::min_element(rims_);
@@ -340,6 +341,18 @@ glm::dvec2 Wavefront::image_slope(glm::dvec2 p) const {
     const glm::dvec2 place = (own(p) - chief_) / largest_rim_;
     return turned(round_ ? horner(round_slope_, glm::dot(place, place)) * place
                          : glm::dvec2(slope_x_.value(place), slope_y_.value(place)));
+}
+
+std::vector<Wavefront> wavefronts_of(const Instrument& instrument, std::span<const SpectralNode> wavelengths,
+                                     glm::dvec2 field) {
+    auto traced = parallel_list(static_cast<int>(wavelengths.size()), [&](int k) {
+        return std::optional<Wavefront>(std::in_place, instrument, wavelengths[static_cast<std::size_t>(k)], field);
+    });
+    std::vector<Wavefront> wavefronts;
+    for (auto& one : traced) {
+        wavefronts.push_back(*std::move(one));
+    }
+    return wavefronts;
 }
 
 } // namespace vkfv::optics

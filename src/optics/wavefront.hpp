@@ -13,6 +13,7 @@
 #include "optics/plane_polynomial.hpp"
 
 #include <cmath>
+#include <span>
 #include <vector>
 
 namespace vkfv::optics {
@@ -107,5 +108,9 @@ class Wavefront {
     std::vector<double> round_path_;
     std::vector<double> round_slope_;
 };
+
+// Of each wavelength, by whichever threads are free.
+std::vector<Wavefront> wavefronts_of(const Instrument& instrument, std::span<const SpectralNode> wavelengths,
+                                     glm::dvec2 field = glm::dvec2(0));
 
 } // namespace vkfv::optics
