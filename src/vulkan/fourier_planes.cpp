@@ -42,6 +42,7 @@ struct FourierPlanes::State {
     VkPhysicalDevice physical{};
     VkDevice device{};
     VkQueue queue{};
+    VkPipelineCache pipelines{};
     vk::raii::CommandPool pool{nullptr};
     VkCommandPool pool_handle{};
     vk::raii::Fence fence{nullptr};
@@ -60,6 +61,7 @@ FourierPlanes::FourierPlanes(const Device& device, const Buffer& buffer, int col
     state.physical = *device.physical();
     state.device = *device.handle();
     state.queue = *device.queue();
+    state.pipelines = *device.pipelines();
     state.pool = vk::raii::CommandPool(device.handle(),
                                        {vk::CommandPoolCreateFlagBits::eResetCommandBuffer, device.queue_family()});
     state.pool_handle = *state.pool;
@@ -80,6 +82,7 @@ FourierPlanes::FourierPlanes(const Device& device, const Buffer& buffer, int col
     configuration.queue = &state.queue;
     configuration.commandPool = &state.pool_handle;
     configuration.fence = &state.fence_handle;
+    configuration.pipelineCache = &state.pipelines;
     configuration.buffer = &state.buffer;
     configuration.bufferSize = &state.bytes;
     configuration.makeForwardPlanOnly = direction == Direction::forward ? 1 : 0;
