@@ -151,8 +151,8 @@ std::string build_id() {
             if (header.p_type != PT_NOTE) {
                 continue;
             }
-            const auto notes = std::span(reinterpret_cast<const unsigned char*>(info->dlpi_addr + header.p_vaddr),
-                                         header.p_memsz);
+            const auto notes =
+                std::span(reinterpret_cast<const unsigned char*>(info->dlpi_addr + header.p_vaddr), header.p_memsz);
             const auto padded = [](std::size_t bytes) { return (bytes + 3) / 4 * 4; };
             for (std::size_t at = 0; at + sizeof(ElfW(Nhdr)) <= notes.size();) {
                 ElfW(Nhdr) note;

@@ -103,9 +103,9 @@ void thin_out_cached(std::string_view beginning, std::size_t most) {
     }
     std::error_code none; // another process may remove them at the same time
     std::vector<std::pair<fs::file_time_type, fs::path>> files;
-    for (const auto& entry : fs::directory_iterator(*folder, none)) {
-        if (entry.path().filename().string().starts_with(beginning)) {
-            files.emplace_back(entry.last_write_time(none), entry.path());
+    for (fs::directory_iterator entry(*folder, none), end; entry != end; entry.increment(none)) {
+        if (entry->path().filename().string().starts_with(beginning)) {
+            files.emplace_back(entry->last_write_time(none), entry->path());
         }
     }
     std::ranges::sort(files, std::greater{});

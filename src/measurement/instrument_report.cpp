@@ -37,12 +37,11 @@ std::string name_of(const Configuration& configuration, const std::filesystem::p
     if (program.empty()) {
         return "";
     }
-    Digest digest;
-    digest.add(program).add(file.string()).add(configuration.canonical).add(configuration.identity);
+    Json all = {program, file.string(), configuration.canonical, configuration.identity};
     for (const auto& folder : asset_folders(configuration.file.parent_path())) {
-        digest.add(folder.string());
+        all.push_back(folder.string());
     }
-    return std::string(kept_names) + digest.text();
+    return std::string(kept_names) + Digest().add(all.dump(-1, ' ', false, Json::error_handler_t::replace)).sha256();
 }
 
 std::string written(const KeptReport& kept) {

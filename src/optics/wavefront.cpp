@@ -123,8 +123,7 @@ Wavefront::Wavefront(const Imaging& imaging, double magnification, double focus,
                    [&](double radius) { return view.excess(chief_ + radius * direction); }, bisections)
             .value_or(0);
     };
-    const auto own_rims =
-        parallel_list(round_ ? 1 : static_cast<int>(mirrored_ ? azimuths / 2 + 1 : azimuths), rim_at);
+    const auto own_rims = parallel_list(round_ ? 1 : static_cast<int>(mirrored_ ? azimuths / 2 + 1 : azimuths), rim_at);
     for (std::size_t i = 0; i < azimuths; ++i) {
         rims_[i] = own_rims[round_ ? 0 : mirrored_ ? std::min(i, azimuths - i) : i];
     }

@@ -16,8 +16,8 @@ namespace {
 // What every Vulkan device grants; more would run here and fail elsewhere.
 constexpr std::uint32_t portable_push_constant_bytes = 128;
 
-// Mesa puts every call of a kernel in its place before it looks at constants. With tens of surfaces that may or may not be
-// there this takes half a minute at every start, as only what comes of it is kept.
+// Mesa puts every call of a kernel in its place before it looks at constants. With tens of surfaces that may or may not
+// be there this takes half a minute at every start, as only what comes of it is kept.
 constexpr std::size_t constants_to_put_in = 100;
 
 vk::DescriptorType type_of(BindingKind kind) {

@@ -12,8 +12,8 @@ struct SpecializationConstant {
     std::uint32_t value; // the bits of an int, uint, float or bool
 };
 
-// The module with these constants in place: what they exclude is gone, and calls have become what they call. Each operation
-// that is left is as it was, so values and roundings are too. Empty if the module cannot be changed so.
+// The module with these constants in place: what they exclude is gone, and calls have become what they call. Each
+// operation that is left is as it was, so values and roundings are too. Empty if the module cannot be changed so.
 std::vector<std::uint32_t> specialised_spirv(std::span<const std::uint32_t> spirv,
                                              std::span<const SpecializationConstant> constants);
 

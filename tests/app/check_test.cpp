@@ -227,8 +227,8 @@ TEST_F(KeptCheck, SaysTheSameAgain) {
     const auto second = check();
     EXPECT_EQ(second.standard_output, first.standard_output);
     EXPECT_EQ(second.standard_error, first.standard_error);
-    const auto without = run_program({"check", "c.toml", "--json"}, folder_,
-                                     {{"XDG_CACHE_HOME", (folder_ / "other_cache").string()}});
+    const auto without =
+        run_program({"check", "c.toml", "--json"}, folder_, {{"XDG_CACHE_HOME", (folder_ / "other_cache").string()}});
     EXPECT_EQ(check({"--json"}).standard_output, without.standard_output);
     EXPECT_THAT(check({"--quiet"}).standard_error, Not(HasSubstr("roughness")));
     EXPECT_EQ(kept(), files);
