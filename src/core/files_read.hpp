@@ -30,6 +30,8 @@ class FilesRead {
     ~FilesRead();
     FilesRead(const FilesRead&) = delete;
     FilesRead& operator=(const FilesRead&) = delete;
+    FilesRead(FilesRead&&) = delete;
+    FilesRead& operator=(FilesRead&&) = delete;
 
     // Once each, in the order in which they were opened first.
     std::vector<FileStamp> stamps() const;

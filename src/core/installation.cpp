@@ -10,6 +10,7 @@
 #include <sys/auxv.h>
 
 #include <algorithm>
+#include <bit>
 #include <cstdint>
 #include <cstdlib>
 #include <cstring>
@@ -152,7 +153,7 @@ std::string build_id() {
                 continue;
             }
             const auto notes =
-                std::span(reinterpret_cast<const unsigned char*>(info->dlpi_addr + header.p_vaddr), header.p_memsz);
+                std::span(std::bit_cast<const unsigned char*>(info->dlpi_addr + header.p_vaddr), header.p_memsz);
             const auto padded = [](std::size_t bytes) { return (bytes + 3) / 4 * 4; };
             for (std::size_t at = 0; at + sizeof(ElfW(Nhdr)) <= notes.size();) {
                 ElfW(Nhdr) note;

@@ -31,6 +31,8 @@ class MessagesHeard {
     ~MessagesHeard();
     MessagesHeard(const MessagesHeard&) = delete;
     MessagesHeard& operator=(const MessagesHeard&) = delete;
+    MessagesHeard(MessagesHeard&&) = delete;
+    MessagesHeard& operator=(MessagesHeard&&) = delete;
 
     std::vector<Message> messages() const;
 

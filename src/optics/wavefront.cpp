@@ -348,6 +348,7 @@ std::vector<Wavefront> wavefronts_of(const Instrument& instrument, std::span<con
         return std::optional<Wavefront>(std::in_place, instrument, wavelengths[static_cast<std::size_t>(k)], field);
     });
     std::vector<Wavefront> wavefronts;
+    wavefronts.reserve(traced.size());
     for (auto& one : traced) {
         wavefronts.push_back(*std::move(one));
     }

@@ -16,12 +16,12 @@ namespace fs = std::filesystem;
 
 class FilesReadTest : public ::testing::Test {
   protected:
-    FilesReadTest() {
+    void SetUp() override {
         fs::create_directories(folder_);
         write("a", "one");
         write("b", "two");
     }
-    ~FilesReadTest() override { fs::remove_all(folder_); }
+    void TearDown() override { fs::remove_all(folder_); }
 
     void write(const std::string& name, const std::string& text) const { std::ofstream(folder_ / name) << text; }
     std::string path(const std::string& name) const { return (folder_ / name).string(); }
