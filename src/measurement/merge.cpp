@@ -121,13 +121,11 @@ StackResult merge_stack(const fs::path& folder, const std::vector<fs::path>& sha
     store.write_ledger();
 
     const auto filters = filters_of_run(configuration, tracer, scene.instrument);
-    std::vector<const optics::PupilFilter*> filters_at;
-    std::ranges::transform(filters, std::back_inserter(filters_at), [](const auto& filter) { return &filter; });
     enter_stage("images");
     // Everywhere to the same bits: a device that is not here is not missed.
     const auto evaluate_on = configuration.evaluate_on == EvaluateOn::host ? EvaluateOn::host : EvaluateOn::automatic;
     GrowingEvaluation evaluation(
-        scene, focus_planes_for_files(evaluate_on, configuration.trace.device, scene.positions.size()), filters_at);
+        scene, focus_planes_for_files(evaluate_on, configuration.trace.device, scene.positions.size()), filters);
     for (std::size_t image = 0; image < scene.positions.size(); ++image) {
         evaluation.add(static_cast<int>(image),
                        scan::read_frame(folder, static_cast<int>(image), scene.positions[image]));

@@ -9,6 +9,7 @@
 #include <fmt/format.h>
 #include <spdlog/spdlog.h>
 
+#include <future>
 #include <memory>
 #include <utility>
 
@@ -32,9 +33,10 @@ scan::ImageDeveloper developer_of(const StackScene& scene, const scan::ImageStor
 StackResult trace_and_evaluate(const StackScene& scene, const WorkingDevices& devices, Progress& progress) {
     const Configuration& configuration = scene.configuration;
     enter_stage("device, kernels");
-    const auto tracer = make_tracer(devices, configuration, scene.instrument, scene.specimen);
+    auto tracer = make_tracer(devices, configuration, scene.instrument, scene.specimen);
+    const trace::TracerIdentity identity = tracer->identity();
     enter_stage("folder of the stack");
-    scan::ImageStore store(configuration.output_directory, scene.description(tracer->identity()));
+    scan::ImageStore store(configuration.output_directory, scene.description(identity));
     require_space(store, results_bytes(configuration));
     const auto developer = developer_of(scene, store, devices);
     // Evaluated as they are traced: no second pass over the disk.
@@ -44,16 +46,18 @@ StackResult trace_and_evaluate(const StackScene& scene, const WorkingDevices& de
     const auto traced = scan::run_stack(
         *tracer, store, progress, [&](int image, Grid<float> values) { evaluation.add(image, std::move(values)); },
         configuration.checkpoint_interval, developer);
+    // It gives its memory back meanwhile, which takes a driver longer than the rest of the end.
+    const auto closed = std::async(std::launch::async, [tracer = std::move(tracer)]() mutable { tracer.reset(); });
     spdlog::info("{} images traced, {} kept from before", traced.traced, traced.kept);
     if (traced.device_span > 0) {
         store.append_timing("device at work", traced.device_seconds);
         store.append_timing("device from first to last image", traced.device_span);
     }
-    return {.evaluation = evaluation.write(store, tracer->identity()),
+    return {.evaluation = evaluation.write(store, identity),
             .traced = traced,
             .rays_per_image = trace::launched_rays(configuration.trace, configuration.instrument),
             .folder = store.folder(),
-            .device = tracer->identity().text()};
+            .device = identity.text()};
 }
 
 } // namespace

@@ -1,5 +1,6 @@
 #include "measurement/stack_parts.hpp"
 
+#include "core/background.hpp"
 #include "core/digest.hpp"
 #include "core/stages.hpp"
 #include "core/units.hpp"
@@ -67,19 +68,18 @@ scan::StackDescription StackScene::description(const trace::TracerIdentity& trac
 }
 
 GrowingEvaluation::GrowingEvaluation(const StackScene& scene, topography::FocusPlanesMaker planes,
-                                     const std::vector<const optics::PupilFilter*>& filters)
+                                     const std::vector<optics::PupilFilter>& filters)
     : scene_(scene), field_{.flat = read_flat(scene.configuration, scene.pixels(),
                                               scene.instrument.first_order.pixel_pitch),
                             .design = optics::field_curvature(scene.instrument.first_order)},
       evaluation_(evaluation_options(scene.configuration, scene.instrument), std::move(planes),
                   diffraction_of_evaluation(scene.configuration, scene.instrument),
                   static_cast<int>(scene.positions.size())) {
-    truth_ = std::async(std::launch::async,
-                        [&scene] { return truth_on_pixels(scene.instrument, scene.configuration, scene.specimen); });
-    source_ = std::async(std::launch::async, [&scene] { return stack_source(scene.configuration, scene.instrument); });
+    truth_ = in_background([&scene] { return truth_on_pixels(scene.instrument, scene.configuration, scene.specimen); });
+    source_ = in_background([&scene] { return stack_source(scene.configuration, scene.instrument); });
     if (!filters.empty()) {
-        wave_limits_ = std::async(std::launch::async,
-                                  [&scene, filters] { return worst_of(limits_of_lights(filters, scene.instrument)); });
+        wave_limits_ =
+            in_background([&scene, filters] { return worst_of(limits_of_lights(filters, scene.instrument)); });
     }
 }
 

@@ -36,7 +36,7 @@ class GrowingEvaluation {
     // filters: what makes the images as waves do, one a light; none: they are as rays make them. Scene and filters must
     // outlive it.
     GrowingEvaluation(const StackScene& scene, topography::FocusPlanesMaker planes,
-                      const std::vector<const optics::PupilFilter*>& filters);
+                      const std::vector<optics::PupilFilter>& filters);
 
     // In the images' order.
     void add(int image, Grid<float> values);

@@ -74,9 +74,9 @@ std::vector<WaveLimits> limits_of_each(const optics::Instrument& instrument, con
 
 } // namespace
 
-std::vector<WaveLimits> limits_of_lights(const std::vector<const optics::PupilFilter*>& filters,
+std::vector<WaveLimits> limits_of_lights(const std::vector<optics::PupilFilter>& filters,
                                          const optics::Instrument& instrument) {
-    return limits_of_each(instrument, [&](std::size_t k) -> const optics::PupilFilter& { return *filters[k]; });
+    return limits_of_each(instrument, [&](std::size_t k) -> const optics::PupilFilter& { return filters[k]; });
 }
 
 std::vector<WaveLimits> limits_of_lights(const optics::WaveOptions& options, const optics::Instrument& instrument) {

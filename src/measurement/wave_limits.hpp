@@ -26,7 +26,7 @@ struct WaveLimits {
 
 // Of the axis, the middle of a side and the corner of the field, within two depths of field, in the light of each
 // source: Instrument::lights(). filters: a light's each.
-std::vector<WaveLimits> limits_of_lights(const std::vector<const optics::PupilFilter*>& filters,
+std::vector<WaveLimits> limits_of_lights(const std::vector<optics::PupilFilter>& filters,
                                          const optics::Instrument& instrument);
 std::vector<WaveLimits> limits_of_lights(const optics::WaveOptions& options, const optics::Instrument& instrument);
 

@@ -24,9 +24,7 @@ WorkingDevices::Member::Member(std::string its_selector) : selector(std::move(it
 void WorkingDevices::Member::open() {
     device = {}; // one that is lost closes first
     if (selector != "host") {
-        device = std::async(std::launch::async, [name = selector] {
-                     return std::make_shared<const vulkan::Device>(vulkan::DeviceOptions{name});
-                 }).share();
+        device = vulkan::begin_to_open(vulkan::DeviceOptions{selector});
     }
 }
 
@@ -56,7 +54,7 @@ std::unique_ptr<trace::Tracer> WorkingDevices::make_tracer(const optics::Instrum
             return trace::make_host_tracer(instrument, specimen, of_member);
         }
         try {
-            of_member.opened = members_[place].device.get();
+            of_member.opened = members_[place].device;
             return trace::make_device_tracer(instrument, specimen, of_member);
         } catch (const std::exception&) {
             trace::rethrow_as_failure_of(static_cast<int>(place));

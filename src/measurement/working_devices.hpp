@@ -5,6 +5,7 @@
 #include "optics/instrument.hpp"
 #include "specimen/specimen.hpp"
 #include "trace/tracer.hpp"
+#include "vulkan/opened_device.hpp"
 
 #include <cstdint>
 #include <functional>
@@ -15,7 +16,6 @@
 #include <vector>
 
 namespace vkfv::vulkan {
-class Device;
 class DeviceFailure;
 } // namespace vkfv::vulkan
 
@@ -46,7 +46,7 @@ class WorkingDevices {
 
         std::string selector;
         std::uint64_t batch_divisor = 1;
-        std::shared_future<std::shared_ptr<const vulkan::Device>> device; // none on the host
+        vulkan::OpenedDevice device; // none on the host
     };
     explicit WorkingDevices(std::vector<Member> members) : members_(std::move(members)) {}
 

@@ -268,15 +268,17 @@ std::vector<std::complex<float>> CellTransfer::table() const {
             }
         });
         const double ratio = cutoff_ * wavefront.wavelength() / (2 * wavefront.largest_rim());
-        for (std::size_t cell = 0; cell < count; ++cell) {
-            for (int dy = 0; dy <= steps_; ++dy) {
-                for (int dx = -steps_; dx <= steps_; ++dx) {
-                    const Complex value = interpolated(own.data() + cell * plane, steps_, dx * ratio, dy * ratio);
-                    table[cell * plane + static_cast<std::size_t>(dy * columns + dx + steps_)] +=
-                        std::complex<float>(wavefront.weight() * value);
+        parallel_bands(static_cast<int>(count), 1, [&](int first, int end) {
+            for (auto cell = static_cast<std::size_t>(first); cell < static_cast<std::size_t>(end); ++cell) {
+                for (int dy = 0; dy <= steps_; ++dy) {
+                    for (int dx = -steps_; dx <= steps_; ++dx) {
+                        const Complex value = interpolated(own.data() + cell * plane, steps_, dx * ratio, dy * ratio);
+                        table[cell * plane + static_cast<std::size_t>(dy * columns + dx + steps_)] +=
+                            std::complex<float>(wavefront.weight() * value);
+                    }
                 }
             }
-        }
+        });
     }
     for (std::size_t cell = 0; cell < count; ++cell) {
         if (nearest_lit_[cell] != cell) {

@@ -1,5 +1,6 @@
 #include "optics/pupil_filter.hpp"
 
+#include "core/parallel_list.hpp"
 #include "core/units.hpp"
 #include "optics/filter_error.hpp"
 #include "optics/image_quality.hpp"
@@ -124,22 +125,31 @@ double PupilFilter::noise_of_pixels() const {
         }
         return std::norm(sum);
     };
-    double before = 0;
-    double after = 0;
-    for (int j = -samples; j < samples; ++j) {
+    struct Power {
+        double before = 0;
+        double after = 0;
+    };
+    const auto rows = parallel_list(2 * samples, [&](int row) {
+        Power power;
+        const double fy = 0.5 * (row - samples + 0.5) / samples;
         for (int i = -samples; i < samples; ++i) {
             const double fx = 0.5 * (i + 0.5) / samples;
-            const double fy = 0.5 * (j + 0.5) / samples;
-            before += added_up(fx, true) * added_up(fy, true);
+            power.before += added_up(fx, true) * added_up(fy, true);
             const double pixel = added_up(fx, false) * added_up(fy, false);
             for (int cell = 0; cell < cell_count(); ++cell) {
                 if (share(cell) > 0) {
-                    after += pixel * share(cell) * std::norm(transfer(cell, fx / part_pitch_, fy / part_pitch_));
+                    power.after += pixel * share(cell) * std::norm(transfer(cell, fx / part_pitch_, fy / part_pitch_));
                 }
             }
         }
+        return power;
+    });
+    Power all;
+    for (const Power& row : rows) {
+        all.before += row.before;
+        all.after += row.after;
     }
-    return std::sqrt(after / before);
+    return std::sqrt(all.after / all.before);
 }
 
 } // namespace vkfv::optics

@@ -63,7 +63,7 @@ class StagedTracer final : public trace::Tracer {
     std::string description() const override { return tracer_->description(); }
     trace::TracerIdentity identity() const override { return tracer_->identity(); }
     std::shared_ptr<const vulkan::Device> device() const override { return tracer_->device(); }
-    std::vector<const optics::PupilFilter*> pupil_filters() const override { return tracer_->pupil_filters(); }
+    std::vector<optics::PupilFilter> pupil_filters() const override { return tracer_->pupil_filters(); }
 
   private:
     std::unique_ptr<trace::Tracer> tracer_;

@@ -7,7 +7,7 @@
 #include "spirv/backward_specialised_quadtree.h"
 #include "spirv/backward_specialised_ray_query.h"
 #include "trace/device_numbers.hpp"
-#include "trace/scene_waves.hpp"
+#include "trace/wave_image.hpp"
 
 #include <fmt/format.h>
 
@@ -117,11 +117,7 @@ class BackwardTracer final : public DeviceExposures {
           trace_(scene_, on_device(*scene_.device, backward_optics(instrument_, scene_.host_record.material, plan_)),
                  plan_, options),
           light_(*scene_.device, scene_.light_buffers()),
-          pace_(std::uint64_t{trace_.most_chunks_at_a_time()} * trace_.points_per_chunk()) {
-        if (scene_.filter) {
-            waves_.emplace(scene_);
-        }
-    }
+          pace_(std::uint64_t{trace_.most_chunks_at_a_time()} * trace_.points_per_chunk()) {}
 
     std::string description() const override {
         return fmt::format("{}; traversal {}; backward", scene_.device->choice(), scene_.traversal.reason);
@@ -129,12 +125,12 @@ class BackwardTracer final : public DeviceExposures {
 
     TracerIdentity identity() const override { return scene_.identity(); }
     std::shared_ptr<const vulkan::Device> device() const override { return scene_.device; }
-    std::vector<const optics::PupilFilter*> pupil_filters() const override { return filters_of(scene_.filter); }
+    std::vector<optics::PupilFilter> pupil_filters() const override { return filters_of(scene_.filter()); }
     std::uint64_t units() const override { return plan_.randomisations * trace_.chunks(); }
     std::uint64_t rays_per_unit() const override { return trace_.points_per_chunk(); }
     std::unique_ptr<DeviceExposure> prepare(FocalPosition position, std::uint32_t image,
                                             std::size_t slot) const override;
-    std::size_t slots() const override { return waves_ ? waves_->exposures_at_a_time() : most_exposures; }
+    std::size_t slots() const override { return scene_.exposures_at_a_time(); }
 
   private:
     class Exposure;
@@ -150,7 +146,6 @@ class BackwardTracer final : public DeviceExposures {
     BackwardTrace trace_;
     DeviceNumbers light_; // that is sorted for waves
     mutable DispatchPace pace_;
-    std::optional<SceneWaves> waves_;
     mutable std::array<std::optional<vulkan::Buffer>, most_exposures> for_host_; // sums, then the light of waves
 };
 
@@ -190,7 +185,7 @@ class BackwardTracer::Exposure final : public SingleExposure {
         end = std::min({end, begin + trace.chunks(), first + most});
         vulkan::Commands& commands = work.open();
         if (std::exchange(clears_light_, false)) {
-            tracer_.scene_.clear_cell_light(commands);
+            tracer_.scene_.clear_sorted_light(commands);
         }
         if (!on_device_) {
             trace.clear(commands);
@@ -205,8 +200,8 @@ class BackwardTracer::Exposure final : public SingleExposure {
     }
 
     void hand_over() override {
-        if (tracer_.waves_) {
-            tracer_.waves_->hand_over(work, for_host_, place_of_light());
+        if (const auto& waves = tracer_.scene_.waves) {
+            waves->hand_over(work, for_host_, place_of_light());
         }
     }
 
@@ -214,9 +209,9 @@ class BackwardTracer::Exposure final : public SingleExposure {
         take_all();
         work.wait();
         Image image = sums_.image();
-        if (tracer_.waves_) {
-            image = with_waves(std::move(image), tracer_.waves_->light(for_host_, place_of_light()),
-                               sums_.power_per_number(), *tracer_.scene_.filter);
+        if (const auto& waves = tracer_.scene_.waves) {
+            image = with_waves(std::move(image), waves->light(for_host_, place_of_light()), sums_.power_per_number(),
+                               waves->filter());
         }
         // Of the imaging train alone: who goes on to the source, no one counts.
         image.crossings = static_cast<double>(image.rays) * tracer_.turned_.constants.illumination_count;
@@ -269,7 +264,8 @@ std::unique_ptr<DeviceExposure> BackwardTracer::prepare(FocalPosition position, 
     auto& for_host = for_host_.at(slot);
     if (!for_host) {
         const std::size_t numbers = randomisations_kept() * pixels();
-        for_host.emplace(*scene_.device, numbers * sizeof(std::uint64_t) + (waves_ ? waves_->bytes_for_host() : 0),
+        for_host.emplace(*scene_.device,
+                         numbers * sizeof(std::uint64_t) + (scene_.waves ? scene_.waves->bytes_for_host() : 0),
                          vulkan::Buffer::Memory::host);
     }
     scene_.set_exposure(position, image, slot);

@@ -1,7 +1,6 @@
 #include "trace/device_scene.hpp"
 #include "optics/train_polynomials.hpp"
 #include "trace/outward.hpp"
-#include "trace/wave_image.hpp"
 #include "trace/wave_memory.hpp"
 
 #include <bit>
@@ -80,6 +79,16 @@ vulkan::Buffer light_points_of(const vulkan::Device& device, const optics::Instr
     return buffer_of(device, points);
 }
 
+std::unique_ptr<SceneWaves> make_waves(const optics::Instrument& seen, optics::WaveOptions options,
+                                       const vulkan::OpenedDevice& opened) {
+    optics::PupilFilter filter(seen, options);
+    filter.table();
+    const auto device = opened.get();
+    options.cells = static_cast<int>(filter.cells().side);
+    filter.set_parts(seen, waves_on_device(options, seen, device->report()).parts);
+    return std::make_unique<SceneWaves>(*device, std::move(filter), seen.detector_pixels());
+}
+
 } // namespace
 
 std::vector<vulkan::Box> boxes_of(const optics::Room& room) {
@@ -104,17 +113,15 @@ std::vector<vulkan::Box> boxes_of(const optics::Room& room) {
 
 DeviceScene make_device_scene(const optics::Instrument& instrument, const specimen::Specimen& specimen,
                               const TraceOptions& options, const optics::Instrument* seen) {
-    std::future<optics::PupilFilter> asked_filter;
+    const vulkan::OpenedDevice opened =
+        options.opened.valid() ? options.opened : vulkan::begin_to_open({options.device});
+    std::future<std::unique_ptr<SceneWaves>> made_waves;
     if (seen != nullptr && options.waves && !options.nonsequential) {
         // Beside device and specimen.
-        asked_filter = std::async(std::launch::async, [seen, &options] {
-            optics::PupilFilter made(*seen, *options.waves);
-            made.table();
-            return made;
-        });
+        made_waves = std::async(std::launch::async,
+                                [seen, &options, opened] { return make_waves(*seen, *options.waves, opened); });
     }
-    auto device =
-        options.opened ? options.opened : std::make_shared<const vulkan::Device>(vulkan::DeviceOptions{options.device});
+    auto device = opened.get();
     const bool specialised = pays_in_constants(*device, instrument, options);
     std::future<std::optional<physics::f64::TrainPolynomials>> polynomials;
     if (specialised && options.illumination_polynomials && options.estimator == Estimator::forward &&
@@ -141,17 +148,11 @@ DeviceScene make_device_scene(const optics::Instrument& instrument, const specim
     if (!room.elements.empty()) {
         elements.emplace(element_buffers(*device, room, device_specimen.element_order()));
     }
-    std::optional<optics::PupilFilter> filter;
-    std::optional<vulkan::Buffer> cell_light;
-    if (asked_filter.valid()) {
-        filter = asked_filter.get();
-        optics::WaveOptions waves = *options.waves;
-        waves.cells = static_cast<int>(filter->cells().side);
-        filter->set_parts(*seen, waves_on_device(waves, *seen, device->report()).parts);
-        cell_light.emplace(*device, WaveImage(*filter, instrument.detector_pixels()).numbers() * sizeof(std::uint64_t),
-                           vulkan::Buffer::Memory::device, wave_memory_remedy);
-        constants.pupil_cells = to_float(filter->cells());
-        const vk::DeviceAddress address = cell_light->address();
+    std::unique_ptr<SceneWaves> waves;
+    if (made_waves.valid()) {
+        waves = made_waves.get();
+        constants.pupil_cells = to_float(waves->filter().cells());
+        const vk::DeviceAddress address = waves->sorted_light().address();
         constants.cell_light = {static_cast<std::uint32_t>(address), static_cast<std::uint32_t>(address >> 32)};
     }
     vulkan::Buffer surfaces = buffer_of(*device, surface_block(instrument));
@@ -170,7 +171,7 @@ DeviceScene make_device_scene(const optics::Instrument& instrument, const specim
                       .accounts = std::move(accounts),
                       .features = instrument.features |
                                   (options.directed_scatter ? physics::f32::FEATURE_DIRECTED_SCATTER : 0u) |
-                                  (filter ? physics::f32::FEATURE_PUPIL_CELLS : 0u) |
+                                  (waves ? physics::f32::FEATURE_PUPIL_CELLS : 0u) |
                                   (specimen.reflectance ? physics::f32::FEATURE_REFLECTANCE_MAP : 0u),
                       .illumination = polynomials.valid() ? polynomials.get() : std::nullopt,
                       .traversal = std::move(traversal),
@@ -183,8 +184,7 @@ DeviceScene make_device_scene(const optics::Instrument& instrument, const specim
                       .light_points = std::move(light_points),
                       .elements = std::move(elements),
                       .emission = {},
-                      .filter = std::move(filter),
-                      .cell_light = std::move(cell_light)};
+                      .waves = std::move(waves)};
     if (options.estimator == Estimator::forward && !options.nonsequential) {
         scene.order_emission(options.rays);
     }
@@ -217,13 +217,16 @@ void DeviceScene::give_emission_order(vulkan::Commands& commands) const {
 }
 
 std::vector<const vulkan::Buffer*> DeviceScene::light_buffers() const {
-    return cell_light ? std::vector{&*cell_light} : std::vector<const vulkan::Buffer*>{};
+    return waves ? std::vector{&waves->sorted_light()} : std::vector<const vulkan::Buffer*>{};
 }
 
-void DeviceScene::clear_cell_light(vulkan::Commands& commands) const {
-    if (cell_light) {
-        commands.fill_zero(*cell_light);
-        commands.barrier();
+std::optional<optics::PupilFilter> DeviceScene::filter() const {
+    return waves ? std::optional(waves->filter()) : std::nullopt;
+}
+
+void DeviceScene::clear_sorted_light(vulkan::Commands& commands) const {
+    if (waves) {
+        waves->clear(commands);
     }
 }
 
@@ -338,7 +341,8 @@ std::span<const std::uint32_t> DeviceScene::variant(std::span<const std::uint32_
 }
 
 TracerIdentity DeviceScene::identity() const {
-    return device_identity(device->report(), traversal_name(traversal.traversal), instrument, LightSorting::of(filter));
+    return device_identity(device->report(), traversal_name(traversal.traversal), instrument,
+                           LightSorting::of(filter()));
 }
 
 } // namespace vkfv::trace

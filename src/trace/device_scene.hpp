@@ -8,6 +8,7 @@
 #include "trace/emission_order.hpp"
 #include "trace/host_tracer.hpp"
 #include "trace/ledger.hpp"
+#include "trace/scene_waves.hpp"
 #include "trace/tracer_identity.hpp"
 #include "vulkan/kernel.hpp"
 
@@ -47,8 +48,8 @@ struct DeviceScene {
     // For what is recorded from now on. slot: of those under way at a time, below most_exposures; what was recorded for
     // the slot before must have been done.
     void set_exposure(FocalPosition position, std::uint32_t image, std::size_t slot = 0);
-    // Of an image before its first path.
-    void clear_cell_light(vulkan::Commands& commands) const;
+    // Of an image before its first path: the light that is sorted for waves.
+    void clear_sorted_light(vulkan::Commands& commands) const;
     // Before what an exposure submits first: the order of its paths, for the device. Forward alone.
     void give_emission_order(vulkan::Commands& commands) const;
     // Where light is sorted for waves; none: it is not.
@@ -72,6 +73,9 @@ struct DeviceScene {
                                            std::span<const std::uint32_t> by_bvh) const;
     // Of an instrument that paths run through in this scene's direction.
     TracerIdentity identity() const;
+    std::optional<optics::PupilFilter> filter() const; // of images as waves make them
+    // Exposures that may be under way.
+    std::size_t exposures_at_a_time() const { return waves && !waves->on_device() ? 1 : most_exposures; }
     bool software() const { return vulkan::is_software(device->report()); }
 
     std::shared_ptr<const vulkan::Device> device; // buffers point to it
@@ -91,11 +95,10 @@ struct DeviceScene {
     std::vector<vulkan::Buffer> parameters; // a slot each: `constants` as they were set
     std::size_t slot = 0;                   // set last
     vulkan::Buffer spectrum;
-    vulkan::Buffer light_points;               // of the light field's grid
-    std::optional<ElementBuffers> elements;    // only for non-sequential paths
-    std::optional<EmissionBuffers> emission;   // only for forward ones that are sequential
-    std::optional<optics::PupilFilter> filter; // only for images as waves make them, with the light sorted for it
-    std::optional<vulkan::Buffer> cell_light;
+    vulkan::Buffer light_points;             // of the light field's grid
+    std::optional<ElementBuffers> elements;  // only for non-sequential paths
+    std::optional<EmissionBuffers> emission; // only for forward ones that are sequential
+    std::unique_ptr<SceneWaves> waves;       // only for images as waves make them
 };
 
 // Throws DeviceError (no usable device, too little memory) or InputError (a traversal that specimen or device does not

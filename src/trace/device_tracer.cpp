@@ -6,7 +6,6 @@
 #include "trace/forward_trace.hpp"
 #include "trace/mixed_light.hpp"
 #include "trace/nonsequential_trace.hpp"
-#include "trace/scene_waves.hpp"
 #include "trace/traced_instrument.hpp"
 #include "trace/wave_image.hpp"
 #include "trace/wave_memory.hpp"
@@ -36,11 +35,7 @@ class DeviceTracer final : public DeviceExposures {
         : instrument_(instrument), rays_(options.rays),
           scene_(make_device_scene(instrument_, specimen, options, &instrument_)), trace_(make_trace(scene_, options)),
           numbers_(*scene_.device, trace_->counted()),
-          pace_(std::uint64_t{trace_->batch()} * (scene_.software() ? 1 : batches_per_submission_gpu)) {
-        if (scene_.filter) {
-            waves_.emplace(scene_);
-        }
-    }
+          pace_(std::uint64_t{trace_->batch()} * (scene_.software() ? 1 : batches_per_submission_gpu)) {}
 
     std::string description() const override {
         return fmt::format("{}; traversal {}", scene_.device->choice(), scene_.traversal.reason);
@@ -48,11 +43,11 @@ class DeviceTracer final : public DeviceExposures {
 
     TracerIdentity identity() const override { return scene_.identity(); }
     std::shared_ptr<const vulkan::Device> device() const override { return scene_.device; }
-    std::vector<const optics::PupilFilter*> pupil_filters() const override { return filters_of(scene_.filter); }
+    std::vector<optics::PupilFilter> pupil_filters() const override { return filters_of(scene_.filter()); }
     std::uint64_t units() const override { return rays_; }
     std::unique_ptr<DeviceExposure> prepare(FocalPosition position, std::uint32_t image,
                                             std::size_t slot) const override;
-    std::size_t slots() const override { return waves_ ? waves_->exposures_at_a_time() : most_exposures; }
+    std::size_t slots() const override { return scene_.exposures_at_a_time(); }
 
   private:
     class Exposure;
@@ -71,7 +66,6 @@ class DeviceTracer final : public DeviceExposures {
     std::unique_ptr<PathTrace> trace_;
     DeviceNumbers numbers_;
     mutable DispatchPace pace_;
-    std::optional<SceneWaves> waves_;
     mutable std::array<std::optional<vulkan::Buffer>, most_exposures> for_host_; // counts, then the light of waves
 };
 
@@ -98,7 +92,7 @@ class DeviceTracer::Exposure final : public SingleExposure {
         }
         if (std::exchange(clears_, false)) {
             trace.clear(commands);
-            tracer_.scene_.clear_cell_light(commands);
+            tracer_.scene_.clear_sorted_light(commands);
         }
         end = std::min(end, first + tracer_.pace_.paths());
         for (std::uint64_t path = first; path < end; path += trace.batch()) {
@@ -112,8 +106,8 @@ class DeviceTracer::Exposure final : public SingleExposure {
     void hand_over() override {
         tracer_.trace_->copy_counts(work.open(), for_host_);
         work.submit();
-        if (tracer_.waves_) {
-            tracer_.waves_->hand_over(work, for_host_, tracer_.trace_->bytes_for_host());
+        if (const auto& waves = tracer_.scene_.waves) {
+            waves->hand_over(work, for_host_, tracer_.trace_->bytes_for_host());
         }
     }
 
@@ -122,9 +116,9 @@ class DeviceTracer::Exposure final : public SingleExposure {
         const PathTrace& trace = *tracer_.trace_;
         const Accounts& accounts = tracer_.scene_.accounts;
         Image image = accounts.image(trace.pixels(for_host_), trace.fates(for_host_), tracer_.rays_);
-        if (tracer_.waves_) {
-            image = with_waves(std::move(image), tracer_.waves_->light(for_host_, trace.bytes_for_host()),
-                               accounts.power_per_number(tracer_.rays_), *tracer_.scene_.filter);
+        if (const auto& waves = tracer_.scene_.waves) {
+            image = with_waves(std::move(image), waves->light(for_host_, trace.bytes_for_host()),
+                               accounts.power_per_number(tracer_.rays_), waves->filter());
         }
         return image;
     }
@@ -140,7 +134,7 @@ std::unique_ptr<DeviceExposure> DeviceTracer::prepare(FocalPosition position, st
                                                       std::size_t slot) const {
     auto& for_host = for_host_.at(slot);
     if (!for_host) {
-        for_host.emplace(*scene_.device, trace_->bytes_for_host() + (waves_ ? waves_->bytes_for_host() : 0),
+        for_host.emplace(*scene_.device, trace_->bytes_for_host() + (scene_.waves ? scene_.waves->bytes_for_host() : 0),
                          vulkan::Buffer::Memory::host);
     }
     scene_.set_exposure(position, image, slot);
@@ -152,10 +146,9 @@ std::unique_ptr<DeviceExposure> DeviceTracer::prepare(FocalPosition position, st
 std::unique_ptr<Tracer> make_device_tracer(const optics::Instrument& described, const specimen::Specimen& specimen,
                                            const TraceOptions& options) {
     std::vector<std::unique_ptr<DeviceExposures>> tracers;
+    const auto opened = options.opened.valid() ? options.opened : vulkan::begin_to_open({options.device});
     for (auto& light : one_by_one(as_traced(described, options), options)) {
-        if (!tracers.empty()) {
-            light.options.opened = tracers.front()->device();
-        }
+        light.options.opened = opened;
         if (options.estimator == Estimator::backward) {
             tracers.push_back(make_backward_tracer(light.instrument, specimen, light.options));
         } else {

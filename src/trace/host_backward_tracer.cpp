@@ -64,7 +64,7 @@ class HostBackwardTracer final : public Tracer {
     }
 
     TracerIdentity identity() const override { return host_identity(turned_, LightSorting::of(filter_)); }
-    std::vector<const optics::PupilFilter*> pupil_filters() const override { return filters_of(filter_); }
+    std::vector<optics::PupilFilter> pupil_filters() const override { return filters_of(filter_); }
 
   private:
     std::uint64_t sum_of_pixel(const HostScene& scene, const Exposure& exposure, std::uint32_t pixel,

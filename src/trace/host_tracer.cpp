@@ -112,7 +112,7 @@ class HostTracer final : public Tracer {
     }
 
     TracerIdentity identity() const override { return host_identity(instrument_, LightSorting::of(filter_)); }
-    std::vector<const optics::PupilFilter*> pupil_filters() const override { return filters_of(filter_); }
+    std::vector<optics::PupilFilter> pupil_filters() const override { return filters_of(filter_); }
 
   private:
     void trace_path(const HostScene& scene, const Exposure& exposure, std::uint64_t index,

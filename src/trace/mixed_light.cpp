@@ -34,8 +34,8 @@ std::string description_of(const std::vector<std::unique_ptr<AnyTracer>>& tracer
 }
 
 template <class AnyTracer>
-std::vector<const optics::PupilFilter*> all_filters_of(const std::vector<std::unique_ptr<AnyTracer>>& tracers) {
-    std::vector<const optics::PupilFilter*> all;
+std::vector<optics::PupilFilter> all_filters_of(const std::vector<std::unique_ptr<AnyTracer>>& tracers) {
+    std::vector<optics::PupilFilter> all;
     for (const auto& tracer : tracers) {
         std::ranges::copy(tracer->pupil_filters(), std::back_inserter(all));
     }
@@ -55,7 +55,7 @@ class HostMixture final : public Tracer {
     }
     std::string description() const override { return description_of(tracers_); }
     TracerIdentity identity() const override { return mixed_identity(identities_of(tracers_)); }
-    std::vector<const optics::PupilFilter*> pupil_filters() const override { return all_filters_of(tracers_); }
+    std::vector<optics::PupilFilter> pupil_filters() const override { return all_filters_of(tracers_); }
 
   private:
     std::vector<std::unique_ptr<Tracer>> tracers_;
@@ -73,7 +73,7 @@ class DeviceMixture final : public DeviceExposures {
     std::string description() const override { return description_of(tracers_); }
     TracerIdentity identity() const override { return mixed_identity(identities_of(tracers_)); }
     std::shared_ptr<const vulkan::Device> device() const override { return tracers_.front()->device(); }
-    std::vector<const optics::PupilFilter*> pupil_filters() const override { return all_filters_of(tracers_); }
+    std::vector<optics::PupilFilter> pupil_filters() const override { return all_filters_of(tracers_); }
     std::uint64_t units() const override { return std::accumulate(units_.begin(), units_.end(), std::uint64_t{0}); }
     std::uint64_t rays_per_unit() const override { return tracers_.front()->rays_per_unit(); }
 

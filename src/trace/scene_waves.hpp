@@ -1,23 +1,29 @@
-// What waves make of the light that a device's scene has sorted.
+// What waves make of the light that a device's kernels sort.
 #pragma once
 
-#include "trace/device_scene.hpp"
+#include "optics/pupil_filter.hpp"
 #include "trace/device_wave_image.hpp"
 #include "trace/exposure_work.hpp"
-#include "trace/wave_image.hpp"
+#include "vulkan/buffer.hpp"
 
 #include <cstddef>
+#include <future>
 #include <optional>
 
 namespace vkfv::trace {
 
-// On the device, or on the host for devices that are the host's cores. The scene, one with a filter, must outlive it.
+// The sorted light in the device's memory; made an image of there, or by the host for devices that are its cores.
 class SceneWaves {
   public:
-    explicit SceneWaves(const DeviceScene& scene);
+    // pixels: the detector's. The device must outlive it. Throws RunError where its memory does not hold the light.
+    SceneWaves(const vulkan::Device& device, optics::PupilFilter filter, ImageSize pixels);
 
-    // Exposures that may be under way: sorted light that the host filters must not be cleared for the next before.
-    std::size_t exposures_at_a_time() const { return on_device_ ? most_exposures : 1; }
+    const optics::PupilFilter& filter() const { return filter_; }
+    const vulkan::Buffer& sorted_light() const { return light_; } // WaveImage::numbers() of 64 bits
+    // Of an image before its first path.
+    void clear(vulkan::Commands& commands) const;
+    // Or else what an exposure has sorted is the host's to filter before the next one clears it.
+    bool on_device() const { return on_device_.has_value(); }
 
     // An exposure's last work. The host finds in bytes_for_host() from to_byte on what light() makes the image of.
     void hand_over(ExposureWork& work, const vulkan::Buffer& for_host, std::size_t to_byte) const;
@@ -26,8 +32,11 @@ class SceneWaves {
     Grid<double> light(const vulkan::Buffer& for_host, std::size_t from_byte) const;
 
   private:
-    const DeviceScene& scene_;
+    optics::PupilFilter filter_;
+    ImageSize pixels_;
+    vulkan::Buffer light_;
     std::optional<DeviceWaveImage> on_device_;
+    std::future<double> noise_; // the filter's, found while the device traces
 };
 
 } // namespace vkfv::trace

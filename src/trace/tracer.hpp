@@ -7,6 +7,7 @@
 #include "specimen/specimen.hpp"
 #include "trace/checkpoint.hpp"
 #include "trace/tracer_identity.hpp"
+#include "vulkan/opened_device.hpp"
 
 #include <cstdint>
 #include <future>
@@ -14,10 +15,6 @@
 #include <optional>
 #include <string>
 #include <vector>
-
-namespace vkfv::vulkan {
-class Device;
-}
 
 namespace vkfv::trace {
 
@@ -32,12 +29,12 @@ struct TraceOptions {
     std::uint32_t seed = 1;
     int max_bounces = 2;
     Traversal traversal = Traversal::automatic;
-    std::uint64_t batch = 0;                      // rays in flight at once; 0: what suits the device
-    std::uint64_t batch_divisor = 1;              // of what `batch` says
-    std::string device;                           // selector: an index or a part of the name
-    std::shared_ptr<const vulkan::Device> opened; // that device, if it is open
-    bool nonsequential = false;                   // light finds its own way, and interfaces split it
-    bool directed_scatter = false; // forward, sequential: every bounce also aims at the pupil, and light has weights
+    std::uint64_t batch = 0;         // rays in flight at once; 0: what suits the device
+    std::uint64_t batch_divisor = 1; // of what `batch` says
+    std::string device;              // selector: an index or a part of the name
+    vulkan::OpenedDevice opened;     // that device, if it is open or being opened
+    bool nonsequential = false;      // light finds its own way, and interfaces split it
+    bool directed_scatter = false;   // forward, sequential: every bounce also aims at the pupil, and light has weights
     std::optional<bool> instrument_in_constants; // of the forward kernels; none: where it pays
     bool illumination_polynomials = true;        // where it is in constants: optics/train_polynomials.hpp
     std::optional<optics::WaveOptions> waves;    // sequential: images as waves make them; none: as rays do
@@ -147,11 +144,11 @@ class Tracer {
     // That it works on, for further work there; none: the host.
     virtual std::shared_ptr<const vulkan::Device> device() const { return nullptr; }
     // What makes its images as waves do, one a light of the instrument; none: they are as rays make them.
-    virtual std::vector<const optics::PupilFilter*> pupil_filters() const { return {}; }
+    virtual std::vector<optics::PupilFilter> pupil_filters() const { return {}; }
 
   protected:
-    static std::vector<const optics::PupilFilter*> filters_of(const std::optional<optics::PupilFilter>& filter) {
-        return filter ? std::vector{&*filter} : std::vector<const optics::PupilFilter*>{};
+    static std::vector<optics::PupilFilter> filters_of(const std::optional<optics::PupilFilter>& filter) {
+        return filter ? std::vector{*filter} : std::vector<optics::PupilFilter>{};
     }
 };
 

@@ -118,7 +118,7 @@ class TracerPool final : public Tracer {
     }
     TracerIdentity identity() const override { return tracers_.front()->identity(); }
     std::shared_ptr<const vulkan::Device> device() const override { return tracers_.front()->device(); }
-    std::vector<const optics::PupilFilter*> pupil_filters() const override { return tracers_.front()->pupil_filters(); }
+    std::vector<optics::PupilFilter> pupil_filters() const override { return tracers_.front()->pupil_filters(); }
 
   private:
     // An exposure, or one of its parts.

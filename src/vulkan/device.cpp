@@ -375,8 +375,8 @@ const vk::raii::PhysicalDevice& Device::physical() const {
 const vk::raii::PipelineCache& Device::pipelines() const {
     return state_->pipelines;
 }
-const vk::raii::Queue& Device::queue() const {
-    return state_->queues.front();
+Device::HeldQueue Device::hold_queue() const {
+    return {std::unique_lock(state_->submitting), *state_->queues.front()};
 }
 void Device::submit(Lane lane, const vk::SubmitInfo& info, vk::Fence done) const {
     const std::scoped_lock lock(state_->submitting);
@@ -412,6 +412,10 @@ std::uint32_t Device::memory_type(std::uint32_t type_bits, vk::MemoryPropertyFla
     }
     throw DeviceError(fmt::format("The device {} has no memory that is {}. Choose another device", state_->report.name,
                                   vk::to_string(properties)));
+}
+
+OpenedDevice begin_to_open(const DeviceOptions& options) {
+    return std::async(std::launch::async, [options] { return std::make_shared<const Device>(options); }).share();
 }
 
 std::vector<DeviceReport> list_devices() {

@@ -1,10 +1,13 @@
 // A Vulkan device fit for the trace, and how it was chosen.
 #pragma once
 
+#include "vulkan/opened_device.hpp"
+
 #include <vulkan/vulkan_raii.hpp>
 
 #include <cstdint>
 #include <memory>
+#include <mutex>
 #include <span>
 #include <string>
 #include <vector>
@@ -70,8 +73,12 @@ class Device {
     enum class Lane { trace, evaluation };
     // From any thread, one at a time. Throws vk::SystemError.
     void submit(Lane lane, const vk::SubmitInfo& info, vk::Fence done) const;
-    // For a library that submits by itself: of Lane::trace, and while nobody else submits.
-    const vk::raii::Queue& queue() const;
+    // Of Lane::trace, for a library that submits by itself: nobody else does while it is held.
+    struct HeldQueue {
+        std::unique_lock<std::mutex> submitting;
+        vk::Queue queue;
+    };
+    HeldQueue hold_queue() const;
     // What the driver has compiled, here and in earlier runs on this device and driver (core/user_cache.hpp); kept on
     // disk when the device closes.
     const vk::raii::PipelineCache& pipelines() const;

@@ -60,7 +60,6 @@ FourierPlanes::FourierPlanes(const Device& device, const Buffer& buffer, int col
     State& state = *state_;
     state.physical = *device.physical();
     state.device = *device.handle();
-    state.queue = *device.queue();
     state.pipelines = *device.pipelines();
     state.pool = vk::raii::CommandPool(device.handle(),
                                        {vk::CommandPoolCreateFlagBits::eResetCommandBuffer, device.queue_family()});
@@ -93,7 +92,11 @@ FourierPlanes::FourierPlanes(const Device& device, const Buffer& buffer, int col
     configuration.loadApplicationFromString = kept.empty() ? 0 : 1;
     configuration.loadApplicationString = kept.data();
     configuration.saveApplicationToString = kept.empty() ? 1 : 0;
-    const VkFFTResult result = initializeVkFFT(&state.application, configuration);
+    const VkFFTResult result = [&] {
+        const auto held = device.hold_queue();
+        state.queue = held.queue;
+        return initializeVkFFT(&state.application, configuration);
+    }();
     if (result != VKFFT_SUCCESS) {
         throw RunError(fmt::format("{}: {} cannot transform {} planes of {} x {} (its error {}). Set diffraction.model "
                                    "= \"none\", or take fewer pixels",

@@ -276,7 +276,7 @@ TEST(Waves, are_told_apart_by_how_their_light_is_sorted) {
                 EXPECT_NE(tracer->identity().toml(), identity);
                 identity = tracer->identity().toml();
                 EXPECT_EQ(identity, trace::expected_identity(instrument, specimen, options).toml());
-                EXPECT_EQ(tracer->pupil_filters().front()->cells().side, cells == 0 ? 8u : 6u);
+                EXPECT_EQ(tracer->pupil_filters().front().cells().side, cells == 0 ? 8u : 6u);
                 EXPECT_NE(identity.find(cells == 0 ? "\npupil_cells = 8\n" : "\npupil_cells = 6\n"), std::string::npos);
             }
         }
