@@ -130,7 +130,9 @@ StackResult merge_stack(const fs::path& folder, const std::vector<fs::path>& sha
         evaluation.add(static_cast<int>(image),
                        scan::read_frame(folder, static_cast<int>(image), scene.positions[image]));
     }
-    return {.evaluation = evaluation.write(store, tracer),
+    EvaluatedStack evaluated = evaluation.finish(store, tracer);
+    write_results(store, configuration, evaluated);
+    return {.evaluation = std::move(evaluated.evaluation),
             .traced = {.kept = static_cast<int>(scene.positions.size()), .complete = true},
             .rays_per_image = trace::launched_rays(configuration.trace, configuration.instrument),
             .folder = folder,

@@ -46,14 +46,16 @@ StackResult trace_and_evaluate(const StackScene& scene, const WorkingDevices& de
     const auto traced = scan::run_stack(
         *tracer, store, progress, [&](int image, Grid<float> values) { evaluation.add(image, std::move(values)); },
         configuration.checkpoint_interval, developer);
-    // It gives its memory back meanwhile, which takes a driver longer than the rest of the end.
-    const auto closed = std::async(std::launch::async, [tracer = std::move(tracer)]() mutable { tracer.reset(); });
     spdlog::info("{} images traced, {} kept from before", traced.traced, traced.kept);
     if (traced.device_span > 0) {
         store.append_timing("device at work", traced.device_seconds);
         store.append_timing("device from first to last image", traced.device_span);
     }
-    return {.evaluation = evaluation.write(store, identity),
+    EvaluatedStack evaluated = evaluation.finish(store, identity);
+    // Meanwhile it gives its memory back, which takes a driver longer than what would be left to do.
+    const auto closed = std::async(std::launch::async, [tracer = std::move(tracer)]() mutable { tracer.reset(); });
+    write_results(store, configuration, evaluated);
+    return {.evaluation = std::move(evaluated.evaluation),
             .traced = traced,
             .rays_per_image = trace::launched_rays(configuration.trace, configuration.instrument),
             .folder = store.folder(),

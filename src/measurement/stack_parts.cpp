@@ -89,7 +89,7 @@ void GrowingEvaluation::add(int image, Grid<float> values) {
     evaluation_.add({std::move(values)}, z, reading_of(scene_.configuration, z, image));
 }
 
-Evaluation GrowingEvaluation::write(scan::ImageStore& store, const trace::TracerIdentity& tracer) {
+EvaluatedStack GrowingEvaluation::finish(scan::ImageStore& store, const trace::TracerIdentity& tracer) {
     const Configuration& configuration = scene_.configuration;
     const auto camera = camera_figures(store);
     if (!any_light_ || (camera && !(camera->light.mean > 0))) {
@@ -126,6 +126,12 @@ Evaluation GrowingEvaluation::write(scan::ImageStore& store, const trace::Tracer
     warn_of_noise(configuration, stack.evaluation);
     if (configuration.stage) {
         stack.origin["stage"] = stage_figures(configuration);
+    }
+    return stack;
+}
+
+void write_results(scan::ImageStore& store, const Configuration& configuration, const EvaluatedStack& stack) {
+    if (configuration.stage) {
         store.results().write(stage_file, stage_table(configuration));
     }
     if (configuration.stack_file) {
@@ -135,7 +141,6 @@ Evaluation GrowingEvaluation::write(scan::ImageStore& store, const trace::Tracer
     enter_stage("results and report");
     write_results(store.results(), stack);
     enter_stage("end");
-    return std::move(stack.evaluation);
 }
 
 } // namespace vkfv::measurement

@@ -33,17 +33,16 @@ struct StackScene {
 // A stack that is evaluated while its images come. What no image is needed for is made beside them.
 class GrowingEvaluation {
   public:
-    // filters: what makes the images as waves do, one a light; none: they are as rays make them. Scene and filters must
-    // outlive it.
+    // filters: what makes the images as waves do, one a light; none: they are as rays make them. The scene must outlive
+    // it.
     GrowingEvaluation(const StackScene& scene, topography::FocusPlanesMaker planes,
                       const std::vector<optics::PupilFilter>& filters);
 
     // In the images' order.
     void add(int image, Grid<float> values);
 
-    // After the last image: heights, their deviations, and the files of all that in the store's folder. Warnings go to
-    // the log.
-    Evaluation write(scan::ImageStore& store, const trace::TracerIdentity& tracer);
+    // After the last image: heights and their deviations. Warnings go to the log.
+    EvaluatedStack finish(scan::ImageStore& store, const trace::TracerIdentity& tracer);
 
   private:
     const StackScene& scene_;
@@ -54,5 +53,8 @@ class GrowingEvaluation {
     std::future<StackSource> source_;
     std::optional<std::future<WaveLimits>> wave_limits_;
 };
+
+// The files of a stack's evaluation in the store's folder.
+void write_results(scan::ImageStore& store, const Configuration& configuration, const EvaluatedStack& stack);
 
 } // namespace vkfv::measurement

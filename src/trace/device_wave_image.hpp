@@ -16,9 +16,9 @@ class DeviceWaveImage {
     DeviceWaveImage(const vulkan::Device& device, const optics::PupilFilter& filter, ImageSize pixels,
                     const vulkan::Buffer& light);
 
-    // Of the light as it is when the commands run; the result goes to bytes() of memory that the host sees.
+    // Of the light as it is when the commands run; the result goes to bytes(pixels) of memory that the host sees.
     void record(vulkan::Commands& commands, const vulkan::Buffer& for_host, std::size_t to_byte) const;
-    std::size_t bytes() const { return result_.bytes(); }
+    static std::size_t bytes(ImageSize pixels) { return pixels.count() * sizeof(float); }
     // Light of the pixels in the units of the sorted light.
     Grid<double> image(const vulkan::Buffer& for_host, std::size_t from_byte) const;
 

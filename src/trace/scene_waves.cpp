@@ -13,10 +13,14 @@ SceneWaves::SceneWaves(const vulkan::Device& device, optics::PupilFilter filter,
       light_(device, WaveImage(filter_, pixels).numbers() * sizeof(std::uint64_t), vulkan::Buffer::Memory::device,
              wave_memory_remedy) {
     if (!vulkan::is_software(device.report())) {
-        on_device_.emplace(device, filter_, pixels, light_);
+        on_device_ = std::async(std::launch::async, [&device, this] {
+                         return std::make_unique<const DeviceWaveImage>(device, filter_, pixels_, light_);
+                     }).share();
     }
     noise_ = std::async(std::launch::async, [its_filter = filter_] { return its_filter.noise(); });
 }
+
+SceneWaves::~SceneWaves() = default; // waits for the threads
 
 void SceneWaves::clear(vulkan::Commands& commands) const {
     commands.fill_zero(light_);
@@ -24,16 +28,17 @@ void SceneWaves::clear(vulkan::Commands& commands) const {
 }
 
 void SceneWaves::hand_over(ExposureWork& work, const vulkan::Buffer& for_host, std::size_t to_byte) const {
-    if (on_device_) {
+    if (on_device()) {
+        const DeviceWaveImage& image = *on_device_.get();
         vulkan::Commands& commands = work.open();
-        on_device_->record(commands, for_host, to_byte);
+        image.record(commands, for_host, to_byte);
         work.submit();
     }
 }
 
 Grid<double> SceneWaves::light(const vulkan::Buffer& for_host, std::size_t from_byte) const {
-    if (on_device_) {
-        return on_device_->image(for_host, from_byte);
+    if (on_device()) {
+        return on_device_.get()->image(for_host, from_byte);
     }
     const WaveImage image(filter_, pixels_);
     return image.apply(light_.read_values<std::uint64_t>(image.numbers()));

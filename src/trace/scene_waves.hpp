@@ -8,26 +8,31 @@
 
 #include <cstddef>
 #include <future>
-#include <optional>
+#include <memory>
 
 namespace vkfv::trace {
 
 // The sorted light in the device's memory; made an image of there, or by the host for devices that are its cores.
 class SceneWaves {
   public:
-    // pixels: the detector's. The device must outlive it. Throws RunError where its memory does not hold the light.
+    // pixels: the detector's. The device must outlive it. Throws RunError where its memory does not hold the light;
+    // that it does not hold the transforms, which a thread makes ready meanwhile, hand_over() throws.
     SceneWaves(const vulkan::Device& device, optics::PupilFilter filter, ImageSize pixels);
+
+    ~SceneWaves();
+    SceneWaves(const SceneWaves&) = delete;
+    SceneWaves& operator=(const SceneWaves&) = delete;
 
     const optics::PupilFilter& filter() const { return filter_; }
     const vulkan::Buffer& sorted_light() const { return light_; } // WaveImage::numbers() of 64 bits
     // Of an image before its first path.
     void clear(vulkan::Commands& commands) const;
     // Or else what an exposure has sorted is the host's to filter before the next one clears it.
-    bool on_device() const { return on_device_.has_value(); }
+    bool on_device() const { return on_device_.valid(); }
 
     // An exposure's last work. The host finds in bytes_for_host() from to_byte on what light() makes the image of.
     void hand_over(ExposureWork& work, const vulkan::Buffer& for_host, std::size_t to_byte) const;
-    std::size_t bytes_for_host() const { return on_device_ ? on_device_->bytes() : 0; }
+    std::size_t bytes_for_host() const { return on_device() ? DeviceWaveImage::bytes(pixels_) : 0; }
     // In the units of the sorted light.
     Grid<double> light(const vulkan::Buffer& for_host, std::size_t from_byte) const;
 
@@ -35,7 +40,7 @@ class SceneWaves {
     optics::PupilFilter filter_;
     ImageSize pixels_;
     vulkan::Buffer light_;
-    std::optional<DeviceWaveImage> on_device_;
+    std::shared_future<std::unique_ptr<const DeviceWaveImage>> on_device_;
     std::future<double> noise_; // the filter's, found while the device traces
 };
 

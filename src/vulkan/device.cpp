@@ -14,6 +14,7 @@
 #include <cctype>
 #include <charconv>
 #include <cstring>
+#include <deque>
 #include <mutex>
 #include <sstream>
 #include <string_view>
@@ -240,8 +241,14 @@ struct Device::State {
     std::shared_ptr<const Loader> drivers = open_drivers();
     vk::raii::PhysicalDevice physical{nullptr};
     vk::raii::Device device{nullptr};
-    std::vector<vk::raii::Queue> queues; // one, or one for each lane
-    std::mutex submitting;
+    struct Queue {
+        vk::raii::Queue queue;
+        std::mutex submitting;
+    };
+    // Of a lane; those that the device offers no queue for share the last.
+    Queue& queue_of(Lane lane) { return queues[std::min(static_cast<std::size_t>(lane), queues.size() - 1)]; }
+
+    std::deque<Queue> queues;
     vk::raii::PipelineCache pipelines{nullptr};
     std::string pipelines_name;     // of this device and driver
     std::size_t pipelines_read = 0; // bytes
@@ -323,7 +330,7 @@ Device::Device(const DeviceOptions& options) : state_(std::make_unique<State>())
         chain.unlink<vk::PhysicalDeviceAccelerationStructureFeaturesKHR>();
         chain.unlink<vk::PhysicalDeviceRayQueryFeaturesKHR>();
     }
-    const std::array<float, 2> priorities = {0.5F, 1.0F}; // evaluation, far shorter, goes first
+    const std::array<float, 3> priorities = {0.5F, 1.0F, 0.5F}; // evaluation, far shorter, goes first
     const std::uint32_t queues =
         std::min<std::uint32_t>(static_cast<std::uint32_t>(priorities.size()),
                                 state.physical.getQueueFamilyProperties()[state.queue_family].queueCount);
@@ -342,7 +349,7 @@ Device::Device(const DeviceOptions& options) : state_(std::make_unique<State>())
                                       state.report.name, error.what()));
     }
     for (std::uint32_t queue = 0; queue < queues; ++queue) {
-        state.queues.emplace_back(state.device, state.queue_family, queue);
+        state.queues.emplace_back(vk::raii::Queue(state.device, state.queue_family, queue));
     }
     state.pipelines_name = pipelines_name(state.physical);
     const std::vector<std::byte> pipelines = read_cached(state.pipelines_name);
@@ -376,12 +383,13 @@ const vk::raii::PipelineCache& Device::pipelines() const {
     return state_->pipelines;
 }
 Device::HeldQueue Device::hold_queue() const {
-    return {std::unique_lock(state_->submitting), *state_->queues.front()};
+    auto& held = state_->queue_of(Lane::library);
+    return {std::unique_lock(held.submitting), *held.queue};
 }
 void Device::submit(Lane lane, const vk::SubmitInfo& info, vk::Fence done) const {
-    const std::scoped_lock lock(state_->submitting);
-    const auto queue = std::min<std::size_t>(static_cast<std::size_t>(lane), state_->queues.size() - 1);
-    state_->queues[queue].submit(info, done);
+    auto& own = state_->queue_of(lane);
+    const std::scoped_lock lock(own.submitting);
+    own.queue.submit(info, done);
 }
 std::uint32_t Device::queue_family() const {
     return state_->queue_family;
