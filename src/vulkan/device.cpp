@@ -330,7 +330,7 @@ Device::Device(const DeviceOptions& options) : state_(std::make_unique<State>())
         chain.unlink<vk::PhysicalDeviceAccelerationStructureFeaturesKHR>();
         chain.unlink<vk::PhysicalDeviceRayQueryFeaturesKHR>();
     }
-    const std::array<float, 3> priorities = {0.5F, 1.0F, 0.5F}; // evaluation, far shorter, goes first
+    const std::array<float, 2> priorities = {0.5F, 1.0F}; // evaluation, far shorter, goes first
     const std::uint32_t queues =
         std::min<std::uint32_t>(static_cast<std::uint32_t>(priorities.size()),
                                 state.physical.getQueueFamilyProperties()[state.queue_family].queueCount);
@@ -383,7 +383,7 @@ const vk::raii::PipelineCache& Device::pipelines() const {
     return state_->pipelines;
 }
 Device::HeldQueue Device::hold_queue() const {
-    auto& held = state_->queue_of(Lane::library);
+    auto& held = state_->queue_of(Lane::evaluation);
     return {std::unique_lock(held.submitting), *held.queue};
 }
 void Device::submit(Lane lane, const vk::SubmitInfo& info, vk::Fence done) const {

@@ -70,10 +70,10 @@ class Device {
     const vk::raii::PhysicalDevice& physical() const;
     // What is submitted to one lane works in the order of submission; lanes work beside each other where the device
     // offers several queues.
-    enum class Lane { trace, evaluation, library };
+    enum class Lane { trace, evaluation };
     // From any thread, one at a time. Throws vk::SystemError.
     void submit(Lane lane, const vk::SubmitInfo& info, vk::Fence done) const;
-    // Of Lane::library, for one that submits by itself: nobody else does while it is held.
+    // Of Lane::evaluation, for a library that submits by itself: nobody else does there while it is held.
     struct HeldQueue {
         std::unique_lock<std::mutex> submitting;
         vk::Queue queue;
