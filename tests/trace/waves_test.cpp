@@ -364,7 +364,7 @@ TEST(Waves, are_the_same_on_the_device_and_on_the_host) {
         vulkan::Buffer buffer(device, light.size() * sizeof(light.front()));
         buffer.write_values(std::span<const std::uint64_t>(light));
         const trace::DeviceWaveImage on_device(device, filter, pixels, buffer);
-        const vulkan::Buffer for_host(device, on_device.bytes(), vulkan::Buffer::Memory::host);
+        const vulkan::Buffer for_host(device, trace::DeviceWaveImage::bytes(pixels), vulkan::Buffer::Memory::host);
         vulkan::Commands commands(device);
         on_device.record(commands, for_host, 0);
         commands.submit_and_wait();
