@@ -75,7 +75,7 @@ optics::Instrument assemble_instrument(const Configuration& configuration, const
     const auto record = specimen::record_of_geometry(specimen);
     description.greatest_defocus = 0;
     const auto stage = stage_motion(configuration);
-    const double astray = stage ? stage->farthest() : 0;
+    const double astray = stage ? stage->farthest(focal_heights) : 0;
     for (const double focal_height : focal_heights) {
         for (const double height : {record.top, record.bottom}) {
             description.greatest_defocus =
@@ -101,10 +101,25 @@ optics::Instrument assemble_instrument(const Configuration& configuration, const
     return instrument;
 }
 
+std::uint32_t image_index(const Configuration& configuration, double focal_height) {
+    if (!configuration.scan) {
+        return 0;
+    }
+    const auto positions = configuration.scan->positions();
+    for (std::size_t i = 0; i < positions.size(); ++i) {
+        if (std::abs(positions[i] - focal_height) < 1e-6 * configuration.scan->z_step) {
+            return static_cast<std::uint32_t>(i);
+        }
+    }
+    return static_cast<std::uint32_t>(positions.size());
+}
+
 optics::Instrument instrument_for(const Configuration& configuration, const specimen::Specimen& specimen,
                                   double focal_height) {
     auto heights = configuration.scan ? configuration.scan->positions() : std::vector<double>();
-    heights.push_back(focal_height);
+    if (image_index(configuration, focal_height) == heights.size()) {
+        heights.push_back(focal_height);
+    }
     return assemble_instrument(configuration, specimen, heights);
 }
 

@@ -10,6 +10,7 @@
 #include "trace/tracer.hpp"
 #include "trace/tracer_identity.hpp"
 
+#include <cstdint>
 #include <memory>
 #include <optional>
 #include <span>
@@ -37,6 +38,10 @@ specimen::Specimen make_specimen(const Configuration& configuration);
 // the instrument, the program, and the device (another device rounds differently). TOML lines.
 std::string image_identity(const Configuration& configuration, const std::string& surface_digest,
                            const trace::TracerIdentity& tracer);
+
+// What keys the random numbers of an exposure: at a position of the scan, that image of the stack is what comes out,
+// bit by bit; anywhere else the index counts on after the scan's.
+std::uint32_t image_index(const Configuration& configuration, double focal_height);
 
 // The instrument of the configuration's stack, also where the focal height is none of its scan's.
 optics::Instrument instrument_for(const Configuration& configuration, const specimen::Specimen& specimen,

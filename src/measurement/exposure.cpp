@@ -16,28 +16,12 @@
 #include <spdlog/spdlog.h>
 
 #include <algorithm>
-#include <cmath>
 #include <memory>
 #include <utility>
 
 namespace vkfv::measurement {
 
 namespace {
-
-// The random numbers of an exposure are keyed by its index: at a position of the scan, that image of the
-// stack is what comes out, bit by bit; anywhere else the index counts on after the scan's.
-std::uint32_t image_index(const Configuration& configuration, double focal_height) {
-    if (!configuration.scan) {
-        return 0;
-    }
-    const auto positions = configuration.scan->positions();
-    for (std::size_t i = 0; i < positions.size(); ++i) {
-        if (std::abs(positions[i] - focal_height) < 1e-6 * configuration.scan->z_step) {
-            return static_cast<std::uint32_t>(i);
-        }
-    }
-    return static_cast<std::uint32_t>(positions.size());
-}
 
 Grid<float> in_float(const Grid<double>& image) {
     Grid<float> result(image.columns, image.rows);

@@ -79,6 +79,11 @@ class PupilLattice {
             }
             return points;
         });
+        std::size_t count = 0;
+        for (const auto& points : rows) {
+            count += points.size();
+        }
+        points_.reserve(count); // growing would touch several times the memory, which takes longer than to fill it
         for (const auto& points : rows) {
             points_.insert(points_.end(), points.begin(), points.end());
         }

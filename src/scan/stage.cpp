@@ -143,11 +143,12 @@ trace::FocalPosition StageMotion::mean(double nominal, std::uint32_t image) cons
     return sum;
 }
 
-double StageMotion::farthest() const {
+double StageMotion::farthest(std::span<const double> nominal) const {
     double most = 0;
-    for (std::uint32_t image = 0; image < positions_.size(); ++image) {
+    for (std::size_t k = 0; k < nominal.size(); ++k) {
+        const auto image = static_cast<std::uint32_t>(std::min(k, positions_.size()));
         for (int moment = 0; moment < moments(); ++moment) {
-            most = std::max(most, std::abs(at(positions_[image], image, moment).height - positions_[image]));
+            most = std::max(most, std::abs(at(nominal[k], image, moment).height - nominal[k]));
         }
     }
     return most;

@@ -73,9 +73,9 @@ class StageMotion {
     trace::FocalPosition mean(double nominal, std::uint32_t image) const;
     // What the scale reads, mm.
     double reading(double nominal, std::uint32_t image) const;
-    // How far from its nominal position the focal plane is at most, mm; an image beyond the scan's may be a little
-    // more.
-    double farthest() const;
+    // How far from its nominal position the focal plane is at most, mm, in images at these nominal positions: the
+    // scan's, and those of further ones.
+    double farthest(std::span<const double> nominal) const;
     // The lamp's power over its mean, of an image.
     double light(std::uint32_t image) const;
 

@@ -155,7 +155,7 @@ TEST(DetectorAim, IsWhatTheSourceEmitsInto) {
     const glm::dvec2 sides = instrument.single_scatter_aim.value();
     EXPECT_EQ(constants.emission_sine, glm::length(sides));
     EXPECT_NEAR(instrument.aimed_share(), 4 * sides.x * sides.y / M_PI, 1e-15);
-    glm::dvec2 sum(0), squares(0);
+    std::vector<glm::dvec2> emitted; // in half sides of the rectangle
     constexpr int rays = 100000;
     for (std::uint32_t k = 0; k < rays; ++k) {
         const auto ray = physics::f64::emit(instrument.scene(), constants, physics::f64::draw(7, 0, {k, 0}, 0u)).ray;
@@ -164,13 +164,26 @@ TEST(DetectorAim, IsWhatTheSourceEmitsInto) {
         const glm::dvec2 beside =
             (glm::dvec2(ray.direction) - constants.emission_shift * glm::dvec2(ray.position)) / sides;
         EXPECT_LE(std::max(std::abs(beside.x), std::abs(beside.y)), 1 + 1e-12);
-        sum += beside;
-        squares += beside * beside;
+        emitted.push_back(beside);
     }
-    for (const int axis : {0, 1}) {
-        EXPECT_LT(std::abs(sum[axis]) / std::sqrt(rays / 3.0), 4);
-        EXPECT_LT(std::abs(squares[axis] - rays / 3.0) / std::sqrt(rays * 4 / 45.0), 4);
-    }
+    // Standard deviations that mean and variance are off, along either side, where the rectangle had other sides.
+    const auto off = [&](glm::dvec2 narrower, glm::dvec2 aside) {
+        glm::dvec2 sum(0), squares(0);
+        for (const glm::dvec2& each : emitted) {
+            const glm::dvec2 place = each / narrower - aside;
+            sum += place;
+            squares += place * place;
+        }
+        const glm::dvec2 mean = glm::abs(sum) / std::sqrt(rays / 3.0);
+        const glm::dvec2 variance = glm::abs(squares - rays / 3.0) / std::sqrt(rays * 4 / 45.0);
+        return std::max({mean.x, mean.y, variance.x, variance.y});
+    };
+    EXPECT_LT(off({1, 1}, {0, 0}), 4);
+    // Wrong twins: a side two hundredths shorter, a middle two hundredths beside its own.
+    EXPECT_GT(off({0.98, 1}, {0, 0}), 4);
+    EXPECT_GT(off({1, 0.98}, {0, 0}), 4);
+    EXPECT_GT(off({1, 1}, {0.02, 0}), 4);
+    EXPECT_GT(off({1, 1}, {0, 0.02}), 4);
 }
 
 // There the disc stays.

@@ -47,7 +47,7 @@ TEST(Stage, without_errors_is_true) {
     EXPECT_TRUE(stage.still());
     const StageMotion motion(stage, positions);
     EXPECT_EQ(motion.moments(), 1);
-    EXPECT_EQ(motion.farthest(), 0);
+    EXPECT_EQ(motion.farthest(positions), 0);
     EXPECT_EQ(motion.at(positions[3], 3).beside, glm::dvec2(0));
     EXPECT_EQ(motion.reading(positions[3], 3), positions[3]);
     EXPECT_EQ(motion.light(3), 1);
@@ -103,11 +103,26 @@ TEST(Stage, jitter_is_independent_and_does_not_add_up) {
     EXPECT_NEAR(deviation(apart), 0.0001, 5 * 0.0001 / std::sqrt(2 * 4000.0));
 }
 
+TEST(Stage, tells_how_far_astray_images_beyond_the_scan_are_too) {
+    const std::vector<double> scan = {0, 0.001, 0.002};
+    const std::vector<double> with_further = {0, 0.001, 0.002, 0.01};
+    Stage stage;
+    stage.jitter = 0.0003;
+    int farther = 0; // than any of the scan's
+    for (stage.seed = 1; stage.seed <= 40; ++stage.seed) {
+        const StageMotion motion(stage, scan);
+        const double beyond = std::abs(motion.at(with_further[3], 3).height - with_further[3]);
+        EXPECT_EQ(motion.farthest(with_further), std::max(motion.farthest(scan), beyond));
+        farther += beyond > motion.farthest(scan);
+    }
+    EXPECT_GT(farther, 0);
+}
+
 TEST(Stage, lags_on_the_way_down) {
     const auto positions = steps(11, 0.001);
     Stage stage;
     stage.backlash = 0.0025;
-    EXPECT_EQ(StageMotion(stage, positions).farthest(), 0); // upwards there is none
+    EXPECT_EQ(StageMotion(stage, positions).farthest(positions), 0); // upwards there is none
     stage.downwards = true;
     const StageMotion motion(stage, positions);
     const std::vector<double> expected = {0.0025, 0.0025, 0.0025, 0.0025, 0.0025, 0.0025,
