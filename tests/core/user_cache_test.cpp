@@ -13,8 +13,6 @@ class UserCache : public test::OwnCache {
     const std::vector<std::byte> data_ = std::vector<std::byte>(1000, std::byte{42});
 };
 
-} // namespace
-
 TEST_F(UserCache, gives_back_what_was_kept) {
     EXPECT_TRUE(read_cached("some").empty());
     write_cached("some", data_);
@@ -66,4 +64,5 @@ TEST_F(UserCache, keeps_those_that_were_written_last) {
     }
 }
 
+} // namespace
 } // namespace vkfv
