@@ -1,10 +1,10 @@
 // Work that gives way to the rest of the program.
 #pragma once
 
-#include <sys/resource.h>
-
 #include <future>
 #include <utility>
+
+#include <unistd.h>
 
 namespace vkfv {
 
@@ -12,8 +12,8 @@ namespace vkfv {
 template <class Task>
 auto in_background(Task task) {
     return std::async(std::launch::async, [task = std::move(task)]() mutable {
-        constexpr int niceness = 10;
-        static_cast<void>(setpriority(PRIO_PROCESS, 0, niceness)); // Linux: of the calling thread
+        constexpr int nicer = 10;
+        static_cast<void>(nice(nicer)); // Linux: the calling thread alone
         return task();
     });
 }

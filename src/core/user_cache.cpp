@@ -9,6 +9,7 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <atomic>
 #include <cstddef>
 #include <cstdlib>
 #include <fstream>
@@ -84,7 +85,8 @@ void write_cached(std::string_view name, std::span<const std::byte> data) {
     // Not synced: what a power cut leaves of it has another checksum.
     std::error_code failed;
     std::filesystem::create_directories(*folder, failed);
-    const auto aside = *folder / fmt::format("{}.part-{}", name, ::getpid());
+    static std::atomic<unsigned> writes = 0; // two threads may write one file
+    const auto aside = *folder / fmt::format("{}.part-{}-{}", name, ::getpid(), writes++);
     if (std::ofstream file(aside, std::ios::binary); !file.write(bytes.data(), std::ssize(bytes)) || !file.flush()) {
         std::filesystem::remove(aside, failed);
         return;

@@ -14,7 +14,6 @@
 #include <spdlog/spdlog.h>
 
 #include <algorithm>
-#include <iterator>
 
 namespace vkfv::measurement {
 
@@ -131,7 +130,7 @@ StackResult merge_stack(const fs::path& folder, const std::vector<fs::path>& sha
                        scan::read_frame(folder, static_cast<int>(image), scene.positions[image]));
     }
     EvaluatedStack evaluated = evaluation.finish(store, tracer);
-    write_results(store, configuration, evaluated);
+    write_stack_results(store, configuration, evaluated);
     return {.evaluation = std::move(evaluated.evaluation),
             .traced = {.kept = static_cast<int>(scene.positions.size()), .complete = true},
             .rays_per_image = trace::launched_rays(configuration.trace, configuration.instrument),

@@ -130,7 +130,7 @@ EvaluatedStack GrowingEvaluation::finish(scan::ImageStore& store, const trace::T
     return stack;
 }
 
-void write_results(scan::ImageStore& store, const Configuration& configuration, const EvaluatedStack& stack) {
+void write_stack_results(scan::ImageStore& store, const Configuration& configuration, const EvaluatedStack& stack) {
     if (configuration.stage) {
         store.results().write(stage_file, stage_table(configuration));
     }

@@ -55,6 +55,6 @@ class GrowingEvaluation {
 };
 
 // The files of a stack's evaluation in the store's folder.
-void write_results(scan::ImageStore& store, const Configuration& configuration, const EvaluatedStack& stack);
+void write_stack_results(scan::ImageStore& store, const Configuration& configuration, const EvaluatedStack& stack);
 
 } // namespace vkfv::measurement

@@ -6,6 +6,7 @@
 #include "trace/tracer.hpp"
 
 #include <cstdint>
+#include <span>
 #include <vector>
 
 namespace vkfv::scan {
@@ -73,8 +74,8 @@ class StageMotion {
     trace::FocalPosition mean(double nominal, std::uint32_t image) const;
     // What the scale reads, mm.
     double reading(double nominal, std::uint32_t image) const;
-    // How far from its nominal position the focal plane is at most, mm, in images at these nominal positions: the
-    // scan's, and those of further ones.
+    // How far from its nominal position the focal plane is at most, mm. nominal: the scan's positions in their order,
+    // then those of images beyond it, which all have the number after the scan's last.
     double farthest(std::span<const double> nominal) const;
     // The lamp's power over its mean, of an image.
     double light(std::uint32_t image) const;

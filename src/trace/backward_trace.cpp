@@ -183,6 +183,7 @@ class BackwardTracer::Exposure final : public SingleExposure {
         const std::uint64_t begin = randomisation * trace.chunks();
         const std::uint64_t most = std::max<std::uint64_t>(1, tracer_.pace_.paths() / trace.points_per_chunk());
         end = std::min({end, begin + trace.chunks(), first + most});
+        tracer_.scene_.require_waves();
         vulkan::Commands& commands = work.open();
         if (std::exchange(clears_light_, false)) {
             tracer_.scene_.clear_sorted_light(commands);

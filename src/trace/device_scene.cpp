@@ -111,10 +111,13 @@ std::vector<vulkan::Box> boxes_of(const optics::Room& room) {
     return boxes;
 }
 
+vulkan::OpenedDevice opened_by(const TraceOptions& options) {
+    return options.opened.valid() ? options.opened : vulkan::begin_to_open({options.device});
+}
+
 DeviceScene make_device_scene(const optics::Instrument& instrument, const specimen::Specimen& specimen,
                               const TraceOptions& options, const optics::Instrument* seen) {
-    const vulkan::OpenedDevice opened =
-        options.opened.valid() ? options.opened : vulkan::begin_to_open({options.device});
+    const vulkan::OpenedDevice opened = opened_by(options);
     std::future<std::unique_ptr<SceneWaves>> made_waves;
     if (seen != nullptr && options.waves && !options.nonsequential) {
         // Beside device and specimen.
@@ -222,6 +225,12 @@ std::vector<const vulkan::Buffer*> DeviceScene::light_buffers() const {
 
 std::optional<optics::PupilFilter> DeviceScene::filter() const {
     return waves ? std::optional(waves->filter()) : std::nullopt;
+}
+
+void DeviceScene::require_waves() const {
+    if (waves) {
+        waves->require();
+    }
 }
 
 void DeviceScene::clear_sorted_light(vulkan::Commands& commands) const {

@@ -48,6 +48,8 @@ struct DeviceScene {
     // For what is recorded from now on. slot: of those under way at a time, below most_exposures; what was recorded for
     // the slot before must have been done.
     void set_exposure(FocalPosition position, std::uint32_t image, std::size_t slot = 0);
+    // Before more is traced: throws where waves cannot be made of it, as far as is known.
+    void require_waves() const;
     // Of an image before its first path: the light that is sorted for waves.
     void clear_sorted_light(vulkan::Commands& commands) const;
     // Before what an exposure submits first: the order of its paths, for the device. Forward alone.
@@ -100,6 +102,9 @@ struct DeviceScene {
     std::optional<EmissionBuffers> emission; // only for forward ones that are sequential
     std::unique_ptr<SceneWaves> waves;       // only for images as waves make them
 };
+
+// The options' device, which opens from now on if it did not before.
+vulkan::OpenedDevice opened_by(const TraceOptions& options);
 
 // Throws DeviceError (no usable device, too little memory) or InputError (a traversal that specimen or device does not
 // admit, too many surfaces).

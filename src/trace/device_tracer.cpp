@@ -86,6 +86,7 @@ class DeviceTracer::Exposure final : public SingleExposure {
 
     std::uint64_t submit(std::uint64_t first, std::uint64_t end) override {
         const PathTrace& trace = *tracer_.trace_;
+        tracer_.scene_.require_waves();
         vulkan::Commands& commands = work.open();
         if (std::exchange(begins_, false)) {
             tracer_.scene_.give_emission_order(commands);
@@ -146,7 +147,7 @@ std::unique_ptr<DeviceExposure> DeviceTracer::prepare(FocalPosition position, st
 std::unique_ptr<Tracer> make_device_tracer(const optics::Instrument& described, const specimen::Specimen& specimen,
                                            const TraceOptions& options) {
     std::vector<std::unique_ptr<DeviceExposures>> tracers;
-    const auto opened = options.opened.valid() ? options.opened : vulkan::begin_to_open({options.device});
+    const auto opened = opened_by(options);
     for (auto& light : one_by_one(as_traced(described, options), options)) {
         light.options.opened = opened;
         if (options.estimator == Estimator::backward) {

@@ -3,6 +3,7 @@
 #include "trace/wave_image.hpp"
 #include "trace/wave_memory.hpp"
 
+#include <chrono>
 #include <cstdint>
 #include <utility>
 
@@ -25,6 +26,12 @@ SceneWaves::~SceneWaves() = default; // waits for the threads
 void SceneWaves::clear(vulkan::Commands& commands) const {
     commands.fill_zero(light_);
     commands.barrier();
+}
+
+void SceneWaves::require() const {
+    if (on_device() && on_device_.wait_for(std::chrono::seconds(0)) == std::future_status::ready) {
+        on_device_.get();
+    }
 }
 
 void SceneWaves::hand_over(ExposureWork& work, const vulkan::Buffer& for_host, std::size_t to_byte) const {

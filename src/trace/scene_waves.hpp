@@ -15,8 +15,8 @@ namespace vkfv::trace {
 // The sorted light in the device's memory; made an image of there, or by the host for devices that are its cores.
 class SceneWaves {
   public:
-    // pixels: the detector's. The device must outlive it. Throws RunError where its memory does not hold the light;
-    // that it does not hold the transforms, which a thread makes ready meanwhile, hand_over() throws.
+    // pixels: the detector's. The device must outlive it. Throws RunError where its memory does not hold the light. A
+    // thread makes the transforms ready meanwhile; what fails there, require() and hand_over() throw.
     SceneWaves(const vulkan::Device& device, optics::PupilFilter filter, ImageSize pixels);
 
     ~SceneWaves();
@@ -27,9 +27,11 @@ class SceneWaves {
     const vulkan::Buffer& sorted_light() const { return light_; } // WaveImage::numbers() of 64 bits
     // Of an image before its first path.
     void clear(vulkan::Commands& commands) const;
-    // Or else what an exposure has sorted is the host's to filter before the next one clears it.
+    // If not, the host filters what an exposure has sorted, and the next one must wait for that.
     bool on_device() const { return on_device_.valid(); }
 
+    // Throws RunError or DeviceError where it is known by now that the device has no transforms.
+    void require() const;
     // An exposure's last work. The host finds in bytes_for_host() from to_byte on what light() makes the image of.
     void hand_over(ExposureWork& work, const vulkan::Buffer& for_host, std::size_t to_byte) const;
     std::size_t bytes_for_host() const { return on_device() ? DeviceWaveImage::bytes(pixels_) : 0; }
@@ -41,7 +43,7 @@ class SceneWaves {
     ImageSize pixels_;
     vulkan::Buffer light_;
     std::shared_future<std::unique_ptr<const DeviceWaveImage>> on_device_;
-    std::future<double> noise_; // the filter's, found while the device traces
+    std::future<double> noise_; // the filter's: found while the device traces, kept by what its copies share
 };
 
 } // namespace vkfv::trace

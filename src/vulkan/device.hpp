@@ -51,10 +51,9 @@ std::size_t choose_device(std::span<const DeviceReport> reports, const DeviceOpt
 // differ.
 std::vector<std::size_t> choose_devices(std::span<const DeviceReport> reports, const std::string& selector);
 
-// One logical device with one compute queue; those that live at a time share one instance. Move-only; construct valid,
-// then const.
-// Buffers, kernels and commands point to it: it must outlive them, unmoved. With VKFV_VALIDATION the Khronos
-// layer checks every call, and a message of it aborts the program.
+// One logical device with a compute queue, or two; those that live at a time share one instance. Move-only; construct
+// valid, then const. Buffers, kernels and commands point to it: it must outlive them, unmoved. With VKFV_VALIDATION the
+// Khronos layer checks every call, and a message of it aborts the program.
 class Device {
   public:
     // Prefers discrete over integrated over CPU; the reason stands in choice().
@@ -73,9 +72,10 @@ class Device {
     enum class Lane { trace, evaluation };
     // From any thread, one at a time. Throws vk::SystemError.
     void submit(Lane lane, const vk::SubmitInfo& info, vk::Fence done) const;
-    // Of Lane::evaluation, for a library that submits by itself: nobody else does there while it is held.
+    // Of Lane::evaluation, for a library that submits by itself: nobody else submits to that queue while it is held. On
+    // devices with one queue it is the trace's too.
     struct HeldQueue {
-        std::unique_lock<std::mutex> submitting;
+        std::unique_lock<std::mutex> lock;
         vk::Queue queue;
     };
     HeldQueue hold_queue() const;

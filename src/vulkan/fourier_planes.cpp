@@ -87,16 +87,15 @@ FourierPlanes::FourierPlanes(const Device& device, const Buffer& buffer, int col
     configuration.makeForwardPlanOnly = direction == Direction::forward ? 1 : 0;
     configuration.makeInversePlanOnly = direction == Direction::inverse ? 1 : 0;
 
+    // Held to the end: who needs the same kernels finds them kept.
+    const auto held = device.hold_queue();
+    state.queue = held.queue;
     const std::string name = kept_name(device, columns, rows, planes, direction);
     std::vector<std::byte> kept = read_cached(name);
     configuration.loadApplicationFromString = kept.empty() ? 0 : 1;
     configuration.loadApplicationString = kept.data();
     configuration.saveApplicationToString = kept.empty() ? 1 : 0;
-    const VkFFTResult result = [&] {
-        const auto held = device.hold_queue();
-        state.queue = held.queue;
-        return initializeVkFFT(&state.application, configuration);
-    }();
+    const VkFFTResult result = initializeVkFFT(&state.application, configuration);
     if (result != VKFFT_SUCCESS) {
         throw RunError(fmt::format("{}: {} cannot transform {} planes of {} x {} (its error {}). Set diffraction.model "
                                    "= \"none\", or take fewer pixels",

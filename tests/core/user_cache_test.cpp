@@ -2,6 +2,7 @@
 #include "support/own_cache.hpp"
 
 #include <cstddef>
+#include <iterator>
 #include <span>
 #include <vector>
 
