@@ -18,6 +18,7 @@
 #include <mutex>
 #include <sstream>
 #include <string_view>
+#include <utility>
 
 namespace vkfv::vulkan {
 
@@ -242,6 +243,7 @@ struct Device::State {
     vk::raii::PhysicalDevice physical{nullptr};
     vk::raii::Device device{nullptr};
     struct Queue {
+        explicit Queue(vk::raii::Queue of_device) : queue(std::move(of_device)) {}
         vk::raii::Queue queue;
         std::mutex submitting;
     };

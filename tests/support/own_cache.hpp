@@ -15,11 +15,11 @@ namespace vkfv::test {
 
 class OwnCache : public ::testing::Test {
   protected:
-    OwnCache() {
+    void SetUp() override {
         std::filesystem::create_directories(folder_);
         setenv("XDG_CACHE_HOME", folder_.c_str(), 1);
     }
-    ~OwnCache() override {
+    void TearDown() override {
         std::filesystem::remove_all(folder_);
         unsetenv("XDG_CACHE_HOME");
     }
