@@ -47,8 +47,7 @@ void PupilFilter::set_parts(const Instrument& instrument, int parts) {
     parted_ = true;
 }
 
-PupilFilter::PupilFilter(CellTransfer transfer)
-    : cells_(transfer.cells()), made_(std::make_shared<Made>(std::move(transfer))) {}
+PupilFilter::PupilFilter(CellTransfer transfer) : cells_(transfer.cells()), made_(new Made{std::move(transfer)}) {}
 
 PupilFilter PupilFilter::unparted(const Instrument& instrument, std::vector<Wavefront> wavefronts, int cells) {
     PupilFilter filter(CellTransfer(instrument, std::move(wavefronts), cells));

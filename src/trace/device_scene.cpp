@@ -83,7 +83,7 @@ std::unique_ptr<SceneWaves> make_waves(const optics::Instrument& seen, optics::W
                                        const vulkan::OpenedDevice& opened) {
     optics::PupilFilter filter(seen, options);
     filter.table();
-    const auto device = opened.get();
+    const auto& device = opened.get();
     options.cells = static_cast<int>(filter.cells().side);
     filter.set_parts(seen, waves_on_device(options, seen, device->report()).parts);
     return std::make_unique<SceneWaves>(*device, std::move(filter), seen.detector_pixels());
