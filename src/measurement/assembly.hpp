@@ -40,7 +40,7 @@ std::string image_identity(const Configuration& configuration, const std::string
                            const trace::TracerIdentity& tracer);
 
 // What keys the random numbers of an exposure: at a position of the scan, that image of the stack is what comes out,
-// bit by bit; anywhere else the index counts on after the scan's.
+// bit by bit; anywhere else the index counts on after the scan's. focal_height: mm.
 std::uint32_t image_index(const Configuration& configuration, double focal_height);
 
 // The instrument of the configuration's stack, also where the focal height is none of its scan's.

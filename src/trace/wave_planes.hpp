@@ -16,6 +16,7 @@ class WavePlanes {
     // cells: across the pupil; image: in parts of pixels.
     WavePlanes(int cells, ImageSize image) : plane_(image.count() * complex_bytes) {
         groups_ = static_cast<std::uint32_t>(cells / 2) * static_cast<std::uint32_t>(cells / 2);
+        // More at once is no quicker on an H100, and a driver takes a tenth of a second to give gigabytes back.
         constexpr std::uint64_t most_bytes = std::uint64_t{1} << 28;
         const std::uint64_t most = std::max<std::uint64_t>(1, most_bytes / (a_group * plane_));
         at_once_ = static_cast<std::uint32_t>(std::min<std::uint64_t>(most, groups_));
