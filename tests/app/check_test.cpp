@@ -272,6 +272,8 @@ TEST_F(KeptCheck, IsMadeAnewWhereAFileHasChanged) {
     EXPECT_EQ(kept().size(), 1u);
     (void)check(with_own);
     EXPECT_EQ(kept().size(), 2u); // another lens
+    write_file(own, replaced(read_file(objective), "title", "# ...\ntitle"));
+    EXPECT_EQ(check(with_own).standard_output, second.standard_output);
 }
 
 TEST_F(KeptCheck, IsMadeAnewWhereWhatWasKeptIsDamaged) {
