@@ -137,9 +137,10 @@ struct CellWalk {
     real to;
 };
 
-// Along the facets of at most CELLS_AHEAD cells.
+// Along the facets of at most CELLS_AHEAD cells, of a walk that is under way.
 void walk_cells(inout CellWalk walk, GridRay ray, real stop) {
-    for (int k = 0; k < CELLS_AHEAD && walk.under_way; ++k) {
+    int cells = 0;
+    do {
         CellRay over = ray_over_cell(ray, walk.cell);
         vec4 corners = over.corners;
         real2 local = over.place;
@@ -170,7 +171,7 @@ void walk_cells(inout CellWalk walk, GridRay ray, real stop) {
         bool inside = uint(walk.cell.x) < uint(ray.cells.x) && uint(walk.cell.y) < uint(ray.cells.y);
         walk.under_way = !walk.found && inside && leave < stop;
         walk.t = leave;
-    }
+    } while (++cells < CELLS_AHEAD && walk.under_way);
 }
 
 // On the facet that the walk has found.
@@ -229,16 +230,17 @@ Hit specimen_hit(real3 origin, real3 direction) {
     walk.to = walk.t;
     Hit hit = no_hit();
     // Each round walks at least one cell.
-    for (int rounds = ray.cells.x + ray.cells.y + 8; walk.under_way && rounds > 0; --rounds) {
+    int rounds = ray.cells.x + ray.cells.y + 8;
+    if (walk.under_way) do {
         bool free = walk.side >= real(0.0);
-        while (free) {
+        if (free) do {
             Jump coarse = jump_over(ray, walk.t, ceilings_header.coarse_level, ceilings_header.coarse_columns,
                                     ceilings_header.coarse_first);
             Jump fine = jump_over(ray, coarse.t, ceilings_header.fine_level, ceilings_header.fine_columns, 0);
             walk.t = fine.t;
             walk.side = fine.over ? real(1.0) : walk.side;
             free = fine.open && walk.t < stop;
-        }
+        } while (free);
         walk.under_way = walk.t <= stop;
         if (specimen_kind == SPECIMEN_ANALYTIC && walk.under_way) {
             // A ray from beside may be below: the march over all of it knows from where it comes.
@@ -248,11 +250,11 @@ Hit specimen_hit(real3 origin, real3 direction) {
             walk.under_way = !walk.found && ahead < stop;
             walk.t = ahead;
         }
-        if (specimen_kind == SPECIMEN_FACETS) {
+        if (specimen_kind == SPECIMEN_FACETS && walk.under_way) {
             walk.cell = cell_at(ray, walk.t);
             walk_cells(walk, ray, stop);
         }
-    }
+    } while (walk.under_way && --rounds > 0);
     if (specimen_kind == SPECIMEN_FACETS && walk.found) {
         hit = facet_hit(walk, ray, start, direction);
     }

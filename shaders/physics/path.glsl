@@ -302,8 +302,9 @@ VKFV_SCENE_FUNCTION VKFV_FUNCTION Departure scatter_at_specimen(VKFV_SCENE_PARAM
     real own_choice = real(0.0);
     Hit hit = displaced_hit(VKFV_SCENE exposure, origin, direction);
     status = hit.found == 1u ? PATH_ALIVE : PATH_OFF_SPECIMEN;
-    bool under_way = hit.found == 1u;
-    for (int bounce = 0; bounce < specimen.max_bounces && under_way; ++bounce) {
+    bool under_way = hit.found == 1u && specimen.max_bounces > 0;
+    int bounce = 0;
+    if (under_way) do {
         uint first_block = 1u + uint(bounce) * SCATTER_BLOCKS;
         bool last = bounce + 1 == specimen.max_bounces;
         Incidence incidence = make_incidence(direction, hit.normal);
@@ -344,7 +345,7 @@ VKFV_SCENE_FUNCTION VKFV_FUNCTION Departure scatter_at_specimen(VKFV_SCENE_PARAM
             hit = displaced_hit(VKFV_SCENE exposure, origin, direction);
             under_way = hit.found == 1u;
         }
-    }
+    } while (++bounce < specimen.max_bounces && under_way);
     if (status == PATH_ALIVE && !passes_gate(instrument, specimen.top, origin, direction)) {
         status = PATH_ESCAPED;
     }

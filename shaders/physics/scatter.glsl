@@ -83,7 +83,8 @@ VKFV_FUNCTION Scattered scatter_by_tries(Material material, Incidence incidence,
     result.direction = incidence.mirror;
     // Light from behind the surface is a rounding fault (it slipped between facets): not scattered, but counted.
     uint blocks = dot(incidence.incoming, incidence.normal) < real(0.0) ? most_blocks : 0u;
-    for (uint block = 0u; block < blocks && !result.accepted && !result.absorbed; ++block) {
+    uint block = 0u;
+    if (blocks > 0u) do {
         Draws draws = draw(seed, image, path, first_block + block);
         // Of the material, so that host and device ask alike.
         bool chooses = (scatter_models & SCATTER_CHOICE) != 0u && block == 0u && material.lobe_0.weight < real(1.0);
@@ -98,7 +99,7 @@ VKFV_FUNCTION Scattered scatter_by_tries(Material material, Incidence incidence,
         }
         result.accepted = attempt.accepted;
         result.direction = attempt.direction;
-    }
+    } while (++block < blocks && !result.accepted && !result.absorbed);
     result.lobe = lobe;
     return result;
 }

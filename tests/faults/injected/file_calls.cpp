@@ -77,7 +77,9 @@ bool fails(const char* call, const Path& path, std::atomic<long>& count, bool ne
         return false;
     }
     const bool due = is_due(call, path.text, count);
-    full = full || (due && effect_is("full"));
+    if (due && effect_is("full")) { // else left alone: another thread may fill it just now
+        full = true;
+    }
     if (due || (full && needs_space)) {
         errno = error_number();
         return true;
