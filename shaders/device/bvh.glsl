@@ -2,9 +2,13 @@
 // ray query hands out its candidates. The boxes widen by the walk's margin, so the arithmetic here loses none.
 //
 //     BvhWalk walk = bvh_walk(root, origin, direction, start, margin);
-//     while (bvh_proceed(walk, farthest)) {
-//         ... walk.primitive; what it meets nearer than `farthest` may shorten `farthest`
-//     }
+//     bool met;
+//     do {
+//         met = bvh_proceed(walk, farthest);
+//         if (met) {
+//             ... walk.primitive; what it meets nearer than `farthest` may shorten `farthest`
+//         }
+//     } while (met);
 //
 // bvh_another() gives the further primitives of the same node. One walk at a time: they share the stack.
 
@@ -97,23 +101,25 @@ void bvh_visit(inout BvhWalk walk, uint node, real farthest) {
 // Whether there is another primitive whose box the ray meets at a distance between the start and `farthest`.
 bool bvh_proceed(inout BvhWalk walk, real farthest) {
     bool under_way = true;
-    while (under_way && walk.primitives.y == 0u) {
-        if (walk.nodes.y < 0x01000000u) {
-            under_way = walk.depth > 0;
-            walk.depth -= under_way ? 1 : 0;
-            walk.nodes = under_way ? bvh_stack[walk.depth] : walk.nodes;
-        }
-        if (under_way) {
-            int place = findMSB(walk.nodes.y);
-            uint slot = uint(place - 24) ^ walk.forward;
-            uint node = walk.nodes.x + bitCount(walk.nodes.y & ((1u << slot) - 1u));
-            walk.nodes.y &= ~(1u << place);
-            if (walk.nodes.y >= 0x01000000u) {
-                bvh_stack[walk.depth] = walk.nodes;
-                walk.depth += 1;
+    if (walk.primitives.y == 0u) {
+        do {
+            if (walk.nodes.y < 0x01000000u) {
+                under_way = walk.depth > 0;
+                walk.depth -= under_way ? 1 : 0;
+                walk.nodes = under_way ? bvh_stack[walk.depth] : walk.nodes;
             }
-            bvh_visit(walk, node, farthest);
-        }
+            if (under_way) {
+                int place = findMSB(walk.nodes.y);
+                uint slot = uint(place - 24) ^ walk.forward;
+                uint node = walk.nodes.x + bitCount(walk.nodes.y & ((1u << slot) - 1u));
+                walk.nodes.y &= ~(1u << place);
+                if (walk.nodes.y >= 0x01000000u) {
+                    bvh_stack[walk.depth] = walk.nodes;
+                    walk.depth += 1;
+                }
+                bvh_visit(walk, node, farthest);
+            }
+        } while (under_way && walk.primitives.y == 0u);
     }
     int next = findLSB(walk.primitives.y);
     walk.primitive = walk.primitives.x + uint(max(next, 0));

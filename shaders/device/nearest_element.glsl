@@ -40,21 +40,29 @@ ElementHit nearest_element(real3 origin, real3 direction, PathPlace from) {
     rayQueryEXT query;
     rayQueryInitializeEXT(query, specimen_structure, gl_RayFlagsNoneEXT, ELEMENT_MASK, origin, real(0.0), direction,
                           FARTHEST);
-    while (rayQueryProceedEXT(query)) {
-        real farthest = nearest.hit.distance;
-        nearest = consider_box(nearest, uint(rayQueryGetIntersectionPrimitiveIndexEXT(query, false)), frame, direction,
-                               from, least);
-        if (nearest.hit.distance < farthest) {
-            rayQueryGenerateIntersectionEXT(query, nearest.hit.distance);
+    bool met;
+    do {
+        met = rayQueryProceedEXT(query);
+        if (met) {
+            real farthest = nearest.hit.distance;
+            nearest = consider_box(nearest, uint(rayQueryGetIntersectionPrimitiveIndexEXT(query, false)), frame,
+                                   direction, from, least);
+            if (nearest.hit.distance < farthest) {
+                rayQueryGenerateIntersectionEXT(query, nearest.hit.distance);
+            }
         }
-    }
+    } while (met);
 #else
     // Boxes and origin are as far apart as the instrument is long.
     real reach = max(max(abs(origin.x), abs(origin.y)), max(abs(origin.z), real(1e3)));
     BvhWalk walk = bvh_walk(batch.elements_root, origin, direction, real(0.0), real(16.0) * SURFACE_EPSILON * reach);
-    while (bvh_proceed(walk, nearest.hit.distance)) {
-        nearest = consider_box(nearest, walk.primitive, frame, direction, from, least);
-    }
+    bool met;
+    do {
+        met = bvh_proceed(walk, nearest.hit.distance);
+        if (met) {
+            nearest = consider_box(nearest, walk.primitive, frame, direction, from, least);
+        }
+    } while (met);
 #endif
     return nearest_hit(nearest, from);
 }

@@ -231,30 +231,34 @@ Hit specimen_hit(real3 origin, real3 direction) {
     Hit hit = no_hit();
     // Each round walks at least one cell.
     int rounds = ray.cells.x + ray.cells.y + 8;
-    if (walk.under_way) do {
-        bool free = walk.side >= real(0.0);
-        if (free) do {
-            Jump coarse = jump_over(ray, walk.t, ceilings_header.coarse_level, ceilings_header.coarse_columns,
-                                    ceilings_header.coarse_first);
-            Jump fine = jump_over(ray, coarse.t, ceilings_header.fine_level, ceilings_header.fine_columns, 0);
-            walk.t = fine.t;
-            walk.side = fine.over ? real(1.0) : walk.side;
-            free = fine.open && walk.t < stop;
-        } while (free);
-        walk.under_way = walk.t <= stop;
-        if (specimen_kind == SPECIMEN_ANALYTIC && walk.under_way) {
-            // A ray from beside may be below: the march over all of it knows from where it comes.
-            real ahead = beside ? stop : min(stop, walk.t + ray.to_next_cell * real(CELLS_AHEAD));
-            hit = march_surface(specimen, start, direction, beside ? real(0.0) : walk.t, ahead);
-            walk.found = hit.found == 1u;
-            walk.under_way = !walk.found && ahead < stop;
-            walk.t = ahead;
-        }
-        if (specimen_kind == SPECIMEN_FACETS && walk.under_way) {
-            walk.cell = cell_at(ray, walk.t);
-            walk_cells(walk, ray, stop);
-        }
-    } while (walk.under_way && --rounds > 0);
+    if (walk.under_way) {
+        do {
+            bool free = walk.side >= real(0.0);
+            if (free) {
+                do {
+                    Jump coarse = jump_over(ray, walk.t, ceilings_header.coarse_level, ceilings_header.coarse_columns,
+                                            ceilings_header.coarse_first);
+                    Jump fine = jump_over(ray, coarse.t, ceilings_header.fine_level, ceilings_header.fine_columns, 0);
+                    walk.t = fine.t;
+                    walk.side = fine.over ? real(1.0) : walk.side;
+                    free = fine.open && walk.t < stop;
+                } while (free);
+            }
+            walk.under_way = walk.t <= stop;
+            if (specimen_kind == SPECIMEN_ANALYTIC && walk.under_way) {
+                // A ray from beside may be below: the march over all of it knows from where it comes.
+                real ahead = beside ? stop : min(stop, walk.t + ray.to_next_cell * real(CELLS_AHEAD));
+                hit = march_surface(specimen, start, direction, beside ? real(0.0) : walk.t, ahead);
+                walk.found = hit.found == 1u;
+                walk.under_way = !walk.found && ahead < stop;
+                walk.t = ahead;
+            }
+            if (specimen_kind == SPECIMEN_FACETS && walk.under_way) {
+                walk.cell = cell_at(ray, walk.t);
+                walk_cells(walk, ray, stop);
+            }
+        } while (walk.under_way && --rounds > 0);
+    }
     if (specimen_kind == SPECIMEN_FACETS && walk.found) {
         hit = facet_hit(walk, ray, start, direction);
     }
