@@ -2,13 +2,9 @@
 // ray query hands out its candidates. The boxes widen by the walk's margin, so the arithmetic here loses none.
 //
 //     BvhWalk walk = bvh_walk(root, origin, direction, start, margin);
-//     bool met;
-//     do {
-//         met = bvh_proceed(walk, farthest);
-//         if (met) {
-//             ... walk.primitive; what it meets nearer than `farthest` may shorten `farthest`
-//         }
-//     } while (met);
+//     while (bvh_proceed(walk, farthest)) {
+//         ... walk.primitive; what it meets nearer than `farthest` may shorten `farthest`
+//     }
 //
 // bvh_another() gives the further primitives of the same node. One walk at a time: they share the stack.
 
@@ -101,25 +97,23 @@ void bvh_visit(inout BvhWalk walk, uint node, real farthest) {
 // Whether there is another primitive whose box the ray meets at a distance between the start and `farthest`.
 bool bvh_proceed(inout BvhWalk walk, real farthest) {
     bool under_way = true;
-    if (walk.primitives.y == 0u) {
-        do {
-            if (walk.nodes.y < 0x01000000u) {
-                under_way = walk.depth > 0;
-                walk.depth -= under_way ? 1 : 0;
-                walk.nodes = under_way ? bvh_stack[walk.depth] : walk.nodes;
+    while (under_way && walk.primitives.y == 0u) {
+        if (walk.nodes.y < 0x01000000u) {
+            under_way = walk.depth > 0;
+            walk.depth -= under_way ? 1 : 0;
+            walk.nodes = under_way ? bvh_stack[walk.depth] : walk.nodes;
+        }
+        if (under_way) {
+            int place = findMSB(walk.nodes.y);
+            uint slot = uint(place - 24) ^ walk.forward;
+            uint node = walk.nodes.x + bitCount(walk.nodes.y & ((1u << slot) - 1u));
+            walk.nodes.y &= ~(1u << place);
+            if (walk.nodes.y >= 0x01000000u) {
+                bvh_stack[walk.depth] = walk.nodes;
+                walk.depth += 1;
             }
-            if (under_way) {
-                int place = findMSB(walk.nodes.y);
-                uint slot = uint(place - 24) ^ walk.forward;
-                uint node = walk.nodes.x + bitCount(walk.nodes.y & ((1u << slot) - 1u));
-                walk.nodes.y &= ~(1u << place);
-                if (walk.nodes.y >= 0x01000000u) {
-                    bvh_stack[walk.depth] = walk.nodes;
-                    walk.depth += 1;
-                }
-                bvh_visit(walk, node, farthest);
-            }
-        } while (under_way && walk.primitives.y == 0u);
+            bvh_visit(walk, node, farthest);
+        }
     }
     int next = findLSB(walk.primitives.y);
     walk.primitive = walk.primitives.x + uint(max(next, 0));

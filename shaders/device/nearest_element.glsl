@@ -40,29 +40,21 @@ ElementHit nearest_element(real3 origin, real3 direction, PathPlace from) {
     rayQueryEXT query;
     rayQueryInitializeEXT(query, specimen_structure, gl_RayFlagsNoneEXT, ELEMENT_MASK, origin, real(0.0), direction,
                           FARTHEST);
-    bool met;
-    do {
-        met = rayQueryProceedEXT(query);
-        if (met) {
-            real farthest = nearest.hit.distance;
-            nearest = consider_box(nearest, uint(rayQueryGetIntersectionPrimitiveIndexEXT(query, false)), frame,
-                                   direction, from, least);
-            if (nearest.hit.distance < farthest) {
-                rayQueryGenerateIntersectionEXT(query, nearest.hit.distance);
-            }
+    while (rayQueryProceedEXT(query)) {
+        real farthest = nearest.hit.distance;
+        nearest = consider_box(nearest, uint(rayQueryGetIntersectionPrimitiveIndexEXT(query, false)), frame, direction,
+                               from, least);
+        if (nearest.hit.distance < farthest) {
+            rayQueryGenerateIntersectionEXT(query, nearest.hit.distance);
         }
-    } while (met);
+    }
 #else
     // Boxes and origin are as far apart as the instrument is long.
     real reach = max(max(abs(origin.x), abs(origin.y)), max(abs(origin.z), real(1e3)));
     BvhWalk walk = bvh_walk(batch.elements_root, origin, direction, real(0.0), real(16.0) * SURFACE_EPSILON * reach);
-    bool met;
-    do {
-        met = bvh_proceed(walk, nearest.hit.distance);
-        if (met) {
-            nearest = consider_box(nearest, walk.primitive, frame, direction, from, least);
-        }
-    } while (met);
+    while (bvh_proceed(walk, nearest.hit.distance)) {
+        nearest = consider_box(nearest, walk.primitive, frame, direction, from, least);
+    }
 #endif
     return nearest_hit(nearest, from);
 }

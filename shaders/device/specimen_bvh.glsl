@@ -70,31 +70,27 @@ Hit meet_triangles(real3 origin, real3 direction, RayInterval over) {
     nearest.distance = over.stop;
     nearest.index = 0u;
     nearest.barycentrics = vec2(0.0, 0.0);
-    bool met;
-    do {
-        met = bvh_proceed(walk, nearest.distance);
+    while (bvh_proceed(walk, nearest.distance)) {
         // All of a node's at once: lanes part less than if each went on for itself.
-        bool another = met;
-        if (another) {
-            do {
-                vec4 part_0 = pair_parts[3u * walk.primitive];
-                vec4 part_1 = pair_parts[3u * walk.primitive + 1u];
-                vec4 part_2 = pair_parts[3u * walk.primitive + 2u];
-                real3 a = in_frame(frame, part_0.xyz);
-                real3 b = in_frame(frame, real3(part_0.w, part_1.xy));
-                real3 c = in_frame(frame, real3(part_1.zw, part_2.x));
-                real3 d = in_frame(frame, part_2.yzw);
-                precise real bc = c.x * b.y - c.y * b.x;
-                precise real ca = a.x * c.y - a.y * c.x;
-                precise real ab = b.x * a.y - b.y * a.x;
-                precise real cd = d.x * c.y - d.y * c.x;
-                precise real da = a.x * d.y - a.y * d.x;
-                consider_triangle(nearest, bc, ca, ab, real3(a.z, b.z, c.z), 2u * walk.primitive, walk.start);
-                consider_triangle(nearest, cd, da, -ca, real3(a.z, c.z, d.z), 2u * walk.primitive + 1u, walk.start);
-                another = bvh_another(walk);
-            } while (another);
+        bool another = true;
+        while (another) {
+            vec4 part_0 = pair_parts[3u * walk.primitive];
+            vec4 part_1 = pair_parts[3u * walk.primitive + 1u];
+            vec4 part_2 = pair_parts[3u * walk.primitive + 2u];
+            real3 a = in_frame(frame, part_0.xyz);
+            real3 b = in_frame(frame, real3(part_0.w, part_1.xy));
+            real3 c = in_frame(frame, real3(part_1.zw, part_2.x));
+            real3 d = in_frame(frame, part_2.yzw);
+            precise real bc = c.x * b.y - c.y * b.x;
+            precise real ca = a.x * c.y - a.y * c.x;
+            precise real ab = b.x * a.y - b.y * a.x;
+            precise real cd = d.x * c.y - d.y * c.x;
+            precise real da = a.x * d.y - a.y * d.x;
+            consider_triangle(nearest, bc, ca, ab, real3(a.z, b.z, c.z), 2u * walk.primitive, walk.start);
+            consider_triangle(nearest, cd, da, -ca, real3(a.z, c.z, d.z), 2u * walk.primitive + 1u, walk.start);
+            another = bvh_another(walk);
         }
-    } while (met);
+    }
     Hit hit = no_hit();
     if (nearest.found) {
         uint first = 3u * (nearest.index >> 1);
@@ -115,15 +111,11 @@ Hit meet_tiles(SpecimenRay ray, real rounding) {
     BvhWalk walk = specimen_walk(ray.origin, ray.direction, ray.over);
     Hit hit = no_hit();
     hit.distance = ray.over.stop;
-    bool met;
-    do {
-        met = bvh_proceed(walk, hit.distance);
-        if (met) {
-            Hit candidate = tile_hit(tiles[walk.primitive], ray, rounding);
-            if (candidate.found == 1u && candidate.distance < hit.distance) {
-                hit = candidate;
-            }
+    while (bvh_proceed(walk, hit.distance)) {
+        Hit candidate = tile_hit(tiles[walk.primitive], ray, rounding);
+        if (candidate.found == 1u && candidate.distance < hit.distance) {
+            hit = candidate;
         }
-    } while (met);
+    }
     return hit;
 }

@@ -55,9 +55,8 @@ Hit specimen_hit(real3 origin, real3 direction) {
             // A ray that is above a height field cannot meet it from below, unless it starts there by rounding.
             bool above = specimen_kind == SPECIMEN_FACETS && !ray.beside;
             real aside = real(0.0);
-            bool open;
-            int tries = 0;
-            do {
+            bool open = true;
+            for (int i = 0; i < PRIMITIVE_TRIES && open; ++i) {
                 // Askew to rows, columns and diagonals, and back over the footprint at its border.
                 real3 nudge = real3(ray.origin.x > real(0.0) ? -aside : aside,
                                     ray.origin.y > real(0.0) ? real(-0.6) * aside : real(0.6) * aside, real(0.0));
@@ -67,7 +66,7 @@ Hit specimen_hit(real3 origin, real3 direction) {
                 ray.over.start = from_below ? hit.distance : ray.over.start;
                 aside = from_below ? aside : aside + rounding;
                 hit.found = from_below ? 0u : hit.found;
-            } while (open && ++tries < PRIMITIVE_TRIES);
+            }
         }
     }
     hit.distance = max(hit.distance + ray.advance, real(0.0));

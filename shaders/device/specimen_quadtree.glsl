@@ -137,10 +137,9 @@ struct CellWalk {
     real to;
 };
 
-// Along the facets of at most CELLS_AHEAD cells, of a walk that is under way.
+// Along the facets of at most CELLS_AHEAD cells.
 void walk_cells(inout CellWalk walk, GridRay ray, real stop) {
-    int cells = 0;
-    do {
+    for (int k = 0; k < CELLS_AHEAD && walk.under_way; ++k) {
         CellRay over = ray_over_cell(ray, walk.cell);
         vec4 corners = over.corners;
         real2 local = over.place;
@@ -171,7 +170,10 @@ void walk_cells(inout CellWalk walk, GridRay ray, real stop) {
         bool inside = uint(walk.cell.x) < uint(ray.cells.x) && uint(walk.cell.y) < uint(ray.cells.y);
         walk.under_way = !walk.found && inside && leave < stop;
         walk.t = leave;
-    } while (++cells < CELLS_AHEAD && walk.under_way);
+        if (software_device && !walk.under_way) {
+            break;
+        }
+    }
 }
 
 // On the facet that the walk has found.
@@ -230,34 +232,35 @@ Hit specimen_hit(real3 origin, real3 direction) {
     walk.to = walk.t;
     Hit hit = no_hit();
     // Each round walks at least one cell.
-    int rounds = ray.cells.x + ray.cells.y + 8;
-    if (walk.under_way) {
-        do {
-            bool free = walk.side >= real(0.0);
-            if (free) {
-                do {
-                    Jump coarse = jump_over(ray, walk.t, ceilings_header.coarse_level, ceilings_header.coarse_columns,
-                                            ceilings_header.coarse_first);
-                    Jump fine = jump_over(ray, coarse.t, ceilings_header.fine_level, ceilings_header.fine_columns, 0);
-                    walk.t = fine.t;
-                    walk.side = fine.over ? real(1.0) : walk.side;
-                    free = fine.open && walk.t < stop;
-                } while (free);
+    for (int rounds = ray.cells.x + ray.cells.y + 8; walk.under_way && rounds > 0; --rounds) {
+        bool free = walk.side >= real(0.0);
+        while (free) {
+            Jump coarse = jump_over(ray, walk.t, ceilings_header.coarse_level, ceilings_header.coarse_columns,
+                                    ceilings_header.coarse_first);
+            Jump fine = jump_over(ray, coarse.t, ceilings_header.fine_level, ceilings_header.fine_columns, 0);
+            walk.t = fine.t;
+            walk.side = fine.over ? real(1.0) : walk.side;
+            free = fine.open && walk.t < stop;
+            if (software_device && !free) {
+                break;
             }
-            walk.under_way = walk.t <= stop;
-            if (specimen_kind == SPECIMEN_ANALYTIC && walk.under_way) {
-                // A ray from beside may be below: the march over all of it knows from where it comes.
-                real ahead = beside ? stop : min(stop, walk.t + ray.to_next_cell * real(CELLS_AHEAD));
-                hit = march_surface(specimen, start, direction, beside ? real(0.0) : walk.t, ahead);
-                walk.found = hit.found == 1u;
-                walk.under_way = !walk.found && ahead < stop;
-                walk.t = ahead;
-            }
-            if (specimen_kind == SPECIMEN_FACETS && walk.under_way) {
-                walk.cell = cell_at(ray, walk.t);
-                walk_cells(walk, ray, stop);
-            }
-        } while (walk.under_way && --rounds > 0);
+        }
+        walk.under_way = walk.t <= stop;
+        if (specimen_kind == SPECIMEN_ANALYTIC && walk.under_way) {
+            // A ray from beside may be below: the march over all of it knows from where it comes.
+            real ahead = beside ? stop : min(stop, walk.t + ray.to_next_cell * real(CELLS_AHEAD));
+            hit = march_surface(specimen, start, direction, beside ? real(0.0) : walk.t, ahead);
+            walk.found = hit.found == 1u;
+            walk.under_way = !walk.found && ahead < stop;
+            walk.t = ahead;
+        }
+        if (specimen_kind == SPECIMEN_FACETS) {
+            walk.cell = cell_at(ray, walk.t);
+            walk_cells(walk, ray, stop);
+        }
+        if (software_device && !walk.under_way) {
+            break;
+        }
     }
     if (specimen_kind == SPECIMEN_FACETS && walk.found) {
         hit = facet_hit(walk, ray, start, direction);

@@ -39,17 +39,13 @@ Hit meet_tiles(SpecimenRay ray, real rounding) {
                           max(ray.over.start, real(0.0)), ray.direction, ray.over.stop);
     Hit hit = no_hit();
     hit.distance = ray.over.stop;
-    bool met;
-    do {
-        met = rayQueryProceedEXT(query);
-        if (met) {
-            Hit candidate = tile_hit(tiles[rayQueryGetIntersectionPrimitiveIndexEXT(query, false)], ray, rounding);
-            // A march knows nothing of what was met in other boxes.
-            if (candidate.found == 1u && candidate.distance < hit.distance) {
-                hit = candidate;
-                rayQueryGenerateIntersectionEXT(query, candidate.distance);
-            }
+    while (rayQueryProceedEXT(query)) {
+        Hit candidate = tile_hit(tiles[rayQueryGetIntersectionPrimitiveIndexEXT(query, false)], ray, rounding);
+        // A march knows nothing of what was met in other boxes.
+        if (candidate.found == 1u && candidate.distance < hit.distance) {
+            hit = candidate;
+            rayQueryGenerateIntersectionEXT(query, candidate.distance);
         }
-    } while (met);
+    }
     return hit;
 }

@@ -60,10 +60,8 @@ void main() {
         known.rim_period = rim_period;
         uint most_queries = query_capacity - uint(specimen.max_bounces) - 1u;
         real sum = real(0.0);
-        uint point = 0u;
-        do {
-            bool room;
-            do {
+        for (uint point = 0u; point < batch.chunk_points;) {
+            for (bool room = true; room; ++point) {
                 uint place = chunk * batch.chunk_points + point;
                 if (sorts_light) {
                     path_cell = cell_index(backward_place(known, pupil_cells, column, row,
@@ -75,21 +73,27 @@ void main() {
                 if (sorts_light && value > real(0.0)) {
                     add_cell_light(path_cell, in_units(value));
                 }
-                ++point;
-                room = query_count <= most_queries && point < batch.chunk_points;
-            } while (room);
-            uint k = 0u;
-            if (query_count > 0u) {
-                do {
-                    real value = trace_to_source(known_instrument(), known_specimen(), exposure, queries[k]);
-                    sum += value;
-                    if (sorts_light && value > real(0.0)) {
-                        add_cell_light(query_cells[k], in_units(value));
-                    }
-                } while (++k < query_count);
+                room = query_count <= most_queries && point + 1u < batch.chunk_points;
+                if (software_device && !room) {
+                    ++point;
+                    break;
+                }
+            }
+            for (uint k = 0u; k < query_count; ++k) {
+                real value = trace_to_source(known_instrument(), known_specimen(), exposure, queries[k]);
+                sum += value;
+                if (sorts_light && value > real(0.0)) {
+                    add_cell_light(query_cells[k], in_units(value));
+                }
+                if (software_device && k + 1u >= query_count) {
+                    break;
+                }
             }
             query_count = 0u;
-        } while (point < batch.chunk_points);
+            if (software_device && point >= batch.chunk_points) {
+                break;
+            }
+        }
         atomicAdd(pixels[pixel], in_units(sum));
     }
 }

@@ -12,19 +12,15 @@ layout(set = 0, binding = BINDING_PIXELS, scalar) buffer Pixels { uint64_t pixel
 void main() {
     tally_clear();
     uint stride = gl_NumWorkGroups.x * gl_WorkGroupSize.x;
-    uint index = gl_GlobalInvocationID.x;
-    if (index < batch.paths.count) {
-        do {
-            uint carry;
-            uint low = uaddCarry(batch.paths.first_path.x, index, carry);
-            Detection detection = trace_nonsequential(instrument, specimen, exposure, batch.source_frame,
-                                                      uvec2(low, batch.paths.first_path.y + carry));
-            if (detection.fate.status == PATH_DETECTED) {
-                atomicAdd(pixels[detection.row * instrument.detector_columns + detection.column], uint64_t(1));
-            }
-            tally_fate(detection.fate, WEIGHT_ONE);
-            index += stride;
-        } while (index < batch.paths.count);
+    for (uint index = gl_GlobalInvocationID.x; index < batch.paths.count; index += stride) {
+        uint carry;
+        uint low = uaddCarry(batch.paths.first_path.x, index, carry);
+        Detection detection = trace_nonsequential(instrument, specimen, exposure, batch.source_frame,
+                                                  uvec2(low, batch.paths.first_path.y + carry));
+        if (detection.fate.status == PATH_DETECTED) {
+            atomicAdd(pixels[detection.row * instrument.detector_columns + detection.column], uint64_t(1));
+        }
+        tally_fate(detection.fate, WEIGHT_ONE);
     }
     tally_flush();
 }

@@ -40,28 +40,26 @@ const int ASPHERE_NEWTON_STEPS = 4;
 #endif
 
 // Meeting with the surface, position and direction (of the given length) in its vertex frame. One flow for spheres,
-// conics and aspheres.
+// conics and aspheres, the loops empty for spheres: software devices run both sides of a branch, but not an empty loop.
 VKFV_FUNCTION SurfacePoint meet_surface(real3 position, real3 direction, real length_squared, Surface surface) {
     SurfacePoint result = meet_conic(position, direction, length_squared, surface.curvature, surface.conic);
     bool aspheric = (surface.flags & SURFACE_ASPHERIC) != 0u;
     real to_plane = -position.z / direction.z;
     real slope_over_r = surface.curvature;
     real normal_z = real(1.0) - surface.curvature * (real(1.0) + surface.conic) * result.point.z;
-    int step = 0;
-    if (aspheric) {
-        do {
-            Sag sag = asphere_sag(surface, result.point.x * result.point.x + result.point.y * result.point.y);
-            slope_over_r = sag.slope_over_r;
-            normal_z = real(1.0);
-            real approach = direction.z - slope_over_r * (direction.x * result.point.x + direction.y * result.point.y);
-            result.found = sag.defined && approach > real(0.0) && result.found;
-            result.parameter = result.parameter - (result.found ? (result.point.z - sag.sag) / approach : real(0.0));
-            result.point =
-                real3(position.x + result.parameter * direction.x, position.y + result.parameter * direction.y,
-                      (result.parameter - to_plane) * direction.z);
-        } while (++step < ASPHERE_NEWTON_STEPS);
+    int steps = aspheric ? ASPHERE_NEWTON_STEPS : 0;
+    for (int step = 0; step < steps; ++step) {
+        Sag sag = asphere_sag(surface, result.point.x * result.point.x + result.point.y * result.point.y);
+        slope_over_r = sag.slope_over_r;
+        normal_z = real(1.0);
+        real approach = direction.z - slope_over_r * (direction.x * result.point.x + direction.y * result.point.y);
+        result.found = sag.defined && approach > real(0.0) && result.found;
+        result.parameter = result.parameter - (result.found ? (result.point.z - sag.sag) / approach : real(0.0));
+        result.point = real3(position.x + result.parameter * direction.x, position.y + result.parameter * direction.y,
+                             (result.parameter - to_plane) * direction.z);
     }
-    if (aspheric || surface.conic != real(0.0)) {
+    int normals = aspheric || surface.conic != real(0.0) ? 1 : 0;
+    for (int once = 0; once < normals; ++once) {
         result = with_normal(result, direction, slope_over_r, normal_z);
     }
     return result;

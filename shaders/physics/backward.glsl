@@ -403,96 +403,97 @@ VKFV_SCENE_FUNCTION VKFV_FUNCTION real trace_backward(VKFV_SCENE_PARAMETER Instr
         hit = displaced_hit(VKFV_SCENE exposure, arrival.position, direction);
         under_way = hit.found == 1u && dot(direction, hit.normal) < real(0.0);
     }
-    int bounce = 0;
-    if (under_way) {
-        do {
-            uint block = 1u + uint(bounce) * (SCATTER_BLOCKS + 2u);
-            real3 outgoing = -direction;
-            real3 origin = scatter_origin(hit);
-            throughput = throughput * reflectance_share(VKFV_SCENE specimen, hit.position - displacement(exposure));
-            Draws draws;
-            draws.u0 = lattice_coordinate(lattice, point, lattice.z_4, shift.second.x);
-            draws.u1 = lattice_coordinate(lattice, point, lattice.z_5, shift.second.y);
-            draws.u2 = lattice_coordinate(lattice, point, lattice.z_6, shift.second.z);
-            draws.u3 = real(0.0);
-            if (bounce > 0 || specimen.max_bounces > 1 || backward.lobe_candidates != 0u ||
-                (scatter_models & SCATTER_DELTA) != 0u) {
-                Draws further = draw(exposure.seed, exposure.image, path, block);
-                draws.u3 = further.u3;
-                draws.u0 = bounce == 0 ? draws.u0 : further.u0;
-                draws.u1 = bounce == 0 ? draws.u1 : further.u1;
-                draws.u2 = bounce == 0 ? draws.u2 : further.u2;
-            }
-            bool last = bounce + 1 == specimen.max_bounces;
-            Lobe lobe = choose_lobe(specimen.material, draws.u3);
-            bool delta = lobe_is_delta(lobe);
-            Material alone = material_of_lobe(lobe);
-            // One draw of the lobe, as if the light came from the detector: a candidate for the connection, and the way
-            // on.
-            bool absorbed = lobe.model == SCATTER_NONE;
-            under_way = !absorbed && (delta || !last);
-            Scattered scattered;
-            scattered.accepted = false;
-            scattered.direction = outgoing;
-            if (under_way || (backward.lobe_candidates != 0u && !absorbed)) {
-                scattered = scatter(alone, direction, hit.normal, exposure.seed, exposure.image, path, block + 1u);
-            }
-            under_way = under_way && scattered.accepted;
-            scattered.accepted = scattered.accepted && !delta;
-            // What the source shows for sure makes a smooth number of what the directions bring; its rim a rough one,
-            // which weighs less and is asked for less often. Elsewhere all of the source is looked at as one.
-            SeenPart whole = seen_whole(backward, plane, hit.position);
-            real sure = backward.rim_period != 0u ? sure_radius(backward, plane, hit.position, whole) : real(0.0);
-            bool parted = sure > real(0.0);
-            uint rim_period = max(backward.rim_period, 1u);
-            bool looks_further = !parted || point % rim_period == 0u;
-            real2 at_rim = real2(draws.u0, draws.u1);
-            if (bounce == 0) {
-                at_rim = sparse_coordinates(lattice, point, rim_period, shift.second.x, shift.second.y);
-            }
-            uint part = parted ? 0u : 1u; // at least one of the two
-            do {
-                bool rim = parted && part == 1u;
-                SeenPart seen = whole;
-                seen.outer = part == 0u ? sure : whole.outer;
-                seen.inner = rim ? sure : real(0.0);
-                Connection connection =
-                    connect(VKFV_SCENE specimen.material, backward, plane, seen,
-                            rim      ? 1u
-                            : parted ? backward.sure_candidates
-                                     : backward.cone_candidates,
-                            hit, outgoing, rim ? at_rim.x : draws.u0, rim ? at_rim.y : draws.u1, draws.u2, scattered);
-                if (connection.weight > real(0.0)) {
-                    Hit blocker = displaced_hit(VKFV_SCENE exposure, origin, connection.direction);
-                    if (blocker.found == 0u) {
-                        query.position = origin;
-                        query.direction = connection.direction;
-                        query.weight = throughput * connection.weight * (rim ? real(rim_period) : real(1.0));
-                        real seen_light = query.weight; // of what is seen for sure
-                        if (rim || !parted) {
-                            seen_light = collect(VKFV_SCENE instrument, backward, plane, specimen, exposure, query);
-                        }
-                        value = value + seen_light;
-                    }
-                }
-            } while (++part < (looks_further ? 2u : 1u));
-            if (under_way) {
-                if (!delta) {
-                    real cosine = dot(scattered.direction, hit.normal);
-                    throughput = throughput * scatter_bsdf(alone, -scattered.direction, hit.normal, outgoing) * cosine /
-                                 scatter_density(alone, direction, hit.normal, scattered.direction);
-                }
-                direction = scattered.direction;
-                hit = displaced_hit(VKFV_SCENE exposure, origin, direction);
-                if (hit.found == 0u && delta) {
+    for (int bounce = 0; bounce < specimen.max_bounces && under_way; ++bounce) {
+        uint block = 1u + uint(bounce) * (SCATTER_BLOCKS + 2u);
+        real3 outgoing = -direction;
+        real3 origin = scatter_origin(hit);
+        throughput = throughput * reflectance_share(VKFV_SCENE specimen, hit.position - displacement(exposure));
+        Draws draws;
+        draws.u0 = lattice_coordinate(lattice, point, lattice.z_4, shift.second.x);
+        draws.u1 = lattice_coordinate(lattice, point, lattice.z_5, shift.second.y);
+        draws.u2 = lattice_coordinate(lattice, point, lattice.z_6, shift.second.z);
+        draws.u3 = real(0.0);
+        if (bounce > 0 || specimen.max_bounces > 1 || backward.lobe_candidates != 0u ||
+            (scatter_models & SCATTER_DELTA) != 0u) {
+            Draws further = draw(exposure.seed, exposure.image, path, block);
+            draws.u3 = further.u3;
+            draws.u0 = bounce == 0 ? draws.u0 : further.u0;
+            draws.u1 = bounce == 0 ? draws.u1 : further.u1;
+            draws.u2 = bounce == 0 ? draws.u2 : further.u2;
+        }
+        bool last = bounce + 1 == specimen.max_bounces;
+        Lobe lobe = choose_lobe(specimen.material, draws.u3);
+        bool delta = lobe_is_delta(lobe);
+        Material alone = material_of_lobe(lobe);
+        // One draw of the lobe, as if the light came from the detector: a candidate for the connection, and the way on.
+        bool absorbed = lobe.model == SCATTER_NONE;
+        under_way = !absorbed && (delta || !last);
+        Scattered scattered;
+        scattered.accepted = false;
+        scattered.direction = outgoing;
+        if (under_way || (backward.lobe_candidates != 0u && !absorbed)) {
+            scattered = scatter(alone, direction, hit.normal, exposure.seed, exposure.image, path, block + 1u);
+        }
+        under_way = under_way && scattered.accepted;
+        scattered.accepted = scattered.accepted && !delta;
+        // What the source shows for sure makes a smooth number of what the directions bring; its rim a rough one, which
+        // weighs less and is asked for less often. Elsewhere all of the source is looked at as one.
+        SeenPart whole = seen_whole(backward, plane, hit.position);
+        real sure = backward.rim_period != 0u ? sure_radius(backward, plane, hit.position, whole) : real(0.0);
+        bool parted = sure > real(0.0);
+        uint rim_period = max(backward.rim_period, 1u);
+        bool looks_further = !parted || point % rim_period == 0u;
+        real2 at_rim = real2(draws.u0, draws.u1);
+        if (bounce == 0) {
+            at_rim = sparse_coordinates(lattice, point, rim_period, shift.second.x, shift.second.y);
+        }
+        for (uint part = parted ? 0u : 1u; part < (looks_further ? 2u : 1u); ++part) {
+            bool rim = parted && part == 1u;
+            SeenPart seen = whole;
+            seen.outer = part == 0u ? sure : whole.outer;
+            seen.inner = rim ? sure : real(0.0);
+            Connection connection =
+                connect(VKFV_SCENE specimen.material, backward, plane, seen,
+                        rim      ? 1u
+                        : parted ? backward.sure_candidates
+                                 : backward.cone_candidates,
+                        hit, outgoing, rim ? at_rim.x : draws.u0, rim ? at_rim.y : draws.u1, draws.u2, scattered);
+            if (connection.weight > real(0.0)) {
+                Hit blocker = displaced_hit(VKFV_SCENE exposure, origin, connection.direction);
+                if (blocker.found == 0u) {
                     query.position = origin;
-                    query.direction = direction;
-                    query.weight = throughput;
-                    value = value + collect(VKFV_SCENE instrument, backward, plane, specimen, exposure, query);
+                    query.direction = connection.direction;
+                    query.weight = throughput * connection.weight * (rim ? real(rim_period) : real(1.0));
+                    real seen_light = query.weight; // of what is seen for sure
+                    if (rim || !parted) {
+                        seen_light = collect(VKFV_SCENE instrument, backward, plane, specimen, exposure, query);
+                    }
+                    value = value + seen_light;
                 }
-                under_way = hit.found == 1u && dot(direction, hit.normal) < real(0.0);
             }
-        } while (++bounce < specimen.max_bounces && under_way);
+            if (software_device && (part == 1u || !looks_further)) {
+                break;
+            }
+        }
+        if (under_way) {
+            if (!delta) {
+                real cosine = dot(scattered.direction, hit.normal);
+                throughput = throughput * scatter_bsdf(alone, -scattered.direction, hit.normal, outgoing) * cosine /
+                             scatter_density(alone, direction, hit.normal, scattered.direction);
+            }
+            direction = scattered.direction;
+            hit = displaced_hit(VKFV_SCENE exposure, origin, direction);
+            if (hit.found == 0u && delta) {
+                query.position = origin;
+                query.direction = direction;
+                query.weight = throughput;
+                value = value + collect(VKFV_SCENE instrument, backward, plane, specimen, exposure, query);
+            }
+            under_way = hit.found == 1u && dot(direction, hit.normal) < real(0.0);
+        }
+        if (software_device && !under_way) {
+            break;
+        }
     }
     return value;
 }

@@ -5,9 +5,7 @@
 // `out`, no swizzles, no default arguments); structs built by assigning fields; what host and device share as lists of
 // fields (records.glsl); GLM's names for GLSL's functions. What differs between host and device (where surfaces are
 // kept, how a specimen is hit) is reached through functions that take VKFV_SCENE first: nothing on the device, the
-// scene object on the host (VKFV_SCENE_ALONE where no other argument follows). Loops of many rounds ask at the end
-// whether to go on, and an `if` in front of them whether to begin: a software device passes over an `if` that no lane
-// takes, but of a loop that asks first it runs one more round for none. These files include nothing and carry no
+// scene object on the host (VKFV_SCENE_ALONE where no other argument follows). These files include nothing and carry no
 // include guards: physics.hpp compiles them once in double and once in float.
 #define real float
 #define real2 vec2

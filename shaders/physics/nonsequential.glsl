@@ -261,65 +261,62 @@ VKFV_SCENE_FUNCTION VKFV_FUNCTION Detection trace_nonsequential(VKFV_SCENE_PARAM
     place.facet = -1;
     place.inside = -1;
     int bounces = 0;
-    int interaction = 0;
-    if (detection.fate.status == PATH_ALIVE) {
-        do {
-            ElementHit met = nearest_element(VKFV_SCENE origin, direction, place);
-            Hit hit = specimen_hit(VKFV_SCENE origin + to_specimen, direction);
-            bool on_specimen = hit.found == 1u && (met.index < 0 || hit.distance < met.distance);
-            if ((features(VKFV_SCENE_ALONE) & FEATURE_FACETS) != 0u &&
-                (met.index == ASTRAY || (on_specimen && place.inside >= 0))) {
-                detection.fate = make_fate(PATH_NUMERICAL, -1);
-            } else if (on_specimen) {
-                if (bounces == specimen.max_bounces) {
-                    detection.fate = make_fate(PATH_BOUNCE_LIMIT, -1);
-                } else {
-                    Scattered scattered =
-                        scatter(material_at(VKFV_SCENE specimen, hit.position), direction, hit.normal, exposure.seed,
-                                exposure.image, path, SCATTER_FIRST_BLOCK + uint(bounces) * SCATTER_BLOCKS);
-                    direction = scattered.direction;
-                    origin = scatter_origin(hit) - to_specimen;
-                    detection.fate = make_fate(scattered.absorbed   ? PATH_ABSORBED
-                                               : scattered.accepted ? PATH_ALIVE
-                                                                    : PATH_NUMERICAL,
-                                               -1);
-                    bounces += 1;
-                    place.element = -1;
-                    place.facet = -1;
-                }
-            } else if (met.index < 0) {
-                detection.fate = make_fate(PATH_ESCAPED, -1);
-            } else if ((features(VKFV_SCENE_ALONE) & FEATURE_FACETS) != 0u && met.facet >= 0) {
-                Draws turn = draw(exposure.seed, exposure.image, path, 1u + uint(interaction));
-                FacetPassage through = pass_facet(element_at(VKFV_SCENE met.index), facet_at(VKFV_SCENE met.facet),
-                                                  origin, direction, place.inside, emission.light, turn.u0);
-                detection.fate = through.passage.fate;
-                origin = through.passage.position;
-                direction = through.passage.direction;
-                place.element = -1;
-                place.facet = met.facet;
-                place.inside = through.inside;
+    for (int k = 0; k < MOST_INTERACTIONS && detection.fate.status == PATH_ALIVE; ++k) {
+        ElementHit met = nearest_element(VKFV_SCENE origin, direction, place);
+        Hit hit = specimen_hit(VKFV_SCENE origin + to_specimen, direction);
+        bool on_specimen = hit.found == 1u && (met.index < 0 || hit.distance < met.distance);
+        if ((features(VKFV_SCENE_ALONE) & FEATURE_FACETS) != 0u &&
+            (met.index == ASTRAY || (on_specimen && place.inside >= 0))) {
+            detection.fate = make_fate(PATH_NUMERICAL, -1);
+        } else if (on_specimen) {
+            if (bounces == specimen.max_bounces) {
+                detection.fate = make_fate(PATH_BOUNCE_LIMIT, -1);
             } else {
-                Element element = element_at(VKFV_SCENE met.index);
-                ElementMeeting meeting =
-                    meet_element(element, origin, direction, met.index == place.element, least_distance(origin));
-                if (element.kind == ELEMENT_DETECTOR && meeting.clear && meeting.side > real(0.0)) {
-                    detection = detect(instrument, meeting.point.x, meeting.point.y);
-                } else {
-                    Draws turn = draw(exposure.seed, exposure.image, path, 1u + uint(interaction));
-                    Passage passage = pass_element(element, met.index, meeting, emission.light, turn.u0);
-                    detection.fate = passage.fate;
-                    if (passage.fate.status == PATH_ALIVE &&
-                        turn.u1 >= light_field_at(VKFV_SCENE element.surface, meeting.point.x, meeting.point.y)) {
-                        detection.fate = make_fate(PATH_INTERFACE_LOSS, met.index);
-                    }
-                    origin = passage.position;
-                    direction = passage.direction;
-                    place.element = met.index;
-                    place.facet = -1;
-                }
+                Scattered scattered =
+                    scatter(material_at(VKFV_SCENE specimen, hit.position), direction, hit.normal, exposure.seed,
+                            exposure.image, path, SCATTER_FIRST_BLOCK + uint(bounces) * SCATTER_BLOCKS);
+                direction = scattered.direction;
+                origin = scatter_origin(hit) - to_specimen;
+                detection.fate = make_fate(scattered.absorbed   ? PATH_ABSORBED
+                                           : scattered.accepted ? PATH_ALIVE
+                                                                : PATH_NUMERICAL,
+                                           -1);
+                bounces += 1;
+                place.element = -1;
+                place.facet = -1;
             }
-        } while (detection.fate.status == PATH_ALIVE && ++interaction < MOST_INTERACTIONS);
+        } else if (met.index < 0) {
+            detection.fate = make_fate(PATH_ESCAPED, -1);
+        } else if ((features(VKFV_SCENE_ALONE) & FEATURE_FACETS) != 0u && met.facet >= 0) {
+            Draws turn = draw(exposure.seed, exposure.image, path, 1u + uint(k));
+            FacetPassage through = pass_facet(element_at(VKFV_SCENE met.index), facet_at(VKFV_SCENE met.facet), origin,
+                                              direction, place.inside, emission.light, turn.u0);
+            detection.fate = through.passage.fate;
+            origin = through.passage.position;
+            direction = through.passage.direction;
+            place.element = -1;
+            place.facet = met.facet;
+            place.inside = through.inside;
+        } else {
+            Element element = element_at(VKFV_SCENE met.index);
+            ElementMeeting meeting =
+                meet_element(element, origin, direction, met.index == place.element, least_distance(origin));
+            if (element.kind == ELEMENT_DETECTOR && meeting.clear && meeting.side > real(0.0)) {
+                detection = detect(instrument, meeting.point.x, meeting.point.y);
+            } else {
+                Draws turn = draw(exposure.seed, exposure.image, path, 1u + uint(k));
+                Passage passage = pass_element(element, met.index, meeting, emission.light, turn.u0);
+                detection.fate = passage.fate;
+                if (passage.fate.status == PATH_ALIVE &&
+                    turn.u1 >= light_field_at(VKFV_SCENE element.surface, meeting.point.x, meeting.point.y)) {
+                    detection.fate = make_fate(PATH_INTERFACE_LOSS, met.index);
+                }
+                origin = passage.position;
+                direction = passage.direction;
+                place.element = met.index;
+                place.facet = -1;
+            }
+        }
     }
     if (detection.fate.status == PATH_ALIVE) {
         detection.fate = make_fate(PATH_INTERACTION_LIMIT, -1);

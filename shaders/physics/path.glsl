@@ -303,50 +303,50 @@ VKFV_SCENE_FUNCTION VKFV_FUNCTION Departure scatter_at_specimen(VKFV_SCENE_PARAM
     Hit hit = displaced_hit(VKFV_SCENE exposure, origin, direction);
     status = hit.found == 1u ? PATH_ALIVE : PATH_OFF_SPECIMEN;
     bool under_way = hit.found == 1u;
-    int bounce = 0;
-    if (under_way) {
-        do {
-            uint first_block = 1u + uint(bounce) * SCATTER_BLOCKS;
-            bool last = bounce + 1 == specimen.max_bounces;
-            Incidence incidence = make_incidence(direction, hit.normal);
-            Material material = material_at(VKFV_SCENE specimen, hit.position - displacement(exposure));
-            origin = scatter_origin(hit);
-            GatedScatter gated;
-            gated.applies = false;
-            if (last && !directed) {
-                Draws draws = draw(exposure.seed, exposure.image, path, first_block);
-                gated = scatter_into_gate(scattering_lobe(material, draws), incidence,
-                                          gate_disc(instrument, specimen.top, origin), draws.u0, draws.u1, draws.u2);
-            }
-            Scattered scattered = scatter_by_tries(material, incidence, exposure.seed, exposure.image, path,
-                                                   first_block, gated.applies ? 0u : SCATTER_BLOCKS - 1u);
-            direction = gated.applies ? gated.direction : scattered.direction;
-            under_way = gated.applies ? gated.passes : scattered.accepted;
-            status = under_way            ? PATH_ALIVE
-                     : gated.applies      ? PATH_ESCAPED
-                     : scattered.absorbed ? PATH_ABSORBED
-                                          : PATH_NUMERICAL;
-            // What a lossy lobe absorbs is of its own direction alone.
-            bool lobe_lost = scattered.absorbed && scattered.lobe.model != SCATTER_NONE;
-            if (directed && (under_way || lobe_lost)) {
-                Draws draws = draw(exposure.seed, exposure.image, path, first_block + SCATTER_BLOCKS - 1u);
-                GateDisc disc = gate_disc(instrument, specimen.top, origin);
-                real3 aimed = direction_in_disc(disc, draws.u0, draws.u1);
-                real ratio = density_ratio(scattered.lobe, incidence, disc, aimed);
-                selection = offer(selection, ratio / (real(1.0) + ratio), origin, aimed,
-                                  last ? SURVIVOR_TO_TEST : SURVIVOR_TO_TEST | SURVIVOR_TWIN, draws.u2);
-                real own_ratio = density_ratio(scattered.lobe, incidence, disc, direction);
-                own_share = own_ratio > real(0.0) ? own_ratio / (real(1.0) + own_ratio) : real(1.0);
-                own_choice = draws.u3;
-            }
-            if (last) {
-                mark = SURVIVOR_TO_TEST;
-                under_way = false;
-            } else if (under_way) {
-                hit = displaced_hit(VKFV_SCENE exposure, origin, direction);
-                under_way = hit.found == 1u;
-            }
-        } while (++bounce < specimen.max_bounces && under_way);
+    for (int bounce = 0; bounce < specimen.max_bounces && under_way; ++bounce) {
+        uint first_block = 1u + uint(bounce) * SCATTER_BLOCKS;
+        bool last = bounce + 1 == specimen.max_bounces;
+        Incidence incidence = make_incidence(direction, hit.normal);
+        Material material = material_at(VKFV_SCENE specimen, hit.position - displacement(exposure));
+        origin = scatter_origin(hit);
+        GatedScatter gated;
+        gated.applies = false;
+        if (last && !directed) {
+            Draws draws = draw(exposure.seed, exposure.image, path, first_block);
+            gated = scatter_into_gate(scattering_lobe(material, draws), incidence,
+                                      gate_disc(instrument, specimen.top, origin), draws.u0, draws.u1, draws.u2);
+        }
+        Scattered scattered = scatter_by_tries(material, incidence, exposure.seed, exposure.image, path, first_block,
+                                               gated.applies ? 0u : SCATTER_BLOCKS - 1u);
+        direction = gated.applies ? gated.direction : scattered.direction;
+        under_way = gated.applies ? gated.passes : scattered.accepted;
+        status = under_way            ? PATH_ALIVE
+                 : gated.applies      ? PATH_ESCAPED
+                 : scattered.absorbed ? PATH_ABSORBED
+                                      : PATH_NUMERICAL;
+        // What a lossy lobe absorbs is of its own direction alone.
+        bool lobe_lost = scattered.absorbed && scattered.lobe.model != SCATTER_NONE;
+        if (directed && (under_way || lobe_lost)) {
+            Draws draws = draw(exposure.seed, exposure.image, path, first_block + SCATTER_BLOCKS - 1u);
+            GateDisc disc = gate_disc(instrument, specimen.top, origin);
+            real3 aimed = direction_in_disc(disc, draws.u0, draws.u1);
+            real ratio = density_ratio(scattered.lobe, incidence, disc, aimed);
+            selection = offer(selection, ratio / (real(1.0) + ratio), origin, aimed,
+                              last ? SURVIVOR_TO_TEST : SURVIVOR_TO_TEST | SURVIVOR_TWIN, draws.u2);
+            real own_ratio = density_ratio(scattered.lobe, incidence, disc, direction);
+            own_share = own_ratio > real(0.0) ? own_ratio / (real(1.0) + own_ratio) : real(1.0);
+            own_choice = draws.u3;
+        }
+        if (last) {
+            mark = SURVIVOR_TO_TEST;
+            under_way = false;
+        } else if (under_way) {
+            hit = displaced_hit(VKFV_SCENE exposure, origin, direction);
+            under_way = hit.found == 1u;
+        }
+        if (software_device && !under_way) {
+            break;
+        }
     }
     if (status == PATH_ALIVE && !passes_gate(instrument, specimen.top, origin, direction)) {
         status = PATH_ESCAPED;

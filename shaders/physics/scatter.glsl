@@ -83,24 +83,24 @@ VKFV_FUNCTION Scattered scatter_by_tries(Material material, Incidence incidence,
     result.direction = incidence.mirror;
     // Light from behind the surface is a rounding fault (it slipped between facets): not scattered, but counted.
     uint blocks = dot(incidence.incoming, incidence.normal) < real(0.0) ? most_blocks : 0u;
-    uint block = 0u;
-    if (blocks > 0u) {
-        do {
-            Draws draws = draw(seed, image, path, first_block + block);
-            // Of the material, so that host and device ask alike.
-            bool chooses = (scatter_models & SCATTER_CHOICE) != 0u && block == 0u && material.lobe_0.weight < real(1.0);
-            if (chooses) {
-                lobe = scattering_lobe(material, draws);
-                result.absorbed = lobe.model == SCATTER_NONE;
-            }
-            ScatterTry attempt = lobe_try(lobe, incidence, draws.u0, draws.u1, draws.u2);
-            result.absorbed = result.absorbed || (!attempt.accepted && lobe_is_lossy(lobe));
-            if (!attempt.accepted && !result.absorbed && !chooses) {
-                attempt = lobe_try(lobe, incidence, draws.u3, draws.u4, draws.u5);
-            }
-            result.accepted = attempt.accepted;
-            result.direction = attempt.direction;
-        } while (++block < blocks && !result.accepted && !result.absorbed);
+    for (uint block = 0u; block < blocks && !result.accepted && !result.absorbed; ++block) {
+        Draws draws = draw(seed, image, path, first_block + block);
+        // Of the material, so that host and device ask alike.
+        bool chooses = (scatter_models & SCATTER_CHOICE) != 0u && block == 0u && material.lobe_0.weight < real(1.0);
+        if (chooses) {
+            lobe = scattering_lobe(material, draws);
+            result.absorbed = lobe.model == SCATTER_NONE;
+        }
+        ScatterTry attempt = lobe_try(lobe, incidence, draws.u0, draws.u1, draws.u2);
+        result.absorbed = result.absorbed || (!attempt.accepted && lobe_is_lossy(lobe));
+        if (!attempt.accepted && !result.absorbed && !chooses) {
+            attempt = lobe_try(lobe, incidence, draws.u3, draws.u4, draws.u5);
+        }
+        result.accepted = attempt.accepted;
+        result.direction = attempt.direction;
+        if (software_device && (result.accepted || result.absorbed)) {
+            break;
+        }
     }
     result.lobe = lobe;
     return result;

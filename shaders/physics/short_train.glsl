@@ -90,19 +90,17 @@ VKFV_FUNCTION ShortTrain pass_asphere_plainly(Surface surface, ShortTrain before
     real3 point = conic.point;
     real slope_over_r = surface.curvature;
     real normal_z = real(1.0) - surface.curvature * (real(1.0) + surface.conic) * point.z;
-    int step = 0;
-    if ((surface.flags & SURFACE_ASPHERIC) != 0u) {
-        do {
-            Sag sag = asphere_sag(surface, point.x * point.x + point.y * point.y);
-            slope_over_r = sag.slope_over_r;
-            normal_z = real(1.0);
-            real approach = d.z - slope_over_r * (d.x * point.x + d.y * point.y);
-            real further = (sag.sag - point.z) / approach;
-            parameter = parameter + further;
-            point = real3(start.x + parameter * d.x, start.y + parameter * d.y, parameter * d.z);
-            bool near = step == 0 || abs(further * d.z) < PLAIN_NEWTON_LAST;
-            sound = sound && sag.defined && approach > real(0.0) && near;
-        } while (++step < PLAIN_NEWTON_STEPS);
+    int steps = (surface.flags & SURFACE_ASPHERIC) != 0u ? PLAIN_NEWTON_STEPS : 0;
+    for (int step = 0; step < steps; ++step) {
+        Sag sag = asphere_sag(surface, point.x * point.x + point.y * point.y);
+        slope_over_r = sag.slope_over_r;
+        normal_z = real(1.0);
+        real approach = d.z - slope_over_r * (d.x * point.x + d.y * point.y);
+        real further = (sag.sag - point.z) / approach;
+        parameter = parameter + further;
+        point = real3(start.x + parameter * d.x, start.y + parameter * d.y, parameter * d.z);
+        bool near = step == 0 || abs(further * d.z) < PLAIN_NEWTON_LAST;
+        sound = sound && sag.defined && approach > real(0.0) && near;
     }
     real nx = slope_over_r * point.x;
     real ny = slope_over_r * point.y;
@@ -190,11 +188,8 @@ VKFV_SCENE_FUNCTION VKFV_FUNCTION TrainResult trace_short_train_by_loop(VKFV_SCE
         result = trace_train_by_loop(VKFV_SCENE first, count, ray, index, true, light);
     } else {
         ShortTrain way = enter_short_train(ray, index);
-        int i = 0;
-        if (count > 0) {
-            do {
-                way = pass_surface(surface_at(VKFV_SCENE first + i), way, light, present, form);
-            } while (++i < count);
+        for (int i = first; i < first + count; ++i) {
+            way = pass_surface(surface_at(VKFV_SCENE i), way, light, present, form);
         }
         result = leave_short_train(VKFV_SCENE first, count, ray, index, light, way);
     }

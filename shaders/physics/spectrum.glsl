@@ -41,15 +41,13 @@ VKFV_FUNCTION real wavelength_in_bin(SpectralBin bin, real u) {
 VKFV_SCENE_FUNCTION VKFV_FUNCTION Light draw_light(VKFV_SCENE_PARAMETER Instrument instrument, real u) {
     int first = 0;
     int last = instrument.spectral_bins - 1;
-    if (first < last) {
-        do {
-            int middle = (first + last) / 2;
-            if (u <= spectral_bin(VKFV_SCENE middle).cumulative) {
-                last = middle;
-            } else {
-                first = middle + 1;
-            }
-        } while (first < last);
+    while (first < last) {
+        int middle = (first + last) / 2;
+        if (u <= spectral_bin(VKFV_SCENE middle).cumulative) {
+            last = middle;
+        } else {
+            first = middle + 1;
+        }
     }
     SpectralBin bin = spectral_bin(VKFV_SCENE first);
     real before = real(0.0);

@@ -194,25 +194,23 @@ VKFV_SCENE_FUNCTION VKFV_FUNCTION Hit march_surface(VKFV_SCENE_PARAMETER Specime
     real s = real(0.0);        // distance from start
     real previous = real(0.0); // on the ray's side of the surface
     bool met = false;
-    bool under_way = true;
-    int steps = 0;
-    do {
+    for (int step = 0; step < MARCH_STEPS + MARCH_COARSE_STEPS; ++step) {
         real rate = side * (direction.z - surface.slope_x * direction.x - surface.slope_y * direction.y);
         // A ray that leaves a point of the surface is within rounding of it, but not approaching.
         met = gap < -rounding || (gap <= rounding && rate < -undecided);
-        under_way = !met && closing > real(0.0) && s < way;
-        if (under_way) {
-            real forward = max(gap, rounding) / closing;
-            if (steps >= MARCH_STEPS) {
-                forward = max(forward, way / real(MARCH_COARSE_STEPS));
-            }
-            previous = s;
-            s = min(max(s + forward, s * (real(1.0) + real(2.0) * SURFACE_EPSILON)), way);
-            real3 point = start + s * direction;
-            surface = surface_height(VKFV_SCENE specimen, point.x, point.y);
-            gap = side * (point.z - surface.height);
+        if (met || closing <= real(0.0) || s >= way) {
+            break;
         }
-    } while (under_way && ++steps < MARCH_STEPS + MARCH_COARSE_STEPS);
+        real forward = max(gap, rounding) / closing;
+        if (step >= MARCH_STEPS) {
+            forward = max(forward, way / real(MARCH_COARSE_STEPS));
+        }
+        previous = s;
+        s = min(max(s + forward, s * (real(1.0) + real(2.0) * SURFACE_EPSILON)), way);
+        real3 point = start + s * direction;
+        surface = surface_height(VKFV_SCENE specimen, point.x, point.y);
+        gap = side * (point.z - surface.height);
+    }
     if (!met) {
         return result;
     }
@@ -220,22 +218,19 @@ VKFV_SCENE_FUNCTION VKFV_FUNCTION Hit march_surface(VKFV_SCENE_PARAMETER Specime
     // Newton's method, held between the last point before the surface and the first behind it by bisection.
     real lower = previous;
     real upper = s;
-    int step = 0;
-    if (abs(gap) > rounding && upper > lower) {
-        do {
-            real rate = side * (direction.z - surface.slope_x * direction.x - surface.slope_y * direction.y);
-            real newton = s - gap / rate;
-            bool held = (step & 1) == 0 && newton > lower && newton < upper;
-            s = held ? newton : real(0.5) * (lower + upper);
-            real3 point = start + s * direction;
-            surface = surface_height(VKFV_SCENE specimen, point.x, point.y);
-            gap = side * (point.z - surface.height);
-            if (gap < real(0.0)) {
-                upper = s;
-            } else {
-                lower = s;
-            }
-        } while (++step < MARCH_POLISH_STEPS && abs(gap) > rounding && upper > lower);
+    for (int step = 0; step < MARCH_POLISH_STEPS && abs(gap) > rounding && upper > lower; ++step) {
+        real rate = side * (direction.z - surface.slope_x * direction.x - surface.slope_y * direction.y);
+        real newton = s - gap / rate;
+        bool held = (step & 1) == 0 && newton > lower && newton < upper;
+        s = held ? newton : real(0.5) * (lower + upper);
+        real3 point = start + s * direction;
+        surface = surface_height(VKFV_SCENE specimen, point.x, point.y);
+        gap = side * (point.z - surface.height);
+        if (gap < real(0.0)) {
+            upper = s;
+        } else {
+            lower = s;
+        }
     }
     real3 point = start + s * direction;
     result.found = 1u;

@@ -122,13 +122,10 @@ VKFV_FUNCTION TrainResult enter_train(Ray ray, real index) {
 VKFV_SCENE_FUNCTION VKFV_FUNCTION TrainResult trace_train_by_loop(VKFV_SCENE_PARAMETER int first, int count, Ray ray,
                                                                   real index, bool apertures, Light light) {
     TrainResult result = enter_train(ray, index);
-    int i = first;
-    if (count > 0) {
-        do {
-            Surface surface = surface_at(VKFV_SCENE i);
-            result = trace_surface(surface, i, result, apertures, light, features(VKFV_SCENE_ALONE));
-            result = pass_light_field(VKFV_SCENE surface, i, result, light);
-        } while (++i < first + count);
+    for (int i = first; i < first + count; ++i) {
+        Surface surface = surface_at(VKFV_SCENE i);
+        result = trace_surface(surface, i, result, apertures, light, features(VKFV_SCENE_ALONE));
+        result = pass_light_field(VKFV_SCENE surface, i, result, light);
     }
     return result;
 }
