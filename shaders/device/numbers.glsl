@@ -40,7 +40,6 @@ const uint CONSTANT_HITS_WAY = 8u;
 const uint CONSTANT_FALLING_CELLS = 9u;
 const uint CONSTANT_RIM_PERIOD = 10u;
 const uint CONSTANT_SURE_CANDIDATES = 11u;
-const uint CONSTANT_SOFTWARE = 17u;
 
 // Where the halves of the forward trace may end early, for timing alone.
 const uint STOP_NOWHERE = 0u;

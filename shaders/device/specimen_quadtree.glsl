@@ -170,9 +170,7 @@ void walk_cells(inout CellWalk walk, GridRay ray, real stop) {
         bool inside = uint(walk.cell.x) < uint(ray.cells.x) && uint(walk.cell.y) < uint(ray.cells.y);
         walk.under_way = !walk.found && inside && leave < stop;
         walk.t = leave;
-        if (software_device && !walk.under_way) {
-            break;
-        }
+        VKFV_LEAVE_IF(!walk.under_way);
     }
 }
 
@@ -241,9 +239,7 @@ Hit specimen_hit(real3 origin, real3 direction) {
             walk.t = fine.t;
             walk.side = fine.over ? real(1.0) : walk.side;
             free = fine.open && walk.t < stop;
-            if (software_device && !free) {
-                break;
-            }
+            VKFV_LEAVE_IF(!free);
         }
         walk.under_way = walk.t <= stop;
         if (specimen_kind == SPECIMEN_ANALYTIC && walk.under_way) {
@@ -258,9 +254,7 @@ Hit specimen_hit(real3 origin, real3 direction) {
             walk.cell = cell_at(ray, walk.t);
             walk_cells(walk, ray, stop);
         }
-        if (software_device && !walk.under_way) {
-            break;
-        }
+        VKFV_LEAVE_IF(!walk.under_way);
     }
     if (specimen_kind == SPECIMEN_FACETS && walk.found) {
         hit = facet_hit(walk, ray, start, direction);

@@ -74,10 +74,12 @@ void main() {
                     add_cell_light(path_cell, in_units(value));
                 }
                 room = query_count <= most_queries && point + 1u < batch.chunk_points;
-                if (software_device && !room) {
+#ifdef VKFV_SOFTWARE
+                if (!room) {
                     ++point;
                     break;
                 }
+#endif
             }
             for (uint k = 0u; k < query_count; ++k) {
                 real value = trace_to_source(known_instrument(), known_specimen(), exposure, queries[k]);
@@ -85,14 +87,10 @@ void main() {
                 if (sorts_light && value > real(0.0)) {
                     add_cell_light(query_cells[k], in_units(value));
                 }
-                if (software_device && k + 1u >= query_count) {
-                    break;
-                }
+                VKFV_LEAVE_IF(k + 1u >= query_count);
             }
             query_count = 0u;
-            if (software_device && point >= batch.chunk_points) {
-                break;
-            }
+            VKFV_LEAVE_IF(point >= batch.chunk_points);
         }
         atomicAdd(pixels[pixel], in_units(sum));
     }

@@ -47,9 +47,7 @@ void main() {
         } else {
             tally_fate(detection.fate, weight);
         }
-        if (software_device && index + stride >= survivor_count) {
-            break;
-        }
+        VKFV_LEAVE_IF(index + stride >= survivor_count);
     }
     tally_flush();
 }

@@ -3,7 +3,6 @@
 #ifdef VKFV_SPECIALISED
 #include "device/prescription.glsl"
 #endif
-#include "physics/software.glsl"
 #include "physics/random.glsl"
 #include "physics/emission_cell.glsl"
 #include "physics/spectrum.glsl"

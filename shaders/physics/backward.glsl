@@ -471,9 +471,7 @@ VKFV_SCENE_FUNCTION VKFV_FUNCTION real trace_backward(VKFV_SCENE_PARAMETER Instr
                     value = value + seen_light;
                 }
             }
-            if (software_device && (part == 1u || !looks_further)) {
-                break;
-            }
+            VKFV_LEAVE_IF(part == 1u || !looks_further);
         }
         if (under_way) {
             if (!delta) {
@@ -491,9 +489,7 @@ VKFV_SCENE_FUNCTION VKFV_FUNCTION real trace_backward(VKFV_SCENE_PARAMETER Instr
             }
             under_way = hit.found == 1u && dot(direction, hit.normal) < real(0.0);
         }
-        if (software_device && !under_way) {
-            break;
-        }
+        VKFV_LEAVE_IF(!under_way);
     }
     return value;
 }

@@ -16,6 +16,17 @@
 #define VKFV_SCENE_PARAMETER
 #define VKFV_SCENE
 #define VKFV_SCENE_ALONE
+// At the end of a loop that lanes leave one by one. Where lanes are elements of a CPU's registers, an `if` that none
+// takes is passed over, but a loop that asks first whether to go on runs one more round, for none: kernels for software
+// devices ask at the end too. A GPU's lanes would then meet again elsewhere, and an H100 take half as long again.
+#ifdef VKFV_SOFTWARE
+#define VKFV_LEAVE_IF(condition) \
+    if (condition) { \
+        break; \
+    }
+#else
+#define VKFV_LEAVE_IF(condition)
+#endif
 #define VKFV_DECLARE(type, name) type name;
 #define VKFV_DECLARE_ARRAY(type, name, size) type name[size];
 #define VKFV_DECLARE_KNOWN(k, place, type, name) type name;

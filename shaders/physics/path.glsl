@@ -344,9 +344,7 @@ VKFV_SCENE_FUNCTION VKFV_FUNCTION Departure scatter_at_specimen(VKFV_SCENE_PARAM
             hit = displaced_hit(VKFV_SCENE exposure, origin, direction);
             under_way = hit.found == 1u;
         }
-        if (software_device && !under_way) {
-            break;
-        }
+        VKFV_LEAVE_IF(!under_way);
     }
     if (status == PATH_ALIVE && !passes_gate(instrument, specimen.top, origin, direction)) {
         status = PATH_ESCAPED;

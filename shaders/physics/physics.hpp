@@ -29,6 +29,7 @@
 #define VKFV_SCENE_PARAMETER const Scene &scene,
 #define VKFV_SCENE scene,
 #define VKFV_SCENE_ALONE scene
+#define VKFV_LEAVE_IF(condition)
 #define VKFV_DECLARE(type, name) type name;
 #define VKFV_DECLARE_ARRAY(type, name, size) type name[size];
 #define VKFV_DECLARE_KNOWN(k, place, type, name) type name;
@@ -81,6 +82,7 @@ VKFV_PHYSICS_LANGUAGE
 #undef VKFV_SCENE_PARAMETER
 #undef VKFV_SCENE
 #undef VKFV_SCENE_ALONE
+#undef VKFV_LEAVE_IF
 #undef VKFV_DECLARE
 #undef VKFV_DECLARE_ARRAY
 #undef VKFV_DECLARE_KNOWN

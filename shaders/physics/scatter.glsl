@@ -98,9 +98,7 @@ VKFV_FUNCTION Scattered scatter_by_tries(Material material, Incidence incidence,
         }
         result.accepted = attempt.accepted;
         result.direction = attempt.direction;
-        if (software_device && (result.accepted || result.absorbed)) {
-            break;
-        }
+        VKFV_LEAVE_IF(result.accepted || result.absorbed);
     }
     result.lobe = lobe;
     return result;

@@ -3,9 +3,11 @@
 #include "spirv/backward_bvh.h"
 #include "spirv/backward_quadtree.h"
 #include "spirv/backward_ray_query.h"
+#include "spirv/backward_software.h"
 #include "spirv/backward_specialised_bvh.h"
 #include "spirv/backward_specialised_quadtree.h"
 #include "spirv/backward_specialised_ray_query.h"
+#include "spirv/backward_specialised_software.h"
 #include "trace/device_numbers.hpp"
 #include "trace/wave_image.hpp"
 
@@ -62,9 +64,14 @@ std::vector<vulkan::SpecializationConstant> constants(const DeviceScene& scene,
 }
 
 std::span<const std::uint32_t> variant(const DeviceScene& scene) {
-    return scene.specialised
-               ? scene.variant(backward_specialised_quadtree, backward_specialised_ray_query, backward_specialised_bvh)
-               : scene.variant(backward_quadtree, backward_ray_query, backward_bvh);
+    return scene.variant(scene.specialised ? KernelVariants{.quadtree = backward_specialised_quadtree,
+                                                            .software = backward_specialised_software,
+                                                            .ray_query = backward_specialised_ray_query,
+                                                            .bvh = backward_specialised_bvh}
+                                           : KernelVariants{.quadtree = backward_quadtree,
+                                                            .software = backward_software,
+                                                            .ray_query = backward_ray_query,
+                                                            .bvh = backward_bvh});
 }
 
 } // namespace

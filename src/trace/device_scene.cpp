@@ -125,6 +125,7 @@ DeviceScene make_device_scene(const optics::Instrument& instrument, const specim
                                 [seen, &options, opened] { return make_waves(*seen, *options.waves, opened); });
     }
     auto device = opened.get();
+    const bool software = vulkan::is_software(device->report());
     const bool specialised = pays_in_constants(*device, instrument, options);
     std::future<std::optional<physics::f64::TrainPolynomials>> polynomials;
     if (specialised && options.illumination_polynomials && options.estimator == Estimator::forward &&
@@ -170,6 +171,7 @@ DeviceScene make_device_scene(const optics::Instrument& instrument, const specim
                       .seed = options.seed,
                       .rays = options.rays,
                       .specialised = specialised,
+                      .for_software = options.for_software.value_or(software),
                       .room = std::move(room),
                       .accounts = std::move(accounts),
                       .features = instrument.features |
@@ -341,12 +343,11 @@ std::vector<vulkan::SpecializationConstant> DeviceScene::illumination_polynomial
     return all;
 }
 
-std::span<const std::uint32_t> DeviceScene::variant(std::span<const std::uint32_t> by_quadtree,
-                                                    std::span<const std::uint32_t> by_ray_query,
-                                                    std::span<const std::uint32_t> by_bvh) const {
-    return traversal.traversal == Traversal::ray_query ? by_ray_query
-           : traversal.traversal == Traversal::bvh     ? by_bvh
-                                                       : by_quadtree;
+std::span<const std::uint32_t> DeviceScene::variant(const KernelVariants& kernel) const {
+    return traversal.traversal == Traversal::ray_query ? kernel.ray_query
+           : traversal.traversal == Traversal::bvh     ? kernel.bvh
+           : for_software                              ? kernel.software
+                                                       : kernel.quadtree;
 }
 
 TracerIdentity DeviceScene::identity() const {

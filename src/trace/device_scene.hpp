@@ -41,6 +41,14 @@ struct EmissionBuffers {
     std::vector<vulkan::Buffer> first_paths_of_slots; // as the host wrote them
 };
 
+// SPIR-V of one kernel.
+struct KernelVariants {
+    std::span<const std::uint32_t> quadtree;
+    std::span<const std::uint32_t> software; // the quadtree as software devices run it faster (VKFV_LEAVE_IF)
+    std::span<const std::uint32_t> ray_query;
+    std::span<const std::uint32_t> bvh;
+};
+
 // make_device_scene() makes it. The instrument must outlive it.
 struct DeviceScene {
     // Of the paths of an image, of which there are as many; what is recorded from the next set_exposure() on has it.
@@ -69,10 +77,8 @@ struct DeviceScene {
     // Of shaders/device/train_polynomials.glsl; empty where the illumination is traced surface by surface.
     std::vector<vulkan::SpecializationConstant> illumination_polynomials() const;
 
-    // The variant of a kernel for the traversal.
-    std::span<const std::uint32_t> variant(std::span<const std::uint32_t> by_quadtree,
-                                           std::span<const std::uint32_t> by_ray_query,
-                                           std::span<const std::uint32_t> by_bvh) const;
+    // That for the traversal, and for the device.
+    std::span<const std::uint32_t> variant(const KernelVariants& kernel) const;
     // Of an instrument that paths run through in this scene's direction.
     TracerIdentity identity() const;
     std::optional<optics::PupilFilter> filter() const; // of images as waves make them
@@ -85,6 +91,7 @@ struct DeviceScene {
     std::uint32_t seed;
     std::uint64_t rays; // of an image
     bool specialised;   // forward and backward kernels have the instrument as constants
+    bool for_software;  // and those by the quadtree are of the form for software devices
     optics::Room room;  // of elements; without any for sequential paths
     Accounts accounts;
     std::uint32_t features;                                     // FEATURE_* of instrument, trace and specimen

@@ -333,8 +333,7 @@ ChosenTraversal choose_traversal(const vulkan::DeviceReport& device, const speci
 
 DeviceSpecimen::DeviceSpecimen(const vulkan::Device& device, const specimen::Specimen& specimen, Traversal traversal,
                                std::span<const vulkan::Box> elements)
-    : record_(to_float(specimen::record(specimen, 0))), software_(vulkan::is_software(device.report())),
-      has_reflectance_map_(specimen.reflectance.has_value()) {
+    : record_(to_float(specimen::record(specimen, 0))), has_reflectance_map_(specimen.reflectance.has_value()) {
     if (traversal == Traversal::automatic) {
         throw std::logic_error("DeviceSpecimen takes a traversal that has been chosen");
     }
@@ -428,8 +427,7 @@ std::vector<vulkan::SpecializationConstant> DeviceSpecimen::constants() const {
     }
     return {{kernels::CONSTANT_SPECIMEN_KIND, record_.kind},
             {kernels::CONSTANT_SCATTER_MODELS, models},
-            {kernels::CONSTANT_FALLING_CELLS, has_falling_cells_ ? 1U : 0U},
-            {kernels::CONSTANT_SOFTWARE, software_ ? 1U : 0U}};
+            {kernels::CONSTANT_FALLING_CELLS, has_falling_cells_ ? 1U : 0U}};
 }
 
 physics::f32::SpecimenRecord DeviceSpecimen::record(int max_bounces) const {

@@ -37,7 +37,7 @@ class DeviceSpecimen {
 
     std::vector<vulkan::Binding> bindings() const; // valid as long as this object, also when it is moved
     std::vector<vulkan::BindingDeclaration> declarations() const;
-    std::vector<vulkan::SpecializationConstant> constants() const; // of the specimen, and the kind of device
+    std::vector<vulkan::SpecializationConstant> constants() const; // the specimen's kind and its scatter models
     // In float; bottom and top still enclose the surface.
     physics::f32::SpecimenRecord record(int max_bounces) const;
     std::size_t bytes() const; // device memory taken
@@ -47,7 +47,6 @@ class DeviceSpecimen {
 
   private:
     physics::f32::SpecimenRecord record_{};
-    bool software_ = false; // device
     bool has_reflectance_map_ = false;
     bool has_falling_cells_ = false;                  // of a mesh that is a height field: mesh_lattice.hpp
     std::map<std::uint32_t, vulkan::Buffer> buffers_; // by slot

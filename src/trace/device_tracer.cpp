@@ -203,8 +203,14 @@ std::vector<PathEnd> device_paths(const optics::Instrument& instrument, const sp
     const bool nonsequential = options.nonsequential;
     const vulkan::Kernel kernel(
         *scene.device, "probe_paths",
-        nonsequential ? scene.variant({}, probe_nonsequential_ray_query, probe_nonsequential_bvh)
-                      : scene.variant(probe_paths_quadtree, probe_paths_ray_query, probe_paths_bvh),
+        scene.variant(nonsequential ? KernelVariants{.quadtree = {},
+                                                     .software = {},
+                                                     .ray_query = probe_nonsequential_ray_query,
+                                                     .bvh = probe_nonsequential_bvh}
+                                    : KernelVariants{.quadtree = probe_paths_quadtree,
+                                                     .software = probe_paths_quadtree,
+                                                     .ray_query = probe_paths_ray_query,
+                                                     .bvh = probe_paths_bvh}),
         nonsequential ? scene.declarations({kernels::BINDING_FOUND})
                       : scene.declarations(
                             {kernels::BINDING_FOUND, kernels::BINDING_EMISSION_CELLS, kernels::BINDING_EMISSION_FIRST}),

@@ -3,15 +3,19 @@
 #include "spirv/forward_illumination_bvh.h"
 #include "spirv/forward_illumination_quadtree.h"
 #include "spirv/forward_illumination_ray_query.h"
+#include "spirv/forward_illumination_software.h"
 #include "spirv/forward_illumination_specialised_bvh.h"
 #include "spirv/forward_illumination_specialised_quadtree.h"
 #include "spirv/forward_illumination_specialised_ray_query.h"
+#include "spirv/forward_illumination_specialised_software.h"
 #include "spirv/forward_imaging_bvh.h"
 #include "spirv/forward_imaging_quadtree.h"
 #include "spirv/forward_imaging_ray_query.h"
+#include "spirv/forward_imaging_software.h"
 #include "spirv/forward_imaging_specialised_bvh.h"
 #include "spirv/forward_imaging_specialised_quadtree.h"
 #include "spirv/forward_imaging_specialised_ray_query.h"
+#include "spirv/forward_imaging_specialised_software.h"
 
 namespace vkfv::trace {
 
@@ -32,16 +36,25 @@ std::vector<vulkan::SpecializationConstant> constants_for(const DeviceScene& sce
 }
 
 std::span<const std::uint32_t> illumination_variant(const DeviceScene& scene) {
-    return scene.specialised
-               ? scene.variant(forward_illumination_specialised_quadtree, forward_illumination_specialised_ray_query,
-                               forward_illumination_specialised_bvh)
-               : scene.variant(forward_illumination_quadtree, forward_illumination_ray_query, forward_illumination_bvh);
+    return scene.variant(scene.specialised ? KernelVariants{.quadtree = forward_illumination_specialised_quadtree,
+                                                            .software = forward_illumination_specialised_software,
+                                                            .ray_query = forward_illumination_specialised_ray_query,
+                                                            .bvh = forward_illumination_specialised_bvh}
+                                           : KernelVariants{.quadtree = forward_illumination_quadtree,
+                                                            .software = forward_illumination_software,
+                                                            .ray_query = forward_illumination_ray_query,
+                                                            .bvh = forward_illumination_bvh});
 }
 
 std::span<const std::uint32_t> imaging_variant(const DeviceScene& scene) {
-    return scene.specialised ? scene.variant(forward_imaging_specialised_quadtree,
-                                             forward_imaging_specialised_ray_query, forward_imaging_specialised_bvh)
-                             : scene.variant(forward_imaging_quadtree, forward_imaging_ray_query, forward_imaging_bvh);
+    return scene.variant(scene.specialised ? KernelVariants{.quadtree = forward_imaging_specialised_quadtree,
+                                                            .software = forward_imaging_specialised_software,
+                                                            .ray_query = forward_imaging_specialised_ray_query,
+                                                            .bvh = forward_imaging_specialised_bvh}
+                                           : KernelVariants{.quadtree = forward_imaging_quadtree,
+                                                            .software = forward_imaging_software,
+                                                            .ray_query = forward_imaging_ray_query,
+                                                            .bvh = forward_imaging_bvh});
 }
 
 std::vector<vulkan::SpecializationConstant> illumination_constants(const DeviceScene& scene, std::uint32_t stop_after) {

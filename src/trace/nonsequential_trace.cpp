@@ -12,7 +12,9 @@ kernels::NonsequentialBatch make_nonsequential_batch(const DeviceScene& scene, s
 
 NonsequentialTrace::NonsequentialTrace(const DeviceScene& scene, std::uint32_t batch)
     : PathTrace(scene, batch),
-      kernel_(*scene.device, "nonsequential", scene.variant({}, nonsequential_ray_query, nonsequential_bvh),
+      kernel_(*scene.device, "nonsequential",
+              scene.variant(
+                  {.quadtree = {}, .software = {}, .ray_query = nonsequential_ray_query, .bvh = nonsequential_bvh}),
               scene.declarations({kernels::BINDING_PIXELS, kernels::BINDING_LEDGER}),
               sizeof(kernels::NonsequentialBatch), scene.kernel_constants()) {}
 

@@ -36,6 +36,7 @@ struct TraceOptions {
     bool nonsequential = false;      // light finds its own way, and interfaces split it
     bool directed_scatter = false;   // forward, sequential: every bounce also aims at the pupil, and light has weights
     std::optional<bool> instrument_in_constants; // of the forward kernels; none: where it pays
+    std::optional<bool> for_software;            // the kernels' form for such devices; none: as the device is
     bool illumination_polynomials = true;        // where it is in constants: optics/train_polynomials.hpp
     std::optional<optics::WaveOptions> waves;    // sequential: images as waves make them; none: as rays do
 };
