@@ -1,5 +1,6 @@
 #include "trace/backward_image.hpp"
 
+#include "core/parallel_rows.hpp"
 #include "core/units.hpp"
 #include "trace/lattice_generators.hpp"
 #include "trace/ledger.hpp"
@@ -8,7 +9,7 @@
 #include <bit>
 #include <cmath>
 #include <functional>
-#include <iterator>
+#include <numeric>
 #include <ranges>
 
 namespace vkfv::trace {
@@ -66,7 +67,7 @@ physics::f64::BackwardOptics backward_optics(const optics::Instrument& instrumen
 
 BackwardImage::BackwardImage(const optics::Instrument& instrument, const BackwardPlan& plan)
     : plan_(plan), flux_(instrument.flux), pixels_(instrument.detector_pixels()) {
-    sums_.resize(plan.randomisations * pixels_.count());
+    sums_.resize(plan.randomisations);
     const auto& constants = instrument.constants;
     const bool is_ring = (instrument.features & physics::f64::FEATURE_RING) != 0;
     const bool is_rectangle = (instrument.features & physics::f64::FEATURE_RECTANGLE) != 0;
@@ -84,8 +85,30 @@ BackwardImage::BackwardImage(const optics::Instrument& instrument, const Backwar
 }
 
 void BackwardImage::add(std::uint32_t randomisation, std::span<const std::uint64_t> sums) {
-    const auto begin = sums_.begin() + static_cast<std::ptrdiff_t>(randomisation * sums.size());
-    std::ranges::transform(sums, std::ranges::subrange(begin, begin + std::ssize(sums)), begin, std::plus<>());
+    auto& so_far = sums_.at(randomisation);
+    if (so_far.empty()) {
+        so_far.assign(sums.begin(), sums.end());
+    } else {
+        std::ranges::transform(sums, so_far, so_far.begin(), std::plus<>());
+    }
+}
+
+std::vector<std::uint64_t> BackwardImage::numbers() const {
+    std::vector<std::uint64_t> all(number_count());
+    auto to = all.begin();
+    for (const auto& of_one : sums_) {
+        std::ranges::copy(of_one, to);
+        to += static_cast<std::ptrdiff_t>(pixels_.count());
+    }
+    return all;
+}
+
+void BackwardImage::set(std::span<const std::uint64_t> numbers) {
+    for (auto& of_one : sums_) {
+        const auto own = numbers.first(pixels_.count());
+        of_one.assign(own.begin(), own.end());
+        numbers = numbers.subspan(pixels_.count());
+    }
 }
 
 double BackwardImage::power_per_number() const {
@@ -98,22 +121,24 @@ Image BackwardImage::image() const {
     image.standard_error = Grid<double>(pixels_.columns, pixels_.rows);
     const double count = plan_.randomisations;
     const double unit = 1.0 / (static_cast<double>(physics::f64::BACKWARD_UNIT) * plan_.points);
-    const std::size_t pixels = image.flux.values.size();
-    double detected = 0;
-    for (std::size_t pixel = 0; pixel < pixels; ++pixel) {
-        double sum = 0, squares = 0; // of the randomisations' means
-        for (std::size_t k = pixel; k < sums_.size(); k += pixels) {
-            const double of_one = unit * static_cast<double>(sums_[k]);
-            sum += of_one;
-            squares += of_one * of_one;
+    parallel_rows(pixels_.columns, pixels_.rows, [&](int first_row, int end_row) {
+        const std::size_t end = image.flux.index(0, end_row);
+        for (std::size_t pixel = image.flux.index(0, first_row); pixel < end; ++pixel) {
+            double sum = 0, squares = 0; // of the randomisations' means
+            for (const auto& sums : sums_) {
+                const double of_one = sums.empty() ? 0.0 : unit * static_cast<double>(sums[pixel]);
+                sum += of_one;
+                squares += of_one * of_one;
+            }
+            const double mean = sum / count;
+            const double variance = std::max(0.0, squares / count - mean * mean) / (count - 1);
+            image.flux.values[pixel] = scale_ * mean;
+            image.standard_error.values[pixel] = scale_ * std::sqrt(variance);
         }
-        const double mean = sum / count;
-        const double variance = std::max(0.0, squares / count - mean * mean) / (count - 1);
-        image.flux.values[pixel] = scale_ * mean;
-        image.standard_error.values[pixel] = scale_ * std::sqrt(variance);
-        detected += image.flux.values[pixel];
-    }
-    image.rays = plan_.rays_per_pixel() * pixels;
+    });
+    // In this order, for the same bits on any number of cores.
+    const double detected = std::accumulate(image.flux.values.begin(), image.flux.values.end(), 0.0);
+    image.rays = plan_.rays_per_pixel() * pixels_.count();
     image.detected = image.rays;
     image.ledger.emitted = flux_;
     image.ledger.entries = {plain_entry(Ledger::Status::detected, detected, image.rays),

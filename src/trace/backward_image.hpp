@@ -33,11 +33,12 @@ class BackwardImage {
   public:
     BackwardImage(const optics::Instrument& instrument, const BackwardPlan& plan);
 
-    // sums: of the values of some points, in 1 / BACKWARD_UNIT.
+    // sums: a pixel's each, of the values of some points, in 1 / BACKWARD_UNIT.
     void add(std::uint32_t randomisation, std::span<const std::uint64_t> sums);
     // The sums, a randomisation after the other.
-    const std::vector<std::uint64_t>& numbers() const { return sums_; }
-    void set(std::span<const std::uint64_t> numbers) { sums_.assign(numbers.begin(), numbers.end()); }
+    std::vector<std::uint64_t> numbers() const;
+    std::size_t number_count() const { return sums_.size() * pixels_.count(); }
+    void set(std::span<const std::uint64_t> numbers);
     // W on the detector for each unit of the sums of all randomisations.
     double power_per_number() const;
     // Detected power alone stands in its ledger: what becomes of the rest, backward paths do not see.
@@ -48,7 +49,7 @@ class BackwardImage {
     double flux_;  // W, emitted
     double scale_; // W, of a pixel whose values' mean is 1
     ImageSize pixels_;
-    std::vector<std::uint64_t> sums_;
+    std::vector<std::vector<std::uint64_t>> sums_; // of each randomisation; none of one that nothing was added to
 };
 
 } // namespace vkfv::trace

@@ -165,13 +165,13 @@ class BackwardTracer::Exposure final : public SingleExposure {
 
     void set_out(std::span<const std::uint64_t> numbers) override {
         if (!numbers.empty()) {
-            sums_.set(numbers.first(sums_.numbers().size()));
-            tracer_.light_.write(work, numbers.subspan(sums_.numbers().size()));
+            sums_.set(numbers.first(sums_.number_count()));
+            tracer_.light_.write(work, numbers.subspan(sums_.number_count()));
             clears_light_ = false;
         }
     }
 
-    std::size_t number_count() const override { return sums_.numbers().size() + tracer_.light_.count(); }
+    std::size_t number_count() const override { return sums_.number_count() + tracer_.light_.count(); }
     std::vector<std::uint64_t> numbers() override {
         if (on_device_) {
             take_from_device(work.open());

@@ -1,5 +1,7 @@
 #include "trace/ledger.hpp"
 
+#include "core/parallel_rows.hpp"
+
 #include <algorithm>
 #include <cmath>
 #include <utility>
@@ -207,15 +209,18 @@ Image Accounts::image(std::span<const std::uint64_t> pixel_numbers, std::span<co
     Image image;
     image.flux = Grid<double>(pixels_.columns, pixels_.rows);
     image.standard_error = Grid<double>(pixels_.columns, pixels_.rows);
-    for (std::size_t pixel = 0; pixel < image.flux.values.size(); ++pixel) {
-        // In rays of weight 1; the square of a count's weight is the weight.
-        const double sum = weighted_ ? static_cast<double>(pixel_numbers[2 * pixel]) / WEIGHT_ONE
-                                     : static_cast<double>(pixel_numbers[pixel]);
-        const double squares = weighted_ ? static_cast<double>(pixel_numbers[2 * pixel + 1]) / 16777216.0 : sum;
-        image.flux.values[pixel] = per_ray * sum;
-        image.standard_error.values[pixel] =
-            per_ray * std::sqrt(std::max(squares - sum * sum / static_cast<double>(rays), 0.0));
-    }
+    parallel_rows(pixels_.columns, pixels_.rows, [&](int first_row, int end_row) {
+        const std::size_t end = image.flux.index(0, end_row);
+        for (std::size_t pixel = image.flux.index(0, first_row); pixel < end; ++pixel) {
+            // In rays of weight 1; the square of a count's weight is the weight.
+            const double sum = weighted_ ? static_cast<double>(pixel_numbers[2 * pixel]) / WEIGHT_ONE
+                                         : static_cast<double>(pixel_numbers[pixel]);
+            const double squares = weighted_ ? static_cast<double>(pixel_numbers[2 * pixel + 1]) / 16777216.0 : sum;
+            image.flux.values[pixel] = per_ray * sum;
+            image.standard_error.values[pixel] =
+                per_ray * std::sqrt(std::max(squares - sum * sum / static_cast<double>(rays), 0.0));
+        }
+    });
     image.ledger = ledger(ledger_numbers, rays);
     image.rays = rays;
     image.detected = ledger_numbers[PATH_DETECTED];
