@@ -16,10 +16,10 @@
 #define VKFV_SCENE_PARAMETER
 #define VKFV_SCENE
 #define VKFV_SCENE_ALONE
-// At the end of a loop that lanes leave one by one. Where lanes are elements of a CPU's registers (lavapipe of Mesa 25),
-// an `if` that none takes is passed over, but a loop that asks first whether to go on runs one more round, for none:
-// kernels for software devices ask at the end too. A GPU's lanes would then meet again elsewhere, and an H100 takes two
-// fifths longer.
+// At the end of a loop that lanes leave one by one. Where lanes are elements of a CPU's registers (lavapipe of Mesa
+// 25), an `if` that none takes is passed over, but a loop that asks first whether to go on runs one more round, for
+// none: kernels for software devices ask at the end too. A GPU's lanes would then meet again elsewhere, and an H100
+// takes two fifths longer.
 #ifdef VKFV_SOFTWARE
 #define VKFV_LEAVE_IF(condition) \
     if (condition) { \
