@@ -59,11 +59,29 @@ std::pair<double, double> crossings(const Outline& outline, double curvature) {
     return {least, most};
 }
 
-// The exit pupil as the detector sees it: where chief rays come from, and the widest cone about them.
+// The exit pupil as the detector sees it: a disc of slopes about per_position times the position.
 struct ExitPupil {
     double per_position = 0; // how the chief ray's slope grows with its position on the detector, 1/mm
-    double radius = 0;       // of slopes about per_position times the position
+    double radius = 0;       // no light comes from outside this
+    double rim = 0;          // 0: its edge is no circle, or not the same all over the field
 };
+
+// A circle's rims have the same distance from its middle: of small changes of per_position, that which leaves least of
+// their differences, as |slope - per_position position| is linear in it there.
+double with_level_rims(double per_position, const std::vector<Rim>& rims) {
+    double count = 0, distances = 0, rates = 0, products = 0, squares = 0;
+    for (const Rim& rim : rims) {
+        const glm::dvec2 crossing = rim.slope - per_position * rim.position;
+        const double distance = glm::length(crossing);
+        const double rate = -glm::dot(crossing, rim.position) / distance;
+        count += 1;
+        distances += distance;
+        rates += rate;
+        products += distance * rate;
+        squares += rate * rate;
+    }
+    return per_position - (products - distances * rates / count) / (squares - rates * rates / count);
+}
 
 ExitPupil exit_pupil(const Imaging& imaging, double field_half_width, double field_radius) {
     glm::dvec2 mean_position(0);
@@ -81,16 +99,29 @@ ExitPupil exit_pupil(const Imaging& imaging, double field_half_width, double fie
     ExitPupil pupil;
     pupil.per_position = glm::dot(mean_slope, mean_position) / glm::dot(mean_position, mean_position);
     constexpr int field_points = 12;
+    std::vector<Rim> all;
     for (const glm::dvec2& direction : search_directions(imaging.symmetric)) {
         for (const std::vector<Rim>& rims : parallel_list(field_points + 1, [&](int i) {
                  return rims_at_detector(imaging, outline_at(imaging, direction * (field_radius * i / field_points)));
              })) {
-            for (const Rim& rim : rims) {
-                pupil.radius =
-                    std::max(pupil.radius, outside_margin * glm::length(rim.slope - pupil.per_position * rim.position));
-            }
+            all.insert(all.end(), rims.begin(), rims.end());
         }
     }
+    if (imaging.symmetric) {
+        pupil.per_position = with_level_rims(pupil.per_position, all);
+    }
+    double least = std::numeric_limits<double>::infinity();
+    double most = 0;
+    double sum = 0;
+    for (const Rim& rim : all) {
+        const double distance = glm::length(rim.slope - pupil.per_position * rim.position);
+        least = std::min(least, distance);
+        most = std::max(most, distance);
+        sum += distance;
+    }
+    pupil.radius = outside_margin * most;
+    constexpr double level = 0.99; // of rims that are taken for a circle
+    pupil.rim = !all.empty() && least > level * most ? sum / static_cast<double>(all.size()) : 0;
     return pupil;
 }
 
@@ -205,6 +236,7 @@ TurnedInstrument turn_round(const InstrumentDescription& description, const Axia
     const ExitPupil pupil = exit_pupil(imaging.imaging, layout.field_corner.x, field_radius);
     auto& optics = turned.optics;
     optics.pupil_radius = pupil.radius;
+    turned.pupil_rim = pupil.rim;
     // Half a turn about x and light the other way turn (x, y) into (x, -y) and slopes (s, t) into (-s, t): the pupil's
     // crossing, slope - per_position * position, changes its sign alone.
     optics.pupil_position = pupil.per_position;

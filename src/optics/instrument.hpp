@@ -154,7 +154,8 @@ struct Element {
 struct TurnedInstrument {
     std::vector<physics::f64::Surface> surfaces;
     physics::f64::Instrument constants{};
-    physics::f64::BackwardOptics optics{};
+    physics::f64::BackwardOptics optics{}; // its disc of pupil_radius holds all light
+    double pupil_rim = 0; // the pupil's edge, as pupil_radius; 0: no circle, or not the same all over the field
 };
 
 // Trains and constants in double, with the light of one source. `surfaces` holds the illumination train (source to

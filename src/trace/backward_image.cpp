@@ -14,6 +14,21 @@
 
 namespace vkfv::trace {
 
+namespace {
+
+// Radius of the disc in which paths start. Where the pupil's rim stands at m of n equal shares of its area, m of the n
+// points of each shifted lattice are within the pupil, whatever the shift: the rim, beyond which there is no light,
+// then adds no noise.
+double start_radius(const optics::TurnedInstrument& turned, const BackwardPlan& plan) {
+    const double holds_all = turned.optics.pupil_radius;
+    const double share = turned.pupil_rim / holds_all;
+    const double within = std::floor(plan.points * share * share);
+    constexpr double least_share = 0.85; // of the points: fewer would be lost for more than the rim's noise
+    return within >= least_share * plan.points ? turned.pupil_rim * std::sqrt(plan.points / within) : holds_all;
+}
+
+} // namespace
+
 BackwardPlan backward_plan(std::uint64_t rays, ImageSize detector_pixels) {
     const std::uint64_t pixels = detector_pixels.count();
     const std::uint64_t per_pixel = (rays + pixels - 1) / pixels;
@@ -40,6 +55,7 @@ physics::f64::BackwardOptics backward_optics(const optics::Instrument& instrumen
                                              const physics::f64::Material& material, const BackwardPlan& plan) {
     using namespace physics::f64;
     BackwardOptics optics = instrument.turned.value().optics;
+    optics.pupil_radius = start_radius(*instrument.turned, plan);
     // What the sharpest lobe sends into the source's cone along its mirror direction, were it flat over the cone.
     double peak = 0;
     const bool is_ring = (instrument.features & FEATURE_RING) != 0;
@@ -78,10 +94,9 @@ BackwardImage::BackwardImage(const optics::Instrument& instrument, const Backwar
     const double pitch = 2 * constants.detector_half_width / pixels_.columns;
     const double side = std::min(2 * constants.pixel_reach, 1.0);
     const double sensitive = side * side; // share of a pixel
-    const double pupil =
-        pi * instrument.turned.value().optics.pupil_radius * instrument.turned.value().optics.pupil_radius;
-    scale_ = radiance * pitch * pitch * sensitive * pupil * instrument.splitter_reflectance *
-             instrument.splitter_transmittance;
+    const double pupil_radius = start_radius(instrument.turned.value(), plan);
+    scale_ = radiance * pitch * pitch * sensitive * (pi * pupil_radius * pupil_radius) *
+             instrument.splitter_reflectance * instrument.splitter_transmittance;
 }
 
 void BackwardImage::add(std::uint32_t randomisation, std::span<const std::uint64_t> sums) {

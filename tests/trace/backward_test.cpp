@@ -1,4 +1,5 @@
 // The backward estimator against the forward one, which is the arbiter, and what it promises of itself.
+#include "trace/backward_image.hpp"
 #include "trace/device_tracer.hpp"
 #include "trace/host_tracer.hpp"
 #include "trace/lattice_generators.hpp"
@@ -324,6 +325,56 @@ TEST(Backward, gates_hold_for_every_microscope) {
         }
         EXPECT_EQ(dark_within, 0);
         EXPECT_EQ(lit_outside, 0);
+    }
+}
+
+// Where the pupil ends in the disc that paths start from: after so many of a lattice's points for every shift. Between
+// two numbers, the wrong twin, it is one or the other.
+TEST(Backward, the_pupils_rim_adds_no_noise) {
+    for (const char* objective : {"5x_0.15", "10x_0.28", "20x_0.41", "50x_0.66", "100x_0.83"}) {
+        SCOPED_TRACE(objective);
+        auto description = small_description();
+        const std::filesystem::path base = std::filesystem::path(VKFV_SOURCE_DIR) / "assets" / "stacks";
+        description.objective = optics::load_prescription(objective, "objectives", base);
+        description.detector_width = 8;
+        description.field_stop_radius = 2.0;
+        const auto instrument = optics::assemble(description);
+        const auto turned = optics::turned_round(instrument);
+        const auto scene = turned.scene();
+        const trace::BackwardPlan plan{.randomisations = 2, .points = 64};
+        const auto& seen = instrument.turned.value();
+        auto optics = trace::backward_optics(
+            instrument, specimen::material_record(specimen::Material::henyey_greenstein(0.3)), plan);
+        ASSERT_GT(seen.pupil_rim, 0);
+        EXPECT_GE(optics.pupil_radius, seen.optics.pupil_radius);
+        const SpecimenRecord record{};
+        Exposure exposure{};
+        exposure.top_distance = optics.object_distance;
+        const Light light{.spectral = 0, .wave_number = 1 / 0.587562, .survival = 0};
+        // Variance over pixels of the number of points that pass.
+        const auto variance = [&](double radius) {
+            optics.pupil_radius = radius;
+            constexpr int pixels = 400;
+            double sum = 0, squares = 0;
+            for (int pixel = 0; pixel < pixels; ++pixel) {
+                const auto shift = lattice_shift(7, 0, static_cast<std::uint32_t>(pixel), 0);
+                const double x = 8.0 * (shift.first.x * 0x1p-32 - 0.5);
+                const double y = 8.0 * (shift.first.y * 0x1p-32 - 0.5);
+                double passing = 0;
+                for (std::uint32_t point = 0; point < plan.points; ++point) {
+                    const real2 pupil = backward_start(plan.lattice(), shift, point).pupil;
+                    const auto arrival =
+                        look_from_detector(scene, turned.constants, optics, record, exposure, x, y, pupil, light);
+                    passing += arrival.status == PATH_ALIVE ? 1 : 0;
+                }
+                sum += passing;
+                squares += passing * passing;
+            }
+            return squares / pixels - sum / pixels * (sum / pixels);
+        };
+        const double within = std::round(plan.points * std::pow(seen.pupil_rim / optics.pupil_radius, 2));
+        EXPECT_LT(variance(optics.pupil_radius), 0.1);
+        EXPECT_GT(variance(seen.pupil_rim * std::sqrt(plan.points / (within + 0.5))), 0.15);
     }
 }
 
