@@ -74,8 +74,8 @@ physics::f64::BackwardOptics backward_optics(const optics::Instrument& instrumen
     optics.rim_period = has_rim ? std::min(rim_period, plan.points) : 0;
     // Of what the source shows for sure, more directions make a better number. Where its rim is among them and a lobe
     // changes little over the cone, one direction keeps the lattice whole, which a choice among several does not.
-    // Measured, signal to noise at 1024 paths a pixel: g = 0.3 (peak 0.06), with the rim 430, without it 517 by one
-    // direction, 697 by four, 727 by eight; g = 0.8 (1.2), 101 and, by four, eight and sixteen, 107, 164 and 177.
+    // Measured, signal to noise at 1024 paths a pixel: g = 0.3 (peak 0.06), with the rim 753, without it 976 by one
+    // direction, 1330 by four, 1348 by eight; g = 0.8 (1.2), 104 and, by four, eight and sixteen, 170, 200 and 206.
     optics.cone_candidates = peak < 0.3 ? 1 : 8;
     optics.sure_candidates = peak < 0.3 ? 4 : 8;
     return optics;
