@@ -66,6 +66,22 @@ vkfv.chart = (place, label, content) => {
         return {values: decades.filter((unused, k) => k % every === 0), written: vkfv.decade};
     }
 
+    // From the last one, which stays within the page, backwards: none where it would touch the one after it.
+    function placeTexts(axis, across, width) {
+        const gap = 6;
+        let next = width + gap;
+        for (const text of axis.selectAll(".tick text").nodes().reverse()) {
+            const half = vkfv.textWidth(text) / 2, place = across(d3.select(text).datum());
+            const middle = Math.min(place, width - half);
+            if (middle + half + gap > next) {
+                text.remove();
+            } else {
+                d3.select(text).attr("dx", middle < place ? middle - place : null);
+                next = middle - half;
+            }
+        }
+    }
+
     function draw() {
         const given = content();
         element.selectAll("*").remove();
@@ -90,10 +106,7 @@ vkfv.chart = (place, label, content) => {
             .call(d3.axisLeft(up).tickValues(rows.values).tickSize(margin.left - right).tickFormat(""));
         svg.append("g").attr("transform", `translate(0,${bottom})`)
             .call(d3.axisBottom(across).tickValues(columns.values).tickFormat(columns.written))
-            .selectAll(".tick text").each(function (value) { // the last one stays within the page
-                const over = across(value) + vkfv.textWidth(this) / 2 - width;
-                d3.select(this).attr("dx", over > 0 ? -over : null);
-            });
+            .call(placeTexts, across, width);
         svg.append("g").attr("transform", `translate(${margin.left},0)`)
             .call(d3.axisLeft(up).tickValues(rows.values).tickFormat(rows.written));
         svg.append("text").attr("x", (margin.left + right) / 2).attr("y", whole - 6).attr("text-anchor", "middle").text(x.label);
