@@ -1,9 +1,7 @@
 #include "trace/backward_image.hpp"
 
-#include "core/digest.hpp"
 #include "core/parallel_rows.hpp"
 #include "core/units.hpp"
-#include "trace/device_records.hpp"
 #include "trace/lattice_generators.hpp"
 #include "trace/ledger.hpp"
 
@@ -81,18 +79,6 @@ physics::f64::BackwardOptics backward_optics(const optics::Instrument& instrumen
     optics.cone_candidates = peak < 0.3 ? 1 : 8;
     optics.sure_candidates = peak < 0.3 ? 4 : 8;
     return optics;
-}
-
-TracerIdentity with_paths(TracerIdentity identity, const physics::f64::BackwardOptics& optics,
-                          const BackwardPlan& plan) {
-    const auto disc_and_candidates = to_float(optics);
-    const auto lattice = to_float(plan.lattice());
-    identity.instrument = Digest()
-                              .add(identity.instrument)
-                              .add_values(std::span(&disc_and_candidates, 1))
-                              .add_values(std::span(&lattice, 1))
-                              .text();
-    return identity;
 }
 
 BackwardImage::BackwardImage(const optics::Instrument& instrument, const BackwardPlan& plan)

@@ -28,10 +28,6 @@ std::uint64_t backward_rays(std::uint64_t rays, ImageSize detector_pixels);
 physics::f64::BackwardOptics backward_optics(const optics::Instrument& instrument,
                                              const physics::f64::Material& material, const BackwardPlan& plan);
 
-// A tracer's, where its images depend on these too.
-TracerIdentity with_paths(TracerIdentity identity, const physics::f64::BackwardOptics& optics,
-                          const BackwardPlan& plan);
-
 // Gathers the pixels' sums of all randomisations.
 class BackwardImage {
   public:

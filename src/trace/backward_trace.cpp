@@ -121,15 +121,16 @@ class BackwardTracer final : public DeviceExposures {
         : instrument_(instrument), turned_(optics::turned_round(instrument)),
           plan_(backward_plan(options.rays, instrument.detector_pixels())),
           scene_(make_device_scene(turned_, specimen, options, &instrument_)),
-          optics_(on_device(*scene_.device, backward_optics(instrument_, scene_.host_record.material, plan_))),
-          trace_(scene_, optics_, plan_, options), light_(*scene_.device, scene_.light_buffers()),
+          trace_(scene_, on_device(*scene_.device, backward_optics(instrument_, scene_.host_record.material, plan_)),
+                 plan_, options),
+          light_(*scene_.device, scene_.light_buffers()),
           pace_(std::uint64_t{trace_.most_chunks_at_a_time()} * trace_.points_per_chunk()) {}
 
     std::string description() const override {
         return fmt::format("{}; traversal {}; backward", scene_.device->choice(), scene_.traversal.reason);
     }
 
-    TracerIdentity identity() const override { return with_paths(scene_.identity(), optics_, plan_); }
+    TracerIdentity identity() const override { return scene_.identity(); }
     std::shared_ptr<const vulkan::Device> device() const override { return scene_.device; }
     std::vector<optics::PupilFilter> pupil_filters() const override { return filters_of(scene_.filter()); }
     std::uint64_t units() const override { return plan_.randomisations * trace_.chunks(); }
@@ -149,7 +150,6 @@ class BackwardTracer final : public DeviceExposures {
     optics::Instrument turned_;
     BackwardPlan plan_;
     mutable DeviceScene scene_;
-    physics::f64::BackwardOptics optics_;
     BackwardTrace trace_;
     DeviceNumbers light_; // that is sorted for waves
     mutable DispatchPace pace_;

@@ -63,9 +63,7 @@ class HostBackwardTracer final : public Tracer {
         return fmt::format("host reference in double on {} threads; backward", std::thread::hardware_concurrency());
     }
 
-    TracerIdentity identity() const override {
-        return with_paths(host_identity(turned_, LightSorting::of(filter_)), optics_, plan_);
-    }
+    TracerIdentity identity() const override { return host_identity(turned_, LightSorting::of(filter_)); }
     std::vector<optics::PupilFilter> pupil_filters() const override { return filters_of(filter_); }
 
   private:

@@ -38,9 +38,7 @@ struct TracerIdentity {
     std::vector<LightSorting>
         further_sortings{}; // of the light of further sources; none: images of rays, or one source
     std::string kernels;    // digest of the SPIR-V, whose source is that of the host's physics too
-    // Digest of the records that the instrument became, and of what backward paths are drawn by; of several sources, of
-    // theirs.
-    std::string instrument;
+    std::string instrument; // digest of the records that the instrument became; of several sources, of theirs
 
     std::string toml() const; // lines `key = value`
     // Of such lines. Throws InputError.
