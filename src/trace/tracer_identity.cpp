@@ -3,6 +3,7 @@
 #include "core/digest.hpp"
 #include "core/toml_reader.hpp"
 #include "trace/device_records.hpp"
+#include "trace/lattice_generators.hpp"
 #include "vulkan/device.hpp"
 #include "vulkan/fourier_planes.hpp"
 
@@ -12,6 +13,8 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
+#include <array>
+#include <cstdint>
 #include <limits>
 #include <span>
 #include <utility>
@@ -91,12 +94,19 @@ std::string instrument_digest(const optics::Instrument& instrument) {
     }
     const auto spectrum = spectrum_block(instrument);
     const auto points = instrument.light_field.value_or(optics::LightField{}).points.values;
-    return Digest()
-        .add_values(std::span<const physics::f32::Instrument>(&constants, 1))
+    Digest digest;
+    digest.add_values(std::span<const physics::f32::Instrument>(&constants, 1))
         .add_values(std::span<const physics::f32::Surface>(surfaces))
         .add_values(std::span<const physics::f32::SpectralBin>(spectrum))
-        .add_values(std::span<const float>(points))
-        .text();
+        .add_values(std::span<const float>(points));
+    if (instrument.turned) { // what backward paths are drawn by
+        const auto optics = to_float(instrument.turned->optics);
+        const auto rim = static_cast<float>(instrument.turned->pupil_rim);
+        digest.add_values(std::span<const physics::f32::BackwardOptics>(&optics, 1))
+            .add_values(std::span<const float>(&rim, 1))
+            .add_values(std::span<const std::array<std::uint32_t, 8>>(lattice_generators));
+    }
+    return digest.text();
 }
 
 std::string kernels_digest() {

@@ -46,7 +46,8 @@ struct TracerIdentity {
     std::string text() const; // "NVIDIA H100 (NVIDIA 580.159), traversal quadtree"
 };
 
-// Of the instrument as rays meet it, surface by surface, rounded to float.
+// Of the instrument as rays meet it, surface by surface, rounded to float; turned round, with what backward paths are
+// drawn by: another program may draw others.
 std::string instrument_digest(const optics::Instrument& instrument);
 
 // Of the program's kernels of the trace.

@@ -328,6 +328,24 @@ TEST(Backward, gates_hold_for_every_microscope) {
     }
 }
 
+// So that a stack is not continued by a program that draws others.
+TEST(Backward, identity_knows_what_paths_are_drawn_by) {
+    const auto instrument = optics::assemble(small_description());
+    auto other = instrument;
+    other.turned->pupil_rim *= 1.001;
+    const auto specimen = test::plane_specimen(0.3);
+    const auto with = options(trace::Estimator::backward, 1 << 13, 1);
+    for (const bool host : {false, true}) {
+        const auto identity = [&](const optics::Instrument& turned) {
+            const auto tracer = host ? trace::make_host_tracer(turned, specimen, with)
+                                     : trace::make_device_tracer(turned, specimen, with);
+            return tracer->identity().toml();
+        };
+        EXPECT_EQ(identity(instrument), identity(instrument));
+        EXPECT_NE(identity(instrument), identity(other));
+    }
+}
+
 // Where the pupil ends in the disc that paths start from: after so many of a lattice's points for every shift. Between
 // two numbers, the wrong twin, it is one or the other.
 TEST(Backward, the_pupils_rim_adds_no_noise) {
