@@ -62,8 +62,8 @@ std::pair<double, double> crossings(const Outline& outline, double curvature) {
 // The exit pupil as the detector sees it: a disc of slopes about per_position times the position.
 struct ExitPupil {
     double per_position = 0; // how the chief ray's slope grows with its position on the detector, 1/mm
-    double radius = 0;       // no light comes from outside this
-    double rim = 0;          // 0: its edge is no circle, or not the same all over the field
+    double radius = 0;       // of the disc, in slope: no light comes from outside
+    double rim = 0;          // its edge, in slope; 0: no circle, or not the same all over the field
 };
 
 // A circle's rims have the same distance from its middle: of small changes of per_position, that which leaves least of
@@ -120,7 +120,9 @@ ExitPupil exit_pupil(const Imaging& imaging, double field_half_width, double fie
         sum += distance;
     }
     pupil.radius = outside_margin * most;
-    constexpr double level = 0.99; // of rims that are taken for a circle
+    // Of rims that are taken for a circle. Uneven ones would be of no use, nor do harm: the disc holds all light
+    // anyway.
+    constexpr double level = 0.99;
     pupil.rim = !all.empty() && least > level * most ? sum / static_cast<double>(all.size()) : 0;
     return pupil;
 }

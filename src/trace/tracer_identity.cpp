@@ -13,8 +13,6 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
-#include <array>
-#include <cstdint>
 #include <limits>
 #include <span>
 #include <utility>
@@ -99,12 +97,12 @@ std::string instrument_digest(const optics::Instrument& instrument) {
         .add_values(std::span<const physics::f32::Surface>(surfaces))
         .add_values(std::span<const physics::f32::SpectralBin>(spectrum))
         .add_values(std::span<const float>(points));
-    if (instrument.turned) { // what backward paths are drawn by
+    if (instrument.turned) {
         const auto optics = to_float(instrument.turned->optics);
         const auto rim = static_cast<float>(instrument.turned->pupil_rim);
         digest.add_values(std::span<const physics::f32::BackwardOptics>(&optics, 1))
             .add_values(std::span<const float>(&rim, 1))
-            .add_values(std::span<const std::array<std::uint32_t, 8>>(lattice_generators));
+            .add_values(std::span<const decltype(lattice_generators)::value_type>(lattice_generators));
     }
     return digest.text();
 }

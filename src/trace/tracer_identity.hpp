@@ -46,8 +46,8 @@ struct TracerIdentity {
     std::string text() const; // "NVIDIA H100 (NVIDIA 580.159), traversal quadtree"
 };
 
-// Of the instrument as rays meet it, surface by surface, rounded to float; turned round, with what backward paths are
-// drawn by: another program may draw others.
+// Of the instrument as rays meet it, surface by surface, rounded to float; turned round, with the disc and the lattices
+// of backward paths, which another program may have others of.
 std::string instrument_digest(const optics::Instrument& instrument);
 
 // Of the program's kernels of the trace.
