@@ -72,13 +72,12 @@ StageTimes time_stages(const optics::Instrument& instrument, const specimen::Spe
     result.imaging = share(median(imaged) - median(hidden));
     result.detection = share(median(second) - median(imaged));
 
-    const vulkan::Buffer counts(*scene.device, whole.bytes_for_host(), vulkan::Buffer::Memory::host);
     vulkan::Commands commands(*scene.device);
     whole.clear(commands);
     whole.record(commands, 0, batch);
-    whole.copy_counts(commands, counts);
     commands.submit_and_wait();
-    const trace::Image image = scene.accounts.image(whole.pixels(counts), whole.fates(counts), batch);
+    const auto fates = whole.fates().read_values<std::uint64_t>(scene.accounts.ledger_numbers());
+    const trace::Image image = scene.accounts.image({}, fates, batch);
     result.surfaces_per_ray = image.crossings / batch;
     result.surfaces_per_detected_ray = instrument.constants.illumination_count + instrument.constants.imaging_count;
     return result;

@@ -1,6 +1,5 @@
 #include "trace/backward_image.hpp"
 
-#include "core/parallel_rows.hpp"
 #include "core/units.hpp"
 #include "trace/lattice_generators.hpp"
 #include "trace/ledger.hpp"
@@ -8,9 +7,7 @@
 #include <algorithm>
 #include <bit>
 #include <cmath>
-#include <functional>
-#include <numeric>
-#include <ranges>
+#include <utility>
 
 namespace vkfv::trace {
 
@@ -82,9 +79,8 @@ physics::f64::BackwardOptics backward_optics(const optics::Instrument& instrumen
     return optics;
 }
 
-BackwardImage::BackwardImage(const optics::Instrument& instrument, const BackwardPlan& plan)
+BackwardAccounts::BackwardAccounts(const optics::Instrument& instrument, const BackwardPlan& plan)
     : plan_(plan), flux_(instrument.flux), pixels_(instrument.detector_pixels()) {
-    sums_.resize(plan.randomisations);
     const auto& constants = instrument.constants;
     const bool is_ring = (instrument.features & physics::f64::FEATURE_RING) != 0;
     const bool is_rectangle = (instrument.features & physics::f64::FEATURE_RECTANGLE) != 0;
@@ -100,60 +96,22 @@ BackwardImage::BackwardImage(const optics::Instrument& instrument, const Backwar
              instrument.splitter_reflectance * instrument.splitter_transmittance;
 }
 
-void BackwardImage::add(std::uint32_t randomisation, std::span<const std::uint64_t> sums) {
-    auto& so_far = sums_.at(randomisation);
-    if (so_far.empty()) {
-        so_far.assign(sums.begin(), sums.end());
-    } else {
-        std::ranges::transform(sums, so_far, so_far.begin(), std::plus<>());
-    }
+estimate::EstimateRule BackwardAccounts::rule() const {
+    return {.kind = estimate::ESTIMATE_RANDOMISATIONS,
+            .scale = scale_,
+            .unit = 1.0 / (static_cast<double>(physics::f64::BACKWARD_UNIT) * plan_.points),
+            .unit_of_squares = 0,
+            .count = static_cast<double>(plan_.randomisations)};
 }
 
-std::vector<std::uint64_t> BackwardImage::numbers() const {
-    std::vector<std::uint64_t> all(number_count());
-    auto to = all.begin();
-    for (const auto& of_one : sums_) {
-        std::ranges::copy(of_one, to);
-        to += static_cast<std::ptrdiff_t>(pixels_.count());
-    }
-    return all;
-}
-
-void BackwardImage::set(std::span<const std::uint64_t> numbers) {
-    for (auto& of_one : sums_) {
-        const auto own = numbers.first(pixels_.count());
-        of_one.assign(own.begin(), own.end());
-        numbers = numbers.subspan(pixels_.count());
-    }
-}
-
-double BackwardImage::power_per_number() const {
+double BackwardAccounts::power_per_number() const {
     return scale_ / (static_cast<double>(physics::f64::BACKWARD_UNIT) * static_cast<double>(plan_.rays_per_pixel()));
 }
 
-Image BackwardImage::image() const {
+Image BackwardAccounts::image(PixelLight pixels, double detected) const {
     Image image;
-    image.flux = Grid<double>(pixels_.columns, pixels_.rows);
-    image.standard_error = Grid<double>(pixels_.columns, pixels_.rows);
-    const double count = plan_.randomisations;
-    const double unit = 1.0 / (static_cast<double>(physics::f64::BACKWARD_UNIT) * plan_.points);
-    parallel_rows(pixels_.columns, pixels_.rows, [&](int first_row, int end_row) {
-        const std::size_t end = image.flux.index(0, end_row);
-        for (std::size_t pixel = image.flux.index(0, first_row); pixel < end; ++pixel) {
-            double sum = 0, squares = 0; // of the randomisations' means
-            for (const auto& sums : sums_) {
-                const double of_one = sums.empty() ? 0.0 : unit * static_cast<double>(sums[pixel]);
-                sum += of_one;
-                squares += of_one * of_one;
-            }
-            const double mean = sum / count;
-            const double variance = std::max(0.0, squares / count - mean * mean) / (count - 1);
-            image.flux.values[pixel] = scale_ * mean;
-            image.standard_error.values[pixel] = scale_ * std::sqrt(variance);
-        }
-    });
-    // In this order, for the same bits on any number of cores.
-    const double detected = std::accumulate(image.flux.values.begin(), image.flux.values.end(), 0.0);
+    image.flux = std::move(pixels.flux);
+    image.standard_error = std::move(pixels.standard_error);
     image.rays = plan_.rays_per_pixel() * pixels_.count();
     image.detected = image.rays;
     image.ledger.emitted = flux_;

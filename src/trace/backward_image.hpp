@@ -2,11 +2,10 @@
 #pragma once
 
 #include "optics/instrument.hpp"
+#include "trace/pixel_estimate.hpp"
 #include "trace/tracer.hpp"
 
 #include <cstdint>
-#include <span>
-#include <vector>
 
 namespace vkfv::trace {
 
@@ -28,28 +27,23 @@ std::uint64_t backward_rays(std::uint64_t rays, ImageSize detector_pixels);
 physics::f64::BackwardOptics backward_optics(const optics::Instrument& instrument,
                                              const physics::f64::Material& material, const BackwardPlan& plan);
 
-// Gathers the pixels' sums of all randomisations.
-class BackwardImage {
+// What the sums of backward paths stand for.
+class BackwardAccounts {
   public:
-    BackwardImage(const optics::Instrument& instrument, const BackwardPlan& plan);
+    BackwardAccounts(const optics::Instrument& instrument, const BackwardPlan& plan);
 
-    // sums: a pixel's each, of the values of some points, in 1 / BACKWARD_UNIT.
-    void add(std::uint32_t randomisation, std::span<const std::uint64_t> sums);
-    // The sums, a randomisation after the other.
-    std::vector<std::uint64_t> numbers() const;
-    std::size_t number_count() const { return sums_.size() * pixels_.count(); }
-    void set(std::span<const std::uint64_t> numbers);
+    // Of the pixels' sums in each randomisation, of values in 1 / BACKWARD_UNIT.
+    estimate::EstimateRule rule() const;
     // W on the detector for each unit of the sums of all randomisations.
     double power_per_number() const;
-    // Detected power alone stands in its ledger: what becomes of the rest, backward paths do not see.
-    Image image() const;
+    // detected: W. It alone stands in the ledger: what becomes of the rest, backward paths do not see.
+    Image image(PixelLight pixels, double detected) const;
 
   private:
     BackwardPlan plan_;
     double flux_;  // W, emitted
     double scale_; // W, of a pixel whose values' mean is 1
     ImageSize pixels_;
-    std::vector<std::vector<std::uint64_t>> sums_; // of each randomisation; none of one that nothing was added to
 };
 
 } // namespace vkfv::trace

@@ -8,14 +8,13 @@
 #include "spirv/backward_specialised_quadtree.h"
 #include "spirv/backward_specialised_ray_query.h"
 #include "spirv/backward_specialised_software.h"
+#include "trace/device_estimate.hpp"
 #include "trace/device_numbers.hpp"
-#include "trace/wave_image.hpp"
 
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <array>
-#include <deque>
 #include <optional>
 #include <string>
 #include <utility>
@@ -30,6 +29,12 @@ constexpr std::uint64_t most_paths = std::uint64_t{1} << 27; // a submission's; 
 
 std::uint32_t pixel_count(const DeviceScene& scene) {
     return static_cast<std::uint32_t>(scene.instrument.detector_pixels().count());
+}
+
+// A kernel is bound to the sums of one randomisation.
+std::size_t stride_of(std::size_t pixels) {
+    constexpr std::size_t aligned = vulkan::binding_alignment / sizeof(std::uint64_t);
+    return (pixels + aligned - 1) / aligned * aligned;
 }
 
 std::vector<vulkan::BindingDeclaration> declarations(const DeviceScene& scene) {
@@ -78,8 +83,9 @@ std::span<const std::uint32_t> variant(const DeviceScene& scene) {
 
 BackwardTrace::BackwardTrace(const DeviceScene& scene, const physics::f64::BackwardOptics& optics,
                              const BackwardPlan& plan, const TraceOptions& options)
-    : scene_(scene), pixels_(pixel_count(scene)), points_per_chunk_(std::min(plan.points, most_points_per_chunk)),
-      sums_(*scene.device, std::size_t{pixels_} * sizeof(std::uint64_t)),
+    : scene_(scene), pixels_(pixel_count(scene)), stride_(stride_of(pixels_)),
+      points_per_chunk_(std::min(plan.points, most_points_per_chunk)),
+      sums_(*scene.device, plan.randomisations * stride_ * sizeof(std::uint64_t)),
       optics_(*scene.device, sizeof(kernels::BackwardBlock)),
       kernel_(*scene.device, "backward", variant(scene), declarations(scene), sizeof(kernels::BackwardBatch),
               constants(scene, optics)) {
@@ -98,17 +104,16 @@ void BackwardTrace::clear(vulkan::Commands& commands) const {
 
 void BackwardTrace::record(vulkan::Commands& commands, std::uint32_t randomisation, std::uint64_t first,
                            std::uint32_t count) const {
-    auto bindings = scene_.bindings({{kernels::BINDING_PIXELS, &sums_}, {kernels::BINDING_BACKWARD, &optics_}});
+    auto bindings = scene_.bindings({{.slot = kernels::BINDING_PIXELS,
+                                      .resource = &sums_,
+                                      .first_byte = randomisation * stride_ * sizeof(std::uint64_t),
+                                      .bytes = pixels_ * sizeof(std::uint64_t)},
+                                     {kernels::BINDING_BACKWARD, &optics_}});
     const kernels::BackwardBatch batch{static_cast<std::uint32_t>(first / pixels_),
                                        static_cast<std::uint32_t>(first % pixels_), count, points_per_chunk_,
                                        randomisation};
     const auto groups = vulkan::groups_of(count, workgroup);
     commands.dispatch(kernel_, bindings, batch, groups.x, groups.y);
-    commands.barrier();
-}
-
-void BackwardTrace::copy_sums(vulkan::Commands& commands, const vulkan::Buffer& to, std::size_t to_byte) const {
-    commands.copy(sums_, to, sums_.bytes(), 0, to_byte);
     commands.barrier();
 }
 
@@ -123,7 +128,10 @@ class BackwardTracer final : public DeviceExposures {
           scene_(make_device_scene(turned_, specimen, options, &instrument_)),
           trace_(scene_, on_device(*scene_.device, backward_optics(instrument_, scene_.host_record.material, plan_)),
                  plan_, options),
-          light_(*scene_.device, scene_.light_buffers()),
+          accounts_(instrument_, plan_), estimate_(*scene_.device, accounts_.rule(), instrument_.detector_pixels(),
+                                                   {.pixels = trace_.sums(), .stride = trace_.stride()},
+                                                   scene_.waves.get(), accounts_.power_per_number()),
+          numbers_(*scene_.device, counted()),
           pace_(std::uint64_t{trace_.most_chunks_at_a_time()} * trace_.points_per_chunk()) {}
 
     std::string description() const override {
@@ -142,47 +150,39 @@ class BackwardTracer final : public DeviceExposures {
   private:
     class Exposure;
 
-    std::size_t pixels() const { return pixel_count(scene_); }
-    // Sums of randomisations that are kept for the host at a time.
-    std::size_t randomisations_kept() const { return std::min<std::size_t>(plan_.randomisations, 4); }
+    // All that an exposure counts, with the light that is sorted for waves.
+    std::vector<const vulkan::Buffer*> counted() const {
+        std::vector<const vulkan::Buffer*> buffers = scene_.light_buffers();
+        buffers.push_back(&trace_.sums());
+        return buffers;
+    }
 
     optics::Instrument instrument_;
     optics::Instrument turned_;
     BackwardPlan plan_;
     mutable DeviceScene scene_;
     BackwardTrace trace_;
-    DeviceNumbers light_; // that is sorted for waves
+    BackwardAccounts accounts_;
+    DeviceEstimate estimate_;
+    DeviceNumbers numbers_;
     mutable DispatchPace pace_;
-    mutable std::array<std::optional<vulkan::Buffer>, most_exposures> for_host_; // sums, then the light of waves
 };
 
 // Its units are the chunks of one randomisation after the other.
 class BackwardTracer::Exposure final : public SingleExposure {
   public:
-    Exposure(const BackwardTracer& tracer, const vulkan::Buffer& for_host)
-        : SingleExposure(*tracer.scene_.device, tracer.pace_), tracer_(tracer), for_host_(for_host),
-          sums_(tracer.instrument_, tracer.plan_) {}
+    Exposure(const BackwardTracer& tracer, std::size_t slot)
+        : SingleExposure(*tracer.scene_.device, tracer.pace_), tracer_(tracer), slot_(slot) {}
 
     void set_out(std::span<const std::uint64_t> numbers) override {
-        if (!numbers.empty()) {
-            sums_.set(numbers.first(sums_.number_count()));
-            tracer_.light_.write(work, numbers.subspan(sums_.number_count()));
-            clears_light_ = false;
+        clears_ = numbers.empty();
+        if (!clears_) {
+            tracer_.numbers_.write(work, numbers);
         }
     }
 
-    std::size_t number_count() const override { return sums_.number_count() + tracer_.light_.count(); }
-    std::vector<std::uint64_t> numbers() override {
-        if (on_device_) {
-            take_from_device(work.open());
-            work.submit();
-        }
-        take_all();
-        auto numbers = sums_.numbers();
-        const auto light = tracer_.light_.read(work);
-        numbers.insert(numbers.end(), light.begin(), light.end());
-        return numbers;
-    }
+    std::size_t number_count() const override { return tracer_.numbers_.count(); }
+    std::vector<std::uint64_t> numbers() override { return tracer_.numbers_.read(work); }
 
     std::uint64_t submit(std::uint64_t first, std::uint64_t end) override {
         const BackwardTrace& trace = tracer_.trace_;
@@ -192,92 +192,40 @@ class BackwardTracer::Exposure final : public SingleExposure {
         end = std::min({end, begin + trace.chunks(), first + most});
         tracer_.scene_.require_waves();
         vulkan::Commands& commands = work.open();
-        if (std::exchange(clears_light_, false)) {
+        if (std::exchange(clears_, false)) {
+            trace.clear(commands);
             tracer_.scene_.clear_sorted_light(commands);
         }
-        if (!on_device_) {
-            trace.clear(commands);
-            on_device_ = randomisation;
-        }
         trace.record(commands, randomisation, first - begin, static_cast<std::uint32_t>(end - first));
-        if (end == begin + trace.chunks()) {
-            take_from_device(commands);
-        }
         work.submit((end - first) * trace.points_per_chunk());
         return end;
     }
 
     void hand_over() override {
-        if (const auto& waves = tracer_.scene_.waves) {
-            waves->hand_over(work, for_host_, place_of_light());
-        }
+        tracer_.scene_.make_waves(work);
+        tracer_.estimate_.record(work.open(), slot_);
+        work.submit();
     }
 
     Image finish() override {
-        take_all();
         work.wait();
-        Image image = sums_.image();
-        if (const auto& waves = tracer_.scene_.waves) {
-            image = with_waves(std::move(image), waves->light(for_host_, place_of_light()), sums_.power_per_number(),
-                               waves->filter());
-        }
+        const DeviceEstimate& estimate = tracer_.estimate_;
+        Image image = tracer_.accounts_.image(estimate.light(slot_), estimate.power(slot_));
         // Of the imaging train alone: who goes on to the source, no one counts.
         image.crossings = static_cast<double>(image.rays) * tracer_.turned_.constants.illumination_count;
         return image;
     }
 
   private:
-    // Sums on their way to the host.
-    struct Taken {
-        std::uint32_t randomisation;
-        std::size_t place; // of those that are kept
-        std::size_t submission;
-    };
-
-    std::size_t byte_of(std::size_t place) const { return place * tracer_.pixels() * sizeof(std::uint64_t); }
-    std::size_t place_of_light() const { return byte_of(tracer_.randomisations_kept()); }
-    // What the device has of a randomisation, whole or not, with the submission that is open.
-    void take_from_device(vulkan::Commands& commands) {
-        if (taken_.size() == tracer_.randomisations_kept()) {
-            take_first();
-        }
-        tracer_.trace_.copy_sums(commands, for_host_, byte_of(next_place_));
-        taken_.push_back({*on_device_, next_place_, work.submissions() - 1});
-        next_place_ = (next_place_ + 1) % tracer_.randomisations_kept();
-        on_device_.reset();
-    }
-    void take_first() {
-        const Taken first = taken_.front();
-        taken_.pop_front();
-        work.wait(first.submission);
-        sums_.add(first.randomisation, for_host_.values<std::uint64_t>(tracer_.pixels(), byte_of(first.place)));
-    }
-    void take_all() {
-        while (!taken_.empty()) {
-            take_first();
-        }
-    }
-
     const BackwardTracer& tracer_;
-    const vulkan::Buffer& for_host_;
-    BackwardImage sums_;
-    bool clears_light_ = true;
-    std::optional<std::uint32_t> on_device_; // the randomisation whose sums it adds up
-    std::deque<Taken> taken_;
-    std::size_t next_place_ = 0;
+    std::size_t slot_;
+    bool clears_ = true;
 };
 
 std::unique_ptr<DeviceExposure> BackwardTracer::prepare(FocalPosition position, std::uint32_t image,
                                                         std::size_t slot) const {
-    auto& for_host = for_host_.at(slot);
-    if (!for_host) {
-        const std::size_t numbers = randomisations_kept() * pixels();
-        for_host.emplace(*scene_.device,
-                         numbers * sizeof(std::uint64_t) + (scene_.waves ? scene_.waves->bytes_for_host() : 0),
-                         vulkan::Buffer::Memory::host);
-    }
     scene_.set_exposure(position, image, slot);
-    return std::make_unique<Exposure>(*this, *for_host);
+    return std::make_unique<Exposure>(*this, slot);
 }
 
 } // namespace

@@ -21,8 +21,10 @@ class BackwardTrace {
     // Chunks first ... first + count - 1 of a randomisation, count at most most_chunks_at_a_time().
     void record(vulkan::Commands& commands, std::uint32_t randomisation, std::uint64_t first,
                 std::uint32_t count) const;
-    void copy_sums(vulkan::Commands& commands, const vulkan::Buffer& to, std::size_t to_byte) const;
 
+    // Of 64 bits: of each randomisation the pixels' sums, stride() numbers from one to the next.
+    const vulkan::Buffer& sums() const { return sums_; }
+    std::size_t stride() const { return stride_; }
     // Of all pixels, of one randomisation.
     std::uint64_t chunks() const { return chunks_; }
     std::uint32_t points_per_chunk() const { return points_per_chunk_; }
@@ -31,6 +33,7 @@ class BackwardTrace {
   private:
     const DeviceScene& scene_;
     std::uint32_t pixels_;
+    std::size_t stride_;
     std::uint32_t points_per_chunk_; // of one invocation; the plan's alone, as it decides what floats are added up
     std::uint64_t chunks_;
     std::uint32_t most_chunks_at_a_time_;

@@ -86,7 +86,9 @@ std::unique_ptr<SceneWaves> make_waves(const optics::Instrument& seen, optics::W
     const auto& device = opened.get();
     options.cells = static_cast<int>(filter.cells().side);
     filter.set_parts(seen, waves_on_device(options, seen, device->report()).parts);
-    return std::make_unique<SceneWaves>(*device, std::move(filter), seen.detector_pixels());
+    // Devices that are the host's own cores have nothing that the host has not, and it has doubles.
+    const auto by = vulkan::is_software(device->report()) ? SceneWaves::By::host : SceneWaves::By::device;
+    return std::make_unique<SceneWaves>(*device, std::move(filter), seen.detector_pixels(), by);
 }
 
 } // namespace
@@ -238,6 +240,12 @@ void DeviceScene::require_waves() const {
 void DeviceScene::clear_sorted_light(vulkan::Commands& commands) const {
     if (waves) {
         waves->clear(commands);
+    }
+}
+
+void DeviceScene::make_waves(ExposureWork& work) const {
+    if (waves && waves->on_device()) {
+        waves->make_image(work);
     }
 }
 

@@ -1,13 +1,13 @@
 #include "trace/device_tracer.hpp"
 
 #include "trace/backward_trace.hpp"
+#include "trace/device_estimate.hpp"
 #include "trace/device_exposures.hpp"
 #include "trace/device_numbers.hpp"
 #include "trace/forward_trace.hpp"
 #include "trace/mixed_light.hpp"
 #include "trace/nonsequential_trace.hpp"
 #include "trace/traced_instrument.hpp"
-#include "trace/wave_image.hpp"
 #include "trace/wave_memory.hpp"
 
 #include "spirv/probe_nonsequential_bvh.h"
@@ -34,6 +34,9 @@ class DeviceTracer final : public DeviceExposures {
     DeviceTracer(const optics::Instrument& instrument, const specimen::Specimen& specimen, const TraceOptions& options)
         : instrument_(instrument), rays_(options.rays),
           scene_(make_device_scene(instrument_, specimen, options, &instrument_)), trace_(make_trace(scene_, options)),
+          estimate_(*scene_.device, scene_.accounts.rule(rays_), instrument_.detector_pixels(),
+                    {.pixels = trace_->pixels(), .further = &trace_->fates()}, scene_.waves.get(),
+                    scene_.accounts.power_per_number(rays_)),
           numbers_(*scene_.device, trace_->counted()),
           pace_(std::uint64_t{trace_->batch()} * (scene_.software() ? 1 : batches_per_submission_gpu)) {}
 
@@ -64,15 +67,15 @@ class DeviceTracer final : public DeviceExposures {
     std::uint64_t rays_;
     mutable DeviceScene scene_;
     std::unique_ptr<PathTrace> trace_;
+    DeviceEstimate estimate_;
     DeviceNumbers numbers_;
     mutable DispatchPace pace_;
-    mutable std::array<std::optional<vulkan::Buffer>, most_exposures> for_host_; // counts, then the light of waves
 };
 
 class DeviceTracer::Exposure final : public SingleExposure {
   public:
-    Exposure(const DeviceTracer& tracer, const vulkan::Buffer& for_host)
-        : SingleExposure(*tracer.scene_.device, tracer.pace_), tracer_(tracer), for_host_(for_host) {}
+    Exposure(const DeviceTracer& tracer, std::size_t slot)
+        : SingleExposure(*tracer.scene_.device, tracer.pace_), tracer_(tracer), slot_(slot) {}
 
     void set_out(std::span<const std::uint64_t> numbers) override {
         clears_ = numbers.empty();
@@ -105,41 +108,28 @@ class DeviceTracer::Exposure final : public SingleExposure {
     }
 
     void hand_over() override {
-        tracer_.trace_->copy_counts(work.open(), for_host_);
+        tracer_.scene_.make_waves(work);
+        tracer_.estimate_.record(work.open(), slot_);
         work.submit();
-        if (const auto& waves = tracer_.scene_.waves) {
-            waves->hand_over(work, for_host_, tracer_.trace_->bytes_for_host());
-        }
     }
 
     Image finish() override {
         work.wait();
-        const PathTrace& trace = *tracer_.trace_;
-        const Accounts& accounts = tracer_.scene_.accounts;
-        Image image = accounts.image(trace.pixels(for_host_), trace.fates(for_host_), tracer_.rays_);
-        if (const auto& waves = tracer_.scene_.waves) {
-            image = with_waves(std::move(image), waves->light(for_host_, trace.bytes_for_host()),
-                               accounts.power_per_number(tracer_.rays_), waves->filter());
-        }
-        return image;
+        const DeviceEstimate& estimate = tracer_.estimate_;
+        return tracer_.scene_.accounts.image(estimate.light(slot_), estimate.further(slot_), tracer_.rays_);
     }
 
   private:
     const DeviceTracer& tracer_;
-    const vulkan::Buffer& for_host_;
+    std::size_t slot_;
     bool begins_ = true;
     bool clears_ = true;
 };
 
 std::unique_ptr<DeviceExposure> DeviceTracer::prepare(FocalPosition position, std::uint32_t image,
                                                       std::size_t slot) const {
-    auto& for_host = for_host_.at(slot);
-    if (!for_host) {
-        for_host.emplace(*scene_.device, trace_->bytes_for_host() + (scene_.waves ? scene_.waves->bytes_for_host() : 0),
-                         vulkan::Buffer::Memory::host);
-    }
     scene_.set_exposure(position, image, slot);
-    return std::make_unique<Exposure>(*this, *for_host);
+    return std::make_unique<Exposure>(*this, slot);
 }
 
 } // namespace

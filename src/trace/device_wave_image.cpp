@@ -73,7 +73,7 @@ void DeviceWaveImage::dispatch(vulkan::Commands& commands, const vulkan::Kernel&
     commands.barrier();
 }
 
-void DeviceWaveImage::record(vulkan::Commands& commands, const vulkan::Buffer& for_host, std::size_t to_byte) const {
+void DeviceWaveImage::record(vulkan::Commands& commands) const {
     const vk::DeviceAddress address = light_.address();
     WaveGroups groups{.light = {static_cast<std::uint32_t>(address), static_cast<std::uint32_t>(address >> 32)},
                       .columns = static_cast<std::uint32_t>(size_.columns),
@@ -103,14 +103,6 @@ void DeviceWaveImage::record(vulkan::Commands& commands, const vulkan::Buffer& f
     dispatch(commands, extend_, to_image, push, 2 * places);
     inverse_.record(commands);
     dispatch(commands, add_up_, to_pixels, push, pixels_.count());
-    commands.copy(result_, for_host, result_.bytes(), 0, to_byte);
-}
-
-Grid<double> DeviceWaveImage::image(const vulkan::Buffer& for_host, std::size_t from_byte) const {
-    Grid<double> image(pixels_.columns, pixels_.rows);
-    const auto values = for_host.values<float>(image.values.size(), from_byte);
-    std::copy(values.begin(), values.end(), image.values.begin());
-    return image;
 }
 
 } // namespace vkfv::trace

@@ -1,7 +1,6 @@
 // The image that waves make of light sorted by pupil cells, on a device: WaveImage in float.
 #pragma once
 
-#include "core/grid.hpp"
 #include "optics/pupil_filter.hpp"
 #include "trace/wave_planes.hpp"
 #include "vulkan/fourier_planes.hpp"
@@ -16,11 +15,11 @@ class DeviceWaveImage {
     DeviceWaveImage(const vulkan::Device& device, const optics::PupilFilter& filter, ImageSize pixels,
                     const vulkan::Buffer& light);
 
-    // Of the light as it is when the commands run; the result goes to bytes(pixels) of memory that the host sees.
-    void record(vulkan::Commands& commands, const vulkan::Buffer& for_host, std::size_t to_byte) const;
+    // Of the light as it is when the commands run.
+    void record(vulkan::Commands& commands) const;
+    // What they leave: of each pixel, in the units of the sorted light, bytes(pixels).
+    const vulkan::Buffer& light_of_pixels() const { return result_; }
     static std::size_t bytes(ImageSize pixels) { return pixels.count() * sizeof(float); }
-    // Light of the pixels in the units of the sorted light.
-    Grid<double> image(const vulkan::Buffer& for_host, std::size_t from_byte) const;
 
   private:
     void dispatch(vulkan::Commands& commands, const vulkan::Kernel& kernel, std::span<const vulkan::Binding> bindings,

@@ -10,6 +10,7 @@
 
 #include <algorithm>
 #include <chrono>
+#include <span>
 #include <thread>
 #include <vector>
 
@@ -35,26 +36,26 @@ class HostBackwardTracer final : public Tracer {
         const HostScene scene{turned_.scene(), &intersector_};
         const ImageSize pixels = turned_.detector_pixels();
         const unsigned workers = std::max(1u, std::thread::hardware_concurrency());
-        BackwardImage result(instrument_, plan_);
+        std::vector<std::uint64_t> sums(plan_.randomisations * pixels.count());
         CellLight light(filter_, pixels);
         for (std::uint32_t randomisation = 0; randomisation < plan_.randomisations; ++randomisation) {
-            std::vector<std::uint64_t> sums(pixels.count());
+            const std::span own = std::span(sums).subspan(randomisation * pixels.count(), pixels.count());
             std::vector<std::jthread> threads;
             for (unsigned worker = 0; worker < workers; ++worker) {
                 threads.emplace_back([&, worker] {
-                    for (std::size_t pixel = worker; pixel < sums.size(); pixel += workers) {
-                        sums[pixel] =
+                    for (std::size_t pixel = worker; pixel < own.size(); pixel += workers) {
+                        own[pixel] =
                             sum_of_pixel(scene, exposure, static_cast<std::uint32_t>(pixel), randomisation, light);
                     }
                 });
             }
-            threads.clear();
-            result.add(randomisation, sums);
         }
-        Image exposed = result.image();
+        PixelLight found = estimate_pixels(accounts_.rule(), pixels, sums, pixels.count());
+        const double detected = sum_of(found.flux.values);
         if (filter_) {
-            exposed = with_waves(std::move(exposed), light.image(), result.power_per_number(), *filter_);
+            found = with_waves(std::move(found), light.image(), accounts_.power_per_number(), *filter_);
         }
+        Image exposed = accounts_.image(std::move(found), detected);
         exposed.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
         return exposed;
     }
@@ -93,6 +94,7 @@ class HostBackwardTracer final : public Tracer {
     specimen::Intersector intersector_;
     std::uint32_t seed_;
     BackwardPlan plan_;
+    BackwardAccounts accounts_{instrument_, plan_};
     std::optional<optics::PupilFilter> filter_;
     Lattice lattice_ = plan_.lattice();
     BackwardOptics optics_ = backward_optics(instrument_, record_.material, plan_);

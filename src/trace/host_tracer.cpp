@@ -99,10 +99,11 @@ class HostTracer final : public Tracer {
             std::ranges::transform(counts[0], counts[worker], counts[0].begin(), std::plus<>());
             std::ranges::transform(fates[0], fates[worker], fates[0].begin(), std::plus<>());
         }
-        Image result = accounts_.image(counts[0], fates[0], options_.rays);
+        PixelLight pixels = estimate_pixels(accounts_.rule(options_.rays), instrument_.detector_pixels(), counts[0]);
         if (filter_) {
-            result = with_waves(std::move(result), light.image(), accounts_.power_per_number(options_.rays), *filter_);
+            pixels = with_waves(std::move(pixels), light.image(), accounts_.power_per_number(options_.rays), *filter_);
         }
+        Image result = accounts_.image(std::move(pixels), fates[0], options_.rays);
         result.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
         return result;
     }

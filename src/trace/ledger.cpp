@@ -1,7 +1,5 @@
 #include "trace/ledger.hpp"
 
-#include "core/parallel_rows.hpp"
-
 #include <algorithm>
 #include <cmath>
 #include <utility>
@@ -203,24 +201,18 @@ double Accounts::power_per_number(std::uint64_t rays) const {
     return flux_ * aimed_ * left_[2] / static_cast<double>(rays) / (weighted_ ? WEIGHT_ONE : 1);
 }
 
-Image Accounts::image(std::span<const std::uint64_t> pixel_numbers, std::span<const std::uint64_t> ledger_numbers,
-                      std::uint64_t rays) const {
-    const double per_ray = flux_ * aimed_ * left_[2] / static_cast<double>(rays);
+estimate::EstimateRule Accounts::rule(std::uint64_t rays) const {
+    return {.kind = weighted_ ? estimate::ESTIMATE_WEIGHTS : estimate::ESTIMATE_COUNTS,
+            .scale = flux_ * aimed_ * left_[2] / static_cast<double>(rays),
+            .unit = weighted_ ? 1.0 / WEIGHT_ONE : 1,
+            .unit_of_squares = weighted_ ? 1.0 / 16777216.0 : 1,
+            .count = static_cast<double>(rays)};
+}
+
+Image Accounts::image(PixelLight pixels, std::span<const std::uint64_t> ledger_numbers, std::uint64_t rays) const {
     Image image;
-    image.flux = Grid<double>(pixels_.columns, pixels_.rows);
-    image.standard_error = Grid<double>(pixels_.columns, pixels_.rows);
-    parallel_rows(pixels_.columns, pixels_.rows, [&](int first_row, int end_row) {
-        const std::size_t end = image.flux.index(0, end_row);
-        for (std::size_t pixel = image.flux.index(0, first_row); pixel < end; ++pixel) {
-            // In rays of weight 1; the square of a count's weight is the weight.
-            const double sum = weighted_ ? static_cast<double>(pixel_numbers[2 * pixel]) / WEIGHT_ONE
-                                         : static_cast<double>(pixel_numbers[pixel]);
-            const double squares = weighted_ ? static_cast<double>(pixel_numbers[2 * pixel + 1]) / 16777216.0 : sum;
-            image.flux.values[pixel] = per_ray * sum;
-            image.standard_error.values[pixel] =
-                per_ray * std::sqrt(std::max(squares - sum * sum / static_cast<double>(rays), 0.0));
-        }
-    });
+    image.flux = std::move(pixels.flux);
+    image.standard_error = std::move(pixels.standard_error);
     image.ledger = ledger(ledger_numbers, rays);
     image.rays = rays;
     image.detected = ledger_numbers[PATH_DETECTED];

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "optics/instrument.hpp"
+#include "trace/pixel_estimate.hpp"
 #include "trace/tracer.hpp"
 
 #include <array>
@@ -39,12 +40,12 @@ class Accounts {
     std::size_t ledger_numbers() const { return weighted_ ? 2 * slots() + 1 : slots(); }
     std::size_t pixel_numbers() const { return pixels_.count() * (weighted_ ? 2 : 1); }
 
-    // Image in W from the numbers of the pixels and of the ledger, with the standard error of each pixel. What was not
-    // aimed at and what the splitter turns away in the sequential trace is added analytically, so the ledger closes
-    // exactly when every launched ray has one fate; with directed scatter, whose paths add 1 to it in expectation, it
-    // closes within residual_error.
-    Image image(std::span<const std::uint64_t> pixel_numbers, std::span<const std::uint64_t> ledger_numbers,
-                std::uint64_t rays) const;
+    // Of the pixels' numbers.
+    estimate::EstimateRule rule(std::uint64_t rays) const;
+    // With the ledger of its numbers. What was not aimed at and what the splitter turns away in the sequential trace is
+    // added analytically, so the ledger closes exactly when every launched ray has one fate; with directed scatter,
+    // whose paths add 1 to it in expectation, it closes within residual_error.
+    Image image(PixelLight pixels, std::span<const std::uint64_t> ledger_numbers, std::uint64_t rays) const;
 
     // W on the detector for each unit of a pixel's number.
     double power_per_number(std::uint64_t rays) const;

@@ -36,19 +36,9 @@ class PathTrace {
     virtual void record(vulkan::Commands& commands, std::uint64_t first, std::uint32_t count,
                         bool timed = false) const = 0;
 
-    // What was counted, into memory that the host sees, where pixels() and fates() find it.
-    std::size_t bytes_for_host() const { return pixels_.bytes() + fates_.bytes(); }
-    void copy_counts(vulkan::Commands& commands, const vulkan::Buffer& for_host) const {
-        commands.copy(pixels_, for_host, pixels_.bytes());
-        commands.copy(fates_, for_host, fates_.bytes(), 0, pixels_.bytes());
-        commands.barrier();
-    }
-    std::span<const std::uint64_t> pixels(const vulkan::Buffer& for_host) const {
-        return for_host.values<std::uint64_t>(scene_.accounts.pixel_numbers());
-    }
-    std::span<const std::uint64_t> fates(const vulkan::Buffer& for_host) const {
-        return for_host.values<std::uint64_t>(scene_.accounts.ledger_numbers(), pixels_.bytes());
-    }
+    // What was counted: Accounts::pixel_numbers() and ledger_numbers() of 64 bits.
+    const vulkan::Buffer& pixels() const { return pixels_; }
+    const vulkan::Buffer& fates() const { return fates_; }
     std::uint32_t batch() const { return batch_; }
 
     // All that an exposure counts, with the light that is sorted for waves.

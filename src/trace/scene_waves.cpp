@@ -9,11 +9,11 @@
 
 namespace vkfv::trace {
 
-SceneWaves::SceneWaves(const vulkan::Device& device, optics::PupilFilter filter, ImageSize pixels)
+SceneWaves::SceneWaves(const vulkan::Device& device, optics::PupilFilter filter, ImageSize pixels, By by)
     : filter_(std::move(filter)), pixels_(pixels),
       light_(device, WaveImage(filter_, pixels).numbers() * sizeof(std::uint64_t), vulkan::Buffer::Memory::device,
              wave_memory_remedy) {
-    if (!vulkan::is_software(device.report())) {
+    if (by == By::device) {
         on_device_ = std::async(std::launch::async, [&device, this] {
                          return std::make_unique<const DeviceWaveImage>(device, filter_, pixels_, light_);
                      }).share();
@@ -34,19 +34,14 @@ void SceneWaves::require() const {
     }
 }
 
-void SceneWaves::hand_over(ExposureWork& work, const vulkan::Buffer& for_host, std::size_t to_byte) const {
-    if (on_device()) {
-        const DeviceWaveImage& image = *on_device_.get();
-        vulkan::Commands& commands = work.open();
-        image.record(commands, for_host, to_byte);
-        work.submit();
-    }
+void SceneWaves::make_image(ExposureWork& work) const {
+    const DeviceWaveImage& image = *on_device_.get();
+    vulkan::Commands& commands = work.open();
+    image.record(commands);
+    work.submit();
 }
 
-Grid<double> SceneWaves::light(const vulkan::Buffer& for_host, std::size_t from_byte) const {
-    if (on_device()) {
-        return on_device_.get()->image(for_host, from_byte);
-    }
+Grid<double> SceneWaves::light_by_host() const {
     const WaveImage image(filter_, pixels_);
     return image.apply(light_.read_values<std::uint64_t>(image.numbers()));
 }

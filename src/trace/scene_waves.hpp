@@ -12,12 +12,13 @@
 
 namespace vkfv::trace {
 
-// The sorted light in the device's memory; made an image of there, or by the host for devices that are its cores.
+// The sorted light in the device's memory; made an image of there, or by the host.
 class SceneWaves {
   public:
+    enum class By { device, host }; // who makes the image
     // pixels: the detector's. The device must outlive it. Throws RunError where its memory does not hold the light. A
-    // thread makes the transforms ready meanwhile; what fails there, require() and hand_over() throw.
-    SceneWaves(const vulkan::Device& device, optics::PupilFilter filter, ImageSize pixels);
+    // thread makes the transforms ready meanwhile; what fails there, require() and make_image() throw.
+    SceneWaves(const vulkan::Device& device, optics::PupilFilter filter, ImageSize pixels, By by);
 
     ~SceneWaves();
     SceneWaves(const SceneWaves&) = delete;
@@ -32,11 +33,12 @@ class SceneWaves {
 
     // Throws RunError or DeviceError where it is known by now that the device has no transforms.
     void require() const;
-    // An exposure's last work. The host finds in bytes_for_host() from to_byte on what light() makes the image of.
-    void hand_over(ExposureWork& work, const vulkan::Buffer& for_host, std::size_t to_byte) const;
-    std::size_t bytes_for_host() const { return on_device() ? DeviceWaveImage::bytes(pixels_) : 0; }
-    // In the units of the sorted light.
-    Grid<double> light(const vulkan::Buffer& for_host, std::size_t from_byte) const;
+    // On the device: submits what makes light_there() of an exposure's sorted light.
+    void make_image(ExposureWork& work) const;
+    // Of the pixels, in the units of the sorted light: DeviceWaveImage::bytes() of float.
+    const vulkan::Buffer& light_there() const { return on_device_.get()->light_of_pixels(); }
+    // By the host, of what is sorted at the moment.
+    Grid<double> light_by_host() const;
 
   private:
     optics::PupilFilter filter_;

@@ -177,13 +177,14 @@ std::optional<optics::PupilFilter> filter_for_waves(const optics::Instrument& in
                : std::nullopt;
 }
 
-Image with_waves(Image image, const Grid<double>& light, double power_per_number, const optics::PupilFilter& filter) {
+PixelLight with_waves(PixelLight pixels, const Grid<double>& light, double power_per_number,
+                      const optics::PupilFilter& filter) {
     const double noise = filter.noise();
     for (std::size_t pixel = 0; pixel < light.values.size(); ++pixel) {
-        image.flux.values[pixel] = power_per_number * light.values[pixel];
-        image.standard_error.values[pixel] *= noise;
+        pixels.flux.values[pixel] = power_per_number * light.values[pixel];
+        pixels.standard_error.values[pixel] *= noise;
     }
-    return image;
+    return pixels;
 }
 
 } // namespace vkfv::trace

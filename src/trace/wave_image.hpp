@@ -4,6 +4,7 @@
 #include "core/grid.hpp"
 #include "core/pixel_grid.hpp"
 #include "optics/pupil_filter.hpp"
+#include "trace/pixel_estimate.hpp"
 #include "trace/tracer.hpp"
 
 #include <array>
@@ -60,7 +61,8 @@ class CellLight {
 // The filter that the options ask for, of an instrument that is not turned round; none: images as rays make them.
 std::optional<optics::PupilFilter> filter_for_waves(const optics::Instrument& instrument, const TraceOptions& options);
 
-// The same exposure with its light as waves make it, in W, from that of WaveImage::apply().
-Image with_waves(Image image, const Grid<double>& light, double power_per_number, const optics::PupilFilter& filter);
+// The same pixels with their light as waves make it, from that of WaveImage::apply(), in power_per_number W a unit.
+PixelLight with_waves(PixelLight pixels, const Grid<double>& light, double power_per_number,
+                      const optics::PupilFilter& filter);
 
 } // namespace vkfv::trace

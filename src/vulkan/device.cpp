@@ -117,6 +117,7 @@ DeviceReport examine(const vk::raii::PhysicalDevice& device, int index) {
     require(has_subgroup(vk::SubgroupFeatureFlagBits::eBallot), "subgroup ballot in compute shaders");
     require(has_subgroup(vk::SubgroupFeatureFlagBits::eArithmetic), "subgroup arithmetic in compute shaders");
 
+    report.doubles = features_10.shaderFloat64 == VK_TRUE;
     if (std::ranges::all_of(ray_query_extensions, has_extension)) {
         const auto ray =
             device.getFeatures2<vk::PhysicalDeviceFeatures2, vk::PhysicalDeviceAccelerationStructureFeaturesKHR,
@@ -319,7 +320,8 @@ Device::Device(const DeviceOptions& options) : state_(std::make_unique<State>())
     vk::StructureChain<vk::DeviceCreateInfo, vk::PhysicalDeviceFeatures2, vk::PhysicalDeviceVulkan12Features,
                        vk::PhysicalDeviceAccelerationStructureFeaturesKHR, vk::PhysicalDeviceRayQueryFeaturesKHR>
         chain;
-    chain.get<vk::PhysicalDeviceFeatures2>().features.setShaderInt64(VK_TRUE);
+    chain.get<vk::PhysicalDeviceFeatures2>().features.setShaderInt64(VK_TRUE).setShaderFloat64(
+        state.report.doubles ? VK_TRUE : VK_FALSE);
     chain.get<vk::PhysicalDeviceVulkan12Features>()
         .setBufferDeviceAddress(VK_TRUE)
         .setScalarBlockLayout(VK_TRUE)

@@ -24,6 +24,7 @@ struct DeviceReport {
     std::string type; // "discrete GPU", "integrated GPU", "CPU", ...
     std::string api_version;
     bool ray_query = false; // not needed: the trace has other traversals
+    bool doubles = false;   // in shaders; not needed: the host has them
     std::uint32_t subgroup_size = 0;
     std::uint64_t memory_bytes = 0; // the largest device-local heap
     std::uint64_t max_storage_buffer_bytes = 0;

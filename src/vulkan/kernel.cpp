@@ -164,10 +164,11 @@ void Commands::dispatch(const Kernel& kernel, std::span<const Binding> bindings,
                                                kernel.name(), declaration.slot));
         }
         if (buffer != nullptr) {
-            check_range(*device_, kernel, declaration, (*buffer)->bytes());
+            const std::size_t bytes = binding.bytes > 0 ? binding.bytes : (*buffer)->bytes();
+            check_range(*device_, kernel, declaration, bytes);
             // Without its padding, so that a run-time array's length() is right.
-            const vk::DeviceSize range = (*buffer)->bytes() > 0 ? (*buffer)->bytes() : VK_WHOLE_SIZE;
-            buffers[i] = vk::DescriptorBufferInfo((*buffer)->handle(), 0, range);
+            const vk::DeviceSize range = bytes > 0 ? bytes : VK_WHOLE_SIZE;
+            buffers[i] = vk::DescriptorBufferInfo((*buffer)->handle(), binding.first_byte, range);
             write.setBufferInfo(buffers[i]);
         } else {
             structures[i] = std::get<const AccelerationStructure*>(binding.resource)->top_level();

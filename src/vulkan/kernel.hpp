@@ -17,7 +17,11 @@ namespace vkfv::vulkan {
 struct Binding {
     std::uint32_t slot;
     std::variant<const Buffer*, const AccelerationStructure*> resource;
+    // Of a buffer, if not the whole: bytes from first_byte on, a multiple of binding_alignment.
+    std::size_t first_byte = 0;
+    std::size_t bytes = 0;
 };
+inline constexpr std::size_t binding_alignment = 256; // Vulkan asks for no more
 
 enum class BindingKind { storage_buffer, uniform_buffer, acceleration_structure };
 

@@ -1,0 +1,61 @@
+// What the numbers that were counted for a pixel say of its light, in double and operation by operation, so that host
+// and devices find the same bits. One source, as GLSL for kernels/estimate_light.comp and as C++ (estimate.hpp).
+
+const uint ESTIMATE_COUNTS = 0u;         // a pixel has one number: of rays
+const uint ESTIMATE_WEIGHTS = 1u;        // two: the sum of the rays' weights and the sum of the weights' squares
+const uint ESTIMATE_RANDOMISATIONS = 2u; // one in each randomisation: the sum over its paths
+
+// How numbers become flux.
+struct EstimateRule {
+    uint kind;
+    double scale;           // W that 1 stands for: of one ray of weight 1, or of the mean over a pixel's paths
+    double unit;            // of a number; of a sum over paths: of their mean
+    double unit_of_squares; // of weights
+    double count;           // of launched rays, or of randomisations
+};
+
+struct PixelEstimate {
+    double flux;           // W
+    double standard_error; // W
+};
+
+// From what a pixel has of all launched rays: a sum of values and of their squares (Poisson's where they are 1).
+VKFV_FUNCTION PixelEstimate estimate_of_rays(EstimateRule rule, double sum, double squares) {
+    VKFV_PRECISE double expected = sum * sum / rule.count;
+    VKFV_PRECISE double variance = max(squares - expected, double(0.0));
+    VKFV_PRECISE double error = rule.scale * sqrt(variance);
+    VKFV_PRECISE double flux = rule.scale * sum;
+    PixelEstimate estimate;
+    estimate.flux = flux;
+    estimate.standard_error = error;
+    return estimate;
+}
+
+// Of the means of randomisations, one after the other.
+struct MeanSums {
+    double sum;
+    double squares;
+};
+
+VKFV_FUNCTION MeanSums with_randomisation(EstimateRule rule, MeanSums sums, double number) {
+    VKFV_PRECISE double mean = rule.unit * number;
+    VKFV_PRECISE double sum = sums.sum + mean;
+    VKFV_PRECISE double squares = sums.squares + mean * mean;
+    MeanSums all;
+    all.sum = sum;
+    all.squares = squares;
+    return all;
+}
+
+// From their scatter.
+VKFV_FUNCTION PixelEstimate estimate_of_randomisations(EstimateRule rule, MeanSums sums) {
+    VKFV_PRECISE double mean = sums.sum / rule.count;
+    VKFV_PRECISE double spread = sums.squares / rule.count - mean * mean;
+    VKFV_PRECISE double variance = max(double(0.0), spread) / (rule.count - double(1.0));
+    VKFV_PRECISE double error = rule.scale * sqrt(variance);
+    VKFV_PRECISE double flux = rule.scale * mean;
+    PixelEstimate estimate;
+    estimate.flux = flux;
+    estimate.standard_error = error;
+    return estimate;
+}

@@ -1,0 +1,162 @@
+// From numbers that were counted to the light of pixels: in closed form, and on a device to the host's bits.
+#include "trace/device_estimate.hpp"
+#include "trace/microscope.hpp"
+#include "trace/wave_image.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <random>
+#include <vector>
+
+using namespace vkfv;
+
+namespace {
+
+constexpr ImageSize pixels{37, 23};
+
+estimate::EstimateRule rule_of(std::uint32_t kind, double count) {
+    return {.kind = kind, .scale = 3.1e-9, .unit = 1.0 / 4194304, .unit_of_squares = 1.0 / 16777216, .count = count};
+}
+
+// Of all sizes up to 2^62, and none.
+std::vector<std::uint64_t> random_numbers(std::size_t count) {
+    std::mt19937_64 random(5);
+    std::vector<std::uint64_t> numbers(count);
+    for (auto& number : numbers) {
+        number = random() >> (2 + random() % 62);
+    }
+    numbers.front() = 0;
+    return numbers;
+}
+
+vulkan::Buffer buffer_of(const vulkan::Device& device, std::span<const std::uint64_t> numbers) {
+    vulkan::Buffer buffer(device, numbers.size_bytes());
+    buffer.write_values(numbers);
+    return buffer;
+}
+
+struct Found {
+    trace::PixelLight light;
+    double power;
+};
+
+Found found_by(const vulkan::Device& device, const trace::DeviceEstimate& estimate) {
+    vulkan::Commands commands(device);
+    estimate.record(commands, 1);
+    commands.submit_and_wait();
+    return {estimate.light(1), estimate.power(1)};
+}
+
+using By = trace::DeviceEstimate::By;
+
+} // namespace
+
+TEST(PixelEstimate, of_counts_is_that_of_so_many_of_the_rays) {
+    // N of n rays: mean scale N, variance N (1 - N / n).
+    const std::vector<std::uint64_t> counts = {0, 400, 1'000'000};
+    const auto light = trace::estimate_pixels(rule_of(estimate::ESTIMATE_COUNTS, 1'000'000), ImageSize{3, 1}, counts);
+    EXPECT_EQ(light.flux.values, (std::vector<double>{0, 3.1e-9 * 400, 3.1e-9 * 1'000'000}));
+    EXPECT_EQ(light.standard_error.values[0], 0);
+    EXPECT_NEAR(light.standard_error.values[1], 3.1e-9 * 20 * std::sqrt(1 - 0.0004), 1e-22);
+    EXPECT_EQ(light.standard_error.values[2], 0);
+}
+
+TEST(PixelEstimate, of_weights_is_that_of_rays_with_these_weights) {
+    // Weights 1/2, 1/2 and 2: sum 3, squares 4.5, in their units.
+    const std::vector<std::uint64_t> numbers = {3u << 22, 75'497'472};
+    const auto light = trace::estimate_pixels(rule_of(estimate::ESTIMATE_WEIGHTS, 90), ImageSize{1, 1}, numbers);
+    EXPECT_EQ(light.flux.values[0], 3.1e-9 * 3);
+    EXPECT_NEAR(light.standard_error.values[0], 3.1e-9 * std::sqrt(4.5 - 9.0 / 90), 1e-22);
+}
+
+TEST(PixelEstimate, of_two_randomisations_errs_by_half_of_their_difference) {
+    const std::vector<std::uint64_t> numbers = {3u << 22, 1, 5u << 22, 9}; // one of padding
+    const auto light =
+        trace::estimate_pixels(rule_of(estimate::ESTIMATE_RANDOMISATIONS, 2), ImageSize{1, 1}, numbers, 2);
+    EXPECT_DOUBLE_EQ(light.flux.values[0], 3.1e-9 * 4);
+    EXPECT_DOUBLE_EQ(light.standard_error.values[0], 3.1e-9 * 1);
+}
+
+TEST(PixelEstimate, has_the_same_bits_by_the_device_and_by_the_host) {
+    const vulkan::Device device;
+    ASSERT_TRUE(device.report().doubles); // else both would be the host's
+    struct Case {
+        std::uint32_t kind;
+        double count;
+        std::size_t numbers;
+        std::size_t stride;
+    };
+    const std::size_t count = pixels.count();
+    for (const Case& one : {Case{estimate::ESTIMATE_COUNTS, 9.7e18, count, 0},
+                            {estimate::ESTIMATE_WEIGHTS, 1e12 / 3, 2 * count, 0},
+                            {estimate::ESTIMATE_RANDOMISATIONS, 7, 7 * (count + 13), count + 13}}) {
+        const auto rule = rule_of(one.kind, one.count);
+        const auto numbers = random_numbers(one.numbers);
+        const auto expected = trace::estimate_pixels(rule, pixels, numbers, one.stride);
+        const double power = trace::sum_of(expected.flux.values);
+        const std::vector<std::uint64_t> further = {3, 1, 4};
+        for (const By by : {By::device, By::host}) {
+            const auto buffer = buffer_of(device, numbers);
+            const auto beside = buffer_of(device, further);
+            const trace::DeviceEstimate estimate(device, rule, pixels, {buffer, one.stride, &beside}, nullptr, 0, by);
+            const Found found = found_by(device, estimate);
+            EXPECT_TRUE(std::ranges::equal(estimate.further(1), further));
+            EXPECT_EQ(found.light.flux.values, expected.flux.values) << one.kind;
+            EXPECT_EQ(found.light.standard_error.values, expected.standard_error.values) << one.kind;
+            EXPECT_EQ(found.power, power) << one.kind;
+        }
+        auto twin = rule;
+        twin.scale = std::nextafter(rule.scale, 1.0);
+        const auto buffer = buffer_of(device, numbers);
+        const Found found = found_by(device, {device, twin, pixels, {buffer, one.stride}, nullptr, 0});
+        EXPECT_NE(found.light.flux.values, expected.flux.values);
+    }
+}
+
+TEST(PixelEstimate, of_waves_is_their_light_with_the_noise_that_filtering_leaves) {
+    const auto instrument = test::microscope();
+    const vulkan::Device device;
+    constexpr ImageSize pixels{20, 12}; // sides of small primes: their transforms are made ready soon
+    const optics::PupilFilter filter(instrument, {.cells = 2, .parts = 2});
+    const auto rule = rule_of(estimate::ESTIMATE_COUNTS, 1e9);
+    const auto numbers = buffer_of(device, random_numbers(pixels.count()));
+    std::vector<std::uint64_t> light(trace::WaveImage(filter, pixels).numbers());
+    for (std::size_t k = 0; k < light.size(); ++k) {
+        light[k] = 100 + k % 17;
+    }
+    const auto given = buffer_of(device, light);
+    constexpr double scale = 4e-9;
+    const auto rays = found_by(device, {device, rule, pixels, {numbers}, nullptr, 0});
+    const auto expected = trace::with_waves(rays.light, trace::WaveImage(filter, pixels).apply(light), scale, filter);
+    ASSERT_LT(filter.noise(), 1);
+
+    using Waves = trace::SceneWaves;
+    std::vector<Found> all;
+    for (const auto waves_by : {Waves::By::device, Waves::By::host}) {
+        const Waves waves(device, filter, pixels, waves_by);
+        vulkan::Commands commands(device);
+        commands.copy(given, waves.sorted_light(), given.bytes());
+        commands.submit_and_wait();
+        if (waves.on_device()) {
+            trace::DispatchPace pace(1);
+            trace::ExposureWork work(device, pace);
+            waves.make_image(work);
+            work.wait();
+        }
+        for (const By by : {By::device, By::host}) {
+            const Found found = found_by(device, {device, rule, pixels, {numbers}, &waves, scale, by});
+            EXPECT_EQ(found.power, rays.power); // as rays bring it
+            EXPECT_EQ(found.light.standard_error.values, expected.standard_error.values);
+            for (std::size_t pixel = 0; pixel < pixels.count(); ++pixel) {
+                // Waves made by the device are in float.
+                ASSERT_NEAR(found.light.flux.values[pixel] / expected.flux.values[pixel], 1,
+                            waves.on_device() ? 2e-6 : 0)
+                    << pixel;
+            }
+            all.push_back(found);
+        }
+    }
+    EXPECT_EQ(all[0].light.flux.values, all[1].light.flux.values);
+}
