@@ -3,7 +3,8 @@
 #extension GL_EXT_scalar_block_layout : require
 #extension GL_EXT_shader_explicit_arithmetic_types_int64 : require
 #extension GL_EXT_buffer_reference : require
-// From the numbers that were counted to an image: an invocation a pixel, workgroups in rows where one row holds too few.
+// From the numbers that were counted to an image: an invocation a pixel, workgroups in rows where one row holds too
+// few.
 layout(local_size_x = 128) in;
 
 #define VKFV_FUNCTION
@@ -32,7 +33,8 @@ PixelEstimate estimate_of(uint pixel) {
     sums.sum = double(0.0);
     sums.squares = double(0.0);
     for (uint randomisation = 0u; double(randomisation) < of.rule.count; ++randomisation) {
-        sums = with_randomisation(of.rule, sums, number_at(uint64_t(randomisation) * uint64_t(of.stride) + uint64_t(pixel)));
+        sums = with_randomisation(of.rule, sums,
+                                  number_at(uint64_t(randomisation) * uint64_t(of.stride) + uint64_t(pixel)));
     }
     return estimate_of_randomisations(of.rule, sums);
 }
