@@ -4,6 +4,11 @@
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
 
+#include <algorithm>
+#include <filesystem>
+#include <string>
+#include <vector>
+
 using namespace vkfv;
 
 TEST(Bench, reports_what_it_measured_as_json_and_picture) {
@@ -36,6 +41,36 @@ TEST(Bench, reports_what_it_measured_as_json_and_picture) {
     const auto picture = test::read_file(folder / "out" / "bench.svg");
     EXPECT_NE(picture.find("illumination"), std::string::npos);
     EXPECT_NE(picture.find("</svg>"), std::string::npos);
+}
+
+// Embree and lenses in double: it shares no physics with vkfv, only the instrument that both are told of.
+TEST(Bench, agrees_with_its_peer_and_times_it) {
+    const auto folder = test::fresh_folder("bench_peer");
+    test::write_file(folder / "c.toml", test::small_configuration);
+    const std::string peer = VKFV_BINARY_DIR "/vkfv_bench_peer";
+    const std::vector<std::string> words = {"--bench", "c.toml", "--quick",       "--runs",
+                                            "1",       "--json", "--out",         "out",
+                                            "--peer",  peer,     "--bench-parts", "validation,peer"};
+    for (const char* bounces : {"1", "4"}) { // aimed into a rectangle, into a disc
+        auto all = words;
+        all.insert(all.end(), {"--set", std::string("trace.max_bounces=") + bounces});
+        const auto result = test::run_program(all, folder);
+        ASSERT_EQ(result.exit_code, 0) << result.standard_error;
+        const auto report = nlohmann::json::parse(result.standard_output);
+        const auto& last = report["validation"].back();
+        EXPECT_EQ(last["what"], "quadtree against the peer");
+        EXPECT_TRUE(last["agrees"].get<bool>()) << last;
+        EXPECT_GT(report["peer"]["rays_per_second"].get<double>(), 0);
+    }
+    // The twin: it must be found apart, and then nothing is timed.
+    const auto twin = folder / "twin";
+    test::write_file(twin, "#!/bin/sh\nexec " + peer + " \"$@\" --set specimen.material.g=0.6\n");
+    std::filesystem::permissions(twin, std::filesystem::perms::owner_all);
+    auto apart = words;
+    *std::ranges::find(apart, peer) = twin.string();
+    const auto result = test::run_program(apart, folder);
+    EXPECT_EQ(result.exit_code, 4);
+    EXPECT_NE(result.standard_error.find("the peer"), std::string::npos) << result.standard_error;
 }
 
 TEST(Bench, refuses_parts_that_there_are_not_and_a_peer_that_fails) {

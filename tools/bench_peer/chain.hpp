@@ -23,10 +23,12 @@ struct Surface {
 };
 
 struct Chain {
-    double source_radius = 0;          // Lambertian disc
-    double source_distance = 0;        // to the first vertex of the illumination
-    double emission_sine = 1;          // of the disc of directions emitted into
-    double emission_shift = 0;         // 1/mm, of its middle, over the place at the source
+    double source_radius = 0;       // Lambertian disc
+    double source_distance = 0;     // to the first vertex of the illumination
+    double emission_sine = 1;       // of the disc of directions emitted into
+    double emission_half_width = 0; // of the rectangle of directions emitted into instead; 0: the disc
+    double emission_half_height = 0;
+    double emission_shift = 0;         // 1/mm, of their middle, over the place at the source
     std::vector<Surface> illumination; // ends at the objective's front vertex, light downwards
     std::vector<Surface> imaging;      // begins there, light upwards
     double top_distance = 0;           // from there to the specimen's top plane
@@ -39,9 +41,11 @@ struct Chain {
     double gate_slope = 0;
     double gate_radius = 0;       // `unlimited`: no gate
     double detector_distance = 0; // from the last vertex
-    double detector_half_size = 0;
-    int detector_pixels = 0; // along one side
-    bool inverted = false;   // the image, which counting on pixels turns back
+    double detector_half_width = 0;
+    double detector_half_height = 0;
+    int detector_columns = 0;
+    int detector_rows = 0;
+    bool inverted = false; // the image, which counting on pixels turns back
 };
 
 struct Triangles {

@@ -2,10 +2,12 @@
 // (chain.hpp).
 #include "chain.hpp"
 
-#include "app/commands.hpp"
+#include "core/error.hpp"
+#include "core/file.hpp"
 #include "core/units.hpp"
 #include "images/image_file.hpp"
-#include "trace/host_tracer.hpp"
+#include "measurement/assembly.hpp"
+#include "trace/traced_instrument.hpp"
 
 #include <CLI/CLI.hpp>
 #include <fmt/format.h>
@@ -22,7 +24,7 @@ namespace {
 
 using vkfv::InputError;
 
-[[noreturn]] void refuse(const vkfv::app::Configuration& configuration, std::string key, std::string found,
+[[noreturn]] void refuse(const vkfv::Configuration& configuration, std::string key, std::string found,
                          std::string expected, std::string remedy) {
     throw InputError({.where = {.file = configuration.file},
                       .key = std::move(key),
@@ -53,9 +55,10 @@ std::vector<peer::Surface> train(const vkfv::optics::Instrument& instrument, int
     return result;
 }
 
-peer::Chain make_chain(const vkfv::app::Configuration& configuration, const vkfv::optics::Instrument& instrument,
+peer::Chain make_chain(const vkfv::Configuration& configuration, const vkfv::optics::Instrument& instrument,
                        const vkfv::specimen::Specimen& specimen, double focal_height, bool gate) {
-    if (instrument.features != 0 || configuration.trace.nonsequential) {
+    if ((instrument.features & ~vkfv::physics::f64::FEATURE_AIMED_RECTANGLE) != 0 ||
+        configuration.trace.nonsequential) {
         refuse(configuration, "", "an instrument with a ring light, a spectrum, ideal lenses, losses or tilted parts",
                "the plain chain: disc, surfaces of revolution about one axis, one wavelength",
                "Compare with vkfv --device host.");
@@ -72,6 +75,10 @@ peer::Chain make_chain(const vkfv::app::Configuration& configuration, const vkfv
     chain.source_radius = constants.source_radius;
     chain.source_distance = constants.source_distance;
     chain.emission_sine = constants.emission_sine;
+    if ((instrument.features & vkfv::physics::f64::FEATURE_AIMED_RECTANGLE) != 0) {
+        chain.emission_half_width = constants.emission_half_width;
+        chain.emission_half_height = constants.emission_half_height;
+    }
     chain.emission_shift = constants.emission_shift;
     chain.illumination = train(instrument, constants.illumination_first, constants.illumination_count);
     chain.imaging = train(instrument, constants.imaging_first, constants.imaging_count);
@@ -83,14 +90,15 @@ peer::Chain make_chain(const vkfv::app::Configuration& configuration, const vkfv
     chain.gate_slope = constants.gate_slope;
     chain.gate_radius = gate ? constants.gate_radius : peer::unlimited;
     chain.detector_distance = constants.detector_distance;
-    chain.detector_half_size = constants.detector_half_size;
-    chain.detector_pixels = constants.detector_pixels;
+    chain.detector_half_width = constants.detector_half_width;
+    chain.detector_half_height = constants.detector_half_height;
+    chain.detector_columns = constants.detector_columns;
+    chain.detector_rows = constants.detector_rows;
     chain.inverted = constants.magnification < 0;
     return chain;
 }
 
-peer::Triangles make_triangles(const vkfv::app::Configuration& configuration,
-                               const vkfv::specimen::Specimen& specimen) {
+peer::Triangles make_triangles(const vkfv::Configuration& configuration, const vkfv::specimen::Specimen& specimen) {
     peer::Triangles triangles;
     if (const auto* mesh = std::get_if<vkfv::specimen::Mesh>(&specimen.geometry)) {
         for (const auto& vertex : mesh->vertices) {
@@ -162,10 +170,12 @@ void run(const Arguments& given) {
         overrides.push_back(
             {setting.substr(0, equals), equals == std::string::npos ? "" : setting.substr(equals + 1), "--set"});
     }
-    const auto configuration = vkfv::app::load_configuration(given.file, overrides, vkfv::app::Needs::exposure);
+    const auto configuration = vkfv::load_configuration(given.file, overrides, vkfv::Needs::exposure);
     const double focal_height = given.z_um / vkfv::um_per_mm;
-    const auto specimen = vkfv::specimen::make(*configuration.specimen);
-    const auto instrument = vkfv::app::assemble_instrument(configuration, specimen, std::span(&focal_height, 1));
+    const auto specimen = vkfv::measurement::make_specimen(configuration);
+    const auto instrument = vkfv::trace::as_traced(
+        vkfv::measurement::assemble_instrument(configuration, specimen, std::span(&focal_height, 1)),
+        configuration.trace);
     const auto chain = make_chain(configuration, instrument, specimen, focal_height, given.gate);
 
     using Clock = std::chrono::steady_clock;
@@ -192,16 +202,16 @@ void run(const Arguments& given) {
         processor_seconds.push_back(static_cast<double>(std::clock() - processor_start) / CLOCKS_PER_SEC);
         settings.seed += 1;
     }
-    const double aimed = chain.emission_sine * chain.emission_sine;
-    const double per_ray = instrument.flux * aimed * instrument.splitter_reflectance *
+    const double per_ray = instrument.flux * instrument.aimed_share() * instrument.splitter_reflectance *
                            instrument.splitter_transmittance / static_cast<double>(settings.rays);
     if (!given.out.empty()) {
-        vkfv::Grid<float> flux(chain.detector_pixels, chain.detector_pixels);
+        vkfv::Grid<float> flux(chain.detector_columns, chain.detector_rows);
         std::ranges::transform(counts.pixels, flux.values.begin(),
                                [&](std::uint32_t count) { return static_cast<float>(per_ray * count); });
         const double pitch = instrument.first_order.pixel_pitch;
-        vkfv::surface::write_tiff(
-            given.out, flux, {.pitch_x = pitch, .pitch_y = pitch, .description = "radiant flux in W, by the peer"});
+        vkfv::write_file(given.out, vkfv::images::tiff_bytes(flux, {.pitch_x = pitch,
+                                                                    .pitch_y = pitch,
+                                                                    .description = "radiant flux in W, by the peer"}));
     }
     std::ranges::sort(seconds);
     std::ranges::sort(processor_seconds);

@@ -229,23 +229,35 @@ void turn(const Lane& u, int count, Lane& cosine, Lane& sine) {
     }
 }
 
-// Lambertian disc: uniform in area, and in the direction's tangential part, within a disc about its middle.
+// Lambertian disc: uniform in area, and in the direction's tangential part, within a disc or a rectangle about its
+// middle.
 void emit(const Chain& chain, Generator& generator, int count, Rays& rays) {
     alignas(64) Lane u0, u1, u2, u3;
     for (Lane* u : {&u0, &u1, &u2, &u3}) {
         generator.fill(*u, count);
     }
     turn(u1, count, rays.x, rays.y);
-    turn(u3, count, rays.dx, rays.dy);
+    if (chain.emission_half_width > 0) {
+        for (std::size_t k = 0; k < static_cast<std::size_t>(count); ++k) {
+            rays.dx[k] = chain.emission_half_width * (2 * u2[k] - 1);
+            rays.dy[k] = chain.emission_half_height * (2 * u3[k] - 1);
+        }
+    } else {
+        turn(u3, count, rays.dx, rays.dy);
+        for (std::size_t k = 0; k < static_cast<std::size_t>(count); ++k) {
+            const double sine = chain.emission_sine * std::sqrt(u2[k]);
+            rays.dx[k] *= sine;
+            rays.dy[k] *= sine;
+        }
+    }
     for (int i = 0; i < count; ++i) {
         const auto k = static_cast<std::size_t>(i);
         const double radius = chain.source_radius * std::sqrt(u0[k]);
-        const double sine = chain.emission_sine * std::sqrt(u2[k]);
         rays.x[k] *= radius;
         rays.y[k] *= radius;
         rays.z[k] = -chain.source_distance;
-        rays.dx[k] = chain.emission_shift * rays.x[k] + sine * rays.dx[k];
-        rays.dy[k] = chain.emission_shift * rays.y[k] + sine * rays.dy[k];
+        rays.dx[k] += chain.emission_shift * rays.x[k];
+        rays.dy[k] += chain.emission_shift * rays.y[k];
         rays.dz[k] = std::sqrt(std::max(0.0, 1 - rays.dx[k] * rays.dx[k] - rays.dy[k] * rays.dy[k]));
     }
     rays.count = count;
@@ -510,8 +522,8 @@ class Worker {
   public:
     Worker(const Chain& chain, RTCScene scene, int block, std::uint64_t seed)
         : chain_(chain), scene_(scene), block_(block), generator_(seed) {
-        counts_.pixels.resize(static_cast<std::size_t>(chain.detector_pixels) *
-                              static_cast<std::size_t>(chain.detector_pixels));
+        counts_.pixels.resize(static_cast<std::size_t>(chain.detector_columns) *
+                              static_cast<std::size_t>(chain.detector_rows));
     }
 
     Counts run(std::uint64_t rays) {
@@ -590,15 +602,15 @@ class Worker {
         }
         pass_train(chain_.imaging, survivors_);
         fly_to(chain_.detector_distance, survivors_);
-        const double half = chain_.detector_half_size;
         const double turn = chain_.inverted ? -1 : 1;
-        const double scale = chain_.detector_pixels / (2 * half);
+        const double columns_per_mm = chain_.detector_columns / (2 * chain_.detector_half_width);
+        const double rows_per_mm = chain_.detector_rows / (2 * chain_.detector_half_height);
         for (int i = 0; i < survivors_.count; ++i) {
             const auto k = static_cast<std::size_t>(i);
-            const double column = (turn * survivors_.x[k] + half) * scale;
-            const double row = (turn * survivors_.y[k] + half) * scale;
-            if (column >= 0 && row >= 0 && column < chain_.detector_pixels && row < chain_.detector_pixels) {
-                counts_.pixels[static_cast<std::size_t>(row) * static_cast<std::size_t>(chain_.detector_pixels) +
+            const double column = (turn * survivors_.x[k] + chain_.detector_half_width) * columns_per_mm;
+            const double row = (turn * survivors_.y[k] + chain_.detector_half_height) * rows_per_mm;
+            if (column >= 0 && row >= 0 && column < chain_.detector_columns && row < chain_.detector_rows) {
+                counts_.pixels[static_cast<std::size_t>(row) * static_cast<std::size_t>(chain_.detector_columns) +
                                static_cast<std::size_t>(column)] += 1;
                 counts_.detected += 1;
             }
