@@ -35,6 +35,72 @@ double height_of(std::size_t h, double reach) {
     return reach * (static_cast<double>(h) / half_heights - 1);
 }
 
+// Sums over points, at each height, of a number that turns by the same angle from one height to the next: by
+// v_(h+1) = 2 cos(angle) v_h - v_(h-1), half of the products of v_(h+1) = step v_h. In four sums side by side, as one
+// alone would wait for each addition.
+class HeightSums {
+  public:
+    // step: from one height to the next, of modulus 1.
+    void add(Complex lowest, Complex step) {
+        const Complex second = product(lowest, step);
+        real_[next_] = lowest.real();
+        imaginary_[next_] = lowest.imag();
+        second_real_[next_] = second.real();
+        second_imaginary_[next_] = second.imag();
+        twice_cosine_[next_] = 2 * step.real();
+        if (++next_ == lanes) {
+            add_lanes();
+        }
+    }
+
+    AtHeights all() {
+        while (next_ > 0) {
+            add(0, 0);
+        }
+        AtHeights sums{};
+        for (std::size_t h = 0; h < heights; ++h) {
+            for (std::size_t k = 0; k < lanes; ++k) {
+                sums[h] += Complex(sums_[h].real[k], sums_[h].imaginary[k]);
+            }
+        }
+        return sums;
+    }
+
+  private:
+    static constexpr std::size_t lanes = 4;
+    using Lanes = std::array<double, lanes>;
+
+    void add_lanes() {
+        for (std::size_t k = 0; k < lanes; ++k) {
+            double before_real = real_[k];
+            double before_imaginary = imaginary_[k];
+            double real = second_real_[k];
+            double imaginary = second_imaginary_[k];
+            sums_[0].real[k] += before_real;
+            sums_[0].imaginary[k] += before_imaginary;
+            for (std::size_t h = 1; h < heights; ++h) {
+                sums_[h].real[k] += real;
+                sums_[h].imaginary[k] += imaginary;
+                const double next_real = twice_cosine_[k] * real - before_real;
+                const double next_imaginary = twice_cosine_[k] * imaginary - before_imaginary;
+                before_real = real;
+                before_imaginary = imaginary;
+                real = next_real;
+                imaginary = next_imaginary;
+            }
+        }
+        next_ = 0;
+    }
+
+    struct Sum {
+        Lanes real{};
+        Lanes imaginary{};
+    };
+    std::array<Sum, heights> sums_;
+    Lanes real_, imaginary_, second_real_, second_imaginary_, twice_cosine_;
+    std::size_t next_ = 0;
+};
+
 // Powers 0 ... of a number of modulus 1; those below 0 are the conjugates.
 class Powers {
   public:
@@ -56,6 +122,12 @@ class Powers {
     std::array<Complex, most + 1> powers_;
 };
 
+// Of something at the lowest height, and what leads from one height to the next.
+struct Phase {
+    Complex lowest = 1;
+    Complex step = 1;
+};
+
 // One wavelength's pupil on a lattice about the chief ray, whose points p + lambda f / 2 are points again for the
 // frequencies 2 unit (dx, dy), at heights within `reach` (mm).
 class PupilLattice {
@@ -72,7 +144,7 @@ class PupilLattice {
                 const glm::dvec2 p = wavefront.chief() + wavefront.wavelength() * unit * glm::dvec2(i + 0.5, j + 0.5);
                 if (wavefront.passes(p)) {
                     passes_[index(i, j)] = 1;
-                    set_wave(wave_[index(i, j)], wavefront, p, reach);
+                    wave_[index(i, j)] = wave_of(wavefront, p, reach);
                     const std::uint32_t cell = physics::f64::pupil_cell(cells, wavefront.image_slope(p) + chief_slope);
                     points.push_back(point_of(wavefront, p, cell, unit, reach));
                 }
@@ -91,7 +163,7 @@ class PupilLattice {
 
     // Hopkins' transfer function.
     AtHeights waves(int dx, int dy) const {
-        AtHeights sum{};
+        HeightSums sums;
         const int reach_x = half_ - std::abs(dx);
         const int reach_y = half_ - std::abs(dy);
         const std::ptrdiff_t step = static_cast<std::ptrdiff_t>(dy) * side_ + dx;
@@ -101,13 +173,12 @@ class PupilLattice {
                 const auto ahead = static_cast<std::size_t>(here + step);
                 const auto behind = static_cast<std::size_t>(here - step);
                 if (passes_[ahead] != 0 && passes_[behind] != 0) {
-                    for (std::size_t h = 0; h < heights; ++h) {
-                        sum[h] += product(std::conj(wave_[ahead][h]), wave_[behind][h]);
-                    }
+                    sums.add(product(std::conj(wave_[ahead].lowest), wave_[behind].lowest),
+                             product(std::conj(wave_[ahead].step), wave_[behind].step));
                 }
             }
         }
-        return mean(sum);
+        return mean(sums.all());
     }
 
     // exp(-2 pi i f . t) of each point at the lowest height, and what leads from one height to the next, for
@@ -131,22 +202,14 @@ class PupilLattice {
 
         // The cells' images as rays make them, each by its filter.
         AtHeights filtered(const std::vector<Complex>& of_cell) const {
-            AtHeights sum{};
+            HeightSums sums;
             for (std::size_t k = 0; k < phases_.size(); ++k) {
-                Complex value = product(of_cell[lattice_.points_[k].cell], phases_[k].lowest);
-                for (Complex& each : sum) {
-                    each += value;
-                    value = product(value, phases_[k].step);
-                }
+                sums.add(product(of_cell[lattice_.points_[k].cell], phases_[k].lowest), phases_[k].step);
             }
-            return lattice_.mean(sum);
+            return lattice_.mean(sums.all());
         }
 
       private:
-        struct Phase {
-            Complex lowest = 1;
-            Complex step = 1;
-        };
         const PupilLattice& lattice_;
         int dx_ = 0;
         int dy_ = 0;
@@ -160,15 +223,11 @@ class PupilLattice {
         std::array<Powers, 2> step;
     };
 
-    static void set_wave(AtHeights& waves, const Wavefront& wavefront, glm::dvec2 p, double reach) {
+    static Phase wave_of(const Wavefront& wavefront, glm::dvec2 p, double reach) {
         const double wave_number = 2 * pi / wavefront.wavelength();
         const double defocus = wavefront.path_of_height(p);
-        Complex wave = std::polar(1.0, wave_number * (wavefront.path(p) + height_of(0, reach) * defocus));
-        const Complex step = std::polar(1.0, wave_number * (reach / half_heights) * defocus);
-        for (Complex& at_height : waves) {
-            at_height = wave;
-            wave = product(wave, step);
-        }
+        return {.lowest = std::polar(1.0, wave_number * (wavefront.path(p) + height_of(0, reach) * defocus)),
+                .step = std::polar(1.0, wave_number * (reach / half_heights) * defocus)};
     }
 
     static Point point_of(const Wavefront& wavefront, glm::dvec2 p, std::uint32_t cell, double unit, double reach) {
@@ -191,7 +250,7 @@ class PupilLattice {
     int half_;
     int side_;
     std::vector<char> passes_;
-    std::vector<AtHeights> wave_;
+    std::vector<Phase> wave_;
     std::vector<Point> points_; // those that pass
 };
 

@@ -47,7 +47,17 @@ glm::dvec2 PlanePolynomial::gradient(glm::dvec2 at) const {
 namespace {
 
 bool has(Parity parity, int power_of_y) {
-    return parity == Parity::any || (power_of_y % 2 == 0) == (parity == Parity::even);
+    switch (parity) {
+    case Parity::any:
+        return true;
+    case Parity::even:
+        return power_of_y % 2 == 0;
+    case Parity::odd:
+        return power_of_y % 2 != 0;
+    case Parity::none:
+        break;
+    }
+    return power_of_y == 0;
 }
 
 // Their places among all coefficients.

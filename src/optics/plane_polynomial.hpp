@@ -30,8 +30,8 @@ class PlanePolynomial {
 };
 
 // Which powers of y a polynomial has: of a function that is its own mirror image about the x axis, or that changes its
-// sign there.
-enum class Parity { any, even, odd };
+// sign there; none: of x alone.
+enum class Parity { any, even, odd, none };
 
 // The polynomial for each column of `values` whose squared deviations at the points have the least sum, by
 // Householder's reflections (Golub and Van Loan, "Matrix Computations", section 5.3). Points within the unit disc, more

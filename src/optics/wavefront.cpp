@@ -116,14 +116,20 @@ Wavefront::Wavefront(const Imaging& imaging, double magnification, double focus,
     }
     // Images depend on the rim on the axis, to the last bit; in the field 5e-10 of the way is enough.
     const int bisections = field == glm::dvec2(0) ? 45 : 26;
-    const auto rim_at = [&](int azimuth) {
+    const auto rim_at = [&](int azimuth, double limit) {
         const glm::dvec2 direction = direction_of(2 * pi * azimuth / static_cast<double>(azimuths));
-        return farthest(
-                   index_ + glm::length(chief_),
-                   [&](double radius) { return view.excess(chief_ + radius * direction); }, bisections)
-            .value_or(0);
+        const auto excess = [&](double radius) { return view.excess(chief_ + radius * direction); };
+        const double all = index_ + glm::length(chief_);
+        return farthest(limit > 0 && limit < all && excess(limit) > 0 ? limit : all, excess, bisections).value_or(0);
     };
-    const auto own_rims = parallel_list(round_ ? 1 : static_cast<int>(mirrored_ ? azimuths / 2 + 1 : azimuths), rim_at);
+    // Of most pupils the rims are alike, and the first tells where to look for the others.
+    const double first_rim = rim_at(0, index_ + glm::length(chief_));
+    const auto other_rims = parallel_list(round_      ? 0
+                                          : mirrored_ ? static_cast<int>(azimuths / 2)
+                                                      : static_cast<int>(azimuths - 1),
+                                          [&](int other) { return rim_at(other + 1, 1.25 * first_rim); });
+    std::vector<double> own_rims = {first_rim};
+    own_rims.insert(own_rims.end(), other_rims.begin(), other_rims.end());
     for (std::size_t i = 0; i < azimuths; ++i) {
         rims_[i] = own_rims[round_ ? 0 : mirrored_ ? std::min(i, azimuths - i) : i];
     }
@@ -147,11 +153,15 @@ struct Wavefront::Samples {
 };
 
 // Rays that fill the pupil, dense towards its rim as a fit wants them. Of a pupil that is its own mirror image those of
-// one half count twice.
+// one half count twice; of a round one those of the x axis are enough.
 Wavefront::Samples Wavefront::sample(const DetectorView& view, int rings, int spokes, double turn) const {
     Samples samples;
     const auto chief = view.trace(chief_, 0);
     const bool half = mirrored_ && !round_;
+    if (round_) {
+        spokes = 2;
+        turn = 0;
+    }
     for (int spoke = 0; chief && spoke < spokes; ++spoke) {
         const double place = spoke + turn;
         if (half && 2 * place > spokes) {
@@ -194,12 +204,15 @@ void Wavefront::fit(const Imaging& imaging, glm::dvec2 detector, double magnific
         for (std::size_t i = 0; i < samples.places.size(); ++i) {
             samples.path[i] -= defocus_ * samples.defocus[i];
         }
-        const auto even_terms = static_cast<std::size_t>((degree / 2 + 1) * (degree / 2 + 1));
-        if (samples.places.size() < (samples.weights.empty() ? PlanePolynomial::terms(degree) : even_terms)) {
+        const std::size_t terms = round_      ? static_cast<std::size_t>(degree + 1)
+                                  : mirrored_ ? static_cast<std::size_t>((degree / 2 + 1) * (degree / 2 + 1))
+                                              : PlanePolynomial::terms(degree);
+        if (samples.places.size() < terms) {
             break;
         }
         if (samples.weights.empty()) {
-            auto fitted = fit_polynomials(degree, samples.places, {samples.path, samples.slope_x, samples.slope_y});
+            auto fitted = fit_polynomials(degree, samples.places, {samples.path, samples.slope_x, samples.slope_y},
+                                          round_ ? Parity::none : Parity::any);
             path_ = std::move(fitted[0]);
             slope_x_ = std::move(fitted[1]);
             slope_y_ = std::move(fitted[2]);
