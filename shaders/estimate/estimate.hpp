@@ -17,7 +17,7 @@ using uint = std::uint32_t;
 #include "estimate/pixel.glsl"
 
 #include "estimate/interface.glsl"
-static_assert(sizeof(EstimatedPixels) == 88); // scalar layout, as the kernel has it
+static_assert(sizeof(EstimatedPixels) == 96); // scalar layout, as the kernel has it
 
 } // namespace vkfv::estimate
 

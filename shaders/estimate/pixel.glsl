@@ -1,5 +1,6 @@
-// What the numbers that were counted for a pixel say of its light, in double and operation by operation, so that host
-// and devices find the same bits. One source, as GLSL for kernels/estimate_light.comp and as C++ (estimate.hpp).
+// What the numbers that were counted for a pixel say of its light, in double and operation by operation: host and
+// devices find the same bits where their quotients and roots are IEEE 754's, as those of lavapipe and NVIDIA are. One
+// source, as GLSL for kernels/estimate_light.comp and as C++ (estimate.hpp).
 
 const uint ESTIMATE_COUNTS = 0u;         // a pixel has one number: of rays
 const uint ESTIMATE_WEIGHTS = 1u;        // two: the sum of the rays' weights and the sum of the weights' squares

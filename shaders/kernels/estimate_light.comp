@@ -5,13 +5,12 @@
 #extension GL_EXT_buffer_reference : require
 // From the numbers that were counted to an image: an invocation a pixel, workgroups in rows where one row holds too
 // few.
-layout(local_size_x = 128) in;
-
 #define VKFV_FUNCTION
 #define VKFV_PRECISE precise
 #include "estimate/pixel.glsl"
 #include "estimate/interface.glsl"
 
+layout(local_size_x = ESTIMATE_WORKGROUP) in;
 layout(buffer_reference, scalar, buffer_reference_align = 8) readonly buffer Number { uint64_t number; };
 layout(buffer_reference, scalar, buffer_reference_align = 4) readonly buffer Wave { float light; };
 layout(buffer_reference, scalar, buffer_reference_align = 8) writeonly buffer Estimate { double power; };
@@ -49,13 +48,16 @@ void main() {
     uint pixel = group * gl_WorkGroupSize.x + gl_LocalInvocationIndex;
     if (pixel < of.pixels) {
         PixelEstimate estimate = estimate_of(pixel);
-        put(0u, pixel, estimate.flux);
         if (of.waves == uint64_t(0)) {
-            put(1u, pixel, estimate.standard_error);
+            put(0u, pixel, estimate.standard_error);
+            put(1u, pixel, estimate.flux);
         } else {
             double light = double(Wave(of.waves + uint64_t(4) * uint64_t(pixel)).light);
-            put(1u, pixel, estimate.standard_error * of.waves_noise);
-            put(2u, pixel, of.waves_scale * light);
+            put(0u, pixel, estimate.standard_error * of.waves_noise);
+            put(1u, pixel, of.waves_scale * light);
+            if (of.by_rays != 0u) {
+                put(2u, pixel, estimate.flux);
+            }
         }
     }
 }

@@ -119,8 +119,12 @@ Wavefront::Wavefront(const Imaging& imaging, double magnification, double focus,
     const auto rim_at = [&](int azimuth, double limit) {
         const glm::dvec2 direction = direction_of(2 * pi * azimuth / static_cast<double>(azimuths));
         const auto excess = [&](double radius) { return view.excess(chief_ + radius * direction); };
+        // Light that passes at the limit may pass beyond it.
+        const auto near = farthest(limit, excess, bisections);
         const double all = index_ + glm::length(chief_);
-        return farthest(limit > 0 && limit < all && excess(limit) > 0 ? limit : all, excess, bisections).value_or(0);
+        return near && *near < limit ? *near
+               : limit < all         ? farthest(all, excess, bisections).value_or(0)
+                                     : near.value_or(0);
     };
     // Of most pupils the rims are alike, and the first tells where to look for the others.
     const double first_rim = rim_at(0, index_ + glm::length(chief_));

@@ -14,8 +14,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <array>
-#include <optional>
 #include <string>
 #include <utility>
 
@@ -129,8 +127,11 @@ class BackwardTracer final : public DeviceExposures {
           trace_(scene_, on_device(*scene_.device, backward_optics(instrument_, scene_.host_record.material, plan_)),
                  plan_, options),
           accounts_(instrument_, plan_), estimate_(*scene_.device, accounts_.rule(), instrument_.detector_pixels(),
-                                                   {.pixels = trace_.sums(), .stride = trace_.stride()},
-                                                   scene_.waves.get(), accounts_.power_per_number()),
+                                                   {.pixels = trace_.sums(),
+                                                    .stride = trace_.stride(),
+                                                    .waves = scene_.waves.get(),
+                                                    .waves_scale = accounts_.power_per_number(),
+                                                    .asks_for_power = true}),
           numbers_(*scene_.device, counted()),
           pace_(std::uint64_t{trace_.most_chunks_at_a_time()} * trace_.points_per_chunk()) {}
 
@@ -198,19 +199,20 @@ class BackwardTracer::Exposure final : public SingleExposure {
         }
         trace.record(commands, randomisation, first - begin, static_cast<std::uint32_t>(end - first));
         work.submit((end - first) * trace.points_per_chunk());
+        tracer_.estimate_.make_room(slot_);
         return end;
     }
 
     void hand_over() override {
-        tracer_.scene_.make_waves(work);
+        tracer_.scene_.make_wave_image(work);
         tracer_.estimate_.record(work.open(), slot_);
         work.submit();
     }
 
     Image finish() override {
         work.wait();
-        const DeviceEstimate& estimate = tracer_.estimate_;
-        Image image = tracer_.accounts_.image(estimate.light(slot_), estimate.power(slot_));
+        auto estimated = tracer_.estimate_.estimated(slot_);
+        Image image = tracer_.accounts_.image(std::move(estimated.pixels), estimated.power.value());
         // Of the imaging train alone: who goes on to the source, no one counts.
         image.crossings = static_cast<double>(image.rays) * tracer_.turned_.constants.illumination_count;
         return image;

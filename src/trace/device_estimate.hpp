@@ -17,41 +17,50 @@ namespace vkfv::trace {
 
 class DeviceEstimate {
   public:
-    enum class By { device, host }; // a device without doubles leaves it to the host
+    // What an exposure counts. All of it must outlive the estimate.
     struct Counted {
         const vulkan::Buffer& pixels;            // with `stride` as estimate_pixels() has them
         std::size_t stride = 0;                  // in numbers
         const vulkan::Buffer* further = nullptr; // numbers of 64 bits that go to the host as they are
+        const SceneWaves* waves = nullptr;       // whose image is the light; null: the light as rays bring it
+        double waves_scale = 0;                  // W for each unit of theirs
+        bool asks_for_power = false;
     };
-    // waves: whose image is the light, in waves_scale W a unit; null: none. All must outlive it.
-    DeviceEstimate(const vulkan::Device& device, const estimate::EstimateRule& rule, ImageSize pixels,
-                   const Counted& counted, const SceneWaves* waves, double waves_scale, By by = By::device);
+    struct Estimated {
+        PixelLight pixels;
+        std::optional<double> power; // W on all pixels, as rays bring it; if it is asked for
+    };
 
+    // A device without doubles leaves it to the host in any case.
+    DeviceEstimate(const vulkan::Device& device, const estimate::EstimateRule& rule, ImageSize pixels,
+                   const Counted& counted, MadeBy by = MadeBy::device);
+
+    // The host's memory for a slot, which takes a GPU's driver milliseconds: meant for when the device is at work.
+    // Throws RunError where there is none.
+    void make_room(std::size_t slot) const;
     // After the last path of an exposure, and after its waves. The host finds the result when the commands have been
     // done, until others are recorded for that slot.
     void record(vulkan::Commands& commands, std::size_t slot) const;
-    PixelLight light(std::size_t slot) const;
-    double power(std::size_t slot) const; // W on all pixels, as rays bring it
+    Estimated estimated(std::size_t slot) const;
     std::span<const std::uint64_t> further(std::size_t slot) const;
 
   private:
-    bool has_waves_there() const { return waves_ != nullptr && waves_->on_device(); }
-    std::size_t plane_bytes() const { return pixels_.count() * sizeof(double); }
+    bool made_there() const { return kernel_.has_value(); }
+    bool has_waves_there() const { return counted_.waves != nullptr && counted_.waves->on_device(); }
+    bool has_rays_beside() const { return has_waves_there() && counted_.asks_for_power; }
     std::size_t further_bytes() const { return counted_.further != nullptr ? counted_.further->bytes() : 0; }
-    void record_estimates(vulkan::Commands& commands, const vulkan::Buffer& for_host) const;
-    void record_numbers(vulkan::Commands& commands, const vulkan::Buffer& for_host) const;
-    PixelLight by_rays(const vulkan::Buffer& for_host) const;
+    std::size_t plane_byte(std::size_t plane) const {
+        return further_bytes() + plane * pixels_.count() * sizeof(double);
+    }
+    void record_kernel(vulkan::Commands& commands, const vulkan::Buffer& for_host) const;
+    void record_copies(vulkan::Commands& commands, const vulkan::Buffer& for_host) const;
 
     const vulkan::Device& device_;
     estimate::EstimateRule rule_;
     ImageSize pixels_;
     Counted counted_;
-    const SceneWaves* waves_;
-    double waves_scale_;
-    // None: the host makes them.
-    std::optional<vulkan::Buffer> estimates_;
-    std::optional<vulkan::Kernel> kernel_;
-    // The further numbers, then the estimates, or what they are made of. Made while the device traces.
+    std::optional<vulkan::Kernel> kernel_; // none: the host makes the estimates
+    // The further numbers, then the estimates, or what the host makes them of.
     mutable std::array<std::optional<vulkan::Buffer>, most_exposures> for_host_;
 };
 

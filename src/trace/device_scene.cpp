@@ -87,7 +87,7 @@ std::unique_ptr<SceneWaves> make_waves(const optics::Instrument& seen, optics::W
     options.cells = static_cast<int>(filter.cells().side);
     filter.set_parts(seen, waves_on_device(options, seen, device->report()).parts);
     // Devices that are the host's own cores have nothing that the host has not, and it has doubles.
-    const auto by = vulkan::is_software(device->report()) ? SceneWaves::By::host : SceneWaves::By::device;
+    const auto by = vulkan::is_software(device->report()) ? MadeBy::host : MadeBy::device;
     return std::make_unique<SceneWaves>(*device, std::move(filter), seen.detector_pixels(), by);
 }
 
@@ -243,7 +243,7 @@ void DeviceScene::clear_sorted_light(vulkan::Commands& commands) const {
     }
 }
 
-void DeviceScene::make_waves(ExposureWork& work) const {
+void DeviceScene::make_wave_image(ExposureWork& work) const {
     if (waves && waves->on_device()) {
         waves->make_image(work);
     }

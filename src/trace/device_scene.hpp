@@ -61,7 +61,7 @@ struct DeviceScene {
     // Of an image before its first path: the light that is sorted for waves.
     void clear_sorted_light(vulkan::Commands& commands) const;
     // After its last path: what waves make of that light, where the device does.
-    void make_waves(ExposureWork& work) const;
+    void make_wave_image(ExposureWork& work) const;
     // Before what an exposure submits first: the order of its paths, for the device. Forward alone.
     void give_emission_order(vulkan::Commands& commands) const;
     // Where light is sorted for waves; none: it is not.

@@ -19,7 +19,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <array>
 #include <utility>
 
 namespace vkfv::trace {
@@ -35,8 +34,10 @@ class DeviceTracer final : public DeviceExposures {
         : instrument_(instrument), rays_(options.rays),
           scene_(make_device_scene(instrument_, specimen, options, &instrument_)), trace_(make_trace(scene_, options)),
           estimate_(*scene_.device, scene_.accounts.rule(rays_), instrument_.detector_pixels(),
-                    {.pixels = trace_->pixels(), .further = &trace_->fates()}, scene_.waves.get(),
-                    scene_.accounts.power_per_number(rays_)),
+                    {.pixels = trace_->pixels(),
+                     .further = &trace_->fates(),
+                     .waves = scene_.waves.get(),
+                     .waves_scale = scene_.accounts.power_per_number(rays_)}),
           numbers_(*scene_.device, trace_->counted()),
           pace_(std::uint64_t{trace_->batch()} * (scene_.software() ? 1 : batches_per_submission_gpu)) {}
 
@@ -104,11 +105,12 @@ class DeviceTracer::Exposure final : public SingleExposure {
                          static_cast<std::uint32_t>(std::min<std::uint64_t>(trace.batch(), end - path)));
         }
         work.submit(end - first);
+        tracer_.estimate_.make_room(slot_);
         return end;
     }
 
     void hand_over() override {
-        tracer_.scene_.make_waves(work);
+        tracer_.scene_.make_wave_image(work);
         tracer_.estimate_.record(work.open(), slot_);
         work.submit();
     }
@@ -116,7 +118,7 @@ class DeviceTracer::Exposure final : public SingleExposure {
     Image finish() override {
         work.wait();
         const DeviceEstimate& estimate = tracer_.estimate_;
-        return tracer_.scene_.accounts.image(estimate.light(slot_), estimate.further(slot_), tracer_.rays_);
+        return tracer_.scene_.accounts.image(estimate.estimated(slot_).pixels, estimate.further(slot_), tracer_.rays_);
     }
 
   private:

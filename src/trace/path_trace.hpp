@@ -3,9 +3,7 @@
 
 #include "trace/device_scene.hpp"
 
-#include <cstddef>
 #include <cstdint>
-#include <span>
 #include <vector>
 
 namespace vkfv::trace {

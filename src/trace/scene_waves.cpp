@@ -9,11 +9,11 @@
 
 namespace vkfv::trace {
 
-SceneWaves::SceneWaves(const vulkan::Device& device, optics::PupilFilter filter, ImageSize pixels, By by)
+SceneWaves::SceneWaves(const vulkan::Device& device, optics::PupilFilter filter, ImageSize pixels, MadeBy by)
     : filter_(std::move(filter)), pixels_(pixels),
       light_(device, WaveImage(filter_, pixels).numbers() * sizeof(std::uint64_t), vulkan::Buffer::Memory::device,
              wave_memory_remedy) {
-    if (by == By::device) {
+    if (by == MadeBy::device) {
         on_device_ = std::async(std::launch::async, [&device, this] {
                          return std::make_unique<const DeviceWaveImage>(device, filter_, pixels_, light_);
                      }).share();

@@ -6,19 +6,20 @@
 #include "trace/exposure_work.hpp"
 #include "vulkan/buffer.hpp"
 
-#include <cstddef>
 #include <future>
 #include <memory>
 
 namespace vkfv::trace {
 
+// Who makes something of what a device has counted.
+enum class MadeBy { device, host };
+
 // The sorted light in the device's memory; made an image of there, or by the host.
 class SceneWaves {
   public:
-    enum class By { device, host }; // who makes the image
     // pixels: the detector's. The device must outlive it. Throws RunError where its memory does not hold the light. A
     // thread makes the transforms ready meanwhile; what fails there, require() and make_image() throw.
-    SceneWaves(const vulkan::Device& device, optics::PupilFilter filter, ImageSize pixels, By by);
+    SceneWaves(const vulkan::Device& device, optics::PupilFilter filter, ImageSize pixels, MadeBy by);
 
     ~SceneWaves();
     SceneWaves(const SceneWaves&) = delete;

@@ -164,7 +164,14 @@ void Commands::dispatch(const Kernel& kernel, std::span<const Binding> bindings,
                                                kernel.name(), declaration.slot));
         }
         if (buffer != nullptr) {
-            const std::size_t bytes = binding.bytes > 0 ? binding.bytes : (*buffer)->bytes();
+            const std::size_t all = (*buffer)->bytes();
+            const bool is_part = binding.bytes > 0;
+            const std::size_t bytes = is_part ? binding.bytes : all;
+            if (binding.first_byte % binding_alignment != 0 || (!is_part && binding.first_byte > 0) ||
+                (is_part && (binding.first_byte > all || bytes > all - binding.first_byte))) {
+                throw std::logic_error(fmt::format("kernel {}: slot {} is bound to {} bytes from {} on of {}",
+                                                   kernel.name(), declaration.slot, bytes, binding.first_byte, all));
+            }
             check_range(*device_, kernel, declaration, bytes);
             // Without its padding, so that a run-time array's length() is right.
             const vk::DeviceSize range = bytes > 0 ? bytes : VK_WHOLE_SIZE;

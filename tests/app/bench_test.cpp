@@ -70,7 +70,15 @@ TEST(Bench, agrees_with_its_peer_and_times_it) {
     *std::ranges::find(apart, peer) = twin.string();
     const auto result = test::run_program(apart, folder);
     EXPECT_EQ(result.exit_code, 4);
-    EXPECT_NE(result.standard_error.find("the peer"), std::string::npos) << result.standard_error;
+    const auto first = result.standard_error.find("[\n");
+    ASSERT_NE(first, std::string::npos) << result.standard_error;
+    const auto last = result.standard_error.rfind(']');
+    auto checks = nlohmann::json::parse(result.standard_error.substr(first, last - first + 1));
+    EXPECT_FALSE(checks.back()["agrees"].get<bool>()) << checks;
+    checks.erase(checks.size() - 1);
+    for (const auto& check : checks) {
+        EXPECT_TRUE(check["agrees"].get<bool>()) << check;
+    }
 }
 
 TEST(Bench, refuses_parts_that_there_are_not_and_a_peer_that_fails) {

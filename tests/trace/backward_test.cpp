@@ -257,6 +257,23 @@ TEST(Backward, host_and_device_follow_the_same_paths) {
     EXPECT_GT(apart, 5e-3 * total);
 }
 
+// More paths than two of the largest lattices have.
+TEST(Backward, host_and_device_follow_the_same_paths_of_three_randomisations) {
+    auto description = small_description();
+    description.detector_pixels = {2, 1};
+    description.detector_width = 0.32;
+    const auto instrument = optics::assemble(description);
+    const auto specimen = test::rough_specimen();
+    const auto with = options(trace::Estimator::backward, 2 * ((std::uint64_t{2} << 14) + 1), 1);
+    ASSERT_EQ(trace::backward_plan(with.rays, {2, 1}).randomisations, 3u);
+    const auto device = trace::make_device_tracer(instrument, specimen, with)->expose(focal_height, 1);
+    const auto host = trace::make_host_tracer(instrument, specimen, with)->expose(focal_height, 1);
+    for (std::size_t pixel = 0; pixel < 2; ++pixel) {
+        EXPECT_NEAR(device.flux.values[pixel] / host.flux.values[pixel], 1, 1e-4);
+        EXPECT_NEAR(device.standard_error.values[pixel] / host.standard_error.values[pixel], 1, 0.1);
+    }
+}
+
 TEST(Backward, bits_do_not_depend_on_the_batch) {
     const auto instrument = optics::assemble(small_description());
     const auto specimen = test::rough_specimen();

@@ -7,6 +7,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 #include <random>
 #include <vector>
 
@@ -37,19 +38,15 @@ vulkan::Buffer buffer_of(const vulkan::Device& device, std::span<const std::uint
     return buffer;
 }
 
-struct Found {
-    trace::PixelLight light;
-    double power;
-};
+using Estimate = trace::DeviceEstimate;
+using trace::MadeBy;
 
-Found found_by(const vulkan::Device& device, const trace::DeviceEstimate& estimate) {
+Estimate::Estimated found_by(const vulkan::Device& device, const Estimate& estimate) {
     vulkan::Commands commands(device);
     estimate.record(commands, 1);
     commands.submit_and_wait();
-    return {estimate.light(1), estimate.power(1)};
+    return estimate.estimated(1);
 }
-
-using By = trace::DeviceEstimate::By;
 
 } // namespace
 
@@ -97,22 +94,39 @@ TEST(PixelEstimate, has_the_same_bits_by_the_device_and_by_the_host) {
         const auto expected = trace::estimate_pixels(rule, pixels, numbers, one.stride);
         const double power = trace::sum_of(expected.flux.values);
         const std::vector<std::uint64_t> further = {3, 1, 4};
-        for (const By by : {By::device, By::host}) {
-            const auto buffer = buffer_of(device, numbers);
-            const auto beside = buffer_of(device, further);
-            const trace::DeviceEstimate estimate(device, rule, pixels, {buffer, one.stride, &beside}, nullptr, 0, by);
-            const Found found = found_by(device, estimate);
-            EXPECT_TRUE(std::ranges::equal(estimate.further(1), further));
-            EXPECT_EQ(found.light.flux.values, expected.flux.values) << one.kind;
-            EXPECT_EQ(found.light.standard_error.values, expected.standard_error.values) << one.kind;
+        const auto buffer = buffer_of(device, numbers);
+        const auto beside = buffer_of(device, further);
+        const Estimate::Counted counted{
+            .pixels = buffer, .stride = one.stride, .further = &beside, .asks_for_power = true};
+        for (const MadeBy by : {MadeBy::device, MadeBy::host}) {
+            const Estimate estimate(device, rule, pixels, counted, by);
+            const auto found = found_by(device, estimate);
+            EXPECT_EQ(found.pixels.flux.values, expected.flux.values) << one.kind;
+            EXPECT_EQ(found.pixels.standard_error.values, expected.standard_error.values) << one.kind;
             EXPECT_EQ(found.power, power) << one.kind;
+            EXPECT_TRUE(std::ranges::equal(estimate.further(1), further));
         }
         auto twin = rule;
         twin.scale = std::nextafter(rule.scale, 1.0);
-        const auto buffer = buffer_of(device, numbers);
-        const Found found = found_by(device, {device, twin, pixels, {buffer, one.stride}, nullptr, 0});
-        EXPECT_NE(found.light.flux.values, expected.flux.values);
+        EXPECT_NE(found_by(device, {device, twin, pixels, counted}).pixels.flux.values, expected.flux.values);
     }
+}
+
+// Whose pixels need more workgroups than a row of them holds.
+TEST(PixelEstimate, reaches_every_pixel_of_a_large_detector) {
+    const vulkan::Device device;
+    constexpr ImageSize large{3000, 2800};
+    std::vector<std::uint64_t> numbers(large.count());
+    for (std::size_t pixel = 0; pixel < numbers.size(); pixel += 1009) {
+        numbers[pixel] = pixel + 1;
+    }
+    numbers.back() = 5;
+    const auto buffer = buffer_of(device, numbers);
+    auto rule = rule_of(estimate::ESTIMATE_COUNTS, 1e15);
+    rule.scale = 1;
+    const auto found = found_by(device, {device, rule, large, {.pixels = buffer}});
+    const std::vector<double> expected(numbers.begin(), numbers.end());
+    EXPECT_TRUE(found.pixels.flux.values == expected);
 }
 
 TEST(PixelEstimate, of_waves_is_their_light_with_the_noise_that_filtering_leaves) {
@@ -128,14 +142,13 @@ TEST(PixelEstimate, of_waves_is_their_light_with_the_noise_that_filtering_leaves
     }
     const auto given = buffer_of(device, light);
     constexpr double scale = 4e-9;
-    const auto rays = found_by(device, {device, rule, pixels, {numbers}, nullptr, 0});
-    const auto expected = trace::with_waves(rays.light, trace::WaveImage(filter, pixels).apply(light), scale, filter);
+    const auto rays = found_by(device, {device, rule, pixels, {.pixels = numbers, .asks_for_power = true}});
+    const auto expected = trace::with_waves(rays.pixels, trace::WaveImage(filter, pixels).apply(light), scale, filter);
     ASSERT_LT(filter.noise(), 1);
 
-    using Waves = trace::SceneWaves;
-    std::vector<Found> all;
-    for (const auto waves_by : {Waves::By::device, Waves::By::host}) {
-        const Waves waves(device, filter, pixels, waves_by);
+    std::vector<trace::PixelLight> all;
+    for (const MadeBy waves_by : {MadeBy::device, MadeBy::host}) {
+        const trace::SceneWaves waves(device, filter, pixels, waves_by);
         vulkan::Commands commands(device);
         commands.copy(given, waves.sorted_light(), given.bytes());
         commands.submit_and_wait();
@@ -145,18 +158,23 @@ TEST(PixelEstimate, of_waves_is_their_light_with_the_noise_that_filtering_leaves
             waves.make_image(work);
             work.wait();
         }
-        for (const By by : {By::device, By::host}) {
-            const Found found = found_by(device, {device, rule, pixels, {numbers}, &waves, scale, by});
-            EXPECT_EQ(found.power, rays.power); // as rays bring it
-            EXPECT_EQ(found.light.standard_error.values, expected.standard_error.values);
-            for (std::size_t pixel = 0; pixel < pixels.count(); ++pixel) {
-                // Waves made by the device are in float.
-                ASSERT_NEAR(found.light.flux.values[pixel] / expected.flux.values[pixel], 1,
-                            waves.on_device() ? 2e-6 : 0)
-                    << pixel;
+        for (const bool power : {true, false}) {
+            const Estimate::Counted counted{
+                .pixels = numbers, .waves = &waves, .waves_scale = scale, .asks_for_power = power};
+            for (const MadeBy by : {MadeBy::device, MadeBy::host}) {
+                const auto found = found_by(device, {device, rule, pixels, counted, by});
+                EXPECT_EQ(found.power, power ? rays.power : std::nullopt); // as rays bring it
+                EXPECT_EQ(found.pixels.standard_error.values, expected.standard_error.values);
+                for (std::size_t pixel = 0; pixel < pixels.count(); ++pixel) {
+                    // Waves made by the device are in float.
+                    ASSERT_NEAR(found.pixels.flux.values[pixel] / expected.flux.values[pixel], 1,
+                                waves.on_device() ? 2e-6 : 0)
+                        << pixel;
+                }
+                all.push_back(found.pixels);
             }
-            all.push_back(found);
         }
     }
-    EXPECT_EQ(all[0].light.flux.values, all[1].light.flux.values);
+    EXPECT_EQ(all[0].flux.values, all[1].flux.values);
+    EXPECT_EQ(all[0].flux.values, all[3].flux.values);
 }

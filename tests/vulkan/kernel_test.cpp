@@ -181,6 +181,40 @@ TEST(Kernels, RefuseBindingsAndConstantsTheyDoNotDeclare) {
     EXPECT_THROW(Kernel(shared_device(), "pushy", probe_vulkan_arithmetic, {}, 132), std::logic_error);
 }
 
+TEST(Kernels, AreBoundToAPartOfABuffer) {
+    const Kernel kernel = arithmetic_kernel(large_factor);
+    Arithmetic memory;
+    const std::uint64_t offset = 77;
+    memory.offset.write_values(std::span(&offset, 1));
+    constexpr std::size_t part = binding_alignment;
+    const Buffer three(shared_device(), 3 * part);
+    const Buffer values(shared_device(), sizeof(std::uint64_t));
+    const auto bound_to = [&](std::size_t first, std::size_t bytes) {
+        std::vector<Binding> bindings = memory.bindings;
+        for (Binding& binding : bindings) {
+            if (binding.slot == 2) {
+                binding = {.slot = 2, .resource = &three, .first_byte = first, .bytes = bytes};
+            }
+        }
+        return bindings;
+    };
+    Commands commands(shared_device());
+    commands.fill_zero(three);
+    commands.barrier();
+    const Push push{0, values.address(), 1, 0};
+    commands.dispatch(kernel, bound_to(part, part), push, 1);
+    EXPECT_THROW(commands.dispatch(kernel, bound_to(part, 2 * part + 1), push, 1), std::logic_error);
+    EXPECT_THROW(commands.dispatch(kernel, bound_to(4 * part, part), push, 1), std::logic_error);
+    EXPECT_THROW(commands.dispatch(kernel, bound_to(part / 2, part), push, 1), std::logic_error);
+    EXPECT_THROW(commands.dispatch(kernel, bound_to(part, 0), push, 1), std::logic_error);
+    commands.submit_and_wait();
+    const auto words = three.read_values<std::uint64_t>(3 * part / sizeof(std::uint64_t));
+    const auto of_part = static_cast<std::ptrdiff_t>(part / sizeof(std::uint64_t));
+    EXPECT_EQ(words[part / sizeof(std::uint64_t)], offset); // its sum of values
+    EXPECT_THAT(std::vector(words.begin(), words.begin() + of_part), Each(0u));
+    EXPECT_THAT(std::vector(words.begin() + 2 * of_part, words.end()), Each(0u));
+}
+
 TEST(Kernels, RefuseABufferLargerThanADescriptorSpans) {
     const Kernel kernel = arithmetic_kernel(1);
     Arithmetic memory;
