@@ -97,7 +97,7 @@ class HeightSums {
         Lanes imaginary{};
     };
     std::array<Sum, heights> sums_;
-    Lanes real_, imaginary_, second_real_, second_imaginary_, twice_cosine_;
+    Lanes real_{}, imaginary_{}, second_real_{}, second_imaginary_{}, twice_cosine_{};
     std::size_t next_ = 0;
 };
 
