@@ -20,16 +20,18 @@ struct PixelEstimate {
     double standard_error; // W
 };
 
+VKFV_FUNCTION PixelEstimate scaled_estimate(EstimateRule rule, double value, double variance) {
+    PixelEstimate estimate;
+    estimate.flux = rule.scale * value;
+    estimate.standard_error = rule.scale * sqrt(variance);
+    return estimate;
+}
+
 // From what a pixel has of all launched rays: a sum of values and of their squares (Poisson's where they are 1).
 VKFV_FUNCTION PixelEstimate estimate_of_rays(EstimateRule rule, double sum, double squares) {
     VKFV_PRECISE double expected = sum * sum / rule.count;
     VKFV_PRECISE double variance = max(squares - expected, double(0.0));
-    VKFV_PRECISE double error = rule.scale * sqrt(variance);
-    VKFV_PRECISE double flux = rule.scale * sum;
-    PixelEstimate estimate;
-    estimate.flux = flux;
-    estimate.standard_error = error;
-    return estimate;
+    return scaled_estimate(rule, sum, variance);
 }
 
 // Of the means of randomisations, one after the other.
@@ -53,10 +55,5 @@ VKFV_FUNCTION PixelEstimate estimate_of_randomisations(EstimateRule rule, MeanSu
     VKFV_PRECISE double mean = sums.sum / rule.count;
     VKFV_PRECISE double spread = sums.squares / rule.count - mean * mean;
     VKFV_PRECISE double variance = max(double(0.0), spread) / (rule.count - double(1.0));
-    VKFV_PRECISE double error = rule.scale * sqrt(variance);
-    VKFV_PRECISE double flux = rule.scale * mean;
-    PixelEstimate estimate;
-    estimate.flux = flux;
-    estimate.standard_error = error;
-    return estimate;
+    return scaled_estimate(rule, mean, variance);
 }

@@ -119,19 +119,22 @@ Wavefront::Wavefront(const Imaging& imaging, double magnification, double focus,
     const auto rim_at = [&](int azimuth, double limit) {
         const glm::dvec2 direction = direction_of(2 * pi * azimuth / static_cast<double>(azimuths));
         const auto excess = [&](double radius) { return view.excess(chief_ + radius * direction); };
-        // Light that passes at the limit may pass beyond it.
-        const auto near = farthest(limit, excess, bisections);
         const double all = index_ + glm::length(chief_);
-        return near && *near < limit ? *near
-               : limit < all         ? farthest(all, excess, bisections).value_or(0)
-                                     : near.value_or(0);
+        if (limit < all) { // light that passes there may pass beyond
+            if (const auto near = farthest(limit, excess, bisections); near && *near < limit) {
+                return *near;
+            }
+        }
+        return farthest(all, excess, bisections).value_or(0);
     };
-    // Of most pupils the rims are alike, and the first tells where to look for the others.
+    // Of most pupils the rims are alike, and the first tells where to look for the others; those further out are found
+    // all the same, in more steps.
+    constexpr double further_out = 1.25;
     const double first_rim = rim_at(0, index_ + glm::length(chief_));
     const auto other_rims = parallel_list(round_      ? 0
                                           : mirrored_ ? static_cast<int>(azimuths / 2)
                                                       : static_cast<int>(azimuths - 1),
-                                          [&](int other) { return rim_at(other + 1, 1.25 * first_rim); });
+                                          [&](int other) { return rim_at(other + 1, further_out * first_rim); });
     std::vector<double> own_rims = {first_rim};
     own_rims.insert(own_rims.end(), other_rims.begin(), other_rims.end());
     for (std::size_t i = 0; i < azimuths; ++i) {
