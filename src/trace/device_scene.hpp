@@ -6,7 +6,6 @@
 #include "trace/device_records.hpp"
 #include "trace/device_specimen.hpp"
 #include "trace/emission_order.hpp"
-#include "trace/host_tracer.hpp"
 #include "trace/ledger.hpp"
 #include "trace/scene_waves.hpp"
 #include "trace/tracer_identity.hpp"

@@ -1,7 +1,7 @@
 // The trace on a Vulkan device, in float: the two halves of the forward path as two kernels.
 #pragma once
 
-#include "trace/host_tracer.hpp"
+#include "trace/path_end.hpp"
 #include "trace/tracer.hpp"
 
 #include <memory>

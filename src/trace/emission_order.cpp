@@ -2,7 +2,7 @@
 
 #include "core/parallel_rows.hpp"
 #include "statistics/poisson.hpp"
-#include "trace/host_tracer.hpp"
+#include "trace/exposure_record.hpp"
 
 #include <algorithm>
 #include <array>

@@ -3,10 +3,12 @@
 #include "optics/room.hpp"
 #include "specimen/description.hpp"
 #include "specimen/intersector.hpp"
+#include "trace/exposure_record.hpp"
 #include "trace/host_backward_tracer.hpp"
+#include "trace/host_mixture.hpp"
 #include "trace/host_scene.hpp"
 #include "trace/ledger.hpp"
-#include "trace/mixed_light.hpp"
+#include "trace/light_sources.hpp"
 #include "trace/traced_instrument.hpp"
 #include "trace/wave_image.hpp"
 
@@ -164,19 +166,6 @@ class HostTracer final : public Tracer {
 };
 
 } // namespace
-
-Exposure make_exposure(const optics::Instrument& instrument, const SpecimenRecord& specimen, FocalPosition position,
-                       std::uint32_t seed, std::uint32_t image) {
-    Exposure exposure{};
-    // In the specimen's frame the plane of best focus stands at the focal height and carries the objective along.
-    exposure.top_distance = position.height + instrument.front_vertex_height - specimen.top;
-    exposure.seed = seed;
-    exposure.image = image;
-    exposure.focal_height = position.height;
-    exposure.beside_x = position.beside.x;
-    exposure.beside_y = position.beside.y;
-    return exposure;
-}
 
 std::unique_ptr<Tracer> make_host_tracer(const optics::Instrument& described, const specimen::Specimen& specimen,
                                          const TraceOptions& options) {

@@ -3,8 +3,8 @@
 #include "trace/agreement.hpp"
 #include "trace/device_tracer.hpp"
 #include "trace/host_tracer.hpp"
+#include "trace/light_sources.hpp"
 #include "trace/microscope.hpp"
-#include "trace/mixed_light.hpp"
 #include "trace/traced_instrument.hpp"
 
 #include "support/statistics.hpp"

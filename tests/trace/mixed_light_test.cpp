@@ -1,5 +1,5 @@
 // Light of several sources: the image is the sum of what each gives, forward and backward, on device and host.
-#include "trace/mixed_light.hpp"
+#include "trace/light_sources.hpp"
 
 #include "trace/agreement.hpp"
 #include "trace/device_tracer.hpp"
