@@ -3,7 +3,7 @@
 // some multiple of r, are sums of those two vectors, with factors that depend on u = r.r, v = r.s and w = s.s alone; so
 // do the squares of its distances from the axis at the surfaces. The factors are polynomials (M. B. Hullin, J. Hanika,
 // W. Heidrich, "Polynomial optics", Computer Graphics Forum 31 (2012) 1375). Near an edge they do not tell: such light
-// is traced. src/optics/train_polynomials.hpp finds them and says how far they are off.
+// is traced. src/optics/instrument/train_polynomials.hpp finds them and says how far they are off.
 
 const int POLYNOMIAL_DEGREE = 5; // at most
 const int POLYNOMIAL_TERMS = 56;

@@ -1,9 +1,9 @@
 #include "app/commands.hpp"
 
 #include "core/file.hpp"
-#include "optics/first_order.hpp"
-#include "optics/prescription_writer.hpp"
-#include "optics/zmx.hpp"
+#include "optics/prescriptions/prescription_writer.hpp"
+#include "optics/prescriptions/zmx.hpp"
+#include "optics/train/first_order.hpp"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>

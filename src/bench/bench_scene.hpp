@@ -3,7 +3,7 @@
 
 #include "bench/bench.hpp"
 #include "configuration/configuration.hpp"
-#include "optics/instrument.hpp"
+#include "optics/instrument/instrument.hpp"
 #include "specimen/specimen.hpp"
 #include "trace/tracer.hpp"
 #include "vulkan/device.hpp"

@@ -3,7 +3,7 @@
 #pragma once
 
 #include "core/grid.hpp"
-#include "optics/spectrum.hpp"
+#include "optics/media/spectrum.hpp"
 
 #include <cstdint>
 #include <vector>

@@ -3,7 +3,7 @@
 
 #include "camera/camera.hpp"
 #include "core/section.hpp"
-#include "optics/instrument.hpp"
+#include "optics/instrument/instrument.hpp"
 #include "scan/plan.hpp"
 #include "scan/stage.hpp"
 #include "scan/store.hpp"

@@ -2,7 +2,7 @@
 #include "configuration/optical_parts.hpp"
 #include "configuration/ranges.hpp"
 #include "configuration/tables.hpp"
-#include "optics/ideal_lens.hpp"
+#include "optics/prescriptions/ideal_lens.hpp"
 
 namespace vkfv {
 

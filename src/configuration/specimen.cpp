@@ -1,7 +1,7 @@
 // [specimen], [specimen.roughness], [specimen.material] and [[specimen.material.lobe]]; reflectance.cpp has its map.
 #include "configuration/ranges.hpp"
 #include "configuration/tables.hpp"
-#include "optics/prescription.hpp"
+#include "optics/prescriptions/prescription.hpp"
 #include "physics/scatter_registry.hpp"
 #include "specimen/kinds.hpp"
 

@@ -2,8 +2,8 @@
 #pragma once
 
 #include "configuration/configuration.hpp"
-#include "optics/diffraction.hpp"
-#include "optics/instrument.hpp"
+#include "optics/instrument/instrument.hpp"
+#include "optics/waves/diffraction.hpp"
 #include "scan/stage.hpp"
 #include "specimen/specimen.hpp"
 #include "surface/height_map.hpp"

@@ -3,8 +3,8 @@
 
 #include "configuration/configuration.hpp"
 #include "measurement/standard.hpp"
-#include "optics/diffraction.hpp"
-#include "optics/field_curvature.hpp"
+#include "optics/instrument/field_curvature.hpp"
+#include "optics/waves/diffraction.hpp"
 #include "report/frames.hpp"
 #include "topography/compare.hpp"
 #include "topography/topography.hpp"

@@ -4,7 +4,7 @@
 #include "configuration/configuration.hpp"
 #include "core/result_folder.hpp"
 #include "measurement/evaluation.hpp"
-#include "optics/instrument.hpp"
+#include "optics/instrument/instrument.hpp"
 #include "scan/ledger_table.hpp"
 #include "surface_files/provenance.hpp"
 

@@ -5,7 +5,7 @@
 #include "core/grid.hpp"
 #include "core/pixel_grid.hpp"
 #include "measurement/working_devices.hpp"
-#include "optics/instrument.hpp"
+#include "optics/instrument/instrument.hpp"
 #include "scan/store.hpp"
 #include "specimen/specimen.hpp"
 #include "trace/tracer.hpp"

@@ -5,7 +5,7 @@
 #include "measurement/camera_report.hpp"
 #include "measurement/stage_figures.hpp"
 #include "measurement/wave_limits.hpp"
-#include "optics/image_quality.hpp"
+#include "optics/instrument/image_quality.hpp"
 #include "trace/wave_memory.hpp"
 
 #include <fmt/format.h>

@@ -2,7 +2,7 @@
 #pragma once
 
 #include "configuration/configuration.hpp"
-#include "optics/train.hpp"
+#include "optics/train/train.hpp"
 
 #include <optional>
 

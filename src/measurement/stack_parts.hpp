@@ -5,7 +5,7 @@
 #include "measurement/evaluation.hpp"
 #include "measurement/evaluation_files.hpp"
 #include "measurement/wave_limits.hpp"
-#include "optics/instrument.hpp"
+#include "optics/instrument/instrument.hpp"
 #include "scan/store.hpp"
 #include "specimen/specimen.hpp"
 #include "trace/tracer_identity.hpp"

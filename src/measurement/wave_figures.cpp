@@ -1,7 +1,7 @@
 #include "measurement/wave_figures.hpp"
 
 #include "core/units.hpp"
-#include "optics/zernike.hpp"
+#include "optics/waves/zernike.hpp"
 
 #include <fmt/format.h>
 

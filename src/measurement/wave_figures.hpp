@@ -3,7 +3,7 @@
 #pragma once
 
 #include "core/grid.hpp"
-#include "optics/point_waves.hpp"
+#include "optics/waves/point_waves.hpp"
 
 #include <complex>
 #include <nlohmann/json.hpp>

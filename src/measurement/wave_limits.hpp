@@ -2,8 +2,8 @@
 // aliasing where light is sorted more coarsely than the waves require.
 #pragma once
 
-#include "optics/filter_error.hpp"
-#include "optics/pupil_filter.hpp"
+#include "optics/waves/filter_error.hpp"
+#include "optics/waves/pupil_filter.hpp"
 
 #include <nlohmann/json.hpp>
 

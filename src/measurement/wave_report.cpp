@@ -1,8 +1,8 @@
 #include "measurement/wave_report.hpp"
 
 #include "core/units.hpp"
-#include "optics/airy_pattern.hpp"
-#include "optics/zernike.hpp"
+#include "optics/waves/airy_pattern.hpp"
+#include "optics/waves/zernike.hpp"
 #include "report/chart.hpp"
 
 #include <fmt/format.h>

@@ -2,7 +2,7 @@
 #pragma once
 
 #include "configuration/configuration.hpp"
-#include "optics/instrument.hpp"
+#include "optics/instrument/instrument.hpp"
 #include "specimen/specimen.hpp"
 #include "trace/tracer.hpp"
 #include "vulkan/opened_device.hpp"

@@ -1,7 +1,7 @@
 // The instrument's elements as the plane of drawing cuts them. Lengths in mm; points are (y, z) of the plane.
 #pragma once
 
-#include "optics/instrument.hpp"
+#include "optics/instrument/instrument.hpp"
 #include "report/layout_geometry.hpp"
 #include "report/room_rays.hpp"
 

@@ -1,7 +1,7 @@
 // The instrument as a picture to scale, in the y-z plane: the specimen at the bottom, the illuminator from the side.
 #pragma once
 
-#include "optics/instrument.hpp"
+#include "optics/instrument/instrument.hpp"
 
 #include <string>
 

@@ -1,7 +1,7 @@
 // What the picture of the instrument shows, in mm of the plane of drawing, before it is laid out on a page.
 #pragma once
 
-#include "optics/instrument.hpp"
+#include "optics/instrument/instrument.hpp"
 #include "report/element_sections.hpp"
 #include "report/layout_geometry.hpp"
 #include "report/room_rays.hpp"

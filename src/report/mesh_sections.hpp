@@ -1,7 +1,7 @@
 // What the plane of drawing, x = 0, cuts of a mesh.
 #pragma once
 
-#include "optics/mesh_element.hpp"
+#include "optics/train/mesh_element.hpp"
 
 #include <glm/glm.hpp>
 

@@ -1,7 +1,7 @@
 // Rays through the elements as they stand in the room, folded by mirrors and the splitter, for drawing.
 #pragma once
 
-#include "optics/instrument.hpp"
+#include "optics/instrument/instrument.hpp"
 
 #include <glm/glm.hpp>
 

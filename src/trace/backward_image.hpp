@@ -1,7 +1,7 @@
 // The image that backward paths estimate.
 #pragma once
 
-#include "optics/instrument.hpp"
+#include "optics/instrument/instrument.hpp"
 #include "trace/pixel_estimate.hpp"
 #include "trace/tracer.hpp"
 

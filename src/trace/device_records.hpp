@@ -2,7 +2,7 @@
 #pragma once
 
 #include "device/interface.hpp"
-#include "optics/instrument.hpp"
+#include "optics/instrument/instrument.hpp"
 #include "physics/physics.hpp"
 
 #include <vector>

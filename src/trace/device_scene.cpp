@@ -1,5 +1,5 @@
 #include "trace/device_scene.hpp"
-#include "optics/train_polynomials.hpp"
+#include "optics/instrument/train_polynomials.hpp"
 #include "trace/exposure_record.hpp"
 #include "trace/outward.hpp"
 #include "trace/wave_memory.hpp"

@@ -1,7 +1,7 @@
 // What every use of the trace on a device shares: device, specimen, instrument, bindings.
 #pragma once
 
-#include "optics/room.hpp"
+#include "optics/instrument/room.hpp"
 #include "specimen/description.hpp"
 #include "trace/device_records.hpp"
 #include "trace/device_specimen.hpp"

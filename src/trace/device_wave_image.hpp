@@ -1,7 +1,7 @@
 // The image that waves make of light sorted by pupil cells, on a device: WaveImage in float.
 #pragma once
 
-#include "optics/pupil_filter.hpp"
+#include "optics/waves/pupil_filter.hpp"
 #include "trace/wave_planes.hpp"
 #include "vulkan/fourier_planes.hpp"
 

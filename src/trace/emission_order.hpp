@@ -1,7 +1,7 @@
 // Which paths of an image leave the source where: shaders/physics/emission_cell.glsl.
 #pragma once
 
-#include "optics/instrument.hpp"
+#include "optics/instrument/instrument.hpp"
 
 #include <cstddef>
 #include <cstdint>

@@ -1,7 +1,7 @@
 // The scene that the shared physics asks on the host, in double.
 #pragma once
 
-#include "optics/room.hpp"
+#include "optics/instrument/room.hpp"
 #include "specimen/intersector.hpp"
 #include "trace/emission_order.hpp"
 

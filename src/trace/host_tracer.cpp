@@ -1,6 +1,6 @@
 #include "trace/host_tracer.hpp"
 
-#include "optics/room.hpp"
+#include "optics/instrument/room.hpp"
 #include "specimen/description.hpp"
 #include "specimen/intersector.hpp"
 #include "trace/exposure_record.hpp"

@@ -1,7 +1,7 @@
 // From counts of fates to the ledger of an image.
 #pragma once
 
-#include "optics/instrument.hpp"
+#include "optics/instrument/instrument.hpp"
 #include "trace/pixel_estimate.hpp"
 #include "trace/tracer.hpp"
 

@@ -1,7 +1,7 @@
 // Given rays through the imaging train, for comparison with other programs.
 #pragma once
 
-#include "optics/instrument.hpp"
+#include "optics/instrument/instrument.hpp"
 #include "physics/physics.hpp"
 #include "trace/tracer.hpp"
 

@@ -1,7 +1,7 @@
 // What waves make of the light that a device's kernels sort.
 #pragma once
 
-#include "optics/pupil_filter.hpp"
+#include "optics/waves/pupil_filter.hpp"
 #include "trace/device_wave_image.hpp"
 #include "trace/exposure_work.hpp"
 #include "vulkan/buffer.hpp"

@@ -1,7 +1,7 @@
 // An instrument as the options have its light traced.
 #pragma once
 
-#include "optics/instrument.hpp"
+#include "optics/instrument/instrument.hpp"
 #include "trace/tracer.hpp"
 
 namespace vkfv::trace {

@@ -2,8 +2,8 @@
 #pragma once
 
 #include "core/grid.hpp"
-#include "optics/instrument.hpp"
-#include "optics/pupil_filter.hpp"
+#include "optics/instrument/instrument.hpp"
+#include "optics/waves/pupil_filter.hpp"
 #include "specimen/specimen.hpp"
 #include "trace/checkpoint.hpp"
 #include "trace/tracer_identity.hpp"
@@ -37,7 +37,7 @@ struct TraceOptions {
     bool directed_scatter = false;   // forward, sequential: every bounce also aims at the pupil, and light has weights
     std::optional<bool> instrument_in_constants; // of the forward kernels; none: where it pays
     std::optional<bool> for_software;            // the kernels' form for such devices; none: as the device is
-    bool illumination_polynomials = true;        // where it is in constants: optics/train_polynomials.hpp
+    bool illumination_polynomials = true;        // where it is in constants: optics/instrument/train_polynomials.hpp
     std::optional<optics::WaveOptions> waves;    // sequential: images as waves make them; none: as rays do
 };
 

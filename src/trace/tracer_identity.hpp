@@ -1,8 +1,8 @@
 // What the bits of an image depend on beside the configuration: the device as it is, and the program as it was built.
 #pragma once
 
-#include "optics/instrument.hpp"
-#include "optics/pupil_filter.hpp"
+#include "optics/instrument/instrument.hpp"
+#include "optics/waves/pupil_filter.hpp"
 
 #include <cstdint>
 #include <optional>

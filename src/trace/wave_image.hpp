@@ -3,7 +3,7 @@
 
 #include "core/grid.hpp"
 #include "core/pixel_grid.hpp"
-#include "optics/pupil_filter.hpp"
+#include "optics/waves/pupil_filter.hpp"
 #include "trace/pixel_estimate.hpp"
 #include "trace/tracer.hpp"
 

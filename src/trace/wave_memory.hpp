@@ -1,7 +1,7 @@
 // How much of a device's memory light sorted by pupil cells takes, and how finely a device can sort it.
 #pragma once
 
-#include "optics/pupil_filter.hpp"
+#include "optics/waves/pupil_filter.hpp"
 #include "vulkan/device.hpp"
 
 #include <cstdint>

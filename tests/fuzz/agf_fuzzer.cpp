@@ -1,6 +1,6 @@
 // Any bytes are a catalogue or an InputError; every glass of it has an index, or an InputError.
 #include "core/error.hpp"
-#include "optics/agf.hpp"
+#include "optics/media/agf.hpp"
 
 #include <cstddef>
 #include <cstdint>

@@ -2,7 +2,7 @@
 // written the same again. The same of configurations of an instrument and their canonical texts.
 #include "configuration/configuration.hpp"
 #include "core/error.hpp"
-#include "optics/prescription_writer.hpp"
+#include "optics/prescriptions/prescription_writer.hpp"
 
 #include <cstddef>
 #include <cstdint>

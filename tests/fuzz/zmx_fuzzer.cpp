@@ -1,8 +1,8 @@
 // Any bytes are a lens or an InputError, and every lens is written as a prescription that reads back and is
 // written the same again.
 #include "core/error.hpp"
-#include "optics/prescription_writer.hpp"
-#include "optics/zmx.hpp"
+#include "optics/prescriptions/prescription_writer.hpp"
+#include "optics/prescriptions/zmx.hpp"
 
 #include <cstddef>
 #include <cstdint>

@@ -1,7 +1,7 @@
-#include "optics/agf.hpp"
+#include "optics/media/agf.hpp"
 
 #include "core/error.hpp"
-#include "optics/glass_catalog.hpp"
+#include "optics/media/glass_catalog.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

@@ -1,11 +1,11 @@
 // The directions that sources are aimed into hold all light that passes: of a few hundred illuminators that nobody
 // would build.
-#include "optics/aim.hpp"
+#include "optics/aim/aim.hpp"
 
 #include "core/units.hpp"
-#include "optics/bundle.hpp"
-#include "optics/ideal_lens.hpp"
-#include "optics/train.hpp"
+#include "optics/prescriptions/ideal_lens.hpp"
+#include "optics/train/bundle.hpp"
+#include "optics/train/train.hpp"
 #include "parts.hpp"
 
 #include <gtest/gtest.h>

@@ -1,7 +1,7 @@
 // What is decentred, tilted or put between, against closed forms; through single parts and whole instruments.
 #include "core/error.hpp"
 #include "core/units.hpp"
-#include "optics/instrument.hpp"
+#include "optics/instrument/instrument.hpp"
 #include "parts.hpp"
 
 #include <gmock/gmock.h>

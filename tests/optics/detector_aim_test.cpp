@@ -1,9 +1,9 @@
 // The rectangle of directions that a source is aimed into holds all light which a single scatter brings to the
 // detector.
-#include "optics/detector_aim.hpp"
+#include "optics/aim/detector_aim.hpp"
 
-#include "optics/ideal_lens.hpp"
-#include "optics/train.hpp"
+#include "optics/prescriptions/ideal_lens.hpp"
+#include "optics/train/train.hpp"
 #include "parts.hpp"
 
 #include <gtest/gtest.h>

@@ -1,4 +1,4 @@
-#include "optics/diffraction.hpp"
+#include "optics/waves/diffraction.hpp"
 
 #include "core/units.hpp"
 

@@ -1,8 +1,8 @@
 // How far something goes on: as bisection alone finds it, of fewer questions.
-#include "optics/farthest.hpp"
+#include "optics/aim/farthest.hpp"
 
-#include "optics/apertures.hpp"
-#include "optics/image_quality.hpp"
+#include "optics/aim/apertures.hpp"
+#include "optics/instrument/image_quality.hpp"
 #include "parts.hpp"
 
 #include <gtest/gtest.h>

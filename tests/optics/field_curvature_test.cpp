@@ -1,7 +1,7 @@
-#include "optics/field_curvature.hpp"
+#include "optics/instrument/field_curvature.hpp"
 
 #include "core/units.hpp"
-#include "optics/medium.hpp"
+#include "optics/media/medium.hpp"
 #include "parts.hpp"
 
 #include <gtest/gtest.h>

@@ -1,5 +1,5 @@
 // How far the filter of the axis is from waves, anywhere in the field.
-#include "optics/filter_error.hpp"
+#include "optics/waves/filter_error.hpp"
 
 #include "core/units.hpp"
 #include "parts.hpp"

@@ -1,4 +1,4 @@
-#include "optics/first_order.hpp"
+#include "optics/train/first_order.hpp"
 
 #include "core/units.hpp"
 #include "parts.hpp"

@@ -1,9 +1,9 @@
 // The pupil's gate, found by samples, holds all light of the field that reaches the detector's plane: proved by bounds
 // for every objective of the library but the 100x, whose proof takes ten times as long as all others (it holds too).
-#include "optics/bundle.hpp"
+#include "optics/train/bundle.hpp"
 
 #include "core/units.hpp"
-#include "optics/train.hpp"
+#include "optics/train/train.hpp"
 #include "parts.hpp"
 
 #include <gtest/gtest.h>

@@ -1,8 +1,8 @@
-#include "optics/glass_catalog.hpp"
+#include "optics/media/glass_catalog.hpp"
 
 #include "core/error.hpp"
-#include "optics/agf.hpp"
-#include "optics/prescription.hpp"
+#include "optics/media/agf.hpp"
+#include "optics/prescriptions/prescription.hpp"
 #include "parts.hpp"
 
 #include <gmock/gmock.h>

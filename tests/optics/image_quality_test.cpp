@@ -1,8 +1,8 @@
-#include "optics/image_quality.hpp"
+#include "optics/instrument/image_quality.hpp"
 
 #include "core/units.hpp"
-#include "optics/best_focus.hpp"
-#include "optics/first_order.hpp"
+#include "optics/aim/best_focus.hpp"
+#include "optics/train/first_order.hpp"
 #include "parts.hpp"
 
 #include <gmock/gmock.h>

@@ -1,10 +1,10 @@
-#include "optics/instrument.hpp"
+#include "optics/instrument/instrument.hpp"
 
 #include "core/error.hpp"
 #include "core/units.hpp"
-#include "optics/first_order.hpp"
-#include "optics/point_waves.hpp"
-#include "optics/zernike.hpp"
+#include "optics/train/first_order.hpp"
+#include "optics/waves/point_waves.hpp"
+#include "optics/waves/zernike.hpp"
 #include "parts.hpp"
 
 #include <gmock/gmock.h>

@@ -1,4 +1,4 @@
-#include "optics/medium.hpp"
+#include "optics/media/medium.hpp"
 
 #include "core/error.hpp"
 

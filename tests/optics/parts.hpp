@@ -1,8 +1,8 @@
 // Parts and rays that the tests of the optics share.
 #pragma once
 
-#include "optics/ideal_lens.hpp"
-#include "optics/instrument.hpp"
+#include "optics/instrument/instrument.hpp"
+#include "optics/prescriptions/ideal_lens.hpp"
 
 #include <filesystem>
 #include <fstream>

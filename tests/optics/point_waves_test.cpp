@@ -1,10 +1,10 @@
-#include "optics/point_waves.hpp"
+#include "optics/waves/point_waves.hpp"
 
 #include "core/units.hpp"
-#include "optics/airy_pattern.hpp"
-#include "optics/quadrature.hpp"
-#include "optics/transfer.hpp"
-#include "optics/zernike.hpp"
+#include "optics/waves/airy_pattern.hpp"
+#include "optics/waves/quadrature.hpp"
+#include "optics/waves/transfer.hpp"
+#include "optics/waves/zernike.hpp"
 #include "parts.hpp"
 
 #include <gtest/gtest.h>

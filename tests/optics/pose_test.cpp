@@ -1,4 +1,4 @@
-#include "optics/pose.hpp"
+#include "optics/train/pose.hpp"
 
 #include "core/units.hpp"
 

@@ -1,7 +1,7 @@
-#include "optics/prescription.hpp"
+#include "optics/prescriptions/prescription.hpp"
 
 #include "core/error.hpp"
-#include "optics/first_order.hpp"
+#include "optics/train/first_order.hpp"
 #include "parts.hpp"
 
 #include <gmock/gmock.h>

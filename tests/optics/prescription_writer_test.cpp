@@ -1,8 +1,8 @@
-#include "optics/prescription_writer.hpp"
+#include "optics/prescriptions/prescription_writer.hpp"
 
 #include "core/units.hpp"
-#include "optics/ideal_lens.hpp"
-#include "optics/zmx.hpp"
+#include "optics/prescriptions/ideal_lens.hpp"
+#include "optics/prescriptions/zmx.hpp"
 #include "parts.hpp"
 
 #include <gmock/gmock.h>

@@ -1,9 +1,9 @@
-#include "optics/spectrum.hpp"
+#include "optics/media/spectrum.hpp"
 
 #include "core/error.hpp"
 #include "core/units.hpp"
-#include "optics/glass_catalog.hpp"
-#include "optics/train.hpp"
+#include "optics/media/glass_catalog.hpp"
+#include "optics/train/train.hpp"
 #include "parts.hpp"
 #include "support/statistics.hpp"
 

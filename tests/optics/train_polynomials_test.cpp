@@ -1,6 +1,6 @@
 // A centred illumination as polynomials against the same surface by surface.
+#include "optics/instrument/train_polynomials.hpp"
 #include "optics/parts.hpp"
-#include "optics/train_polynomials.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "optics/train.hpp"
+#include "optics/train/train.hpp"
 
 #include "core/units.hpp"
 #include "parts.hpp"

@@ -1,4 +1,4 @@
-#include "optics/wavefront.hpp"
+#include "optics/waves/wavefront.hpp"
 
 #include "core/units.hpp"
 #include "parts.hpp"

@@ -1,7 +1,7 @@
-#include "optics/zmx.hpp"
+#include "optics/prescriptions/zmx.hpp"
 
 #include "core/error.hpp"
-#include "optics/prescription_writer.hpp"
+#include "optics/prescriptions/prescription_writer.hpp"
 #include "parts.hpp"
 
 #include <gmock/gmock.h>

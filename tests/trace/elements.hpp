@@ -1,7 +1,7 @@
 // Elements alone, and the microscope and the images that the tests of light without a given sequence share.
 #pragma once
 
-#include "optics/room.hpp"
+#include "optics/instrument/room.hpp"
 #include "support/statistics.hpp"
 #include "trace/microscope.hpp"
 

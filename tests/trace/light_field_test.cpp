@@ -7,7 +7,7 @@
 #include "trace/microscope.hpp"
 
 #include "core/units.hpp"
-#include "optics/ideal_lens.hpp"
+#include "optics/prescriptions/ideal_lens.hpp"
 #include "support/statistics.hpp"
 
 #include <gtest/gtest.h>

@@ -2,7 +2,7 @@
 #pragma once
 
 #include "core/units.hpp"
-#include "optics/instrument.hpp"
+#include "optics/instrument/instrument.hpp"
 #include "specimen/description.hpp"
 #include "trace/tracer.hpp"
 

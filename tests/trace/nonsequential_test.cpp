@@ -1,6 +1,6 @@
 // Light that finds its own way: the sequential image without Fresnel's reflections, closed forms with them, the ledger,
 // and the device against the host.
-#include "optics/room.hpp"
+#include "optics/instrument/room.hpp"
 #include "support/statistics.hpp"
 #include "trace/device_tracer.hpp"
 #include "trace/elements.hpp"

@@ -1,6 +1,6 @@
 // Maps of reflectance in the trace: closed forms on a flat, and the estimators, traversals, modes and the host against
 // each other.
-#include "optics/ideal_lens.hpp"
+#include "optics/prescriptions/ideal_lens.hpp"
 #include "support/statistics.hpp"
 #include "trace/agreement.hpp"
 #include "trace/device_tracer.hpp"

@@ -1,8 +1,8 @@
 // The image that waves make of light sorted by pupil cells.
 #include "core/error.hpp"
 #include "core/units.hpp"
-#include "optics/airy_pattern.hpp"
-#include "optics/ideal_lens.hpp"
+#include "optics/prescriptions/ideal_lens.hpp"
+#include "optics/waves/airy_pattern.hpp"
 #include "trace/device_tracer.hpp"
 #include "trace/device_wave_image.hpp"
 #include "trace/host_tracer.hpp"

@@ -1,0 +1,284 @@
+// The instrument with its light turned round, for paths that start at the detector.
+#include "optics/instrument/assembly.hpp"
+
+#include "core/parallel_list.hpp"
+#include "optics/train/first_order.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <utility>
+
+namespace vkfv::optics {
+
+using physics::f64::Surface;
+
+namespace {
+
+constexpr double outside_margin = 1.02; // outlines are searched at finitely many places: see apertures.cpp
+constexpr double inside_margin = 0.99;
+// Towards the field's edge the region from which all light comes may shrink to this share of its size on the axis.
+constexpr double inside_share = 0.97;
+
+// Where the light of an outline's rim lands on the detector, and its slope there.
+struct Rim {
+    glm::dvec2 position;
+    glm::dvec2 slope;
+};
+
+std::vector<Rim> rims_at_detector(const Imaging& imaging, const Outline& outline) {
+    std::vector<Rim> rims;
+    for (std::size_t azimuth = 0; azimuth < outline.radii.size(); ++azimuth) {
+        if (outline.radii[azimuth] == 0) {
+            continue;
+        }
+        // Within the rim, which rounding may put on either side of an edge.
+        const glm::dvec2 cosines = outline.cosines(azimuth, (1 - 1e-9) * outline.radii[azimuth]);
+        physics::f64::Ray ray{};
+        ray.position = glm::dvec3(outline.position, -imaging.working_distance);
+        ray.direction = glm::dvec3(cosines, std::sqrt(1 - glm::dot(cosines, cosines)));
+        const auto traced = trace_through(imaging.train, ray, 1);
+        const auto landed = physics::f64::fly_to_plane(traced.ray, imaging.detector_distance, traced.index);
+        rims.push_back({glm::dvec2(landed.position), glm::dvec2(landed.direction) / landed.direction.z});
+    }
+    return rims;
+}
+
+// The smallest and the largest |curvature * position + slope| on a cone's rim; the smallest is 0 where some of it is
+// dark.
+std::pair<double, double> crossings(const Outline& outline, double curvature) {
+    double least = std::numeric_limits<double>::infinity();
+    double most = 0;
+    for (std::size_t azimuth = 0; azimuth < outline.radii.size(); ++azimuth) {
+        const glm::dvec2 cosines = outline.cosines(azimuth, outline.radii[azimuth]);
+        const glm::dvec2 slope = cosines / std::sqrt(1 - glm::dot(cosines, cosines));
+        const double crossing = glm::length(curvature * outline.position + slope);
+        least = std::min(least, outline.radii[azimuth] > 0 ? crossing : 0.0);
+        most = outline.radii[azimuth] > 0 ? std::max(most, crossing) : most;
+    }
+    return {least, most};
+}
+
+// The exit pupil as the detector sees it: a disc of slopes about per_position times the position.
+struct ExitPupil {
+    double per_position = 0; // how the chief ray's slope grows with its position on the detector, 1/mm
+    double radius = 0;       // of the disc, in slope: no light comes from outside
+    double rim = 0;          // its edge, in slope; 0: no circle, or not the same all over the field
+};
+
+// A circle's rims have the same distance from its middle: of small changes of per_position, that which leaves least of
+// their differences, as |slope - per_position position| is linear in it there.
+double with_level_rims(double per_position, const std::vector<Rim>& rims) {
+    double count = 0, distances = 0, rates = 0, products = 0, squares = 0;
+    for (const Rim& rim : rims) {
+        const glm::dvec2 crossing = rim.slope - per_position * rim.position;
+        const double distance = glm::length(crossing);
+        const double rate = -glm::dot(crossing, rim.position) / distance;
+        count += 1;
+        distances += distance;
+        rates += rate;
+        products += distance * rate;
+        squares += rate * rate;
+    }
+    return per_position - (products - distances * rates / count) / (squares - rates * rates / count);
+}
+
+ExitPupil exit_pupil(const Imaging& imaging, double field_half_width, double field_radius) {
+    glm::dvec2 mean_position(0);
+    glm::dvec2 mean_slope(0);
+    const auto add = [&](glm::dvec2 field, double times) {
+        for (const Rim& rim : rims_at_detector(imaging, outline_at(imaging, field))) {
+            mean_position += times * rim.position;
+            mean_slope += times * rim.slope;
+        }
+    };
+    add({field_half_width, 0}, 1);
+    if (!imaging.symmetric) {
+        add({0, 0}, -1); // a tilted detector sees all pupils from aside
+    }
+    ExitPupil pupil;
+    pupil.per_position = glm::dot(mean_slope, mean_position) / glm::dot(mean_position, mean_position);
+    constexpr int field_points = 12;
+    std::vector<Rim> all;
+    for (const glm::dvec2& direction : search_directions(imaging.symmetric)) {
+        for (const std::vector<Rim>& rims : parallel_list(field_points + 1, [&](int i) {
+                 return rims_at_detector(imaging, outline_at(imaging, direction * (field_radius * i / field_points)));
+             })) {
+            all.insert(all.end(), rims.begin(), rims.end());
+        }
+    }
+    if (imaging.symmetric) {
+        pupil.per_position = with_level_rims(pupil.per_position, all);
+    }
+    double least = std::numeric_limits<double>::infinity();
+    double most = 0;
+    double sum = 0;
+    for (const Rim& rim : all) {
+        const double distance = glm::length(rim.slope - pupil.per_position * rim.position);
+        least = std::min(least, distance);
+        most = std::max(most, distance);
+        sum += distance;
+    }
+    pupil.radius = outside_margin * most;
+    // Of rims that are taken for a circle. Uneven ones would be of no use, nor do harm: the disc holds all light
+    // anyway.
+    constexpr double level = 0.99;
+    pupil.rim = !all.empty() && least > level * most ? sum / static_cast<double>(all.size()) : 0;
+    return pupil;
+}
+
+// The source as points of the specimen see it, as crossings of their rays.
+struct SeenSource {
+    double outer = 0;        // no light comes from outside this
+    double inner = 0;        // all light comes from inside this
+    double inner_radius = 0; // mm, of the field in which `inner` holds
+};
+
+SeenSource seen_source(const Imaging& seen, double seen_radius) {
+    constexpr int field_points = 48;
+    const double on_axis = crossings(outline_at(seen, {0, 0}), seen.pupil_curvature).first;
+    double outer = 0;
+    double inner = on_axis;
+    int sure_points = field_points;
+    for (const glm::dvec2& direction : search_directions(seen.symmetric)) {
+        const auto crossed = parallel_list(field_points + 1, [&](int i) {
+            return crossings(outline_at(seen, direction * (seen_radius * i / field_points)), seen.pupil_curvature);
+        });
+        for (int i = 0; i <= field_points; ++i) {
+            const auto [least, most] = crossed[static_cast<std::size_t>(i)];
+            outer = std::max(outer, outside_margin * most);
+            if (least < inside_share * on_axis) {
+                sure_points = std::min(sure_points, i - 1);
+            } else if (i <= sure_points) {
+                inner = std::min(inner, least);
+            }
+        }
+    }
+    return {.outer = outer,
+            .inner = sure_points < 0 ? 0 : inside_margin * inner,
+            .inner_radius = inside_margin * seen_radius * std::max(sure_points, 0) / field_points};
+}
+
+PlacedSurfaces detector_to_specimen(const AxialLayout& layout, const ImagingTrain& imaging) {
+    PlacedSurfaces train = reversed(imaging.train);
+    end_in(train, dummy_plane(layout.object_index, layout.front.half_turn(), "front vertex' plane"));
+    link(train, imaging.detector_pose.half_turn());
+    return train;
+}
+
+// The outline of a disc of this radius is the last surface; a ring light stands behind its cover glass, if there is
+// one.
+PlacedSurfaces specimen_to_source(const InstrumentDescription& description, const AxialLayout& layout,
+                                  const Illumination& illumination, double radius) {
+    PlacedSurfaces train = reversed(illumination.train);
+    if (description.source.ring) {
+        link(train, layout.front);
+        return train;
+    }
+    PlacedSurface source = dummy_plane(layout.air, illumination.source_pose.half_turn(), "source");
+    source.surface.flags |= physics::f64::SURFACE_CLIPPED;
+    source.surface.semi_diameter_squared = radius * radius;
+    train.push_back(source);
+    link(train, layout.front);
+    return train;
+}
+
+// The ring light as backward paths draw points of it. A cover glass moves light sideways by less than its thickness
+// where it is the denser medium: a ring wider by that, all round, has all that shines.
+void draw_ring(physics::f64::BackwardOptics& optics, const InstrumentDescription& description,
+               const AxialLayout& layout, const physics::f64::Instrument& constants,
+               const std::vector<Surface>& to_source) {
+    double from_front = 0; // to where the light enters the train
+    for (std::size_t i = 1; i < to_source.size(); ++i) {
+        from_front += to_source[i].distance;
+    }
+    optics.object_distance = constants.ring.aim_distance - from_front;
+    optics.ring = constants.ring;
+    optics.ring_is_bare = to_source.empty() ? 1u : 0u;
+    optics.ring_cosine = std::sqrt(1 - constants.emission_sine * constants.emission_sine);
+    if (!to_source.empty()) {
+        const Spectrum& spectrum = description.spectrum;
+        for (const double wavelength_um : {spectrum.shortest_um, spectrum.longest_um}) {
+            if (description.cover_glass->glass.index(wavelength_um) <
+                layout.objective_lens.medium_before.index(wavelength_um)) {
+                refuse("trace.estimator", "\"backward\"", "a cover glass denser than the immersion, under a ring light",
+                       "Use estimator = \"forward\", or another glass.");
+            }
+        }
+        constexpr double aslant = 2; // light meets the band within 60 degrees of its normal
+        optics.ring.half_width += aslant * description.cover_glass->thickness;
+        optics.ring.fill = 1;
+        optics.ring.segments = 1;
+        optics.ring.switched_on = 1;
+        optics.ring_cosine = 0;
+    }
+    optics.ring_area = physics::f64::ring_area(optics.ring);
+}
+
+} // namespace
+
+TurnedInstrument turn_round(const InstrumentDescription& description, const AxialLayout& layout,
+                            const ImagingTrain& imaging, const Illumination& illumination,
+                            const Instrument& instrument) {
+    const std::vector<Surface> to_specimen = surfaces_of(detector_to_specimen(layout, imaging));
+    const SourceDescription& source = description.source;
+    const auto to_disc = [&](double radius) {
+        return surfaces_of(specimen_to_source(description, layout, illumination, radius));
+    };
+    const std::vector<Surface> to_source = to_disc(source.outer_radius());
+    TurnedInstrument turned;
+    turned.surfaces = to_specimen;
+    turned.surfaces.insert(turned.surfaces.end(), to_source.begin(), to_source.end());
+    turned.constants = instrument.constants;
+    turned.constants.illumination_count = static_cast<int>(to_specimen.size());
+    turned.constants.imaging_first = turned.constants.illumination_count;
+    turned.constants.imaging_count = static_cast<int>(to_source.size());
+
+    const double field_radius = 1.05 * layout.field_half_diagonal;
+    const ExitPupil pupil = exit_pupil(imaging.imaging, layout.field_corner.x, field_radius);
+    auto& optics = turned.optics;
+    optics.pupil_radius = pupil.radius;
+    turned.pupil_rim = pupil.rim;
+    // Half a turn about x and light the other way turn (x, y) into (x, -y) and slopes (s, t) into (-s, t): the pupil's
+    // crossing, slope - per_position * position, changes its sign alone.
+    optics.pupil_position = pupil.per_position;
+
+    if (description.source.ring) {
+        draw_ring(optics, description, layout, turned.constants, to_source);
+        return turned;
+    }
+    const RayTransfer whole = free_space(layout.working_distance, layout.object_index.centre)
+                                  .then(free_space(to_source.front().distance))
+                                  .then(transfer_of_train(to_source));
+    optics.source_position = whole.a / (whole.b * layout.object_index.centre);
+    optics.object_distance = layout.working_distance;
+    const auto seen_through = [&](const std::vector<Surface>& train) {
+        return seen_source({.train = train,
+                            .working_distance = layout.working_distance,
+                            .detector_distance = 0,
+                            .pupil_curvature = optics.source_position,
+                            .symmetric = !has_displaced(train)},
+                           field_radius + description.greatest_defocus);
+    };
+    SeenSource seen = seen_through(to_source);
+    optics.source_outer = seen.outer;
+    if (source.rectangle) { // outside is what no point of the circle about it sends, sure what the circle in it does
+        seen = seen_through(to_disc(source.inner_radius()));
+    }
+    // Other wavelengths have other rims, and losses must be traced.
+    const bool nothing_sure =
+        !description.spectrum.monochromatic() || (instrument.features & physics::f64::FEATURE_LOSSES) != 0;
+    optics.source_inner = nothing_sure ? 0 : seen.inner;
+    optics.inner_field = seen.inner_radius;
+    return turned;
+}
+
+Instrument turned_round(const Instrument& instrument) {
+    Instrument turned = instrument;
+    turned.surfaces = instrument.turned.value().surfaces;
+    turned.constants = instrument.turned.value().constants;
+    turned.surface_names.resize(turned.surfaces.size());
+    return turned;
+}
+
+} // namespace vkfv::optics

@@ -1,0 +1,84 @@
+// Lens prescriptions: the tables of surfaces that assets/ holds as TOML.
+#pragma once
+
+#include "optics/media/glass_catalog.hpp"
+#include "optics/media/medium.hpp"
+
+#include <array>
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace vkfv::optics {
+
+// A change of the frame that surfaces stand in: decentre, then tilts about the new x, y and z axes in this order (the
+// other way round if tilt_first), then the thickness along the new z. Positive tilts turn z towards -y (about x), z
+// towards x (about y) and x towards y (about z). Lengths in mm, angles in rad. It holds for all surfaces that follow.
+struct CoordinateBreak {
+    double decentre_x = 0;
+    double decentre_y = 0;
+    double tilt_x = 0;
+    double tilt_y = 0;
+    double tilt_z = 0;
+    bool tilt_first = false; // z, y, x tilts, then the decentre
+    double thickness = 0;
+};
+
+// What a surface is there for. The illumination aperture stands at the source and is of no prescription.
+enum class SurfaceRole { refracting, aperture_stop, field_stop, illumination_aperture };
+const char* name_of(SurfaceRole role); // "aperture stop", as prescriptions write it; refracting: ""
+
+// One surface in the direction of the prescription. Lengths in mm.
+struct PrescribedSurface {
+    std::vector<CoordinateBreak> breaks; // between the previous surface's thickness and this vertex, in order
+    double curvature = 0;                // 1/mm
+    double conic = 0;
+    std::array<double, 7> aspheric{}; // a4 ... a16
+    double thickness = 0;             // to the next vertex; of the last surface: unused
+    Medium medium_after;
+    std::optional<double> semi_diameter; // none: unbounded
+    std::optional<double> ideal_power;   // 1/mm: an ideal lens (physics::pass_ideal_lens) instead of an interface
+    using Role = SurfaceRole;
+    Role role = Role::refracting;
+};
+
+struct Prescription {
+    std::filesystem::path file; // that it was read from, for messages
+    std::string name;
+    std::string title;
+    std::string source;  // where the numbers come from
+    std::string licence; // of the numbers
+    Medium medium_before;
+    std::vector<PrescribedSurface> surfaces;
+    // Illuminators only: from the source to the first vertex.
+    std::optional<double> source_distance;
+};
+
+// Where a prescription is: `name` is a path ending in .toml, relative to the folder `base`, or the stem of a
+// file <folder>/<name>.toml in one of asset_folders(base). None: no such file.
+std::optional<std::filesystem::path> find_prescription(const std::string& name, const std::filesystem::path& folder,
+                                                       const std::filesystem::path& base);
+
+// Where find_prescription looks, for messages: "looked for ...".
+std::string searched_for_prescription(const std::string& name, const std::filesystem::path& folder,
+                                      const std::filesystem::path& base);
+
+// Whether it is a file of the installed assets, which their names alone mean from anywhere.
+bool comes_with_program(const std::filesystem::path& file, const std::filesystem::path& folder);
+
+// The names that find_prescription finds in such a folder, 5x before 10x.
+std::vector<std::string> prescription_names(const std::filesystem::path& folder, const std::filesystem::path& base);
+
+// Reads the prescription that find_prescription finds. A medium is looked for in the file's own [media], then in
+// `glasses`. Throws InputError.
+Prescription load_prescription(const std::string& name, const std::filesystem::path& folder,
+                               const std::filesystem::path& base,
+                               const GlassCatalog& glasses = GlassCatalog::builtin());
+
+// The same of a prescription's text; `file` stands for it in messages.
+Prescription parse_prescription(std::string_view text, const std::filesystem::path& file,
+                                const GlassCatalog& glasses = GlassCatalog::builtin());
+
+} // namespace vkfv::optics

@@ -1,0 +1,250 @@
+#include "optics/prescriptions/zmx.hpp"
+
+#include "core/error.hpp"
+#include "core/file.hpp"
+#include "core/units.hpp"
+#include "optics/prescriptions/zmx_file.hpp"
+
+#include <fmt/format.h>
+#include <spdlog/spdlog.h>
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+namespace vkfv::optics {
+
+namespace {
+
+using namespace zmx;
+
+// As prescriptions are read.
+constexpr NumberRange thickness_range = {.minimum = 0, .maximum = 1e6};
+constexpr NumberRange offset_range = {.minimum = -1e6, .maximum = 1e6};
+constexpr NumberRange tilt_range_deg = {.minimum = -360, .maximum = 360};
+
+// Makes the lens of what a file says.
+class Builder {
+  public:
+    explicit Builder(File file) : file_(std::move(file)) {}
+
+    ZmxLens lens() {
+        if (file_.surfaces.size() < 3) {
+            refuse({file_.path}, {.number = file_.last_line.number}, fmt::format("{} surfaces", file_.surfaces.size()),
+                   "a lens: an object, at least one surface, and an image",
+                   "Check that this is a whole .zmx file of a sequential lens.");
+        }
+        if (!file_.unit) {
+            refuse({file_.path}, {.number = 1}, "no UNIT", "the lens unit", "Add a line UNIT MM, or another unit.");
+        }
+        ZmxLens result;
+        Prescription& prescription = result.prescription;
+        prescription.file = file_.path;
+        prescription.name = file_.path.stem().string();
+        prescription.title = file_.title.empty() ? prescription.name : file_.title;
+        prescription.source = file_.source;
+        prescription.licence = "not known to the import: see the source";
+        require_glasses();
+        for (const auto& surface : file_.surfaces) {
+            check(surface);
+        }
+        check_image();
+        prescription.medium_before = file_.surfaces.front().medium.value_or(Medium::air());
+        std::vector<CoordinateBreak> breaks;
+        bool has_stop = false;
+        for (std::size_t i = 1; i + 1 < file_.surfaces.size(); ++i) {
+            const Surface& surface = file_.surfaces[i];
+            if (surface.kind == SurfaceKind::coordinate_break) {
+                breaks.push_back(break_of(surface));
+                continue;
+            }
+            prescription.surfaces.push_back(prescribed(surface));
+            prescription.surfaces.back().breaks = std::exchange(breaks, {});
+            if (surface.stop && std::exchange(has_stop, true)) {
+                refuse(place_of(surface), surface.stop_line, "a second stop", "one stop",
+                       "Keep the one that limits the light.");
+            }
+        }
+        if (prescription.surfaces.empty()) {
+            refuse({file_.path}, {.number = file_.last_line.number}, "coordinate breaks only", "at least one surface",
+                   "Check that this is the file of a lens.");
+        }
+        // Behind the last surface there is only the image.
+        prescription.surfaces.back().thickness = 0;
+        take_over_wavelengths(result);
+        return result;
+    }
+
+  private:
+    Place place_of(const Surface& surface) const { return {file_.path, surface.number}; }
+
+    // All that are missing at once. The image's glass would be behind it, where no light goes.
+    void require_glasses() const {
+        std::vector<InputProblem> problems;
+        for (std::size_t i = 0; i + 1 < file_.surfaces.size(); ++i) {
+            const auto& of_surface = file_.surfaces[i].medium_problems;
+            problems.insert(problems.end(), of_surface.begin(), of_surface.end());
+        }
+        if (!problems.empty()) {
+            throw InputError(std::move(problems));
+        }
+    }
+
+    void check_image() const {
+        const Surface& image = file_.surfaces.back();
+        if (*image.thickness != 0 || image.kind == SurfaceKind::coordinate_break) {
+            refuse(place_of(image), image.thickness_line, "a lens surface at the end",
+                   "an image surface, of thickness 0",
+                   "The file looks cut off: copy it again; or add an image surface.");
+        }
+        if (image.medium) {
+            spdlog::info("{}:{}: {} behind the image is left out: no light goes there", file_.path.string(),
+                         image.medium_line.number,
+                         image.medium_line.words.empty() ? "the glass" : image.medium_line.words.front());
+        }
+    }
+
+    void check(const Surface& surface) const {
+        if (!surface.curvature || !surface.thickness) {
+            refuse(place_of(surface), surface.line, surface.curvature ? "no DISZ" : "no CURV",
+                   "curvature and thickness", "The file looks cut off: copy it again.");
+        }
+        const bool is_end = surface.number == 0 || surface.number + 1 == static_cast<int>(file_.surfaces.size());
+        if (surface.stop && (is_end || surface.kind == SurfaceKind::coordinate_break)) {
+            refuse(place_of(surface), surface.stop_line, "a stop at a surface without light", "a stop within the lens",
+                   "Make a surface of the lens the stop.");
+        }
+        if (surface.kind == SurfaceKind::coordinate_break) {
+            if (surface.medium || *surface.curvature != 0 || surface.conic != 0) {
+                refuse(place_of(surface), surface.medium ? surface.medium_line : surface.kind_line,
+                       "a coordinate break that refracts", "no glass and no curvature",
+                       "Give them to the next surface.");
+            }
+        }
+        const int most = surface.kind == SurfaceKind::standard           ? 0
+                         : surface.kind == SurfaceKind::coordinate_break ? 6
+                                                                         : 8;
+        for (const auto& [number, parameter] : surface.parameters) {
+            if (parameter.value != 0 && (number < 1 || number > most)) {
+                refuse(place_of(surface), parameter.line, parameter.line.rest,
+                       fmt::format("no parameter {} of a surface {}", number, name_of(surface.kind)), "Set it to 0.");
+            }
+        }
+        if (surface.kind == SurfaceKind::even_asphere && parameter_of(surface, 1) != 0) {
+            const Line& line = surface.parameters.at(1).line;
+            refuse(place_of(surface), line, line.rest, "0 as the coefficient of r^2",
+                   "Make it part of the curvature: add twice the coefficient to it, and refit the conic.");
+        }
+    }
+
+    static double parameter_of(const Surface& surface, int number) {
+        const auto found = surface.parameters.find(number);
+        return found == surface.parameters.end() ? 0 : found->second.value;
+    }
+
+    // A value of `dimension` lengths in mm.
+    double in_mm(const Surface& surface, const Line& line, double value, int dimension = 1) const {
+        const double result = value * std::pow(*file_.unit, dimension) + 0.0;
+        if (!std::isfinite(result)) {
+            refuse(place_of(surface), line, line.rest, "a number that is finite in mm", "Correct it.");
+        }
+        return result;
+    }
+
+    double thickness_of(const Surface& surface, const NumberRange& range) const {
+        const Line& line = surface.thickness_line;
+        const double thickness = in_mm(surface, line, std::min(*surface.thickness, 1e300));
+        if (!range.contains(thickness)) {
+            refuse(place_of(surface), line, line.rest, fmt::format("a thickness {} mm", range.to_string()),
+                   *surface.thickness < 0 ? "Leave out what stands in front of the surface before it."
+                                          : "Choose a smaller distance.");
+        }
+        return thickness;
+    }
+
+    CoordinateBreak break_of(const Surface& surface) const {
+        const auto checked = [&](int number, const NumberRange& range, auto convert) {
+            const auto found = surface.parameters.find(number);
+            if (found == surface.parameters.end()) {
+                return 0.0;
+            }
+            const Line& line = found->second.line;
+            const double value = convert(line, found->second.value);
+            if (!range.contains(value)) {
+                refuse(place_of(surface), line, line.rest,
+                       fmt::format("a value {} in mm or degrees", range.to_string()),
+                       "Choose a smaller decentre or tilt.");
+            }
+            return value;
+        };
+        const auto length = [&](int number) {
+            return checked(number, offset_range,
+                           [&](const Line& line, double value) { return in_mm(surface, line, value); });
+        };
+        const auto angle = [&](int number) {
+            return checked(number, tilt_range_deg, [](const Line&, double value) { return value; }) *
+                   radians_per_degree;
+        };
+        return {.decentre_x = length(1),
+                .decentre_y = length(2),
+                .tilt_x = angle(3),
+                .tilt_y = angle(4),
+                .tilt_z = angle(5),
+                .tilt_first = parameter_of(surface, 6) != 0,
+                .thickness = thickness_of(surface, offset_range)};
+    }
+
+    PrescribedSurface prescribed(const Surface& surface) const {
+        PrescribedSurface result;
+        result.curvature = in_mm(surface, surface.line, *surface.curvature, -1);
+        result.conic = surface.conic;
+        for (const auto& [number, parameter] : surface.parameters) {
+            if (number >= 2 && number <= 8) { // coefficient of r^(2 number)
+                result.aspheric[static_cast<std::size_t>(number - 2)] =
+                    in_mm(surface, parameter.line, parameter.value, 1 - 2 * number);
+            }
+        }
+        result.medium_after = surface.medium.value_or(Medium::air());
+        const double semi_diameter = surface.aperture > 0 ? surface.aperture : surface.diameter;
+        if (semi_diameter > 0) {
+            result.semi_diameter = in_mm(surface, surface.line, semi_diameter);
+        }
+        if (surface.stop) {
+            result.role = PrescribedSurface::Role::aperture_stop;
+        }
+        const bool is_last = surface.number + 2 == static_cast<int>(file_.surfaces.size());
+        result.thickness = is_last ? 0 : thickness_of(surface, thickness_range);
+        return result;
+    }
+
+    // Zemax pads the list to 24 entries.
+    void take_over_wavelengths(ZmxLens& result) const {
+        for (const auto& [number, wavelength] : file_.wavelengths_um) {
+            if (!file_.wavelength_count || number <= *file_.wavelength_count) {
+                result.wavelengths_um.push_back(wavelength);
+            }
+        }
+        const auto primary = file_.wavelengths_um.find(file_.primary);
+        if (result.wavelengths_um.empty() || primary == file_.wavelengths_um.end() ||
+            (file_.wavelength_count && file_.primary > *file_.wavelength_count)) {
+            refuse({file_.path}, file_.primary_line, file_.primary_line.rest,
+                   fmt::format("one of the {} wavelengths of the file", result.wavelengths_um.size()),
+                   "Give the wavelengths in lines WAVM, and the primary one's number in PWAV.");
+        }
+        result.primary_wavelength_um = primary->second;
+    }
+
+    File file_;
+};
+
+} // namespace
+
+ZmxLens parse_zmx(std::string_view bytes, const std::filesystem::path& file, const GlassCatalog& glasses) {
+    return Builder(read_lines(bytes, file, glasses)).lens();
+}
+
+ZmxLens read_zmx(const std::filesystem::path& file, const GlassCatalog& glasses) {
+    return parse_zmx(read_file(file, {.expected = "a Zemax lens file (.zmx)"}), file, glasses);
+}
+
+} // namespace vkfv::optics

@@ -1,0 +1,30 @@
+// The glasses of a .zmx file. Only the files of this import include this.
+#pragma once
+
+#include "optics/media/glass_catalog.hpp"
+#include "optics/prescriptions/zmx_text.hpp"
+
+#include <map>
+#include <string>
+#include <utility>
+
+namespace vkfv::optics::zmx {
+
+class Glasses {
+  public:
+    // source: of the model glasses, for their users.
+    Glasses(const GlassCatalog& catalog, std::string source) : catalog_(catalog), source_(std::move(source)) {}
+
+    // What a GLAS line names, of the catalogue or a model glass. Throws InputError.
+    Medium medium_of(const Place& place, const Line& line);
+
+  private:
+    // Named by its six-digit code, and a count where several share that. Zemax's Abbe number 0 is no dispersion at all.
+    Medium model(double nd, double vd);
+
+    const GlassCatalog& catalog_;
+    std::string source_;
+    std::map<std::string, std::pair<double, double>> models_;
+};
+
+} // namespace vkfv::optics::zmx

@@ -1,0 +1,90 @@
+// The transfer functions of the pupil's cells, at single frequencies: what a PupilFilter is a table of. An instrument's
+// figures need a hundredth of that table.
+#pragma once
+
+#include "optics/instrument/instrument.hpp"
+#include "optics/waves/wavefront.hpp"
+#include "physics/physics.hpp"
+
+#include <cmath>
+#include <complex>
+#include <cstddef>
+#include <map>
+#include <memory>
+#include <mutex>
+#include <utility>
+#include <vector>
+
+namespace vkfv::optics {
+
+// Values at -steps ... steps, for rows 0 ... steps, bilinear between; 0 beyond, for rows below 0 the conjugate of the
+// opposite.
+template <class Value>
+std::complex<double> interpolated(const Value* values, int steps, double x, double y) {
+    using Complex = std::complex<double>;
+    if (y < 0 || (y == 0 && x < 0)) {
+        return std::conj(interpolated(values, steps, -x, -y));
+    }
+    if (std::abs(x) >= steps || y >= steps) {
+        return 0;
+    }
+    const double left = std::floor(x);
+    const double low = std::floor(y);
+    const double u = x - left;
+    const double v = y - low;
+    const Value* corner = values + static_cast<std::ptrdiff_t>(low) * (2 * steps + 1) + static_cast<int>(left) + steps;
+    const auto row = [&](const Value* first) { return Complex(first[0]) * (1 - u) + Complex(first[1]) * u; };
+    return row(corner) * (1 - v) + row(corner + 2 * steps + 1) * v;
+}
+
+// The wavefronts of the axis that the filters of an instrument are made of: its spectrum by a few wavelengths.
+std::vector<Wavefront> wavefronts_for_cells(const Instrument& instrument);
+
+class CellTransfer {
+  public:
+    // Of so many cells across the pupil of the axis, for pixels that are not parted. Throws InputError where no light
+    // comes through.
+    CellTransfer(const Instrument& instrument, int cells);
+    // Of these wavefronts, wavefronts_for_cells().
+    CellTransfer(const Instrument& instrument, std::vector<Wavefront> wavefronts, int cells);
+    ~CellTransfer();
+    CellTransfer(CellTransfer&&) noexcept;
+    CellTransfer& operator=(CellTransfer&&) noexcept;
+
+    const physics::f64::PupilCells& cells() const { return cells_; }
+    std::size_t cell_count() const { return shares_.size(); }
+    const std::vector<double>& shares() const { return shares_; } // of the light, of each cell
+    double cutoff() const { return cutoff_; }                     // cycles per mm of the object plane
+    int steps() const { return steps_; }                          // nodes from 0 to the cutoff
+
+    // PupilFilter::table(), by all cores.
+    std::vector<std::complex<float>> table() const;
+    // The values that this table has at a frequency (cycles per mm), of each cell; but for rounding in the rare case
+    // that a value lies between two floats as nearly as double can tell. Nodes are kept; several threads may ask.
+    std::vector<std::complex<double>> at(double fx, double fy) const;
+
+  private:
+    struct Lattice;
+    using CellValues = std::vector<std::complex<double>>;
+
+    const CellValues& node_of_wavelength(std::size_t wavelength, int dx, int dy) const;
+    CellValues table_node(int dx, int dy) const;
+    void find_nearest_lit();
+
+    struct Nodes {
+        std::mutex mutex;
+        std::map<std::pair<int, int>, CellValues> values; // by (dx, dy), of one wavelength; they never move
+    };
+
+    physics::f64::PupilCells cells_{};
+    int steps_ = 0;
+    double cutoff_ = 0;
+    bool round_ = false; // the pupil is its own mirror image about both axes and their bisectors
+    std::vector<Wavefront> wavefronts_;
+    std::vector<std::unique_ptr<Lattice>> lattices_; // of each
+    std::vector<double> shares_;
+    std::vector<std::size_t> nearest_lit_; // of each cell: itself, or the cell whose values it has
+    std::vector<std::unique_ptr<Nodes>> nodes_;
+};
+
+} // namespace vkfv::optics

@@ -1,0 +1,350 @@
+#include "optics/waves/filter_error.hpp"
+
+#include "core/parallel_list.hpp"
+#include "core/units.hpp"
+#include "optics/waves/complex_product.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <cstdlib>
+#include <vector>
+
+namespace vkfv::optics {
+
+namespace {
+
+using Complex = std::complex<double>;
+
+constexpr int half = 40;       // points of a lattice across half the pupil
+constexpr int frequencies = 7; // parts of the cutoff, and one more would be it
+constexpr int directions = 16; // over half a turn; the opposite ones are the conjugates
+constexpr int half_heights = 4;
+constexpr std::size_t heights = 2 * half_heights + 1;
+constexpr double depths_of_field = 2;
+constexpr int most_wavelengths = 3; // of a continuous spectrum
+constexpr int fewest_cells = 8;
+constexpr int most_cells = 16;
+
+// Of each height.
+using AtHeights = std::array<Complex, heights>;
+
+double height_of(std::size_t h, double reach) {
+    return reach * (static_cast<double>(h) / half_heights - 1);
+}
+
+// Sums over points, at each height, of a number that turns by the same angle from one height to the next: by
+// v_(h+1) = 2 cos(angle) v_h - v_(h-1), half of the products of v_(h+1) = step v_h. In four sums side by side, as one
+// alone would wait for each addition.
+class HeightSums {
+  public:
+    // step: from one height to the next, of modulus 1.
+    void add(Complex lowest, Complex step) {
+        const Complex second = product(lowest, step);
+        real_[next_] = lowest.real();
+        imaginary_[next_] = lowest.imag();
+        second_real_[next_] = second.real();
+        second_imaginary_[next_] = second.imag();
+        twice_cosine_[next_] = 2 * step.real();
+        if (++next_ == lanes) {
+            add_lanes();
+        }
+    }
+
+    AtHeights all() {
+        while (next_ > 0) {
+            add(0, 0);
+        }
+        AtHeights sums{};
+        for (std::size_t h = 0; h < heights; ++h) {
+            for (std::size_t k = 0; k < lanes; ++k) {
+                sums[h] += Complex(sums_[h].real[k], sums_[h].imaginary[k]);
+            }
+        }
+        return sums;
+    }
+
+  private:
+    static constexpr std::size_t lanes = 4;
+    using Lanes = std::array<double, lanes>;
+
+    void add_lanes() {
+        for (std::size_t k = 0; k < lanes; ++k) {
+            double before_real = real_[k];
+            double before_imaginary = imaginary_[k];
+            double real = second_real_[k];
+            double imaginary = second_imaginary_[k];
+            sums_[0].real[k] += before_real;
+            sums_[0].imaginary[k] += before_imaginary;
+            for (std::size_t h = 1; h < heights; ++h) {
+                sums_[h].real[k] += real;
+                sums_[h].imaginary[k] += imaginary;
+                const double next_real = twice_cosine_[k] * real - before_real;
+                const double next_imaginary = twice_cosine_[k] * imaginary - before_imaginary;
+                before_real = real;
+                before_imaginary = imaginary;
+                real = next_real;
+                imaginary = next_imaginary;
+            }
+        }
+        next_ = 0;
+    }
+
+    struct Sum {
+        Lanes real{};
+        Lanes imaginary{};
+    };
+    std::array<Sum, heights> sums_;
+    Lanes real_{}, imaginary_{}, second_real_{}, second_imaginary_{}, twice_cosine_{};
+    std::size_t next_ = 0;
+};
+
+// Powers 0 ... of a number of modulus 1; those below 0 are the conjugates.
+class Powers {
+  public:
+    static constexpr int most = half / (frequencies + 1) + 1; // from one frequency to the next
+
+    explicit Powers(double phase) {
+        powers_[0] = 1;
+        powers_[1] = std::polar(1.0, phase);
+        for (std::size_t k = 2; k < powers_.size(); ++k) {
+            powers_[k] = product(powers_[k - 1], powers_[1]);
+        }
+    }
+    Complex operator()(int exponent) const {
+        const Complex power = powers_[static_cast<std::size_t>(std::abs(exponent))];
+        return exponent < 0 ? std::conj(power) : power;
+    }
+
+  private:
+    std::array<Complex, most + 1> powers_;
+};
+
+// Of something at the lowest height, and what leads from one height to the next.
+struct Phase {
+    Complex lowest = 1;
+    Complex step = 1;
+};
+
+// One wavelength's pupil on a lattice about the chief ray, whose points p + lambda f / 2 are points again for the
+// frequencies 2 unit (dx, dy), at heights within `reach` (mm).
+class PupilLattice {
+  public:
+    PupilLattice(const Wavefront& wavefront, const physics::f64::PupilCells& cells, double unit, double reach)
+        : half_(static_cast<int>(std::ceil(wavefront.largest_rim() / (wavefront.wavelength() * unit)))),
+          side_(2 * half_), passes_(static_cast<std::size_t>(side_ * side_)), wave_(passes_.size()) {
+        const glm::dvec2 chief_slope =
+            wavefront.chief_slope() - physics::f64::chief_slope(cells, wavefront.detector_point());
+        const auto rows = parallel_list(side_, [&](int row) {
+            const int j = row - half_;
+            std::vector<Point> points;
+            for (int i = -half_; i < half_; ++i) {
+                const glm::dvec2 p = wavefront.chief() + wavefront.wavelength() * unit * glm::dvec2(i + 0.5, j + 0.5);
+                if (wavefront.passes(p)) {
+                    passes_[index(i, j)] = 1;
+                    wave_[index(i, j)] = wave_of(wavefront, p, reach);
+                    const std::uint32_t cell = physics::f64::pupil_cell(cells, wavefront.image_slope(p) + chief_slope);
+                    points.push_back(point_of(wavefront, p, cell, unit, reach));
+                }
+            }
+            return points;
+        });
+        std::size_t count = 0;
+        for (const auto& points : rows) {
+            count += points.size();
+        }
+        points_.reserve(count); // growing would touch several times the memory, which takes longer than to fill it
+        for (const auto& points : rows) {
+            points_.insert(points_.end(), points.begin(), points.end());
+        }
+    }
+
+    // Hopkins' transfer function.
+    AtHeights waves(int dx, int dy) const {
+        HeightSums sums;
+        const int reach_x = half_ - std::abs(dx);
+        const int reach_y = half_ - std::abs(dy);
+        const std::ptrdiff_t step = static_cast<std::ptrdiff_t>(dy) * side_ + dx;
+        for (int j = -reach_y; j < reach_y; ++j) {
+            for (int i = -reach_x; i < reach_x; ++i) {
+                const auto here = static_cast<std::ptrdiff_t>(index(i, j));
+                const auto ahead = static_cast<std::size_t>(here + step);
+                const auto behind = static_cast<std::size_t>(here - step);
+                if (passes_[ahead] != 0 && passes_[behind] != 0) {
+                    sums.add(product(std::conj(wave_[ahead].lowest), wave_[behind].lowest),
+                             product(std::conj(wave_[ahead].step), wave_[behind].step));
+                }
+            }
+        }
+        return mean(sums.all());
+    }
+
+    // exp(-2 pi i f . t) of each point at the lowest height, and what leads from one height to the next, for
+    // frequencies that follow each other closely: three quarters of the time went into sines and cosines.
+    class Rays {
+      public:
+        explicit Rays(const PupilLattice& lattice) : lattice_(lattice), phases_(lattice.points_.size()) {}
+
+        void go_to(int dx, int dy) {
+            const int x = dx - dx_;
+            const int y = dy - dy_;
+            for (std::size_t k = 0; k < phases_.size(); ++k) {
+                const Point& point = lattice_.points_[k];
+                Phase& phase = phases_[k];
+                phase.lowest = product(phase.lowest, product(point.lowest[0](x), point.lowest[1](y)));
+                phase.step = product(phase.step, product(point.step[0](x), point.step[1](y)));
+            }
+            dx_ = dx;
+            dy_ = dy;
+        }
+
+        // The cells' images as rays make them, each by its filter.
+        AtHeights filtered(const std::vector<Complex>& of_cell) const {
+            HeightSums sums;
+            for (std::size_t k = 0; k < phases_.size(); ++k) {
+                sums.add(product(of_cell[lattice_.points_[k].cell], phases_[k].lowest), phases_[k].step);
+            }
+            return lattice_.mean(sums.all());
+        }
+
+      private:
+        const PupilLattice& lattice_;
+        int dx_ = 0;
+        int dy_ = 0;
+        std::vector<Phase> phases_; // of each point
+    };
+
+  private:
+    struct Point {
+        std::uint32_t cell;
+        std::array<Powers, 2> lowest; // of a unit of frequency along x and along y
+        std::array<Powers, 2> step;
+    };
+
+    static Phase wave_of(const Wavefront& wavefront, glm::dvec2 p, double reach) {
+        const double wave_number = 2 * pi / wavefront.wavelength();
+        const double defocus = wavefront.path_of_height(p);
+        return {.lowest = std::polar(1.0, wave_number * (wavefront.path(p) + height_of(0, reach) * defocus)),
+                .step = std::polar(1.0, wave_number * (reach / half_heights) * defocus)};
+    }
+
+    static Point point_of(const Wavefront& wavefront, glm::dvec2 p, std::uint32_t cell, double unit, double reach) {
+        const glm::dvec2 spread = wavefront.displacement_of_height(p) * (reach / half_heights);
+        const glm::dvec2 lowest = wavefront.displacement(p) - static_cast<double>(half_heights) * spread;
+        const double turn = -4 * pi * unit;
+        return {.cell = cell,
+                .lowest = {Powers(turn * lowest.x), Powers(turn * lowest.y)},
+                .step = {Powers(turn * spread.x), Powers(turn * spread.y)}};
+    }
+
+    std::size_t index(int i, int j) const { return static_cast<std::size_t>((j + half_) * side_ + i + half_); }
+    AtHeights mean(AtHeights sum) const {
+        for (Complex& each : sum) {
+            each /= static_cast<double>(points_.size());
+        }
+        return sum;
+    }
+
+    int half_;
+    int side_;
+    std::vector<char> passes_;
+    std::vector<Phase> wave_;
+    std::vector<Point> points_; // those that pass
+};
+
+// Directions without those that are mirror images of others: about the axis each has eight, about a point of the x axis
+// of a symmetric instrument two. Opposite ones are conjugates.
+int directions_of(const PointWaves& point) {
+    const auto& wavefronts = point.wavefronts();
+    return std::ranges::all_of(wavefronts, &Wavefront::round)      ? directions / 4 + 1
+           : std::ranges::all_of(wavefronts, &Wavefront::mirrored) ? directions / 2 + 1
+                                                                   : directions;
+}
+
+} // namespace
+
+FilterError largest_filter_error(const PupilFilter& filter, const PointWaves& point, double reach) {
+    const auto& wavefronts = point.wavefronts();
+    if (std::ranges::any_of(wavefronts, [](const Wavefront& each) { return each.largest_rim() == 0; })) {
+        return {};
+    }
+    const double unit = 0.5 * filter.cutoff() / half;
+    std::vector<PupilLattice> lattices;
+    std::vector<std::array<glm::dvec2, heights>> aside(wavefronts.size());
+    for (const Wavefront& wavefront : wavefronts) {
+        lattices.emplace_back(wavefront, filter.cells(), unit, reach);
+    }
+    for (std::size_t h = 0; h < heights; ++h) {
+        const PointWaves raised = point.at_height(height_of(h, reach));
+        for (std::size_t k = 0; k < lattices.size(); ++k) {
+            aside[k][h] = raised.aside(raised.wavefronts()[k]);
+        }
+    }
+    const auto largest_along = [&](int direction) {
+        FilterError worst;
+        std::vector<PupilLattice::Rays> rays(lattices.begin(), lattices.end());
+        for (int s = 1; s <= frequencies; ++s) {
+            const glm::dvec2 steps = half * s / (frequencies + 1.0) * direction_of(pi * direction / directions);
+            const int dx = static_cast<int>(std::lround(steps.x));
+            const int dy = static_cast<int>(std::lround(steps.y));
+            const glm::dvec2 frequency = 2 * unit * glm::dvec2(dx, dy);
+            const auto of_cell = filter.transfers(frequency.x, frequency.y);
+            AtHeights waves{};
+            AtHeights filtered{};
+            for (std::size_t k = 0; k < lattices.size(); ++k) {
+                rays[k].go_to(dx, dy);
+                const AtHeights of_waves = lattices[k].waves(dx, dy);
+                const AtHeights of_filter = rays[k].filtered(of_cell);
+                for (std::size_t h = 0; h < heights; ++h) {
+                    const Complex shift =
+                        std::polar(wavefronts[k].weight(), -2 * pi * glm::dot(frequency, aside[k][h]));
+                    waves[h] += shift * of_waves[h];
+                    filtered[h] += shift * of_filter[h];
+                }
+            }
+            for (std::size_t h = 0; h < heights; ++h) {
+                if (const double difference = std::abs(filtered[h] - waves[h]); difference > worst.difference) {
+                    worst = {.difference = difference,
+                             .frequency = frequency,
+                             .height = height_of(h, reach),
+                             .waves = waves[h],
+                             .filtered = filtered[h]};
+                }
+            }
+        }
+        return worst;
+    };
+    const std::vector<FilterError> largest = parallel_list(directions_of(point), largest_along);
+    return *std::ranges::max_element(largest, {}, &FilterError::difference);
+}
+
+FilterError largest_filter_error(const PupilFilter& filter, const Instrument& instrument, glm::dvec2 field) {
+    if (field == glm::dvec2(0) && filter.error_on_axis()) {
+        return *filter.error_on_axis();
+    }
+    return largest_filter_error(filter, point_for_filter(instrument, field), reach_of_filter(instrument));
+}
+
+double reach_of_filter(const Instrument& instrument) {
+    return depths_of_field * instrument.first_order.depth_of_field;
+}
+
+PointWaves point_for_filter(const Instrument& instrument, glm::dvec2 field) {
+    return PointWaves(instrument, field, most_wavelengths);
+}
+
+PupilFilter filter_for_waves(const Instrument& instrument) {
+    const auto wavefronts = wavefronts_for_cells(instrument);
+    const auto axis = wavefronts.size() == 1 ? PointWaves(wavefronts) : point_for_filter(instrument, glm::dvec2(0));
+    for (int cells = fewest_cells;; cells += 2) {
+        PupilFilter filter = PupilFilter::unparted(instrument, wavefronts, cells);
+        filter.set_error_on_axis(largest_filter_error(filter, axis, reach_of_filter(instrument)));
+        if (cells == most_cells || filter.error_on_axis()->difference <= most_error_of_cells) {
+            return filter;
+        }
+    }
+}
+
+} // namespace vkfv::optics

@@ -1,0 +1,154 @@
+#include "optics/waves/pupil_filter.hpp"
+
+#include "core/parallel_list.hpp"
+#include "core/units.hpp"
+#include "optics/instrument/image_quality.hpp"
+#include "optics/waves/filter_error.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+namespace vkfv::optics {
+
+namespace {
+
+using Complex = std::complex<double>;
+
+double shortest_wavelength(std::span<const SpectralNode> nodes) {
+    const auto least = std::ranges::min_element(nodes, {}, &SpectralNode::wavelength_um);
+    return least->wavelength_um / um_per_mm;
+}
+
+} // namespace
+
+int parts_for_waves(const Instrument& instrument) {
+    const double pitch =
+        shortest_wavelength(spectral_nodes(instrument)) / (4 * instrument.first_order.numerical_aperture);
+    return std::max(1, static_cast<int>(std::ceil(instrument.first_order.pixel_pitch / pitch * (1 - 1e-9))));
+}
+
+int parts_of(const WaveOptions& options, const Instrument& instrument) {
+    return options.parts > 0 ? options.parts : parts_for_waves(instrument);
+}
+
+int cells_of(const WaveOptions& options, const Instrument& instrument) {
+    return options.cells > 0 ? options.cells : static_cast<int>(filter_for_waves(instrument).cells().side);
+}
+
+PupilFilter::PupilFilter(const Instrument& instrument, const WaveOptions& options)
+    : PupilFilter(options.cells > 0 ? unparted(instrument, options.cells) : filter_for_waves(instrument)) {
+    set_parts(instrument, parts_of(options, instrument));
+}
+
+void PupilFilter::set_parts(const Instrument& instrument, int parts) {
+    cells_.parts = static_cast<std::uint32_t>(parts);
+    part_pitch_ = instrument.first_order.pixel_pitch / cells_.parts;
+    parted_ = true;
+}
+
+PupilFilter::PupilFilter(CellTransfer transfer) : cells_(transfer.cells()), made_(new Made{std::move(transfer)}) {}
+
+PupilFilter PupilFilter::unparted(const Instrument& instrument, std::vector<Wavefront> wavefronts, int cells) {
+    PupilFilter filter(CellTransfer(instrument, std::move(wavefronts), cells));
+    filter.part_pitch_ = instrument.first_order.pixel_pitch;
+    return filter;
+}
+
+PupilFilter PupilFilter::unparted(const Instrument& instrument, int cells) {
+    return unparted(instrument, wavefronts_for_cells(instrument), cells);
+}
+
+const std::vector<std::complex<float>>& PupilFilter::table() const {
+    std::call_once(made_->table_once, [&] { made_->table = made_->transfer.table(); });
+    return made_->table;
+}
+
+double PupilFilter::noise() const {
+    if (parted_) {
+        std::call_once(made_->noise_once, [&] { made_->noise = noise_of_pixels(); });
+    }
+    return made_->noise;
+}
+
+int PupilFilter::mirrored(int cell) const {
+    const int side = static_cast<int>(cells_.side);
+    return cell / side * side + side - 1 - cell % side;
+}
+
+int PupilFilter::mirrored_upright(int cell) const {
+    const int side = static_cast<int>(cells_.side);
+    return (side - 1 - cell / side) * side + cell % side;
+}
+
+std::complex<double> PupilFilter::transfer(int cell, double fx, double fy) const {
+    const int steps = this->steps();
+    const auto plane = static_cast<std::size_t>((2 * steps + 1) * (steps + 1));
+    const double scale = steps / cutoff();
+    return interpolated(table().data() + static_cast<std::size_t>(cell) * plane, steps, fx * scale, fy * scale);
+}
+
+double PupilFilter::folded_contrast() const {
+    constexpr int samples = 48; // from the axis to the cutoff
+    const double sampling = 1 / part_pitch_;
+    const double pixel_pitch = part_pitch_ * cells_.parts;
+    const auto folded = [sampling](double f) { return f - sampling * std::round(f / sampling); };
+    const auto sinc = [](double x) { return x == 0 ? 1.0 : std::sin(pi * x) / (pi * x); };
+    double largest = 0;
+    for (int j = 0; j < samples; ++j) {
+        for (int i = -samples + 1; i < samples; ++i) {
+            const double fx = cutoff() * i / samples;
+            const double fy = cutoff() * j / samples;
+            if (folded(fx) == fx && folded(fy) == fy) {
+                continue;
+            }
+            double difference = 0;
+            for (int cell = 0; cell < cell_count(); ++cell) {
+                difference += share(cell) * std::abs(transfer(cell, folded(fx), folded(fy)) - transfer(cell, fx, fy));
+            }
+            largest = std::max(largest, difference * std::abs(sinc(fx * pixel_pitch) * sinc(fy * pixel_pitch)));
+        }
+    }
+    return largest;
+}
+
+double PupilFilter::noise_of_pixels() const {
+    // White noise on the parts of pixels, filtered and added up over what is sensitive; before, over the whole pixel.
+    constexpr int samples = 48; // of half the band
+    const int parts = static_cast<int>(cells_.parts);
+    const auto added_up = [&](double f, bool all) { // cycles per part
+        Complex sum = 0;
+        for (int part = 0; part < parts; ++part) {
+            const double share = all ? 1 : physics::f64::sensitive_share(cells_, static_cast<std::uint32_t>(part));
+            sum += std::polar(share, 2 * pi * f * part);
+        }
+        return std::norm(sum);
+    };
+    struct Power {
+        double before = 0;
+        double after = 0;
+    };
+    const auto rows = parallel_list(2 * samples, [&](int row) {
+        Power power;
+        const double fy = 0.5 * (row - samples + 0.5) / samples;
+        for (int i = -samples; i < samples; ++i) {
+            const double fx = 0.5 * (i + 0.5) / samples;
+            power.before += added_up(fx, true) * added_up(fy, true);
+            const double pixel = added_up(fx, false) * added_up(fy, false);
+            for (int cell = 0; cell < cell_count(); ++cell) {
+                if (share(cell) > 0) {
+                    power.after += pixel * share(cell) * std::norm(transfer(cell, fx / part_pitch_, fy / part_pitch_));
+                }
+            }
+        }
+        return power;
+    });
+    Power all;
+    for (const Power& row : rows) {
+        all.before += row.before;
+        all.after += row.after;
+    }
+    return std::sqrt(all.after / all.before);
+}
+
+} // namespace vkfv::optics
