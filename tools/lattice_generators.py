@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Searches the rank-1 lattices of src/trace/lattice_generators.hpp.
+"""Searches the rank-1 lattices of src/trace/interface/lattice_generators.hpp.
 
 For n = 2^m points, the components are odd numbers whose worst-case error P2 with product weights is small (J. Dick,
 F. Y. Kuo, I. H. Sloan, Acta Numerica 22 (2013), section 5). They are found one after the other, the weightiest first,

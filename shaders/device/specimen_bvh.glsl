@@ -2,11 +2,11 @@
 #include "device/specimen_primitives.glsl"
 #include "device/bvh.glsl"
 
-// TrianglePair of src/trace/triangle_pairs.hpp, in the order of the tree: twelve numbers, so that three loads fetch
+// TrianglePair of src/trace/structures/triangle_pairs.hpp, in the order of the tree: twelve numbers, so that three loads fetch
 // them.
 layout(set = 0, binding = BINDING_VERTICES, scalar) readonly buffer Pairs { vec4 pair_parts[]; };
 
-// EntryNodes of src/trace/entry_nodes.hpp.
+// EntryNodes of src/trace/structures/entry_nodes.hpp.
 layout(set = 0, binding = BINDING_ENTRY_NODES, scalar) readonly buffer Entries {
     int finest_entries; // level
     uint entry_nodes[];

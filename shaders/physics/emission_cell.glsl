@@ -1,7 +1,7 @@
 // The paths of an image leave the source in an order: consecutive ones close together, so that what is traced at a time
 // meets the same part of the specimen. Place and direction at the source are four numbers in (0, 1), drawn of 21 bits
 // each (random.glsl). Their cube is cut into equal cells by leading bits, and a path's number says in which cell it is
-// (src/trace/emission_order.hpp), where those bits are given and the others drawn.
+// (src/trace/interface/emission_order.hpp), where those bits are given and the others drawn.
 struct EmissionCell {
     uvec4 given; // of the bits that place and direction are made of
     uvec4 drawn; // mask of the others

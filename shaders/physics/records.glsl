@@ -1,6 +1,6 @@
 // Records that host and device share, in scalar layout: physics.hpp compiles them in float for the buffers.
 // A record is a list of its fields, and all that goes through the fields one by one is made of that list: the struct,
-// its rounding from double to float (src/trace/device_records.cpp), what kernels know as constants
+// its rounding from double to float (src/trace/interface/device_records.cpp), what kernels know as constants
 // (device/prescription.glsl), and the probe of the layout (tests/trace/records_test.cpp).
 // Units: mm, W; directions are unit vectors scaled by the refractive index of the medium they travel in.
 

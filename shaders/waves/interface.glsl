@@ -1,4 +1,4 @@
-// What host and device share of the image that waves make of light sorted by pupil cells (trace/device_wave_image.hpp):
+// What host and device share of the image that waves make of light sorted by pupil cells (trace/device/device_wave_image.hpp):
 // where buffers are bound (set 0), push constants.
 
 const uint WAVES_BINDING_PLANES = 0u;   // complex, two planes a group of cells

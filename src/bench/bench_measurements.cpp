@@ -1,5 +1,5 @@
 #include "bench/bench_parts.hpp"
-#include "trace/traced_instrument.hpp"
+#include "trace/interface/traced_instrument.hpp"
 
 #include <fmt/format.h>
 

@@ -1,7 +1,7 @@
 #include "bench/bench_parts.hpp"
 #include "measurement/assembly.hpp"
 #include "specimen/kinds.hpp"
-#include "trace/device_tracer.hpp"
+#include "trace/device/device_tracer.hpp"
 
 #include <fmt/format.h>
 #include <spdlog/spdlog.h>

@@ -1,7 +1,7 @@
 #include "bench/bench_scene.hpp"
 
 #include "measurement/assembly.hpp"
-#include "trace/device_tracer.hpp"
+#include "trace/device/device_tracer.hpp"
 
 #include <fmt/format.h>
 

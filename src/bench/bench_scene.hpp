@@ -5,7 +5,7 @@
 #include "configuration/configuration.hpp"
 #include "optics/instrument/instrument.hpp"
 #include "specimen/specimen.hpp"
-#include "trace/tracer.hpp"
+#include "trace/interface/tracer.hpp"
 #include "vulkan/device.hpp"
 
 #include <chrono>

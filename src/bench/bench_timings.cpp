@@ -1,7 +1,7 @@
 #include "bench/bench_parts.hpp"
 #include "bench/hit_times.hpp"
 #include "bench/stage_times.hpp"
-#include "trace/device_tracer.hpp"
+#include "trace/device/device_tracer.hpp"
 
 #include <fmt/format.h>
 #include <spdlog/spdlog.h>

@@ -1,7 +1,7 @@
 #include "bench/agreement.hpp"
 #include "bench/bench_parts.hpp"
 #include "images/image_file.hpp"
-#include "trace/device_tracer.hpp"
+#include "trace/device/device_tracer.hpp"
 
 #include <fmt/format.h>
 #include <spdlog/spdlog.h>

@@ -3,8 +3,8 @@
 #include "spirv/time_hits_bvh.h"
 #include "spirv/time_hits_quadtree.h"
 #include "spirv/time_hits_ray_query.h"
-#include "trace/device_records.hpp"
-#include "trace/device_specimen.hpp"
+#include "trace/device/device_specimen.hpp"
+#include "trace/interface/device_records.hpp"
 #include "vulkan/device.hpp"
 #include "vulkan/kernel.hpp"
 

@@ -2,7 +2,7 @@
 #pragma once
 
 #include "specimen/specimen.hpp"
-#include "trace/tracer.hpp"
+#include "trace/interface/tracer.hpp"
 
 #include <cstdint>
 #include <string>

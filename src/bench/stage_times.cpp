@@ -1,7 +1,7 @@
 #include "bench/stage_times.hpp"
 
 #include "bench/bench_scene.hpp"
-#include "trace/forward_trace.hpp"
+#include "trace/device/forward_trace.hpp"
 
 #include <fmt/format.h>
 

@@ -1,7 +1,7 @@
 // How long the stages of the forward trace take on a device.
 #pragma once
 
-#include "trace/tracer.hpp"
+#include "trace/interface/tracer.hpp"
 
 #include <cstdint>
 #include <string>

@@ -11,7 +11,7 @@
 #include "topography/compare.hpp"
 #include "topography/registration.hpp"
 #include "topography/topography.hpp"
-#include "trace/tracer.hpp"
+#include "trace/interface/tracer.hpp"
 
 #include <filesystem>
 #include <map>

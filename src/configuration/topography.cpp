@@ -157,7 +157,8 @@ const IntegerKey parts = of_kinds(
     {"waves"}, IntegerKey("parts_per_pixel", 0, most_parts, 0,
                           "Parts of a pixel's side in which light is sorted; 0: as many as waves of the instrument's "
                           "numerical aperture ask for, or as the device's memory allows."));
-// What images depend on is how many parts that leaves, which stands in their identity (trace/tracer_identity.hpp).
+// What images depend on is how many parts that leaves, which stands in their identity
+// (trace/interface/tracer_identity.hpp).
 const NumberKey most_memory = of_kinds(
     {"waves"}, without_influence(NumberKey("most_memory_gib", NumberRange::at_least(0), 0.0,
                                            "Most device memory for light of waves; 0: four fifths of what there is.")));

@@ -7,8 +7,8 @@
 #include "scan/stage.hpp"
 #include "specimen/specimen.hpp"
 #include "surface/height_map.hpp"
-#include "trace/tracer.hpp"
-#include "trace/tracer_identity.hpp"
+#include "trace/interface/tracer.hpp"
+#include "trace/interface/tracer_identity.hpp"
 
 #include <cstdint>
 #include <memory>

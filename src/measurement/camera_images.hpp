@@ -8,7 +8,7 @@
 #include "optics/waves/diffraction.hpp"
 #include "scan/store.hpp"
 #include "specimen/specimen.hpp"
-#include "trace/tracer.hpp"
+#include "trace/interface/tracer.hpp"
 
 #include <nlohmann/json.hpp>
 

@@ -8,8 +8,8 @@
 #include "optics/instrument/instrument.hpp"
 #include "scan/store.hpp"
 #include "specimen/specimen.hpp"
-#include "trace/tracer.hpp"
-#include "trace/tracer_identity.hpp"
+#include "trace/interface/tracer.hpp"
+#include "trace/interface/tracer_identity.hpp"
 
 #include <filesystem>
 #include <optional>

@@ -6,7 +6,7 @@
 #include "measurement/stage_figures.hpp"
 #include "measurement/wave_limits.hpp"
 #include "optics/instrument/image_quality.hpp"
-#include "trace/wave_memory.hpp"
+#include "trace/device/wave_memory.hpp"
 
 #include <fmt/format.h>
 

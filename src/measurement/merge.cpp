@@ -7,7 +7,7 @@
 #include "measurement/stack.hpp"
 #include "measurement/stack_parts.hpp"
 #include "scan/stack_identity.hpp"
-#include "trace/light_sources.hpp"
+#include "trace/interface/light_sources.hpp"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>

@@ -1,7 +1,7 @@
 // Rays as CSV: what --trace-rays reads and writes.
 #pragma once
 
-#include "trace/ray_trace.hpp"
+#include "trace/device/ray_trace.hpp"
 
 #include <filesystem>
 #include <span>

@@ -3,7 +3,7 @@
 
 #include "configuration/configuration.hpp"
 #include "specimen/specimen.hpp"
-#include "trace/tracer.hpp"
+#include "trace/interface/tracer.hpp"
 
 #include <cmath>
 #include <string>

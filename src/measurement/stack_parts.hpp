@@ -8,7 +8,7 @@
 #include "optics/instrument/instrument.hpp"
 #include "scan/store.hpp"
 #include "specimen/specimen.hpp"
-#include "trace/tracer_identity.hpp"
+#include "trace/interface/tracer_identity.hpp"
 
 #include <future>
 #include <optional>

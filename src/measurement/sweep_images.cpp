@@ -8,7 +8,7 @@
 #include "scan/store.hpp"
 #include "specimen/geometry_digest.hpp"
 
-#include "trace/ledger.hpp"
+#include "trace/interface/ledger.hpp"
 
 #include <fmt/format.h>
 #include <spdlog/spdlog.h>

@@ -2,9 +2,9 @@
 
 #include "measurement/assembly.hpp"
 #include "scan/staged_tracer.hpp"
-#include "trace/device_tracer.hpp"
-#include "trace/host_tracer.hpp"
-#include "trace/tracer_pool.hpp"
+#include "trace/device/device_tracer.hpp"
+#include "trace/host/host_tracer.hpp"
+#include "trace/interface/tracer_pool.hpp"
 #include "vulkan/device.hpp"
 #include "vulkan/failure.hpp"
 

@@ -4,7 +4,7 @@
 #include "configuration/configuration.hpp"
 #include "optics/instrument/instrument.hpp"
 #include "specimen/specimen.hpp"
-#include "trace/tracer.hpp"
+#include "trace/interface/tracer.hpp"
 #include "vulkan/opened_device.hpp"
 
 #include <cstdint>

@@ -1,7 +1,7 @@
 // Exposures that are kept half done, a file each.
 #pragma once
 
-#include "trace/checkpoint.hpp"
+#include "trace/interface/checkpoint.hpp"
 
 #include <cstdint>
 #include <filesystem>

@@ -3,7 +3,7 @@
 
 #include "core/progress.hpp"
 #include "scan/store.hpp"
-#include "trace/tracer.hpp"
+#include "trace/interface/tracer.hpp"
 
 #include <cstdint>
 #include <functional>

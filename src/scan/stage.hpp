@@ -3,7 +3,7 @@
 // can be taken alone.
 #pragma once
 
-#include "trace/tracer.hpp"
+#include "trace/interface/tracer.hpp"
 
 #include <cstdint>
 #include <span>

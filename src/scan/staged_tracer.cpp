@@ -1,7 +1,7 @@
 #include "scan/staged_tracer.hpp"
 
 #include "scan/plan.hpp"
-#include "trace/image_sum.hpp"
+#include "trace/interface/image_sum.hpp"
 
 #include <algorithm>
 #include <cmath>

@@ -2,7 +2,7 @@
 #pragma once
 
 #include "scan/stage.hpp"
-#include "trace/tracer.hpp"
+#include "trace/interface/tracer.hpp"
 
 #include <memory>
 

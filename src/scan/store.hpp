@@ -17,7 +17,7 @@
 
 #include "core/grid.hpp"
 #include "core/result_folder.hpp"
-#include "trace/tracer.hpp"
+#include "trace/interface/tracer.hpp"
 
 #include <algorithm>
 #include <cmath>

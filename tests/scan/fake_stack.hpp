@@ -4,7 +4,7 @@
 #include "scan/plan.hpp"
 #include "scan/stack.hpp"
 #include "scan/store.hpp"
-#include "trace/tracer.hpp"
+#include "trace/interface/tracer.hpp"
 
 #include <fmt/format.h>
 #include <unistd.h>

@@ -2,7 +2,7 @@
 #pragma once
 
 #include "support/statistics.hpp"
-#include "trace/tracer.hpp"
+#include "trace/interface/tracer.hpp"
 
 #include <cmath>
 #include <cstddef>

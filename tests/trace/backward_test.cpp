@@ -1,8 +1,8 @@
 // The backward estimator against the forward one, which is the arbiter, and what it promises of itself.
-#include "trace/backward_image.hpp"
-#include "trace/device_tracer.hpp"
-#include "trace/host_tracer.hpp"
-#include "trace/lattice_generators.hpp"
+#include "trace/device/device_tracer.hpp"
+#include "trace/host/host_tracer.hpp"
+#include "trace/interface/backward_image.hpp"
+#include "trace/interface/lattice_generators.hpp"
 #include "trace/microscope.hpp"
 
 #include "core/error.hpp"

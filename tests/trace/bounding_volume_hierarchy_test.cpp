@@ -1,5 +1,5 @@
 // The tree's invariants, read back from its nodes by code of this file alone.
-#include "trace/bounding_volume_hierarchy.hpp"
+#include "trace/structures/bounding_volume_hierarchy.hpp"
 
 #include <gtest/gtest.h>
 

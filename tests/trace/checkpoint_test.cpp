@@ -1,10 +1,10 @@
 // An exposure that goes on from a checkpoint, or that several devices counted, has the bits of one that was traced at
 // once.
-#include "trace/checkpoint.hpp"
+#include "trace/interface/checkpoint.hpp"
 
-#include "trace/device_tracer.hpp"
+#include "trace/device/device_tracer.hpp"
+#include "trace/interface/tracer_pool.hpp"
 #include "trace/microscope.hpp"
-#include "trace/tracer_pool.hpp"
 
 #include <gtest/gtest.h>
 

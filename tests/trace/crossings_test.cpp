@@ -1,5 +1,5 @@
 // The surfaces that an image's light met.
-#include "trace/device_tracer.hpp"
+#include "trace/device/device_tracer.hpp"
 #include "trace/microscope.hpp"
 
 #include <gtest/gtest.h>

@@ -1,6 +1,6 @@
 // The real train out of focus, against geometry.
+#include "trace/device/ray_trace.hpp"
 #include "trace/microscope.hpp"
-#include "trace/ray_trace.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,11 +1,11 @@
 // Light that meets the specimen once, from a source that is aimed at the detector, against all that passes the
 // illumination.
 #include "trace/agreement.hpp"
-#include "trace/device_tracer.hpp"
-#include "trace/host_tracer.hpp"
-#include "trace/light_sources.hpp"
+#include "trace/device/device_tracer.hpp"
+#include "trace/host/host_tracer.hpp"
+#include "trace/interface/light_sources.hpp"
+#include "trace/interface/traced_instrument.hpp"
 #include "trace/microscope.hpp"
-#include "trace/traced_instrument.hpp"
 
 #include "support/statistics.hpp"
 

@@ -1,6 +1,6 @@
 // Directed scatter: the image and the ledger of the analog form, with less noise.
-#include "trace/device_tracer.hpp"
-#include "trace/host_tracer.hpp"
+#include "trace/device/device_tracer.hpp"
+#include "trace/host/host_tracer.hpp"
 #include "trace/microscope.hpp"
 
 #include "support/statistics.hpp"

@@ -1,4 +1,4 @@
-#include "trace/dispatch_pace.hpp"
+#include "trace/interface/dispatch_pace.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,6 +1,6 @@
 // A specimen that the stage holds beside its place: its image moves, whoever traces it.
-#include "trace/device_tracer.hpp"
-#include "trace/host_tracer.hpp"
+#include "trace/device/device_tracer.hpp"
+#include "trace/host/host_tracer.hpp"
 #include "trace/microscope.hpp"
 
 #include <gtest/gtest.h>

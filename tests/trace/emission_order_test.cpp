@@ -1,5 +1,5 @@
 // Paths in an order are what independent paths are, and stand close together.
-#include "trace/emission_order.hpp"
+#include "trace/interface/emission_order.hpp"
 #include "trace/microscope.hpp"
 
 #include "support/statistics.hpp"

@@ -1,5 +1,5 @@
 // Where a ray may enter the tree: nothing that it could meet stands beside the node.
-#include "trace/entry_nodes.hpp"
+#include "trace/structures/entry_nodes.hpp"
 
 #include <gtest/gtest.h>
 

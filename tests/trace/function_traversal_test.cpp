@@ -1,7 +1,7 @@
 // Analytic surfaces, and the bounds by which they are traversed: against facets and against the host's reference.
 #include "traversal_rays.hpp"
 
-#include "trace/pyramid.hpp"
+#include "trace/structures/pyramid.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,6 +1,6 @@
 // Whole images: ledger, determinism, traversals, radiometry.
-#include "trace/device_tracer.hpp"
-#include "trace/host_tracer.hpp"
+#include "trace/device/device_tracer.hpp"
+#include "trace/host/host_tracer.hpp"
 #include "trace/microscope.hpp"
 
 #include "support/statistics.hpp"

@@ -1,5 +1,5 @@
 // What the ledger's entries say of themselves beside their words.
-#include "trace/ledger.hpp"
+#include "trace/interface/ledger.hpp"
 #include "trace/microscope.hpp"
 
 #include <fmt/format.h>

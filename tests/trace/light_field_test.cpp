@@ -1,9 +1,9 @@
 // Patterns and uneven light in the plane of the field stop: what they look like on the specimen, in all ways of
 // tracing.
 #include "trace/agreement.hpp"
-#include "trace/device_tracer.hpp"
+#include "trace/device/device_tracer.hpp"
 #include "trace/elements.hpp"
-#include "trace/host_tracer.hpp"
+#include "trace/host/host_tracer.hpp"
 #include "trace/microscope.hpp"
 
 #include "core/units.hpp"

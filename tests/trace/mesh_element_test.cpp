@@ -1,8 +1,8 @@
 // Elements that are meshes: closed forms of a plate and a prism, Stokes' pile of plates, edges that nothing leaks
 // through, a plate as a mesh against the same plate as two surfaces, and the device against the host.
-#include "trace/device_tracer.hpp"
+#include "trace/device/device_tracer.hpp"
 #include "trace/elements.hpp"
-#include "trace/host_tracer.hpp"
+#include "trace/host/host_tracer.hpp"
 #include "trace/same_paths.hpp"
 
 #include <gtest/gtest.h>

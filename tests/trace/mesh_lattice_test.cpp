@@ -1,5 +1,5 @@
 // Meshes that are height fields: which are, and that the walk over their cells meets what their triangles are.
-#include "trace/mesh_lattice.hpp"
+#include "trace/structures/mesh_lattice.hpp"
 #include "traversal_rays.hpp"
 
 #include "core/error.hpp"

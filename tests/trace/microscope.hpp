@@ -4,7 +4,7 @@
 #include "core/units.hpp"
 #include "optics/instrument/instrument.hpp"
 #include "specimen/description.hpp"
-#include "trace/tracer.hpp"
+#include "trace/interface/tracer.hpp"
 
 namespace vkfv::test {
 

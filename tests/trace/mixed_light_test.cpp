@@ -1,9 +1,9 @@
 // Light of several sources: the image is the sum of what each gives, forward and backward, on device and host.
-#include "trace/light_sources.hpp"
+#include "trace/interface/light_sources.hpp"
 
 #include "trace/agreement.hpp"
-#include "trace/device_tracer.hpp"
-#include "trace/host_tracer.hpp"
+#include "trace/device/device_tracer.hpp"
+#include "trace/host/host_tracer.hpp"
 #include "trace/microscope.hpp"
 
 #include "support/statistics.hpp"

@@ -2,9 +2,9 @@
 // and the device against the host.
 #include "optics/instrument/room.hpp"
 #include "support/statistics.hpp"
-#include "trace/device_tracer.hpp"
+#include "trace/device/device_tracer.hpp"
 #include "trace/elements.hpp"
-#include "trace/host_tracer.hpp"
+#include "trace/host/host_tracer.hpp"
 #include "trace/same_paths.hpp"
 
 #include <gtest/gtest.h>

@@ -1,6 +1,6 @@
 // Host in double against device in float, path by path, and what the gate and the ledger promise.
-#include "trace/device_tracer.hpp"
-#include "trace/host_tracer.hpp"
+#include "trace/device/device_tracer.hpp"
+#include "trace/host/host_tracer.hpp"
 #include "trace/microscope.hpp"
 
 #include "support/statistics.hpp"

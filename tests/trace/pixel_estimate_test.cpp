@@ -1,7 +1,7 @@
 // From numbers that were counted to the light of pixels: in closed form, and on a device to the host's bits.
-#include "trace/device_estimate.hpp"
+#include "trace/device/device_estimate.hpp"
+#include "trace/interface/wave_image.hpp"
 #include "trace/microscope.hpp"
-#include "trace/wave_image.hpp"
 
 #include <gtest/gtest.h>
 

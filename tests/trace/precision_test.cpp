@@ -2,8 +2,8 @@
 // rms and 5 nm at worst (the 5x: 1.3 and 8, see bounds()), and the same ends. Both begin at the same numbers, so what
 // differs is rounding on the way and in the prescription. Field: the detector of bench_paper_chain.toml, 8 mm square,
 // with its field stop and beam-splitter cube (the microscope_*.toml have 1.28 mm, which is within it).
+#include "trace/device/ray_trace.hpp"
 #include "trace/microscope.hpp"
-#include "trace/ray_trace.hpp"
 
 #include <gtest/gtest.h>
 

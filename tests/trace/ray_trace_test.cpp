@@ -1,6 +1,6 @@
 // --trace-rays through every microscope of the library: float on the device against double on the host.
+#include "trace/device/ray_trace.hpp"
 #include "trace/microscope.hpp"
-#include "trace/ray_trace.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,5 +1,5 @@
 // The records as the shaders see them against the records as the host writes them, field by field.
-#include "trace/device_records.hpp"
+#include "trace/interface/device_records.hpp"
 #include "vulkan/kernel.hpp"
 
 #include "spirv/probe_records.h"

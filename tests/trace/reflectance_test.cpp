@@ -3,8 +3,8 @@
 #include "optics/prescriptions/ideal_lens.hpp"
 #include "support/statistics.hpp"
 #include "trace/agreement.hpp"
-#include "trace/device_tracer.hpp"
-#include "trace/host_tracer.hpp"
+#include "trace/device/device_tracer.hpp"
+#include "trace/host/host_tracer.hpp"
 #include "trace/microscope.hpp"
 
 #include <gtest/gtest.h>

@@ -1,9 +1,9 @@
 // The device's float against the host's double, path by path, of light without a given sequence.
 #pragma once
 
-#include "trace/device_tracer.hpp"
+#include "trace/device/device_tracer.hpp"
 #include "trace/elements.hpp"
-#include "trace/host_tracer.hpp"
+#include "trace/host/host_tracer.hpp"
 
 #include <gtest/gtest.h>
 

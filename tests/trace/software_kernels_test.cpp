@@ -1,5 +1,5 @@
 // Kernels in the form for software devices, whose loops ask at their ends too, and in the form for GPUs: the same bits.
-#include "trace/device_tracer.hpp"
+#include "trace/device/device_tracer.hpp"
 #include "trace/microscope.hpp"
 
 #include <gtest/gtest.h>

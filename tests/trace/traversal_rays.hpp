@@ -3,8 +3,8 @@
 
 #include "specimen/description.hpp"
 #include "specimen/intersector.hpp"
-#include "trace/device_records.hpp"
-#include "trace/device_specimen.hpp"
+#include "trace/device/device_specimen.hpp"
+#include "trace/interface/device_records.hpp"
 #include "vulkan/device.hpp"
 
 #include "spirv/probe_hits_bvh.h"

@@ -1,4 +1,4 @@
-#include "trace/triangle_pairs.hpp"
+#include "trace/structures/triangle_pairs.hpp"
 
 #include <gtest/gtest.h>
 

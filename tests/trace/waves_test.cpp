@@ -3,12 +3,12 @@
 #include "core/units.hpp"
 #include "optics/prescriptions/ideal_lens.hpp"
 #include "optics/waves/airy_pattern.hpp"
-#include "trace/device_tracer.hpp"
-#include "trace/device_wave_image.hpp"
-#include "trace/host_tracer.hpp"
+#include "trace/device/device_tracer.hpp"
+#include "trace/device/device_wave_image.hpp"
+#include "trace/device/wave_memory.hpp"
+#include "trace/host/host_tracer.hpp"
+#include "trace/interface/wave_image.hpp"
 #include "trace/microscope.hpp"
-#include "trace/wave_image.hpp"
-#include "trace/wave_memory.hpp"
 
 #include <gtest/gtest.h>
 

@@ -7,7 +7,7 @@
 #include "core/units.hpp"
 #include "images/image_file.hpp"
 #include "measurement/assembly.hpp"
-#include "trace/traced_instrument.hpp"
+#include "trace/interface/traced_instrument.hpp"
 
 #include <CLI/CLI.hpp>
 #include <fmt/format.h>

@@ -1,0 +1,33 @@
+// What an exposure has counted in a device's memory, on its way to a checkpoint and back.
+#pragma once
+
+#include "trace/device/exposure_work.hpp"
+#include "vulkan/buffer.hpp"
+
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <vector>
+
+namespace vkfv::trace {
+
+class DeviceNumbers {
+  public:
+    // Of 64-bit integers. Both must outlive it.
+    DeviceNumbers(const vulkan::Device& device, std::vector<const vulkan::Buffer*> buffers);
+
+    std::size_t count() const { return bytes_ / sizeof(std::uint64_t); }
+    // After all that was submitted; waits for it.
+    std::vector<std::uint64_t> read(ExposureWork& work) const;
+    void write(ExposureWork& work, std::span<const std::uint64_t> numbers) const;
+
+  private:
+    vulkan::Buffer& staging() const;
+
+    const vulkan::Device* device_;
+    std::vector<const vulkan::Buffer*> buffers_;
+    std::size_t bytes_ = 0;
+    mutable std::optional<vulkan::Buffer> staging_; // few exposures are long enough to need it
+};
+
+} // namespace vkfv::trace

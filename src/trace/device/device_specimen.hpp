@@ -1,0 +1,58 @@
+// A specimen in a device's memory, in the form that one traversal takes.
+#pragma once
+
+#include "specimen/specimen.hpp"
+#include "trace/interface/tracer.hpp"
+#include "vulkan/kernel.hpp"
+
+#include <cstdint>
+#include <map>
+#include <memory>
+#include <span>
+#include <string>
+#include <vector>
+
+namespace vkfv::trace {
+
+const char* traversal_name(Traversal traversal);
+
+struct ChosenTraversal {
+    Traversal traversal; // never automatic
+    std::string reason;  // a sentence's part that names it and says why
+};
+
+// The traversal for a specimen on a device: the one asked for, or the faster one if automatic. Throws InputError (the
+// quadtree needs a height field, or a mesh that is one) or DeviceError (ray query asked for or needed where the device
+// has none).
+ChosenTraversal choose_traversal(const vulkan::DeviceReport& device, const specimen::Specimen& specimen,
+                                 Traversal asked, bool nonsequential = false);
+
+// What shaders/device/specimen_hit.glsl is bound to. The device must outlive it.
+class DeviceSpecimen {
+  public:
+    // traversal: never automatic. Throws DeviceError with sizes when a part exceeds what a buffer may span.
+    // elements: boxes of the instrument's (frame of their own), in one structure with the specimen: non-sequential.
+    DeviceSpecimen(const vulkan::Device& device, const specimen::Specimen& specimen, Traversal traversal,
+                   std::span<const vulkan::Box> elements = {});
+
+    std::vector<vulkan::Binding> bindings() const; // valid as long as this object, also when it is moved
+    std::vector<vulkan::BindingDeclaration> declarations() const;
+    std::vector<vulkan::SpecializationConstant> constants() const; // the specimen's kind and its scatter models
+    // In float; bottom and top still enclose the surface.
+    physics::f32::SpecimenRecord record(int max_bounces) const;
+    std::size_t bytes() const; // device memory taken
+    // Of the elements' tree: its root among the nodes, and which element its k-th box is.
+    std::uint32_t elements_root() const { return elements_root_; }
+    const std::vector<std::uint32_t>& element_order() const { return element_order_; }
+
+  private:
+    physics::f32::SpecimenRecord record_{};
+    bool has_reflectance_map_ = false;
+    bool has_falling_cells_ = false;                  // of a mesh that is a height field: mesh_lattice.hpp
+    std::map<std::uint32_t, vulkan::Buffer> buffers_; // by slot
+    std::unique_ptr<vulkan::AccelerationStructure> structure_;
+    std::uint32_t elements_root_ = 0;
+    std::vector<std::uint32_t> element_order_;
+};
+
+} // namespace vkfv::trace

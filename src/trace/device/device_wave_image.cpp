@@ -1,0 +1,108 @@
+#include "trace/device/device_wave_image.hpp"
+
+#include "trace/device/wave_memory.hpp"
+#include "trace/interface/device_records.hpp"
+#include "waves/waves.hpp"
+
+#include "spirv/wave_extend.h"
+#include "spirv/wave_filter.h"
+#include "spirv/wave_pixels.h"
+#include "spirv/wave_sort.h"
+
+#include <algorithm>
+#include <array>
+
+namespace vkfv::trace {
+
+using namespace waves;
+
+namespace {
+
+vulkan::Buffer buffer_of(const vulkan::Device& device, std::size_t bytes) {
+    return {device, bytes, vulkan::Buffer::Memory::device, wave_memory_remedy};
+}
+
+vulkan::Buffer table_of(const vulkan::Device& device, const optics::PupilFilter& filter) {
+    const auto& table = filter.table();
+    vulkan::Buffer buffer(device, table.size() * sizeof(table.front()));
+    buffer.write(std::as_bytes(std::span(table)));
+    return buffer;
+}
+
+// Of the filter's table, from one frequency to the next of an image of so many parts, which goes on mirrored.
+float steps_a_line(const optics::PupilFilter& filter, int parts) {
+    return static_cast<float>(0.5 / parts / filter.part_pitch() / filter.cutoff() * filter.steps());
+}
+
+vulkan::Kernel kernel_of(const vulkan::Device& device, const char* name, std::span<const std::uint32_t> code,
+                         std::initializer_list<std::uint32_t> slots, std::uint32_t push_bytes) {
+    std::vector<vulkan::BindingDeclaration> declarations;
+    for (const std::uint32_t slot : slots) {
+        declarations.push_back({slot, vulkan::BindingKind::storage_buffer});
+    }
+    return {device, name, code, declarations, push_bytes};
+}
+
+} // namespace
+
+DeviceWaveImage::DeviceWaveImage(const vulkan::Device& device, const optics::PupilFilter& filter, ImageSize pixels,
+                                 const vulkan::Buffer& light)
+    : light_(light), pixels_(pixels),
+      cells_(to_float(filter.cells())), size_{pixels.columns * static_cast<int>(cells_.parts),
+                                              pixels.rows * static_cast<int>(cells_.parts)},
+      sizes_(static_cast<int>(cells_.side), size_), steps_(static_cast<std::uint32_t>(filter.steps())),
+      steps_a_column_(steps_a_line(filter, size_.columns)), steps_a_row_(steps_a_line(filter, size_.rows)),
+      planes_(buffer_of(device, sizes_.plane_bytes())), table_(table_of(device, filter)),
+      spectrum_(buffer_of(device, sizes_.spectrum_bytes())), image_(buffer_of(device, sizes_.image_bytes())),
+      result_(device, bytes(pixels)), forward_(device, planes_, size_.columns, size_.rows, sizes_.planes_at_once(),
+                                               vulkan::FourierPlanes::Direction::forward),
+      inverse_(device, image_, 2 * size_.columns, 2 * size_.rows, 1, vulkan::FourierPlanes::Direction::inverse),
+      sort_(kernel_of(device, "wave_sort", wave_sort, {WAVES_BINDING_PLANES}, sizeof(WaveGroups))),
+      filter_(kernel_of(device, "wave_filter", wave_filter,
+                        {WAVES_BINDING_PLANES, WAVES_BINDING_TABLE, WAVES_BINDING_SPECTRUM}, sizeof(WaveGroups))),
+      extend_(kernel_of(device, "wave_extend", wave_extend, {WAVES_BINDING_SPECTRUM, WAVES_BINDING_IMAGE},
+                        sizeof(WaveSize))),
+      add_up_(kernel_of(device, "wave_pixels", wave_pixels, {WAVES_BINDING_IMAGE, WAVES_BINDING_PIXELS},
+                        sizeof(WaveSize))) {}
+
+void DeviceWaveImage::dispatch(vulkan::Commands& commands, const vulkan::Kernel& kernel,
+                               std::span<const vulkan::Binding> bindings, std::span<const std::byte> push,
+                               std::size_t places) const {
+    const auto workgroups = vulkan::groups_of(places, 128);
+    commands.dispatch(kernel, bindings, push, workgroups.x, workgroups.y);
+    commands.barrier();
+}
+
+void DeviceWaveImage::record(vulkan::Commands& commands) const {
+    const vk::DeviceAddress address = light_.address();
+    WaveGroups groups{.light = {static_cast<std::uint32_t>(address), static_cast<std::uint32_t>(address >> 32)},
+                      .columns = static_cast<std::uint32_t>(size_.columns),
+                      .rows = static_cast<std::uint32_t>(size_.rows),
+                      .cells_side = cells_.side,
+                      .first = 0,
+                      .count = sizes_.groups_at_once(),
+                      .steps = steps_,
+                      .steps_a_column = steps_a_column_,
+                      .steps_a_row = steps_a_row_};
+    const std::array<vulkan::Binding, 1> to_planes = {{{WAVES_BINDING_PLANES, &planes_}}};
+    const std::array<vulkan::Binding, 3> to_spectrum = {
+        {{WAVES_BINDING_PLANES, &planes_}, {WAVES_BINDING_TABLE, &table_}, {WAVES_BINDING_SPECTRUM, &spectrum_}}};
+    const std::array<vulkan::Binding, 2> to_image = {
+        {{WAVES_BINDING_SPECTRUM, &spectrum_}, {WAVES_BINDING_IMAGE, &image_}}};
+    const std::array<vulkan::Binding, 2> to_pixels = {
+        {{WAVES_BINDING_IMAGE, &image_}, {WAVES_BINDING_PIXELS, &result_}}};
+    const std::size_t places = size_.count();
+    for (; groups.first < sizes_.groups(); groups.first += sizes_.groups_at_once()) {
+        const auto push = std::as_bytes(std::span(&groups, 1));
+        dispatch(commands, sort_, to_planes, push, places);
+        forward_.record(commands);
+        dispatch(commands, filter_, to_spectrum, push, places);
+    }
+    const WaveSize size{.columns = groups.columns, .rows = groups.rows, .cells = cells_};
+    const auto push = std::as_bytes(std::span(&size, 1));
+    dispatch(commands, extend_, to_image, push, 2 * places);
+    inverse_.record(commands);
+    dispatch(commands, add_up_, to_pixels, push, pixels_.count());
+}
+
+} // namespace vkfv::trace

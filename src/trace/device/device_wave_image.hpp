@@ -1,0 +1,49 @@
+// The image that waves make of light sorted by pupil cells, on a device: WaveImage in float.
+#pragma once
+
+#include "optics/waves/pupil_filter.hpp"
+#include "trace/device/wave_planes.hpp"
+#include "vulkan/fourier_planes.hpp"
+
+#include <cstddef>
+
+namespace vkfv::trace {
+
+class DeviceWaveImage {
+  public:
+    // light: as WaveImage::numbers() of 64 bits. Device, filter and light must outlive it.
+    DeviceWaveImage(const vulkan::Device& device, const optics::PupilFilter& filter, ImageSize pixels,
+                    const vulkan::Buffer& light);
+
+    // Of the light as it is when the commands run.
+    void record(vulkan::Commands& commands) const;
+    // What they leave: of each pixel, in the units of the sorted light, bytes(pixels).
+    const vulkan::Buffer& light_of_pixels() const { return result_; }
+    static std::size_t bytes(ImageSize pixels) { return pixels.count() * sizeof(float); }
+
+  private:
+    void dispatch(vulkan::Commands& commands, const vulkan::Kernel& kernel, std::span<const vulkan::Binding> bindings,
+                  std::span<const std::byte> push, std::size_t places) const;
+
+    const vulkan::Buffer& light_;
+    ImageSize pixels_;
+    physics::f32::PupilCells cells_;
+    ImageSize size_; // in parts of pixels
+    WavePlanes sizes_;
+    std::uint32_t steps_;
+    float steps_a_column_;
+    float steps_a_row_;
+    vulkan::Buffer planes_;
+    vulkan::Buffer table_;
+    vulkan::Buffer spectrum_;
+    vulkan::Buffer image_;
+    vulkan::Buffer result_;
+    vulkan::FourierPlanes forward_;
+    vulkan::FourierPlanes inverse_;
+    vulkan::Kernel sort_;
+    vulkan::Kernel filter_;
+    vulkan::Kernel extend_;
+    vulkan::Kernel add_up_;
+};
+
+} // namespace vkfv::trace

@@ -1,0 +1,22 @@
+// Non-sequential paths: light finds its own way through the elements, in one kernel.
+#pragma once
+
+#include "trace/device/path_trace.hpp"
+
+namespace vkfv::trace {
+
+kernels::NonsequentialBatch make_nonsequential_batch(const DeviceScene& scene, std::uint64_t first,
+                                                     std::uint32_t count);
+
+class NonsequentialTrace final : public PathTrace {
+  public:
+    NonsequentialTrace(const DeviceScene& scene, std::uint32_t batch);
+
+    void record(vulkan::Commands& commands, std::uint64_t first, std::uint32_t count,
+                bool timed = false) const override;
+
+  private:
+    vulkan::Kernel kernel_;
+};
+
+} // namespace vkfv::trace

@@ -1,0 +1,60 @@
+// One way of tracing paths on a device, batch by batch, and what it counts.
+#pragma once
+
+#include "trace/device/device_scene.hpp"
+
+#include <cstdint>
+#include <vector>
+
+namespace vkfv::trace {
+
+inline constexpr std::uint32_t workgroup_size = 128; // of the forward kernels
+inline constexpr std::uint32_t rays_per_invocation = 16;
+
+inline kernels::Batch make_batch(std::uint64_t first, std::uint32_t count) {
+    return {{static_cast<std::uint32_t>(first), static_cast<std::uint32_t>(first >> 32)}, count};
+}
+
+inline constexpr std::uint32_t paths_per_group = workgroup_size * rays_per_invocation;
+
+class PathTrace {
+  public:
+    PathTrace(const DeviceScene& scene, std::uint32_t batch)
+        : scene_(scene), batch_(batch), pixels_(*scene.device, scene.accounts.pixel_numbers() * sizeof(std::uint64_t)),
+          fates_(*scene.device, scene.accounts.ledger_numbers() * sizeof(std::uint64_t)) {}
+    virtual ~PathTrace() = default;
+
+    void clear(vulkan::Commands& commands) const {
+        commands.fill_zero(pixels_);
+        commands.fill_zero(fates_);
+        commands.barrier();
+    }
+
+    // Paths first ... first + count - 1, count at most the batch; timestamps around and between its stages if wanted.
+    virtual void record(vulkan::Commands& commands, std::uint64_t first, std::uint32_t count,
+                        bool timed = false) const = 0;
+
+    // What was counted: Accounts::pixel_numbers() and ledger_numbers() of 64 bits.
+    const vulkan::Buffer& pixels() const { return pixels_; }
+    const vulkan::Buffer& fates() const { return fates_; }
+    std::uint32_t batch() const { return batch_; }
+
+    // All that an exposure counts, with the light that is sorted for waves.
+    std::vector<const vulkan::Buffer*> counted() const {
+        std::vector<const vulkan::Buffer*> buffers = scene_.light_buffers();
+        buffers.insert(buffers.end(), {&pixels_, &fates_});
+        return buffers;
+    }
+
+  protected:
+    const DeviceScene& scene_;
+    std::uint32_t batch_;
+    vulkan::Buffer pixels_;
+    vulkan::Buffer fates_;
+};
+
+// Paths in flight at once, as far as the options leave it open: software devices like dispatches of about 100 ms, a GPU
+// wants enough rays to fill it.
+std::uint32_t suitable_batch(const DeviceScene& scene, const TraceOptions& options);
+
+} // namespace vkfv::trace

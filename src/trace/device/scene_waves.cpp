@@ -1,0 +1,49 @@
+#include "trace/device/scene_waves.hpp"
+
+#include "trace/device/wave_memory.hpp"
+#include "trace/interface/wave_image.hpp"
+
+#include <chrono>
+#include <cstdint>
+#include <utility>
+
+namespace vkfv::trace {
+
+SceneWaves::SceneWaves(const vulkan::Device& device, optics::PupilFilter filter, ImageSize pixels, MadeBy by)
+    : filter_(std::move(filter)), pixels_(pixels),
+      light_(device, WaveImage(filter_, pixels).numbers() * sizeof(std::uint64_t), vulkan::Buffer::Memory::device,
+             wave_memory_remedy) {
+    if (by == MadeBy::device) {
+        on_device_ = std::async(std::launch::async, [&device, this] {
+                         return std::make_unique<const DeviceWaveImage>(device, filter_, pixels_, light_);
+                     }).share();
+    }
+    noise_ = std::async(std::launch::async, [its_filter = filter_] { return its_filter.noise(); });
+}
+
+SceneWaves::~SceneWaves() = default; // waits for the threads
+
+void SceneWaves::clear(vulkan::Commands& commands) const {
+    commands.fill_zero(light_);
+    commands.barrier();
+}
+
+void SceneWaves::require() const {
+    if (on_device() && on_device_.wait_for(std::chrono::seconds(0)) == std::future_status::ready) {
+        on_device_.get();
+    }
+}
+
+void SceneWaves::make_image(ExposureWork& work) const {
+    const DeviceWaveImage& image = *on_device_.get();
+    vulkan::Commands& commands = work.open();
+    image.record(commands);
+    work.submit();
+}
+
+Grid<double> SceneWaves::light_by_host() const {
+    const WaveImage image(filter_, pixels_);
+    return image.apply(light_.read_values<std::uint64_t>(image.numbers()));
+}
+
+} // namespace vkfv::trace

@@ -1,0 +1,190 @@
+#include "trace/interface/wave_image.hpp"
+
+#include "core/fourier.hpp"
+#include "core/units.hpp"
+
+#include <algorithm>
+#include <atomic>
+#include <complex>
+#include <thread>
+
+namespace vkfv::trace {
+
+using Complex = std::complex<double>;
+
+// Of the extended image, whose periods are twice the image's sides: at l / (2 columns) and -l / (2 columns) cycles a
+// part along x, m / (2 rows) along y, as seen from the lower left corner of its first part, over 4.
+struct WaveImage::Spectrum {
+    Grid<Complex> ahead;
+    Grid<Complex> behind;
+};
+
+namespace {
+
+ImageSize in_parts(ImageSize pixels, const optics::PupilFilter& filter) {
+    const auto parts = static_cast<int>(filter.cells().parts);
+    return {pixels.columns * parts, pixels.rows * parts};
+}
+
+} // namespace
+
+WaveImage::WaveImage(const optics::PupilFilter& filter, ImageSize pixels)
+    : filter_(filter), pixels_(pixels), size_(in_parts(pixels, filter)) {}
+
+std::size_t WaveImage::numbers() const {
+    return static_cast<std::size_t>(filter_.cell_count()) * size_.count();
+}
+
+std::array<int, 4> WaveImage::mirror_images(int cell) const {
+    const int upright = filter_.mirrored_upright(cell);
+    return {cell, filter_.mirrored(cell), upright, filter_.mirrored(upright)};
+}
+
+WaveImage::Parts WaveImage::transform(std::span<const std::uint64_t> light, const std::array<int, 4>& cells) const {
+    const std::size_t count = size_.count();
+    const auto image = [&](std::size_t k) { return light.subspan(static_cast<std::size_t>(cells[k]) * count, count); };
+    const std::array images = {image(0), image(1), image(2), image(3)};
+    Parts parts;
+    parts.fill(Grid<double>(size_.columns, size_.rows));
+    for (int row = 0; row < size_.rows; ++row) {
+        for (int column = 0; column < size_.columns; ++column) {
+            const std::size_t k = static_cast<std::size_t>(row) * static_cast<std::size_t>(size_.columns) +
+                                  static_cast<std::size_t>(column);
+            const auto own = static_cast<double>(images[0][k]);
+            const auto sideways = static_cast<double>(images[1][k]);
+            const auto upright = static_cast<double>(images[2][k]);
+            const auto both = static_cast<double>(images[3][k]);
+            // A sine transform is the cosine transform of alternating signs, read from the other end.
+            const double along = column % 2 == 0 ? 0.25 : -0.25;
+            const double across = row % 2 == 0 ? 1 : -1;
+            parts[even].values[k] = 0.25 * (own + sideways + upright + both);
+            parts[odd_along].values[k] = along * (own - sideways + upright - both);
+            parts[odd_across].values[k] = 0.25 * across * (own + sideways - upright - both);
+            parts[odd].values[k] = along * across * (own - sideways - upright + both);
+        }
+    }
+    for (Grid<double>& part : parts) {
+        cosine_transform(part);
+    }
+    return parts;
+}
+
+void WaveImage::add(Spectrum& sum, const Parts& parts, const std::array<int, 4>& cells) const {
+    const double step_x = 0.5 / size_.columns / filter_.part_pitch();
+    const double step_y = 0.5 / size_.rows / filter_.part_pitch();
+    for (int row = 0; row < size_.rows; ++row) {
+        for (int column = 0; column < size_.columns; ++column) {
+            const double fx = column * step_x;
+            const double fy = row * step_y;
+            if (fx * fx + fy * fy < filter_.cutoff() * filter_.cutoff()) {
+                const double cosines = parts[even](column, row);
+                const double sine_along = column > 0 ? parts[odd_along](size_.columns - column, row) : 0.0;
+                const double sine_across = row > 0 ? parts[odd_across](column, size_.rows - row) : 0.0;
+                const double sines = column > 0 && row > 0 ? parts[odd](size_.columns - column, size_.rows - row) : 0.0;
+                // A sine changes its sign where its frequency does; mirrored light has it reversed.
+                const Complex same(cosines - sines, -sine_along - sine_across);
+                const Complex sideways(cosines + sines, sine_along - sine_across);
+                const std::array ahead = {same, sideways, std::conj(sideways), std::conj(same)};
+                const std::array behind = {sideways, same, std::conj(same), std::conj(sideways)};
+                for (std::size_t k = 0; k < cells.size(); ++k) {
+                    sum.ahead(column, row) += filter_.transfer(cells[k], fx, fy) * ahead[k];
+                    sum.behind(column, row) += filter_.transfer(cells[k], -fx, fy) * behind[k];
+                }
+            }
+        }
+    }
+}
+
+Grid<double> WaveImage::pixels_of(const Spectrum& sum) const {
+    const int period_x = 2 * size_.columns;
+    const int period_y = 2 * size_.rows;
+    Grid<Complex> whole(period_x, period_y);
+    for (int row = 0; row < size_.rows; ++row) {
+        for (int column = 0; column < size_.columns; ++column) {
+            // From the corner to the middle of the first part; what cosines count once stands at two frequencies.
+            const double along = pi * column / period_x;
+            const double across = pi * row / period_y;
+            const Complex ahead = 4.0 * std::polar(1.0, across + along) * sum.ahead(column, row);
+            const Complex behind = 4.0 * std::polar(1.0, across - along) * sum.behind(column, row);
+            const int left = (period_x - column) % period_x;
+            const int low = (period_y - row) % period_y;
+            whole(column, row) = ahead;
+            whole(left, row) = column > 0 ? behind : ahead;
+            if (row > 0) {
+                whole(left, low) = std::conj(ahead);
+                whole(column, low) = std::conj(column > 0 ? behind : ahead);
+            }
+        }
+    }
+    inverse_fourier_transform(whole);
+    const auto parts = static_cast<int>(filter_.cells().parts);
+    Grid<double> result(pixels_.columns, pixels_.rows);
+    for (int row = 0; row < size_.rows; ++row) {
+        for (int column = 0; column < size_.columns; ++column) {
+            const double sensitive =
+                physics::f64::sensitive_share(filter_.cells(), static_cast<std::uint32_t>(column % parts)) *
+                physics::f64::sensitive_share(filter_.cells(), static_cast<std::uint32_t>(row % parts));
+            result(column / parts, row / parts) += sensitive * whole(column, row).real();
+        }
+    }
+    return result;
+}
+
+Grid<double> WaveImage::apply(std::span<const std::uint64_t> light) const {
+    std::vector<std::array<int, 4>> groups;
+    for (int cell = 0; cell < filter_.cell_count(); ++cell) {
+        if (cell < filter_.mirrored(cell) && cell < filter_.mirrored_upright(cell)) {
+            groups.push_back(mirror_images(cell));
+        }
+    }
+    Spectrum sum{Grid<Complex>(size_.columns, size_.rows), Grid<Complex>(size_.columns, size_.rows)};
+    // Transformed side by side, added up in their order: the same bits on any number of cores.
+    const std::size_t workers = std::max(1u, std::thread::hardware_concurrency());
+    for (std::size_t first = 0; first < groups.size(); first += workers) {
+        const std::size_t count = std::min(workers, groups.size() - first);
+        std::vector<Parts> transformed(count);
+        {
+            std::vector<std::jthread> threads;
+            for (std::size_t k = 0; k < count; ++k) {
+                threads.emplace_back([&, k] { transformed[k] = transform(light, groups[first + k]); });
+            }
+        }
+        for (std::size_t k = 0; k < count; ++k) {
+            add(sum, transformed[k], groups[first + k]);
+        }
+    }
+    return pixels_of(sum);
+}
+
+CellLight::CellLight(const std::optional<optics::PupilFilter>& filter, ImageSize pixels) {
+    if (filter) {
+        image_.emplace(*filter, pixels);
+        size_ = in_parts(pixels, *filter);
+        numbers_.resize(image_->numbers());
+    }
+}
+
+void CellLight::add(const physics::f64::CellPlace& place, std::uint64_t light) {
+    std::uint64_t& number = numbers_[place.cell * size_.count() +
+                                     static_cast<std::size_t>(place.row) * static_cast<std::size_t>(size_.columns) +
+                                     static_cast<std::size_t>(place.column)];
+    std::atomic_ref(number).fetch_add(light, std::memory_order_relaxed);
+}
+
+std::optional<optics::PupilFilter> filter_for_waves(const optics::Instrument& instrument, const TraceOptions& options) {
+    return options.waves && !options.nonsequential
+               ? std::optional<optics::PupilFilter>(std::in_place, instrument, *options.waves)
+               : std::nullopt;
+}
+
+PixelLight with_waves(PixelLight pixels, const Grid<double>& light, double power_per_number,
+                      const optics::PupilFilter& filter) {
+    const double noise = filter.noise();
+    for (std::size_t pixel = 0; pixel < light.values.size(); ++pixel) {
+        pixels.flux.values[pixel] = power_per_number * light.values[pixel];
+        pixels.standard_error.values[pixel] *= noise;
+    }
+    return pixels;
+}
+
+} // namespace vkfv::trace

@@ -1,0 +1,68 @@
+// The image that waves make of light sorted by pupil cells, on the host in double.
+#pragma once
+
+#include "core/grid.hpp"
+#include "core/pixel_grid.hpp"
+#include "optics/waves/pupil_filter.hpp"
+#include "trace/interface/pixel_estimate.hpp"
+#include "trace/interface/tracer.hpp"
+
+#include <array>
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <vector>
+
+namespace vkfv::trace {
+
+// Beyond its border the image continues as its mirror image, the pupil mirrored with it, so that no light is lost: of
+// an instrument that is symmetric about its axis the sum over the pixels stays the same, of others but for what the
+// asymmetry of the point spread carries over the border.
+class WaveImage {
+  public:
+    // pixels: the detector's. The filter must outlive it.
+    WaveImage(const optics::PupilFilter& filter, ImageSize pixels);
+
+    // How many numbers the sorted light has: cell after cell, row after row of parts of pixels.
+    std::size_t numbers() const;
+    // Light of the pixels in the units of the sorted light.
+    Grid<double> apply(std::span<const std::uint64_t> light) const;
+
+  private:
+    struct Spectrum;
+    // Of a cell and its mirror images (itself, left to right, upside down, both): the parts of their images' extension
+    // that are even or odd along rows (x) and columns (y).
+    enum Part : std::size_t { even, odd_along, odd_across, odd };
+    using Parts = std::array<Grid<double>, 4>;
+    std::array<int, 4> mirror_images(int cell) const;
+    Parts transform(std::span<const std::uint64_t> light, const std::array<int, 4>& cells) const;
+    void add(Spectrum& sum, const Parts& parts, const std::array<int, 4>& cells) const;
+    Grid<double> pixels_of(const Spectrum& sum) const;
+
+    const optics::PupilFilter& filter_;
+    ImageSize pixels_;
+    ImageSize size_; // in parts of pixels
+};
+
+// Light that the host sorts; many may add to it at a time. Without a filter nothing is kept.
+class CellLight {
+  public:
+    CellLight(const std::optional<optics::PupilFilter>& filter, ImageSize pixels);
+
+    void add(const physics::f64::CellPlace& place, std::uint64_t light);
+    Grid<double> image() const { return image_.value().apply(numbers_); }
+
+  private:
+    std::optional<WaveImage> image_;
+    ImageSize size_; // in parts of pixels
+    std::vector<std::uint64_t> numbers_;
+};
+
+// The filter that the options ask for, of an instrument that is not turned round; none: images as rays make them.
+std::optional<optics::PupilFilter> filter_for_waves(const optics::Instrument& instrument, const TraceOptions& options);
+
+// The same pixels with their light as waves make it, from that of WaveImage::apply(), in power_per_number W a unit.
+PixelLight with_waves(PixelLight pixels, const Grid<double>& light, double power_per_number,
+                      const optics::PupilFilter& filter);
+
+} // namespace vkfv::trace
