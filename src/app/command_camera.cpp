@@ -1,7 +1,7 @@
 #include "app/commands.hpp"
 #include "core/error.hpp"
 #include "core/result_folder.hpp"
-#include "measurement/camera_report.hpp"
+#include "measurement/image/camera_report.hpp"
 #include "scan/store.hpp"
 
 #include <fmt/format.h>

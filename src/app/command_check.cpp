@@ -1,7 +1,7 @@
 #include "app/commands.hpp"
 #include "core/error.hpp"
-#include "measurement/forecast.hpp"
-#include "measurement/instrument_report.hpp"
+#include "measurement/instrument/instrument_report.hpp"
+#include "measurement/stack/forecast.hpp"
 
 #include <fmt/format.h>
 

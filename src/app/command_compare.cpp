@@ -1,5 +1,5 @@
 #include "app/commands.hpp"
-#include "measurement/comparison_report.hpp"
+#include "measurement/surface/comparison_report.hpp"
 
 #include <fmt/format.h>
 

@@ -1,7 +1,7 @@
 #include "app/commands.hpp"
 
 #include "core/units.hpp"
-#include "measurement/image.hpp"
+#include "measurement/image/image.hpp"
 
 #include <fmt/format.h>
 

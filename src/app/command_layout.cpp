@@ -1,5 +1,5 @@
 #include "app/commands.hpp"
-#include "measurement/assembly.hpp"
+#include "measurement/scene/assembly.hpp"
 
 #include "core/file.hpp"
 #include "report/layout.hpp"

@@ -1,5 +1,5 @@
 #include "app/commands.hpp"
-#include "measurement/stack.hpp"
+#include "measurement/stack/stack.hpp"
 
 #include <fmt/format.h>
 

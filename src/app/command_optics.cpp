@@ -1,8 +1,8 @@
 #include "app/commands.hpp"
-#include "measurement/assembly.hpp"
-#include "measurement/wave_figures.hpp"
-#include "measurement/wave_limits.hpp"
-#include "measurement/wave_report.hpp"
+#include "measurement/instrument/wave_figures.hpp"
+#include "measurement/instrument/wave_report.hpp"
+#include "measurement/scene/assembly.hpp"
+#include "measurement/scene/wave_limits.hpp"
 
 #include "core/result_folder.hpp"
 

@@ -1,8 +1,8 @@
 #include "app/commands.hpp"
 #include "core/file.hpp"
 #include "core/progress.hpp"
-#include "measurement/evaluation_files.hpp"
-#include "measurement/stack.hpp"
+#include "measurement/evaluation/evaluation_files.hpp"
+#include "measurement/stack/stack.hpp"
 
 #include <fmt/format.h>
 

@@ -1,5 +1,5 @@
 #include "app/commands.hpp"
-#include "measurement/surface_measurement.hpp"
+#include "measurement/surface/surface_measurement.hpp"
 
 #include "core/units.hpp"
 

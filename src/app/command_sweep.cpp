@@ -1,6 +1,6 @@
 #include "app/commands.hpp"
 #include "core/progress.hpp"
-#include "measurement/sweep.hpp"
+#include "measurement/sweep/sweep.hpp"
 
 #include <fmt/format.h>
 

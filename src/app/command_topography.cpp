@@ -1,5 +1,5 @@
 #include "app/commands.hpp"
-#include "measurement/existing_stack.hpp"
+#include "measurement/evaluation/existing_stack.hpp"
 
 #include <fmt/format.h>
 

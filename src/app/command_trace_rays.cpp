@@ -1,6 +1,6 @@
 #include "app/commands.hpp"
-#include "measurement/assembly.hpp"
-#include "measurement/ray_table.hpp"
+#include "measurement/image/ray_table.hpp"
+#include "measurement/scene/assembly.hpp"
 
 #include <fmt/format.h>
 

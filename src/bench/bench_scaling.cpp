@@ -1,5 +1,5 @@
 #include "bench/bench_parts.hpp"
-#include "measurement/assembly.hpp"
+#include "measurement/scene/assembly.hpp"
 #include "specimen/kinds.hpp"
 #include "trace/device/device_tracer.hpp"
 

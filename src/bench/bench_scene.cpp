@@ -1,6 +1,6 @@
 #include "bench/bench_scene.hpp"
 
-#include "measurement/assembly.hpp"
+#include "measurement/scene/assembly.hpp"
 #include "trace/device/device_tracer.hpp"
 
 #include <fmt/format.h>

@@ -2,7 +2,7 @@
 #include "app/program.hpp"
 #include "configuration/configuration.hpp"
 #include "configuration/key_documents.hpp"
-#include "measurement/assembly.hpp"
+#include "measurement/scene/assembly.hpp"
 #include "specimen/geometry_digest.hpp"
 
 #include <gmock/gmock.h>

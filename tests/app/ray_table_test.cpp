@@ -1,4 +1,4 @@
-#include "measurement/ray_table.hpp"
+#include "measurement/image/ray_table.hpp"
 
 #include "app/program.hpp"
 #include "core/error.hpp"

@@ -1,7 +1,7 @@
 // The average along z that a stack of its own is given follows from how fast waves fade with defocus.
 #include "configuration/configuration.hpp"
 #include "core/units.hpp"
-#include "measurement/assembly.hpp"
+#include "measurement/scene/assembly.hpp"
 
 #include <fmt/format.h>
 #include <gtest/gtest.h>

@@ -1,5 +1,5 @@
 // What sets an exposure: the brightest light of an image, though its rays are few.
-#include "measurement/camera_images.hpp"
+#include "measurement/image/camera_images.hpp"
 
 #include <gtest/gtest.h>
 

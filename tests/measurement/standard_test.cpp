@@ -1,6 +1,6 @@
-#include "measurement/standard.hpp"
+#include "measurement/surface/standard.hpp"
 
-#include "measurement/surface_measurement.hpp"
+#include "measurement/surface/surface_measurement.hpp"
 #include "surface_files/surface_file.hpp"
 
 #include <gtest/gtest.h>

@@ -1,7 +1,7 @@
 // Sweeps of stacks as values: what they say is what the files of their stacks hold.
 #include "core/file.hpp"
 #include "core/units.hpp"
-#include "measurement/sweep.hpp"
+#include "measurement/sweep/sweep.hpp"
 #include "surface_files/surface_file.hpp"
 
 #include <gtest/gtest.h>

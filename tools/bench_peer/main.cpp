@@ -6,7 +6,7 @@
 #include "core/file.hpp"
 #include "core/units.hpp"
 #include "images/image_file.hpp"
-#include "measurement/assembly.hpp"
+#include "measurement/scene/assembly.hpp"
 #include "trace/interface/traced_instrument.hpp"
 
 #include <CLI/CLI.hpp>

@@ -1,0 +1,80 @@
+#include "measurement/evaluation/evaluation_figures.hpp"
+
+#include "core/units.hpp"
+#include "surface/areal_parameters.hpp"
+
+#include <future>
+#include <optional>
+
+namespace vkfv::measurement {
+
+namespace {
+
+std::vector<report::ParameterRow> parameters_of(const surface::HeightMap& map) {
+    return report::parameter_rows(surface::areal_parameters(map));
+}
+
+Figures figures_in(const topography::Band& band, const Evaluation& evaluation,
+                   const std::optional<topography::Deviation>& deviation) {
+    const auto& measured = evaluation.topography.height;
+    Figures figures{.band = band,
+                    .measured_share = surface::height_parameters(measured).measured_share,
+                    .deviation = deviation,
+                    .measured = {},
+                    .truth = {}};
+    if (!(figures.measured_share > 0)) {
+        return figures;
+    }
+    if (!evaluation.truth) {
+        figures.measured = parameters_of(surface::scale_limited(measured, band));
+    } else if (deviation && deviation->measured_share > 0) {
+        std::optional<topography::LevelledPair> in_band;
+        if (band.limited()) {
+            in_band = topography::levelled_pair(measured, *evaluation.truth, band);
+        }
+        const auto& pair = in_band ? *in_band : evaluation.levelled.pair;
+        auto truth = std::async(std::launch::async, [&] { return parameters_of(pair.truth); });
+        figures.measured = parameters_of(pair.measured);
+        figures.truth = truth.get();
+    }
+    return figures;
+}
+
+} // namespace
+
+std::vector<Figures> figures_of(const Evaluation& evaluation) {
+    std::vector<Figures> figures{figures_in({.form = evaluation.band.form}, evaluation, evaluation.deviation)};
+    if (evaluation.filtered_deviation) {
+        figures.push_back(figures_in(evaluation.band, evaluation, evaluation.filtered_deviation));
+    }
+    return figures;
+}
+
+nlohmann::ordered_json json_of(const Figures& figures) {
+    auto json = nlohmann::ordered_json::object();
+    if (const auto& deviation = figures.deviation) {
+        json = {{"sq_measured_um", deviation->sq_measured * um_per_mm},
+                {"sq_true_um", deviation->sq_true * um_per_mm},
+                {"sq_ratio", deviation->sq_measured / deviation->sq_true},
+                {"rms_deviation_um", deviation->rms * um_per_mm},
+                {"correlation", deviation->correlation},
+                {"measured_share", deviation->measured_share}};
+    } else {
+        json["measured_share"] = figures.measured_share;
+    }
+    if (figures.band.limited()) {
+        json["s_filter_um"] = figures.band.s_filter * um_per_mm;
+        json["l_filter_um"] = figures.band.l_filter * um_per_mm;
+    }
+    json["parameters"] = nlohmann::ordered_json::object();
+    for (std::size_t k = 0; k < figures.measured.size(); ++k) {
+        auto& parameter = json["parameters"][figures.measured[k].key()];
+        parameter["measured"] = figures.measured[k].value;
+        if (!figures.truth.empty()) {
+            parameter["true"] = figures.truth[k].value;
+        }
+    }
+    return json;
+}
+
+} // namespace vkfv::measurement

@@ -1,0 +1,217 @@
+#include "measurement/evaluation/existing_stack.hpp"
+
+#include "core/units.hpp"
+#include "measurement/scene/assembly.hpp"
+#include "measurement/scene/stage_figures.hpp"
+#include "scan/store.hpp"
+#include "specimen/kinds.hpp"
+
+#include <spdlog/spdlog.h>
+
+#include <algorithm>
+#include <numeric>
+#include <random>
+#include <sstream>
+#include <string>
+
+namespace vkfv::measurement {
+
+namespace {
+
+// The images' numbers, in their order or in a random one: Fisher and Yates's shuffle, by the bits of the
+// generator alone, so that a seed means the same order everywhere.
+std::vector<int> order_of_images(std::size_t count, const Shuffle& shuffle) {
+    std::vector<int> order(count);
+    std::iota(order.begin(), order.end(), 0);
+    if (shuffle) {
+        std::mt19937_64 random(*shuffle);
+        for (std::size_t last = count; last > 1; --last) {
+            std::swap(order[last - 1], order[random() % last]);
+        }
+    }
+    return order;
+}
+
+// The first line of what the images depend on that overrides change: "key = value", as it is then.
+std::optional<std::string> changed_line(const Configuration& configuration, const Configuration& overridden) {
+    if (configuration.identity == overridden.identity) {
+        return std::nullopt;
+    }
+    std::istringstream before(configuration.identity), after(overridden.identity);
+    std::string line, other;
+    while (std::getline(after, other) && std::getline(before, line) && line == other) {
+    }
+    return other;
+}
+
+// The stack's configuration with overrides that leave its images as they are.
+Configuration configuration_of(const OwnStack& stack) {
+    const auto file = stack.folder / "stack.toml";
+    auto configuration = load_configuration(file, stack.overrides, Needs::stack);
+    if (const auto line = changed_line(load_configuration(file, {}, Needs::stack), configuration)) {
+        throw InputError(
+            {.where = {.file = "command line", .line = 0, .column = 0, .byte_offset = {}},
+             .key = "",
+             .found = *line,
+             .expected = "the value that the images were traced with, in " + file.string(),
+             .remedy = "Set keys of [topography], [diffraction] and [output] alone; --stack traces other images."});
+    }
+    return configuration;
+}
+
+bool any_negative(const topography::Channels& image) {
+    return std::ranges::any_of(image, [](const Grid<float>& channel) {
+        return std::ranges::any_of(channel.values, [](float value) { return value < 0; });
+    });
+}
+
+// The images of another instrument, each laid over the one in the middle if that is asked for.
+class LaidImages {
+  public:
+    LaidImages(const scan::ImageSeries& series, topography::Registration what) : series_(series) {
+        if (what == topography::Registration::none) {
+            return;
+        }
+        std::vector<topography::ImageTransform> steps(1);
+        Grid<float> before = topography::grey(series.read(0));
+        for (int image = 1; image < series.size(); ++image) {
+            Grid<float> next = topography::grey(series.read(image));
+            if (next.columns != before.columns || next.rows != before.rows) {
+                return; // refused when it is evaluated
+            }
+            steps.push_back(topography::registered(before, next, what));
+            before = std::move(next);
+        }
+        transforms_ = topography::in_common_frame(steps);
+        const auto& first = transforms_.front();
+        const auto& last = transforms_.back();
+        spdlog::info("images laid over each other: from the first to the last ({:.2f}, {:.2f}) pixels, scale {:.5f}",
+                     last.shift_x - first.shift_x, last.shift_y - first.shift_y, last.scale / first.scale);
+    }
+
+    topography::Channels read(int image) const {
+        auto channels = series_.read(image);
+        return transforms_.empty() ? channels
+                                   : topography::resampled(channels, transforms_[static_cast<std::size_t>(image)]);
+    }
+
+    // Shift in pixels and scale of each image, in their order.
+    nlohmann::ordered_json json() const {
+        auto rows = nlohmann::ordered_json::array();
+        for (const auto& transform : transforms_) {
+            rows.push_back({transform.shift_x, transform.shift_y, transform.scale});
+        }
+        return rows;
+    }
+
+  private:
+    const scan::ImageSeries& series_;
+    std::vector<topography::ImageTransform> transforms_; // none: as they are
+};
+
+// Images of an instrument that vkfv does not know are read twice: first for the width of their focus curves.
+double smoothing_of(const LaidImages& images, const std::vector<int>& order,
+                    const topography::TopographyOptions& options) {
+    std::optional<topography::FocusProbes> probes;
+    int columns = 0, rows = 0;
+    for (const int image : order) {
+        const auto channels = images.read(image);
+        if (!probes) {
+            columns = channels.front().columns;
+            rows = channels.front().rows;
+            probes.emplace(columns, rows, options.focus_measure,
+                           topography::FocusWindow(options.window_px, options.window_shape));
+        }
+        if (channels.front().columns != columns || channels.front().rows != rows) {
+            return 0; // refused when it is evaluated
+        }
+        probes->add(channels);
+    }
+    return probes->suitable_smoothing();
+}
+
+} // namespace
+
+EvaluatedStack evaluate_own_stack(const OwnStack& stack) {
+    const auto configuration = configuration_of(stack);
+    const auto positions = configuration.scan->positions();
+    const auto specimen = make_specimen(configuration);
+    const auto instrument = assemble_instrument(configuration, specimen, positions);
+    const ImageSize pixels = configuration.instrument.detector_pixels;
+    const KnownField field{.flat = read_flat(configuration, pixels, instrument.first_order.pixel_pitch),
+                           .design = optics::field_curvature(instrument.first_order)};
+    const auto order = order_of_images(positions.size(), stack.shuffle);
+    StackEvaluation evaluation(
+        evaluation_options(configuration, instrument),
+        focus_planes_for_files(configuration.evaluate_on, configuration.trace.device, positions.size()),
+        diffraction_of_evaluation(configuration, instrument), static_cast<int>(positions.size()));
+    for (std::size_t place = 0; place < positions.size(); ++place) {
+        const int image = order[place];
+        evaluation.add({scan::read_frame(stack.folder, image, positions[static_cast<std::size_t>(image)])},
+                       positions[place], reading_of(configuration, positions[place], static_cast<int>(place)));
+    }
+    auto source = stack_source(configuration, instrument);
+    source.ledger = scan::mean_ledger(stack.folder);
+    auto origin = run_of(stack.folder);
+    std::error_code none; // a folder to be made is another
+    if (!std::filesystem::equivalent(stack.destination, stack.folder, none)) {
+        origin = {{"stack", stack.folder.string()},
+                  {"images", positions.size()},
+                  {"rays_per_image", trace::launched_rays(configuration.trace, configuration.instrument)},
+                  {"seed", configuration.trace.seed}};
+    }
+    return {.evaluation = evaluation.finish(truth_on_pixels(instrument, configuration, specimen), configuration.band,
+                                            field, specimen::feature_of(configuration.specimen->shape)),
+            .origin = std::move(origin),
+            .source = std::move(source),
+            .files = topography_files(configuration)};
+}
+
+EvaluatedStack evaluate_images(const scan::ImageSeries& series, const ForeignStack& stack) {
+    const auto configuration = topography_configuration(stack.overrides);
+    const auto order = order_of_images(static_cast<std::size_t>(series.size()), stack.shuffle);
+    const auto at_place = [&](int place) {
+        // Heights ascend, whichever way the instrument went.
+        return stack.z_step > 0 ? place : series.size() - 1 - place;
+    };
+    const LaidImages images(series, configuration.registration);
+    auto options = configuration.topography;
+    if (!options.smoothing_steps) {
+        options.smoothing_steps = smoothing_of(images, order, options);
+    }
+    StackEvaluation evaluation(
+        options, focus_planes_for_files(configuration.evaluate_on, configuration.trace.device, order.size()),
+        std::nullopt, series.size());
+    spdlog::info("{} images, {} to {}", series.size(), series.name(0), series.name(series.size() - 1));
+    KnownField field;
+    bool negative = false;
+    for (int place = 0; place < series.size(); ++place) {
+        const int image = at_place(place);
+        auto channels = images.read(order[static_cast<std::size_t>(image)]);
+        if (place == 0) {
+            field.flat = read_flat(configuration, {channels.front().columns, channels.front().rows}, stack.pitch);
+        }
+        negative = negative || any_negative(channels);
+        evaluation.add(std::move(channels), stack.z_start + image * stack.z_step);
+    }
+    if (negative) {
+        spdlog::warn(
+            "{}: there are pixels below zero. Focus is contrast relative to brightness: give the images without "
+            "any background subtracted.",
+            stack.images.string());
+    }
+    nlohmann::ordered_json origin = {
+        {"stack", stack.images.string()},          {"images", series.size()},
+        {"first_image", series.name(0)},           {"last_image", series.name(series.size() - 1)},
+        {"z_start_um", stack.z_start * um_per_mm}, {"z_step_um", stack.z_step * um_per_mm},
+        {"pitch_um", stack.pitch * um_per_mm}};
+    if (configuration.registration != topography::Registration::none) {
+        origin["registration"] = images.json();
+    }
+    return {.evaluation = evaluation.finish(stack.pitch, configuration.band.form, field),
+            .origin = std::move(origin),
+            .source = {},
+            .files = {}};
+}
+
+} // namespace vkfv::measurement

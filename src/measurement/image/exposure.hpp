@@ -1,0 +1,45 @@
+// A single exposure.
+#pragma once
+
+#include "configuration/configuration.hpp"
+#include "core/grid.hpp"
+#include "core/pixel_grid.hpp"
+#include "measurement/scene/working_devices.hpp"
+#include "optics/instrument/instrument.hpp"
+#include "scan/store.hpp"
+#include "specimen/specimen.hpp"
+#include "trace/interface/tracer.hpp"
+#include "trace/interface/tracer_identity.hpp"
+
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+namespace vkfv::measurement {
+
+// One exposure at a height of the focal plane (mm), as an image of the configuration's stack if its scan has that
+// height. checkpoint: the file in which a long one is kept half done; empty: none is.
+struct Exposure {
+    trace::Image image;
+    PixelGrid grid; // of the pixels in the object plane
+    trace::TracerIdentity tracer;
+    std::optional<Grid<float>> diffracted; // its light after diffraction, if the configuration has one and no camera
+    std::optional<scan::Frame> taken;      // by the camera, if there is one: grey values of light after diffraction
+    scan::PixelType type = scan::PixelType::float32; // of the files
+};
+Exposure expose(const Configuration& configuration, WorkingDevices& devices, const optics::Instrument& instrument,
+                const specimen::Specimen& specimen, double focal_height, const std::filesystem::path& checkpoint = {});
+// The pixels' mean over the root mean square of their standard errors.
+double signal_to_noise(const trace::Image& image);
+
+// What helps where noise is this share of a pixel's mean light and should be `wanted`, with the configuration's source
+// and estimator; a sentence.
+std::string remedy_of_noise(const Configuration& configuration, double share, double wanted);
+// The files of an exposure by their names, beside each other: NAME, float32 W per pixel or a camera's grey values, and
+// without a camera the diffracted image as NAME_diffracted.
+std::vector<std::pair<std::filesystem::path, std::string>> image_files(const std::filesystem::path& name,
+                                                                       const Exposure& exposure, double focal_height);
+
+} // namespace vkfv::measurement

@@ -1,0 +1,359 @@
+#include "measurement/instrument/instrument_figures.hpp"
+
+#include "core/units.hpp"
+#include "measurement/image/camera_report.hpp"
+#include "measurement/scene/assembly.hpp"
+#include "measurement/scene/stage_figures.hpp"
+#include "measurement/scene/wave_limits.hpp"
+#include "optics/instrument/image_quality.hpp"
+#include "trace/device/wave_memory.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <future>
+#include <limits>
+#include <optional>
+#include <utility>
+
+namespace vkfv::measurement {
+
+namespace {
+
+// Lenses, pupils, illumination, image, resolution.
+std::vector<FigureGroup> groups_of(const Configuration& configuration, const optics::Instrument& instrument,
+                                   const optics::ImageQuality& quality) {
+    const optics::FirstOrder& first_order = instrument.first_order;
+    const auto& source = configuration.instrument.source;
+    const bool ring = source.ring.has_value();
+    const auto of_disc = [&](double value) { return ring ? NAN : value; };
+    return {
+        {"Lenses",
+         {{"efl_objective_mm", first_order.efl_objective, "focal length of the objective"},
+          {"objective_front_principal_plane_mm", quality.objective.front_principal_plane, "behind its front vertex"},
+          {"objective_back_principal_plane_mm", quality.objective.back_principal_plane,
+           "behind its back vertex; negative: inside"},
+          {"efl_tube_lens_mm", first_order.efl_tube_lens, "focal length of the tube lens"},
+          {"tube_lens_front_principal_plane_mm", quality.tube_lens.front_principal_plane, "behind its first vertex"},
+          {"tube_lens_back_principal_plane_mm", quality.tube_lens.back_principal_plane, "behind its last vertex"},
+          {"working_distance_mm", first_order.working_distance, "paraxial object plane to the front vertex"},
+          {"free_distance_mm", instrument.front_vertex_height, "plane of best focus to the front vertex"},
+          {"best_focus_offset_um", first_order.best_focus_offset * um_per_mm,
+           "least wavefront variance over the paraxial plane: z = 0"},
+          {"least_spot_offset_um", first_order.least_spot_offset * um_per_mm,
+           "on-axis least RMS spot of rays over the paraxial plane"}}},
+        {"Pupils",
+         {{"numerical_aperture", first_order.numerical_aperture, "object side, on the axis, through all apertures"},
+          {"entrance_pupil_height_mm", quality.entrance_pupil_height, "over the object plane; -: telecentric"},
+          {"entrance_pupil_radius_mm", quality.entrance_pupil_radius, "as the specimen sees the aperture stop"},
+          {"back_pupil_distance_mm", quality.back_pupil_distance, "behind the objective's back vertex"},
+          {"back_pupil_radius_mm", quality.back_pupil_radius, "paraxially; what the source's image must fill"},
+          {"beam_radius_mm", quality.beam_radius, "of the axial cone behind the objective, traced"},
+          {"exit_pupil_distance_mm", quality.exit_pupil_distance, "in front of the detector"},
+          {"exit_pupil_radius_mm", quality.exit_pupil_radius, "as the detector sees the aperture stop"}}},
+        {"Illumination",
+         {{"source_radius_mm", of_disc(source.inner_radius()), "a rectangle's: half its shorter side; -: a ring light"},
+          {"pupil_radius_in_source_mm", of_disc(first_order.pupil_radius_in_source),
+           "of the source that fills the objective's pupil"},
+          {"illumination_to_objective_mm", of_disc(first_order.illumination_to_objective),
+           "last vertex of the illumination to the objective's back"},
+          {"field_stop_magnification",
+           first_order.field_stop_magnification != 0 ? first_order.field_stop_magnification : NAN,
+           "of its image on the specimen, paraxial; -: none"}}},
+        {"Image",
+         {{"magnification", first_order.magnification, "paraxial, at the detector; negative: inverted"},
+          {"real_magnification", quality.magnification, "of the light from near the axis, at best focus"},
+          {"detector_numerical_aperture", quality.image_aperture, "of the cone that falls on the detector"},
+          {"f_number", quality.f_number, "1 / (2 NA) of that cone"},
+          {"field_of_view_um", quality.field.x * um_per_mm, "width of what the detector sees"},
+          {"field_of_view_height_um", quality.field.y * um_per_mm, "its height"},
+          {"field_diagonal_um", quality.field_diagonal * um_per_mm, "its diagonal"},
+          {"pixel_pitch_um", first_order.pixel_pitch * um_per_mm, "in the object plane"}}},
+        {"Resolution",
+         {{"wavelength_um", quality.wavelength_um, "of first-order data; the mean of a spectrum"},
+          {"airy_radius_um", quality.airy_radius * um_per_mm, "0.61 lambda / NA, in the object"},
+          {"detector_airy_radius_um", quality.detector_airy_radius * um_per_mm, "the same at the detector"},
+          {"pixels_per_airy_radius", quality.airy_radius / first_order.pixel_pitch,
+           "2 sample all that the optics resolve"},
+          {"depth_of_field_um", first_order.depth_of_field * um_per_mm, "n lambda / NA^2"},
+          {"detector_depth_of_field_um", quality.detector_depth_of_field * um_per_mm,
+           "n pitch / NA, what a pixel adds to it"}}},
+    };
+}
+
+FigureGroup aberrations(const optics::FirstOrder& first_order, const optics::ImageQuality& quality) {
+    const double absolute_magnification = std::abs(first_order.magnification);
+    const auto in_object_um = [&](double on_detector) { return on_detector / absolute_magnification * um_per_mm; };
+    constexpr double percent = 100;
+    return {"Aberrations on the axis, at the edge and in the corner of the field, in the plane z = 0",
+            {{"field_edge_um", first_order.field_edge * um_per_mm, "height of the edge in the field"},
+             {"rms_spot_axis_um", in_object_um(quality.axis.rms_spot), "RMS radius about the centroid, in the object"},
+             {"rms_spot_edge_um", in_object_um(quality.edge.rms_spot), "the same at the edge"},
+             {"rms_spot_corner_um", in_object_um(quality.corner.rms_spot), "the same in the corner"},
+             {"detector_rms_spot_axis_um", quality.axis.rms_spot * um_per_mm, "RMS radius at the detector"},
+             {"detector_rms_spot_edge_um", quality.edge.rms_spot * um_per_mm, "the same at the edge"},
+             {"detector_rms_spot_corner_um", quality.corner.rms_spot * um_per_mm, "the same in the corner"},
+             {"wavefront_rms_axis_waves", quality.axis.wavefront_rms, "RMS, defocus included, tilt removed"},
+             {"wavefront_rms_edge_waves", quality.edge.wavefront_rms, "the same at the edge"},
+             {"wavefront_rms_corner_waves", quality.corner.wavefront_rms, "the same in the corner"},
+             {"strehl_axis", quality.axis.strehl, "Strehl ratio of that wavefront; 1: no aberrations"},
+             {"strehl_edge", quality.edge.strehl, "the same at the edge"},
+             {"strehl_corner", quality.corner.strehl, "the same in the corner"},
+             {"field_curvature_um", first_order.field_curvature * um_per_mm,
+              "best focus at the edge over that on the axis"},
+             {"field_curvature_corner_um", first_order.field_curvature_corner * um_per_mm, "the same in the corner"},
+             {"distortion_edge_percent", quality.edge_distortion * percent, "against the paraxial magnification"},
+             {"distortion_corner_percent", quality.corner_distortion * percent, "positive: pincushion"},
+             {"relative_light_edge_percent", quality.edge.relative_light * percent, "its cone over that on the axis"},
+             {"relative_light_corner_percent", quality.corner.relative_light * percent, "the same in the corner"},
+             {"axial_colour_um", quality.axial_colour * um_per_mm, "best focus, 95 % above 5 % point of the spectrum"},
+             {"lateral_colour_um", quality.lateral_colour * um_per_mm, "image height at the edge, likewise"}}};
+}
+
+FigureGroup figures_of_waves(const optics::WaveOptions& options, const optics::Instrument& instrument,
+                             std::vector<std::string>& warnings) {
+    constexpr double bytes_per_gib = 1 << 30;
+    const auto of_lights = limits_of_lights(options, instrument);
+    const WaveLimits limits = worst_of(of_lights);
+    const auto further = warnings_of(limits);
+    warnings.insert(warnings.end(), further.begin(), further.end());
+    std::uint64_t memory = 0; // each source's light is sorted by itself
+    for (const WaveLimits& light : of_lights) {
+        memory += trace::wave_memory(light.cells, light.parts, instrument.detector_pixels()).all();
+    }
+    const auto error_of = [&](std::size_t point) { return limits.points[point].error.difference; };
+    return {"Images as waves make them, within two depths of field",
+            {{"wave_cells", static_cast<double>(limits.cells), "across the pupil that light is sorted by"},
+             {"wave_parts_per_pixel", static_cast<double>(limits.parts), "of a pixel's side that light is sorted in"},
+             {"wave_memory_gib", static_cast<double>(memory) / bytes_per_gib, "that a GPU needs, at most"},
+             {"wave_folded_contrast", limits.folded_contrast, "what waves too fine for the parts are off by"},
+             {"wave_contrast_error_axis", error_of(0), "of the pupil's cells against Hopkins' integral"},
+             {"wave_contrast_error_edge", error_of(1), "the same at the edge, by the filter of the axis"},
+             {"wave_contrast_error_corner", error_of(2), "the same in the corner"}}};
+}
+
+FigureGroup figures_of_stage(const Configuration& configuration, std::vector<std::string>& warnings) {
+    const auto errors = stage_errors(configuration);
+    const auto& stage = *configuration.stage;
+    if (stage.exposure_time > stage.interval) {
+        warnings.push_back(
+            fmt::format("An exposure of {:.4g} s takes longer than the {:.4g} s from image to image. Take "
+                        "a longer stage.interval_s.",
+                        stage.exposure_time, stage.interval));
+    }
+    return {"Stage, over the images of the scan",
+            {{"stage_position_error_rms_um", errors.rms * um_per_mm, "of the focal plane from its nominal height"},
+             {"stage_position_error_largest_um", errors.largest * um_per_mm, "likewise"},
+             {"stage_displacement_largest_um", errors.largest_aside * um_per_mm, "of the specimen across the axis"},
+             {"stage_exposure_s", stage.exposure_time, "in which vibrations blur; 0: they shift images"}}};
+}
+
+FigureGroup figures_of_camera(const camera::Camera& camera) {
+    constexpr double decibels = 20, percent = 100;
+    const auto& options = camera.options();
+    const double given_time = options.control == camera::ExposureControl::time
+                                  ? options.exposure_time
+                                  : std::numeric_limits<double>::quiet_NaN();
+    return {"Camera",
+            {{"camera_quantum_efficiency_percent", percent * camera.quantum_efficiency(), "over the source's spectrum"},
+             {"camera_electrons_per_joule", camera.electrons_per_joule(), "of light on a pixel"},
+             {"camera_exposure_s", given_time, "-: by the light, see camera.exposure"},
+             {"camera_full_well_e", options.full_well, "saturation capacity"},
+             {"camera_clip_e", camera.clip(), "at which a pixel's charge ends"},
+             {"camera_converter_end_e", camera.converter_end(), "at which grey values end"},
+             {"camera_gain_dn_per_e", options.gain, "K"},
+             {"camera_read_noise_e", options.read_noise, "temporal, in the dark"},
+             {"camera_quantisation_noise_e", camera.quantisation_noise(), "of grey values that are whole"},
+             {"camera_noise_at_half_e", camera.temporal_noise(options.full_well / 2), "temporal, at half saturation"},
+             {"camera_dsnu_e", options.dark_signal, "of the pixels' dark signals"},
+             {"camera_prnu_percent", percent * options.photo_response, "of the pixels' responses"},
+             {"camera_largest_signal_to_noise_db", decibels * std::log10(camera.largest_signal_to_noise()),
+              "of one frame, at saturation"},
+             {"camera_dynamic_range_db", decibels * std::log10(camera.dynamic_range()),
+              "saturation over the light whose signal to noise ratio is 1"}}};
+}
+
+ScanFigures figures_of_scan(const Configuration& configuration) {
+    const auto positions = configuration.scan->positions();
+    return {.images = positions.size(),
+            .rays_per_image = trace::launched_rays(configuration.trace, configuration.instrument),
+            .first = positions.front(),
+            .last = positions.back()};
+}
+
+SpecimenFigures figures_of_specimen(const Configuration& configuration, const optics::Instrument& instrument,
+                                    const specimen::Specimen& specimen, std::vector<std::string>& warnings) {
+    const auto relief =
+        relief_of(specimen, configuration.instrument.detector_pixels, instrument.first_order.pixel_pitch);
+    const auto sparse = warning_of_sparse_field(specimen, relief);
+    warnings.insert(warnings.end(), sparse.begin(), sparse.end());
+    const auto [x_min, y_min, x_max, y_max] = specimen::footprint(specimen);
+    return {.sides = {x_max - x_min, y_max - y_min}, .relief = relief};
+}
+
+void warn_of_step(const Configuration& configuration, const ScanFigures& scan, const optics::FirstOrder& first_order,
+                  std::vector<std::string>& warnings) {
+    const double coarsest = 0.5 * first_order.depth_of_field;
+    // Its own rounding does not count.
+    if (scan.images > 1 && configuration.scan->z_step > coarsest * (1 + 1e-9)) {
+        warnings.push_back(fmt::format("The scan's step, {:.4g} um, is coarser than half the depth of field, {:.4g} "
+                                       "um: peaks of focus fall between images.",
+                                       configuration.scan->z_step * um_per_mm, coarsest * um_per_mm));
+    }
+}
+
+void warn_of_size(const SpecimenFigures& specimen, const optics::FirstOrder& first_order,
+                  const optics::ImageQuality& quality, std::vector<std::string>& warnings) {
+    // A rim around the field belongs to a good model: light that is scattered there comes into the field too.
+    constexpr double most = 2.5;
+    for (const int axis : {0, 1}) {
+        if (specimen.sides[axis] > most * quality.field[axis] + first_order.pixel_pitch) {
+            warnings.push_back(
+                fmt::format("The specimen, {:.4g} um across, is {:.2g} times as large as the field of view, {:.4g} "
+                            "um: what lies outside is made and not measured.",
+                            specimen.sides[axis] * um_per_mm, specimen.sides[axis] / quality.field[axis],
+                            quality.field[axis] * um_per_mm));
+            break;
+        }
+    }
+}
+
+void warn_of_range(const Relief& relief, const ScanFigures& scan, const optics::FirstOrder& first_order,
+                   std::vector<std::string>& warnings) {
+    const auto beyond_scan = [&](double lowest, double highest) {
+        return relief.seen_share > 0 && (lowest < scan.first || highest > scan.last);
+    };
+    const auto [lower, higher] = std::minmax({0.0, -first_order.field_curvature, -first_order.field_curvature_corner});
+    if (beyond_scan(relief.lowest, relief.highest)) {
+        warnings.push_back(fmt::format("the specimen reaches from {:.3g} to {:.3g} um, beyond the scan: what lies "
+                                       "outside will not be measured",
+                                       relief.lowest * um_per_mm, relief.highest * um_per_mm));
+    } else if (beyond_scan(relief.lowest + lower, relief.highest + higher)) {
+        warnings.push_back(
+            fmt::format("The field is curved: the specimen comes into focus between {:.3g} and {:.3g} um "
+                        "there, beyond the scan.",
+                        (relief.lowest + lower) * um_per_mm, (relief.highest + higher) * um_per_mm));
+    }
+}
+
+// Aligned, at most 110 columns wide.
+std::string line_of(const char* name, const std::string& value, const std::string& meaning) {
+    return fmt::format("  {:<35} {:>12}  {}\n", name, value, meaning);
+}
+
+std::string value_text(double value) {
+    constexpr double rounding = 1e-12; // of all figures, in their units
+    return std::isfinite(value) ? fmt::format("{:.6g}", std::abs(value) < rounding ? 0 : value) : "-";
+}
+
+} // namespace
+
+InstrumentFigures instrument_figures(const Configuration& configuration) {
+    // What does not wait for anything else has threads of its own: every command of a new instrument begins with this.
+    std::future<specimen::Specimen> specimen;
+    if (configuration.specimen) {
+        specimen = std::async(std::launch::async, [&] { return make_specimen(configuration); });
+    }
+    const auto instrument = assemble_for_figures(configuration);
+    const auto& first_order = instrument.first_order;
+    auto measured =
+        std::async(std::launch::async, [&] { return optics::image_quality(configuration.instrument, instrument); });
+    std::vector<std::string> warnings_of_waves;
+    std::optional<FigureGroup> waves;
+    if (configuration.trace.waves) {
+        waves = figures_of_waves(*configuration.trace.waves, instrument, warnings_of_waves);
+    }
+    const auto quality = measured.get();
+    InstrumentFigures figures{.groups = groups_of(configuration, instrument, quality),
+                              .scan = {},
+                              .specimen = {},
+                              .warnings = instrument.warnings};
+    figures.groups.push_back(aberrations(first_order, quality));
+    auto& warnings = figures.warnings;
+    warnings.insert(warnings.end(), quality.warnings.begin(), quality.warnings.end());
+    if (waves) {
+        figures.groups.push_back(*std::move(waves));
+        warnings.insert(warnings.end(), warnings_of_waves.begin(), warnings_of_waves.end());
+    }
+    if (configuration.camera) {
+        const camera::Camera camera(*configuration.camera, configuration.instrument.spectrum);
+        figures.groups.push_back(figures_of_camera(camera));
+        const auto further = warnings_of(camera);
+        warnings.insert(warnings.end(), further.begin(), further.end());
+    }
+    if (configuration.stage && configuration.scan) {
+        figures.groups.push_back(figures_of_stage(configuration, warnings));
+    }
+    if (configuration.scan) {
+        figures.scan = figures_of_scan(configuration);
+        warn_of_step(configuration, *figures.scan, first_order, warnings);
+    }
+    if (configuration.specimen) {
+        figures.specimen = figures_of_specimen(configuration, instrument, specimen.get(), warnings);
+        warn_of_size(*figures.specimen, first_order, quality, warnings);
+        if (figures.scan) {
+            warn_of_range(figures.specimen->relief, *figures.scan, first_order, warnings);
+        }
+    }
+    return figures;
+}
+
+nlohmann::ordered_json instrument_json(const InstrumentFigures& figures, const std::filesystem::path& file) {
+    nlohmann::ordered_json report;
+    report["configuration"] = file.string();
+    for (const auto& group : figures.groups) {
+        for (const auto& figure : group.figures) {
+            report[figure.name] = figure.value;
+        }
+    }
+    if (const auto& scan = figures.scan) {
+        report["images"] = scan->images;
+        report["rays_per_image"] = scan->rays_per_image;
+    }
+    if (const auto& specimen = figures.specimen) {
+        const auto& relief = specimen->relief;
+        report["specimen_seen_share"] = relief.seen_share;
+        report["specimen_side_um"] = std::max(specimen->sides.x, specimen->sides.y) * um_per_mm;
+        if (relief.seen_share > 0) {
+            report["specimen_lowest_um"] = relief.lowest * um_per_mm;
+            report["specimen_highest_um"] = relief.highest * um_per_mm;
+        }
+    }
+    report["warnings"] = figures.warnings;
+    return report;
+}
+
+std::string instrument_text(const InstrumentFigures& figures, const std::filesystem::path& file) {
+    std::string text = fmt::format("{}: valid\n", file.string());
+    for (const auto& group : figures.groups) {
+        text += fmt::format("{}\n", group.title);
+        for (const auto& figure : group.figures) {
+            text += line_of(figure.name, value_text(figure.value), figure.meaning);
+        }
+    }
+    if (figures.scan || figures.specimen) {
+        text += "Exposures\n";
+    }
+    if (const auto& scan = figures.scan) {
+        text += line_of("images", std::to_string(scan->images),
+                        fmt::format("z from {:g} to {:g} um, {:.3g} rays each", scan->first * um_per_mm,
+                                    scan->last * um_per_mm, static_cast<double>(scan->rays_per_image)));
+    }
+    if (const auto& specimen = figures.specimen) {
+        const auto& relief = specimen->relief;
+        text += line_of("specimen_side_um", value_text(std::max(specimen->sides.x, specimen->sides.y) * um_per_mm),
+                        "the longer side of its footprint");
+        if (relief.seen_share > 0) {
+            text += line_of("specimen_lowest_um", value_text(relief.lowest * um_per_mm),
+                            fmt::format("highest {:.6g} um, on {:.1f} % of the field", relief.highest * um_per_mm,
+                                        100 * relief.seen_share));
+        }
+    }
+    for (const auto& warning : figures.warnings) {
+        text += "  warning: " + warning + "\n";
+    }
+    return text;
+}
+
+} // namespace vkfv::measurement

@@ -1,0 +1,114 @@
+#include "measurement/instrument/instrument_report.hpp"
+
+#include "core/digest.hpp"
+#include "core/files_read.hpp"
+#include "core/installation.hpp"
+#include "core/log.hpp"
+#include "core/user_cache.hpp"
+#include "measurement/instrument/instrument_figures.hpp"
+
+#include <spdlog/spdlog.h>
+
+#include <algorithm>
+#include <optional>
+#include <span>
+#include <string_view>
+#include <vector>
+
+namespace vkfv::measurement {
+
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+constexpr std::string_view kept_names = "figures-";
+constexpr std::size_t most_kept = 200; // of a few thousand bytes each
+
+struct KeptReport {
+    std::vector<FileStamp> files;
+    std::vector<MessagesHeard::Message> messages;
+    InstrumentReport report;
+};
+
+// Of all that the report comes of, but for the files: the program, the configuration with what stands for its parts'
+// files, where assets lie. Empty: nothing may be kept.
+std::string name_of(const Configuration& configuration, const std::filesystem::path& file) {
+    const std::string program = build_id();
+    if (program.empty()) {
+        return "";
+    }
+    Json all = {program, file.string(), configuration.canonical, configuration.identity};
+    for (const auto& folder : asset_folders(configuration.file.parent_path())) {
+        all.push_back(folder.string());
+    }
+    return std::string(kept_names) + Digest().add(all.dump(-1, ' ', false, Json::error_handler_t::replace)).sha256();
+}
+
+std::string written(const KeptReport& kept) {
+    Json json = {{"files", Json::array()}, {"messages", Json::array()}};
+    for (const auto& [path, device, number, bytes, changed] : kept.files) {
+        json["files"].push_back({path, device, number, bytes, changed});
+    }
+    for (const auto& [level, text] : kept.messages) {
+        json["messages"].push_back({level, text});
+    }
+    json["text"] = kept.report.text;
+    json["json"] = kept.report.json;
+    return json.dump();
+}
+
+std::optional<KeptReport> read_kept(const std::string& name) {
+    const auto bytes = read_cached(name);
+    if (bytes.empty()) {
+        return std::nullopt;
+    }
+    // Its checksum holds: this program has written it.
+    const Json json = Json::parse(std::string_view(reinterpret_cast<const char*>(bytes.data()), bytes.size()));
+    KeptReport kept{.files = {}, .messages = {}, .report = {.text = json["text"], .json = json["json"]}};
+    for (const Json& file : json["files"]) {
+        kept.files.push_back(
+            {.path = file[0], .device = file[1], .number = file[2], .bytes = file[3], .changed = file[4]});
+    }
+    for (const Json& message : json["messages"]) {
+        kept.messages.push_back({.level = message[0], .text = message[1]});
+    }
+    return kept;
+}
+
+void keep(const std::string& name, const KeptReport& kept) {
+    try {
+        const std::string text = written(kept);
+        write_cached(name, std::as_bytes(std::span(text)));
+        thin_out_cached(kept_names, most_kept);
+    } catch (const Json::type_error&) { // a path that is no UTF-8
+    }
+}
+
+} // namespace
+
+InstrumentReport instrument_report(const Configuration& configuration, const std::filesystem::path& file) {
+    const std::string name = name_of(configuration, file);
+    if (!name.empty()) {
+        if (auto kept = read_kept(name); kept && std::ranges::all_of(kept->files, is_unchanged)) {
+            for (const auto& [level, text] : kept->messages) {
+                spdlog::log(static_cast<spdlog::level::level_enum>(level), "{}", text);
+            }
+            return std::move(kept->report);
+        }
+    }
+    const FilesRead read;
+    const MessagesHeard heard;
+    const auto figures = instrument_figures(configuration);
+    KeptReport made{.files = {},
+                    .messages = {},
+                    .report = {.text = instrument_text(figures, file), .json = instrument_json(figures, file)}};
+    made.files = read.stamps();
+    made.messages = heard.messages();
+    // A log that leaves some messages out has not told what to repeat.
+    if (!name.empty() && spdlog::should_log(spdlog::level::info)) {
+        keep(name, made);
+    }
+    return std::move(made.report);
+}
+
+} // namespace vkfv::measurement

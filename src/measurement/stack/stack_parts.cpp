@@ -1,0 +1,146 @@
+#include "measurement/stack/stack_parts.hpp"
+
+#include "core/background.hpp"
+#include "core/digest.hpp"
+#include "core/stages.hpp"
+#include "core/units.hpp"
+#include "measurement/image/camera_images.hpp"
+#include "measurement/image/exposure.hpp"
+#include "measurement/scene/assembly.hpp"
+#include "measurement/scene/stage_figures.hpp"
+#include "scan/stack_file.hpp"
+#include "specimen/geometry_digest.hpp"
+#include "specimen/kinds.hpp"
+
+#include <spdlog/spdlog.h>
+
+#include <algorithm>
+#include <cstddef>
+#include <utility>
+
+namespace vkfv::measurement {
+
+namespace {
+
+// Shares: of an image's brightness; of the focus curves' standard deviation.
+constexpr double most_image_noise = 0.5, good_image_noise = 0.1;
+constexpr double most_height_noise = 0.1, good_height_noise = 0.05;
+
+// How noisy the rays left the images, where that is most of what is measured, or coarse beside the focus curves.
+void warn_of_noise(const Configuration& configuration, const Evaluation& evaluation) {
+    const auto& whole = evaluation.topography.stack;
+    const double width = whole.curve_width_steps * configuration.scan->z_step;
+    const double height_noise = width > 0 ? evaluation.height_noise / width : 0;
+    if (whole.image_noise > most_image_noise) {
+        spdlog::warn("The images' noise is {:.0f} % of their brightness: what is measured is little or rough. {}",
+                     100 * whole.image_noise, remedy_of_noise(configuration, whole.image_noise, good_image_noise));
+    } else if (!configuration.camera && height_noise > most_height_noise) { // a camera's own noise is no lack of rays
+        spdlog::warn(
+            "The images' noise is {:.2g} % of their brightness, and scatters the heights by {:.2g} um, {:.0f} % "
+            "of their focus curves' width. {}",
+            100 * whole.image_noise, evaluation.height_noise * um_per_mm, 100 * height_noise,
+            remedy_of_noise(configuration, height_noise, good_height_noise));
+    }
+}
+
+} // namespace
+
+StackScene::StackScene(const Configuration& its_configuration)
+    : configuration(its_configuration), positions(configuration.scan->positions()) {
+    enter_stage("specimen");
+    specimen = make_specimen(configuration);
+    enter_stage("instrument");
+    instrument = assemble_instrument(configuration, specimen, positions);
+}
+
+scan::StackDescription StackScene::description(const trace::TracerIdentity& tracer) const {
+    std::string identity = image_identity(configuration, specimen::geometry_digest(specimen), tracer);
+    std::string digest = Digest().add(identity).text();
+    return {.configuration = configuration.canonical,
+            .identity = std::move(identity),
+            .digest = std::move(digest),
+            .positions = positions,
+            .columns = pixels().columns,
+            .rows = pixels().rows,
+            .pitch = instrument.first_order.pixel_pitch,
+            .type = configuration.pixel_type,
+            .quantity = configuration.camera ? "grey values in DN" : scan::StackDescription().quantity};
+}
+
+GrowingEvaluation::GrowingEvaluation(const StackScene& scene, topography::FocusPlanesMaker planes,
+                                     const std::vector<optics::PupilFilter>& filters)
+    : scene_(scene), field_{.flat = read_flat(scene.configuration, scene.pixels(),
+                                              scene.instrument.first_order.pixel_pitch),
+                            .design = optics::field_curvature(scene.instrument.first_order)},
+      evaluation_(evaluation_options(scene.configuration, scene.instrument), std::move(planes),
+                  diffraction_of_evaluation(scene.configuration, scene.instrument),
+                  static_cast<int>(scene.positions.size())) {
+    truth_ = in_background([&scene] { return truth_on_pixels(scene.instrument, scene.configuration, scene.specimen); });
+    source_ = in_background([&scene] { return stack_source(scene.configuration, scene.instrument); });
+    if (!filters.empty()) {
+        wave_limits_ =
+            in_background([&scene, filters] { return worst_of(limits_of_lights(filters, scene.instrument)); });
+    }
+}
+
+void GrowingEvaluation::add(int image, Grid<float> values) {
+    any_light_ = any_light_ || std::ranges::any_of(values.values, [](float value) { return value > 0; });
+    const double z = scene_.positions[static_cast<std::size_t>(image)];
+    evaluation_.add({std::move(values)}, z, reading_of(scene_.configuration, z, image));
+}
+
+EvaluatedStack GrowingEvaluation::finish(scan::ImageStore& store, const trace::TracerIdentity& tracer) {
+    const Configuration& configuration = scene_.configuration;
+    const auto camera = camera_figures(store);
+    if (!any_light_ || (camera && !(camera->light.mean > 0))) {
+        spdlog::warn("No light reaches the detector in any image. vkfv --image of one position tells where it goes");
+    }
+    enter_stage("heights and truth");
+    EvaluatedStack stack{
+        .evaluation = evaluation_.finish(truth_.get(), configuration.band, field_,
+                                         specimen::feature_of(configuration.specimen->shape)),
+        .origin = {{"device", tracer.text()},
+                   {"stack_digest", store.description().digest},
+                   {"seed", configuration.trace.seed},
+                   {"images", scene_.positions.size()},
+                   {"rays_per_image", trace::launched_rays(configuration.trace, configuration.instrument)}},
+        .source = source_.get(),
+        .files = topography_files(configuration)};
+    stack.source.ledger = scan::mean_ledger(store.folder());
+    if (wave_limits_) {
+        const WaveLimits limits = wave_limits_->get();
+        for (const auto& warning : warnings_of(limits)) {
+            spdlog::warn(warning);
+        }
+        stack.origin["waves"] = json_of(limits);
+        stack.origin["waves"]["warnings"] = warnings_of(limits);
+    }
+    if (camera) {
+        stack.origin["camera"] = camera_json(*configuration.camera, *camera);
+        const auto warnings = warnings_of_images(configuration, *camera);
+        stack.origin["camera"]["warnings"] = warnings;
+        for (const auto& warning : warnings) {
+            spdlog::warn(warning);
+        }
+    }
+    warn_of_noise(configuration, stack.evaluation);
+    if (configuration.stage) {
+        stack.origin["stage"] = stage_figures(configuration);
+    }
+    return stack;
+}
+
+void write_stack_results(scan::ImageStore& store, const Configuration& configuration, const EvaluatedStack& stack) {
+    if (configuration.stage) {
+        store.results().write(stage_file, stage_table(configuration));
+    }
+    if (configuration.stack_file) {
+        enter_stage("images in one file");
+        scan::write_stack_file(store);
+    }
+    enter_stage("results and report");
+    write_results(store.results(), stack);
+    enter_stage("end");
+}
+
+} // namespace vkfv::measurement

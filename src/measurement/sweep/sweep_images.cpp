@@ -1,0 +1,118 @@
+#include "measurement/sweep/sweep_rows.hpp"
+
+#include "core/digest.hpp"
+#include "core/file.hpp"
+#include "images/image_file.hpp"
+#include "measurement/image/exposure.hpp"
+#include "measurement/scene/assembly.hpp"
+#include "scan/store.hpp"
+#include "specimen/geometry_digest.hpp"
+
+#include "trace/interface/ledger.hpp"
+
+#include <fmt/format.h>
+#include <spdlog/spdlog.h>
+
+#include <algorithm>
+#include <cmath>
+#include <optional>
+
+namespace vkfv::measurement {
+
+namespace {
+
+namespace fs = std::filesystem;
+using Json = nlohmann::ordered_json;
+
+constexpr double wanted_ratio = 100; // signal to noise that a user may want; the rays for it follow from the run's
+
+Json read_json(const fs::path& path) {
+    auto parsed = Json::parse(read_file(path), nullptr, false);
+    return parsed.is_object() ? parsed : Json();
+}
+
+Json figures_of(const trace::Image& image, bool ledger_tells) {
+    double flux = 0, square = 0;
+    for (const double value : image.flux.values) {
+        flux += value;
+        square += value * value;
+    }
+    const auto pixels = static_cast<double>(image.flux.values.size());
+    const double mean = flux / pixels, ratio = signal_to_noise(image);
+    Json figures;
+    figures["signal to noise"] = sweep_figure(ratio);
+    // What is left of the spread of the pixels without the noise.
+    const double variance = square / pixels / (mean * mean) - 1 - 1 / (ratio * ratio);
+    figures["contrast"] = sweep_figure(std::isnan(variance) ? variance : std::sqrt(std::max(0.0, variance)));
+    const auto share = ledger_tells ? trace::share_collected(image.ledger) : std::nullopt;
+    figures["share collected"] = share ? Json(*share) : Json();
+    figures["detected / emitted"] = flux / image.ledger.emitted;
+    figures["detected rays a pixel"] = static_cast<double>(image.detected) / pixels;
+    figures[fmt::format("rays for a ratio of {:g}", wanted_ratio)] =
+        sweep_figure(static_cast<double>(image.rays) * std::pow(wanted_ratio / ratio, 2));
+    return figures;
+}
+
+// What an image of the sweep is known again by: all that decides its bits, and what is written beside it.
+std::string image_digest(const Configuration& configuration, const std::string& identity, double focal_height) {
+    const auto& blur = configuration.diffraction;
+    return Digest()
+        .add(fmt::format("{}z = {}\nblur = {} {}\n", identity, focal_height, blur.airy, blur.pitch))
+        .add(blur.file.empty() ? std::string() : read_file(blur.file, {.key = "diffraction.file"}))
+        .text();
+}
+
+} // namespace
+
+const Surfaces::Surface& Surfaces::of(const Configuration& configuration) {
+    specimen::Description geometry = configuration.specimen.value();
+    geometry.material = {};
+    geometry.where = {};
+    if (!made_of_ || *made_of_ != geometry) {
+        surface_.specimen = make_specimen(configuration);
+        surface_.digest = specimen::geometry_digest(surface_.specimen);
+        made_of_ = std::move(geometry);
+    }
+    surface_.specimen.material = configuration.specimen->material;
+    return surface_;
+}
+
+SweepRow image_row(const Configuration& configuration, ResultFolder& results, const fs::path& name,
+                   Surfaces& surfaces) {
+    const double focal_height = configuration.sweep->focal_height;
+    const fs::path image_name = name / "image.tif", figures_name = name / "image.json";
+    const auto& surface = surfaces.of(configuration);
+    const auto instrument = instrument_for(configuration, surface.specimen, focal_height);
+    const auto tracer = trace::expected_identity(instrument, surface.specimen, configuration.trace);
+    const std::string digest =
+        image_digest(configuration, image_identity(configuration, surface.digest, tracer), focal_height);
+    SweepRow row;
+    const bool whole =
+        results.holds(image_name) && results.holds(figures_name) &&
+        (!configuration.diffraction.any() || configuration.camera || results.holds(name / "image_diffracted.tif"));
+    const Json earlier = whole ? read_json(results.path() / figures_name) : Json::object();
+    if (earlier.value("digest", "") == digest) {
+        row.figures = earlier.at("figures");
+        row.device = earlier.value("device", "");
+    } else {
+        WorkingDevices devices(configuration.trace.device);
+        const Exposure exposure = expose(configuration, devices, instrument, surface.specimen, focal_height);
+        const bool tells =
+            configuration.trace.estimator == trace::Estimator::forward && !configuration.trace.directed_scatter;
+        row.figures = figures_of(exposure.image, tells);
+        row.device = exposure.tracer.text();
+        for (const auto& [file, bytes] : image_files(image_name, exposure, focal_height)) {
+            results.write(file, bytes);
+        }
+        results.write(figures_name,
+                      Json{{"digest", digest}, {"device", row.device}, {"figures", row.figures}}.dump(2) + "\n");
+        results.write_checksums();
+        scan::append_timing(results.path(), fmt::format("\"{}\"", name.string()), exposure.image.seconds,
+                            static_cast<double>(exposure.image.rays));
+        spdlog::info("traced in {:.3g} s", exposure.image.seconds);
+    }
+    row.picture = images::read_image(results.path() / image_name);
+    return row;
+}
+
+} // namespace vkfv::measurement

@@ -1,0 +1,104 @@
+#include "measurement/sweep/sweep_rows.hpp"
+
+#include "core/units.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+namespace vkfv::measurement {
+
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+constexpr double wanted_height_noise = 0.1; // um, that a user may want; the rays for it follow from those of the run
+
+// As topography.tif holds them, float32 um: figures of a sweep are those of its files.
+Grid<double> as_written(const Grid<double>& heights) {
+    Grid<double> result = heights;
+    for (double& height : result.values) {
+        height = static_cast<float>(height * um_per_mm) * mm_per_um;
+    }
+    return result;
+}
+
+// Over the repeats; none where one of them has none.
+template <class Figure>
+Json mean_of(const std::vector<topography::Deviation>& repeats, const Figure& figure) {
+    double sum = 0;
+    for (const auto& repeat : repeats) {
+        const double value = figure(repeat);
+        if (!std::isfinite(value)) {
+            return {};
+        }
+        sum += value;
+    }
+    return sum / static_cast<double>(repeats.size());
+}
+
+// Root mean square of the points' standard deviations over the repeats, mm; points that one lacks do not count.
+double height_noise(const std::vector<Grid<double>>& repeats) {
+    const auto count = static_cast<double>(repeats.size());
+    double variance = 0, points = 0;
+    for (std::size_t k = 0; k < repeats.front().values.size(); ++k) {
+        double sum = 0, square = 0;
+        for (const auto& heights : repeats) {
+            sum += heights.values[k];
+            square += heights.values[k] * heights.values[k];
+        }
+        if (std::isfinite(sum)) {
+            variance += std::max(0.0, square - sum * sum / count) / (count - 1);
+            points += 1;
+        }
+    }
+    return std::sqrt(variance / points);
+}
+
+// The contact sheet stretches from 0 to twice the mean: heights from the lowest upwards.
+Grid<float> picture_of(const Grid<double>& heights) {
+    Grid<float> picture(heights.columns, heights.rows);
+    double lowest = 0;
+    for (const double height : heights.values) {
+        lowest = std::isfinite(height) ? std::min(lowest, height) : lowest;
+    }
+    std::ranges::transform(heights.values, picture.values.begin(), [&](double height) {
+        return std::isfinite(height) ? static_cast<float>(height - lowest) : 0.0f;
+    });
+    return picture;
+}
+
+} // namespace
+
+SweepRow stack_row(const std::vector<Configuration>& repeats, Progress& progress,
+                   const std::function<void(const StackResult&)>& after_stack) {
+    std::vector<Grid<double>> heights;
+    std::vector<topography::Deviation> deviations;
+    double rays_per_image = 0;
+    SweepRow row;
+    for (const auto& configuration : repeats) {
+        const auto stack = measure_stack(configuration, progress);
+        after_stack(stack);
+        heights.push_back(as_written(stack.evaluation.topography.height.height));
+        deviations.push_back(stack.evaluation.deviation.value());
+        rays_per_image = static_cast<double>(stack.rays_per_image);
+        row.device = stack.device;
+    }
+    row.figures["rms deviation / um"] =
+        mean_of(deviations, [](const auto& deviation) { return deviation.rms * um_per_mm; });
+    row.figures["Sq measured / Sq true"] =
+        mean_of(deviations, [](const auto& deviation) { return deviation.sq_measured / deviation.sq_true; });
+    row.figures["correlation"] = mean_of(deviations, [](const auto& deviation) { return deviation.correlation; });
+    row.figures["share measured"] = mean_of(deviations, [](const auto& deviation) { return deviation.measured_share; });
+    if (repeats.size() > 1) {
+        const double noise = height_noise(heights) * um_per_mm;
+        row.figures["height noise / um"] = sweep_figure(noise);
+        row.figures[fmt::format("rays for {:g} um", wanted_height_noise)] =
+            sweep_figure(rays_per_image * std::pow(noise / wanted_height_noise, 2));
+    }
+    row.picture = picture_of(heights.front());
+    return row;
+}
+
+} // namespace vkfv::measurement
