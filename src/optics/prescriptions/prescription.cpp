@@ -1,7 +1,7 @@
 #include "optics/prescriptions/prescription.hpp"
 
+#include "core/assets.hpp"
 #include "core/error.hpp"
-#include "core/installation.hpp"
 #include "core/toml_reader.hpp"
 #include "core/units.hpp"
 
@@ -10,7 +10,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstring>
 #include <map>
 #include <utility>
 
@@ -38,10 +37,6 @@ constexpr NumberRange abbe_range = {.minimum = 5, .maximum = 150}; // wide of ev
 constexpr NumberRange length_range = {.minimum = 0, .maximum = 1e6};
 constexpr NumberRange offset_range = {.minimum = -length_range.maximum, .maximum = length_range.maximum};
 constexpr NumberRange tilt_range_deg = {.minimum = -360, .maximum = 360};
-
-bool names_a_path(const std::string& name) {
-    return name.ends_with(".toml");
-}
 
 Medium read_table_medium(const TomlTable& table, const std::string& name, const std::string& source) {
     auto wavelengths_um = table.numbers("wavelengths_um", NumberRange::positive());
@@ -225,64 +220,14 @@ Prescription read_prescription(const TomlTable& root, const std::filesystem::pat
 
 } // namespace
 
-std::string searched_for_prescription(const std::string& name, const std::filesystem::path& folder,
-                                      const std::filesystem::path& base) {
-    if (names_a_path(name)) {
-        std::error_code code;
-        return fmt::format("looked for {}", (std::filesystem::absolute(base, code).lexically_normal() / name).string());
-    }
-    return searched_for_asset(folder / (name + ".toml"), base);
-}
-
-std::optional<std::filesystem::path> find_prescription(const std::string& name, const std::filesystem::path& folder,
-                                                       const std::filesystem::path& base) {
-    std::error_code code;
-    const auto is_file = [&](const std::filesystem::path& path) {
-        return std::filesystem::is_regular_file(path, code);
-    };
-    if (names_a_path(name)) {
-        const auto path = base / name;
-        return is_file(path) ? std::optional(path) : std::nullopt;
-    }
-    for (const auto& assets : asset_folders(base)) {
-        if (auto path = assets / folder / (name + ".toml"); is_file(path)) {
-            return path;
-        }
-    }
-    return std::nullopt;
-}
-
-bool comes_with_program(const std::filesystem::path& file, const std::filesystem::path& folder) {
-    const auto installed = installed_assets();
-    std::error_code code;
-    return installed && std::filesystem::equivalent(*installed / folder / file.filename(), file, code);
-}
-
-std::vector<std::string> prescription_names(const std::filesystem::path& folder, const std::filesystem::path& base) {
-    std::vector<std::string> names;
-    std::error_code code;
-    for (const auto& assets : asset_folders(base)) {
-        for (std::filesystem::directory_iterator entry(assets / folder, code), end; !code && entry != end;
-             entry.increment(code)) {
-            const auto name = entry->path().stem().string();
-            // Those beside the working directory may be the installed ones.
-            if (entry->path().extension() == ".toml" && std::ranges::find(names, name) == names.end()) {
-                names.push_back(name);
-            }
-        }
-    }
-    std::ranges::sort(names, [](const auto& a, const auto& b) { return strverscmp(a.c_str(), b.c_str()) < 0; });
-    return names;
-}
-
 Prescription load_prescription(const std::string& name, const std::filesystem::path& folder,
                                const std::filesystem::path& base, const GlassCatalog& glasses) {
-    const auto file = find_prescription(name, folder, base);
+    const auto file = find_asset(name, folder, base);
     if (!file) {
         throw InputError({.where = {.file = base},
                           .key = "prescription",
                           .found = "\"" + name + "\"",
-                          .expected = "an existing file; " + searched_for_prescription(name, folder, base),
+                          .expected = "an existing file; " + searched_for_asset(name, folder, base),
                           .remedy = "Correct the name, or give the path of a prescription (.toml)."});
     }
     return read_prescription(TomlTable::open(*file), *file, glasses);
