@@ -75,6 +75,7 @@ const KeyTable& root_keys() {
 
 void read_glass_catalogs(const TomlTable& root, Configuration& configuration) {
     const std::string key = glass_catalogs_key;
+    configuration.glasses = optics::GlassCatalog::builtin();
     std::vector<std::string> paths;
     for (const auto& path : root.optional_file_paths(key)) {
         const auto file = looked_for(path);

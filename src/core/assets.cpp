@@ -29,11 +29,12 @@ std::optional<fs::path> chosen_assets() {
     }
     std::error_code none;
     if (!fs::is_directory(variable, none)) {
-        throw InputError({.where = {.file = "environment"},
-                          .key = "VKFV_ASSETS",
-                          .found = fmt::format("\"{}\"", variable),
-                          .expected = "a folder with objectives, tube_lenses, illuminators, specimens or stacks",
-                          .remedy = "Correct it, or unset it to use the assets that came with the program."});
+        throw InputError(
+            {.where = {.file = "environment"},
+             .key = "VKFV_ASSETS",
+             .found = fmt::format("\"{}\"", variable),
+             .expected = "a folder with objectives, tube_lenses, illuminators, glasses, specimens or stacks",
+             .remedy = "Correct it, or unset it to use the assets that came with the program."});
     }
     return absolute_folder(variable);
 }
