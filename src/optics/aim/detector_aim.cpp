@@ -25,7 +25,7 @@ using physics::f64::Surface;
 constexpr double worthwhile = 0.98;
 // Over what samples are off. They stand on the rims themselves, but 15 degrees of azimuth apart: what goes with three
 // times the azimuth may be 8 % more between two of them (1 / cos 22.5 degrees).
-constexpr double margin = 1.25;
+constexpr double sampling_margin = 1.25;
 // Of the whole: of devices' float, 1e-6, and more.
 constexpr double rounding = 1e-3;
 
@@ -173,7 +173,7 @@ std::optional<glm::dvec2> aim_at_detector(const SingleScatter& light, const Aim&
         }
     }
     const Proportion per_length = proportion_of(lit);
-    const double direction_error = margin * per_length.error;
+    const double direction_error = sampling_margin * per_length.error;
     if (!(direction_error < disc.sine)) { // the source is imaged onto the specimen, or there is no light
         return std::nullopt;
     }
@@ -190,7 +190,7 @@ std::optional<glm::dvec2> aim_at_detector(const SingleScatter& light, const Aim&
     }
     // What is seen at one end crosses the plane of the other further out.
     constexpr double steepest = 0.99;
-    imaging.source.radius += 2 * light.greatest_defocus * slope_of(std::min(margin * sine, steepest));
+    imaging.source.radius += 2 * light.greatest_defocus * slope_of(std::min(sampling_margin * sine, steepest));
     Vectors seen; // where light starts, and where it lands
     for (const double height : ends) {
         imaging.source.distance = light.front_vertex_height - height;
@@ -200,7 +200,7 @@ std::optional<glm::dvec2> aim_at_detector(const SingleScatter& light, const Aim&
     }
     const Proportion magnification = proportion_of(seen);
     const glm::dvec2 field =
-        (light.detector_half_sides + margin * magnification.error) / std::abs(magnification.factor);
+        (light.detector_half_sides + sampling_margin * magnification.error) / std::abs(magnification.factor);
     const glm::dvec2 wanted = (1 + rounding) * (std::abs(per_length.factor) * field + direction_error);
     // In steps, so that machines whose libraries round otherwise agree; they are parts of one stack.
     constexpr double steps = 1 << 20;

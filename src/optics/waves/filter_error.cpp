@@ -24,7 +24,7 @@ constexpr int directions = 16; // over half a turn; the opposite ones are the co
 constexpr int half_heights = 4;
 constexpr std::size_t heights = 2 * half_heights + 1;
 constexpr double depths_of_field = 2;
-constexpr int most_wavelengths = 3; // of a continuous spectrum
+constexpr int most_wavelengths_tried = 3; // of a continuous spectrum
 constexpr int fewest_cells = 8;
 constexpr int most_cells = 16;
 
@@ -332,7 +332,7 @@ double reach_of_filter(const Instrument& instrument) {
 }
 
 PointWaves point_for_filter(const Instrument& instrument, glm::dvec2 field) {
-    return PointWaves(instrument, field, most_wavelengths);
+    return PointWaves(instrument, field, most_wavelengths_tried);
 }
 
 PupilFilter filter_for_waves(const Instrument& instrument) {
