@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 """README's picture of a stack: the image at z = 0, measured heights, true heights, deviation. Needs numpy and tifffile.
 
-usage: tools/demo_picture.py STACK_FOLDER OUT.png
+usage: tools/studies/demo_picture.py STACK_FOLDER OUT.png
 """
 import pathlib
 import struct
