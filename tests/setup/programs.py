@@ -17,7 +17,7 @@ ROOT = pathlib.Path(__file__).resolve().parents[2]
 # These start what their arguments name.
 WRAPPERS = {"command", "env", "exec", "nice", "sudo", "time", "timeout", "xargs", "xvfb-run"}
 # Functions of our scripts that do so, with how many arguments stand before the program.
-FUNCTIONS = {"step": 1, "inside": 0}
+FUNCTIONS = {"step": 1, "inside": 0, "inside_root": 1}
 SHELLS = {"bash", "sh"}
 # C++ functions of the tests that start what a string says.
 RUNNERS = r"(?:std::system|popen|shell|run_script)"
@@ -240,16 +240,16 @@ def targets_of(files):
     return {name for text in files.values() for name in re.findall(r"add_executable\((\w+)", text)}
 
 
-def tracked():
-    """The text of every file of this repository in which programs are looked for, by its name."""
+def tracked(changelog=False):
+    """The text of every file of this repository in which programs are looked for, by its name; the changelog is of its time."""
     listed = subprocess.run(["git", "-C", ROOT, "ls-files", "-z"], capture_output=True, check=True).stdout.decode().split("\0")
     texts = {}
     for name in listed:
         path = ROOT / name
-        # The program itself starts none but what its options name; the changelog is of its time.
+        # The program itself starts none but what its options name.
         if not name or name.startswith(("src/", "assets/", "tests/data/", "tests/fuzz/corpus/")) and not name.endswith(".cmake"):
             continue
-        if name == "CHANGELOG.md" or not path.is_file():
+        if name == "CHANGELOG.md" and not changelog or not path.is_file():
             continue
         try:
             texts[name] = path.read_text(encoding="utf-8")

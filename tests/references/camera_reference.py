@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 """An independent check of vkfv's camera: numpy's own generators and EMVA 1288's equations written down again.
 
-    tools/camera_reference.py FOLDER
+    tests/references/camera_reference.py FOLDER
 
 FOLDER is what `vkfv camera C.toml --images --out FOLDER` wrote. Its images are evaluated here, by the equations of EMVA
 Standard 1288 (release 4.0 linear), and held against camera.json, which vkfv's own evaluation wrote; and the same images are

@@ -95,7 +95,7 @@ def write_glb(path, corners):
     binary = positions.tobytes() + indices.tobytes()
     binary += b"\0" * (-len(binary) % 4)
     document = {
-        "asset": {"version": "2.0", "generator": "tools/make_specimens.py"},
+        "asset": {"version": "2.0", "generator": "make_specimens.py of vkfv"},
         "scene": 0,
         "scenes": [{"nodes": [0]}],
         "nodes": [{"name": "letter F", "mesh": 0, "scale": [1e-6, 1e-6, 1e-6]}],
@@ -151,7 +151,7 @@ def write_xyz(path, pitch=0.004):
 
 def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    default = Path(__file__).resolve().parent.parent / "assets" / "specimens"
+    default = Path(__file__).resolve().parents[2] / "assets" / "specimens"
     parser.add_argument("--out", type=Path, default=default, help="folder of the specimens (default: assets/specimens)")
     folder = parser.parse_args().out
     folder.mkdir(parents=True, exist_ok=True)

@@ -6,7 +6,7 @@ Shares no code with vkfv: a fan of meridional rays is traced from the detector's
 prescriptions, and what vkfv fits over the pupil is integrated here along its radius. Prints the wavefront's Zernike
 coefficients (Noll's order, unit RMS, waves), the transfer function H(f, z), and the heights at which gratings have their
 highest contrast. Heights: of the specimen, towards the objective, um.
-Usage: tools/wavefront_reference.py [objective [period_um ...]]
+Usage: tests/references/wavefront_reference.py [objective [period_um ...]]
 """
 import math
 import pathlib
@@ -18,7 +18,7 @@ from scipy.interpolate import CubicSpline
 from scipy.optimize import brentq, minimize_scalar
 
 WAVELENGTH = 0.587562e-3  # mm; the middle one of each medium's table
-ASSETS = pathlib.Path(__file__).resolve().parent.parent / "assets"
+ASSETS = pathlib.Path(__file__).resolve().parents[2] / "assets"
 
 
 def lens(path):

@@ -3,7 +3,7 @@
 
 Shares no code with vkfv: spheres traced from the prescriptions, midpoints instead of Gauss's nodes over the cone, reference
 spheres of finite radius. The plane is that of the least wavefront variance about such spheres, or the given one.
-Usage: tools/image_quality_reference.py [rings [sphere's radius, mm [height of the plane, um]]]
+Usage: tests/references/image_quality_reference.py [rings [sphere's radius, mm [height of the plane, um]]]
 """
 import cmath
 import math
@@ -12,7 +12,7 @@ import sys
 import tomllib
 
 WAVELENGTH = 0.587562e-3  # mm; the middle one of each medium's table
-ASSETS = pathlib.Path(__file__).resolve().parent.parent / "assets"
+ASSETS = pathlib.Path(__file__).resolve().parents[2] / "assets"
 
 
 def lens(path):
