@@ -174,13 +174,16 @@ class Page:
         return record["value"]
 
     def formula(self, name, declared):
-        """A figure that follows from others: their names without RUN are of the same run. Cells of tables: TABLE[row][column]."""
+        """A figure that follows from others of its run, by their names; of other runs, RUN.NAME. Tables: NAME[row][column]."""
         run = name.partition(".")[0]
-        known = {own: self.value(f"{run}.{own}") for own, other in self.runs[run].get("figures", {}).items() if "formula" not in other}
-        known |= {own: [[cell[0] if isinstance(cell, list) else cell for cell in row] for row in table["rows"]]
-                  for own, table in self.records[run].get("tables", {}).items()}
-        known |= {other: Run(self, other) for other in self.records if other.isidentifier() and other not in known}
-        return eval(declared["formula"], {"__builtins__": {}, "sum": sum, "min": min, "max": max, "abs": abs, "round": round}, known)
+        others = {other: Known(self, other) for other in self.records if other != run}
+        return eval(declared["formula"], {"__builtins__": {}, "min": min, "max": max, "round": round}, others | self.known(run))
+
+    def known(self, run):
+        """What formulas know of a run: its figures, and its tables without uncertainties."""
+        figures = {own: self.value(f"{run}.{own}") for own, other in self.runs[run].get("figures", {}).items() if "formula" not in other}
+        return figures | {own: [[cell[0] if isinstance(cell, list) else cell for cell in row] for row in table["rows"]]
+                          for own, table in self.records[run].get("tables", {}).items()}
 
     def figure_text(self, name):
         declared, record = self.entry(name, "figures")
@@ -294,14 +297,14 @@ class Page:
                     yield name, "changed since: " + ", ".join(changed)
 
 
-class Run:
-    """The figures of a run, for formulas of other runs."""
+class Known:
+    """What the formulas of other runs know of a run."""
 
-    def __init__(self, page, name):
-        self.page, self.name = page, name
+    def __init__(self, page, run):
+        self.page, self.run = page, run
 
-    def __getattr__(self, own):
-        return self.page.value(f"{self.name}.{own}")
+    def __getattr__(self, name):
+        return self.page.known(self.run)[name]
 
 
 def days(records):
