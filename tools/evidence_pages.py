@@ -19,6 +19,7 @@ import hashlib
 import json
 import re
 import string
+import textwrap
 import tomllib
 from pathlib import Path
 
@@ -27,6 +28,8 @@ FOLDER = ROOT / "docs" / "evidence"
 
 RUN = "run by tools/evidence"
 FROM_THE_PAGE = "recorded from the page, not run by tools/evidence yet"
+
+MOST_PROGRAMS = 3  # that the head of a page names; the others are in the records
 
 # What a run can depend on: the names that `depends` of a list uses, and the folders whose files they stand for.
 DEPENDENCIES = {
@@ -197,15 +200,18 @@ class Page:
         return table_text(declared, record["rows"])
 
     def programs_text(self):
-        """The sentence at the page's head that names its programs."""
+        """The sentence at the page's head that names its programs, the newest first."""
         programs = {}
         for record in self.records.values():
             programs.setdefault(record["program"], []).append(record)
         dated = sorted(programs.items(), key=lambda item: max(record["date"] for record in item[1]), reverse=True)
-        told = [f"{program} ({days(records)}; {len(records)} of {len(self.records)} runs)" if len(programs) > 1
-                else f"{program} ({days(records)})" for program, records in dated]
-        return (f"*Figures by {', '.join(told)}. Command, device, date and program of each: "
-                f"[evidence/{self.name}.json](evidence/{self.name}.json).*\n")
+        told = [f"{program} ({days(records)}{f', {len(records)} of {len(self.records)} runs' if len(dated) > 1 else ''})"
+                for program, records in dated[:MOST_PROGRAMS]]
+        if len(dated) > MOST_PROGRAMS:
+            told.append(f"older ones ({sum(len(records) for _, records in dated[MOST_PROGRAMS:])} runs)")
+        text = (f"*Figures by {', '.join(told)}. Command, device, date and program of each: "
+                f"[evidence/{self.name}.json](evidence/{self.name}.json).*")
+        return textwrap.fill(text, 150, break_long_words=False, break_on_hyphens=False) + "\n"
 
     def problems(self):
         """What does not hold between list, records and page: a line each."""
