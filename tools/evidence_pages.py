@@ -83,9 +83,9 @@ def files_named(command):
 def digests(run, root=ROOT):
     """By name, of all that a run depends on."""
     commands = [run["command"].replace("{each}", each) for each in run.get("each", [""])]
-    named = [root / file for command in commands for file in files_named(command)]
+    named = [file for command in commands for file in (root / name for name in files_named(command)) if file.is_file()]
     found = {name: digest_of(name, root) for name in run.get("depends", [])}
-    return {**found, "files of the command": digest_of_files([file for file in named if file.is_file()])}
+    return found | ({"files of the command": digest_of_files(named)} if named else {})
 
 
 # --- How a number is written, and read back ---
