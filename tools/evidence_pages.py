@@ -208,7 +208,7 @@ class Page:
         told = [f"{program} ({days(records)}{f', {len(records)} of {len(self.records)} runs' if len(dated) > 1 else ''})"
                 for program, records in dated[:MOST_PROGRAMS]]
         if len(dated) > MOST_PROGRAMS:
-            told.append(f"older ones ({sum(len(records) for _, records in dated[MOST_PROGRAMS:])} runs)")
+            told.append(f"older ones ({sum(len(records) for _, records in dated[MOST_PROGRAMS:])} of them)")
         text = (f"*Figures by {', '.join(told)}. Command, device, date and program of each: "
                 f"[evidence/{self.name}.json](evidence/{self.name}.json).*")
         return textwrap.fill(text, 150, break_long_words=False, break_on_hyphens=False) + "\n"
