@@ -6,6 +6,9 @@ Records that are older than what they depend on are listed at the end; they fail
 """
 
 import copy
+import importlib.machinery
+import importlib.util
+import json
 import re
 import sys
 import tempfile
@@ -17,6 +20,10 @@ sys.path.insert(0, str(SOURCE / "tools"))
 
 import evidence_pages  # noqa: E402
 from evidence_pages import COMMENT, Page, essence, read_back, shown  # noqa: E402
+
+loader = importlib.machinery.SourceFileLoader("evidence", str(SOURCE / "tools" / "evidence"))
+evidence = importlib.util.module_from_spec(importlib.util.spec_from_loader("evidence", loader))
+loader.exec_module(evidence)
 
 PAGES = {name: Page(name) for name in evidence_pages.page_names()}
 
@@ -181,6 +188,63 @@ class NumbersTest(unittest.TestCase):
         self.assertNotEqual(essence("a.cpp", "int a = 1;"), essence("a.cpp", "int a = 2;"))
         self.assertEqual(essence("a.cpp", "#include <b>\nint a /* n */ = 1; // c"), "inta=1;")
         self.assertEqual(essence("tool", "#!/bin/sh\n# c\nx=1 # d\n"), "x=1#d")
+
+
+class ReadingTest(unittest.TestCase):
+    """How tools/evidence reads what a run printed and wrote."""
+
+    def setUp(self):
+        folder = tempfile.TemporaryDirectory(prefix="vkfv_evidence_test_")
+        self.addCleanup(folder.cleanup)
+        (Path(folder.name) / "results.json").write_text(json.dumps(
+            {"share": 0.894, "dimensions": [{"name": "depth", "measured": 1.0}, {"name": "step height", "measured": 9.68, "deviation": 0.22}],
+             "stages": {"images": 2.5}, "rows": [{"noise": 0.5}, {"noise": 0.25}], "none": None}))
+        (Path(folder.name) / "table.csv").write_text("image,seconds\n0,1.5\n1,2.5\n")
+        self.output = evidence.Output(
+            "ring: step 9.70 of 10 seeds\ncoaxial: step 9.80 of 9 seeds\n\n| slope | 0 | 30 |\n|---|---|---|\n| ring | **84** | 0.70 ± 0.01, 2e3 |\n\n"
+            "| slope | 60 |\n|---|---|\n| ring | 7 |\n", Path(folder.name))
+
+    def read(self, **spec):
+        return self.output.values(spec)
+
+    def test_values(self):
+        self.assertEqual(self.read(file="results.json", json="share", scale=100), [89.4])
+        self.assertEqual(self.read(file="results.json", json=["dimensions.name=height.measured", "dimensions.1.deviation"]), [9.68, 0.22])
+        self.assertEqual(self.read(file="results.json", json="stages.image*"), [2.5])
+        self.assertEqual(self.read(file="table.csv", column="seconds"), [2.5])
+        self.assertEqual(self.read(regex="^coaxial: step (\\S+) of (\\d+)"), [9.8, 9])
+
+    def test_what_is_not_there_is_told(self):
+        for spec in ({"file": "other.json", "json": "share"}, {"file": "results.json", "json": "none"}, {"regex": "mixed: (.*)"}, {}):
+            with self.subTest(spec=spec), self.assertRaises(evidence.Unreadable):
+                self.read(**spec)
+
+    def test_figures_have_their_uncertainty(self):
+        declared = {"file": "results.json", "json": ["dimensions.1.measured", "dimensions.1.deviation"], "unit": "um", "format": "{:.2f} ± {:.2f}"}
+        self.assertEqual(evidence.read_figure(declared, {"": self.output}), {"value": 9.68, "unit": "um", "uncertainty": 0.22})
+        self.assertEqual(evidence.read_figure({**declared, "format": "{} x {}"}, {"": self.output}), {"value": [9.68, 0.22], "unit": "um"})
+
+    def read_table(self, **declared):
+        return evidence.read_table({"rows": ["ring"], **declared}, {"": self.output})["rows"]
+
+    def test_tables(self):
+        self.assertEqual(self.read_table(printed="slope", format="{:.0f}"), [[84, [0.7, 0.01, 2000]]])
+        self.assertEqual(self.read_table(printed="slope", nth=1, format="{:.0f}"), [[7]])
+        self.assertEqual(self.read_table(printed="slope", columns=["60"], format="{:.0f}"), [[7]])
+        self.assertEqual(self.read_table(head=["", "step", "seeds"], rows=["ring", "coaxial"], regex="^{row}: step (\\S+) of (\\d+)", format="{:.1f}"),
+                         [[9.7, 10], [9.8, 9]])
+        self.assertEqual(self.read_table(head=["", "step"], regex=["{row}: step (\\S+)"], format="{:.1f}"), [[9.7]])
+        self.assertEqual(self.read_table(rows=["a", "b"], keys=["0", "1"], file="results.json", json=["rows.{row}.noise"], scale=[10], format="{:.1f}"),
+                         [[5.0], [2.5]])
+
+    def test_only_what_the_tolerance_allows_is_as_recorded(self):
+        self.assertTrue(evidence.near(9.68, 9.70, {"tolerance": 0.03}, "{:.2f}"))
+        self.assertFalse(evidence.near(9.68, 9.72, {"tolerance": 0.03}, "{:.2f}"))
+        self.assertTrue(evidence.near(100, 104, {"tolerance": "5 %"}, "{:.0f}"))
+        self.assertFalse(evidence.near(100, 106, {"tolerance": "5 %"}, "{:.0f}"))
+        self.assertTrue(evidence.near(9.681, 9.684, {}, "{:.2f}"))
+        self.assertFalse(evidence.near(9.681, 9.686, {}, "{:.2f}"))
+        self.assertFalse(evidence.near(None, 9.68, {"tolerance": 1}, "{:.2f}"))
 
 
 def list_older_records():
