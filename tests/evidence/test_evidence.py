@@ -237,6 +237,17 @@ class ReadingTest(unittest.TestCase):
         self.assertEqual(self.read_table(rows=["a", "b"], keys=["0", "1"], file="results.json", json=["rows.{row}.noise"], scale=[10], format="{:.1f}"),
                          [[5.0], [2.5]])
 
+    def test_another_value_and_another_uncertainty_are_told(self):
+        run = {"figures": {"step": {"format": "{:.2f} ± {:.2f}", "tolerance": 0.05}}}
+        old = {"figures": {"step": {"value": 9.68, "uncertainty": 0.22}}}
+
+        def found(value, uncertainty):
+            return list(evidence.differences(run, old, {"figures": {"step": {"value": value, "uncertainty": uncertainty}}}))
+
+        self.assertEqual(found(9.70, 0.25), [])
+        self.assertEqual(len(found(9.80, 0.22)), 1)
+        self.assertIn("uncertainty", found(9.70, 0.69)[0])
+
     def test_only_what_the_tolerance_allows_is_as_recorded(self):
         self.assertTrue(evidence.near(9.68, 9.70, {"tolerance": 0.03}, "{:.2f}"))
         self.assertFalse(evidence.near(9.68, 9.72, {"tolerance": 0.03}, "{:.2f}"))
