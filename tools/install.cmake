@@ -1,7 +1,7 @@
 # What `cmake --install` puts where, and the Debian package that `cpack -G DEB` makes of it (tools/package does both).
 include(GNUInstallDirs)
 
-set(assets objectives tube_lenses illuminators elements specimens stacks schemas)
+set(assets objectives tube_lenses illuminators elements glasses specimens stacks schemas)
 list(TRANSFORM assets PREPEND ${PROJECT_SOURCE_DIR}/assets/)
 # A build finds its assets as an installation does.
 file(MAKE_DIRECTORY ${PROJECT_BINARY_DIR}/share)

@@ -1,5 +1,7 @@
 #include "app/commands.hpp"
 
+#include "core/assets.hpp"
+#include "core/assets.hpp"
 #include "core/toml_reader.hpp"
 #include "optics/prescriptions/prescription.hpp"
 #include "physics/scatter_registry.hpp"
@@ -28,7 +30,7 @@ struct Listed {
 std::vector<Listed> prescriptions(const char* folder) {
     const auto here = std::filesystem::current_path();
     std::vector<Listed> list;
-    for (const auto& name : optics::prescription_names(folder, here)) {
+    for (const auto& name : asset_names(folder, here)) {
         list.push_back({name, optics::load_prescription(name, folder, here).title});
     }
     return list;
@@ -38,8 +40,8 @@ std::vector<Listed> standards() {
     constexpr const char* folder = "specimens";
     const auto here = std::filesystem::current_path();
     std::vector<Listed> list;
-    for (const auto& name : optics::prescription_names(folder, here)) {
-        list.push_back({name, TomlTable::open(*optics::find_prescription(name, folder, here)).string("title")});
+    for (const auto& name : asset_names(folder, here)) {
+        list.push_back({name, TomlTable::open(*find_asset(name, folder, here)).string("title")});
     }
     return list;
 }

@@ -111,7 +111,7 @@ std::vector<Section> sections_of_program() {
                      {"130, 143, 129", "Ended by SIGINT, SIGTERM, SIGHUP"}}},
         {.title = "Environment",
          .entries = {{"VKFV_ASSETS",
-                      "A folder of assets (objectives, tube_lenses, illuminators, specimens, stacks) that "
+                      "A folder of assets (objectives, tube_lenses, illuminators, glasses, specimens, stacks) that "
                       "is searched first; then those beside the configuration and in the folders above "
                       "it, then those that came with the program"}}}};
 }

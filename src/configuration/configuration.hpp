@@ -67,8 +67,8 @@ enum class EvaluateOn { automatic, host, device };
 // The program's version is in it: another version may trace other bits.
 struct Configuration : ReadKeys {
     std::filesystem::path file;
-    optics::GlassCatalog glasses = optics::GlassCatalog::builtin(); // with the file's glass_catalogs
-    optics::InstrumentDescription instrument;                       // without the light's field
+    optics::GlassCatalog glasses; // of the program and of the file's glass_catalogs; none where no instrument is read
+    optics::InstrumentDescription instrument; // without the light's field
     std::optional<LightFieldDescription> light_field;
     std::optional<camera::CameraOptions> camera; // none: images are light
     std::optional<specimen::Description> specimen;

@@ -2,6 +2,7 @@
 
 #include "configuration/ranges.hpp"
 #include "configuration/tables.hpp"
+#include "core/assets.hpp"
 #include "core/digest.hpp"
 
 #include <fmt/format.h>
@@ -39,7 +40,7 @@ std::string content_digest(const optics::Prescription& prescription) {
 
 std::string remedy_for_prescription(const std::string& name, const std::string& folder,
                                     const std::filesystem::path& base) {
-    const auto meant = nearest_word(name, optics::prescription_names(folder, base));
+    const auto meant = nearest_word(name, asset_names(folder, base));
     return fmt::format("{}Correct the name, or give the path of a prescription (.toml).",
                        meant ? fmt::format("Did you mean \"{}\"? ", *meant) : "");
 }
@@ -74,6 +75,7 @@ const KeyTable& root_keys() {
 
 void read_glass_catalogs(const TomlTable& root, Configuration& configuration) {
     const std::string key = glass_catalogs_key;
+    configuration.glasses = optics::GlassCatalog::builtin();
     std::vector<std::string> paths;
     for (const auto& path : root.optional_file_paths(key)) {
         const auto file = looked_for(path);
@@ -96,13 +98,13 @@ optics::Prescription read_prescription(const Section& section, const TextKey& ke
         name = absolute_path(table.file_path(key.name)).string();
     }
     const auto base = absolute_path(configuration.file).parent_path(); // also of a file in the working directory
-    if (!optics::find_prescription(name, folder, base)) {
+    if (!find_asset(name, folder, base)) {
         section.note(key,
                      fmt::format("{}; {}",
                                  name.ends_with(".toml")
                                      ? "an existing file"
                                      : fmt::format("the name of a file in assets/{}, without .toml", folder),
-                                 optics::searched_for_prescription(name, folder, base)),
+                                 searched_for_asset(name, folder, base)),
                      remedy_for_prescription(name, folder, base));
         return optics::Prescription();
     }
@@ -115,7 +117,7 @@ optics::Prescription read_prescription(const Section& section, const TextKey& ke
         return prescription;
     }
     // A name that means the installed file means it from anywhere; another's path is kept.
-    if (!optics::comes_with_program(prescription.file, folder)) {
+    if (!comes_with_program(prescription.file, folder)) {
         name = absolute_path(prescription.file).string();
     }
     section.record_reference(key, name, content_digest(prescription));

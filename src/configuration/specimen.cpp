@@ -1,7 +1,7 @@
 // [specimen], [specimen.roughness], [specimen.material] and [[specimen.material.lobe]]; reflectance.cpp has its map.
 #include "configuration/ranges.hpp"
 #include "configuration/tables.hpp"
-#include "optics/prescriptions/prescription.hpp"
+#include "core/assets.hpp"
 #include "physics/scatter_registry.hpp"
 #include "specimen/kinds.hpp"
 
@@ -290,13 +290,13 @@ void take_standard(const TomlTable& table, const Configuration& configuration) {
     const auto base = absolute_path(configuration.file).parent_path();
     const bool is_path = name->ends_with(".toml");
     const std::string wanted = is_path ? absolute_path(table.file_path(key)).string() : *name;
-    const auto file = optics::find_prescription(wanted, folder, base); // finds any asset
+    const auto file = find_asset(wanted, folder, base);
     if (!file) {
-        const auto meant = nearest_word(*name, optics::prescription_names(folder, base));
+        const auto meant = nearest_word(*name, asset_names(folder, base));
         table.fail(key,
                    fmt::format("{}; {}",
                                is_path ? "an existing file" : "the name of a file in assets/specimens, without .toml",
-                               optics::searched_for_prescription(wanted, folder, base)),
+                               searched_for_asset(wanted, folder, base)),
                    fmt::format("{}Correct the name (vkfv list standards), or give the path of a file (.toml).",
                                meant ? fmt::format("Did you mean \"{}\"? ", *meant) : ""));
     }

@@ -1,7 +1,5 @@
 #include "core/installation.hpp"
 
-#include "core/error.hpp"
-
 #include <dlfcn.h>
 #include <elf.h>
 #include <fmt/format.h>
@@ -12,7 +10,6 @@
 #include <algorithm>
 #include <bit>
 #include <cstdint>
-#include <cstdlib>
 #include <cstring>
 #include <span>
 
@@ -21,8 +18,6 @@ namespace vkfv {
 namespace fs = std::filesystem;
 
 namespace {
-
-const fs::path assets_name = "assets";
 
 // The file that holds this code: a program, or a module that another program has loaded.
 fs::path own_file() {
@@ -43,7 +38,8 @@ fs::path own_file() {
     return started == nullptr ? fs::path() : fs::canonical(started, none);
 }
 
-// With those above it, the nearest first.
+} // namespace
+
 std::vector<fs::path> with_parents(const fs::path& folder) {
     std::vector<fs::path> all;
     for (auto one = folder; !one.empty(); one = one.parent_path()) {
@@ -55,29 +51,6 @@ std::vector<fs::path> with_parents(const fs::path& folder) {
     return all;
 }
 
-fs::path absolute_folder(const fs::path& path) {
-    std::error_code none;
-    return fs::absolute(path, none).lexically_normal();
-}
-
-std::optional<fs::path> chosen_assets() {
-    const char* variable = std::getenv("VKFV_ASSETS");
-    if (variable == nullptr || *variable == '\0') {
-        return std::nullopt;
-    }
-    std::error_code none;
-    if (!fs::is_directory(variable, none)) {
-        throw InputError({.where = {.file = "environment"},
-                          .key = "VKFV_ASSETS",
-                          .found = fmt::format("\"{}\"", variable),
-                          .expected = "a folder with objectives, tube_lenses, illuminators, specimens or stacks",
-                          .remedy = "Correct it, or unset it to use the assets that came with the program."});
-    }
-    return absolute_folder(variable);
-}
-
-} // namespace
-
 std::optional<fs::path> find_installed(const fs::path& relative) {
     std::error_code none;
     for (const auto& folder : with_parents(own_file().parent_path())) {
@@ -86,53 +59,6 @@ std::optional<fs::path> find_installed(const fs::path& relative) {
         }
     }
     return std::nullopt;
-}
-
-std::optional<fs::path> installed_assets() {
-    static const auto once = []() -> std::optional<fs::path> {
-        const auto found = find_installed("share/vkfv");
-        return found ? std::optional(fs::canonical(*found)) : std::nullopt;
-    }();
-    return once;
-}
-
-std::vector<fs::path> asset_folders(const fs::path& base) {
-    std::vector<fs::path> folders;
-    if (const auto chosen = chosen_assets()) {
-        folders.push_back(*chosen);
-    }
-    if (!base.empty()) {
-        for (const auto& beside : with_parents(absolute_folder(base))) {
-            folders.push_back(beside / assets_name);
-        }
-    }
-    if (const auto installed = installed_assets()) {
-        folders.push_back(*installed);
-    }
-    return folders;
-}
-
-std::string searched_for_asset(const fs::path& relative, const fs::path& base) {
-    const auto chosen = chosen_assets();
-    const auto installed = installed_assets();
-    return fmt::format("looked for {}{} beside {}, beside every folder above it, and {}",
-                       chosen ? fmt::format("{}, for ", (*chosen / relative).string()) : "",
-                       (assets_name / relative).generic_string(), absolute_folder(base).string(),
-                       installed ? "in " + installed->string()
-                                 : "nowhere else, as vkfv's own folder share/vkfv is missing: install vkfv again");
-}
-
-fs::path given_or_installed(const fs::path& path) {
-    std::error_code none;
-    if (path.empty() || *path.begin() != assets_name || fs::exists(path, none)) {
-        return path;
-    }
-    for (const auto& folder : asset_folders({})) {
-        if (auto found = folder / path.lexically_relative(assets_name); fs::exists(found, none)) {
-            return found;
-        }
-    }
-    return path;
 }
 
 std::string build_id() {

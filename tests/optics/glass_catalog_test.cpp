@@ -1,6 +1,7 @@
 #include "optics/media/glass_catalog.hpp"
 
 #include "core/error.hpp"
+#include "core/toml_reader.hpp"
 #include "optics/media/agf.hpp"
 #include "optics/prescriptions/prescription.hpp"
 #include "parts.hpp"
@@ -9,6 +10,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
 #include <cctype>
 #include <fstream>
 
@@ -116,6 +118,49 @@ TEST(GlassCatalog, EveryGlassIsDenserAtTheBlueEndAndHasASource) {
         EXPECT_FALSE(glass.source.empty()) << name;
         EXPECT_EQ(glass.name, name);
     }
+}
+
+// The papers give resonances as wavelengths, and water's formula relative to vacuum. The file has what the formula
+// takes.
+TEST(GlassCatalog, HasTheSquaresOfThePapersToTheLastBit) {
+    const auto glasses = GlassCatalog::builtin();
+    const auto coefficients = [&](const char* name) {
+        return std::get<GlassFormula>(glasses.get(name).dispersion).coefficients;
+    };
+    const auto squared = [](double x) { return x * x; };
+    const struct {
+        const char* name;
+        std::array<double, 3> resonances_um;
+    } rows[] = {{"FUSED-SILICA", {0.0684043, 0.1162414, 9.896161}},
+                {"CAF2", {0.050263605, 0.1003909, 34.649040}},
+                {"MGF2", {0.04338408, 0.09461442, 23.793604}},
+                {"SAPPHIRE", {0.0726631, 0.1193242, 18.028251}}};
+    for (const auto& [name, resonances] : rows) {
+        for (std::size_t i = 0; i < resonances.size(); ++i) {
+            EXPECT_EQ(coefficients(name)[2 * i + 1], squared(resonances[i])) << name << ' ' << i;
+        }
+    }
+    const double air = squared(1.000272);
+    EXPECT_EQ(coefficients("WATER"), (std::vector<double>{5.684027565e-1 / air, 5.101829712e-3, 1.726177391e-1 / air,
+                                                          1.821153936e-2, 2.086189578e-2 / air, 2.620722293e-2,
+                                                          1.130748688e-1 / air, 1.069792721e1, 1 / air - 1, 0}));
+}
+
+TEST(GlassCatalog, AFileOfGlassesIsCheckedWhole) {
+    const auto message = [](const std::string& text) -> std::string {
+        try {
+            GlassCatalog::of(TomlTable::parse(text, "glasses.toml"));
+        } catch (const InputError& error) {
+            return error.what();
+        }
+        return "accepted";
+    };
+    const std::string glass = "[media.A-1]\nsource = \"a test\"\nindex = 1.5\n";
+    EXPECT_EQ(message(glass + "[aliases]\nB = \"A_1\"\n"), "accepted");
+    EXPECT_THAT(message(glass + "[aliases]\nB = \"A-2\"\n"), HasSubstr("aliases.B"));
+    EXPECT_THAT(message("[media.A-1]\nindex = 1.5\n"), HasSubstr("media.A-1.source"));
+    EXPECT_THAT(message(glass + "indx = 2\n"), HasSubstr("media.A-1.indx"));
+    EXPECT_THAT(message("title = \"none\"\n"), HasSubstr("media"));
 }
 
 TEST(GlassCatalog, KnowsNamesInAnyCaseAndSpelling) {

@@ -1,5 +1,6 @@
 #include "optics/prescriptions/prescription.hpp"
 
+#include "core/assets.hpp"
 #include "core/error.hpp"
 #include "optics/train/first_order.hpp"
 #include "parts.hpp"
@@ -166,13 +167,13 @@ TEST_F(WrittenPrescription, IsFoundBesideTheConfigurationAndAboveIt) {
     write("assets/objectives/mine.toml", a_lens);
     const auto expected = std::filesystem::absolute(folder_ / "assets/objectives/mine.toml").lexically_normal();
     for (const char* base : {".", "stacks", "stacks/deep"}) {
-        const auto found = find_prescription("mine", "objectives", folder_ / base);
+        const auto found = find_asset("mine", "objectives", folder_ / base);
         ASSERT_TRUE(found.has_value()) << base;
         EXPECT_EQ(*found, expected) << base;
     }
     EXPECT_EQ(load_prescription("../assets/objectives/mine.toml", "objectives", folder_ / "stacks").name, "mine");
-    EXPECT_TRUE(find_prescription("10x_0.28", "objectives", folder_)) << "comes with the program";
-    EXPECT_FALSE(find_prescription("mine", "tube_lenses", folder_));
+    EXPECT_TRUE(find_asset("10x_0.28", "objectives", folder_)) << "comes with the program";
+    EXPECT_FALSE(find_asset("mine", "tube_lenses", folder_));
     EXPECT_THROW(load_prescription("11x", "objectives", folder_), InputError);
     EXPECT_THROW(load_prescription("missing.toml", "objectives", folder_), InputError);
 }
@@ -189,7 +190,7 @@ class ChosenAssets {
 };
 
 TEST_F(WrittenPrescription, IsThatOfTheVariableThenThatBesideThenTheInstalledOne) {
-    const auto found = [&] { return find_prescription("10x_0.28", "objectives", folder_ / "stacks").value(); };
+    const auto found = [&] { return find_asset("10x_0.28", "objectives", folder_ / "stacks").value(); };
     const auto installed = found();
     EXPECT_TRUE(comes_with_program(installed, "objectives"));
     write("assets/objectives/10x_0.28.toml", a_lens);
@@ -201,7 +202,7 @@ TEST_F(WrittenPrescription, IsThatOfTheVariableThenThatBesideThenTheInstalledOne
     EXPECT_EQ(found(), beside) << "the chosen folder lacks it";
     write("chosen/objectives/10x_0.28.toml", a_lens);
     EXPECT_EQ(found(), folder_ / "chosen/objectives/10x_0.28.toml");
-    EXPECT_EQ(find_prescription("20x_0.41", "objectives", folder_ / "stacks")->parent_path(), installed.parent_path());
+    EXPECT_EQ(find_asset("20x_0.41", "objectives", folder_ / "stacks")->parent_path(), installed.parent_path());
     const ChosenAssets missing(folder_ / "missing");
     EXPECT_THROW(found(), InputError);
 }

@@ -1,5 +1,6 @@
 #include "measurement/instrument/instrument_report.hpp"
 
+#include "core/assets.hpp"
 #include "core/digest.hpp"
 #include "core/files_read.hpp"
 #include "core/installation.hpp"

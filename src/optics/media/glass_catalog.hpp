@@ -1,4 +1,4 @@
-// Glasses by name: those built in, and those of catalogues that the user brings.
+// Glasses by name: those that come with the program, and those of catalogues that the user brings.
 #pragma once
 
 #include "optics/media/medium.hpp"
@@ -10,6 +10,10 @@
 #include <string_view>
 #include <vector>
 
+namespace vkfv {
+class TomlTable;
+}
+
 namespace vkfv::optics {
 
 // A value. Names are the same whatever their case, and with '_' or a space for '-': "n-bk7", "Fused Silica".
@@ -17,8 +21,13 @@ namespace vkfv::optics {
 // one; within a catalogue the first of a name is taken.
 class GlassCatalog {
   public:
-    // The common glasses, crystals and liquids, each with its source; see glass_catalog.cpp.
+    // The common glasses, crystals and liquids of assets/glasses/common.toml, each with its source. The file is that of
+    // asset_folders() without a base, read at the first call. Throws InputError if it is missing or wrong.
     static GlassCatalog builtin();
+
+    // Those of such a file: [media.NAME] as in prescriptions, but each with a source, and under [aliases] other names
+    // of media. Throws InputError that tells of all problems.
+    static GlassCatalog of(const TomlTable& root);
 
     // Adds the glasses of an AGF file. Throws InputError.
     void add(const std::filesystem::path& agf);

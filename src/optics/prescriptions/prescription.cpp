@@ -1,16 +1,16 @@
 #include "optics/prescriptions/prescription.hpp"
 
+#include "core/assets.hpp"
 #include "core/error.hpp"
-#include "core/installation.hpp"
 #include "core/toml_reader.hpp"
 #include "core/units.hpp"
+#include "optics/media/medium_table.hpp"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
 #include <algorithm>
 #include <cmath>
-#include <cstring>
 #include <map>
 #include <utility>
 
@@ -32,71 +32,10 @@ const char* name_of(SurfaceRole role) {
 
 namespace {
 
-constexpr NumberRange index_range = {.minimum = 1, .maximum = 5};
-constexpr NumberRange abbe_range = {.minimum = 5, .maximum = 150}; // wide of every glass
 // Of any length; wide of every microscope, and far from where squares overflow.
 constexpr NumberRange length_range = {.minimum = 0, .maximum = 1e6};
 constexpr NumberRange offset_range = {.minimum = -length_range.maximum, .maximum = length_range.maximum};
 constexpr NumberRange tilt_range_deg = {.minimum = -360, .maximum = 360};
-
-bool names_a_path(const std::string& name) {
-    return name.ends_with(".toml");
-}
-
-Medium read_table_medium(const TomlTable& table, const std::string& name, const std::string& source) {
-    auto wavelengths_um = table.numbers("wavelengths_um", NumberRange::positive());
-    auto indices = table.numbers("indices", index_range);
-    if (wavelengths_um.empty() ||
-        std::adjacent_find(wavelengths_um.begin(), wavelengths_um.end(), [](double a, double b) { return a >= b; }) !=
-            wavelengths_um.end()) {
-        table.fail("wavelengths_um", "at least one wavelength in um, ascending", "Sort the wavelengths.");
-    }
-    if (indices.size() != wavelengths_um.size()) {
-        table.fail("indices", fmt::format("{} indices, one a wavelength", wavelengths_um.size()),
-                   "Give as many indices as wavelengths.");
-    }
-    return Medium::tabulated(name, std::move(wavelengths_um), std::move(indices), source);
-}
-
-Medium read_formula_medium(const TomlTable& table, const std::string& name, const std::string& source) {
-    const std::vector<std::string> names(dispersion_formula_names.begin(), dispersion_formula_names.end());
-    const std::string chosen = table.choice("formula", names);
-    table.require("formula"); // it decides on the coefficients
-    const auto formula =
-        static_cast<DispersionFormula>(1 + std::distance(names.begin(), std::find(names.begin(), names.end(), chosen)));
-    auto coefficients = table.numbers("coefficients");
-    if (coefficients.empty() || coefficients.size() > coefficient_count(formula)) {
-        table.fail("coefficients", fmt::format("1 to {} coefficients", coefficient_count(formula)),
-                   "Check the formula and its coefficients.");
-    }
-    const auto range_um = table.numbers("range_um", NumberRange::positive());
-    if (range_um.size() != 2 || range_um[0] >= range_um[1]) {
-        table.fail("range_um", "two wavelengths in um, ascending", "Give the ends of the range where it holds.");
-    }
-    return Medium::formula(name, formula, std::move(coefficients), range_um[0], range_um[1], source);
-}
-
-// [media.NAME]: by the key that tells its form, one of each medium.
-Medium read_medium(const TomlTable& table, const std::string& name, const std::string& default_source) {
-    const auto source = table.optional_string("source").value_or(default_source);
-    std::string form;
-    for (const std::string key : {"wavelengths_um", "nd", "index", "formula"}) {
-        if (table.has(key) && !std::exchange(form, key).empty()) {
-            table.fail(key, "one description of the medium", "Keep one of wavelengths_um, nd, index and formula.");
-        }
-    }
-    if (form == "nd") {
-        const double nd = table.number("nd", index_range);
-        return Medium::model(name, nd, table.number("vd", abbe_range), source);
-    }
-    if (form == "index") {
-        return Medium::constant(name, table.number("index", index_range), source);
-    }
-    if (form == "formula") {
-        return read_formula_medium(table, name, source);
-    }
-    return read_table_medium(table, name, source);
-}
 
 // The media of one prescription: its own, and those of catalogues.
 struct Media {
@@ -225,64 +164,14 @@ Prescription read_prescription(const TomlTable& root, const std::filesystem::pat
 
 } // namespace
 
-std::string searched_for_prescription(const std::string& name, const std::filesystem::path& folder,
-                                      const std::filesystem::path& base) {
-    if (names_a_path(name)) {
-        std::error_code code;
-        return fmt::format("looked for {}", (std::filesystem::absolute(base, code).lexically_normal() / name).string());
-    }
-    return searched_for_asset(folder / (name + ".toml"), base);
-}
-
-std::optional<std::filesystem::path> find_prescription(const std::string& name, const std::filesystem::path& folder,
-                                                       const std::filesystem::path& base) {
-    std::error_code code;
-    const auto is_file = [&](const std::filesystem::path& path) {
-        return std::filesystem::is_regular_file(path, code);
-    };
-    if (names_a_path(name)) {
-        const auto path = base / name;
-        return is_file(path) ? std::optional(path) : std::nullopt;
-    }
-    for (const auto& assets : asset_folders(base)) {
-        if (auto path = assets / folder / (name + ".toml"); is_file(path)) {
-            return path;
-        }
-    }
-    return std::nullopt;
-}
-
-bool comes_with_program(const std::filesystem::path& file, const std::filesystem::path& folder) {
-    const auto installed = installed_assets();
-    std::error_code code;
-    return installed && std::filesystem::equivalent(*installed / folder / file.filename(), file, code);
-}
-
-std::vector<std::string> prescription_names(const std::filesystem::path& folder, const std::filesystem::path& base) {
-    std::vector<std::string> names;
-    std::error_code code;
-    for (const auto& assets : asset_folders(base)) {
-        for (std::filesystem::directory_iterator entry(assets / folder, code), end; !code && entry != end;
-             entry.increment(code)) {
-            const auto name = entry->path().stem().string();
-            // Those beside the working directory may be the installed ones.
-            if (entry->path().extension() == ".toml" && std::ranges::find(names, name) == names.end()) {
-                names.push_back(name);
-            }
-        }
-    }
-    std::ranges::sort(names, [](const auto& a, const auto& b) { return strverscmp(a.c_str(), b.c_str()) < 0; });
-    return names;
-}
-
 Prescription load_prescription(const std::string& name, const std::filesystem::path& folder,
                                const std::filesystem::path& base, const GlassCatalog& glasses) {
-    const auto file = find_prescription(name, folder, base);
+    const auto file = find_asset(name, folder, base);
     if (!file) {
         throw InputError({.where = {.file = base},
                           .key = "prescription",
                           .found = "\"" + name + "\"",
-                          .expected = "an existing file; " + searched_for_prescription(name, folder, base),
+                          .expected = "an existing file; " + searched_for_asset(name, folder, base),
                           .remedy = "Correct the name, or give the path of a prescription (.toml)."});
     }
     return read_prescription(TomlTable::open(*file), *file, glasses);

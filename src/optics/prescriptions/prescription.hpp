@@ -56,22 +56,7 @@ struct Prescription {
     std::optional<double> source_distance;
 };
 
-// Where a prescription is: `name` is a path ending in .toml, relative to the folder `base`, or the stem of a
-// file <folder>/<name>.toml in one of asset_folders(base). None: no such file.
-std::optional<std::filesystem::path> find_prescription(const std::string& name, const std::filesystem::path& folder,
-                                                       const std::filesystem::path& base);
-
-// Where find_prescription looks, for messages: "looked for ...".
-std::string searched_for_prescription(const std::string& name, const std::filesystem::path& folder,
-                                      const std::filesystem::path& base);
-
-// Whether it is a file of the installed assets, which their names alone mean from anywhere.
-bool comes_with_program(const std::filesystem::path& file, const std::filesystem::path& folder);
-
-// The names that find_prescription finds in such a folder, 5x before 10x.
-std::vector<std::string> prescription_names(const std::filesystem::path& folder, const std::filesystem::path& base);
-
-// Reads the prescription that find_prescription finds. A medium is looked for in the file's own [media], then in
+// Reads the prescription that find_asset() finds. A medium is looked for in the file's own [media], then in
 // `glasses`. Throws InputError.
 Prescription load_prescription(const std::string& name, const std::filesystem::path& folder,
                                const std::filesystem::path& base,

@@ -1,16 +1,10 @@
 #include "optics/prescriptions/zmx_glasses.hpp"
 
+#include "optics/media/medium_table.hpp"
+
 #include <fmt/format.h>
 
 namespace vkfv::optics::zmx {
-
-namespace {
-
-// As prescriptions are read.
-constexpr NumberRange index_range = {.minimum = 1, .maximum = 5};
-constexpr NumberRange abbe_range = {.minimum = 5, .maximum = 150};
-
-} // namespace
 
 Medium Glasses::medium_of(const Place& place, const Line& line) {
     if (line.words.empty()) {

@@ -1,0 +1,18 @@
+// Media as TOML describes them: the tables [media.NAME] of prescriptions and of assets/glasses.
+#pragma once
+
+#include "core/toml_reader.hpp"
+#include "optics/media/medium.hpp"
+
+#include <string>
+
+namespace vkfv::optics {
+
+inline constexpr NumberRange index_range = {.minimum = 1, .maximum = 5};
+inline constexpr NumberRange abbe_range = {.minimum = 5, .maximum = 150}; // wide of every glass
+
+// One of: wavelengths_um and indices; nd and vd; index; formula, coefficients and range_um. `default_source` is that of
+// a table without `source`. Throws InputError, unless the document collects problems.
+Medium read_medium(const TomlTable& table, const std::string& name, const std::string& default_source);
+
+} // namespace vkfv::optics
