@@ -207,7 +207,7 @@ class Rooms(unittest.TestCase):
             out.write(text)
 
     def test_an_include_that_the_link_line_does_not_name_is_found(self):
-        found = self.planted(lambda copy: self.add(copy, "src/surface/grid.cpp", '\n#include "images/png.hpp"\n#include "images/picture.hpp"\n'))
+        found = self.planted(lambda copy: self.add(copy, "src/surface/band.cpp", '\n#include "images/png.hpp"\n#include "images/picture.hpp"\n'))
         self.assertIn("src/surface includes images, which USES of its link line does not name", found)
         self.assertIn("docs/architecture.md does not let src/surface use images", found)
 

@@ -139,7 +139,7 @@ def strings_of(code):
     """String literals of C++, those that are put together as one; what is put in between, or by fmt, is the word VALUE."""
     texts, end = [], None
     for found in STRING.finditer(code):
-        text = found["raw"] if found["raw"] is not None else found["plain"].encode().decode("unicode_escape")
+        text = found["raw"] if found["raw"] is not None else found["plain"].encode().decode("unicode_escape", errors="replace")
         between = "," if end is None else code[end:found.start()].strip()
         if re.search(r"[,;{}?]|(?<!:):(?!:)", between):
             texts.append(text)
