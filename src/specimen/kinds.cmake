@@ -1,3 +1,5 @@
+include(${CMAKE_CURRENT_LIST_DIR}/../../shaders/directives.cmake)
+
 # Writes specimen/shape.hpp into FOLDER from the kinds, one file each: specimen/kinds.hpp says what stands in it. In the
 # order of their places ("// place: 3"), those without one last, by name. A type is named after its file: surface_file.hpp
 # has SurfaceFile.
@@ -7,12 +9,13 @@ function(vkfv_specimen_kinds folder)
   foreach(file ${files})
     set_property(DIRECTORY APPEND PROPERTY CMAKE_CONFIGURE_DEPENDS ${file})
     get_filename_component(stem ${file} NAME_WE)
-    set(place 9999)
-    file(STRINGS ${file} line REGEX "^// place: [0-9]+$")
-    if(line)
-      string(REGEX REPLACE "^// place: " "" place ${line})
+    vkfv_directives(says ${file} VALUES place)
+    if(says_place STREQUAL "")
+      set(says_place 9999)
+    elseif(NOT says_place MATCHES "^[0-9]+$")
+      message(FATAL_ERROR "${file}: expected \"// place: NUMBER\", found \"// place: ${says_place}\"")
     endif()
-    list(APPEND stems "${place}/${stem}")
+    list(APPEND stems "${says_place}/${stem}")
   endforeach()
   list(SORT stems COMPARE NATURAL)
   list(TRANSFORM stems REPLACE "^[0-9]+/" "")
