@@ -89,6 +89,7 @@ struct Kind {
     Write write;
     double white = 255;   // the value that 255 is stored as
     double tolerance = 0; // of 255: what the format itself loses
+    bool grey = true;     // colours of lossy formats need not be
 };
 
 // --- Writers
@@ -213,6 +214,18 @@ void write_pgm16(const fs::path& path, const Picture& picture) {
     write_file(path, bytes);
 }
 
+// Rows of little-endian floats, the lowest first.
+void write_pfm(const fs::path& path, const Picture& picture) {
+    std::string bytes = fmt::format("Pf\n{} {}\n-1.0\n", picture.columns, picture.rows);
+    for (int row = picture.rows - 1; row >= 0; --row) {
+        for (int column = 0; column < picture.columns; ++column) {
+            const float value = static_cast<float>(picture.at(column, row)) / 255;
+            bytes.append(reinterpret_cast<const char*>(&value), sizeof value);
+        }
+    }
+    write_file(path, bytes);
+}
+
 // One grey channel, not packed (Adobe Photoshop file format: header, no palette, no resources, no layers, pixels).
 void write_psd(const fs::path& path, const Picture& picture) {
     write_file(path, "8BPS" + big_endian(1, 2) + std::string(6, '\0') + big_endian(1, 2) +
@@ -255,15 +268,14 @@ std::vector<Kind> formats() {
         by_library("grey.bmp", {.format = "bmp"}),
         by_library("colour.bmp", {.format = "bmp", .channels = 3}),
         by_library("grey.pgm", {.format = "pnm"}),
-        {.name = "grey16.pgm", .write = write_pgm16, .white = 65535},
+        // The library rounds a value to the count below, now and then.
+        {.name = "grey16.pgm", .write = write_pgm16, .white = 65535, .tolerance = 255.0 / 65535},
         by_library("text.pgm", {.format = "pnm", .numbers = {{"pnm:binary", 0}}}),
         by_library("colour.ppm", {.format = "pnm", .channels = 3}),
         by_library("grey.tga", {.format = "targa"}),
         by_library("packed.tga", {.format = "targa", .channels = 3, .words = {{"compression", "rle"}}}),
         by_library("grey.jp2", {.format = "jpeg2000"}),
         by_library("grey.j2k", {.format = "jpeg2000"}),
-        // The library's encoder keeps smooth and noisy greys to one step.
-        by_library("lossless.webp", {.format = "webp", .channels = 3, .words = {{"compression", "lossless:100"}}}, 1),
         // Quality 100 rounds each of 64 coefficients, which is two or three steps of a pixel at most.
         by_library("grey.jpg", {.format = "jpeg", .words = {{"compression", "jpeg:100"}}}, 3),
         by_library("colour.jpeg", {.format = "jpeg", .channels = 3, .words = {{"compression", "jpeg:100"}}}, 3),
@@ -271,8 +283,13 @@ std::vector<Kind> formats() {
         // Half floats have 11 bits, HDR's mantissas 8.
         by_library("half.exr", {.format = "openexr", .type = TypeDesc::HALF, .white = 1}, 255.0 / 2048),
         by_library("colour.hdr", {.format = "hdr", .type = TypeDesc::FLOAT, .white = 1, .channels = 3}, 1),
-        by_library("floats.pfm", {.format = "pnm", .type = TypeDesc::FLOAT, .white = 1}),
+        {.name = "floats.pfm", .write = write_pfm, .white = 1},
     };
+    // The library's encoder passes through luminance and colour at half the resolution, also where it is to lose
+    // nothing.
+    kinds.push_back(
+        by_library("colour.webp", {.format = "webp", .channels = 3, .words = {{"compression", "lossless:100"}}}, 4));
+    kinds.back().grey = false;
     for (int orientation = 1; orientation <= 8; ++orientation) {
         for (const auto& [format, ending, tolerance] :
              {std::tuple("jpeg", "jpg", 3.0), std::tuple("tiff", "tif", 0.0)}) {
@@ -290,9 +307,11 @@ std::vector<Kind> formats() {
 
 // Read from a file of their own alone: in a folder they are seldom an image of the stack.
 std::vector<Kind> formats_of_single_files() {
-    return {by_library("grey.dpx", {.format = "dpx"}), Kind{.name = "grey.psd", .write = write_psd},
-            // The library's encoder has few colours for a picture.
-            by_library("colour.gif", {.format = "gif", .channels = 3}, 16)};
+    std::vector<Kind> kinds = {by_library("grey.dpx", {.format = "dpx"}), {.name = "grey.psd", .write = write_psd}};
+    // The library's encoder has few colours for a picture.
+    kinds.push_back(by_library("colour.gif", {.format = "gif", .channels = 3}, 16));
+    kinds.back().grey = false;
+    return kinds;
 }
 
 // --- Routes
@@ -326,8 +345,7 @@ void expect_by_every_route(const fs::path& file, const Kind& kind, const Picture
     const scan::ImageSeries pages(file);
     EXPECT_EQ(pages.size(), 1) << what;
     expect_channels(pages.read(0), kind, picture, what);
-    // Lossy colours need not be grey.
-    if (!kind.name.ends_with("gif")) {
+    if (kind.grey) {
         expect_picture(images::read_image(file), picture, kind.white, kind.tolerance, what);
         // Integers come as shares of white.
         expect_picture(specimen::read_image(file, {}), picture, 1, kind.tolerance, what);
@@ -535,6 +553,13 @@ TEST(ImageFormats, WhatIsNotReadSaysWhatIs) {
         EXPECT_THAT(told([&] { (void)specimen::read_image(folder / name, {}); }), HasSubstr("JPEG 2000")) << name;
     }
     EXPECT_THROW((void)images::read_channels(folder / "cut.jpg"), InputError);
+    // OpenImageIO 2.4 returns what was in the memory before.
+    write_by_library(folder / "tiles.tif", smooth(40, 30),
+                     {.format = "tiff", .type = OIIO::TypeDesc::DOUBLE, .white = 1, .numbers = {{"tile", 16}}});
+    EXPECT_THAT(told([&] { (void)images::read_channels(folder / "tiles.tif"); }), HasSubstr("64 bits"));
+    EXPECT_THAT(told([&] { (void)specimen::read_image(folder / "tiles.tif", {}); }), HasSubstr("64 bits"));
+    EXPECT_THAT(told([&] { (void)surface::read_surface(folder / "tiles.tif", {.pitch = 1, .unit = 1}); }),
+                HasSubstr("64 bits"));
 }
 
 // --- By the program
@@ -593,6 +618,7 @@ TEST(ImageFormats, APackedHeightMapComparesAsTheSame) {
     ASSERT_TRUE(input->read_image(0, 0, 0, 1, OIIO::TypeDesc::FLOAT, values.data()));
     OIIO::ImageSpec spec = input->spec();
     spec.tile_width = spec.tile_height = 16;
+    spec.tile_depth = 1;
     spec.attribute("compression", "zip");
     const auto output = OIIO::ImageOutput::create("tiff");
     ASSERT_TRUE(output->open((folder / "packed.tif").string(), spec)) << output->geterror();
@@ -600,7 +626,7 @@ TEST(ImageFormats, APackedHeightMapComparesAsTheSame) {
     EXPECT_GT(fs::file_size(folder / "packed.tif"), stream_block);
     const auto result = run_program({"compare", "packed.tif", "map.tif", "--json"}, folder);
     ASSERT_EQ(result.exit_code, 0) << result.standard_error;
-    EXPECT_THAT(result.standard_output, HasSubstr("\"sq_deviation_um\""));
+    EXPECT_THAT(result.standard_output, HasSubstr("\"rms_deviation_um\": 0.0,"));
     const auto packed = surface::read_height_map(folder / "packed.tif"),
                plain = surface::read_height_map(folder / "map.tif");
     EXPECT_EQ(packed.height.values, plain.height.values);

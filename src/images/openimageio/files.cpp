@@ -119,6 +119,7 @@ OIIO::ImageSpec flat_page(const OpenImage& image, const std::filesystem::path& p
         refuse_file(path, fmt::format("page {}", page), fmt::format("depth {}", spec.depth), "two dimensions",
                     "Write every plane as a page or file of its own.");
     check_size(image, spec, path);
+    refuse_lost_values(*image.input, spec, path);
     return spec;
 }
 
@@ -128,7 +129,7 @@ std::vector<Grid<Value>> read_all_channels(const OpenImage& image, const std::fi
     const OIIO::ImageSpec spec = flat_page(image, path, page);
     std::vector<Grid<Value>> channels;
     for (int channel = 0; channel < spec.nchannels; ++channel)
-        if (channel != spec.alpha_channel)
+        if (channel != opacity_channel(spec))
             channels.push_back(read_channel<Value>(*image.input, spec, path, page, channel));
     return channels;
 }

@@ -51,12 +51,12 @@ Channels check(const OIIO::ImageSpec& spec, std::uint64_t file_bytes, std::uint6
                          spec.tile_height, file_bytes),
              "no more than packing can do", "The file is truncated or damaged: write or copy it anew.");
     }
-    const bool opacity = spec.alpha_channel >= 0;
+    const bool opacity = opacity_channel(spec) >= 0;
     const int others = spec.nchannels - (opacity ? 1 : 0);
     if (others != 1 && others != 3) {
         fail(file, fmt::format("{} channels", spec.nchannels), "one grey channel", "Convert the image to grey.");
     }
-    return {.count = spec.nchannels, .grey = spec.alpha_channel == 0 ? 1 : 0, .colour = others == 3};
+    return {.count = spec.nchannels, .grey = opacity_channel(spec) == 0 ? 1 : 0, .colour = others == 3};
 }
 
 bool read_rows(OIIO::ImageInput& input, const OIIO::ImageSpec& spec, int channels, int first, int end, float* band) {
@@ -75,7 +75,9 @@ std::vector<float> read_heights(OIIO::ImageInput& input, const OIIO::ImageSpec& 
                                 const std::filesystem::path& file) {
     constexpr int rows_at_once = 64;
     const std::size_t width = static_cast<std::size_t>(spec.width);
-    const int band_rows = std::min(spec.tile_height > 0 ? spec.tile_height : rows_at_once, spec.height);
+    const int band_rows = whole_strips_only(input, spec)
+                              ? spec.height
+                              : std::min(spec.tile_height > 0 ? spec.tile_height : rows_at_once, spec.height);
     std::vector<float> band;
     std::vector<float> heights;
     for (int row = 0; row < spec.height; row += std::min(band_rows, spec.height - row)) {
@@ -109,6 +111,7 @@ Grid<float> parse_grey(std::string_view bytes, std::uint64_t most_pixels, const 
     const OpenImage image = open_image(bytes, file);
     const OIIO::ImageSpec spec = image.input->spec();
     const Channels channels = check(spec, image.bytes, most_pixels, file);
+    refuse_lost_values(*image.input, spec, file);
     return upright<float>(read_heights(*image.input, spec, channels, file), spec.width, spec.height,
                           orientation_of(spec));
 }

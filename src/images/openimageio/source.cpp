@@ -192,4 +192,11 @@ OpenImage open_image(const std::filesystem::path& path) {
     return image;
 }
 
+void refuse_lost_values(const OIIO::ImageInput& input, const OIIO::ImageSpec& spec, const std::filesystem::path& path) {
+    if (whole_strips_only(input, spec) && (spec.tile_width > 0 || spec.height == 1)) {
+        refuse(path, spec.tile_width > 0 ? "values of 64 bits in tiles" : "a single row of values of 64 bits",
+               "values of 32 bits, or several rows in strips", "Save the image with 32 bits a value.");
+    }
+}
+
 } // namespace vkfv::images::openimageio
