@@ -64,7 +64,8 @@ class Declaration {
         for (const auto& [key, node] : members->items()) {
             if (key.starts_with(name)) {
                 Declaration declared(*root_, node);
-                const std::string_view suffix = unit_of(declared.unit_).in_keys, rest = key.substr(name.size());
+                const std::string_view suffix = unit_of(declared.unit_).in_keys,
+                                       rest = std::string_view(key).substr(name.size());
                 if (rest.empty() || rest == fmt::format("_{}", suffix) || rest == fmt::format(" / {}", suffix)) {
                     declared.unit_ = declared.unit_.empty() ? unit_ : declared.unit_;
                     return std::pair(key, declared);
