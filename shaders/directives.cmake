@@ -3,7 +3,6 @@
 # of a list is "// NAME: TEXT" and sets PREFIX_NAME to the text, or adds it; without one it is empty. Every line there that
 # has the form of a directive must be one, and stand there: a misspelt name is not taken as prose.
 function(vkfv_directives prefix file)
-  cmake_policy(VERSION 3.25) # for scripts, which set none
   cmake_parse_arguments(PARSE_ARGV 2 KNOWN "" "" "FLAGS;VALUES;LISTS")
   set(names ${KNOWN_FLAGS} ${KNOWN_VALUES} ${KNOWN_LISTS})
   set(forms "")
@@ -40,7 +39,7 @@ function(vkfv_directives prefix file)
       if(lower MATCHES "^//[ \t]*(${any})[ \t\r]*(:.*)?$")
         message(FATAL_ERROR "${file}:${number}: \"${line}\" stands too late: directives are lines of the comment that the file begins with")
       endif()
-    elseif(line MATCHES "^//[ \t]*[a-z0-9_-]+[ \t\r]*(:.*)?$" OR lower MATCHES "^//[ \t]*(${any})([^a-z0-9_-].*)?$")
+    elseif(lower MATCHES "^//[ \t]*[a-z0-9_-]+[ \t\r]*$" OR line MATCHES "^//[ \t]*[a-z0-9_-]+[ \t]*:" OR lower MATCHES "^//[ \t]*(${any})([^a-z0-9_].*)?$")
       set(name "")
       if(line MATCHES "^// ([a-z_]+)$" AND CMAKE_MATCH_1 IN_LIST KNOWN_FLAGS)
         set(name ${CMAKE_MATCH_1})

@@ -52,7 +52,8 @@ class Directives(unittest.TestCase):
             file = pathlib.Path(folder) / "model.glsl"
             file.write_text(text)
             script = pathlib.Path(folder) / "read.cmake"
-            script.write_text(f"""include({ROOT / "shaders/directives.cmake"})
+            script.write_text(f"""cmake_minimum_required(VERSION 3.25)
+include({ROOT / "shaders/directives.cmake"})
 vkfv_directives(says {file} FLAGS lossy cone VALUES place LISTS parameter)
 message(STATUS "${{says_lossy}} ${{says_cone}} (${{says_place}}) (${{says_parameter}})")
 """)
@@ -91,7 +92,7 @@ message(STATUS "${{says_lossy}} ${{says_cone}} (${{says_place}}) (${{says_parame
                 self.assertIn("model.glsl:", said)
 
     def test_prose_is_no_directive(self):
-        for prose in ("// A lossy model, as it were: masking.", "//   f = D(m) / 4", "// place-holders are none", "// Lossless."):
+        for prose in ("// A lossy model, as it were: masking.", "//   f = D(m) / 4", "// Reciprocal: f(i, o) = f(o, i).", "// placeholders are none", "// Lossless."):
             with self.subTest(prose):
                 self.assertEqual(self.read(prose + "\n"), ("", "-- false false () ()"))
 
