@@ -51,12 +51,12 @@ Channels check(const OIIO::ImageSpec& spec, std::uint64_t file_bytes, std::uint6
                          spec.tile_height, file_bytes),
              "no more than packing can do", "The file is truncated or damaged: write or copy it anew.");
     }
-    const bool opacity = opacity_channel(spec) >= 0;
-    const int others = spec.nchannels - (opacity ? 1 : 0);
+    const int opacity = opacity_channel(spec);
+    const int others = spec.nchannels - (opacity >= 0 ? 1 : 0);
     if (others != 1 && others != 3) {
         fail(file, fmt::format("{} channels", spec.nchannels), "one grey channel", "Convert the image to grey.");
     }
-    return {.count = spec.nchannels, .grey = opacity_channel(spec) == 0 ? 1 : 0, .colour = others == 3};
+    return {.count = spec.nchannels, .grey = opacity == 0 ? 1 : 0, .colour = others == 3};
 }
 
 bool read_rows(OIIO::ImageInput& input, const OIIO::ImageSpec& spec, int channels, int first, int end, float* band) {

@@ -192,6 +192,14 @@ OpenImage open_image(const std::filesystem::path& path) {
     return image;
 }
 
+int opacity_channel(const OIIO::ImageSpec& spec) {
+    if (spec.alpha_channel < spec.nchannels) {
+        return spec.alpha_channel;
+    }
+    const auto named = std::ranges::find(spec.channelnames, "A");
+    return named == spec.channelnames.end() ? -1 : static_cast<int>(named - spec.channelnames.begin());
+}
+
 void refuse_lost_values(const OIIO::ImageInput& input, const OIIO::ImageSpec& spec, const std::filesystem::path& path) {
     if (whole_strips_only(input, spec) && (spec.tile_width > 0 || spec.height == 1)) {
         refuse(path, spec.tile_width > 0 ? "values of 64 bits in tiles" : "a single row of values of 64 bits",

@@ -30,10 +30,8 @@ OpenImage open_image(const std::filesystem::path& path);
 // The same of a whole file in memory, which must outlive the image; `path` names it in messages.
 OpenImage open_image(std::string_view bytes, const std::filesystem::path& path);
 
-// The channel of opacity, -1 without one. OpenImageIO's reader of GIF says one more than the last.
-inline int opacity_channel(const OIIO::ImageSpec& spec) {
-    return spec.alpha_channel < spec.nchannels ? spec.alpha_channel : spec.nchannels - 1;
-}
+// Which channel is opacity; -1: none. OpenImageIO 2.4 says of a GIF that its opacity is behind the last channel.
+int opacity_channel(const OIIO::ImageSpec& spec);
 
 // OpenImageIO 2.4 reads values of 64 bits of a TIFF by whole strips alone. Of tiles and of single rows it returns what
 // was in the memory before, and says that it read them.
