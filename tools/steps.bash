@@ -15,6 +15,18 @@ step() {
     printf '==> %s: %d s\n' "$title" "$((SECONDS - began))"
 }
 
+# needs PACKAGES PROGRAM...: ends if a program is missing that tools/setup does not install, since few need it
+needs() {
+    local packages=$1 program
+    shift
+    for program in "$@"; do
+        if ! command -v "$program" >/dev/null; then
+            echo "$0: $program is missing. Install $packages." >&2
+            exit 2
+        fi
+    done
+}
+
 # Mesa's lavapipe becomes the only Vulkan driver, unless the caller has chosen one by the loader's own variables.
 use_software_vulkan() {
     if [[ -n ${VK_DRIVER_FILES-}${VK_ICD_FILENAMES-}${VK_LOADER_DRIVERS_SELECT-} ]]; then

@@ -8,7 +8,8 @@
 //
 // bvh_another() gives the further primitives of the same node. One walk at a time: they share the stack.
 
-const int BVH_STACK = 32; // hierarchy_depth of src/trace/structures/bounding_volume_hierarchy.hpp: a level leaves one entry
+const int BVH_STACK =
+    32; // hierarchy_depth of src/trace/structures/bounding_volume_hierarchy.hpp: a level leaves one entry
 
 // HierarchyNode of the same file, five a node.
 layout(set = 0, binding = BINDING_STRUCTURE, scalar) readonly buffer Nodes { uvec4 bvh_nodes[]; };

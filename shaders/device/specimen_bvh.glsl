@@ -2,8 +2,8 @@
 #include "device/specimen_primitives.glsl"
 #include "device/bvh.glsl"
 
-// TrianglePair of src/trace/structures/triangle_pairs.hpp, in the order of the tree: twelve numbers, so that three loads fetch
-// them.
+// TrianglePair of src/trace/structures/triangle_pairs.hpp, in the order of the tree: twelve numbers, so that three
+// loads fetch them.
 layout(set = 0, binding = BINDING_VERTICES, scalar) readonly buffer Pairs { vec4 pair_parts[]; };
 
 // EntryNodes of src/trace/structures/entry_nodes.hpp.

@@ -1,7 +1,7 @@
-// Light sorted by where it crosses the pupil, for what diffraction makes of it afterwards (optics/waves/pupil_filter.hpp): a
-// square grid of cells over the exit pupil as the detector sees it, and in every cell an image whose pixels are parted
-// so finely that it can hold all that light waves resolve. Opposite cells stay apart: what aberration does to the phase
-// of one is the opposite in the other.
+// Light sorted by where it crosses the pupil, for what diffraction makes of it afterwards
+// (optics/waves/pupil_filter.hpp): a square grid of cells over the exit pupil as the detector sees it, and in every
+// cell an image whose pixels are parted so finely that it can hold all that light waves resolve. Opposite cells stay
+// apart: what aberration does to the phase of one is the opposite in the other.
 // clang-format off
 #define VKFV_PUPIL_CELLS_FIELDS(FIELD) \
     FIELD(uint, side)             /* cells across the pupil, an even number; 0: light is not sorted */ \

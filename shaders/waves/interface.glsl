@@ -1,5 +1,5 @@
-// What host and device share of the image that waves make of light sorted by pupil cells (trace/device/device_wave_image.hpp):
-// where buffers are bound (set 0), push constants.
+// What host and device share of the image that waves make of light sorted by pupil cells
+// (trace/device/device_wave_image.hpp): where buffers are bound (set 0), push constants.
 
 const uint WAVES_BINDING_PLANES = 0u;   // complex, two planes a group of cells
 const uint WAVES_BINDING_TABLE = 1u;    // the cells' transfer functions

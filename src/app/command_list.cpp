@@ -1,7 +1,6 @@
 #include "app/commands.hpp"
 
 #include "core/assets.hpp"
-#include "core/assets.hpp"
 #include "core/toml_reader.hpp"
 #include "optics/prescriptions/prescription.hpp"
 #include "physics/scatter_registry.hpp"

@@ -244,31 +244,48 @@ InputFile::InputFile(const fs::path& path, const FileRequest& request) : path_(p
     }
     note_file_read(path.string(), status);
     bytes_ = static_cast<std::uint64_t>(status.st_size);
-    stream_.reset(::fdopen(file.number(), "rb"));
-    if (!stream_) {
-        refuse(reason_of(errno));
-    }
-    file.release();
+    descriptor_ = file.release();
+}
+
+InputFile::~InputFile() {
+    ::close(descriptor_);
 }
 
 std::string InputFile::read(std::uint64_t most) const {
     std::string bytes(std::min(most, bytes_), '\0');
-    for (std::size_t done = 0; done < bytes.size();) {
-        const ssize_t got =
-            ::pread(::fileno(stream()), bytes.data() + done, bytes.size() - done, static_cast<off_t>(done));
-        if (got < 0 && errno == EINTR) {
-            continue;
-        }
-        if (got <= 0) {
-            throw InputError({.where = {.file = path_, .line = 0, .column = 0, .byte_offset = done},
-                              .key = request_.key,
-                              .found = got == 0 ? "the end of the file" : reason_of(errno),
-                              .expected = fmt::format("{} bytes", bytes_),
-                              .remedy = "Check the disk, and that no other program writes the file."});
-        }
-        done += static_cast<std::size_t>(got);
+    const std::size_t done = read_at(0, bytes);
+    if (done < bytes.size()) {
+        throw InputError({.where = {.file = path_, .line = 0, .column = 0, .byte_offset = done},
+                          .key = request_.key,
+                          .found = errno == 0 ? "the end of the file" : reason_of(errno),
+                          .expected = fmt::format("{} bytes", bytes_),
+                          .remedy = "Check the disk, and that no other program writes the file."});
     }
     return bytes;
+}
+
+std::size_t InputFile::read_at(std::uint64_t place, std::span<char> to) const {
+    std::size_t done = 0;
+    while (done < to.size()) {
+        const ssize_t got = ::pread(descriptor_, to.data() + done, to.size() - done, static_cast<off_t>(place + done));
+        if (got > 0) {
+            done += static_cast<std::size_t>(got);
+        } else if (got == 0) {
+            errno = 0;
+            break;
+        } else if (errno != EINTR) {
+            break;
+        }
+    }
+    return done;
+}
+
+std::string InputFile::checksum() const {
+    const auto sum = vkfv::checksum(descriptor_);
+    if (!sum) {
+        refuse_file(path_, "", reason_of(errno), "a file that can be read", "Check the disk.");
+    }
+    return *sum;
 }
 
 std::string read_file(const fs::path& path, const FileRequest& request) {
@@ -302,12 +319,7 @@ std::string write_file_in_parts(const fs::path& path, const std::function<void(c
 }
 
 std::string checksum_of_file(const fs::path& path) {
-    const InputFile file(path);
-    const auto sum = checksum(::fileno(file.stream()));
-    if (!sum) {
-        refuse_file(path, "", reason_of(errno), "a file that can be read", "Check the disk.");
-    }
-    return *sum;
+    return InputFile(path).checksum();
 }
 
 void append_line(const fs::path& path, std::string_view line) {

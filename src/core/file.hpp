@@ -2,10 +2,9 @@
 #pragma once
 
 #include <cstdint>
-#include <cstdio>
 #include <filesystem>
 #include <functional>
-#include <memory>
+#include <span>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -26,19 +25,24 @@ class InputFile {
     // Throws InputError, with the folder that was searched where there is no such file.
     explicit InputFile(const std::filesystem::path& path, const FileRequest& request = {});
 
+    InputFile(const InputFile&) = delete;
+    InputFile& operator=(const InputFile&) = delete;
+    ~InputFile();
+
     std::uint64_t bytes() const { return bytes_; } // when it was opened
-    // For libraries that read by themselves; at the file's beginning, valid as long as this object.
-    std::FILE* stream() const { return stream_.get(); }
     // From the beginning, at most `most` bytes. Throws InputError where the disk fails or the file has become shorter.
     std::string read(std::uint64_t most = UINT64_MAX) const;
+    // For libraries that read by themselves: fills `to` from the byte `place` on and returns how many bytes it got,
+    // fewer at the end of the file (errno is 0) and where the disk fails (errno says how). The file has no place of its
+    // own that a reader could leave elsewhere, so that any number of them, in any threads, read it at once.
+    std::size_t read_at(std::uint64_t place, std::span<char> to) const;
+    // SHA-256 of all that it holds now, 64 hexadecimal digits. Throws InputError where the disk fails.
+    std::string checksum() const;
 
   private:
-    struct Close {
-        void operator()(std::FILE* stream) const { std::fclose(stream); }
-    };
     std::filesystem::path path_;
     FileRequest request_;
-    std::unique_ptr<std::FILE, Close> stream_;
+    int descriptor_ = -1;
     std::uint64_t bytes_ = 0;
 };
 

@@ -74,10 +74,10 @@ StoredImage parse_tiff(std::string_view bytes, const std::filesystem::path& path
     return {.values = image->channel<float>(0), .description = std::move(image->description)};
 }
 
-DescribedImage parse_image(std::string_view bytes, ImageFormat format, const std::filesystem::path& path) {
-    auto image = format == ImageFormat::tiff ? plain_tiff(bytes, TiffPart::all) : std::nullopt;
+DescribedImage parse_image(std::string_view bytes, const std::filesystem::path& path) {
+    auto image = plain_tiff(bytes, TiffPart::all);
     if (!image || image->channels != 1) {
-        return codec().parse_image(bytes, format, path);
+        return codec().parse_image(bytes, path);
     }
     return {.values = image->channel<double>(0), .description = std::move(image->description)};
 }

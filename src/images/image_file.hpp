@@ -54,15 +54,13 @@ struct StoredImage {
 // The first page of a whole single-channel TIFF file in memory; `path` names it in messages.
 StoredImage parse_tiff(std::string_view bytes, const std::filesystem::path& path);
 
-enum class ImageFormat { tiff, openexr };
-
 struct DescribedImage {
     Grid<double> values;     // as stored
     std::string description; // ImageDescription; empty without one
 };
 
 // The first page of a whole single-channel file in memory; `path` names it in messages.
-DescribedImage parse_image(std::string_view bytes, ImageFormat format, const std::filesystem::path& path);
+DescribedImage parse_image(std::string_view bytes, const std::filesystem::path& path);
 
 // Heights or a mask: one grey channel of any format, whole in memory, without its opacity. At least 2 x 2 pixels and at
 // most so many; finite values. Rows are read in bands, so that a header which lies about the size fills no memory.

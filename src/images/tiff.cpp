@@ -5,7 +5,6 @@
 
 #include <fmt/format.h>
 #include <tiffio.h>
-#include <unistd.h>
 
 #include <algorithm>
 #include <array>
@@ -25,7 +24,7 @@ constexpr int colours = 3;
 struct TiffBytes {
     std::string written{};
     std::string_view there{};
-    int file = -1; // a descriptor, in place of `there`
+    const InputFile* file = nullptr; // in place of `there`
     std::uint64_t size = 0;
     std::uint64_t place = 0;
     std::string message{}; // the last of errors and warnings
@@ -39,22 +38,15 @@ tmsize_t read_some(thandle_t handle, void* to, tmsize_t count) {
     TiffBytes& bytes = of(handle);
     const std::uint64_t left = bytes.size - std::min(bytes.place, bytes.size);
     const auto wanted = static_cast<std::size_t>(std::min(left, static_cast<std::uint64_t>(count)));
-    if (bytes.file < 0) {
-        std::copy_n(bytes.there.data() + (bytes.size - left), wanted, static_cast<char*>(to));
+    char* const into = static_cast<char*>(to);
+    if (bytes.file == nullptr) {
+        std::copy_n(bytes.there.data() + (bytes.size - left), wanted, into);
         bytes.place += wanted;
         return static_cast<tmsize_t>(wanted);
     }
-    std::size_t done = 0;
-    while (done < wanted) {
-        const ssize_t got =
-            pread(bytes.file, static_cast<char*>(to) + done, wanted - done, static_cast<off_t>(bytes.place));
-        if (got <= 0) {
-            break;
-        }
-        done += static_cast<std::size_t>(got);
-        bytes.place += static_cast<std::uint64_t>(got);
-    }
-    return static_cast<tmsize_t>(done);
+    const std::size_t got = bytes.file->read_at(bytes.place, {into, wanted});
+    bytes.place += got;
+    return static_cast<tmsize_t>(got);
 }
 
 tmsize_t write_some(thandle_t handle, void* from, tmsize_t count) {
@@ -334,7 +326,7 @@ std::optional<PlainTiff> plain_tiff(std::string_view bytes, TiffPart part) {
 
 std::optional<PlainTiff> plain_tiff_file(const std::filesystem::path& path, TiffPart part) {
     const InputFile file(path, FileRequest{.expected = "an image file"});
-    TiffBytes source{.file = fileno(file.stream()), .size = file.bytes()};
+    TiffBytes source{.file = &file, .size = file.bytes()};
     return read_plain(source, part);
 }
 

@@ -1,4 +1,4 @@
-# The files of the page, and the libraries in it, as page_files.cpp: the assembler takes their bytes as they are.
+# The files of the page, the libraries in it, and the schemas that declare its figures, as page_files.cpp: the assembler takes their bytes as they are.
 function(vkfv_library_file variable name folder package)
   find_file(${variable} NAMES ${name} PATHS /usr/share /usr/local/share PATH_SUFFIXES ${folder} NO_DEFAULT_PATH)
   if(NOT ${variable})
@@ -12,7 +12,7 @@ vkfv_library_file(VKFV_THREE three.min.js javascript/three libjs-three)
 vkfv_library_file(VKFV_ORBIT_CONTROLS OrbitControls.js javascript/three/examples/js/controls libjs-three)
 vkfv_library_file(VKFV_THREE_LICENCE copyright doc/libjs-three libjs-three)
 
-file(GLOB own CONFIGURE_DEPENDS ${CMAKE_CURRENT_SOURCE_DIR}/page/*)
+file(GLOB own CONFIGURE_DEPENDS ${CMAKE_CURRENT_SOURCE_DIR}/page/* ${PROJECT_SOURCE_DIR}/assets/schemas/*.schema.json)
 set(embedded)
 set(symbols)
 set(table)

@@ -1,11 +1,11 @@
-// The files of src/report/page and the libraries that pages carry, embedded when vkfv is built.
+// The files of src/report/page, the libraries that pages carry, and assets/schemas, embedded when vkfv is built.
 #pragma once
 
 #include <string_view>
 
 namespace vkfv::report {
 
-// By its file name: "page.css", "d3.min.js". std::out_of_range for any other.
+// By its file name: "page.css", "d3.min.js", "results.schema.json". std::out_of_range for any other.
 std::string_view page_file(std::string_view name);
 
 } // namespace vkfv::report

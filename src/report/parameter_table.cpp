@@ -1,6 +1,7 @@
 #include "report/parameter_table.hpp"
 
 #include "core/units.hpp"
+#include "report/declared_figures.hpp"
 
 #include <fmt/format.h>
 
@@ -13,19 +14,10 @@ std::string ParameterRow::key() const {
 }
 
 std::vector<ParameterRow> parameter_rows(const surface::ArealParameters& parameters) {
-    using enum surface::ParameterUnit;
     std::vector<ParameterRow> rows;
-    for (const auto& named : surface::named_parameters(parameters)) {
-        const double factor = named.unit == length || named.unit == volume_per_area ? um_per_mm
-                              : named.unit == angle                                 ? 1 / radians_per_degree
-                              : named.unit == share                                 ? 100
-                                                                                    : 1;
-        const char* unit = named.unit == length            ? "um"
-                           : named.unit == volume_per_area ? "um3_per_um2"
-                           : named.unit == angle           ? "deg"
-                           : named.unit == share           ? "percent"
-                                                           : "";
-        rows.push_back({std::string(named.name), unit, named.value * factor});
+    for (const auto& [name, value] : surface::named_parameters(parameters)) {
+        const auto declared = declared_figure("results.parameters", name);
+        rows.push_back({std::string(name), declared.unit, value * declared.factor});
     }
     return rows;
 }

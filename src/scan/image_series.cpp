@@ -17,7 +17,8 @@ namespace vkfv::scan {
 
 namespace {
 
-constexpr std::array extensions = {".tif", ".tiff", ".png", ".bmp", ".jpg", ".jpeg", ".exr", ".pgm", ".ppm"};
+constexpr std::array extensions = {".tif", ".tiff", ".png", ".bmp", ".jpg", ".jpeg", ".jp2", ".j2k", ".webp",
+                                   ".exr", ".hdr",  ".pgm", ".ppm", ".pnm", ".pfm",  ".pbm", ".tga"};
 
 bool is_image(const std::filesystem::path& file) {
     std::string extension = file.extension().string();
@@ -49,7 +50,8 @@ ImageSeries::ImageSeries(const std::filesystem::path& path) {
             refuse_file(
                 path, "", "no stack.toml and no image",
                 fmt::format("stack.toml or files {}", fmt::join(extensions, ", ")),
-                "Give the folder of a stack of vkfv, one with the images of another, or a TIFF file of several pages.");
+                "Give the folder of a stack of vkfv, one with the images of another, or a TIFF file of several pages. "
+                "Develop a camera's raw files to TIFF, all with the same settings.");
         }
         return;
     }

@@ -17,28 +17,12 @@ ArealParameters areal_parameters(const HeightMap& map) {
 }
 
 std::vector<NamedParameter> named_parameters(const ArealParameters& p) {
-    using enum ParameterUnit;
-    return {{"Sq", p.height.sq, length},
-            {"Ssk", p.height.ssk, number},
-            {"Sku", p.height.sku, number},
-            {"Sp", p.height.sp, length},
-            {"Sv", p.height.sv, length},
-            {"Sz", p.height.sz, length},
-            {"Sa", p.height.sa, length},
-            {"Sal", p.spatial.sal, length},
-            {"Str", p.spatial.str, number},
-            {"Sdq", p.hybrid.sdq, number},
-            {"Sdr", p.hybrid.sdr, share},
-            {"Sk", p.core.sk, length},
-            {"Spk", p.core.spk, length},
-            {"Svk", p.core.svk, length},
-            {"Smr1", p.core.smr1, share},
-            {"Smr2", p.core.smr2, share},
-            {"Vmp", p.volume.vmp, volume_per_area},
-            {"Vmc", p.volume.vmc, volume_per_area},
-            {"Vvc", p.volume.vvc, volume_per_area},
-            {"Vvv", p.volume.vvv, volume_per_area},
-            {"Std", p.spatial.std_angle, angle}};
+    return {{"Sq", p.height.sq},         {"Ssk", p.height.ssk}, {"Sku", p.height.sku}, {"Sp", p.height.sp},
+            {"Sv", p.height.sv},         {"Sz", p.height.sz},   {"Sa", p.height.sa},   {"Sal", p.spatial.sal},
+            {"Str", p.spatial.str},      {"Sdq", p.hybrid.sdq}, {"Sdr", p.hybrid.sdr}, {"Sk", p.core.sk},
+            {"Spk", p.core.spk},         {"Svk", p.core.svk},   {"Smr1", p.core.smr1}, {"Smr2", p.core.smr2},
+            {"Vmp", p.volume.vmp},       {"Vmc", p.volume.vmc}, {"Vvc", p.volume.vvc}, {"Vvv", p.volume.vvv},
+            {"Std", p.spatial.std_angle}};
 }
 
 } // namespace vkfv::surface

@@ -23,13 +23,9 @@ struct ArealParameters {
 // No levelling, no filter: the caller's business.
 ArealParameters areal_parameters(const HeightMap& map);
 
-// mm, mm^3/mm^2, radians; shares are usually given in per cent, numbers as they are.
-enum class ParameterUnit { length, volume_per_area, angle, share, number };
-
 struct NamedParameter {
     std::string_view name; // "Sa"
-    double value = 0;
-    ParameterUnit unit = ParameterUnit::length;
+    double value = 0;      // mm, mm^3/mm^2, radians, shares of 1
 };
 
 // Those that the standard names, in its order.

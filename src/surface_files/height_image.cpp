@@ -12,23 +12,12 @@
 #include <charconv>
 #include <cmath>
 #include <limits>
-#include <optional>
 
 namespace vkfv::surface {
 namespace {
 
 // Of the text that height_map_bytes() begins an image's description with.
 constexpr std::string_view height_image_title = "vkfv height map", last_grid_key = "pitch_y_mm=";
-
-std::optional<images::ImageFormat> format_of(std::string_view bytes) {
-    using namespace std::string_view_literals;
-    for (const std::string_view magic : {"II*\0"sv, "MM\0*"sv, "II+\0"sv, "MM\0+"sv})
-        if (bytes.starts_with(magic))
-            return images::ImageFormat::tiff;
-    if (images::looks_like_exr(bytes))
-        return images::ImageFormat::openexr;
-    return std::nullopt;
-}
 
 // The value of "key=value" on a line of its own.
 double described_number(const std::filesystem::path& path, std::string_view description, std::string_view key) {
@@ -82,15 +71,17 @@ std::string height_map_bytes(const HeightMap& map, const Provenance& provenance)
 }
 
 bool looks_like_height_image(std::string_view bytes) {
-    return format_of(bytes).has_value();
+    using namespace std::string_view_literals;
+    const auto begins = [&](std::string_view magic) { return bytes.starts_with(magic); };
+    return begins("II*\0"sv) || begins("MM\0*"sv) || begins("II+\0"sv) || begins("MM\0+"sv) ||
+           images::looks_like_exr(bytes);
 }
 
 SurfaceFile parse_height_image(std::string_view bytes, const std::filesystem::path& path, const ImageScale& scale) {
-    const std::optional<images::ImageFormat> format = format_of(bytes);
-    if (!format)
+    if (!looks_like_height_image(bytes))
         refuse_file(path, "", "a file of unknown kind", "a TIFF or OpenEXR file",
                     "Export the surface in one of these formats.");
-    const images::DescribedImage image = images::parse_image(bytes, *format, path);
+    const images::DescribedImage image = images::parse_image(bytes, path);
     const std::string& description = image.description;
     if (description.starts_with(height_image_title)) {
         refuse_second_scale(path, scale);

@@ -47,7 +47,7 @@
 namespace vkfv::topography {
 
 struct TopographyOptions {
-    FocusMeasure focus_measure = FocusMeasure::wavelet; // the least noise in tools/focus_table
+    FocusMeasure focus_measure = FocusMeasure::wavelet; // the least noise in tools/studies/focus_table
     int window_px = 7;                                  // odd, at least 3
     WindowShape window_shape = WindowShape::box;        // see FocusWindow
     PeakMethod peak = PeakMethod::gaussian;

@@ -77,7 +77,7 @@ TEST(OpticsCommand, IntegratesThePupilOfAnIdealLens) {
     EXPECT_NEAR(contrast("radial", 0.75), 0.121, 1e-3);
 }
 
-// tools/wavefront_reference.py, which shares no code: the 10x at its best focus.
+// tests/references/wavefront_reference.py, which shares no code: the 10x at its best focus.
 TEST(OpticsCommand, TellsAShippedObjectivesWavefront) {
     const auto folder = fresh_folder("optics_demo");
     const auto result = run_program({"optics", stacks + "demo.toml", "--out", "out"}, folder);

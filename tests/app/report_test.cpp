@@ -1,4 +1,4 @@
-// report.html in a browser: tools/check_report moves, drags and plays, and compares with the files beside.
+// report.html in a browser: tests/acceptance/check_report moves, drags and plays, and compares with the files beside.
 #include "app/program.hpp"
 
 #include <gmock/gmock.h>
@@ -20,8 +20,8 @@ bool has_chromium_package() {
 // What does not hold, if anything; none: there is no browser, and none to be installed.
 std::optional<std::string> failures_of(const std::filesystem::path& results) {
     const auto told = results.parent_path() / "checks.txt";
-    const std::string command = "python3 " VKFV_SOURCE_DIR "/tools/check_report --seconds 30 '" + results.string() +
-                                "' > '" + told.string() + "' 2>&1";
+    const std::string command = "python3 " VKFV_SOURCE_DIR "/tests/acceptance/check_report --seconds 30 '" +
+                                results.string() + "' > '" + told.string() + "' 2>&1";
     const int status = std::system(command.c_str());
     constexpr int no_browser = 77;
     if (WIFEXITED(status) && WEXITSTATUS(status) == no_browser && !has_chromium_package()) {

@@ -1,4 +1,4 @@
-// The measurement finds what was put in: tools/camera_ten_seeds does it with larger images and ten seeds.
+// The measurement finds what was put in: tests/acceptance/camera_ten_seeds does it with larger images and ten seeds.
 #include "camera/photon_transfer.hpp"
 #include "camera/presets.hpp"
 

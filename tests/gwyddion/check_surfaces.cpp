@@ -1,5 +1,5 @@
 // Real surface files: what vkfv reads of them, beside what Gwyddion reads of them and, for those named here, beside
-// published figures. The files are given by their folder and belong to others: tools/check_surfaces FOLDER.
+// published figures. The files are given by their folder and belong to others: tests/acceptance/check_surfaces FOLDER.
 #include "core/units.hpp"
 #include "gwyddion/gwyddion.hpp"
 #include "surface/filter.hpp"

@@ -15,8 +15,9 @@ PointWaves waves_of(const Instrument& instrument, glm::dvec2 field) {
     return PointWaves(instrument, field, 3);
 }
 
-// On the axis it is what a grid of 8 x 8 cells leaves: by the wavefront of tools/wavefront_reference.py and sums over
-// another lattice of the pupil in numpy 0.0560 with the 10x, at 3/8 of the cutoff and two depths of field under z = 0.
+// On the axis it is what a grid of 8 x 8 cells leaves: by the wavefront of tests/references/wavefront_reference.py and
+// sums over another lattice of the pupil in numpy 0.0560 with the 10x, at 3/8 of the cutoff and two depths of field
+// under z = 0.
 TEST(FilterError, OfTheTenfoldObjective) {
     const Instrument instrument = assemble(test::microscope());
     const PupilFilter filter(instrument, {});

@@ -193,9 +193,9 @@ TEST(PointImage, OverASpectrum) {
     EXPECT_NEAR(best_focus(imaging, -10, outline, both), w2 / (w1 + w2) * -0.5 / 3, 1e-3 * 0.5 / 3);
 }
 
-// tools/image_quality_reference.py 30 1e5 5.958440, which shares no code, prints these (Richardson's extrapolation of
-// its midpoint rule leaves 1e-5); its reference sphere has a radius of 100 m. With the exit pupil's 357 mm the
-// wavefront is 0.4 % more.
+// tests/references/image_quality_reference.py 30 1e5 5.958440, which shares no code, prints these (Richardson's
+// extrapolation of its midpoint rule leaves 1e-5); its reference sphere has a radius of 100 m. With the exit pupil's
+// 357 mm the wavefront is 0.4 % more.
 TEST(ImageQuality, OfAnIndependentTracer) {
     auto description = test::microscope();
     description.detector_width = 1.28;

@@ -223,8 +223,8 @@ TEST(LeastSpot, OfAnIndependentTracer) {
     EXPECT_NEAR(assemble(test::microscope("5x_0.15")).first_order.least_spot_offset, -54.978192e-3, 5e-7);
 }
 
-// tools/wavefront_reference.py, which shares no code, prints these. Its pupil is that of the light that reaches the
-// detector's middle, here that of a point of the paraxial plane: 3 nm.
+// tests/references/wavefront_reference.py, which shares no code, prints these. Its pupil is that of the light that
+// reaches the detector's middle, here that of a point of the paraxial plane: 3 nm.
 TEST(BestFocus, OfAnIndependentTracer) {
     const auto focus = [](const char* objective) {
         return assemble(test::microscope(objective)).first_order.best_focus_offset;

@@ -134,8 +134,8 @@ TEST(PointSpread, HasTheTransferFunctionAsItsSpectrum) {
     EXPECT_GT(std::abs(image.transfer(frequency)), 0.1);
 }
 
-// tools/wavefront_reference.py, which shares no code, prints these, at its least variance: 5.961326 um over the
-// paraxial plane for the 10x, -0.222717 um for the 100x.
+// tests/references/wavefront_reference.py, which shares no code, prints these, at its least variance: 5.961326 um over
+// the paraxial plane for the 10x, -0.222717 um for the 100x.
 TEST(PointWaves, OfAnIndependentTracer) {
     struct Figures {
         const char* objective;

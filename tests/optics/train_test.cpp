@@ -17,7 +17,7 @@ using physics::f64::PATH_ALIVE;
 using physics::f64::PATH_INTERFACE_LOSS;
 using physics::f64::Ray;
 
-// The achromat of tools/trace_decentred_doublet.py.
+// The achromat of tests/references/trace_decentred_doublet.py.
 Prescription decentred_doublet() {
     Prescription lens;
     lens.name = "doublet";
@@ -40,7 +40,8 @@ std::vector<physics::f64::Surface> linked(std::vector<PlacedSurface> part) {
     return surfaces_of(part);
 }
 
-// What tools/trace_decentred_doublet.py prints: x, y on the plane z = 150 mm, direction cosines, optical path.
+// What tests/references/trace_decentred_doublet.py prints: x, y on the plane z = 150 mm, direction cosines, optical
+// path.
 TEST(Train, DecentredDoubletAgreesWithAnIndependentTracer) {
     struct Row {
         glm::dvec3 position;

@@ -52,11 +52,26 @@ class SchemaTest(unittest.TestCase):
                 self.assertIn("additionalProperties", described)
                 if described["additionalProperties"] is False:
                     for key, value in described.get("properties", {}).items():
+                        if value.get("$ref", "").startswith("#/properties/"):
+                            continue  # a figure that is described there
                         if key in ("measured", "true") and described.get("description", "").startswith("A parameter"):
                             continue
                         self.assertTrue(value.get("description"), key)
                         if "number" in value.get("type", ()):
                             self.assertTrue(value.get("unit"), key)
+
+    def test_a_key_ends_with_the_unit_that_is_declared(self):
+        endings = {"um3/um2": "_um3_per_um2", "DN/e-": "_dn_per_e", "um": "_um", "%": "_percent", "deg": "_deg", "e-": "_e",
+                   "DN": "_dn", "W": "_W"}
+        keys = 0
+        for name in ("results", "image"):
+            for described in objects(schema(name)):
+                for key, value in described.get("properties", {}).items():
+                    ending = next((ending for ending in endings.values() if key.endswith(ending)), None)
+                    if "unit" in value and (ending or value["unit"] in endings):
+                        self.assertEqual(endings.get(value["unit"]), ending, key)
+                        keys += 1
+        self.assertGreater(keys, 50)
 
     def test_results(self):
         """All of the keys are met with, and no other."""

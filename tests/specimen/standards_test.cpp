@@ -77,7 +77,7 @@ TEST(Plateaus, mask_of_an_image_with_a_height_a_grey_value) {
     d.heights = {0.005};
     const Specimen made = make({.shape = d});
     const HeightField& field = field_of(made);
-    // The F of tools/make_specimens.py: its stem, the plate right of it, its upper bar.
+    // The F of tests/references/make_specimens.py: its stem, the plate right of it, its upper bar.
     EXPECT_FLOAT_EQ(static_cast<float>(at(field, -0.03, -0.03)), 0.005f);
     EXPECT_EQ(at(field, 0.03, -0.03), 0);
     EXPECT_FLOAT_EQ(static_cast<float>(at(field, 0.03, 0.05)), 0.005f);

@@ -211,8 +211,8 @@ TEST(Waves, follow_a_detector_that_is_tilted) {
     }
 }
 
-// H on the axis of the 10x for waves of 2.5 um, of a flat below, at and above best focus: tools/wavefront_reference.py,
-// transfer(). By rays alone it is 0.29, 0.69, 0.29.
+// H on the axis of the 10x for waves of 2.5 um, of a flat below, at and above best focus:
+// tests/references/wavefront_reference.py, transfer(). By rays alone it is 0.29, 0.69, 0.29.
 TEST(Waves, give_gratings_the_contrast_of_an_aberrated_objective) {
     auto description = test::microscope_description();
     constexpr double period = 2.5e-3;

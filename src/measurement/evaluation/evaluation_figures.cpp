@@ -1,6 +1,6 @@
 #include "measurement/evaluation/evaluation_figures.hpp"
 
-#include "core/units.hpp"
+#include "report/declared_figures.hpp"
 #include "surface/areal_parameters.hpp"
 
 #include <future>
@@ -50,19 +50,20 @@ std::vector<Figures> figures_of(const Evaluation& evaluation) {
 nlohmann::ordered_json json_of(const Figures& figures) {
     auto json = nlohmann::ordered_json::object();
     if (const auto& deviation = figures.deviation) {
-        json = {{"sq_measured_um", deviation->sq_measured * um_per_mm},
-                {"sq_true_um", deviation->sq_true * um_per_mm},
+        json = {{"sq_measured", deviation->sq_measured},
+                {"sq_true", deviation->sq_true},
                 {"sq_ratio", deviation->sq_measured / deviation->sq_true},
-                {"rms_deviation_um", deviation->rms * um_per_mm},
+                {"rms_deviation", deviation->rms},
                 {"correlation", deviation->correlation},
                 {"measured_share", deviation->measured_share}};
     } else {
         json["measured_share"] = figures.measured_share;
     }
     if (figures.band.limited()) {
-        json["s_filter_um"] = figures.band.s_filter * um_per_mm;
-        json["l_filter_um"] = figures.band.l_filter * um_per_mm;
+        json["s_filter"] = figures.band.s_filter;
+        json["l_filter"] = figures.band.l_filter;
     }
+    json = report::as_declared(figures.band.limited() ? "results.filtered" : "results", json);
     json["parameters"] = nlohmann::ordered_json::object();
     for (std::size_t k = 0; k < figures.measured.size(); ++k) {
         auto& parameter = json["parameters"][figures.measured[k].key()];

@@ -5,10 +5,10 @@
 #include "core/job_queue.hpp"
 #include "core/json_depth.hpp"
 #include "core/threads.hpp"
-#include "core/units.hpp"
 #include "images/image_file.hpp"
 #include "measurement/evaluation/evaluation_figures.hpp"
 #include "measurement/evaluation/stack_page.hpp"
+#include "report/declared_figures.hpp"
 #include "report/layout.hpp"
 #include "report/topography_picture.hpp"
 #include "scan/store.hpp"
@@ -135,9 +135,38 @@ nlohmann::ordered_json places_json(const topography::FocusCurves& curves, int im
     std::vector<int> rows;
     std::transform(curves.rows.rbegin(), curves.rows.rend(), std::back_inserter(rows),
                    [&](int row) { return image_rows - 1 - row; });
-    std::vector<double> z;
-    std::ranges::transform(curves.z, std::back_inserter(z), [](double height) { return height * um_per_mm; });
-    return {{"file", "curves.npy"}, {"rows", rows}, {"columns", curves.columns}, {"z_um", z}};
+    return {{"file", "curves.npy"}, {"rows", rows}, {"columns", curves.columns}, {"z", curves.z}};
+}
+
+// By the names of assets/schemas, and in the units of the inside.
+nlohmann::ordered_json figures_of_curves(const Evaluation& evaluation) {
+    nlohmann::ordered_json figures = {{"topography", json_of(evaluation.options)}};
+    if (const auto& flatness = evaluation.flatness) {
+        figures["flatness"] = {{"file", flatness->file.string()},
+                               {"z_flt", flatness->deviation},
+                               {"z_flt_s_filter", flatness->s_filter},
+                               {"polynomial_peak_to_valley", flatness->polynomial_peak_to_valley}};
+    }
+    if (evaluation.field_curvature) {
+        figures["field_curvature_uncorrected"] = *evaluation.field_curvature;
+    }
+    const auto& whole = evaluation.topography.stack;
+    figures["curves"] = {{"curve_width_steps", whole.curve_width_steps},
+                         {"least_unimodality", whole.limit.least.unimodality},
+                         {"least_order", whole.limit.least.order},
+                         {"chance_rate", whole.limit.rate},
+                         {"stack_unimodality", whole.whole.unimodality},
+                         {"stack_order", whole.whole.order},
+                         {"least_stack_unimodality", whole.limit_of_whole.least.unimodality},
+                         {"least_stack_order", whole.limit_of_whole.least.order},
+                         {"rivalled_share", whole.rivalled_share},
+                         {"image_noise", whole.image_noise},
+                         {"noise_correlation", {whole.noise_correlation(1, 0), whole.noise_correlation(0, 1)}},
+                         {"height_noise", evaluation.height_noise},
+                         {"height_uncertainty", evaluation.height_uncertainty}};
+    figures["focus_curves"] = places_json(evaluation.topography.curves, evaluation.topography.height.rows());
+    figures["points"] = point_counts(evaluation.topography.state);
+    return figures;
 }
 
 // What times are told of: not among the results, since no two runs take the same. A script, which alone a page that was
@@ -241,33 +270,7 @@ void write_results(ResultFolder& folder, const EvaluatedStack& stack) {
         results["diffracted"] = json_of(page.diffracted->figures);
         add_dimensions(results["diffracted"], evaluation.diffracted->dimensions);
     }
-    results["topography"] = json_of(evaluation.options);
-    if (evaluation.flatness) {
-        results["flatness"] = {
-            {"file", evaluation.flatness->file.string()},
-            {"z_flt_um", evaluation.flatness->deviation * um_per_mm},
-            {"z_flt_s_filter_um", evaluation.flatness->s_filter * um_per_mm},
-            {"polynomial_peak_to_valley_um", evaluation.flatness->polynomial_peak_to_valley * um_per_mm}};
-    }
-    if (evaluation.field_curvature) {
-        results["field_curvature_uncorrected_um"] = *evaluation.field_curvature * um_per_mm;
-    }
-    const auto& whole = evaluation.topography.stack;
-    results["curves"] = {{"curve_width_steps", whole.curve_width_steps},
-                         {"least_unimodality", whole.limit.least.unimodality},
-                         {"least_order", whole.limit.least.order},
-                         {"chance_rate", whole.limit.rate},
-                         {"stack_unimodality", whole.whole.unimodality},
-                         {"stack_order", whole.whole.order},
-                         {"least_stack_unimodality", whole.limit_of_whole.least.unimodality},
-                         {"least_stack_order", whole.limit_of_whole.least.order},
-                         {"rivalled_share", whole.rivalled_share},
-                         {"image_noise", whole.image_noise},
-                         {"noise_correlation", {whole.noise_correlation(1, 0), whole.noise_correlation(0, 1)}},
-                         {"height_noise_um", evaluation.height_noise * um_per_mm},
-                         {"height_uncertainty_um", evaluation.height_uncertainty * um_per_mm}};
-    results["focus_curves"] = places_json(evaluation.topography.curves, evaluation.topography.height.rows());
-    results["points"] = point_counts(evaluation.topography.state);
+    results.update(report::as_declared("results", figures_of_curves(evaluation)));
     results["evaluated_by"] = fmt::format("vkfv {}", VKFV_VERSION);
     results.update(stack.origin);
     folder.write(results_name, results.dump(2) + "\n");

@@ -1,8 +1,8 @@
 #include "measurement/evaluation/existing_stack.hpp"
 
-#include "core/units.hpp"
 #include "measurement/scene/assembly.hpp"
 #include "measurement/scene/stage_figures.hpp"
+#include "report/declared_figures.hpp"
 #include "scan/store.hpp"
 #include "specimen/kinds.hpp"
 
@@ -200,11 +200,13 @@ EvaluatedStack evaluate_images(const scan::ImageSeries& series, const ForeignSta
             "any background subtracted.",
             stack.images.string());
     }
-    nlohmann::ordered_json origin = {
-        {"stack", stack.images.string()},          {"images", series.size()},
-        {"first_image", series.name(0)},           {"last_image", series.name(series.size() - 1)},
-        {"z_start_um", stack.z_start * um_per_mm}, {"z_step_um", stack.z_step * um_per_mm},
-        {"pitch_um", stack.pitch * um_per_mm}};
+    auto origin = report::as_declared("results", {{"stack", stack.images.string()},
+                                                  {"images", series.size()},
+                                                  {"first_image", series.name(0)},
+                                                  {"last_image", series.name(series.size() - 1)},
+                                                  {"z_start", stack.z_start},
+                                                  {"z_step", stack.z_step},
+                                                  {"pitch", stack.pitch}});
     if (configuration.registration != topography::Registration::none) {
         origin["registration"] = images.json();
     }

@@ -1,6 +1,6 @@
 #include "measurement/evaluation/stack_page.hpp"
 
-#include "core/units.hpp"
+#include "report/declared_figures.hpp"
 #include "report/page.hpp"
 #include "report/reader_text.hpp"
 
@@ -55,20 +55,29 @@ void add_columns(Rows& rows, const std::vector<std::vector<double>>& columns) {
     }
 }
 
+// "Sq / µm", "Vmp / (µm³/µm²)"
+std::string with_unit(const std::string& name, const std::string& unit_in_keys) {
+    const std::string unit = report::reader_unit(unit_in_keys);
+    return name + (unit.empty() ? "" : unit.find('/') == std::string::npos ? " / " + unit : " / (" + unit + ")");
+}
+
 void add_deviations(report::Page& page, const StackPage& content) {
-    Rows rows{{"treatment of both surfaces", "measured / %", "true Sq / µm", "measured Sq / µm", "ratio",
-               "RMS deviation / µm", "correlation"}};
+    Rows rows{{"treatment of both surfaces", "measured / %"}};
+    std::vector<std::string> keys;
+    for (const char* name : {"sq_true", "sq_measured", "sq_ratio", "rms_deviation", "correlation"}) {
+        const auto figure = report::declared_figure("results", name);
+        rows.front().push_back(with_unit(figure.title, figure.unit));
+        keys.push_back(figure.key);
+    }
     std::vector<std::vector<double>> columns(rows.front().size() - 1);
     const auto add = [&](const std::string& prefix, const std::vector<Figures>& all) {
         for (const auto& figures : all) {
-            if (const auto& deviation = figures.deviation) {
+            if (figures.deviation) {
                 rows.push_back({prefix + treatment_of(figures.band)});
-                std::size_t column = 0;
-                for (const double value :
-                     {100 * deviation->measured_share, deviation->sq_true * um_per_mm,
-                      deviation->sq_measured * um_per_mm, deviation->sq_measured / deviation->sq_true,
-                      deviation->rms * um_per_mm, deviation->correlation}) {
-                    columns[column++].push_back(value);
+                columns.front().push_back(100 * figures.deviation->measured_share);
+                const auto written = json_of(figures);
+                for (std::size_t k = 0; k < keys.size(); ++k) {
+                    columns[k + 1].push_back(written.at(keys[k]).get<double>());
                 }
             }
         }
@@ -101,12 +110,6 @@ void add_dimensions(report::Page& page, const char* caption, const std::vector<S
     page.table(caption, rows);
 }
 
-// "Sq / µm", "Vmp / (µm³/µm²)"
-std::string with_unit(const report::ParameterRow& row) {
-    const std::string unit = report::reader_unit(row.unit);
-    return row.name + (unit.empty() ? "" : unit.find('/') == std::string::npos ? " / " + unit : " / (" + unit + ")");
-}
-
 // A table a treatment; those that have none (nothing was measured) are left out.
 bool add_parameters(report::Page& page, const std::string& prefix, const std::vector<Figures>& all) {
     bool any = false;
@@ -120,7 +123,7 @@ bool add_parameters(report::Page& page, const std::string& prefix, const std::ve
                         : std::vector<std::string>{"parameter", "measured"}};
         for (std::size_t k = 0; k < figures.measured.size(); ++k) {
             const auto& row = figures.measured[k];
-            rows.push_back({with_unit(row)});
+            rows.push_back({with_unit(row.name, row.unit)});
             if (known) {
                 std::ranges::move(report::reader_deviation(figures.truth[k].value, row.value),
                                   std::back_inserter(rows.back()));

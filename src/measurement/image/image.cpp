@@ -6,6 +6,7 @@
 #include "measurement/image/camera_images.hpp"
 #include "measurement/scene/assembly.hpp"
 #include "measurement/scene/specimen_view.hpp"
+#include "report/declared_figures.hpp"
 #include "report/topography_picture.hpp"
 
 #include <fmt/format.h>
@@ -135,10 +136,10 @@ Json image_json(const ImageResult& result) {
     }
     Json json = {{"file", result.file.string()},
                  {"picture", result.picture.string()},
-                 {"z_um", result.focal_height * um_per_mm},
+                 {"z", result.focal_height},
                  {"columns", grid.columns},
                  {"rows", grid.rows},
-                 {"pitch_um", grid.pitch_x * um_per_mm},
+                 {"pitch", grid.pitch_x},
                  {"device", tracer.text()},
                  {"rays_launched", image.rays},
                  {"rays_detected", image.detected},
@@ -150,7 +151,7 @@ Json image_json(const ImageResult& result) {
     if (const auto note = note_of(result.exposure)) {
         json["camera"] = note->json();
     }
-    return json;
+    return report::as_declared("image", json);
 }
 
 } // namespace vkfv::measurement

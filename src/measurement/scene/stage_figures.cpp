@@ -2,6 +2,7 @@
 
 #include "core/units.hpp"
 #include "measurement/scene/assembly.hpp"
+#include "report/declared_figures.hpp"
 
 #include <fmt/format.h>
 
@@ -36,12 +37,13 @@ StageErrors stage_errors(const Configuration& configuration) {
 nlohmann::ordered_json stage_figures(const Configuration& configuration) {
     const auto motion = stage_motion(configuration).value();
     const auto errors = stage_errors(configuration);
-    return {{"evaluated_positions", configuration.stage->evaluate_read ? "read" : "nominal"},
-            {"position_error_rms_um", errors.rms * um_per_mm},
-            {"position_error_largest_um", errors.largest * um_per_mm},
-            {"displacement_largest_um", errors.largest_aside * um_per_mm},
-            {"moments_per_exposure", motion.moments()},
-            {"positions_file", stage_file}};
+    return report::as_declared("results.stage",
+                               {{"evaluated_positions", configuration.stage->evaluate_read ? "read" : "nominal"},
+                                {"position_error_rms", errors.rms},
+                                {"position_error_largest", errors.largest},
+                                {"displacement_largest", errors.largest_aside},
+                                {"moments_per_exposure", motion.moments()},
+                                {"positions_file", stage_file}});
 }
 
 std::string stage_table(const Configuration& configuration) {

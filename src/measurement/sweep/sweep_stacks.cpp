@@ -1,6 +1,7 @@
 #include "measurement/sweep/sweep_rows.hpp"
 
 #include "core/units.hpp"
+#include "report/declared_figures.hpp"
 
 #include <fmt/format.h>
 
@@ -24,18 +25,26 @@ Grid<double> as_written(const Grid<double>& heights) {
     return result;
 }
 
+// Figures of one stack.
+Json figures_of(const topography::Deviation& deviation) {
+    return report::as_declared("sweep.rows.figures",
+                               {{"rms deviation", deviation.rms},
+                                {"Sq measured / Sq true", deviation.sq_measured / deviation.sq_true},
+                                {"correlation", deviation.correlation},
+                                {"share measured", deviation.measured_share}});
+}
+
 // Over the repeats; none where one of them has none.
-template <class Figure>
-Json mean_of(const std::vector<topography::Deviation>& repeats, const Figure& figure) {
-    double sum = 0;
-    for (const auto& repeat : repeats) {
-        const double value = figure(repeat);
-        if (!std::isfinite(value)) {
-            return {};
+Json mean_of(const std::vector<Json>& repeats) {
+    Json means;
+    for (const auto& [name, unused] : repeats.front().items()) {
+        double sum = 0;
+        for (const auto& repeat : repeats) {
+            sum += repeat.at(name).get<double>();
         }
-        sum += value;
+        means[name] = sweep_figure(sum / static_cast<double>(repeats.size()));
     }
-    return sum / static_cast<double>(repeats.size());
+    return means;
 }
 
 // Root mean square of the points' standard deviations over the repeats, mm; points that one lacks do not count.
@@ -74,28 +83,24 @@ Grid<float> picture_of(const Grid<double>& heights) {
 SweepRow stack_row(const std::vector<Configuration>& repeats, Progress& progress,
                    const std::function<void(const StackResult&)>& after_stack) {
     std::vector<Grid<double>> heights;
-    std::vector<topography::Deviation> deviations;
+    std::vector<Json> figures;
     double rays_per_image = 0;
     SweepRow row;
     for (const auto& configuration : repeats) {
         const auto stack = measure_stack(configuration, progress);
         after_stack(stack);
         heights.push_back(as_written(stack.evaluation.topography.height.height));
-        deviations.push_back(stack.evaluation.deviation.value());
+        figures.push_back(figures_of(stack.evaluation.deviation.value()));
         rays_per_image = static_cast<double>(stack.rays_per_image);
         row.device = stack.device;
     }
-    row.figures["rms deviation / um"] =
-        mean_of(deviations, [](const auto& deviation) { return deviation.rms * um_per_mm; });
-    row.figures["Sq measured / Sq true"] =
-        mean_of(deviations, [](const auto& deviation) { return deviation.sq_measured / deviation.sq_true; });
-    row.figures["correlation"] = mean_of(deviations, [](const auto& deviation) { return deviation.correlation; });
-    row.figures["share measured"] = mean_of(deviations, [](const auto& deviation) { return deviation.measured_share; });
+    row.figures = mean_of(figures);
     if (repeats.size() > 1) {
-        const double noise = height_noise(heights) * um_per_mm;
-        row.figures["height noise / um"] = sweep_figure(noise);
-        row.figures[fmt::format("rays for {:g} um", wanted_height_noise)] =
-            sweep_figure(rays_per_image * std::pow(noise / wanted_height_noise, 2));
+        const double noise = height_noise(heights);
+        const double rays = rays_per_image * std::pow(noise * um_per_mm / wanted_height_noise, 2);
+        row.figures.update(report::as_declared(
+            "sweep.rows.figures", {{"height noise", sweep_figure(noise)},
+                                   {fmt::format("rays for {:g} um", wanted_height_noise), sweep_figure(rays)}}));
     }
     row.picture = picture_of(heights.front());
     return row;

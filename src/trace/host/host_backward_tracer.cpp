@@ -3,8 +3,8 @@
 #include "core/threads.hpp"
 #include "specimen/description.hpp"
 #include "trace/host/host_scene.hpp"
-#include "trace/host/host_tracer.hpp"
 #include "trace/interface/backward_image.hpp"
+#include "trace/interface/exposure_record.hpp"
 #include "trace/interface/wave_image.hpp"
 
 #include <fmt/format.h>

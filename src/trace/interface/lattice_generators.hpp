@@ -1,5 +1,5 @@
-// Generators of rank-1 lattices for physics::Lattice, a row for each number of points: tools/lattice_generators.py
-// wrote them.
+// Generators of rank-1 lattices for physics::Lattice, a row for each number of points:
+// tests/references/lattice_generators.py wrote them.
 #pragma once
 
 #include <array>

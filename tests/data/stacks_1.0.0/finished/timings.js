@@ -1,0 +1,1 @@
+vkfv.timings.show("what,seconds,rays_per_s\nimage 0,0.269659,60758.1\nimage 1,0.258159,63464.7\nimage 2,0.168443,97267.3\nimage 3,0.182946,89556.6\nimage 4,0.148016,110691\nimage 5,0.149948,109264\nimage 6,0.200387,81761.9\nimage 7,0.168069,97483.7\nimage 8,0.25176,65077.8\nimage 9,0.160166,102294\nimage 10,0.226712,72267.8\nevaluation,0.528179,\n");
