@@ -1,6 +1,6 @@
 #include "vulkan/kernel.hpp"
 
-#include "core/error.hpp"
+#include "core/messages/error.hpp"
 #include "vulkan/failure.hpp"
 
 #include <fmt/format.h>
