@@ -9,7 +9,7 @@ page a figure stands behind a comment that readers do not see, a table below one
     | slope / degrees | 0 to 15 | 15 to 30 |
 
     <!-- evidence: programs -->
-    *Figures by ...*
+    *Figures of ...*
 
 CONTRIBUTING.md, section Evidence, explains the keys of a list.
 """
@@ -29,7 +29,6 @@ FOLDER = ROOT / "docs" / "evidence"
 RUN = "run by tools/evidence"
 FROM_THE_PAGE = "recorded from the page, not run by tools/evidence yet"
 
-MOST_PROGRAMS = 3  # that the head of a page names; the others are in the records
 
 # What a run can depend on: the names that `depends` of a list uses, and the folders whose files they stand for.
 DEPENDENCIES = {
@@ -200,17 +199,9 @@ class Page:
         return table_text(declared, record["rows"])
 
     def programs_text(self):
-        """The sentence at the page's head that names its programs, the newest first."""
-        programs = {}
-        for record in self.records.values():
-            programs.setdefault(record["program"], []).append(record)
-        dated = sorted(programs.items(), key=lambda item: max(record["date"] for record in item[1]), reverse=True)
-        told = [f"{program} ({days(records)}{f', {len(records)} of {len(self.records)} runs' if len(dated) > 1 else ''})"
-                for program, records in dated[:MOST_PROGRAMS]]
-        if len(dated) > MOST_PROGRAMS:
-            told.append(f"older ones ({sum(len(records) for _, records in dated[MOST_PROGRAMS:])} of them)")
-        text = (f"*Figures by {', '.join(told)}. Command, device, date and program of each: "
-                f"[evidence/{self.name}.json](evidence/{self.name}.json).*")
+        """The sentence at the page's head that says where its figures come from."""
+        text = (f"*Figures of {days(list(self.records.values()))}. Command, program, device and date of each: "
+                f"[evidence/{self.name}.json](evidence/{self.name}.json); `tools/evidence --stale` lists those to be renewed.*")
         return textwrap.fill(text, 150, break_long_words=False, break_on_hyphens=False) + "\n"
 
     def problems(self):

@@ -8,7 +8,7 @@ const uint BINDING_LEDGER = 4u;
 const uint BINDING_SURVIVOR_COUNT = 5u;
 const uint BINDING_GIVEN = 6u; // of kernels that are no part of the trace: what they are given
 const uint BINDING_FOUND = 7u; //   and what they find
-// Of a specimen in a device's memory: src/trace/device/device_specimen.cpp
+// The following buffers hold the specimen; src/trace/device/device_specimen.cpp fills them.
 const uint BINDING_HEIGHTS = 8u;
 const uint BINDING_CEILINGS = 9u;
 const uint BINDING_VERTICES = 10u; // or pairs of triangles, for the kernels' own hierarchy of boxes

@@ -1,5 +1,5 @@
-// What host and device share of the image that waves make of light sorted by pupil cells
-// (trace/device/device_wave_image.hpp): where buffers are bound (set 0), push constants.
+// Bindings (set 0) and push constants of the kernels that compute wave images from light sorted by pupil cells; the
+// host binds them in trace/device/device_wave_image.hpp.
 
 const uint WAVES_BINDING_PLANES = 0u;   // complex, two planes a group of cells
 const uint WAVES_BINDING_TABLE = 1u;    // the cells' transfer functions

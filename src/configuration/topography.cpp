@@ -157,7 +157,7 @@ const IntegerKey parts = of_kinds(
     {"waves"}, IntegerKey("parts_per_pixel", 0, most_parts, 0,
                           "Parts of a pixel's side in which light is sorted; 0: as many as waves of the instrument's "
                           "numerical aperture ask for, or as the device's memory allows."));
-// What images depend on is how many parts that leaves, which stands in their identity
+// This limit is no part of an image's identity: images depend only on the resulting number of parts, which is
 // (trace/interface/tracer_identity.hpp).
 const NumberKey most_memory = of_kinds(
     {"waves"}, without_influence(NumberKey("most_memory_gib", NumberRange::at_least(0), 0.0,

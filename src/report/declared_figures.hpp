@@ -1,4 +1,5 @@
-// What assets/schemas declares of the figures that vkfv writes. The schemas are embedded when vkfv is built.
+// Keys, units and titles of the figures that vkfv writes, as assets/schemas declares them. The schemas are embedded
+// when vkfv is built.
 #pragma once
 
 #include <nlohmann/json.hpp>

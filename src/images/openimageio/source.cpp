@@ -179,7 +179,8 @@ OpenImage open_image(const std::filesystem::path& path) {
         refuse(path, fmt::format("a JPEG of {} bytes", file->bytes()), fmt::format("at most {} bytes", largest_jpeg),
                "Save it as TIFF.");
     }
-    // What is decoded from memory, and what is checked before a library makes room for what its header says.
+    // These formats are read whole: JPEG is decoded from memory, and the headers of the others are checked before the
+    // library allocates what they claim.
     if (jpeg || looks_like_exr(beginning) || looks_like_pnm(beginning)) {
         auto owned = std::make_unique<std::string>(file->read());
         OpenImage image = open_image(*owned, path);

@@ -16,7 +16,7 @@ namespace vkfv::images::openimageio {
 
 // An image that OpenImageIO reads, opened by the reader of its format alone: other readers are not offered the bytes.
 struct OpenImage {
-    // What the input reads, which must outlive it: an open file or its bytes.
+    // The input reads from one of these, an open file or its bytes, so they must outlive it.
     std::unique_ptr<InputFile> file{};
     std::unique_ptr<std::string> owned{};
     std::unique_ptr<OIIO::Filesystem::IOProxy> proxy{};

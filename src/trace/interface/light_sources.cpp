@@ -35,7 +35,7 @@ std::vector<std::uint64_t> rays_of_sources(std::uint64_t rays, std::span<const d
             std::max<std::uint64_t>(1, static_cast<std::uint64_t>(share / all * static_cast<double>(rays))));
         sum += parts.back();
     }
-    // What rounding leaves, or one each has taken, is the largest part's.
+    // The largest part takes up the difference that rounding, or the least of one ray each, makes to the sum.
     const auto largest = std::ranges::max_element(parts);
     *largest = *largest + rays > sum ? *largest + rays - sum : 1;
     return parts;
