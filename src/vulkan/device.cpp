@@ -2,6 +2,7 @@
 
 #include "core/error.hpp"
 #include "core/user_cache.hpp"
+#include "vulkan/compiled_kernels.hpp"
 #include "vulkan/failure.hpp"
 #include "vulkan/loader.hpp"
 
@@ -15,6 +16,7 @@
 #include <charconv>
 #include <cstring>
 #include <deque>
+#include <map>
 #include <mutex>
 #include <sstream>
 #include <string_view>
@@ -253,6 +255,7 @@ struct Device::State {
 
     std::deque<Queue> queues;
     vk::raii::PipelineCache pipelines{nullptr};
+    CompiledKernels kernels;
     std::string pipelines_name;     // of this device and driver
     std::size_t pipelines_read = 0; // bytes
     std::uint32_t queue_family = 0;
@@ -395,6 +398,9 @@ void Device::submit(Lane lane, const vk::SubmitInfo& info, vk::Fence done) const
     const std::scoped_lock lock(own.submitting);
     own.queue.submit(info, done);
 }
+CompiledKernels& Device::kernels() const {
+    return state_->kernels;
+}
 std::uint32_t Device::queue_family() const {
     return state_->queue_family;
 }
@@ -426,8 +432,36 @@ std::uint32_t Device::memory_type(std::uint32_t type_bits, vk::MemoryPropertyFla
                                   vk::to_string(properties)));
 }
 
+namespace {
+
+struct KeptDevices {
+    std::mutex changing;
+    std::map<std::string, OpenedDevice> by_selector;
+};
+std::unique_ptr<KeptDevices> kept_devices; // of a DeviceScope
+
+} // namespace
+
 OpenedDevice begin_to_open(const DeviceOptions& options) {
-    return std::async(std::launch::async, [options] { return std::make_shared<const Device>(options); }).share();
+    const auto open = [&options] {
+        return std::async(std::launch::async, [options] { return std::make_shared<const Device>(options); }).share();
+    };
+    if (!kept_devices) {
+        return open();
+    }
+    const std::scoped_lock lock(kept_devices->changing);
+    auto& kept = kept_devices->by_selector[options.selector];
+    if (!kept.valid()) {
+        kept = open();
+    }
+    return kept;
+}
+
+DeviceScope::DeviceScope() {
+    kept_devices = std::make_unique<KeptDevices>();
+}
+DeviceScope::~DeviceScope() {
+    kept_devices.reset();
 }
 
 std::vector<DeviceReport> list_devices() {

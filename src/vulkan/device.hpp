@@ -14,6 +14,8 @@
 
 namespace vkfv::vulkan {
 
+class CompiledKernels;
+
 // What a physical device offers. `lacking` names what the trace needs and the device has not; empty: usable.
 struct DeviceReport {
     int index = 0; // in the order of vkEnumeratePhysicalDevices
@@ -83,6 +85,8 @@ class Device {
     // What the driver has compiled, here and in earlier runs on this device and driver (core/user_cache.hpp); kept on
     // disk when the device closes.
     const vk::raii::PipelineCache& pipelines() const;
+    // What it has compiled, for kernel.hpp.
+    CompiledKernels& kernels() const;
     std::uint32_t queue_family() const;
     // s, between two timestamps, whose counter may wrap; less than half of its range apart, either may be the later.
     double seconds_between(std::uint64_t first, std::uint64_t second) const;
@@ -106,6 +110,16 @@ class DriverScope {
     ~DriverScope();
     DriverScope(const DriverScope&) = delete;
     DriverScope& operator=(const DriverScope&) = delete;
+};
+
+// While it lives, begin_to_open() gives the device that it has opened before by the same selector, which keeps its
+// kernels: for tests, many of which run in one process. One in a process, in main(), within a DriverScope.
+class DeviceScope {
+  public:
+    DeviceScope();
+    ~DeviceScope();
+    DeviceScope(const DeviceScope&) = delete;
+    DeviceScope& operator=(const DeviceScope&) = delete;
 };
 
 // Every device the loader finds; throws DeviceError if there is no Vulkan at all.

@@ -1,5 +1,6 @@
 #include "vulkan/kernel.hpp"
 
+#include "core/digest.hpp"
 #include "core/error.hpp"
 #include "vulkan/failure.hpp"
 
@@ -52,23 +53,12 @@ void check_range(const Device& device, const Kernel& kernel, const BindingDeclar
     }
 }
 
-} // namespace
-
-Kernel::Kernel(const Device& device, std::string name, std::span<const std::uint32_t> spirv,
-               std::vector<BindingDeclaration> bindings, std::uint32_t push_constant_bytes,
-               std::span<const SpecializationConstant> constants)
-    : name_(std::move(name)), bindings_(std::move(bindings)), push_constant_bytes_(push_constant_bytes) {
-    if (push_constant_bytes_ > portable_push_constant_bytes || push_constant_bytes_ % 4 != 0) {
-        throw std::logic_error(fmt::format("kernel {}: {} bytes of push constants, expected a multiple of 4 up to {}",
-                                           name_, push_constant_bytes_, portable_push_constant_bytes));
-    }
+// Throws vk::SystemError.
+CompiledKernel compile(const Device& device, std::span<const std::uint32_t> spirv,
+                       std::span<const BindingDeclaration> bindings, std::uint32_t push_constant_bytes,
+                       std::span<const SpecializationConstant> constants) {
     std::vector<vk::DescriptorSetLayoutBinding> slots;
-    for (const BindingDeclaration& declaration : bindings_) {
-        if (declaration.kind == BindingKind::acceleration_structure && !device.report().ray_query) {
-            throw DeviceError(fmt::format("{} offers no ray query (VK_KHR_ray_query), which {} needs. Choose "
-                                          "--traversal quadtree or another device",
-                                          device.report().name, name_));
-        }
+    for (const BindingDeclaration& declaration : bindings) {
         slots.emplace_back(declaration.slot, type_of(declaration.kind), 1, vk::ShaderStageFlagBits::eCompute);
     }
     std::vector<vk::SpecializationMapEntry> entries;
@@ -87,22 +77,51 @@ Kernel::Kernel(const Device& device, std::string name, std::span<const std::uint
     }
     vk::ShaderModuleCreateInfo module_info;
     module_info.setCodeSize(spirv.size_bytes()).setPCode(spirv.data());
-    try {
-        set_layout_ = vk::raii::DescriptorSetLayout(
-            device.handle(),
-            vk::DescriptorSetLayoutCreateInfo(vk::DescriptorSetLayoutCreateFlagBits::ePushDescriptorKHR, slots));
-        const vk::DescriptorSetLayout set_layout = *set_layout_;
-        const vk::PushConstantRange push_range(vk::ShaderStageFlagBits::eCompute, 0, push_constant_bytes_);
-        vk::PipelineLayoutCreateInfo layout_info({}, set_layout);
-        if (push_constant_bytes_ > 0) {
-            layout_info.setPushConstantRanges(push_range);
+    CompiledKernel made;
+    made.set_layout = vk::raii::DescriptorSetLayout(
+        device.handle(),
+        vk::DescriptorSetLayoutCreateInfo(vk::DescriptorSetLayoutCreateFlagBits::ePushDescriptorKHR, slots));
+    const vk::DescriptorSetLayout set_layout = *made.set_layout;
+    const vk::PushConstantRange push_range(vk::ShaderStageFlagBits::eCompute, 0, push_constant_bytes);
+    vk::PipelineLayoutCreateInfo layout_info({}, set_layout);
+    if (push_constant_bytes > 0) {
+        layout_info.setPushConstantRanges(push_range);
+    }
+    made.layout = vk::raii::PipelineLayout(device.handle(), layout_info);
+    const vk::raii::ShaderModule module(device.handle(), module_info);
+    const vk::PipelineShaderStageCreateInfo stage({}, vk::ShaderStageFlagBits::eCompute, *module, "main",
+                                                  &specialization);
+    made.pipeline =
+        vk::raii::Pipeline(device.handle(), device.pipelines(), vk::ComputePipelineCreateInfo({}, stage, *made.layout));
+    return made;
+}
+
+} // namespace
+
+Kernel::Kernel(const Device& device, std::string name, std::span<const std::uint32_t> spirv,
+               std::vector<BindingDeclaration> bindings, std::uint32_t push_constant_bytes,
+               std::span<const SpecializationConstant> constants)
+    : name_(std::move(name)), bindings_(std::move(bindings)), push_constant_bytes_(push_constant_bytes) {
+    if (push_constant_bytes_ > portable_push_constant_bytes || push_constant_bytes_ % 4 != 0) {
+        throw std::logic_error(fmt::format("kernel {}: {} bytes of push constants, expected a multiple of 4 up to {}",
+                                           name_, push_constant_bytes_, portable_push_constant_bytes));
+    }
+    for (const BindingDeclaration& declaration : bindings_) {
+        if (declaration.kind == BindingKind::acceleration_structure && !device.report().ray_query) {
+            throw DeviceError(fmt::format("{} offers no ray query (VK_KHR_ray_query), which {} needs. Choose "
+                                          "--traversal quadtree or another device",
+                                          device.report().name, name_));
         }
-        layout_ = vk::raii::PipelineLayout(device.handle(), layout_info);
-        const vk::raii::ShaderModule module(device.handle(), module_info);
-        const vk::PipelineShaderStageCreateInfo stage({}, vk::ShaderStageFlagBits::eCompute, *module, "main",
-                                                      &specialization);
-        pipeline_ =
-            vk::raii::Pipeline(device.handle(), device.pipelines(), vk::ComputePipelineCreateInfo({}, stage, *layout_));
+    }
+    const std::string key = Digest()
+                                .add_values(spirv)
+                                .add_values(std::span<const BindingDeclaration>(bindings_))
+                                .add_values(std::span<const std::uint32_t>(&push_constant_bytes_, 1))
+                                .add_values(constants)
+                                .sha256();
+    try {
+        compiled_ = device.kernels().get(
+            key, [&] { return compile(device, spirv, bindings_, push_constant_bytes_, constants); });
     } catch (const vk::SystemError& error) {
         if (may_pass_next_time(error)) {
             throw run_error_of(error, device.report().name);

@@ -3,9 +3,11 @@
 
 #include "vulkan/acceleration_structure.hpp"
 #include "vulkan/buffer.hpp"
+#include "vulkan/compiled_kernels.hpp"
 #include "vulkan/specialised_spirv.hpp"
 
 #include <cstdint>
+#include <memory>
 #include <span>
 #include <string>
 #include <variant>
@@ -30,7 +32,8 @@ struct BindingDeclaration {
     BindingKind kind;
 };
 
-// A compute pipeline with push descriptors in set 0 and push constants at offset 0.
+// A compute pipeline with push descriptors in set 0 and push constants at offset 0. A device compiles a kernel once:
+// those of the same code, bindings and constants share one pipeline, which it keeps until it closes.
 class Kernel {
   public:
     Kernel(const Device& device, std::string name, std::span<const std::uint32_t> spirv,
@@ -38,8 +41,8 @@ class Kernel {
            std::span<const SpecializationConstant> constants = {});
 
     const std::string& name() const { return name_; }
-    vk::Pipeline pipeline() const { return *pipeline_; }
-    vk::PipelineLayout layout() const { return *layout_; }
+    vk::Pipeline pipeline() const { return *compiled_->pipeline; }
+    vk::PipelineLayout layout() const { return *compiled_->layout; }
     const std::vector<BindingDeclaration>& bindings() const { return bindings_; }
     std::uint32_t push_constant_bytes() const { return push_constant_bytes_; }
 
@@ -47,9 +50,7 @@ class Kernel {
     std::string name_;
     std::vector<BindingDeclaration> bindings_;
     std::uint32_t push_constant_bytes_;
-    vk::raii::DescriptorSetLayout set_layout_{nullptr};
-    vk::raii::PipelineLayout layout_{nullptr};
-    vk::raii::Pipeline pipeline_{nullptr};
+    std::shared_ptr<const CompiledKernel> compiled_;
 };
 
 // Workgroups for so many places (at least 1), in rows where a dispatch may not hold them in one. The last row may reach

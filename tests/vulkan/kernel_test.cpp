@@ -8,7 +8,9 @@
 #include <gtest/gtest.h>
 
 #include <chrono>
+#include <future>
 #include <numeric>
+#include <vector>
 
 namespace vkfv::vulkan {
 namespace {
@@ -61,6 +63,30 @@ std::vector<std::byte> pattern(std::size_t bytes) {
         byte = static_cast<std::byte>(state >> 24U);
     }
     return data;
+}
+
+// Of the same code, bindings and constants; the wrong twins differ in one of them.
+TEST(Kernels, AreCompiledOnceOnADevice) {
+    const auto first = arithmetic_kernel(3);
+    EXPECT_EQ(first.pipeline(), arithmetic_kernel(3).pipeline());
+    EXPECT_NE(first.pipeline(), arithmetic_kernel(5).pipeline());
+    const SpecializationConstant constant{3, 3};
+    const Kernel with_more(shared_device(), "probe_vulkan_arithmetic", probe_vulkan_arithmetic,
+                           {{5, BindingKind::storage_buffer},
+                            {0, BindingKind::uniform_buffer},
+                            {2, BindingKind::storage_buffer},
+                            {6, BindingKind::storage_buffer}},
+                           sizeof(Push), std::span(&constant, 1));
+    EXPECT_NE(first.pipeline(), with_more.pipeline());
+    // From several threads at once.
+    std::vector<std::future<vk::Pipeline>> threads;
+    for (int k = 0; k < 8; ++k) {
+        threads.push_back(std::async(std::launch::async, [] { return arithmetic_kernel(7).pipeline(); }));
+    }
+    const auto seventh = arithmetic_kernel(7).pipeline();
+    for (auto& thread : threads) {
+        EXPECT_EQ(thread.get(), seventh);
+    }
 }
 
 TEST(Buffers, ReturnWhatWasWritten) {

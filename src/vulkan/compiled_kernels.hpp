@@ -1,0 +1,35 @@
+// What a device has compiled.
+#pragma once
+
+#include <vulkan/vulkan_raii.hpp>
+
+#include <functional>
+#include <future>
+#include <map>
+#include <memory>
+#include <mutex>
+#include <string>
+
+namespace vkfv::vulkan {
+
+struct CompiledKernel {
+    vk::raii::DescriptorSetLayout set_layout{nullptr};
+    vk::raii::PipelineLayout layout{nullptr};
+    vk::raii::Pipeline pipeline{nullptr};
+};
+
+// Pipelines by all that they are made from. From any thread: who asks for one that another thread is making waits for
+// it, and others are made meanwhile.
+class CompiledKernels {
+  public:
+    using Made = std::shared_ptr<const CompiledKernel>;
+
+    // The pipeline of `key`, by `make` where there is none. Throws what `make` throws, which the next call tries again.
+    Made get(const std::string& key, const std::function<CompiledKernel()>& make);
+
+  private:
+    std::mutex changing_;
+    std::map<std::string, std::shared_future<Made>> made_;
+};
+
+} // namespace vkfv::vulkan
