@@ -1,7 +1,6 @@
 #include "core/fourier.hpp"
 
-#include <Eigen/Core>
-#include <unsupported/Eigen/FFT>
+#include "core/line_transform.hpp"
 
 #include <algorithm>
 #include <cstddef>
@@ -23,8 +22,7 @@ void share_lines(int count, std::size_t values, const Task& task) {
     const int threads = static_cast<int>(std::clamp<std::size_t>(values / values_a_thread, 1, cores));
     const int share = (count + threads - 1) / threads;
     const auto run = [&](int first, int end) {
-        Eigen::FFT<double> fft;
-        fft.SetFlag(Eigen::FFT<double>::Unscaled);
+        LineTransform fft;
         task(first, end, fft);
     };
     std::vector<std::jthread> others;
@@ -41,7 +39,7 @@ constexpr int lines_at_once = 8;
 template <class Task>
 void over_lines(std::vector<Complex>& values, int count, std::size_t line_step, int length, std::size_t value_step,
                 int padded, const Task& task) {
-    share_lines(count, values.size(), [&](int first, int end, Eigen::FFT<double>& fft) {
+    share_lines(count, values.size(), [&](int first, int end, LineTransform& fft) {
         const auto n = static_cast<std::size_t>(length), size = static_cast<std::size_t>(padded);
         std::vector<Complex> lines(size * lines_at_once);
         for (int start = first; start < end; start += lines_at_once) {
@@ -65,14 +63,14 @@ void over_lines(std::vector<Complex>& values, int count, std::size_t line_step, 
 void transform_lines(std::vector<Complex>& values, int count, std::size_t line_step, int length, std::size_t value_step,
                      bool inverse) {
     if (length == 1)
-        return; // is its own transform; Eigen's takes none so short
-    over_lines(values, count, line_step, length, value_step, length, [&](Complex* line, Eigen::FFT<double>& fft) {
+        return; // is its own transform; LineTransform takes none so short
+    over_lines(values, count, line_step, length, value_step, length, [&](Complex* line, LineTransform& fft) {
         thread_local std::vector<Complex> transformed;
         transformed.resize(static_cast<std::size_t>(length));
         if (inverse)
-            fft.inv(transformed.data(), line, length);
+            fft.inverse(transformed.data(), line, length);
         else
-            fft.fwd(transformed.data(), line, length);
+            fft.forward(transformed.data(), line, length);
         std::ranges::copy(transformed, line);
     });
 }
@@ -86,19 +84,18 @@ void convolve_lines(std::vector<Complex>& values, int count, std::size_t line_st
     std::vector<Complex> kernel(size), spectrum(size);
     for (std::size_t k = 0; k < weights.size(); ++k)
         kernel[k] = kernel[(size - k) % size] = weights[k];
-    Eigen::FFT<double> own;
-    own.SetFlag(Eigen::FFT<double>::Unscaled);
-    own.fwd(spectrum.data(), kernel.data(), padded);
+    LineTransform own;
+    own.forward(spectrum.data(), kernel.data(), padded);
     std::vector<double> gain(size); // real, as the weights are symmetric
     for (std::size_t k = 0; k < size; ++k)
         gain[k] = spectrum[k].real() / padded;
-    over_lines(values, count, line_step, length, value_step, padded, [&](Complex* line, Eigen::FFT<double>& fft) {
+    over_lines(values, count, line_step, length, value_step, padded, [&](Complex* line, LineTransform& fft) {
         thread_local std::vector<Complex> transformed;
         transformed.resize(size);
-        fft.fwd(transformed.data(), line, padded);
+        fft.forward(transformed.data(), line, padded);
         for (std::size_t k = 0; k < size; ++k)
             transformed[k] *= gain[k];
-        fft.inv(line, transformed.data(), padded);
+        fft.inverse(line, transformed.data(), padded);
     });
 }
 
@@ -119,7 +116,7 @@ void cosine_lines(std::vector<double>& values, int count, std::size_t line_step,
         turns[k] = std::polar(1.0, -std::numbers::pi * static_cast<double>(k) / (2.0 * length));
     // Even places ascend, odd ones descend behind them.
     const auto place = [n](std::size_t k) { return k % 2 == 0 ? k / 2 : n - 1 - k / 2; };
-    share_lines((count + 1) / 2, values.size(), [&](int first, int end, Eigen::FFT<double>& fft) {
+    share_lines((count + 1) / 2, values.size(), [&](int first, int end, LineTransform& fft) {
         std::vector<Complex> line(n), transformed(n);
         for (int pair = first; pair < end; ++pair) {
             double* const a = values.data() + static_cast<std::size_t>(2 * pair) * line_step;
@@ -127,7 +124,7 @@ void cosine_lines(std::vector<double>& values, int count, std::size_t line_step,
             if (!inverse) {
                 for (std::size_t k = 0; k < n; ++k)
                     line[place(k)] = {a[k * value_step], b ? b[k * value_step] : 0};
-                fft.fwd(transformed.data(), line.data(), length);
+                fft.forward(transformed.data(), line.data(), length);
                 for (std::size_t k = 0; k < n; ++k) {
                     const Complex at = transformed[k], mirrored = std::conj(transformed[(n - k) % n]);
                     a[k * value_step] = (turns[k] * (at + mirrored)).real() / 2;
@@ -142,7 +139,7 @@ void cosine_lines(std::vector<double>& values, int count, std::size_t line_step,
                     };
                     line[k] = value(a) + (b ? Complex(0, 1) * value(b) : 0);
                 }
-                fft.inv(transformed.data(), line.data(), length);
+                fft.inverse(transformed.data(), line.data(), length);
                 for (std::size_t k = 0; k < n; ++k) {
                     const Complex at = transformed[place(k)] / static_cast<double>(length);
                     a[k * value_step] = at.real();
