@@ -1,7 +1,10 @@
 #include "app/commands.hpp"
 #include "measurement/evaluation/existing_stack.hpp"
 
+#include "core/units.hpp"
+
 #include <fmt/format.h>
+#include <spdlog/spdlog.h>
 
 #include <cmath>
 #include <cstdio>
@@ -12,8 +15,10 @@ namespace {
 
 // Of a stack that vkfv did not make; lengths in mm.
 struct TopographyOptions {
-    std::optional<double> z_step;         // negative: the images descend
-    std::optional<double> z_start;        // of the first image; none: 0
+    std::optional<double> z_step;      // negative: the images descend
+    std::optional<double> z_start;     // of the first image; none: 0
+    std::optional<int> channel, frame; // of a file of several, from 1
+    std::optional<std::filesystem::path> dark, flat_field;
     std::optional<std::uint64_t> shuffle; // seed of the order in which images are taken
 };
 
@@ -23,14 +28,33 @@ Command topography_command() {
     const std::vector<Option> of_images = {
         {.name = "--z_step_um,--z-step-um",
          .value = "UM",
-         .description = "Step from image to image of a stack without stack.toml; negative: they descend",
+         .description = "Step from image to image of a stack without stack.toml; negative: they descend. None: as the "
+                        "file states",
          .target = in_mm(&TopographyOptions::z_step)},
         {.name = "--z_start_um,--z-start-um",
          .value = "UM",
          .description = "Height of the first image of a stack without stack.toml",
          .target = in_mm(&TopographyOptions::z_start),
-         .fallback = "0"},
+         .fallback = "as the file states, or 0"},
         pitch_option(),
+        {.name = "--channel",
+         .value = "N",
+         .description = "Which of several channels of a file is evaluated, from 1",
+         .target = into(&TopographyOptions::channel)},
+        {.name = "--frame",
+         .value = "N",
+         .description = "Which of several times of a file is evaluated, from 1",
+         .target = into(&TopographyOptions::frame)},
+        {.name = "--dark",
+         .value = "FILE",
+         .description =
+             "Image without light, by the stack's camera, exposure time and gain: taken off each image. Several "
+             "pages or a folder: their mean",
+         .target = into(&TopographyOptions::dark)},
+        {.name = "--flat-field,--flat_field",
+         .value = "FILE",
+         .description = "Image of an even surface out of focus, likewise: each image is divided by it",
+         .target = into(&TopographyOptions::flat_field)},
         {.name = "--shuffle",
          .value = "SEED",
          .description = "Take the images in a random order: a control, which must find nothing",
@@ -49,9 +73,10 @@ namespace {
 measurement::EvaluatedStack evaluate_own(const CommandOptions& options) {
     const auto own = options.of<TopographyOptions>();
     const auto pitch = options.of<PixelPitch>().value;
-    if (own.z_step || pitch || own.z_start) {
-        refuse_argument("--z_step_um, --pitch_um or --z_start_um with a stack that has a stack.toml", "neither of them",
-                        "Leave them out: they stand in stack.toml.");
+    if (own.z_step || pitch || own.z_start || own.channel || own.frame) {
+        refuse_argument(
+            "--z_step_um, --pitch_um, --z_start_um, --channel or --frame with a stack that has a stack.toml",
+            "none of them", "Leave them out: they stand in stack.toml.");
     }
     return measurement::evaluate_own_stack({.folder = options.file,
                                             .overrides = options.overrides,
@@ -59,20 +84,54 @@ measurement::EvaluatedStack evaluate_own(const CommandOptions& options) {
                                             .shuffle = own.shuffle});
 }
 
-// What an instrument's file says of its images, the command line must say.
+// The option, else what the file states. Where they differ by more than 1 % the option counts, and both are told.
+std::optional<double> given_or_stated(const std::string& name, const std::optional<double>& given,
+                                      const std::optional<double>& stated, const std::string& by) {
+    constexpr double tolerance = 0.01;
+    if (given && stated && std::abs(*given - *stated) > tolerance * std::abs(*stated)) {
+        spdlog::warn("{} {:g}, but the file states {:g} ({}). The option is used: leave it out to use the file's.",
+                     name, *given * um_per_mm, *stated * um_per_mm, by);
+    }
+    if (!given && stated) {
+        spdlog::info("{} {:g} is taken from the file ({})", name, *stated * um_per_mm, by);
+    }
+    return given ? given : stated;
+}
+
+// Pixels are square.
+std::optional<double> stated_pitch(const scan::StatedSeries& stated) {
+    if (!stated.pitch_x || !stated.pitch_y) {
+        return std::nullopt;
+    }
+    constexpr double tolerance = 0.01;
+    if (std::abs(*stated.pitch_x - *stated.pitch_y) > tolerance * *stated.pitch_x) {
+        spdlog::warn("The file states pixels of {:g} x {:g} um ({}), which are not square: not used.",
+                     *stated.pitch_x * um_per_mm, *stated.pitch_y * um_per_mm, stated.by);
+        return std::nullopt;
+    }
+    return stated.pitch_x;
+}
+
 measurement::EvaluatedStack evaluate_foreign(const CommandOptions& options) {
     const auto own = options.of<TopographyOptions>();
-    const auto pitch = options.of<PixelPitch>().value;
-    const scan::ImageSeries series(options.file);
-    const bool step_good = own.z_step && std::isfinite(*own.z_step) && *own.z_step != 0;
+    const scan::ImageSeries series(options.file, {.channel = own.channel, .frame = own.frame});
+    const auto& stated = series.stated();
+    for (const std::string& doubt : stated.doubts) {
+        spdlog::warn("{} {}.", options.file.string(), doubt);
+    }
+    const auto z_step =
+        given_or_stated("--z_step_um", own.z_step, stated.z_step, stated.z_by.empty() ? stated.by : stated.z_by);
+    const auto pitch = given_or_stated("--pitch_um", options.of<PixelPitch>().value, stated_pitch(stated), stated.by);
+    const bool step_good = z_step && std::isfinite(*z_step) && *z_step != 0;
     if (!step_good || !pitch || !std::isfinite(*pitch) || *pitch <= 0) {
         refuse_argument(
             !step_good ? "no --z_step_um, or none that steps" : "no --pitch_um, or none above 0",
-            fmt::format("both, for the {} images in {}, which has no stack.toml", series.size(), options.file.string()),
+            fmt::format("both, for the {} images in {}, which has no stack.toml and does not state them", series.size(),
+                        options.file.string()),
             "Give --z_step_um UM, the step from image to image (negative if they descend), and --pitch_um UM > 0, "
             "the distance of the pixels on the specimen.");
     }
-    const double start = own.z_start.value_or(0);
+    const double start = own.z_start.value_or(own.z_step ? 0 : stated.z_start.value_or(0));
     if (!std::isfinite(start)) {
         refuse_argument("--z_start_um " + fmt::format("{}", start), "a height",
                         "Give that of the first image, or leave it out.");
@@ -91,10 +150,11 @@ measurement::EvaluatedStack evaluate_foreign(const CommandOptions& options) {
     std::erase_if(overrides, [](const TomlOverride& given) { return given.origin == "--out"; });
     return measurement::evaluate_images(series, {.images = options.file,
                                                  .overrides = std::move(overrides),
-                                                 .z_step = *own.z_step,
+                                                 .z_step = *z_step,
                                                  .z_start = start,
                                                  .pitch = *pitch,
-                                                 .shuffle = own.shuffle});
+                                                 .shuffle = own.shuffle,
+                                                 .corrections = {.dark = own.dark, .flat_field = own.flat_field}});
 }
 
 } // namespace

@@ -14,6 +14,7 @@ struct Codec {
     Grid<float> (*read_image)(const std::filesystem::path& path, int page);
     std::vector<Grid<float>> (*read_channels)(const std::filesystem::path& path, int page);
     std::string (*image_description)(const std::filesystem::path& path);
+    ImageStatement (*image_statement)(const std::filesystem::path& path);
     StoredImage (*parse_tiff)(std::string_view bytes, const std::filesystem::path& path);
     DescribedImage (*parse_image)(std::string_view bytes, const std::filesystem::path& path);
     Grid<float> (*parse_grey)(std::string_view bytes, std::uint64_t most_pixels, const std::filesystem::path& path);

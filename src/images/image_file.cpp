@@ -66,6 +66,10 @@ std::string image_description(const std::filesystem::path& path) {
     return image ? std::move(image->description) : codec().image_description(path);
 }
 
+ImageStatement image_statement(const std::filesystem::path& path) {
+    return codec().image_statement(path); // plain TIFFs too: it is asked once for a stack
+}
+
 StoredImage parse_tiff(std::string_view bytes, const std::filesystem::path& path) {
     auto image = plain_tiff(bytes, TiffPart::all);
     if (!image || image->channels != 1) {

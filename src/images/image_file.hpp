@@ -46,6 +46,19 @@ std::vector<Grid<float>> read_channels(const std::filesystem::path& path, int pa
 // The first page's ImageDescription; empty without one.
 std::string image_description(const std::filesystem::path& path);
 
+// What the first page states of itself beside its values.
+struct ImageStatement {
+    int columns = 0;
+    int rows = 0;
+    int channels = 0;            // without opacity
+    std::string description{};   // ImageDescription; empty without one
+    double columns_per_unit = 0; // resolution tags of a TIFF; 0: none
+    double rows_per_unit = 0;    // likewise
+    enum class Unit { none, inch, centimetre };
+    Unit unit = Unit::none; // theirs
+};
+ImageStatement image_statement(const std::filesystem::path& path);
+
 struct StoredImage {
     Grid<float> values;      // as stored
     std::string description; // ImageDescription; empty without one

@@ -5,8 +5,11 @@
 #include <algorithm>
 #include <cctype>
 #include <cmath>
+#include <initializer_list>
+#include <map>
 #include <numeric>
 #include <optional>
+#include <utility>
 
 namespace vkfv::scan {
 
@@ -63,8 +66,14 @@ std::string_view decimals(std::string_view number) {
     return point == std::string_view::npos ? std::string_view() : number.substr(point + 1);
 }
 
-// The values of the one number in which the names differ; none if they differ otherwise.
-std::optional<std::vector<double>> values_of(const std::vector<std::string>& names) {
+// The values of the one number in which the names differ, and the text behind it.
+struct Numbers {
+    std::vector<double> values;
+    std::string behind;
+};
+
+// None if they differ otherwise.
+std::optional<Numbers> numbers_of(const std::vector<std::string>& names) {
     std::vector<Parts> all;
     std::ranges::transform(names, std::back_inserter(all), parts_of);
     std::optional<std::size_t> differs;
@@ -92,15 +101,57 @@ std::optional<std::vector<double>> values_of(const std::vector<std::string>& nam
         !even && std::ranges::any_of(all, [&](const Parts& parts) { return decimals(text(parts)).ends_with('0'); });
     constexpr std::size_t exact_digits = 15; // of a double
     const bool separated = std::ranges::all_of(all, [&](const Parts& parts) { return text(parts).front() == '-'; });
-    std::vector<double> values;
+    Numbers numbers{.values = {}, .behind = all.front().texts[*differs + 1]};
     for (const Parts& parts : all) {
         if (counts || text(parts).size() > exact_digits) {
             return std::nullopt;
         }
         const double value = std::stod(text(parts));
-        values.push_back(separated ? -value : value);
+        numbers.values.push_back(separated ? -value : value);
     }
-    return values;
+    return numbers;
+}
+
+// mm of the unit that a text begins with, behind a space or '_' or none; 0: of no unit.
+double unit_at(std::string_view text) {
+    text.remove_prefix(!text.empty() && (text.front() == ' ' || text.front() == '_') ? 1 : 0);
+    for (const auto& [unit, length] : std::initializer_list<std::pair<std::string_view, double>>{
+             {"um", 1e-3}, {"\u00b5m", 1e-3}, {"\u03bcm", 1e-3}, {"nm", 1e-6}, {"mm", 1}}) {
+        if (text.starts_with(unit) &&
+            (text.size() == unit.size() || std::isalnum(static_cast<unsigned char>(text[unit.size()])) == 0)) {
+            return length;
+        }
+    }
+    return 0;
+}
+
+// How many steps each of ascending values is above the first; none if they have no step in common. Decimals are
+// rounded ones.
+std::optional<std::vector<int>> steps_of(const std::vector<double>& values, double& step) {
+    std::vector<double> differences(values.size());
+    std::adjacent_difference(values.begin(), values.end(), differences.begin());
+    differences.erase(differences.begin());
+    auto sorted = differences;
+    std::ranges::sort(sorted);
+    step = sorted[sorted.size() / 2]; // the one that most have
+    constexpr double tolerance = 0.1, most_share = 0.8, most_steps = 1e6;
+    std::vector<int> steps = {0};
+    std::size_t single = 0;
+    for (const double difference : differences) {
+        const double multiple = std::round(difference / step);
+        if (!(difference > 0) || multiple < 1 || multiple > most_steps ||
+            std::abs(difference - multiple * step) > tolerance * step) {
+            return std::nullopt;
+        }
+        single += multiple == 1 ? 1 : 0;
+        steps.push_back(steps.back() + static_cast<int>(multiple));
+    }
+    if (static_cast<double>(single) < most_share * static_cast<double>(differences.size()) ||
+        steps.back() > most_steps) {
+        return std::nullopt;
+    }
+    step = (values.back() - values.front()) / steps.back();
+    return steps;
 }
 
 } // namespace
@@ -134,28 +185,65 @@ ImageOrder order_of_names(const std::vector<std::string>& names) {
     std::iota(order.begin(), order.end(), std::size_t{0});
     std::ranges::sort(order, [&](std::size_t a, std::size_t b) { return naturally_before(names[a], names[b]); });
     if (names.size() < 2) {
+        result.heights.resize(names.size());
         return result;
     }
-    const auto values = values_of(names);
-    if (!values) {
+    result.heights.resize(names.size());
+    std::iota(result.heights.begin(), result.heights.end(), 0);
+    const auto numbers = numbers_of(names);
+    if (!numbers) {
         result.doubt =
             fmt::format("their names do not differ in one number alone; they are taken in natural order, from {} "
                         "to {}",
                         names[order.front()], names[order.back()]);
         return result;
     }
-    std::ranges::stable_sort(order, {}, [&](std::size_t k) { return (*values)[k]; });
-    const double step = (*values)[order[1]] - (*values)[order[0]];
-    for (std::size_t k = 1; k < order.size(); ++k) {
-        const double here = (*values)[order[k]] - (*values)[order[k - 1]];
-        // Decimals are rounded ones.
-        if (!(here > 0 && std::abs(here - step) <= 0.1 * step)) {
-            result.doubt = fmt::format("the numbers in their names are not equidistant: {} follows {}", names[order[k]],
-                                       names[order[k - 1]]);
-            break;
+    std::ranges::stable_sort(order, {}, [&](std::size_t k) { return numbers->values[k]; });
+    std::vector<double> values;
+    std::ranges::transform(order, std::back_inserter(values), [&](std::size_t k) { return numbers->values[k]; });
+    double step = 0;
+    const auto heights = steps_of(values, step);
+    if (!heights) {
+        const double first = values[1] - values[0];
+        std::size_t k = 1;
+        while (k + 1 < values.size() && std::abs(values[k] - values[k - 1] - first) <= 0.1 * first) {
+            ++k;
         }
+        result.doubt = fmt::format("the numbers in their names have no step in common: {} follows {}; equal steps are "
+                                   "taken",
+                                   names[order[k]], names[order[k - 1]]);
+        return result;
+    }
+    result.heights = *heights;
+    if (const double unit = unit_at(numbers->behind); unit > 0) {
+        result.first = values.front() * unit;
+        result.step = step * unit;
     }
     return result;
+}
+
+std::vector<bool> of_one_series(const std::vector<std::string>& names) {
+    std::map<std::vector<std::string>, std::vector<std::size_t>> alike;
+    for (std::size_t k = 0; k < names.size(); ++k) {
+        alike[parts_of(names[k]).texts].push_back(k);
+    }
+    constexpr double most_share = 0.8;
+    constexpr std::size_t fewest = 3;
+    for (const auto& [texts, places] : alike) {
+        if (places.size() >= fewest &&
+            static_cast<double>(places.size()) >= most_share * static_cast<double>(names.size())) {
+            std::vector<std::string> of_series;
+            std::vector<bool> result(names.size(), false);
+            for (const std::size_t k : places) {
+                of_series.push_back(names[k]);
+                result[k] = true;
+            }
+            if (numbers_of(of_series)) {
+                return result;
+            }
+        }
+    }
+    return std::vector<bool>(names.size(), true);
 }
 
 } // namespace vkfv::scan

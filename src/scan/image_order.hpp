@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstddef>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -15,11 +16,20 @@ bool naturally_before(std::string_view a, std::string_view b);
 struct ImageOrder {
     std::vector<std::size_t> order; // places in `names`
     std::string doubt;              // why this may not be the order of the heights; empty: none
+    // Of each image in that order, its height above the first in steps: 0, 1, 3, ... where the third is missing.
+    std::vector<int> heights;
+    // Where the names say of which unit of length their numbers are: mm.
+    std::optional<double> first, step;
 };
 
 // Names (without their endings) that differ in one number alone are in the order of that number, which may have
-// decimals (z_0.5) and signs (z-5, z+5; a '-' before all of them only separates); a number that is missing is a doubt.
-// Others are in natural order, which is a doubt.
+// decimals (z_0.5) and signs (z-5, z+5; a '-' before all of them only separates). Where four of five steps between the
+// numbers are equal and the others whole multiples of them, heights follow the numbers; else equal steps are taken,
+// which is a doubt. Other names are in natural order, which is a doubt too.
 ImageOrder order_of_names(const std::vector<std::string>& names);
+
+// Which names are of one series: those that are alike but for their numbers and signs, if that is four of five at
+// least, three in all, and they differ in one number alone. Else all.
+std::vector<bool> of_one_series(const std::vector<std::string>& names);
 
 } // namespace vkfv::scan

@@ -11,7 +11,11 @@
 #include <algorithm>
 #include <array>
 #include <cctype>
+#include <iterator>
+#include <map>
 #include <string>
+#include <tuple>
+#include <utility>
 
 namespace vkfv::scan {
 
@@ -26,33 +30,70 @@ bool is_image(const std::filesystem::path& file) {
     return std::ranges::find(extensions, extension) != extensions.end() && file.filename().string().front() != '.';
 }
 
+// The one of `count` that is asked for, from 0.
+int chosen(const std::filesystem::path& path, const std::string& kind, const std::optional<int>& asked, int count,
+           const StatedSeries& stated) {
+    if (count == 1 && !asked) {
+        return 0;
+    }
+    if (!asked || *asked < 1 || *asked > count) {
+        refuse_file(path, "",
+                    asked ? fmt::format("{} {}", kind, *asked)
+                          : fmt::format("pages: {}, heights: {}, channels: {}, frames: {} ({})", stated.pages.size(),
+                                        stated.heights, stated.channels, stated.frames, stated.by),
+                    count == 1 ? fmt::format("{} 1, the only one", kind) : fmt::format("one {} of {}", kind, count),
+                    fmt::format("Choose it: --{} 1 to {}.", kind, count));
+    }
+    return *asked - 1;
+}
+
+// Of files in one folder, for names that are alike.
+std::vector<std::string> names_with_endings(const std::vector<std::filesystem::path>& files) {
+    std::vector<std::string> names;
+    for (const auto& file : files) {
+        names.push_back(file.stem().string() + "/" + file.extension().string());
+    }
+    return names;
+}
+
+// Which images have the size and channels that four of five have. All, if there are no such.
+std::vector<bool> of_one_size(const std::vector<images::ImageStatement>& statements) {
+    using Size = std::tuple<int, int, int>;
+    const auto size_of = [](const images::ImageStatement& image) {
+        return Size(image.columns, image.rows, image.channels);
+    };
+    std::map<Size, std::size_t> counts;
+    for (const auto& image : statements) {
+        counts[size_of(image)] += 1;
+    }
+    const auto most = std::ranges::max_element(counts, {}, [](const auto& entry) { return entry.second; });
+    constexpr double most_share = 0.8;
+    const bool is_series = static_cast<double>(most->second) >= most_share * static_cast<double>(statements.size());
+    std::vector<bool> result;
+    std::ranges::transform(statements, std::back_inserter(result),
+                           [&](const auto& image) { return !is_series || size_of(image) == most->first; });
+    return result;
+}
+
+// Those of which `kept` is true stay; the others are named.
+void leave_out(std::vector<std::filesystem::path>& files, const std::vector<bool>& kept,
+               const std::filesystem::path& folder, const std::string& reason) {
+    std::vector<std::filesystem::path> rest;
+    for (std::size_t k = 0; k < files.size(); ++k) {
+        if (kept[k]) {
+            rest.push_back(files[k]);
+        } else {
+            spdlog::warn("{}: {} is left out: {}", folder.string(), files[k].filename().string(), reason);
+        }
+    }
+    files = std::move(rest);
+}
+
 } // namespace
 
-ImageSeries::ImageSeries(const std::filesystem::path& path) {
+ImageSeries::ImageSeries(const std::filesystem::path& path, const SeriesChoice& choice) {
     if (std::filesystem::is_directory(path)) {
-        std::vector<std::filesystem::path> files;
-        for (const auto& entry : std::filesystem::directory_iterator(path)) {
-            if (entry.is_regular_file() && is_image(entry.path())) {
-                files.push_back(entry.path());
-            }
-        }
-        std::ranges::sort(files); // the folder has no order of its own
-        std::vector<std::string> names;
-        std::ranges::transform(files, std::back_inserter(names), [](const auto& file) { return file.stem().string(); });
-        const auto [order, doubt] = order_of_names(names);
-        for (const std::size_t place : order) {
-            images_.push_back({files[place], 0});
-        }
-        if (!doubt.empty()) {
-            spdlog::warn("{}: the heights of the images are in doubt: {}", path.string(), doubt);
-        }
-        if (images_.empty()) {
-            refuse_file(
-                path, "", "no stack.toml and no image",
-                fmt::format("stack.toml or files {}", fmt::join(extensions, ", ")),
-                "Give the folder of a stack of vkfv, one with the images of another, or a TIFF file of several pages. "
-                "Develop a camera's raw files to TIFF, all with the same settings.");
-        }
+        take_folder(path);
         return;
     }
     if (!std::filesystem::exists(path)) {
@@ -60,20 +101,88 @@ ImageSeries::ImageSeries(const std::filesystem::path& path) {
                     "the folder of a stack (with its stack.toml), a folder of images, or a TIFF file of several pages",
                     "Check the path.");
     }
-    for (int page = 0, pages = images::page_count(path); page < pages; ++page) {
-        images_.push_back({path, page});
+    stated_ = stated_series(images::image_statement(path), images::page_count(path), path);
+    const int channel = chosen(path, "channel", choice.channel, stated_.channels, stated_);
+    const int frame = chosen(path, "frame", choice.frame, stated_.frames, stated_);
+    for (int height = 0; height < stated_.heights; ++height) {
+        images_.push_back({path, stated_.page(height, channel, frame)});
+    }
+}
+
+void ImageSeries::take_folder(const std::filesystem::path& path) {
+    std::vector<std::filesystem::path> files;
+    for (const auto& entry : std::filesystem::directory_iterator(path)) {
+        if (entry.is_regular_file() && is_image(entry.path())) {
+            files.push_back(entry.path());
+        }
+    }
+    if (files.empty()) {
+        refuse_file(path, "", "no stack.toml and no image",
+                    fmt::format("stack.toml or files {}", fmt::join(extensions, ", ")),
+                    "Give the folder of a stack of vkfv, one with the images of another, or a TIFF file of several "
+                    "pages. Develop a camera's raw files to TIFF, all with the same settings.");
+    }
+    std::ranges::sort(files); // the folder has no order of its own
+    leave_out(files, of_one_series(names_with_endings(files)), path, "its name is not like those of the others");
+    std::vector<images::ImageStatement> statements;
+    std::ranges::transform(files, std::back_inserter(statements), images::image_statement);
+    leave_out(files, of_one_size(statements), path, "it has another size or kind than the others");
+    std::vector<std::string> names;
+    std::ranges::transform(files, std::back_inserter(names), [](const auto& file) { return file.stem().string(); });
+    const auto found = order_of_names(names);
+    if (!found.doubt.empty()) {
+        spdlog::warn("{}: the heights of the images are in doubt: {}", path.string(), found.doubt);
+    }
+    for (std::size_t k = 0; k < found.order.size(); ++k) {
+        const auto& file = files[found.order[k]];
+        const int before = static_cast<int>(images_.size()) - 1;
+        for (int height = before + 1; height < found.heights[k]; ++height) {
+            images_.push_back({.file = {}, .page = 0, .before = before, .after = found.heights[k]});
+        }
+        if (before + 1 < found.heights[k]) {
+            const int missing = found.heights[k] - before - 1;
+            spdlog::warn("{}: {} missing between {} and {}, by the numbers in their names: means of these two stand in "
+                         "place, so that no height there is certain",
+                         path.string(), missing == 1 ? "an image is" : fmt::format("{} images are", missing),
+                         images_[static_cast<std::size_t>(before)].file.filename().string(), file.filename().string());
+        }
+        images_.push_back({.file = file});
+    }
+    const auto& first = images_.front().file;
+    stated_ = stated_series(images::image_statement(first), StatedSeries::uncounted, first);
+    if (found.step) {
+        stated_.z_by = "the names of the files";
+        stated_.z_step = found.step;
+        stated_.z_start = found.first;
     }
 }
 
 std::string ImageSeries::name(int image) const {
     const Place& place = images_.at(static_cast<std::size_t>(image));
+    if (place.file.empty()) {
+        return fmt::format("(missing, between {} and {})", name(place.before), name(place.after));
+    }
     const std::string file = place.file.filename().string();
     return images_.front().file == images_.back().file ? fmt::format("{}, page {}", file, place.page) : file;
 }
 
 std::vector<Grid<float>> ImageSeries::read(int image) const {
     const Place& place = images_.at(static_cast<std::size_t>(image));
-    return images::read_channels(place.file, place.page);
+    if (!place.file.empty()) {
+        return images::read_channels(place.file, place.page);
+    }
+    auto before = read(place.before);
+    const auto after = read(place.after);
+    const float share = static_cast<float>(image - place.before) / static_cast<float>(place.after - place.before);
+    for (std::size_t channel = 0; channel < std::min(before.size(), after.size()); ++channel) {
+        auto& values = before[channel].values;
+        const auto& others = after[channel].values;
+        if (values.size() == others.size()) { // else refused where that image comes
+            std::ranges::transform(values, others, values.begin(),
+                                   [share](float a, float b) { return a + share * (b - a); });
+        }
+    }
+    return before;
 }
 
 } // namespace vkfv::scan

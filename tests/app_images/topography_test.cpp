@@ -11,6 +11,8 @@
 #include <nlohmann/json.hpp>
 
 #include <algorithm>
+#include <array>
+#include <chrono>
 #include <cmath>
 #include <limits>
 #include <numeric>
@@ -44,12 +46,27 @@ std::vector<std::vector<int>> stack_values(int largest) {
     return stack;
 }
 
+// The first page states `description`, and that there are so many pixels a unit.
+struct Statement {
+    std::string description;
+    float per_unit = 0;
+    std::string unit = "none";
+};
+
 template <class Value>
 void write_pages(const std::filesystem::path& path, const std::vector<std::vector<int>>& stack, int channels,
-                 OIIO::TypeDesc type) {
+                 OIIO::TypeDesc type, const Statement& statement = {}) {
     const auto output = OIIO::ImageOutput::create("tiff");
     OIIO::ImageSpec spec(side, side, channels, type);
     std::vector<OIIO::ImageSpec> specs(stack.size(), spec);
+    if (!statement.description.empty()) {
+        specs.front().attribute("ImageDescription", statement.description);
+    }
+    if (statement.per_unit > 0) {
+        specs.front().attribute("XResolution", statement.per_unit);
+        specs.front().attribute("YResolution", statement.per_unit);
+        specs.front().attribute("ResolutionUnit", statement.unit);
+    }
     ASSERT_TRUE(output->open(path.string(), static_cast<int>(specs.size()), specs.data()));
     for (std::size_t k = 0; k < stack.size(); ++k) {
         if (k > 0) {
@@ -265,9 +282,17 @@ TEST(Topography, DoubtsAboutTheHeightsOfImagesAreTold) {
     std::filesystem::remove(folder / "images/z+2.tif");
     const auto gap = evaluate(folder, "images", "gap");
     EXPECT_EQ(gap.exit_code, 0);
-    EXPECT_THAT(gap.standard_error, HasSubstr("z+3 follows z+1"));
+    EXPECT_THAT(gap.standard_error, HasSubstr("an image is missing between z+1.tif and z+3.tif"));
     write("z+2 copy.tif", 7);
-    EXPECT_THAT(evaluate(folder, "images", "copy").standard_error, HasSubstr("natural order"));
+    EXPECT_THAT(evaluate(folder, "images", "copy").standard_error, HasSubstr("z+2 copy.tif is left out"));
+    for (const char* name : {"z-5.tif", "z-4.tif", "z-2.tif"}) {
+        std::filesystem::rename(folder / "images" / name, folder / "images" / (std::string("new ") + name));
+    }
+    EXPECT_THAT(evaluate(folder, "images", "renamed").standard_error, HasSubstr("natural order"));
+    for (const char* name : {"new z-5.tif", "new z-4.tif", "new z-2.tif", "z+2 copy.tif", "z+5.tif", "z-1.tif"}) {
+        std::filesystem::remove(folder / "images" / name);
+    }
+    EXPECT_THAT(evaluate(folder, "images", "uneven").standard_error, HasSubstr("z+1 follows z+0"));
 
     write_pages<std::int16_t>(
         folder / "negative.tif",
@@ -329,6 +354,217 @@ TEST(Topography, WhatIsMissingIsNamed) {
     EXPECT_THAT(elsewhere.standard_error, HasSubstr("--topography"));
 }
 
+// cases/20: what a file states is used where no option says otherwise, and its channels are no heights.
+TEST(Topography, WhatAFileStatesIsUsed) {
+    const auto folder = fresh_folder("stated");
+    const auto stack = stack_values(255);
+    write_pages<std::uint8_t>(folder / "alone.tif", stack, 1, OIIO::TypeDesc::UINT8);
+    std::vector<std::vector<int>> two; // channels: noise, and the stack
+    std::mt19937 random(7);
+    for (const auto& image : stack) {
+        auto& noise = two.emplace_back(image);
+        std::ranges::generate(noise, [&] { return static_cast<int>(20 + random() % 10); });
+        two.push_back(image);
+    }
+    write_pages<std::uint8_t>(
+        folder / "two.tif", two, 1, OIIO::TypeDesc::UINT8,
+        {"ImageJ=1.53t\nimages=24\nchannels=2\nslices=12\nhyperstack=true\nunit=um\nspacing=0.5\n", 0.5F});
+    const std::vector<std::string> few = {"--set", "topography.window_px=3", "--set", "topography.smoothing_steps=0"};
+    const auto run = [&](std::vector<std::string> arguments) {
+        arguments.insert(arguments.begin(), "--topography");
+        arguments.insert(arguments.end(), few.begin(), few.end());
+        return run_program(arguments, folder);
+    };
+    ASSERT_EQ(evaluate(folder, "alone.tif", "alone").exit_code, 0);
+    const auto chosen = run({"two.tif", "--channel", "2", "--out", "chosen"});
+    ASSERT_EQ(chosen.exit_code, 0) << chosen.standard_error;
+    EXPECT_THAT(chosen.standard_error, HasSubstr("--z_step_um 0.5 is taken from the file (ImageJ's description)"));
+    EXPECT_THAT(chosen.standard_error, HasSubstr("--pitch_um 2 is taken from the file"));
+    EXPECT_EQ(read_file(folder / "chosen/topography.tif"), read_file(folder / "alone/topography.tif"));
+    const auto not_chosen = run({"two.tif", "--out", "refused"});
+    EXPECT_EQ(not_chosen.exit_code, 2);
+    EXPECT_THAT(not_chosen.standard_error, HasSubstr("pages: 24, heights: 12, channels: 2, frames: 1"));
+    EXPECT_THAT(not_chosen.standard_error, HasSubstr("--channel 1 to 2"));
+    EXPECT_EQ(run({"two.tif", "--channel", "3", "--out", "refused"}).exit_code, 2);
+    EXPECT_EQ(run({"two.tif", "--channel", "2", "--frame", "2", "--out", "refused"}).exit_code, 2);
+    // Within 1 % nothing is said; beyond, both are told and the option counts.
+    const auto near = run({"two.tif", "--channel", "2", "--z_step_um", "0.503", "--out", "near"});
+    EXPECT_THAT(near.standard_error, testing::Not(HasSubstr("but the file states")));
+    const auto other = run({"two.tif", "--channel", "2", "--z_step_um", "1", "--pitch_um", "2.1", "--out", "other"});
+    ASSERT_EQ(other.exit_code, 0) << other.standard_error;
+    EXPECT_THAT(other.standard_error, HasSubstr("--z_step_um 1, but the file states 0.5 (ImageJ's description)"));
+    EXPECT_THAT(other.standard_error, HasSubstr("--pitch_um 2.1, but the file states 2 "));
+    EXPECT_EQ(nlohmann::json::parse(read_file(folder / "other/results.json"))["z_step_um"], 1.0);
+    // OME-XML orders the same pages otherwise.
+    std::vector<std::vector<int>> parted;
+    for (std::size_t k = 0; k < two.size(); ++k) {
+        parted.push_back(two[k < stack.size() ? 2 * k : 2 * (k - stack.size()) + 1]);
+    }
+    write_pages<std::uint8_t>(folder / "parted.tif", parted, 1, OIIO::TypeDesc::UINT8,
+                              {"<?xml version=\"1.0\"?><OME><Image ID=\"Image:0\"><Pixels DimensionOrder=\"XYZCT\" "
+                               "SizeX=\"24\" SizeY=\"24\" SizeZ=\"12\" SizeC=\"2\" SizeT=\"1\" Type=\"uint8\" "
+                               "PhysicalSizeX=\"2\" PhysicalSizeY=\"2\" PhysicalSizeZ=\"500\" "
+                               "PhysicalSizeZUnit=\"nm\"/></Image></OME>"});
+    const auto ome = run({"parted.tif", "--channel", "2", "--out", "ome"});
+    ASSERT_EQ(ome.exit_code, 0) << ome.standard_error;
+    EXPECT_EQ(read_file(folder / "ome/topography.tif"), read_file(folder / "alone/topography.tif"));
+    // Resolution tags, and those of a printer.
+    write_pages<std::uint8_t>(folder / "tags.tif", stack, 1, OIIO::TypeDesc::UINT8, {"", 5000, "cm"});
+    const auto tags = run({"tags.tif", "--z_step_um", "0.5", "--out", "tags"});
+    ASSERT_EQ(tags.exit_code, 0) << tags.standard_error;
+    EXPECT_EQ(read_file(folder / "tags/topography.tif"), read_file(folder / "alone/topography.tif"));
+    write_pages<std::uint8_t>(folder / "print.tif", stack, 1, OIIO::TypeDesc::UINT8, {"", 300, "in"});
+    const auto print = run({"print.tif", "--z_step_um", "0.5", "--out", "print"});
+    EXPECT_EQ(print.exit_code, 2);
+    EXPECT_THAT(print.standard_error, HasSubstr("as for a printer"));
+}
+
+// cases/22: what is no image of the series is left out by name, and images that are missing leave their heights.
+TEST(Topography, AFolderMayHoldMoreAndLessThanTheSeries) {
+    const auto folder = fresh_folder("series");
+    const auto stack = stack_values(255);
+    const auto write = [&](const std::string& name, const std::vector<int>& image) {
+        std::filesystem::create_directories((folder / name).parent_path());
+        write_pages<std::uint8_t>(folder / name, {image}, 1, OIIO::TypeDesc::UINT8);
+    };
+    for (std::size_t k = 0; k < stack.size(); ++k) {
+        write(fmt::format("whole/img_{:03}.tif", k), stack[k]);
+        write(fmt::format("more/img_{:03}.tif", k), stack[k]);
+        if (k != 10) {
+            write(fmt::format("less/img_{:03}.tif", k), stack[k]);
+        }
+        write(fmt::format("named/z{:+.1f}um.tif", 0.5 * static_cast<double>(k) - 2), stack[k]);
+    }
+    write("more/output.tif", stack[3]);
+    write("more/depth_1.tif", stack[5]);
+    const auto small = OIIO::ImageOutput::create("tiff");
+    ASSERT_TRUE(small->open((folder / "more/img_100.tif").string(), OIIO::ImageSpec(8, 8, 1, OIIO::TypeDesc::UINT8)));
+    ASSERT_TRUE(small->write_image(OIIO::TypeDesc::UINT8, std::vector<std::uint8_t>(64).data()));
+    ASSERT_TRUE(small->close());
+    ASSERT_EQ(evaluate(folder, "whole", "of_whole").exit_code, 0);
+    const auto more = evaluate(folder, "more", "of_more");
+    ASSERT_EQ(more.exit_code, 0) << more.standard_error;
+    for (const char* name : {"output.tif is left out", "depth_1.tif is left out", "img_100.tif is left out"}) {
+        EXPECT_THAT(more.standard_error, HasSubstr(name));
+    }
+    EXPECT_EQ(read_file(folder / "of_more/topography.tif"), read_file(folder / "of_whole/topography.tif"));
+    const auto less = evaluate(folder, "less", "of_less");
+    ASSERT_EQ(less.exit_code, 0) << less.standard_error;
+    EXPECT_THAT(less.standard_error, HasSubstr("an image is missing between img_009.tif and img_011.tif"));
+    const auto whole = surface::read_height_map(folder / "of_whole/topography.tif");
+    const auto without = surface::read_height_map(folder / "of_less/topography.tif");
+    for (const int column : {5, 18}) { // far from what is missing
+        EXPECT_NEAR(without.height(column, 9), whole.height(column, 9), 5e-6);
+    }
+    const auto named = run_program({"--topography", "named", "--pitch_um", "2", "--out", "of_named", "--set",
+                                    "topography.window_px=3", "--set", "topography.smoothing_steps=0"},
+                                   folder);
+    ASSERT_EQ(named.exit_code, 0) << named.standard_error;
+    EXPECT_THAT(named.standard_error, HasSubstr("--z_step_um 0.5 is taken from the file (the names of the files)"));
+    EXPECT_NEAR(surface::read_height_map(folder / "of_named/topography.tif").height(5, 9), whole.height(5, 9) - 2e-3,
+                1e-8);
+}
+
+// A camera with an offset of its own in each pixel, light that falls off, pixels that are always lit and one that never
+// is.
+TEST(Topography, DarkAndFlatFieldAreTakenOff) {
+    const auto folder = fresh_folder("corrected");
+    const auto stack = stack_values(20000);
+    std::mt19937 random(11);
+    std::vector<int> offset(side * side);
+    std::vector<double> gain(side * side);
+    for (std::size_t p = 0; p < offset.size(); ++p) {
+        offset[p] = 300 + static_cast<int>(random() % 5) * 200 / (p % 7 == 0 ? 1 : 40);
+        const double x = static_cast<double>(p % side) / side - 0.5, y = static_cast<double>(p) / (side * side) - 0.5;
+        gain[p] = 2 * (1 - x * x - y * y) * (p % 5 == 0 ? 0.9 : 1);
+    }
+    const std::vector<std::size_t> lit = {5 * side + 6, 9 * side + 19}, unlit = {18 * side + 4};
+    const auto seen = [&](auto light) {
+        std::vector<int> image(side * side);
+        for (std::size_t p = 0; p < image.size(); ++p) {
+            image[p] = static_cast<int>(std::lround(light(p) * gain[p])) + offset[p];
+        }
+        for (const std::size_t p : lit) {
+            image[p] = 65000;
+        }
+        for (const std::size_t p : unlit) {
+            image[p] = offset[p];
+        }
+        return image;
+    };
+    std::vector<std::vector<int>> by_camera;
+    for (const auto& image : stack) {
+        by_camera.push_back(seen([&](std::size_t p) { return image[p]; }));
+    }
+    write_pages<std::uint16_t>(folder / "ideal.tif", stack, 1, OIIO::TypeDesc::UINT16);
+    write_pages<std::uint16_t>(folder / "stack.tif", by_camera, 1, OIIO::TypeDesc::UINT16);
+    const auto dark = seen([](std::size_t) { return 0; });
+    write_pages<std::uint16_t>(folder / "dark.tif", {dark, dark}, 1, OIIO::TypeDesc::UINT16);
+    write_pages<std::uint16_t>(folder / "flat.tif", {seen([](std::size_t) { return 15000; })}, 1,
+                               OIIO::TypeDesc::UINT16);
+    ASSERT_EQ(evaluate(folder, "ideal.tif", "ideal").exit_code, 0);
+    const auto result = evaluate(folder, "stack.tif", "out", {"--dark", "dark.tif", "--flat-field", "flat.tif"});
+    ASSERT_EQ(result.exit_code, 0) << result.standard_error;
+    ASSERT_EQ(evaluate(folder, "stack.tif", "raw").exit_code, 0);
+    const auto results = nlohmann::json::parse(read_file(folder / "out/results.json"));
+    EXPECT_EQ(results["dead_pixels"], 3);
+    EXPECT_EQ(results["dark"], "dark.tif");
+    EXPECT_EQ(results["flat_field"], "flat.tif");
+    const auto ideal = surface::read_height_map(folder / "ideal/topography.tif");
+    const auto map = surface::read_height_map(folder / "out/topography.tif");
+    const auto raw = surface::read_height_map(folder / "raw/topography.tif");
+    double worst = 0, worst_raw = 0;
+    for (int row = 2; row < side - 2; ++row) {
+        for (int column = 2; column < side - 2; ++column) {
+            const auto place = static_cast<std::size_t>((side - 1 - row) * side + column);
+            const bool by_dead = std::ranges::any_of(std::array{lit[0], lit[1], unlit[0]}, [&](std::size_t dead) {
+                const auto apart = [](std::size_t a, std::size_t b) { return a > b ? a - b : b - a; };
+                return apart(dead / side, place / side) <= 2 && apart(dead % side, place % side) <= 2;
+            });
+            if (!by_dead && std::isfinite(ideal.height(column, row)) && std::isfinite(map.height(column, row))) {
+                worst = std::max(worst, std::abs(map.height(column, row) - ideal.height(column, row)));
+                if (std::isfinite(raw.height(column, row))) {
+                    worst_raw = std::max(worst_raw, std::abs(raw.height(column, row) - ideal.height(column, row)));
+                }
+            }
+        }
+    }
+    EXPECT_LT(worst, 1e-6);     // mm: rounding to whole numbers
+    EXPECT_GT(worst_raw, 5e-6); // wrong twin: nothing taken off
+    // Of another size, unlit, or lit.
+    write_file(folder / "small.pgm", "P5\n2 2\n255\n\1\2\1\2");
+    for (const auto& [option, file, words] : std::vector<std::array<std::string, 3>>{
+             {"--dark", "small.pgm", "24 x 24 pixels"}, {"--flat-field", "none.tif", "no such file"}}) {
+        const auto refused = evaluate(folder, "stack.tif", "refused", {option, file});
+        EXPECT_EQ(refused.exit_code, 2) << option;
+        EXPECT_THAT(refused.standard_error, HasSubstr(words));
+    }
+    const auto unlit_flat =
+        evaluate(folder, "stack.tif", "refused", {"--dark", "dark.tif", "--flat-field", "dark.tif"});
+    EXPECT_EQ(unlit_flat.exit_code, 2);
+    EXPECT_THAT(unlit_flat.standard_error, HasSubstr("more light"));
+}
+
+// A stack.toml that claims more pixels, or more images, than there are: refused before any work is sized by it.
+TEST(Topography, WorkIsSizedByTheImages) {
+    const auto folder = fresh_folder("claimed");
+    std::filesystem::copy(std::filesystem::path(VKFV_SOURCE_DIR) / "tests/data/stacks_1.0.0/finished", folder / "stack",
+                          std::filesystem::copy_options::recursive);
+    const auto file = folder / "stack/stack.toml";
+    const std::string claims = read_file(file);
+    const auto refused = [&](const std::string& from, const std::string& to, const std::string& words) {
+        ASSERT_THAT(claims, HasSubstr(from));
+        write_file(file, replaced(claims, from, to));
+        const auto began = std::chrono::steady_clock::now();
+        const auto result = run_program({"--topography", "stack", "--out", "out"}, folder);
+        EXPECT_EQ(result.exit_code, 2);
+        EXPECT_THAT(result.standard_error, HasSubstr(words));
+        EXPECT_LT(std::chrono::duration<double>(std::chrono::steady_clock::now() - began).count(), 20); // 90 s before
+    };
+    refused("\npixels = 32\n", "\npixels = 16000\n", "16000 x 16000, as stack.toml claims");
+    refused("\nz_stop_um = 12.5\n", "\nz_stop_um = 5000\n", "as stack.toml claims");
+}
+
 TEST(NaturalOrder, CountsNumbers) {
     using scan::naturally_before;
     EXPECT_TRUE(naturally_before("image_9.tif", "image_10.tif"));
@@ -373,6 +609,44 @@ TEST(ImageOrder, IsThatOfTheNumberInWhichNamesDiffer) {
          {Names{"a1", "a2", "a4"}, Names{"a1", "a2", "b3"}, Names{"v1.9", "v1.10", "v1.11"}, Names{"a01", "a1"},
           Names{"t1_z2", "t2_z1"}, Names{"bright", "dark"}, Names{"1", "99999999999999999998", "99999999999999999999"}})
         EXPECT_EQ(ordered(names), std::pair(names, false)) << names.back();
+}
+
+// Four of five steps are equal and the others whole multiples: heights follow the numbers.
+TEST(ImageOrder, LeavesRoomForImagesThatAreMissing) {
+    const auto found = scan::order_of_names({"i_3", "i_5", "i_7", "i_13", "i_9", "i_15", "i_17"});
+    EXPECT_TRUE(found.doubt.empty());
+    EXPECT_THAT(found.heights, testing::ElementsAre(0, 1, 2, 3, 5, 6, 7));
+    EXPECT_FALSE(found.step);
+    const auto uneven = scan::order_of_names({"i_1", "i_2", "i_3", "i_4", "i_5", "i_6.5"});
+    EXPECT_THAT(uneven.doubt, HasSubstr("i_6.5 follows i_5"));
+    EXPECT_THAT(uneven.heights, testing::ElementsAre(0, 1, 2, 3, 4, 5));
+}
+
+TEST(ImageOrder, ReadsTheUnitBehindTheNumber) {
+    for (const auto& [unit, length] : std::vector<std::pair<std::string, double>>{{"um", 1e-3},
+                                                                                  {" um", 1e-3},
+                                                                                  {"_um", 1e-3},
+                                                                                  {"\u00b5m", 1e-3},
+                                                                                  {"nm", 1e-6},
+                                                                                  {"mm", 1},
+                                                                                  {"umbra", 0},
+                                                                                  {"", 0}}) {
+        const auto found = scan::order_of_names({"z-30.0" + unit, "z-27.5" + unit, "z-25.0" + unit, "z+10.0" + unit,
+                                                 "z12.5" + unit, "z15.0" + unit, "z17.5" + unit, "z20.0" + unit});
+        EXPECT_EQ(found.step.has_value(), length > 0) << unit;
+        if (length > 0) {
+            EXPECT_NEAR(*found.step, 2.5 * length, 1e-12);
+            EXPECT_NEAR(*found.first, -30 * length, 1e-12);
+        }
+    }
+}
+
+TEST(ImageOrder, TellsAResultFromASeries) {
+    const auto kept = scan::of_one_series({"pcb_1", "output", "pcb_2", "pcb_3", "pcb_4", "pcb_10"});
+    EXPECT_THAT(kept, testing::ElementsAre(true, false, true, true, true, true));
+    EXPECT_THAT(scan::of_one_series({"z-1", "z+2", "z3"}), testing::Each(true));
+    EXPECT_THAT(scan::of_one_series({"a1", "b1", "a2", "b2", "a3"}), testing::Each(true)); // no series
+    EXPECT_THAT(scan::of_one_series({"a1_1", "a2_2", "a3_1", "a4_2", "out"}), testing::Each(true));
 }
 
 } // namespace

@@ -2,6 +2,7 @@
 
 import functools
 import os
+import struct
 import sys
 import tempfile
 from pathlib import Path
@@ -140,9 +141,20 @@ def evaluated() -> vkfv.Stack:
 
 @functools.cache
 def foreign() -> vkfv.Stack:
-    """The same images, as if another instrument had taken them from above downwards, by steps of 1 um."""
+    """The same images, as if another instrument had taken them from above downwards, by steps of 1 um, with an image of
+    no light and one of even light."""
+    even = {}
+    for name, value in (("dark", 0.0), ("flat", 1.0)):
+        even[name] = folder() / f"{name}.pfm"
+        even[name].write_bytes(b"Pf\n%d %d\n-1.0\n" % (COLUMNS, ROWS) + struct.pack("<f", value) * (COLUMNS * ROWS))
     return vkfv.evaluate(
-        tilted().folder / "images", out=folder() / "foreign", z_step_um=-1, pitch_um=0.5, topography={"registration": "shift"}
+        tilted().folder / "images",
+        out=folder() / "foreign",
+        z_step_um=-1,
+        pitch_um=0.5,
+        dark=even["dark"],
+        flat_field=even["flat"],
+        topography={"registration": "shift"},
     )
 
 

@@ -178,6 +178,27 @@ std::string image_description(const std::filesystem::path& path) {
     return description_of(open_image(path));
 }
 
+ImageStatement image_statement(const std::filesystem::path& path) {
+    const OpenImage image = open_image(path);
+    const auto& spec = image.input->spec();
+    const bool turned = orientation_of(spec) > 4;
+    ImageStatement statement;
+    statement.columns = turned ? spec.height : spec.width;
+    statement.rows = turned ? spec.width : spec.height;
+    statement.channels = spec.nchannels - (opacity_channel(spec) >= 0 ? 1 : 0);
+    statement.description = description_of(image);
+    // Other formats' resolution is that of a screen or of print.
+    if (std::string_view(image.input->format_name()) == "tiff") {
+        const std::string unit = spec.get_string_attribute("ResolutionUnit");
+        statement.columns_per_unit = spec.get_float_attribute("XResolution");
+        statement.rows_per_unit = spec.get_float_attribute("YResolution");
+        statement.unit = unit == "in"   ? ImageStatement::Unit::inch
+                         : unit == "cm" ? ImageStatement::Unit::centimetre
+                                        : ImageStatement::Unit::none;
+    }
+    return statement;
+}
+
 StoredImage parse_tiff(std::string_view bytes, const std::filesystem::path& path) {
     const OpenImage image = open_image(bytes, path);
     std::string description = description_of(image);

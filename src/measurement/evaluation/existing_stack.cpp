@@ -59,6 +59,28 @@ Configuration configuration_of(const OwnStack& stack) {
     return configuration;
 }
 
+// All work that follows is sized by stack.toml, so the images must be those that it claims: the first by its pixels,
+// and the last by its name.
+void refuse_other_images(const std::filesystem::path& folder, const Configuration& configuration,
+                         const std::vector<double>& positions) {
+    const auto first = scan::read_frame(folder, 0, positions.front());
+    const ImageSize claimed = configuration.instrument.detector_pixels;
+    const auto refuse = [&](const std::filesystem::path& file, std::string found, std::string expected) {
+        refuse_file(file, "", std::move(found), std::move(expected),
+                    "stack.toml is not that of these images: copy the one that was written with them, or give the "
+                    "images alone, in a folder without it.");
+    };
+    if (first.columns != claimed.columns || first.rows != claimed.rows) {
+        refuse(folder / scan::image_path(0), fmt::format("{} x {} pixels", first.columns, first.rows),
+               fmt::format("{} x {}, as stack.toml claims", claimed.columns, claimed.rows));
+    }
+    const int last = static_cast<int>(positions.size()) - 1;
+    if (!std::filesystem::exists(folder / scan::image_path(last))) {
+        refuse(folder / scan::image_path(last), "no such file",
+               fmt::format("the last of {} images, as stack.toml claims", positions.size()));
+    }
+}
+
 bool any_negative(const topography::Channels& image) {
     return std::ranges::any_of(image, [](const Grid<float>& channel) {
         return std::ranges::any_of(channel.values, [](float value) { return value < 0; });
@@ -68,14 +90,15 @@ bool any_negative(const topography::Channels& image) {
 // The images of another instrument, each laid over the one in the middle if that is asked for.
 class LaidImages {
   public:
-    LaidImages(const scan::ImageSeries& series, topography::Registration what) : series_(series) {
+    LaidImages(const scan::ImageSeries& series, const FrameCorrection& correction, topography::Registration what)
+        : series_(series), correction_(correction) {
         if (what == topography::Registration::none) {
             return;
         }
         std::vector<topography::ImageTransform> steps(1);
-        Grid<float> before = topography::grey(series.read(0));
+        Grid<float> before = topography::grey(corrected(0));
         for (int image = 1; image < series.size(); ++image) {
-            Grid<float> next = topography::grey(series.read(image));
+            Grid<float> next = topography::grey(corrected(image));
             if (next.columns != before.columns || next.rows != before.rows) {
                 return; // refused when it is evaluated
             }
@@ -90,7 +113,7 @@ class LaidImages {
     }
 
     topography::Channels read(int image) const {
-        auto channels = series_.read(image);
+        auto channels = corrected(image);
         return transforms_.empty() ? channels
                                    : topography::resampled(channels, transforms_[static_cast<std::size_t>(image)]);
     }
@@ -105,7 +128,12 @@ class LaidImages {
     }
 
   private:
+    topography::Channels corrected(int image) const {
+        return correction_.corrected(series_.read(image), series_.name(image));
+    }
+
     const scan::ImageSeries& series_;
+    const FrameCorrection& correction_;
     std::vector<topography::ImageTransform> transforms_; // none: as they are
 };
 
@@ -135,6 +163,7 @@ double smoothing_of(const LaidImages& images, const std::vector<int>& order,
 EvaluatedStack evaluate_own_stack(const OwnStack& stack) {
     const auto configuration = configuration_of(stack);
     const auto positions = configuration.scan->positions();
+    refuse_other_images(stack.folder, configuration, positions);
     const auto specimen = make_specimen(configuration);
     const auto instrument = assemble_instrument(configuration, specimen, positions);
     const ImageSize pixels = configuration.instrument.detector_pixels;
@@ -174,7 +203,8 @@ EvaluatedStack evaluate_images(const scan::ImageSeries& series, const ForeignSta
         // Heights ascend, whichever way the instrument went.
         return stack.z_step > 0 ? place : series.size() - 1 - place;
     };
-    const LaidImages images(series, configuration.registration);
+    const FrameCorrection correction(stack.corrections);
+    const LaidImages images(series, correction, configuration.registration);
     auto options = configuration.topography;
     if (!options.smoothing_steps) {
         options.smoothing_steps = smoothing_of(images, order, options);
@@ -194,7 +224,7 @@ EvaluatedStack evaluate_images(const scan::ImageSeries& series, const ForeignSta
         negative = negative || any_negative(channels);
         evaluation.add(std::move(channels), stack.z_start + image * stack.z_step);
     }
-    if (negative) {
+    if (negative && !stack.corrections.dark) { // noise reaches below what was taken off
         spdlog::warn(
             "{}: there are pixels below zero. Focus is contrast relative to brightness: give the images without "
             "any background subtracted.",
@@ -207,6 +237,15 @@ EvaluatedStack evaluate_images(const scan::ImageSeries& series, const ForeignSta
                                                   {"z_start", stack.z_start},
                                                   {"z_step", stack.z_step},
                                                   {"pitch", stack.pitch}});
+    if (stack.corrections.dark) {
+        origin["dark"] = stack.corrections.dark->string();
+    }
+    if (stack.corrections.flat_field) {
+        origin["flat_field"] = stack.corrections.flat_field->string();
+    }
+    if (stack.corrections.dark || stack.corrections.flat_field) {
+        origin["dead_pixels"] = correction.dead_pixels();
+    }
     if (configuration.registration != topography::Registration::none) {
         origin["registration"] = images.json();
     }

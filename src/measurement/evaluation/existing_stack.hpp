@@ -3,6 +3,7 @@
 
 #include "core/toml_document.hpp"
 #include "measurement/evaluation/evaluation_files.hpp"
+#include "measurement/evaluation/frame_correction.hpp"
 #include "scan/image_series.hpp"
 
 #include <cstdint>
@@ -34,6 +35,7 @@ struct ForeignStack {
     double z_start = 0;                  // of the first image
     double pitch = 0;                    // of the pixels on the specimen
     Shuffle shuffle;
+    CorrectionFiles corrections;
 };
 
 EvaluatedStack evaluate_images(const scan::ImageSeries& series, const ForeignStack& stack);

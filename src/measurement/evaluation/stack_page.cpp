@@ -186,8 +186,9 @@ void add_run(report::Page& page, const StackPage& content) {
     const auto& results = content.results;
     page.section("run", "Run and settings");
     add_members(page, "Images", results,
-                {"stack", "first_image", "last_image", "z_start_um", "z_step_um", "pitch_um", "shuffle_seed", "images",
-                 "rays_per_image", "seed", "device", "stack_digest", "field_curvature_uncorrected_um", "evaluated_by"});
+                {"stack", "first_image", "last_image", "z_start_um", "z_step_um", "pitch_um", "dark", "flat_field",
+                 "dead_pixels", "shuffle_seed", "images", "rays_per_image", "seed", "device", "stack_digest",
+                 "field_curvature_uncorrected_um", "evaluated_by"});
     add_members(page, "Points by what became of them", results.at("points"));
     add_members(page, "Evaluation", results.at("topography"));
     constexpr std::array<std::pair<const char*, const char*>, 4> tables = {

@@ -102,13 +102,20 @@ def evaluate(
     z_step_um: float | None = None,
     pitch_um: float | None = None,
     z_start_um: float | None = None,
+    channel: int | None = None,
+    frame: int | None = None,
+    dark: PathLike | None = None,
+    flat_field: PathLike | None = None,
     program: PathLike | None = None,
     **overrides,
 ) -> Stack:
     """Heights of images that are there (`vkfv topography`): of a stack's folder, or those of another instrument in a
-    folder or a TIFF file, with the step from image to image and the pixels' distance."""
+    folder or a TIFF file, with the step from image to image and the pixels' distance where the files do not state them;
+    channel and frame from 1, of a file of several; dark and flat_field are images that are taken off."""
     given = {"--z_step_um": z_step_um, "--pitch_um": pitch_um, "--z_start_um": z_start_um}
     options = tuple(word for name, value in given.items() if value is not None for word in (name, repr(float(value))))
+    further = {"--channel": channel, "--frame": frame, "--dark": dark, "--flat-field": flat_field}
+    options += tuple(word for name, value in further.items() if value is not None for word in (name, str(value)))
     _call("topography", images, overrides, out=out, options=options, program=program, on_event=None)
     return Stack(out)
 

@@ -1,0 +1,38 @@
+// What a camera's images of no light and of even light take off the images of a stack.
+#pragma once
+
+#include "core/grid.hpp"
+
+#include <filesystem>
+#include <optional>
+#include <vector>
+
+namespace vkfv::measurement {
+
+// Either may be missing. Files of one image, or of several pages whose mean is taken; or folders of such.
+struct CorrectionFiles {
+    std::optional<std::filesystem::path> dark{};       // with the light off, at the exposure time of the stack
+    std::optional<std::filesystem::path> flat_field{}; // of an even surface out of focus
+};
+
+// (image - dark) / (flat field - dark) times the mean of that below the line, channel by channel, as EMVA 1288
+// release 4.0 corrects dark and flat; the mean of a channel of images keeps its size. Pixels that are lit in the dark
+// image, or dark in the flat field, are dead: they become means of their neighbours that are not.
+class FrameCorrection {
+  public:
+    FrameCorrection() = default; // leaves images as they are
+    // Throws InputError where an image cannot be read, or the two differ in size or channels.
+    explicit FrameCorrection(const CorrectionFiles& files);
+
+    // Throws InputError where the image has another size or other channels; `name` is the image's.
+    std::vector<Grid<float>> corrected(std::vector<Grid<float>> image, const std::filesystem::path& name) const;
+    int dead_pixels() const { return static_cast<int>(dead_.size()); }
+
+  private:
+    std::filesystem::path file_;           // of either image, for messages
+    std::vector<Grid<float>> dark_, gain_; // none: not taken off
+    std::vector<std::size_t> dead_;        // places in a grid
+    std::vector<bool> is_dead_;
+};
+
+} // namespace vkfv::measurement
