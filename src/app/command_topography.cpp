@@ -73,9 +73,10 @@ namespace {
 measurement::EvaluatedStack evaluate_own(const CommandOptions& options) {
     const auto own = options.of<TopographyOptions>();
     const auto pitch = options.of<PixelPitch>().value;
-    if (own.z_step || pitch || own.z_start || own.channel || own.frame) {
+    if (own.z_step || pitch || own.z_start || own.channel || own.frame || own.dark || own.flat_field) {
         refuse_argument(
-            "--z_step_um, --pitch_um, --z_start_um, --channel or --frame with a stack that has a stack.toml",
+            "--z_step_um, --pitch_um, --z_start_um, --channel, --frame, --dark or --flat-field with a stack that has a "
+            "stack.toml",
             "none of them", "Leave them out: they stand in stack.toml.");
     }
     return measurement::evaluate_own_stack({.folder = options.file,
@@ -98,7 +99,7 @@ std::optional<double> given_or_stated(const std::string& name, const std::option
     return given ? given : stated;
 }
 
-// Pixels are square.
+// The evaluation takes one pitch for both axes, so one that is stated for pixels that are not square is not used.
 std::optional<double> stated_pitch(const scan::StatedSeries& stated) {
     if (!stated.pitch_x || !stated.pitch_y) {
         return std::nullopt;

@@ -563,6 +563,13 @@ TEST(Topography, WorkIsSizedByTheImages) {
     };
     refused("\npixels = 32\n", "\npixels = 16000\n", "16000 x 16000, as stack.toml claims");
     refused("\nz_stop_um = 12.5\n", "\nz_stop_um = 5000\n", "as stack.toml claims");
+    // What is for images alone is refused beside a stack.toml, not passed over.
+    write_file(file, claims);
+    for (const char* option : {"--dark", "--flat-field"}) {
+        const auto beside = run_program({"--topography", "stack", "--out", "out", option, "none.tif"}, folder);
+        EXPECT_EQ(beside.exit_code, 2) << option;
+        EXPECT_THAT(beside.standard_error, HasSubstr("stack.toml"));
+    }
 }
 
 TEST(NaturalOrder, CountsNumbers) {
