@@ -7,6 +7,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <limits>
 #include <stdexcept>
 
@@ -113,10 +114,12 @@ Kernel::Kernel(const Device& device, std::string name, std::span<const std::uint
                                           device.report().name, name_));
         }
     }
+    // The sizes tell where a list ends and the next begins.
+    const std::array<std::size_t, 4> sizes = {spirv.size(), bindings_.size(), constants.size(), push_constant_bytes_};
     const std::string key = Digest()
+                                .add_values(std::span<const std::size_t>(sizes))
                                 .add_values(spirv)
                                 .add_values(std::span<const BindingDeclaration>(bindings_))
-                                .add_values(std::span<const std::uint32_t>(&push_constant_bytes_, 1))
                                 .add_values(constants)
                                 .sha256();
     try {

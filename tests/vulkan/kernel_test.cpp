@@ -65,7 +65,7 @@ std::vector<std::byte> pattern(std::size_t bytes) {
     return data;
 }
 
-// Of the same code, bindings and constants; the wrong twins differ in one of them.
+// Kernels of the same code, bindings and constants share a pipeline; the wrong twins differ in one of them.
 TEST(Kernels, AreCompiledOnceOnADevice) {
     const auto first = arithmetic_kernel(3);
     EXPECT_EQ(first.pipeline(), arithmetic_kernel(3).pipeline());
