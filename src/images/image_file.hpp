@@ -46,7 +46,7 @@ std::vector<Grid<float>> read_channels(const std::filesystem::path& path, int pa
 // The first page's ImageDescription; empty without one.
 std::string image_description(const std::filesystem::path& path);
 
-// What the first page states of itself beside its values.
+// The size of an image file's first page, its description, and how many of its pixels make a unit of length.
 struct ImageStatement {
     int columns = 0;
     int rows = 0;

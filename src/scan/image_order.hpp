@@ -16,7 +16,8 @@ bool naturally_before(std::string_view a, std::string_view b);
 struct ImageOrder {
     std::vector<std::size_t> order; // places in `names`
     std::string doubt;              // why this may not be the order of the heights; empty: none
-    // Of each image in that order, its height above the first in steps: 0, 1, 3, ... where the third is missing.
+    // The heights of the images above the first of them, in steps and in that order: 0, 1, 3, ... where the image of
+    // height 2 is missing.
     std::vector<int> heights;
     // Where the names say of which unit of length their numbers are: mm.
     std::optional<double> first, step;

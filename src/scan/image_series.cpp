@@ -47,7 +47,7 @@ int chosen(const std::filesystem::path& path, const std::string& kind, const std
     return *asked - 1;
 }
 
-// Of files in one folder, for names that are alike.
+// The names of files with their endings behind a '/', so that files of different endings are not alike.
 std::vector<std::string> names_with_endings(const std::vector<std::filesystem::path>& files) {
     std::vector<std::string> names;
     for (const auto& file : files) {

@@ -11,7 +11,7 @@
 
 namespace vkfv::scan {
 
-// Of a file whose pages are of several channels or frames: which are taken, counted from 1. None: there is one.
+// The channel and the frame that are taken of a file of several, counted from 1. A file of one needs no choice.
 struct SeriesChoice {
     std::optional<int> channel{};
     std::optional<int> frame{};
@@ -26,7 +26,7 @@ class ImageSeries {
     // several channels or frames of which none is chosen.
     explicit ImageSeries(const std::filesystem::path& path, const SeriesChoice& choice = {});
 
-    // What the file states, or of a folder the first.
+    // The statement of the file, or of the first file in a folder.
     const StatedSeries& stated() const { return stated_; }
 
     int size() const { return static_cast<int>(images_.size()); }

@@ -107,7 +107,7 @@ void take_pitch(StatedSeries& stated, const images::ImageStatement& statement, d
         return;
     }
     const double x = along_x / statement.columns_per_unit, y = along_y / statement.rows_per_unit;
-    constexpr double coarsest = 0.02;
+    constexpr double coarsest = 0.02; // mm, a little finer than 1200 pixels an inch
     if (statement.unit != images::ImageStatement::Unit::none && std::max(x, y) > coarsest) {
         stated.doubts.push_back(
             fmt::format("states pixels of {:.4g} um, as for a printer, which is not used", x * um_per_mm));

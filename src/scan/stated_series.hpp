@@ -1,4 +1,4 @@
-// What a file of several images states of them: how its pages are counted, and lengths.
+// The statement that a file of several images makes of them: how its pages are counted, and lengths.
 #pragma once
 
 #include "images/image_file.hpp"

@@ -60,8 +60,10 @@ float median_of(std::vector<float> values) {
     return *middle;
 }
 
-// What a pixel of a dark image may be before it counts as lit: far beyond what noise reaches in any of its pixels, by
-// the median of distances, which a few lit pixels do not move; a whole step of the numbers at least.
+// The largest value of a dark image that is not a lit pixel's. Noise and the offsets of pixels are told by the median
+// of their distances, which a few lit pixels do not move: 1.4826 of it is a standard deviation of a normal
+// distribution, of which 16 million pixels reach 5.5. Twice that and more leaves room for offsets that spread wider
+// than a normal distribution, and four steps of whole numbers for dark images whose values are nearly all the same.
 float most_of_dark(const Grid<float>& dark) {
     const float median = median_of(dark.values);
     std::vector<float> distances;

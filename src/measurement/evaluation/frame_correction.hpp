@@ -1,4 +1,5 @@
-// What a camera's images of no light and of even light take off the images of a stack.
+// The correction of a stack's images by two further images of the same camera: one without light, and one of even
+// light.
 #pragma once
 
 #include "core/grid.hpp"
@@ -15,9 +16,9 @@ struct CorrectionFiles {
     std::optional<std::filesystem::path> flat_field{}; // of an even surface out of focus
 };
 
-// (image - dark) / (flat field - dark) times the mean of that below the line, channel by channel, as EMVA 1288
-// release 4.0 corrects dark and flat; the mean of a channel of images keeps its size. Pixels that are lit in the dark
-// image, or dark in the flat field, are dead: they become means of their neighbours that are not.
+// (image - dark) / (flat field - dark) times the mean of (flat field - dark), channel by channel: the inverse of a
+// camera whose pixels have an offset and a gain each. Numbers keep their size. Pixels that are lit in the dark image,
+// or dark in the flat field, are dead: they become means of their neighbours that are not.
 class FrameCorrection {
   public:
     FrameCorrection() = default; // leaves images as they are
