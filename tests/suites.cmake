@@ -1,6 +1,6 @@
 # Run after PROGRAM is linked: writes to OUT a ctest test for each of its suites, so that what the cases of a suite share
 # (a start with sanitizers, a device, compiled kernels) is made once. A suite in PARTED becomes several tests that share its
-# cases out. Cases in ALONE (wildcards of gtest) have tests of their own names, which run while nothing else does.
+# cases out. Cases in ALONE (SUITE.CASE) have tests of their own names, which run while nothing else does.
 # FAST: all are labelled fast but the suites in SLOW. Suites in LONG begin first. DEVICES: they open devices, and but for those
 # in MANY_RAYS kernels are compiled sooner and run slower. ENVIRONMENT and MODIFIED are as ctest's properties.
 cmake_policy(VERSION 3.25)
@@ -36,8 +36,6 @@ function(add name filter)
   set(text "${text}" PARENT_SCOPE)
 endfunction()
 
-set(suite "")
-set(apart "")
 foreach(line IN LISTS lines)
   if(line MATCHES "^([A-Za-z0-9_/]+)\\.")
     set(suite ${CMAKE_MATCH_1})
