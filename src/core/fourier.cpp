@@ -1,11 +1,11 @@
 #include "core/fourier.hpp"
 
 #include "core/line_transform.hpp"
+#include "core/parallel_rows.hpp"
 
 #include <algorithm>
 #include <cstddef>
 #include <numbers>
-#include <thread>
 #include <vector>
 
 namespace vkfv {
@@ -18,17 +18,11 @@ template <class Task>
 void share_lines(int count, std::size_t values, const Task& task) {
     // Starting a thread takes tens of microseconds, as does transforming this many values.
     constexpr std::size_t values_a_thread = std::size_t{1} << 14;
-    const std::size_t cores = std::max(1u, std::thread::hardware_concurrency());
-    const int threads = static_cast<int>(std::clamp<std::size_t>(values / values_a_thread, 1, cores));
-    const int share = (count + threads - 1) / threads;
-    const auto run = [&](int first, int end) {
+    const auto threads = std::clamp<std::size_t>(values / values_a_thread, 1, static_cast<std::size_t>(core_count()));
+    parallel_shares(count, static_cast<int>(threads), [&](int first, int end) {
         LineTransform fft;
         task(first, end, fft);
-    };
-    std::vector<std::jthread> others;
-    for (int first = share; first < count; first += share)
-        others.emplace_back([&, first] { run(first, std::min(count, first + share)); });
-    run(0, std::min(share, count));
+    });
 }
 
 // Lines that are copied at once: neighbouring columns share what memory gives at a time.

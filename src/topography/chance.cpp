@@ -1,6 +1,6 @@
 #include "topography/chance.hpp"
 
-#include "topography/in_parallel.hpp"
+#include "core/parallel_list.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -103,7 +103,7 @@ ChanceLimit limit_of_stack(const std::vector<std::vector<double>>& curves, doubl
     constexpr double most = 100000;
     const auto orders = static_cast<std::size_t>(std::clamp(std::ceil(2 / of_stacks), 250.0, most));
     std::vector<Evidence> by_chance(orders);
-    in_parallel(static_cast<int>(orders), [&](int sample) {
+    parallel_items(static_cast<int>(orders), [&](int sample) {
         by_chance[static_cast<std::size_t>(sample)] =
             mean_evidence(curves, random_order(images, static_cast<std::uint64_t>(sample)));
     });

@@ -1,6 +1,6 @@
 #include "topography/focus_probes.hpp"
 
-#include "topography/in_parallel.hpp"
+#include "core/parallel_list.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -172,7 +172,7 @@ void FocusProbes::follow_singles() {
     };
     constexpr std::size_t pixels_a_thread = std::size_t{1} << 15; // some milliseconds
     const std::size_t threads = probes_.size() * probes_.front().pixels() / pixels_a_thread;
-    in_parallel(static_cast<int>(probes_.size()), follow, std::max(1, static_cast<int>(threads)));
+    parallel_items(static_cast<int>(probes_.size()), follow, std::max(1, static_cast<int>(threads)));
 }
 
 FocusProbes::Means FocusProbes::means_of(const std::vector<double>& axial_weights, int count) {
@@ -206,7 +206,7 @@ std::vector<double> FocusProbes::curve(const Probe& probe, const std::vector<int
 std::vector<std::vector<double>> FocusProbes::curves_in_order(const Means& means) const {
     const std::vector<int> order = images_in_order(images_);
     std::vector<std::vector<double>> curves(probes_.size());
-    in_parallel(static_cast<int>(probes_.size()), [&](int k) {
+    parallel_items(static_cast<int>(probes_.size()), [&](int k) {
         curves[static_cast<std::size_t>(k)] = curve(probes_[static_cast<std::size_t>(k)], order, means);
     });
     return curves;
@@ -295,7 +295,7 @@ FocusProbes::Differences FocusProbes::differences(const Probe& probe, std::size_
 std::vector<FocusProbes::Differences> FocusProbes::all_differences() const {
     const auto channels = static_cast<std::size_t>(channels_);
     std::vector<Differences> found(probes_.size() * channels);
-    in_parallel(static_cast<int>(found.size()), [&](int k) {
+    parallel_items(static_cast<int>(found.size()), [&](int k) {
         const auto patch = static_cast<std::size_t>(k);
         found[patch] = differences(probes_[patch / channels], patch % channels);
     });
@@ -338,7 +338,7 @@ NoiseCorrelation FocusProbes::noise_correlation() const {
     }
     const auto channels = static_cast<std::size_t>(channels_);
     std::vector<Products> of_patches(probes_.size() * channels);
-    in_parallel(static_cast<int>(of_patches.size()), [&](int k) {
+    parallel_items(static_cast<int>(of_patches.size()), [&](int k) {
         const auto patch = static_cast<std::size_t>(k);
         of_patches[patch] = products_of(probes_[patch / channels], patch % channels);
     });
@@ -382,7 +382,7 @@ std::vector<Evidence> FocusProbes::by_chance(const std::vector<double>& axial_we
     const Means means = means_of(axial_weights, images_);
     const bool alone = axial_weights.size() == 1; // an image's own value, in whatever order
     std::vector<Evidence> result(static_cast<std::size_t>(random_orders(rate, alone, images_)));
-    in_parallel(static_cast<int>(result.size()), [&](int sample) {
+    parallel_items(static_cast<int>(result.size()), [&](int sample) {
         const auto probe = static_cast<std::size_t>(sample) % probes_.size();
         const std::vector<int> order = random_order(images_, static_cast<std::uint64_t>(sample));
         std::vector<double> singles;

@@ -4,6 +4,7 @@
 #include "core/file.hpp"
 #include "core/job_queue.hpp"
 #include "core/json_depth.hpp"
+#include "core/threads.hpp"
 #include "images/image_file.hpp"
 #include "measurement/evaluation/evaluation_figures.hpp"
 #include "measurement/evaluation/stack_page.hpp"
@@ -23,7 +24,6 @@
 #include <future>
 #include <iterator>
 #include <optional>
-#include <thread>
 #include <utility>
 #include <vector>
 
@@ -186,7 +186,7 @@ EvaluationData write_maps(ResultFolder& results, const std::filesystem::path& fo
         .pitch_x = topography.height.pitch_x, .pitch_y = topography.height.pitch_y, .description = {}};
     std::optional<surface::HeightMap> deviation;
     EvaluationData data;
-    JobQueue jobs(static_cast<int>(std::max(1u, std::thread::hardware_concurrency())), 100);
+    JobQueue jobs(core_count(), 100);
     const auto write = [&](const std::string& name, const auto& bytes_of) {
         jobs.add([&results, path = folder / name, bytes_of] { results.write(path, bytes_of()); });
     };

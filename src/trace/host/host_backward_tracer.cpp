@@ -1,5 +1,6 @@
 #include "trace/host/host_backward_tracer.hpp"
 
+#include "core/threads.hpp"
 #include "specimen/description.hpp"
 #include "trace/host/host_scene.hpp"
 #include "trace/interface/backward_image.hpp"
@@ -11,7 +12,6 @@
 #include <algorithm>
 #include <chrono>
 #include <span>
-#include <thread>
 #include <vector>
 
 namespace vkfv::trace {
@@ -35,20 +35,16 @@ class HostBackwardTracer final : public Tracer {
         const Exposure exposure = make_exposure(instrument_, record_, position, seed_, image);
         const HostScene scene{turned_.scene(), &intersector_};
         const ImageSize pixels = turned_.detector_pixels();
-        const unsigned workers = std::max(1u, std::thread::hardware_concurrency());
+        const auto workers = static_cast<std::size_t>(core_count());
         std::vector<std::uint64_t> sums(plan_.randomisations * pixels.count());
         CellLight light(filter_, pixels);
         for (std::uint32_t randomisation = 0; randomisation < plan_.randomisations; ++randomisation) {
             const std::span own = std::span(sums).subspan(randomisation * pixels.count(), pixels.count());
-            std::vector<std::jthread> threads;
-            for (unsigned worker = 0; worker < workers; ++worker) {
-                threads.emplace_back([&, worker] {
-                    for (std::size_t pixel = worker; pixel < own.size(); pixel += workers) {
-                        own[pixel] =
-                            sum_of_pixel(scene, exposure, static_cast<std::uint32_t>(pixel), randomisation, light);
-                    }
-                });
-            }
+            on_threads(core_count(), [&](int thread) {
+                for (auto pixel = static_cast<std::size_t>(thread); pixel < own.size(); pixel += workers) {
+                    own[pixel] = sum_of_pixel(scene, exposure, static_cast<std::uint32_t>(pixel), randomisation, light);
+                }
+            });
         }
         PixelLight found = estimate_pixels(accounts_.rule(), pixels, sums, pixels.count());
         const double detected = sum_of(found.flux.values);
@@ -61,7 +57,7 @@ class HostBackwardTracer final : public Tracer {
     }
 
     std::string description() const override {
-        return fmt::format("host reference in double on {} threads; backward", std::thread::hardware_concurrency());
+        return fmt::format("host reference in double on {} threads; backward", core_count());
     }
 
     TracerIdentity identity() const override { return host_identity(turned_, LightSorting::of(filter_)); }

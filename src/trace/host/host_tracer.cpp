@@ -1,5 +1,6 @@
 #include "trace/host/host_tracer.hpp"
 
+#include "core/threads.hpp"
 #include "optics/instrument/room.hpp"
 #include "specimen/description.hpp"
 #include "specimen/intersector.hpp"
@@ -16,7 +17,6 @@
 
 #include <algorithm>
 #include <chrono>
-#include <thread>
 
 namespace vkfv::trace {
 
@@ -83,21 +83,17 @@ class HostTracer final : public Tracer {
         const Exposure exposure = make_exposure(instrument_, record_, position, options_.seed, image);
         const EmissionCells emission(order_, image);
         const HostScene scene{trains_of(instrument_, options_), &intersector_, &room_, &emission};
-        const unsigned workers = std::max(1u, std::thread::hardware_concurrency());
+        const auto workers = static_cast<std::size_t>(core_count());
         std::vector<std::vector<std::uint64_t>> counts(workers, std::vector<std::uint64_t>(accounts_.pixel_numbers()));
         std::vector<std::vector<std::uint64_t>> fates(workers, std::vector<std::uint64_t>(accounts_.ledger_numbers()));
         CellLight light(filter_, instrument_.detector_pixels());
-        {
-            std::vector<std::jthread> threads;
-            for (unsigned worker = 0; worker < workers; ++worker) {
-                threads.emplace_back([&, worker] {
-                    for (std::uint64_t path = worker; path < options_.rays; path += workers) {
-                        trace_path(scene, exposure, path, counts[worker], fates[worker], light);
-                    }
-                });
+        on_threads(core_count(), [&](int thread) {
+            const auto worker = static_cast<std::size_t>(thread);
+            for (std::uint64_t path = worker; path < options_.rays; path += workers) {
+                trace_path(scene, exposure, path, counts[worker], fates[worker], light);
             }
-        }
-        for (unsigned worker = 1; worker < workers; ++worker) {
+        });
+        for (std::size_t worker = 1; worker < workers; ++worker) {
             std::ranges::transform(counts[0], counts[worker], counts[0].begin(), std::plus<>());
             std::ranges::transform(fates[0], fates[worker], fates[0].begin(), std::plus<>());
         }
@@ -111,7 +107,7 @@ class HostTracer final : public Tracer {
     }
 
     std::string description() const override {
-        return fmt::format("host reference in double on {} threads", std::thread::hardware_concurrency());
+        return fmt::format("host reference in double on {} threads", core_count());
     }
 
     TracerIdentity identity() const override { return host_identity(instrument_, LightSorting::of(filter_)); }

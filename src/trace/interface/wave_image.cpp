@@ -1,12 +1,12 @@
 #include "trace/interface/wave_image.hpp"
 
 #include "core/fourier.hpp"
+#include "core/parallel_list.hpp"
 #include "core/units.hpp"
 
 #include <algorithm>
 #include <atomic>
 #include <complex>
-#include <thread>
 
 namespace vkfv::trace {
 
@@ -139,16 +139,12 @@ Grid<double> WaveImage::apply(std::span<const std::uint64_t> light) const {
     }
     Spectrum sum{Grid<Complex>(size_.columns, size_.rows), Grid<Complex>(size_.columns, size_.rows)};
     // Transformed side by side, added up in their order: the same bits on any number of cores.
-    const std::size_t workers = std::max(1u, std::thread::hardware_concurrency());
-    for (std::size_t first = 0; first < groups.size(); first += workers) {
-        const std::size_t count = std::min(workers, groups.size() - first);
-        std::vector<Parts> transformed(count);
-        {
-            std::vector<std::jthread> threads;
-            for (std::size_t k = 0; k < count; ++k) {
-                threads.emplace_back([&, k] { transformed[k] = transform(light, groups[first + k]); });
-            }
-        }
+    const auto cores = static_cast<std::size_t>(core_count());
+    for (std::size_t first = 0; first < groups.size(); first += cores) {
+        const std::size_t count = std::min(cores, groups.size() - first);
+        const std::vector<Parts> transformed = parallel_list(static_cast<int>(count), [&](int k) {
+            return transform(light, groups[first + static_cast<std::size_t>(k)]);
+        });
         for (std::size_t k = 0; k < count; ++k) {
             add(sum, transformed[k], groups[first + k]);
         }

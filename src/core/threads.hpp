@@ -1,0 +1,27 @@
+// Threads that share a piece of work.
+#pragma once
+
+#include <algorithm>
+#include <thread>
+#include <vector>
+
+namespace vkfv {
+
+// Of the machine, at least 1.
+inline int core_count() {
+    return static_cast<int>(std::max(1u, std::thread::hardware_concurrency()));
+}
+
+// work(k) for k = 0 ... threads - 1, each on a thread of its own, of which the caller's has k = 0; returns when all
+// have. `work` must not throw. Threads are started for each call, since those that a background() task starts inherit
+// that they take the cores which others leave: a pool such as that of std::execution's TBB would not.
+template <class Work>
+void on_threads(int threads, const Work& work) {
+    std::vector<std::jthread> others;
+    for (int k = 1; k < threads; ++k) {
+        others.emplace_back([&work, k] { work(k); });
+    }
+    work(0);
+}
+
+} // namespace vkfv
