@@ -4,8 +4,6 @@
 
 #include <fmt/format.h>
 
-#include <cmath>
-
 namespace vkfv {
 
 namespace {
@@ -41,7 +39,8 @@ void read_scan(const TomlTable& root, Configuration& configuration) {
         section.fail(z_stop, fmt::format("a number >= z_start_um = {}", start),
                      "Exchange z_start_um and z_stop_um: a scan ascends.");
     }
-    const double positions = std::floor((stop - start) / step + 1e-6) + 1; // as ScanPlan::positions() counts
+    const scan::ScanPlan plan{from_um(start), from_um(stop), from_um(step)};
+    const double positions = plan.position_count();
     if (positions < static_cast<double>(fewest_positions)) {
         section.fail(z_step,
                      fmt::format("at least {} focal positions from z_start_um = {} to z_stop_um = {}, found {}",
@@ -52,7 +51,7 @@ void read_scan(const TomlTable& root, Configuration& configuration) {
         section.fail(z_step, fmt::format("at most {} focal positions, found {}", scan::most_positions, positions),
                      "Choose a larger z_step_um or a shorter scan.");
     }
-    configuration.scan = scan::ScanPlan{from_um(start), from_um(stop), from_um(step)};
+    configuration.scan = plan;
 }
 
 } // namespace vkfv

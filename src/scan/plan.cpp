@@ -22,6 +22,11 @@ namespace {
 
 } // namespace
 
+double ScanPlan::position_count() const {
+    constexpr double tolerance = 1e-6; // of a step: far above rounding, far below any positioning error
+    return std::floor((z_stop - z_start) / z_step + tolerance) + 1;
+}
+
 std::vector<double> ScanPlan::positions() const {
     if (!std::isfinite(z_start)) {
         refuse("z_start_um", z_start, "a finite height", "Give the lowest focal position in micrometres.");
@@ -34,13 +39,12 @@ std::vector<double> ScanPlan::positions() const {
         refuse("z_step_um", z_step, "a finite step above 0",
                "Give the distance of neighbouring focal positions in micrometres.");
     }
-    constexpr double tolerance = 1e-6; // of a step: far above rounding, far below any positioning error
-    const double last = std::floor((z_stop - z_start) / z_step + tolerance);
-    if (last >= most_positions) {
+    const double count = position_count();
+    if (count > most_positions) {
         refuse("z_step_um", z_step, fmt::format("a step that gives at most {} images", most_positions),
                "Choose a larger step or a shorter scan.");
     }
-    std::vector<double> heights(static_cast<std::size_t>(last) + 1);
+    std::vector<double> heights(static_cast<std::size_t>(count));
     for (std::size_t i = 0; i < heights.size(); ++i) {
         heights[i] = z_start + static_cast<double>(i) * z_step;
     }

@@ -17,6 +17,9 @@ struct ScanPlan {
     // step that is not positive, a stop below the start, a value that is not finite, and more positions than
     // an image series can number (most_positions).
     std::vector<double> positions() const;
+
+    // How many these are, unchecked; a number of any size where z_step is small.
+    double position_count() const;
 };
 
 // Image files are numbered with four digits, z_0000 to z_9999.
