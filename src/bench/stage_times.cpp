@@ -22,7 +22,8 @@ StageTimes time_stages(const optics::Instrument& instrument, const specimen::Spe
     trace::DeviceScene scene = trace::make_device_scene(instrument, specimen, options);
     const std::uint32_t batch = trace::suitable_batch(scene, options);
     scene.order_emission(batch); // which then is an image
-    scene.set_exposure(focal_height, 0);
+    trace::ExposureMemory exposure = scene.exposure_memory();
+    scene.write_exposure(exposure, focal_height, 0);
     const trace::ForwardTrace whole(scene, batch);
     const trace::ForwardTrace emission(scene, batch, kernels::STOP_AFTER_SOURCE);
     const trace::ForwardTrace to_specimen(scene, batch, kernels::STOP_AFTER_TRAIN);
@@ -32,9 +33,9 @@ StageTimes time_stages(const optics::Instrument& instrument, const specimen::Spe
     // Both halves of one form of the trace, s.
     const auto time = [&](const trace::ForwardTrace& trace) {
         vulkan::Commands commands(*scene.device, 3);
-        scene.give_emission_order(commands);
+        scene.give_emission_order(commands, exposure);
         trace.clear(commands);
-        trace.record(commands, 0, batch, true);
+        trace.record(commands, exposure, 0, batch, true);
         commands.submit_and_wait();
         const auto stamps = commands.seconds();
         return std::array<double, 2>{stamps[1] - stamps[0], stamps[2] - stamps[1]};
@@ -74,7 +75,7 @@ StageTimes time_stages(const optics::Instrument& instrument, const specimen::Spe
 
     vulkan::Commands commands(*scene.device);
     whole.clear(commands);
-    whole.record(commands, 0, batch);
+    whole.record(commands, exposure, 0, batch);
     commands.submit_and_wait();
     const auto fates = whole.fates().read_values<std::uint64_t>(scene.accounts.ledger_numbers());
     const trace::Image image = scene.accounts.image({}, fates, batch);

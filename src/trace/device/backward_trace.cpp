@@ -10,6 +10,7 @@
 #include "spirv/backward_specialised_software.h"
 #include "trace/device/device_estimate.hpp"
 #include "trace/device/device_numbers.hpp"
+#include "trace/device/traced_exposure.hpp"
 
 #include <fmt/format.h>
 
@@ -100,13 +101,13 @@ void BackwardTrace::clear(vulkan::Commands& commands) const {
     commands.barrier();
 }
 
-void BackwardTrace::record(vulkan::Commands& commands, std::uint32_t randomisation, std::uint64_t first,
-                           std::uint32_t count) const {
-    auto bindings = scene_.bindings({{.slot = kernels::BINDING_PIXELS,
-                                      .resource = &sums_,
-                                      .first_byte = randomisation * stride_ * sizeof(std::uint64_t),
-                                      .bytes = pixels_ * sizeof(std::uint64_t)},
-                                     {kernels::BINDING_BACKWARD, &optics_}});
+void BackwardTrace::record(vulkan::Commands& commands, const ExposureMemory& exposure, std::uint32_t randomisation,
+                           std::uint64_t first, std::uint32_t count) const {
+    auto bindings = scene_.bindings(exposure, {{.slot = kernels::BINDING_PIXELS,
+                                                .resource = &sums_,
+                                                .first_byte = randomisation * stride_ * sizeof(std::uint64_t),
+                                                .bytes = pixels_ * sizeof(std::uint64_t)},
+                                               {kernels::BINDING_BACKWARD, &optics_}});
     const kernels::BackwardBatch batch{static_cast<std::uint32_t>(first / pixels_),
                                        static_cast<std::uint32_t>(first % pixels_), count, points_per_chunk_,
                                        randomisation};
@@ -123,7 +124,7 @@ class BackwardTracer final : public DeviceExposures {
                    const TraceOptions& options)
         : instrument_(instrument), turned_(optics::turned_round(instrument)),
           plan_(backward_plan(options.rays, instrument.detector_pixels())),
-          scene_(make_device_scene(turned_, specimen, options, &instrument_)),
+          scene_(make_device_scene(turned_, specimen, options, &instrument_)), memories_(scene_.exposure_memories()),
           trace_(scene_, on_device(*scene_.device, backward_optics(instrument_, scene_.host_record.material, plan_)),
                  plan_, options),
           accounts_(instrument_, plan_), estimate_(*scene_.device, accounts_.rule(), instrument_.detector_pixels(),
@@ -161,7 +162,8 @@ class BackwardTracer final : public DeviceExposures {
     optics::Instrument instrument_;
     optics::Instrument turned_;
     BackwardPlan plan_;
-    mutable DeviceScene scene_;
+    DeviceScene scene_;
+    mutable std::vector<ExposureMemory> memories_; // prepare() writes that of the slot which its caller has alone
     BackwardTrace trace_;
     BackwardAccounts accounts_;
     DeviceEstimate estimate_;
@@ -170,20 +172,16 @@ class BackwardTracer final : public DeviceExposures {
 };
 
 // Its units are the chunks of one randomisation after the other.
-class BackwardTracer::Exposure final : public SingleExposure {
+class BackwardTracer::Exposure final : public TracedExposure {
   public:
     Exposure(const BackwardTracer& tracer, std::size_t slot)
-        : SingleExposure(*tracer.scene_.device, tracer.pace_), tracer_(tracer), slot_(slot) {}
-
-    void set_out(std::span<const std::uint64_t> numbers) override {
-        clears_ = numbers.empty();
-        if (!clears_) {
-            tracer_.numbers_.write(work, numbers);
-        }
-    }
-
-    std::size_t number_count() const override { return tracer_.numbers_.count(); }
-    std::vector<std::uint64_t> numbers() override { return tracer_.numbers_.read(work); }
+        : TracedExposure({.scene = tracer.scene_,
+                          .memory = tracer.memories_[slot],
+                          .estimate = tracer.estimate_,
+                          .numbers = tracer.numbers_,
+                          .pace = tracer.pace_,
+                          .slot = slot}),
+          tracer_(tracer) {}
 
     std::uint64_t submit(std::uint64_t first, std::uint64_t end) override {
         const BackwardTrace& trace = tracer_.trace_;
@@ -191,27 +189,14 @@ class BackwardTracer::Exposure final : public SingleExposure {
         const std::uint64_t begin = randomisation * trace.chunks();
         const std::uint64_t most = std::max<std::uint64_t>(1, tracer_.pace_.paths() / trace.points_per_chunk());
         end = std::min({end, begin + trace.chunks(), first + most});
-        tracer_.scene_.require_waves();
-        vulkan::Commands& commands = work.open();
-        if (std::exchange(clears_, false)) {
-            trace.clear(commands);
-            tracer_.scene_.clear_sorted_light(commands);
-        }
-        trace.record(commands, randomisation, first - begin, static_cast<std::uint32_t>(end - first));
-        work.submit((end - first) * trace.points_per_chunk());
-        tracer_.estimate_.make_room(slot_);
+        trace.record(open(trace), of.memory, randomisation, first - begin, static_cast<std::uint32_t>(end - first));
+        close((end - first) * trace.points_per_chunk());
         return end;
-    }
-
-    void hand_over() override {
-        tracer_.scene_.make_wave_image(work);
-        tracer_.estimate_.record(work.open(), slot_);
-        work.submit();
     }
 
     Image finish() override {
         work.wait();
-        auto estimated = tracer_.estimate_.estimated(slot_);
+        auto estimated = of.estimate.estimated(of.slot);
         Image image = tracer_.accounts_.image(std::move(estimated.pixels), estimated.power.value());
         // Of the imaging train alone: who goes on to the source, no one counts.
         image.crossings = static_cast<double>(image.rays) * tracer_.turned_.constants.illumination_count;
@@ -220,13 +205,11 @@ class BackwardTracer::Exposure final : public SingleExposure {
 
   private:
     const BackwardTracer& tracer_;
-    std::size_t slot_;
-    bool clears_ = true;
 };
 
 std::unique_ptr<DeviceExposure> BackwardTracer::prepare(FocalPosition position, std::uint32_t image,
                                                         std::size_t slot) const {
-    scene_.set_exposure(position, image, slot);
+    scene_.write_exposure(memories_.at(slot), position, image);
     return std::make_unique<Exposure>(*this, slot);
 }
 

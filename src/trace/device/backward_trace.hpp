@@ -18,9 +18,9 @@ class BackwardTrace {
                   const TraceOptions& options);
 
     void clear(vulkan::Commands& commands) const;
-    // Chunks first ... first + count - 1 of a randomisation, count at most most_chunks_at_a_time().
-    void record(vulkan::Commands& commands, std::uint32_t randomisation, std::uint64_t first,
-                std::uint32_t count) const;
+    // Of an exposure chunks first ... first + count - 1 of a randomisation, count at most most_chunks_at_a_time().
+    void record(vulkan::Commands& commands, const ExposureMemory& exposure, std::uint32_t randomisation,
+                std::uint64_t first, std::uint32_t count) const;
 
     // Of 64 bits: of each randomisation the pixels' sums, stride() numbers from one to the next.
     const vulkan::Buffer& sums() const { return sums_; }

@@ -66,12 +66,7 @@ EmissionBuffers emission_buffers(const vulkan::Device& device, EmissionOrder ord
         packed.emplace_back((cell.x >> 5) | ((cell.y >> 5) << 16), (cell.z >> 5) | ((cell.w >> 5) << 16));
     }
     vulkan::Buffer given = buffer_of(device, packed);
-    std::vector<vulkan::Buffer> of_slots;
-    of_slots.reserve(most_exposures);
-    for (std::size_t slot = 0; slot < most_exposures; ++slot) {
-        of_slots.emplace_back(device, bytes, vulkan::Buffer::Memory::host);
-    }
-    return {std::move(order), std::move(given), vulkan::Buffer(device, bytes), std::move(of_slots)};
+    return {std::move(order), std::move(given), vulkan::Buffer(device, bytes)};
 }
 
 vulkan::Buffer light_points_of(const vulkan::Device& device, const optics::Instrument& instrument) {
@@ -163,10 +158,6 @@ DeviceScene make_device_scene(const optics::Instrument& instrument, const specim
         constants.cell_light = {static_cast<std::uint32_t>(address), static_cast<std::uint32_t>(address >> 32)};
     }
     vulkan::Buffer surfaces = buffer_of(*device, surface_block(instrument));
-    std::vector<vulkan::Buffer> parameters;
-    for (std::size_t slot = 0; slot < most_exposures; ++slot) {
-        parameters.emplace_back(*device, sizeof(kernels::Parameters), vulkan::Buffer::Memory::host);
-    }
     vulkan::Buffer spectrum = buffer_of(*device, spectrum_block(instrument));
     vulkan::Buffer light_points = light_points_of(*device, instrument);
     DeviceScene scene{.device = std::move(device),
@@ -187,7 +178,6 @@ DeviceScene make_device_scene(const optics::Instrument& instrument, const specim
                       .constants = constants,
                       .host_record = host_record,
                       .surfaces = std::move(surfaces),
-                      .parameters = std::move(parameters),
                       .spectrum = std::move(spectrum),
                       .light_points = std::move(light_points),
                       .elements = std::move(elements),
@@ -207,19 +197,36 @@ void DeviceScene::order_emission(std::uint64_t paths) {
     constants.emission_cells_per_path = static_cast<float>(order.cells_per_path());
 }
 
-void DeviceScene::set_exposure(FocalPosition position, std::uint32_t image, std::size_t for_slot) {
-    constants.exposure = to_float(make_exposure(instrument, host_record, position, seed, image));
-    slot = for_slot;
-    parameters.at(slot).write_values(std::span<const kernels::Parameters>(&constants, 1));
+ExposureMemory DeviceScene::exposure_memory() const {
+    ExposureMemory memory{.parameters =
+                              vulkan::Buffer(*device, sizeof(kernels::Parameters), vulkan::Buffer::Memory::host),
+                          .first_paths = {}};
     if (emission) {
-        emission->first_paths_of_slots.at(slot).write_values(
-            std::span<const std::uint64_t>(emission->order.first_paths(image)));
+        memory.first_paths.emplace(*device, emission->first_paths.bytes(), vulkan::Buffer::Memory::host);
+    }
+    return memory;
+}
+
+std::vector<ExposureMemory> DeviceScene::exposure_memories() const {
+    std::vector<ExposureMemory> memories;
+    for (std::size_t slot = 0; slot < exposures_at_a_time(); ++slot) {
+        memories.push_back(exposure_memory());
+    }
+    return memories;
+}
+
+void DeviceScene::write_exposure(ExposureMemory& memory, FocalPosition position, std::uint32_t image) const {
+    kernels::Parameters parameters = constants;
+    parameters.exposure = to_float(make_exposure(instrument, host_record, position, seed, image));
+    memory.parameters.write_values(std::span<const kernels::Parameters>(&parameters, 1));
+    if (emission) {
+        memory.first_paths.value().write_values(std::span<const std::uint64_t>(emission->order.first_paths(image)));
     }
 }
 
-void DeviceScene::give_emission_order(vulkan::Commands& commands) const {
+void DeviceScene::give_emission_order(vulkan::Commands& commands, const ExposureMemory& memory) const {
     if (emission) {
-        commands.copy(emission->first_paths_of_slots.at(slot), emission->first_paths, emission->first_paths.bytes());
+        commands.copy(memory.first_paths.value(), emission->first_paths, emission->first_paths.bytes());
         commands.barrier();
     }
 }
@@ -250,9 +257,10 @@ void DeviceScene::make_wave_image(ExposureWork& work) const {
     }
 }
 
-std::vector<vulkan::Binding> DeviceScene::bindings(std::initializer_list<vulkan::Binding> further) const {
+std::vector<vulkan::Binding> DeviceScene::bindings(const ExposureMemory& memory,
+                                                   std::initializer_list<vulkan::Binding> further) const {
     std::vector<vulkan::Binding> all = {{kernels::BINDING_SURFACES, &surfaces},
-                                        {kernels::BINDING_PARAMETERS, &parameters[slot]},
+                                        {kernels::BINDING_PARAMETERS, &memory.parameters},
                                         {kernels::BINDING_SPECTRUM, &spectrum},
                                         {kernels::BINDING_LIGHT_POINTS, &light_points}};
     const auto of_specimen = device_specimen.bindings();

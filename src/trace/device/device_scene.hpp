@@ -35,9 +35,14 @@ inline constexpr std::size_t most_exposures = 3;
 // The order of forward paths.
 struct EmissionBuffers {
     EmissionOrder order;
-    vulkan::Buffer given;                             // of each cell
-    vulkan::Buffer first_paths;                       // of each cell, of the exposure under way on the device
-    std::vector<vulkan::Buffer> first_paths_of_slots; // as the host wrote them
+    vulkan::Buffer given;       // of each cell
+    vulkan::Buffer first_paths; // of each cell, of the exposure under way on the device
+};
+
+// What an exposure has in the device's memory alone, so that the host writes the next one's while this is under way.
+struct ExposureMemory {
+    vulkan::Buffer parameters;                 // the scene's constants with the exposure's own
+    std::optional<vulkan::Buffer> first_paths; // of each emission cell; only for forward paths that are sequential
 };
 
 // SPIR-V of one kernel.
@@ -50,11 +55,13 @@ struct KernelVariants {
 
 // make_device_scene() makes it. The instrument must outlive it.
 struct DeviceScene {
-    // Of the paths of an image, of which there are as many; what is recorded from the next set_exposure() on has it.
+    // Of the paths of an image, of which there are as many; exposures' memories that are made from now on have it.
     void order_emission(std::uint64_t paths);
-    // For what is recorded from now on. slot: of those under way at a time, below most_exposures; what was recorded for
-    // the slot before must have been done.
-    void set_exposure(FocalPosition position, std::uint32_t image, std::size_t slot = 0);
+    ExposureMemory exposure_memory() const;
+    // As many as may be under way at a time.
+    std::vector<ExposureMemory> exposure_memories() const;
+    // What was recorded with the memory before must have been done.
+    void write_exposure(ExposureMemory& memory, FocalPosition position, std::uint32_t image) const;
     // Before more is traced: throws where waves cannot be made of it, as far as is known.
     void require_waves() const;
     // Of an image before its first path: the light that is sorted for waves.
@@ -62,12 +69,13 @@ struct DeviceScene {
     // After its last path: what waves make of that light, where the device does.
     void make_wave_image(ExposureWork& work) const;
     // Before what an exposure submits first: the order of its paths, for the device. Forward alone.
-    void give_emission_order(vulkan::Commands& commands) const;
+    void give_emission_order(vulkan::Commands& commands, const ExposureMemory& memory) const;
     // Where light is sorted for waves; none: it is not.
     std::vector<const vulkan::Buffer*> light_buffers() const;
 
-    // The scene's bindings and those given.
-    std::vector<vulkan::Binding> bindings(std::initializer_list<vulkan::Binding> further) const;
+    // The scene's bindings with an exposure's, and those given.
+    std::vector<vulkan::Binding> bindings(const ExposureMemory& memory,
+                                          std::initializer_list<vulkan::Binding> further) const;
     std::vector<vulkan::BindingDeclaration> declarations(std::initializer_list<std::uint32_t> further) const;
 
     // Of all kernels: the specimen's, the number of ledger slots, the features.
@@ -99,11 +107,9 @@ struct DeviceScene {
     std::optional<physics::f64::TrainPolynomials> illumination; // in place of its surfaces
     ChosenTraversal traversal;
     DeviceSpecimen device_specimen;
-    kernels::Parameters constants;            // with the last exposure
+    kernels::Parameters constants;            // but for the exposure
     physics::f64::SpecimenRecord host_record; // with the top plane that the kernels mean: rounded to float
     vulkan::Buffer surfaces;
-    std::vector<vulkan::Buffer> parameters; // a slot each: `constants` as they were set
-    std::size_t slot = 0;                   // set last
     vulkan::Buffer spectrum;
     vulkan::Buffer light_points;             // of the light field's grid
     std::optional<ElementBuffers> elements;  // only for non-sequential paths

@@ -7,6 +7,7 @@
 #include "trace/device/device_numbers.hpp"
 #include "trace/device/forward_trace.hpp"
 #include "trace/device/nonsequential_trace.hpp"
+#include "trace/device/traced_exposure.hpp"
 #include "trace/device/wave_memory.hpp"
 #include "trace/interface/light_sources.hpp"
 #include "trace/interface/traced_instrument.hpp"
@@ -33,7 +34,8 @@ class DeviceTracer final : public DeviceExposures {
   public:
     DeviceTracer(const optics::Instrument& instrument, const specimen::Specimen& specimen, const TraceOptions& options)
         : instrument_(instrument), rays_(options.rays),
-          scene_(make_device_scene(instrument_, specimen, options, &instrument_)), trace_(make_trace(scene_, options)),
+          scene_(make_device_scene(instrument_, specimen, options, &instrument_)),
+          memories_(scene_.exposure_memories()), trace_(make_trace(scene_, options)),
           estimate_(*scene_.device, scene_.accounts.rule(rays_), instrument_.detector_pixels(),
                     {.pixels = trace_->pixels(),
                      .further = &trace_->fates(),
@@ -67,71 +69,50 @@ class DeviceTracer final : public DeviceExposures {
 
     optics::Instrument instrument_;
     std::uint64_t rays_;
-    mutable DeviceScene scene_;
+    DeviceScene scene_;
+    mutable std::vector<ExposureMemory> memories_; // prepare() writes that of the slot which its caller has alone
     std::unique_ptr<PathTrace> trace_;
     DeviceEstimate estimate_;
     DeviceNumbers numbers_;
     mutable DispatchPace pace_;
 };
 
-class DeviceTracer::Exposure final : public SingleExposure {
+class DeviceTracer::Exposure final : public TracedExposure {
   public:
     Exposure(const DeviceTracer& tracer, std::size_t slot)
-        : SingleExposure(*tracer.scene_.device, tracer.pace_), tracer_(tracer), slot_(slot) {}
-
-    void set_out(std::span<const std::uint64_t> numbers) override {
-        clears_ = numbers.empty();
-        if (!clears_) {
-            tracer_.numbers_.write(work, numbers);
-        }
-    }
-
-    std::size_t number_count() const override { return tracer_.numbers_.count(); }
-    std::vector<std::uint64_t> numbers() override { return tracer_.numbers_.read(work); }
+        : TracedExposure({.scene = tracer.scene_,
+                          .memory = tracer.memories_[slot],
+                          .estimate = tracer.estimate_,
+                          .numbers = tracer.numbers_,
+                          .pace = tracer.pace_,
+                          .slot = slot}),
+          tracer_(tracer) {}
 
     std::uint64_t submit(std::uint64_t first, std::uint64_t end) override {
         const PathTrace& trace = *tracer_.trace_;
-        tracer_.scene_.require_waves();
-        vulkan::Commands& commands = work.open();
-        if (std::exchange(begins_, false)) {
-            tracer_.scene_.give_emission_order(commands);
-        }
-        if (std::exchange(clears_, false)) {
-            trace.clear(commands);
-            tracer_.scene_.clear_sorted_light(commands);
-        }
+        vulkan::Commands& commands = open(trace);
         end = std::min(end, first + tracer_.pace_.paths());
         for (std::uint64_t path = first; path < end; path += trace.batch()) {
-            trace.record(commands, path,
+            trace.record(commands, of.memory, path,
                          static_cast<std::uint32_t>(std::min<std::uint64_t>(trace.batch(), end - path)));
         }
-        work.submit(end - first);
-        tracer_.estimate_.make_room(slot_);
+        close(end - first);
         return end;
-    }
-
-    void hand_over() override {
-        tracer_.scene_.make_wave_image(work);
-        tracer_.estimate_.record(work.open(), slot_);
-        work.submit();
     }
 
     Image finish() override {
         work.wait();
-        const DeviceEstimate& estimate = tracer_.estimate_;
-        return tracer_.scene_.accounts.image(estimate.estimated(slot_).pixels, estimate.further(slot_), tracer_.rays_);
+        return of.scene.accounts.image(of.estimate.estimated(of.slot).pixels, of.estimate.further(of.slot),
+                                       tracer_.rays_);
     }
 
   private:
     const DeviceTracer& tracer_;
-    std::size_t slot_;
-    bool begins_ = true;
-    bool clears_ = true;
 };
 
 std::unique_ptr<DeviceExposure> DeviceTracer::prepare(FocalPosition position, std::uint32_t image,
                                                       std::size_t slot) const {
-    scene_.set_exposure(position, image, slot);
+    scene_.write_exposure(memories_.at(slot), position, image);
     return std::make_unique<Exposure>(*this, slot);
 }
 
@@ -190,8 +171,9 @@ TracerIdentity expected_identity(const optics::Instrument& described, const spec
 std::vector<PathEnd> device_paths(const optics::Instrument& instrument, const specimen::Specimen& specimen,
                                   const TraceOptions& options, FocalPosition position, std::uint32_t image,
                                   std::uint64_t first, std::uint32_t count) {
-    DeviceScene scene = make_device_scene(instrument, specimen, options);
-    scene.set_exposure(position, image);
+    const DeviceScene scene = make_device_scene(instrument, specimen, options);
+    ExposureMemory exposure = scene.exposure_memory();
+    scene.write_exposure(exposure, position, image);
     const vulkan::Buffer ends(*scene.device, count * sizeof(kernels::PathEnd));
     const bool nonsequential = options.nonsequential;
     const vulkan::Kernel kernel(
@@ -211,14 +193,14 @@ std::vector<PathEnd> device_paths(const optics::Instrument& instrument, const sp
     vulkan::Commands commands(*scene.device);
     const std::uint32_t groups = (count + 63) / 64;
     if (nonsequential) {
-        commands.dispatch(kernel, scene.bindings({{kernels::BINDING_FOUND, &ends}}),
+        commands.dispatch(kernel, scene.bindings(exposure, {{kernels::BINDING_FOUND, &ends}}),
                           make_nonsequential_batch(scene, first, count), groups);
     } else {
-        scene.give_emission_order(commands);
+        scene.give_emission_order(commands, exposure);
         commands.dispatch(kernel,
-                          scene.bindings({{kernels::BINDING_FOUND, &ends},
-                                          {kernels::BINDING_EMISSION_CELLS, &scene.emission->given},
-                                          {kernels::BINDING_EMISSION_FIRST, &scene.emission->first_paths}}),
+                          scene.bindings(exposure, {{kernels::BINDING_FOUND, &ends},
+                                                    {kernels::BINDING_EMISSION_CELLS, &scene.emission->given},
+                                                    {kernels::BINDING_EMISSION_FIRST, &scene.emission->first_paths}}),
                           make_batch(first, count), groups);
     }
     commands.barrier();

@@ -80,18 +80,19 @@ ForwardTrace::ForwardTrace(const DeviceScene& scene, std::uint32_t batch, std::u
                constants_for(scene, stop_imaging, scene.instrument.constants.imaging_first,
                              scene.instrument.constants.imaging_count)) {}
 
-void ForwardTrace::record(vulkan::Commands& commands, std::uint64_t first, std::uint32_t count, bool timed) const {
+void ForwardTrace::record(vulkan::Commands& commands, const ExposureMemory& exposure, std::uint64_t first,
+                          std::uint32_t count, bool timed) const {
     commands.fill_zero(survivor_count_);
     commands.barrier();
     if (timed) {
         commands.timestamp();
     }
     commands.dispatch(illumination_,
-                      scene_.bindings({{BINDING_SURVIVORS, &survivors_},
-                                       {BINDING_LEDGER, &fates_},
-                                       {BINDING_SURVIVOR_COUNT, &survivor_count_},
-                                       {BINDING_EMISSION_CELLS, &scene_.emission->given},
-                                       {BINDING_EMISSION_FIRST, &scene_.emission->first_paths}}),
+                      scene_.bindings(exposure, {{BINDING_SURVIVORS, &survivors_},
+                                                 {BINDING_LEDGER, &fates_},
+                                                 {BINDING_SURVIVOR_COUNT, &survivor_count_},
+                                                 {BINDING_EMISSION_CELLS, &scene_.emission->given},
+                                                 {BINDING_EMISSION_FIRST, &scene_.emission->first_paths}}),
                       make_batch(first, count), (count + paths_per_group - 1) / paths_per_group);
     commands.barrier();
     if (timed) {
@@ -100,10 +101,10 @@ void ForwardTrace::record(vulkan::Commands& commands, std::uint64_t first, std::
     // The number of survivors is known to the device alone: a fixed grid strides over them.
     const std::uint32_t groups = scene_.software() ? 64 : 4096;
     commands.dispatch(imaging_,
-                      scene_.bindings({{BINDING_SURVIVORS, &survivors_},
-                                       {BINDING_PIXELS, &pixels_},
-                                       {BINDING_LEDGER, &fates_},
-                                       {BINDING_SURVIVOR_COUNT, &survivor_count_}}),
+                      scene_.bindings(exposure, {{BINDING_SURVIVORS, &survivors_},
+                                                 {BINDING_PIXELS, &pixels_},
+                                                 {BINDING_LEDGER, &fates_},
+                                                 {BINDING_SURVIVOR_COUNT, &survivor_count_}}),
                       std::span<const std::byte>{}, groups);
     commands.barrier();
     if (timed) {

@@ -11,7 +11,7 @@ class ForwardTrace final : public PathTrace {
     ForwardTrace(const DeviceScene& scene, std::uint32_t batch, std::uint32_t stop_illumination = kernels::STOP_NOWHERE,
                  std::uint32_t stop_imaging = kernels::STOP_NOWHERE);
 
-    void record(vulkan::Commands& commands, std::uint64_t first, std::uint32_t count,
+    void record(vulkan::Commands& commands, const ExposureMemory& exposure, std::uint64_t first, std::uint32_t count,
                 bool timed = false) const override;
 
   private:

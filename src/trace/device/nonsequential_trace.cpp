@@ -18,14 +18,14 @@ NonsequentialTrace::NonsequentialTrace(const DeviceScene& scene, std::uint32_t b
               scene.declarations({kernels::BINDING_PIXELS, kernels::BINDING_LEDGER}),
               sizeof(kernels::NonsequentialBatch), scene.kernel_constants()) {}
 
-void NonsequentialTrace::record(vulkan::Commands& commands, std::uint64_t first, std::uint32_t count,
-                                bool timed) const {
+void NonsequentialTrace::record(vulkan::Commands& commands, const ExposureMemory& exposure, std::uint64_t first,
+                                std::uint32_t count, bool timed) const {
     if (timed) {
         commands.timestamp();
     }
-    commands.dispatch(kernel_,
-                      scene_.bindings({{kernels::BINDING_PIXELS, &pixels_}, {kernels::BINDING_LEDGER, &fates_}}),
-                      make_nonsequential_batch(scene_, first, count), (count + paths_per_group - 1) / paths_per_group);
+    commands.dispatch(
+        kernel_, scene_.bindings(exposure, {{kernels::BINDING_PIXELS, &pixels_}, {kernels::BINDING_LEDGER, &fates_}}),
+        make_nonsequential_batch(scene_, first, count), (count + paths_per_group - 1) / paths_per_group);
     commands.barrier();
     if (timed) {
         commands.timestamp();

@@ -12,7 +12,7 @@ class NonsequentialTrace final : public PathTrace {
   public:
     NonsequentialTrace(const DeviceScene& scene, std::uint32_t batch);
 
-    void record(vulkan::Commands& commands, std::uint64_t first, std::uint32_t count,
+    void record(vulkan::Commands& commands, const ExposureMemory& exposure, std::uint64_t first, std::uint32_t count,
                 bool timed = false) const override;
 
   private:

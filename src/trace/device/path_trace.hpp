@@ -30,9 +30,10 @@ class PathTrace {
         commands.barrier();
     }
 
-    // Paths first ... first + count - 1, count at most the batch; timestamps around and between its stages if wanted.
-    virtual void record(vulkan::Commands& commands, std::uint64_t first, std::uint32_t count,
-                        bool timed = false) const = 0;
+    // Of an exposure paths first ... first + count - 1, count at most the batch; timestamps around and between its
+    // stages if wanted.
+    virtual void record(vulkan::Commands& commands, const ExposureMemory& exposure, std::uint64_t first,
+                        std::uint32_t count, bool timed = false) const = 0;
 
     // What was counted: Accounts::pixel_numbers() and ledger_numbers() of 64 bits.
     const vulkan::Buffer& pixels() const { return pixels_; }
