@@ -92,6 +92,14 @@ HeightMap deviation_map(const HeightMap& measured, const HeightMap& truth, const
     return deviation_map(levelled_pair(measured, truth, band));
 }
 
+ComparedPair compared_pair(HeightMap measured, HeightMap truth, const Band& band) {
+    ComparedPair result{
+        .pair = levelled_pair(std::move(measured), std::move(truth), band), .difference = {}, .deviation = {}};
+    result.difference = deviation_map(result.pair);
+    result.deviation = compare(result.pair, result.difference);
+    return result;
+}
+
 double share_beyond(const surface::HeightMap& deviation, const Grid<double>& uncertainty, double coverage_factor) {
     if (uncertainty.columns != deviation.columns() || uncertainty.rows != deviation.rows()) {
         throw std::invalid_argument("share_beyond: as many uncertainties as deviations are needed");

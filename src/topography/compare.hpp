@@ -40,6 +40,14 @@ surface::HeightMap deviation_map(const LevelledPair& treated);
 surface::HeightMap deviation_map(const surface::HeightMap& measured, const surface::HeightMap& truth,
                                  const Band& band = {});
 
+// Both treated and what is between them, made once where several ask.
+struct ComparedPair {
+    LevelledPair pair;
+    surface::HeightMap difference; // deviation_map()
+    Deviation deviation;
+};
+ComparedPair compared_pair(surface::HeightMap measured, surface::HeightMap truth, const Band& band = {});
+
 // Of the deviation's finite points, the share further from zero than coverage_factor times their standard uncertainty
 // (mm, on the same grid: std::invalid_argument otherwise; a point without one counts as beyond); NaN where none is.
 double share_beyond(const surface::HeightMap& deviation, const Grid<double>& uncertainty, double coverage_factor);

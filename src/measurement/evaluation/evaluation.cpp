@@ -273,7 +273,7 @@ Evaluation StackEvaluation::finish(surface::HeightMap truth, const topography::B
         levelled.truth = whole_truth.get();
         evaluation_.band = band;
         if (band.limited()) {
-            evaluation_.filtered_deviation = topography::compare(measured, truth, band);
+            evaluation_.filtered = topography::compared_pair(measured, truth, band);
         }
         if (feature) {
             evaluation_.dimensions = standard_dimensions(*feature, measured, truth);
@@ -326,8 +326,8 @@ std::string summary(const Evaluation& evaluation) {
                     *evaluation.deviation);
     }
     text += uncertainty_text(evaluation);
-    if (evaluation.filtered_deviation) {
-        text += text_of(band_text(evaluation.band).c_str(), *evaluation.filtered_deviation);
+    if (evaluation.filtered) {
+        text += text_of(band_text(evaluation.band).c_str(), evaluation.filtered->deviation);
     }
     text += dimensions_text(evaluation.dimensions);
     if (evaluation.diffracted) {

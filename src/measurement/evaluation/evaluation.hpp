@@ -70,11 +70,11 @@ struct Evaluation {
     LevelledMaps levelled;
     std::optional<topography::Deviation> deviation; // levelled
     std::optional<double> beyond_uncertainty;       // share of the points levelled beyond coverage_factor times theirs
-    std::optional<topography::Deviation> filtered_deviation; // and filtered; none if the band has no limit
-    topography::Band band;                                   // its form holds for the levelled one too
-    std::vector<StandardDimension> dimensions;               // of a standard; none of other specimens
-    report::Frames frames;                                   // the images, made small; not of `diffracted`
-    double seconds = 0;                                      // wall clock
+    std::optional<topography::ComparedPair> filtered; // levelled and filtered; none if the band has no limit
+    topography::Band band;                            // its form holds for the levelled one too
+    std::vector<StandardDimension> dimensions;        // of a standard; none of other specimens
+    report::Frames frames;                            // the images, made small; not of `diffracted`
+    double seconds = 0;                               // wall clock
     std::shared_ptr<Evaluation> diffracted; // the same of the images after diffraction; none without [diffraction]
 };
 

@@ -14,7 +14,8 @@ std::vector<report::ParameterRow> parameters_of(const surface::HeightMap& map) {
     return report::parameter_rows(surface::areal_parameters(map));
 }
 
-Figures figures_in(const topography::Band& band, const Evaluation& evaluation,
+// pair: the measured and the true heights in this band, if there is a truth.
+Figures figures_in(const topography::Band& band, const Evaluation& evaluation, const topography::LevelledPair& pair,
                    const std::optional<topography::Deviation>& deviation) {
     const auto& measured = evaluation.topography.height;
     Figures figures{.band = band,
@@ -28,11 +29,6 @@ Figures figures_in(const topography::Band& band, const Evaluation& evaluation,
     if (!evaluation.truth) {
         figures.measured = parameters_of(surface::scale_limited(measured, band));
     } else if (deviation && deviation->measured_share > 0) {
-        std::optional<topography::LevelledPair> in_band;
-        if (band.limited()) {
-            in_band = topography::levelled_pair(measured, *evaluation.truth, band);
-        }
-        const auto& pair = in_band ? *in_band : evaluation.levelled.pair;
         auto truth = std::async(std::launch::async, [&] { return parameters_of(pair.truth); });
         figures.measured = parameters_of(pair.measured);
         figures.truth = truth.get();
@@ -43,9 +39,10 @@ Figures figures_in(const topography::Band& band, const Evaluation& evaluation,
 } // namespace
 
 std::vector<Figures> figures_of(const Evaluation& evaluation) {
-    std::vector<Figures> figures{figures_in({.form = evaluation.band.form}, evaluation, evaluation.deviation)};
-    if (evaluation.filtered_deviation) {
-        figures.push_back(figures_in(evaluation.band, evaluation, evaluation.filtered_deviation));
+    std::vector<Figures> figures{
+        figures_in({.form = evaluation.band.form}, evaluation, evaluation.levelled.pair, evaluation.deviation)};
+    if (const auto& filtered = evaluation.filtered) {
+        figures.push_back(figures_in(evaluation.band, evaluation, filtered->pair, filtered->deviation));
     }
     return figures;
 }

@@ -97,16 +97,15 @@ surface::HeightMap with_values(surface::HeightMap map, Grid<double> values) {
     return map;
 }
 
-// Every map on the heights' grid. deviation: in the evaluation's band.
-std::vector<surface::GwyChannel> channels_of(const Evaluation& evaluation,
-                                             const std::optional<surface::HeightMap>& deviation,
+// Every map on the heights' grid. deviation: in the evaluation's band; null without a truth.
+std::vector<surface::GwyChannel> channels_of(const Evaluation& evaluation, const surface::HeightMap* deviation,
                                              const std::string& image_unit) {
     const auto& topography = evaluation.topography;
     const auto on_grid = [&](Grid<double> values) { return with_values(topography.height, std::move(values)); };
     std::vector<surface::GwyChannel> channels = {{.title = "Height", .map = topography.height}};
     if (evaluation.truth) {
         channels.push_back({.title = "True height", .map = *evaluation.truth});
-        channels.push_back({.title = "Deviation from the true height", .map = deviation.value()});
+        channels.push_back({.title = "Deviation from the true height", .map = *deviation});
     }
     channels.push_back({.title = "Noise of the height", .map = on_grid(topography.height_noise)});
     channels.push_back({.title = "Uncertainty of the height", .map = on_grid(topography.height_uncertainty)});
@@ -184,7 +183,7 @@ EvaluationData write_maps(ResultFolder& results, const std::filesystem::path& fo
     const auto& topography = evaluation.topography;
     const images::ImageTags pitch{
         .pitch_x = topography.height.pitch_x, .pitch_y = topography.height.pitch_y, .description = {}};
-    std::optional<surface::HeightMap> deviation;
+    const surface::HeightMap* deviation = nullptr; // in the evaluation's band; none without a truth
     EvaluationData data;
     JobQueue jobs(core_count(), 100);
     const auto write = [&](const std::string& name, const auto& bytes_of) {
@@ -197,13 +196,11 @@ EvaluationData write_maps(ResultFolder& results, const std::filesystem::path& fo
     write("curves.npy", [&] { return curves_bytes(topography.curves); });
     if (evaluation.truth) {
         write("truth.tif", [&] { return surface::height_map_bytes(*evaluation.truth); });
-        deviation = evaluation.band.limited()
-                        ? topography::deviation_map(topography.height, *evaluation.truth, evaluation.band)
-                        : evaluation.levelled.deviation;
+        deviation = evaluation.filtered ? &evaluation.filtered->difference : &evaluation.levelled.deviation.value();
         write("deviation.tif", [&] { return surface::height_map_bytes(*deviation); });
     }
     // The format that laboratories exchange has all heights. What is no height, X3P cannot hold: it is in GWY.
-    if (deviation && std::ranges::find(files.names, "topography.x3p") != files.names.end()) {
+    if (deviation != nullptr && std::ranges::find(files.names, "topography.x3p") != files.names.end()) {
         const auto write_surface = [&](const std::string& name, const surface::HeightMap& map, const char* what) {
             surface::Provenance provenance = files.provenance;
             provenance.comment = fmt::format("{}\n{}", what, provenance.comment);
