@@ -3,32 +3,16 @@
 
 #include "configuration/configuration.hpp"
 #include "core/result_folder.hpp"
-#include "measurement/evaluation/evaluation.hpp"
+#include "measurement/evaluation/evaluation_maps.hpp"
+#include "measurement/evaluation/results_document.hpp"
 #include "optics/instrument/instrument.hpp"
 #include "scan/ledger_table.hpp"
-#include "surface_files/provenance.hpp"
 
 #include <nlohmann/json.hpp>
 
-#include <filesystem>
 #include <string>
-#include <string_view>
-#include <vector>
 
 namespace vkfv::measurement {
-
-// What the topography is written to and what its files say of it, nothing that differs from run to run.
-struct TopographyFiles {
-    std::string image_unit = "DN"; // of the images' values: what other instruments write are grey values
-    std::vector<std::string> names = {"topography.tif", "topography.x3p"};
-    surface::Provenance provenance = {.creator = "vkfv " VKFV_VERSION,
-                                      .manufacturer = "vkfv",
-                                      .model = "virtual focus-variation microscope",
-                                      .version = VKFV_VERSION};
-};
-
-// Those of [output] surfaces, with the configuration's digest.
-TopographyFiles topography_files(const Configuration& configuration);
 
 // What the report shows of a stack beside its evaluation.
 struct StackSource {
@@ -39,9 +23,6 @@ struct StackSource {
 
 // Of a stack of vkfv's own.
 StackSource stack_source(const Configuration& configuration, const optics::Instrument& instrument);
-
-// Of an evaluated stack, in its folder.
-inline constexpr std::string_view results_name = "results.json";
 
 // An evaluated stack with what its results say beside the evaluation.
 struct EvaluatedStack {
@@ -57,8 +38,5 @@ struct EvaluatedStack {
 // (focus curves on a grid, float32, rows x columns x heights); and report.html, all of it on a page, which finds the
 // times in timings.js. What diffraction changes stands in a folder `diffracted` in it.
 void write_results(ResultFolder& folder, const EvaluatedStack& stack);
-
-// What the results in a stack's folder say of the trace: device, digest, seed and counts; none if there are no results.
-nlohmann::ordered_json run_of(const std::filesystem::path& folder);
 
 } // namespace vkfv::measurement
