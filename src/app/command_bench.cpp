@@ -1,6 +1,6 @@
 #include "app/commands.hpp"
 #include "bench/bench.hpp"
-#include "core/result_folder.hpp"
+#include "core/files/result_folder.hpp"
 
 #include <fmt/format.h>
 

@@ -1,6 +1,6 @@
 #include "app/commands.hpp"
-#include "core/error.hpp"
-#include "core/result_folder.hpp"
+#include "core/files/result_folder.hpp"
+#include "core/messages/error.hpp"
 #include "measurement/image/camera_report.hpp"
 #include "scan/store.hpp"
 

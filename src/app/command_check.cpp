@@ -1,5 +1,5 @@
 #include "app/commands.hpp"
-#include "core/error.hpp"
+#include "core/messages/error.hpp"
 #include "measurement/instrument/instrument_report.hpp"
 #include "measurement/stack/forecast.hpp"
 

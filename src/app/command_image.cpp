@@ -1,6 +1,6 @@
 #include "app/commands.hpp"
 
-#include "core/units.hpp"
+#include "core/mathematics/units.hpp"
 #include "measurement/image/image.hpp"
 
 #include <fmt/format.h>

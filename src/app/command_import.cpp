@@ -1,6 +1,6 @@
 #include "app/commands.hpp"
 
-#include "core/file.hpp"
+#include "core/files/file.hpp"
 #include "optics/prescriptions/prescription_writer.hpp"
 #include "optics/prescriptions/zmx.hpp"
 #include "optics/train/first_order.hpp"

@@ -1,7 +1,7 @@
 #include "app/commands.hpp"
 #include "measurement/scene/assembly.hpp"
 
-#include "core/file.hpp"
+#include "core/files/file.hpp"
 #include "report/layout.hpp"
 
 namespace vkfv::app {

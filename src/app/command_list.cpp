@@ -1,7 +1,7 @@
 #include "app/commands.hpp"
 
-#include "core/assets.hpp"
-#include "core/toml_reader.hpp"
+#include "core/files/assets.hpp"
+#include "core/toml/toml_reader.hpp"
 #include "optics/prescriptions/prescription.hpp"
 #include "physics/scatter_registry.hpp"
 #include "specimen/kinds.hpp"

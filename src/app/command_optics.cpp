@@ -4,7 +4,7 @@
 #include "measurement/scene/assembly.hpp"
 #include "measurement/scene/wave_limits.hpp"
 
-#include "core/result_folder.hpp"
+#include "core/files/result_folder.hpp"
 
 #include <fmt/format.h>
 

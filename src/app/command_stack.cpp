@@ -1,6 +1,6 @@
 #include "app/commands.hpp"
-#include "core/file.hpp"
-#include "core/progress.hpp"
+#include "core/files/file.hpp"
+#include "core/messages/progress.hpp"
 #include "measurement/evaluation/evaluation_files.hpp"
 #include "measurement/stack/stack.hpp"
 

@@ -1,7 +1,7 @@
 #include "app/commands.hpp"
 #include "measurement/surface/surface_measurement.hpp"
 
-#include "core/units.hpp"
+#include "core/mathematics/units.hpp"
 
 #include <fmt/format.h>
 

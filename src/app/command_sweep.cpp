@@ -1,5 +1,5 @@
 #include "app/commands.hpp"
-#include "core/progress.hpp"
+#include "core/messages/progress.hpp"
 #include "measurement/sweep/sweep.hpp"
 
 #include <fmt/format.h>

@@ -1,7 +1,7 @@
 #include "app/commands.hpp"
 #include "measurement/evaluation/existing_stack.hpp"
 
-#include "core/units.hpp"
+#include "core/mathematics/units.hpp"
 
 #include <fmt/format.h>
 #include <spdlog/spdlog.h>

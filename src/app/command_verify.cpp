@@ -1,6 +1,6 @@
 #include "app/commands.hpp"
 
-#include "core/result_folder.hpp"
+#include "core/files/result_folder.hpp"
 #include "scan/stack_identity.hpp"
 #include "scan/store.hpp"
 

@@ -1,6 +1,6 @@
 #include "app/commands.hpp"
 
-#include "core/log.hpp"
+#include "core/messages/log.hpp"
 
 namespace vkfv::app {
 

@@ -3,11 +3,11 @@
 #include "app/version.hpp"
 #include "command_line/command_line.hpp"
 
-#include "core/error.hpp"
-#include "core/interruption.hpp"
-#include "core/log.hpp"
-#include "core/result_folder.hpp"
-#include "core/stages.hpp"
+#include "core/files/result_folder.hpp"
+#include "core/messages/error.hpp"
+#include "core/messages/interruption.hpp"
+#include "core/messages/log.hpp"
+#include "core/messages/stages.hpp"
 #include "vulkan/device.hpp"
 #include "vulkan/failure.hpp"
 

@@ -1,7 +1,7 @@
 // Tests whether two images that were made with independent random numbers have the same expected value.
 #pragma once
 
-#include "core/grid.hpp"
+#include "core/mathematics/grid.hpp"
 
 #include <cstdint>
 

@@ -15,7 +15,7 @@
 // All seconds are medians over the runs; `seconds` are the device's own. What was not measured is absent.
 #pragma once
 
-#include "core/toml_document.hpp"
+#include "core/toml/toml_document.hpp"
 
 #include <nlohmann/json.hpp>
 

@@ -1,7 +1,7 @@
 #include "camera/camera.hpp"
 
 #include "camera/saturation.hpp"
-#include "core/parallel_rows.hpp"
+#include "core/threads/parallel_rows.hpp"
 #include "statistics/poisson.hpp"
 #include "statistics/random_stream.hpp"
 

@@ -2,7 +2,7 @@
 // photons, photons electrons (a Poisson variable), these a grey value (DN).
 #pragma once
 
-#include "core/grid.hpp"
+#include "core/mathematics/grid.hpp"
 #include "optics/media/spectrum.hpp"
 
 #include <cstdint>

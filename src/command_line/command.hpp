@@ -3,7 +3,7 @@
 #pragma once
 
 #include "configuration/configuration.hpp"
-#include "core/units.hpp"
+#include "core/mathematics/units.hpp"
 
 #include <any>
 #include <cstdint>

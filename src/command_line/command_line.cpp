@@ -2,8 +2,8 @@
 
 #include "command_line/command.hpp"
 #include "command_line/reference.hpp"
-#include "core/log.hpp"
-#include "core/stages.hpp"
+#include "core/messages/log.hpp"
+#include "core/messages/stages.hpp"
 
 #include <CLI/CLI.hpp>
 #include <fmt/format.h>

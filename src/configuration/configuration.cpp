@@ -1,7 +1,7 @@
 #include "configuration/configuration.hpp"
 
 #include "configuration/tables.hpp"
-#include "core/assets.hpp"
+#include "core/files/assets.hpp"
 
 #include <fmt/format.h>
 

@@ -2,7 +2,7 @@
 #pragma once
 
 #include "camera/camera.hpp"
-#include "core/section.hpp"
+#include "core/keys/section.hpp"
 #include "optics/instrument/instrument.hpp"
 #include "scan/plan.hpp"
 #include "scan/stage.hpp"

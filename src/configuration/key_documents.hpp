@@ -1,7 +1,7 @@
-// What there is to say of the configuration's keys, from their declarations (core/key.hpp).
+// What there is to say of the configuration's keys, from their declarations (core/keys/key.hpp).
 #pragma once
 
-#include "core/key.hpp"
+#include "core/keys/key.hpp"
 
 #include <string>
 #include <vector>

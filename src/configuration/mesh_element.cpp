@@ -2,7 +2,7 @@
 #include "configuration/optical_parts.hpp"
 #include "configuration/ranges.hpp"
 #include "configuration/tables.hpp"
-#include "core/digest.hpp"
+#include "core/files/digest.hpp"
 #include "specimen/files.hpp"
 
 #include <fmt/format.h>

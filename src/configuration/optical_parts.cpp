@@ -2,8 +2,8 @@
 
 #include "configuration/ranges.hpp"
 #include "configuration/tables.hpp"
-#include "core/assets.hpp"
-#include "core/digest.hpp"
+#include "core/files/assets.hpp"
+#include "core/files/digest.hpp"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>

@@ -2,7 +2,7 @@
 #pragma once
 
 #include "configuration/configuration.hpp"
-#include "core/section.hpp"
+#include "core/keys/section.hpp"
 
 #include <optional>
 #include <string>

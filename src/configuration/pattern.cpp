@@ -1,7 +1,7 @@
 // [specimen.reflectance] and [illumination.field]: patterns over a plane.
 #include "configuration/ranges.hpp"
 #include "configuration/tables.hpp"
-#include "core/units.hpp"
+#include "core/mathematics/units.hpp"
 
 namespace vkfv {
 

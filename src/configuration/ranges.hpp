@@ -1,8 +1,8 @@
 // Ranges and units that several tables share.
 #pragma once
 
-#include "core/toml_reader.hpp"
-#include "core/units.hpp"
+#include "core/mathematics/units.hpp"
+#include "core/toml/toml_reader.hpp"
 
 #include <cstdint>
 

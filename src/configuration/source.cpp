@@ -1,8 +1,8 @@
 // [source], or several [[source]], and [source.spectrum].
 #include "configuration/ranges.hpp"
 #include "configuration/tables.hpp"
-#include "core/digest.hpp"
-#include "core/number_table.hpp"
+#include "core/files/digest.hpp"
+#include "core/parsing/number_table.hpp"
 
 #include <fmt/format.h>
 

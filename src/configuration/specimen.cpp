@@ -1,7 +1,7 @@
 // [specimen], [specimen.roughness], [specimen.material] and [[specimen.material.lobe]]; reflectance.cpp has its map.
 #include "configuration/ranges.hpp"
 #include "configuration/tables.hpp"
-#include "core/assets.hpp"
+#include "core/files/assets.hpp"
 #include "physics/scatter_registry.hpp"
 #include "specimen/kinds.hpp"
 

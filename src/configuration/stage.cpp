@@ -1,7 +1,7 @@
 // [stage].
 #include "configuration/ranges.hpp"
 #include "configuration/tables.hpp"
-#include "core/units.hpp"
+#include "core/mathematics/units.hpp"
 
 #include <fmt/format.h>
 

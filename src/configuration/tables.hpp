@@ -3,7 +3,7 @@
 #pragma once
 
 #include "configuration/configuration.hpp"
-#include "core/section.hpp"
+#include "core/keys/section.hpp"
 
 #include <string>
 #include <vector>

@@ -1,8 +1,8 @@
 // [topography] and [diffraction].
 #include "configuration/ranges.hpp"
 #include "configuration/tables.hpp"
-#include "core/digest.hpp"
-#include "core/file.hpp"
+#include "core/files/digest.hpp"
+#include "core/files/file.hpp"
 #include "specimen/kinds.hpp"
 #include "topography/focus_measure.hpp"
 #include "topography/peak_method.hpp"

@@ -1,6 +1,6 @@
 #include "dimensions/evaluate.hpp"
 
-#include "core/units.hpp"
+#include "core/mathematics/units.hpp"
 #include "dimensions/levels.hpp"
 #include "dimensions/sphere_form.hpp"
 #include "dimensions/transfer.hpp"

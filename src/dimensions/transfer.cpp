@@ -1,6 +1,6 @@
 #include "dimensions/transfer.hpp"
 
-#include "core/units.hpp"
+#include "core/mathematics/units.hpp"
 #include "dimensions/least_squares.hpp"
 #include "dimensions/profiles.hpp"
 #include "dimensions/statistics.hpp"

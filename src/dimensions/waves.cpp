@@ -1,7 +1,7 @@
 #include "dimensions/waves.hpp"
 
-#include "core/fourier.hpp"
-#include "core/units.hpp"
+#include "core/mathematics/fourier.hpp"
+#include "core/mathematics/units.hpp"
 #include "dimensions/least_squares.hpp"
 #include "dimensions/statistics.hpp"
 #include "surface/filter.hpp"

@@ -1,7 +1,7 @@
 #include "images/codec.hpp"
 
-#include "core/error.hpp"
-#include "core/installation.hpp"
+#include "core/files/installation.hpp"
+#include "core/messages/error.hpp"
 
 #include <dlfcn.h>
 #include <fmt/format.h>

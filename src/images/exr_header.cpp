@@ -1,6 +1,6 @@
 #include "images/exr_header.hpp"
 
-#include "core/byte_reader.hpp"
+#include "core/parsing/byte_reader.hpp"
 
 #include <fmt/format.h>
 

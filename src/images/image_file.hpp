@@ -4,11 +4,12 @@
 // viewer shows the specimen as seen from +z, x to the right and y up. Writers flip the rows, readers flip
 // them back.
 //
-// Images are encoded in memory, for core/file.hpp to write; the bytes depend on the arguments alone: no compression, no
-// clock, no version. Readers throw InputError where the file is at fault, also where it could not be read whole.
+// Images are encoded in memory, for core/files/file.hpp to write; the bytes depend on the arguments alone: no
+// compression, no clock, no version. Readers throw InputError where the file is at fault, also where it could not be
+// read whole.
 #pragma once
 
-#include "core/grid.hpp"
+#include "core/mathematics/grid.hpp"
 
 #include <cstdint>
 #include <filesystem>

@@ -1,7 +1,7 @@
 // Pictures: PNG by libpng, and letters as pixels by OpenImageIO.
 #pragma once
 
-#include "core/grid.hpp"
+#include "core/mathematics/grid.hpp"
 
 #include <cstdint>
 #include <span>

@@ -1,5 +1,5 @@
 // PNG by libpng: what images/picture.hpp promises.
-#include "core/error.hpp"
+#include "core/messages/error.hpp"
 #include "images/picture.hpp"
 
 #include <fmt/format.h>

@@ -1,6 +1,6 @@
 #include "images/pnm_header.hpp"
 
-#include "core/byte_reader.hpp"
+#include "core/parsing/byte_reader.hpp"
 
 #include <algorithm>
 #include <cctype>

@@ -1,7 +1,7 @@
 #include "images/tiff.hpp"
 
-#include "core/error.hpp"
-#include "core/file.hpp"
+#include "core/files/file.hpp"
+#include "core/messages/error.hpp"
 
 #include <fmt/format.h>
 #include <tiffio.h>

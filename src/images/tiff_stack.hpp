@@ -3,7 +3,7 @@
 // directory before its values, so it cannot make this.
 #pragma once
 
-#include "core/grid.hpp"
+#include "core/mathematics/grid.hpp"
 
 #include <cstdint>
 #include <span>

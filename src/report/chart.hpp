@@ -1,7 +1,7 @@
 // Curves over an axis, and values over an area: the panels that the report's pictures are made of.
 #pragma once
 
-#include "core/grid.hpp"
+#include "core/mathematics/grid.hpp"
 #include "report/colours.hpp"
 #include "report/svg.hpp"
 

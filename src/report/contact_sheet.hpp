@@ -1,7 +1,7 @@
 // Images of a variation side by side.
 #pragma once
 
-#include "core/grid.hpp"
+#include "core/mathematics/grid.hpp"
 
 #include <string>
 #include <vector>

@@ -1,6 +1,6 @@
 #include "report/declared_figures.hpp"
 
-#include "core/units.hpp"
+#include "core/mathematics/units.hpp"
 #include "report/page_files.hpp"
 
 #include <fmt/format.h>

@@ -1,6 +1,6 @@
 #include "report/frames.hpp"
 
-#include "core/parallel_rows.hpp"
+#include "core/threads/parallel_rows.hpp"
 #include "report/png.hpp"
 
 #include <algorithm>

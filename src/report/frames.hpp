@@ -1,7 +1,7 @@
 // A stack's images for a page: few enough, small enough and in 8 bits, made while the images pass.
 #pragma once
 
-#include "core/grid.hpp"
+#include "core/mathematics/grid.hpp"
 
 #include <string>
 #include <vector>

@@ -1,6 +1,6 @@
 #include "report/parameter_table.hpp"
 
-#include "core/units.hpp"
+#include "core/mathematics/units.hpp"
 #include "report/declared_figures.hpp"
 
 #include <fmt/format.h>

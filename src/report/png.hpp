@@ -1,7 +1,7 @@
 // Pixels as the bytes of a PNG, for pictures that carry them inside.
 #pragma once
 
-#include "core/grid.hpp"
+#include "core/mathematics/grid.hpp"
 #include "report/colours.hpp"
 
 #include <cstdint>

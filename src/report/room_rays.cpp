@@ -1,6 +1,6 @@
 #include "report/room_rays.hpp"
 
-#include "core/units.hpp"
+#include "core/mathematics/units.hpp"
 
 #include <algorithm>
 #include <cmath>

@@ -1,6 +1,6 @@
 #include "report/topography_picture.hpp"
 
-#include "core/units.hpp"
+#include "core/mathematics/units.hpp"
 #include "report/chart.hpp"
 
 #include <fmt/format.h>

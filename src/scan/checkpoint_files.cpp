@@ -1,8 +1,8 @@
 #include "scan/checkpoint_files.hpp"
 
-#include "core/digest.hpp"
-#include "core/error.hpp"
-#include "core/file.hpp"
+#include "core/files/digest.hpp"
+#include "core/files/file.hpp"
+#include "core/messages/error.hpp"
 
 #include <fmt/format.h>
 #include <spdlog/spdlog.h>

@@ -1,6 +1,6 @@
 #include "scan/image_series.hpp"
 
-#include "core/error.hpp"
+#include "core/messages/error.hpp"
 #include "images/image_file.hpp"
 #include "scan/image_order.hpp"
 

@@ -1,7 +1,7 @@
 // A stack of images that another instrument or program wrote: the pages of one file, or the files of a folder.
 #pragma once
 
-#include "core/grid.hpp"
+#include "core/mathematics/grid.hpp"
 #include "scan/stated_series.hpp"
 
 #include <filesystem>

@@ -1,6 +1,6 @@
 #include "scan/ledger_table.hpp"
 
-#include "core/file.hpp"
+#include "core/files/file.hpp"
 
 #include <charconv>
 #include <sstream>

@@ -1,7 +1,7 @@
 #include "scan/plan.hpp"
 
-#include "core/error.hpp"
-#include "core/units.hpp"
+#include "core/mathematics/units.hpp"
+#include "core/messages/error.hpp"
 
 #include <fmt/format.h>
 

@@ -1,9 +1,9 @@
 #include "scan/stack.hpp"
 
-#include "core/error.hpp"
-#include "core/interruption.hpp"
-#include "core/job_queue.hpp"
-#include "core/units.hpp"
+#include "core/mathematics/units.hpp"
+#include "core/messages/error.hpp"
+#include "core/messages/interruption.hpp"
+#include "core/threads/job_queue.hpp"
 #include "scan/checkpoint_files.hpp"
 
 #include <fmt/format.h>

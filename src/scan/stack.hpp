@@ -1,7 +1,7 @@
 // The exposures of a stack, from the first that is missing to the last.
 #pragma once
 
-#include "core/progress.hpp"
+#include "core/messages/progress.hpp"
 #include "scan/store.hpp"
 #include "trace/interface/tracer.hpp"
 

@@ -1,6 +1,6 @@
 #include "scan/stack_file.hpp"
 
-#include "core/units.hpp"
+#include "core/mathematics/units.hpp"
 #include "images/tiff_stack.hpp"
 
 #include <fmt/format.h>

@@ -1,7 +1,7 @@
 #include "scan/stack_identity.hpp"
 
-#include "core/error.hpp"
-#include "core/file.hpp"
+#include "core/files/file.hpp"
+#include "core/messages/error.hpp"
 #include "scan/store.hpp"
 
 #include <fmt/format.h>

@@ -1,6 +1,6 @@
 #include "scan/stage.hpp"
 
-#include "core/units.hpp"
+#include "core/mathematics/units.hpp"
 #include "physics/physics.hpp"
 
 #include <algorithm>

@@ -1,9 +1,9 @@
 #include "scan/store.hpp"
 
-#include "core/digest.hpp"
-#include "core/error.hpp"
-#include "core/file.hpp"
-#include "core/units.hpp"
+#include "core/files/digest.hpp"
+#include "core/files/file.hpp"
+#include "core/mathematics/units.hpp"
+#include "core/messages/error.hpp"
 #include "images/image_file.hpp"
 #include "scan/stack_identity.hpp"
 
@@ -26,7 +26,7 @@ namespace fs = std::filesystem;
 constexpr std::string_view ledger_name = "ledger.csv";
 constexpr std::string_view timings_header = "what,seconds,rays_per_s";
 constexpr std::string_view images_name = "images";
-constexpr std::string_view lock_name = ".lock"; // and .lock_..., of core/result_folder.hpp
+constexpr std::string_view lock_name = ".lock"; // and .lock_..., of core/files/result_folder.hpp
 
 std::string csv_field(const std::string& text) {
     if (text.find_first_of(",\"\n") == std::string::npos) {

@@ -8,15 +8,15 @@
 //   timings.csv             (timings_2_of_8.csv of a shard) a row an exposure, the device's work and an evaluation, in
 //                           the order of their making; no part of the result, since a clock is in it: all others hold
 //                           the same bytes however often a run was interrupted
-//   checksums.sha256, .lock core/result_folder.hpp
+//   checksums.sha256, .lock core/files/result_folder.hpp
 //
 // Every image carries its row of the ledger and the checksum of its whole file in its ImageDescription, so that
 // all become durable in one rename: there is no moment at which a kill leaves one without the other. ledger.csv
 // only repeats those rows.
 #pragma once
 
-#include "core/grid.hpp"
-#include "core/result_folder.hpp"
+#include "core/files/result_folder.hpp"
+#include "core/mathematics/grid.hpp"
 #include "trace/interface/tracer.hpp"
 
 #include <algorithm>

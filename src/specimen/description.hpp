@@ -5,7 +5,7 @@
 #include "specimen/shape.hpp"
 #include "specimen/specimen.hpp"
 
-#include "core/error.hpp"
+#include "core/messages/error.hpp"
 
 #include <optional>
 

@@ -1,7 +1,7 @@
 // Keys that kinds of specimens from a file share.
 #pragma once
 
-#include "core/section.hpp"
+#include "core/keys/section.hpp"
 
 namespace vkfv::specimen {
 

@@ -2,8 +2,8 @@
 // damage.
 #pragma once
 
-#include "core/error.hpp"
-#include "core/grid.hpp"
+#include "core/mathematics/grid.hpp"
+#include "core/messages/error.hpp"
 
 #include <glm/glm.hpp>
 

@@ -1,6 +1,6 @@
 #include "specimen/generated.hpp"
 
-#include "core/parallel_rows.hpp"
+#include "core/threads/parallel_rows.hpp"
 #include "specimen/description.hpp"
 
 #include <fmt/format.h>

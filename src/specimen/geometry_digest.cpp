@@ -1,6 +1,6 @@
 #include "specimen/geometry_digest.hpp"
 
-#include "core/digest.hpp"
+#include "core/files/digest.hpp"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>

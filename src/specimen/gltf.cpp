@@ -2,7 +2,7 @@
 #include "specimen/gltf_accessor.hpp"
 #include "specimen/gltf_document.hpp"
 
-#include "core/file.hpp"
+#include "core/files/file.hpp"
 
 #include <fmt/format.h>
 #include <spdlog/spdlog.h>

@@ -1,7 +1,7 @@
 #include "specimen/gltf_document.hpp"
 
-#include "core/file.hpp"
-#include "core/json_depth.hpp"
+#include "core/files/file.hpp"
+#include "core/parsing/json_depth.hpp"
 
 #include <fmt/format.h>
 #include <tiny_gltf.h>

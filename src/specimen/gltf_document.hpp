@@ -3,7 +3,7 @@
 // passes for something left out: what is wrong becomes an InputError that names the value ("node 3.matrix").
 #pragma once
 
-#include "core/error.hpp"
+#include "core/messages/error.hpp"
 
 #include <nlohmann/json.hpp>
 

@@ -1,6 +1,6 @@
 #include "specimen/intersector.hpp"
 
-#include "core/box_tree.hpp"
+#include "core/mathematics/box_tree.hpp"
 #include "specimen/analytic.hpp"
 
 #include <algorithm>

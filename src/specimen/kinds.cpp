@@ -1,6 +1,6 @@
 #include "specimen/kinds.hpp"
 
-#include "core/section.hpp"
+#include "core/keys/section.hpp"
 
 #include <type_traits>
 #include <utility>

@@ -1,8 +1,8 @@
 // Which lengths a specimen may have, and the refusal of values that do not fit.
 #pragma once
 
-#include "core/error.hpp"
-#include "core/units.hpp"
+#include "core/mathematics/units.hpp"
+#include "core/messages/error.hpp"
 
 #include <string>
 

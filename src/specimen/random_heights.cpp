@@ -1,7 +1,7 @@
 #include "specimen/random_heights.hpp"
 
-#include "core/parallel_rows.hpp"
-#include "core/section.hpp"
+#include "core/keys/section.hpp"
+#include "core/threads/parallel_rows.hpp"
 
 #include <fmt/format.h>
 

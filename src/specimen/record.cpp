@@ -1,7 +1,7 @@
 #include "specimen/description.hpp"
 
-#include "core/parallel_rows.hpp"
-#include "core/units.hpp"
+#include "core/mathematics/units.hpp"
+#include "core/threads/parallel_rows.hpp"
 #include "specimen/analytic.hpp"
 
 #include <algorithm>

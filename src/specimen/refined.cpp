@@ -2,7 +2,7 @@
 
 #include "specimen/files.hpp"
 
-#include "core/units.hpp"
+#include "core/mathematics/units.hpp"
 #include "surface/resample.hpp"
 
 #include <fmt/format.h>

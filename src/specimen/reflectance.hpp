@@ -1,8 +1,8 @@
 // What varies a specimen's reflectance over x and y: patterns, noise, and the grey values of an image.
 #pragma once
 
-#include "core/error.hpp"
-#include "core/grid.hpp"
+#include "core/mathematics/grid.hpp"
+#include "core/messages/error.hpp"
 #include "physics/physics.hpp"
 
 #include <cstdint>

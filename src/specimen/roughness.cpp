@@ -1,7 +1,7 @@
 #include "specimen/roughness.hpp"
 
-#include "core/fourier.hpp"
-#include "core/parallel_rows.hpp"
+#include "core/mathematics/fourier.hpp"
+#include "core/threads/parallel_rows.hpp"
 #include "specimen/analytic.hpp"
 #include "specimen/description.hpp"
 #include "specimen/random_heights.hpp"

@@ -1,6 +1,6 @@
 #include "specimen/scatter_tables.hpp"
 
-#include "core/units.hpp"
+#include "core/mathematics/units.hpp"
 #include "specimen/rational_fit.hpp"
 
 #include <algorithm>

@@ -1,8 +1,8 @@
 // The object under test: its surface in the specimen frame (mm, +z towards the objective) and how it scatters.
 #pragma once
 
-#include "core/error.hpp"
-#include "core/grid.hpp"
+#include "core/mathematics/grid.hpp"
+#include "core/messages/error.hpp"
 #include "physics/physics.hpp"
 #include "specimen/reflectance.hpp"
 #include "surface/height_map.hpp"

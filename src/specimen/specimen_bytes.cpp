@@ -1,6 +1,6 @@
 #include "specimen/files.hpp"
 
-#include "core/file.hpp"
+#include "core/files/file.hpp"
 
 #include <fmt/format.h>
 

@@ -1,4 +1,4 @@
-#include "core/parallel_rows.hpp"
+#include "core/threads/parallel_rows.hpp"
 #include "specimen/analytic.hpp"
 
 #include <algorithm>

@@ -1,6 +1,6 @@
 #include "statistics/poisson.hpp"
 
-#include "core/units.hpp"
+#include "core/mathematics/units.hpp"
 
 #include <algorithm>
 #include <array>

@@ -1,6 +1,6 @@
 #include "statistics/random_stream.hpp"
 
-#include "core/units.hpp"
+#include "core/mathematics/units.hpp"
 
 namespace vkfv::statistics {
 

@@ -1,7 +1,7 @@
 #include "surface/filter.hpp"
 
-#include "core/fourier.hpp"
-#include "core/units.hpp"
+#include "core/mathematics/fourier.hpp"
+#include "core/mathematics/units.hpp"
 
 #include <algorithm>
 #include <cmath>

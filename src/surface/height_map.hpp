@@ -1,7 +1,7 @@
 // A height map: heights over a regular grid, as measured or as known to be true.
 #pragma once
 
-#include "core/grid.hpp"
+#include "core/mathematics/grid.hpp"
 
 #include <limits>
 

@@ -1,8 +1,8 @@
 #include "surface/spatial_parameters.hpp"
 
-#include "core/fourier.hpp"
-#include "core/parallel_list.hpp"
-#include "core/units.hpp"
+#include "core/mathematics/fourier.hpp"
+#include "core/mathematics/units.hpp"
+#include "core/threads/parallel_list.hpp"
 #include "surface/height_parameters.hpp"
 
 #include <algorithm>

@@ -1,7 +1,7 @@
 #include "surface/whole_spline.hpp"
 
-#include "core/fourier.hpp"
-#include "core/units.hpp"
+#include "core/mathematics/fourier.hpp"
+#include "core/mathematics/units.hpp"
 #include "surface/filter.hpp"
 
 #include <algorithm>

@@ -1,7 +1,7 @@
 #include "surface_files/height_image.hpp"
 
-#include "core/error.hpp"
-#include "core/units.hpp"
+#include "core/mathematics/units.hpp"
+#include "core/messages/error.hpp"
 #include "images/exr_header.hpp"
 #include "images/image_file.hpp"
 #include "surface_files/image_scale.hpp"

@@ -1,6 +1,6 @@
 #include "surface_files/image_scale.hpp"
 
-#include "core/error.hpp"
+#include "core/messages/error.hpp"
 
 #include <fmt/format.h>
 

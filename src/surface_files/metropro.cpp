@@ -1,6 +1,6 @@
 #include "surface_files/instruments.hpp"
 
-#include "core/byte_reader.hpp"
+#include "core/parsing/byte_reader.hpp"
 #include "surface/metres.hpp"
 
 #include <algorithm>

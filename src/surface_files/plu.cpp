@@ -1,7 +1,7 @@
 #include "surface_files/instruments.hpp"
 
-#include "core/byte_reader.hpp"
-#include "core/units.hpp"
+#include "core/mathematics/units.hpp"
+#include "core/parsing/byte_reader.hpp"
 #include "surface_files/lengths.hpp"
 
 #include <array>

@@ -1,7 +1,7 @@
 #include "surface_files/ply.hpp"
 
-#include "core/byte_reader.hpp"
-#include "core/error.hpp"
+#include "core/messages/error.hpp"
+#include "core/parsing/byte_reader.hpp"
 
 #include <array>
 #include <sstream>

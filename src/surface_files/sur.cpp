@@ -1,6 +1,6 @@
 #include "surface_files/sur.hpp"
 
-#include "core/byte_reader.hpp"
+#include "core/parsing/byte_reader.hpp"
 #include "surface_files/lengths.hpp"
 
 #include <zlib.h>

@@ -1,7 +1,7 @@
 #include "surface_files/surface_file.hpp"
 
-#include "core/error.hpp"
-#include "core/file.hpp"
+#include "core/files/file.hpp"
+#include "core/messages/error.hpp"
 #include "images/image_file.hpp"
 #include "surface_files/al3d.hpp"
 #include "surface_files/gsf.hpp"

@@ -34,9 +34,9 @@ inline constexpr const char *scale_pitch_key = "pitch", *scale_unit_key = "unit"
 // size and, for packed files, by the number of points its header names.
 SurfaceFile read_surface(const std::filesystem::path& path, const ImageScale& scale = {});
 
-// A surface file in memory, for core/file.hpp to write. By the name's ending: .x3p .sur .sdf (.asc.sdf: as text) .gwy
-// .gsf .csv .txt .npy .tif .tiff .ply; another is an InputError. The same map and provenance give the same bytes, also
-// after they were read back. RunError where the format cannot hold the map.
+// A surface file in memory, for core/files/file.hpp to write. By the name's ending: .x3p .sur .sdf (.asc.sdf: as text)
+// .gwy .gsf .csv .txt .npy .tif .tiff .ply; another is an InputError. The same map and provenance give the same bytes,
+// also after they were read back. RunError where the format cannot hold the map.
 //   .x3p  float64 metres
 //   .sur  32-bit integers, steps of at most 2^-29 of the largest height; pitches and position as float32
 //   .sdf  float64 metres; without position, and of the provenance only manufacturer and date; .asc.sdf keeps all

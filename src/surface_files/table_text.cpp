@@ -1,6 +1,6 @@
 #include "surface_files/table_text.hpp"
 
-#include "core/byte_reader.hpp"
+#include "core/parsing/byte_reader.hpp"
 #include "surface_files/provenance.hpp"
 
 #include <algorithm>

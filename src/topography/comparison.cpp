@@ -1,6 +1,6 @@
 #include "topography/comparison.hpp"
 
-#include "core/units.hpp"
+#include "core/mathematics/units.hpp"
 #include "surface/resample.hpp"
 
 #include <cmath>

@@ -1,6 +1,6 @@
 #include "topography/device_focus_planes.hpp"
 
-#include "core/parallel_rows.hpp"
+#include "core/threads/parallel_rows.hpp"
 #include "spirv/focus_brightness.h"
 #include "spirv/focus_columns.h"
 #include "spirv/focus_follow.h"

@@ -1,6 +1,6 @@
 #include "topography/flatness.hpp"
 
-#include "core/parallel_rows.hpp"
+#include "core/threads/parallel_rows.hpp"
 #include "surface/band.hpp"
 #include "surface/height_parameters.hpp"
 #include "surface/polynomial.hpp"

@@ -2,7 +2,7 @@
 // correction of its field curvature.
 #pragma once
 
-#include "core/grid.hpp"
+#include "core/mathematics/grid.hpp"
 #include "surface/height_map.hpp"
 
 #include <functional>

@@ -2,7 +2,7 @@
 // a file each, shared with the device.
 #pragma once
 
-#include "core/grid.hpp"
+#include "core/mathematics/grid.hpp"
 #include "focus/focus.hpp"
 
 #include <string>

@@ -1,6 +1,6 @@
 #include "topography/focus_probes.hpp"
 
-#include "core/parallel_list.hpp"
+#include "core/threads/parallel_list.hpp"
 
 #include <algorithm>
 #include <cmath>

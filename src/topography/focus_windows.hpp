@@ -2,7 +2,7 @@
 // focus::f32::Arithmetic, which gives a device's bits.
 #pragma once
 
-#include "core/parallel_rows.hpp"
+#include "core/threads/parallel_rows.hpp"
 #include "topography/focus_measure.hpp"
 
 namespace vkfv::topography {

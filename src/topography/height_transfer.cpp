@@ -1,7 +1,7 @@
 #include "topography/height_transfer.hpp"
 
-#include "core/fourier.hpp"
-#include "core/units.hpp"
+#include "core/mathematics/fourier.hpp"
+#include "core/mathematics/units.hpp"
 #include "topography/compare.hpp"
 
 #include <algorithm>

@@ -1,6 +1,6 @@
 #include "topography/height_uncertainty.hpp"
 
-#include "core/parallel_rows.hpp"
+#include "core/threads/parallel_rows.hpp"
 #include "topography/local_plane.hpp"
 
 #include <algorithm>

@@ -17,7 +17,7 @@
 // finer than the window are off the window's mean.
 #pragma once
 
-#include "core/grid.hpp"
+#include "core/mathematics/grid.hpp"
 #include "topography/focus_measure.hpp"
 
 namespace vkfv::topography {

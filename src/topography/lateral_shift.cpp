@@ -1,6 +1,6 @@
 #include "topography/lateral_shift.hpp"
 
-#include "core/fourier.hpp"
+#include "core/mathematics/fourier.hpp"
 #include "surface/height_parameters.hpp"
 #include "surface/resample.hpp"
 #include "topography/compare.hpp"

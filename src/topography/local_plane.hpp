@@ -1,7 +1,7 @@
 // Least-squares planes around every point of a height map, by running sums.
 #pragma once
 
-#include "core/grid.hpp"
+#include "core/mathematics/grid.hpp"
 
 #include <span>
 #include <vector>

@@ -1,6 +1,6 @@
 #include "topography/names.hpp"
 
-#include "core/error.hpp"
+#include "core/messages/error.hpp"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>

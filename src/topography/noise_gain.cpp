@@ -1,6 +1,6 @@
 #include "topography/noise_gain.hpp"
 
-#include "core/units.hpp"
+#include "core/mathematics/units.hpp"
 
 #include <algorithm>
 #include <cmath>

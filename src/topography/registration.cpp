@@ -1,8 +1,8 @@
 #include "topography/registration.hpp"
 
-#include "core/fourier.hpp"
-#include "core/parallel_rows.hpp"
-#include "core/units.hpp"
+#include "core/mathematics/fourier.hpp"
+#include "core/mathematics/units.hpp"
+#include "core/threads/parallel_rows.hpp"
 
 #include <algorithm>
 #include <array>

@@ -1,6 +1,6 @@
 #include "topography/slope_deviation.hpp"
 
-#include "core/units.hpp"
+#include "core/mathematics/units.hpp"
 
 #include <cmath>
 #include <stdexcept>

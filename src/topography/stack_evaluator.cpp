@@ -1,5 +1,5 @@
-#include "core/error.hpp"
-#include "core/parallel_rows.hpp"
+#include "core/messages/error.hpp"
+#include "core/threads/parallel_rows.hpp"
 #include "topography/height_uncertainty.hpp"
 #include "topography/places_of_maxima.hpp"
 #include "topography/texture_place.hpp"

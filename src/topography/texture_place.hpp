@@ -3,7 +3,7 @@
 // heights around.
 #pragma once
 
-#include "core/grid.hpp"
+#include "core/mathematics/grid.hpp"
 #include "topography/focus_measure.hpp"
 
 namespace vkfv::topography {

@@ -29,7 +29,7 @@
 // the specimen at either side, and a depth of focus at least.
 #pragma once
 
-#include "core/grid.hpp"
+#include "core/mathematics/grid.hpp"
 #include "surface/height_map.hpp"
 #include "topography/focus_curves.hpp"
 #include "topography/focus_measure.hpp"

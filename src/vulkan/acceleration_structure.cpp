@@ -1,6 +1,6 @@
 #include "vulkan/acceleration_structure.hpp"
 
-#include "core/error.hpp"
+#include "core/messages/error.hpp"
 #include "vulkan/failure.hpp"
 #include "vulkan/kernel.hpp"
 

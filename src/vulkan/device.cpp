@@ -1,7 +1,7 @@
 #include "vulkan/device.hpp"
 
-#include "core/error.hpp"
-#include "core/user_cache.hpp"
+#include "core/files/user_cache.hpp"
+#include "core/messages/error.hpp"
 #include "vulkan/compiled_kernels.hpp"
 #include "vulkan/failure.hpp"
 #include "vulkan/loader.hpp"

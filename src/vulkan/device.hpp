@@ -82,8 +82,8 @@ class Device {
         vk::Queue queue;
     };
     HeldQueue hold_queue() const;
-    // What the driver has compiled, here and in earlier runs on this device and driver (core/user_cache.hpp); kept on
-    // disk when the device closes.
+    // What the driver has compiled, here and in earlier runs on this device and driver (core/files/user_cache.hpp);
+    // kept on disk when the device closes.
     const vk::raii::PipelineCache& pipelines() const;
     // What it has compiled, for kernel.hpp.
     CompiledKernels& kernels() const;

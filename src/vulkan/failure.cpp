@@ -1,6 +1,6 @@
 #include "vulkan/failure.hpp"
 
-#include "core/error.hpp"
+#include "core/messages/error.hpp"
 
 #include <fmt/format.h>
 

@@ -1,7 +1,7 @@
 // What a failed Vulkan call means for the run, in the same words wherever it fails.
 #pragma once
 
-#include "core/error.hpp"
+#include "core/messages/error.hpp"
 
 #include <vulkan/vulkan_raii.hpp>
 

@@ -1,8 +1,8 @@
 #include "vulkan/fourier_planes.hpp"
 
-#include "core/digest.hpp"
-#include "core/error.hpp"
-#include "core/user_cache.hpp"
+#include "core/files/digest.hpp"
+#include "core/files/user_cache.hpp"
+#include "core/messages/error.hpp"
 
 #define VKFFT_BACKEND 0
 #include <vkFFT.h>

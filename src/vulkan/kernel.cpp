@@ -1,7 +1,7 @@
 #include "vulkan/kernel.hpp"
 
-#include "core/digest.hpp"
-#include "core/error.hpp"
+#include "core/files/digest.hpp"
+#include "core/messages/error.hpp"
 #include "vulkan/failure.hpp"
 
 #include <fmt/format.h>

@@ -1,6 +1,6 @@
 #include "vulkan/loader.hpp"
 
-#include "core/error.hpp"
+#include "core/messages/error.hpp"
 #include "vulkan/device.hpp"
 #include "vulkan/loader_version.hpp"
 

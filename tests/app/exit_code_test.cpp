@@ -1,6 +1,6 @@
 // What a script sees: codes, and words that say what to do.
 #include "app/program.hpp"
-#include "core/result_folder.hpp"
+#include "core/files/result_folder.hpp"
 
 #include <fmt/format.h>
 #include <gmock/gmock.h>

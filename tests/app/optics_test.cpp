@@ -1,7 +1,7 @@
 // vkfv optics through the real program.
 #include "app/program.hpp"
 
-#include "core/units.hpp"
+#include "core/mathematics/units.hpp"
 
 #include <fmt/format.h>
 #include <gmock/gmock.h>

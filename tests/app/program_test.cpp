@@ -1,6 +1,6 @@
 // The program's commands from end to end, on the device at hand.
 #include "app/program.hpp"
-#include "core/units.hpp"
+#include "core/mathematics/units.hpp"
 #include "images/image_file.hpp"
 #include "surface_files/surface_file.hpp"
 

@@ -1,7 +1,7 @@
 #include "measurement/image/ray_table.hpp"
 
 #include "app/program.hpp"
-#include "core/error.hpp"
+#include "core/messages/error.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,7 +1,7 @@
 // [specimen.reflectance] and [illumination.field] as they are read, and flats that focus is seen on by them alone.
 #include "app/program.hpp"
 #include "configuration/configuration.hpp"
-#include "core/units.hpp"
+#include "core/mathematics/units.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

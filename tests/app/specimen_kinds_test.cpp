@@ -1,6 +1,6 @@
 // Every kind of specimen is read by its keys, and by no others.
 #include "configuration/tables.hpp"
-#include "core/file.hpp"
+#include "core/files/file.hpp"
 #include "specimen/kinds.hpp"
 
 #include <fmt/format.h>

@@ -11,7 +11,7 @@
 #include "command_line/command_line.hpp"
 #include "command_line/reference.hpp"
 #include "configuration/configuration.hpp"
-#include "core/error.hpp"
+#include "core/messages/error.hpp"
 
 #include <OpenImageIO/imageio.h>
 #include <fmt/format.h>

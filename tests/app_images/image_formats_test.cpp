@@ -1,7 +1,7 @@
 // Every format that is read, by every route on which images come in: the values are those of the picture that was
 // written. Files are smaller and larger than 4096 bytes, a block of C's streams: readers once began behind that block.
 #include "app/program.hpp"
-#include "core/error.hpp"
+#include "core/messages/error.hpp"
 #include "images/image_file.hpp"
 #include "scan/image_series.hpp"
 #include "specimen/files.hpp"

@@ -1,6 +1,6 @@
 // vkfv --surface through the real program.
 #include "app/program.hpp"
-#include "core/units.hpp"
+#include "core/mathematics/units.hpp"
 #include "images/image_file.hpp"
 #include "support/surface_files.hpp"
 #include "surface_files/surface_file.hpp"

@@ -1,6 +1,6 @@
 #include "configuration/configuration.hpp"
 #include "configuration/key_documents.hpp"
-#include "core/file.hpp"
+#include "core/files/file.hpp"
 
 #include <gmock/gmock.h>
 #include <nlohmann/json.hpp>

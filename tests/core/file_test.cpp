@@ -1,7 +1,7 @@
 // Files are whole or not there, whatever their names mean.
-#include "core/digest.hpp"
-#include "core/error.hpp"
-#include "core/file.hpp"
+#include "core/files/digest.hpp"
+#include "core/files/file.hpp"
+#include "core/messages/error.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

@@ -1,6 +1,6 @@
 // Which files were read, and whether they still are what they were.
-#include "core/file.hpp"
-#include "core/files_read.hpp"
+#include "core/files/file.hpp"
+#include "core/files/files_read.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

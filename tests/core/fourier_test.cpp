@@ -1,4 +1,4 @@
-#include "core/fourier.hpp"
+#include "core/mathematics/fourier.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "core/job_queue.hpp"
+#include "core/threads/job_queue.hpp"
 
 #include <gtest/gtest.h>
 

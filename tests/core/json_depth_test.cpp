@@ -1,7 +1,7 @@
 // Deep JSON is refused where it gets too deep, before a reader sees it.
-#include "core/json_depth.hpp"
+#include "core/parsing/json_depth.hpp"
 
-#include "core/error.hpp"
+#include "core/messages/error.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

@@ -1,4 +1,4 @@
-#include "core/pixel_grid.hpp"
+#include "core/mathematics/pixel_grid.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "core/progress.hpp"
+#include "core/messages/progress.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

@@ -1,7 +1,7 @@
 // One program at a time, and a list by which damage is found.
-#include "core/error.hpp"
-#include "core/file.hpp"
-#include "core/result_folder.hpp"
+#include "core/files/file.hpp"
+#include "core/files/result_folder.hpp"
+#include "core/messages/error.hpp"
 
 #include <fmt/format.h>
 #include <gmock/gmock.h>

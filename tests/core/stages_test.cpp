@@ -1,4 +1,4 @@
-#include "core/stages.hpp"
+#include "core/messages/stages.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,6 +1,6 @@
 // Text that nests without bound ends as an InputError, before anything recurses over it.
-#include "core/toml_nesting.hpp"
-#include "core/toml_reader.hpp"
+#include "core/toml/toml_nesting.hpp"
+#include "core/toml/toml_reader.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

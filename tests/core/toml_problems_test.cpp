@@ -1,5 +1,5 @@
 // Several problems at once: each is told once, in the order of places, and none that another one caused.
-#include "core/toml_reader.hpp"
+#include "core/toml/toml_reader.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

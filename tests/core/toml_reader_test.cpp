@@ -1,4 +1,4 @@
-#include "core/toml_reader.hpp"
+#include "core/toml/toml_reader.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

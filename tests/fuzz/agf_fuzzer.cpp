@@ -1,5 +1,5 @@
 // Any bytes are a catalogue or an InputError; every glass of it has an index, or an InputError.
-#include "core/error.hpp"
+#include "core/messages/error.hpp"
 #include "optics/media/agf.hpp"
 
 #include <cstddef>

@@ -1,5 +1,5 @@
 // Any bytes are a surface or an InputError.
-#include "core/error.hpp"
+#include "core/messages/error.hpp"
 #include "surface_files/al3d.hpp"
 
 #include <cstddef>

@@ -1,5 +1,5 @@
 // Any bytes are a mesh, every index of which is one of a vertex, or an InputError.
-#include "core/error.hpp"
+#include "core/messages/error.hpp"
 #include "specimen/files.hpp"
 
 #include <spdlog/spdlog.h>

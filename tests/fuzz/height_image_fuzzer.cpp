@@ -1,5 +1,5 @@
 // Any bytes are a height map or an InputError, as TIFF or OpenEXR, with and without a scale given.
-#include "core/error.hpp"
+#include "core/messages/error.hpp"
 #include "surface_files/height_image.hpp"
 
 #include <cstddef>

@@ -1,6 +1,6 @@
 // Any bytes are an image or an InputError: as a specimen, and as a file of a stack, of which RunError may say that the
 // library cannot read such a kind at all.
-#include "core/error.hpp"
+#include "core/messages/error.hpp"
 #include "images/image_file.hpp"
 #include "specimen/files.hpp"
 

@@ -1,5 +1,5 @@
 // Any bytes are points, and triangles between them with corners that there are, or an InputError.
-#include "core/error.hpp"
+#include "core/messages/error.hpp"
 #include "specimen/delaunay.hpp"
 #include "specimen/files.hpp"
 

@@ -1,5 +1,5 @@
 // What an image file states of itself: the first byte is the number of its pages, the rest its description.
-#include "core/error.hpp"
+#include "core/messages/error.hpp"
 #include "scan/stated_series.hpp"
 
 #include <cstddef>

@@ -1,6 +1,6 @@
 // Any bytes are a mesh, every index of which is one of a vertex, and which can be placed or is refused, or an
 // InputError.
-#include "core/error.hpp"
+#include "core/messages/error.hpp"
 #include "specimen/files.hpp"
 #include "specimen/mesh_file.hpp"
 

@@ -1,7 +1,7 @@
 // What the fuzzers of surface files share.
 #pragma once
 
-#include "core/error.hpp"
+#include "core/messages/error.hpp"
 #include "surface_files/surface_file.hpp"
 
 #include <spdlog/spdlog.h>

@@ -1,7 +1,7 @@
 // Any text is a prescription or an InputError, and every prescription is written so that it reads back and is
 // written the same again. The same of configurations of an instrument and their canonical texts.
 #include "configuration/configuration.hpp"
-#include "core/error.hpp"
+#include "core/messages/error.hpp"
 #include "optics/prescriptions/prescription_writer.hpp"
 
 #include <cstddef>

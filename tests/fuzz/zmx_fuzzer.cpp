@@ -1,6 +1,6 @@
 // Any bytes are a lens or an InputError, and every lens is written as a prescription that reads back and is
 // written the same again.
-#include "core/error.hpp"
+#include "core/messages/error.hpp"
 #include "optics/prescriptions/prescription_writer.hpp"
 #include "optics/prescriptions/zmx.hpp"
 

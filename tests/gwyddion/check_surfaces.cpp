@@ -1,6 +1,6 @@
 // Real surface files: what vkfv reads of them, beside what Gwyddion reads of them and, for those named here, beside
 // published figures. The files are given by their folder and belong to others: tests/acceptance/check_surfaces FOLDER.
-#include "core/units.hpp"
+#include "core/mathematics/units.hpp"
 #include "gwyddion/gwyddion.hpp"
 #include "surface/filter.hpp"
 #include "surface/height_parameters.hpp"

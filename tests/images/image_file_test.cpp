@@ -1,7 +1,7 @@
 #include "images/image_file.hpp"
 #include "support/surface_files.hpp"
 
-#include "core/error.hpp"
+#include "core/messages/error.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

@@ -1,7 +1,7 @@
 // PNGs as OpenImageIO reads them.
 #include "images/picture.hpp"
 
-#include "core/error.hpp"
+#include "core/messages/error.hpp"
 
 #include <OpenImageIO/filesystem.h>
 #include <OpenImageIO/imageio.h>

@@ -2,7 +2,7 @@
 // what OpenImageIO says.
 #include "images/tiff.hpp"
 
-#include "core/error.hpp"
+#include "core/messages/error.hpp"
 #include "images/codec.hpp"
 
 #include <OpenImageIO/filesystem.h>

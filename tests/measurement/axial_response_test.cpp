@@ -1,6 +1,6 @@
 // The average along z that a stack of its own is given follows from how fast waves fade with defocus.
 #include "configuration/configuration.hpp"
-#include "core/units.hpp"
+#include "core/mathematics/units.hpp"
 #include "measurement/scene/assembly.hpp"
 
 #include <fmt/format.h>

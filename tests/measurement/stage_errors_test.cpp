@@ -4,7 +4,7 @@
 //   jitter:  sigma sqrt(D / w) sqrt(integral u^4 exp(-2 u^2) du) / integral u^2 exp(-u^2) du  = 0.547 sigma sqrt(D / w)
 //   noise:   (sigma_F / A) sqrt(w D / integral u^2 exp(-u^2) du)                              = 1.062 (sigma_F / A)
 //   sqrt(w D) a sine of a rad/mm along z:  (1 - (a w)^2 / 2) exp(-(a w)^2 / 4) of its amplitude
-#include "core/units.hpp"
+#include "core/mathematics/units.hpp"
 #include "focus/focus.hpp"
 #include "scan/stage.hpp"
 

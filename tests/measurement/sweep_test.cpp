@@ -1,6 +1,6 @@
 // Sweeps of stacks as values: what they say is what the files of their stacks hold.
-#include "core/file.hpp"
-#include "core/units.hpp"
+#include "core/files/file.hpp"
+#include "core/mathematics/units.hpp"
 #include "measurement/sweep/sweep.hpp"
 #include "surface_files/surface_file.hpp"
 

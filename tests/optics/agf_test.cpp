@@ -1,6 +1,6 @@
 #include "optics/media/agf.hpp"
 
-#include "core/error.hpp"
+#include "core/messages/error.hpp"
 #include "optics/media/glass_catalog.hpp"
 
 #include <gmock/gmock.h>

@@ -2,7 +2,7 @@
 // would build.
 #include "optics/aim/aim.hpp"
 
-#include "core/units.hpp"
+#include "core/mathematics/units.hpp"
 #include "optics/prescriptions/ideal_lens.hpp"
 #include "optics/train/bundle.hpp"
 #include "optics/train/train.hpp"

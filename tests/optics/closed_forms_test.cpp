@@ -1,6 +1,6 @@
 // What is decentred, tilted or put between, against closed forms; through single parts and whole instruments.
-#include "core/error.hpp"
-#include "core/units.hpp"
+#include "core/mathematics/units.hpp"
+#include "core/messages/error.hpp"
 #include "optics/instrument/instrument.hpp"
 #include "parts.hpp"
 

@@ -1,6 +1,6 @@
 #include "optics/waves/diffraction.hpp"
 
-#include "core/units.hpp"
+#include "core/mathematics/units.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,6 +1,6 @@
 #include "optics/instrument/field_curvature.hpp"
 
-#include "core/units.hpp"
+#include "core/mathematics/units.hpp"
 #include "optics/media/medium.hpp"
 #include "parts.hpp"
 

@@ -1,7 +1,7 @@
 // How far the filter of the axis is from waves, anywhere in the field.
 #include "optics/waves/filter_error.hpp"
 
-#include "core/units.hpp"
+#include "core/mathematics/units.hpp"
 #include "parts.hpp"
 
 #include <gtest/gtest.h>

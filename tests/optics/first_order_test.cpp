@@ -1,6 +1,6 @@
 #include "optics/train/first_order.hpp"
 
-#include "core/units.hpp"
+#include "core/mathematics/units.hpp"
 #include "parts.hpp"
 
 #include <gtest/gtest.h>

@@ -2,7 +2,7 @@
 // for every objective of the library but the 100x, whose proof takes ten times as long as all others (it holds too).
 #include "optics/train/bundle.hpp"
 
-#include "core/units.hpp"
+#include "core/mathematics/units.hpp"
 #include "optics/train/train.hpp"
 #include "parts.hpp"
 

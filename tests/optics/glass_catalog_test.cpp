@@ -1,7 +1,7 @@
 #include "optics/media/glass_catalog.hpp"
 
-#include "core/error.hpp"
-#include "core/toml_reader.hpp"
+#include "core/messages/error.hpp"
+#include "core/toml/toml_reader.hpp"
 #include "optics/media/agf.hpp"
 #include "optics/prescriptions/prescription.hpp"
 #include "parts.hpp"

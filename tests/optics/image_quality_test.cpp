@@ -1,6 +1,6 @@
 #include "optics/instrument/image_quality.hpp"
 
-#include "core/units.hpp"
+#include "core/mathematics/units.hpp"
 #include "optics/aim/best_focus.hpp"
 #include "optics/train/first_order.hpp"
 #include "parts.hpp"

@@ -1,7 +1,7 @@
 #include "optics/instrument/instrument.hpp"
 
-#include "core/error.hpp"
-#include "core/units.hpp"
+#include "core/mathematics/units.hpp"
+#include "core/messages/error.hpp"
 #include "optics/train/first_order.hpp"
 #include "optics/waves/point_waves.hpp"
 #include "optics/waves/zernike.hpp"

@@ -1,5 +1,5 @@
 // Köhler's illumination through the 20x objective fills the field uniformly.
-#include "core/units.hpp"
+#include "core/mathematics/units.hpp"
 #include "parts.hpp"
 #include "support/statistics.hpp"
 

@@ -1,7 +1,7 @@
 #include "optics/prescriptions/prescription.hpp"
 
-#include "core/assets.hpp"
-#include "core/error.hpp"
+#include "core/files/assets.hpp"
+#include "core/messages/error.hpp"
 #include "optics/train/first_order.hpp"
 #include "parts.hpp"
 

@@ -1,6 +1,6 @@
 #include "optics/prescriptions/prescription_writer.hpp"
 
-#include "core/units.hpp"
+#include "core/mathematics/units.hpp"
 #include "optics/prescriptions/ideal_lens.hpp"
 #include "optics/prescriptions/zmx.hpp"
 #include "parts.hpp"

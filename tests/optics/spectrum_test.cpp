@@ -1,7 +1,7 @@
 #include "optics/media/spectrum.hpp"
 
-#include "core/error.hpp"
-#include "core/units.hpp"
+#include "core/mathematics/units.hpp"
+#include "core/messages/error.hpp"
 #include "optics/media/glass_catalog.hpp"
 #include "optics/train/train.hpp"
 #include "parts.hpp"

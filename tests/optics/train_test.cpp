@@ -1,6 +1,6 @@
 #include "optics/train/train.hpp"
 
-#include "core/units.hpp"
+#include "core/mathematics/units.hpp"
 #include "parts.hpp"
 #include "support/statistics.hpp"
 

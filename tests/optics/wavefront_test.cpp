@@ -1,6 +1,6 @@
 #include "optics/waves/wavefront.hpp"
 
-#include "core/units.hpp"
+#include "core/mathematics/units.hpp"
 #include "parts.hpp"
 
 #include <gtest/gtest.h>

@@ -1,6 +1,6 @@
 #include "optics/prescriptions/zmx.hpp"
 
-#include "core/error.hpp"
+#include "core/messages/error.hpp"
 #include "optics/prescriptions/prescription_writer.hpp"
 #include "parts.hpp"
 

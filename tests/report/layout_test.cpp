@@ -2,7 +2,7 @@
 // says.
 #include "report/layout.hpp"
 
-#include "core/units.hpp"
+#include "core/mathematics/units.hpp"
 #include "optics/parts.hpp"
 #include "report/room_rays.hpp"
 

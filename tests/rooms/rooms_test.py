@@ -229,11 +229,11 @@ class Rooms(unittest.TestCase):
 
     def test_a_hall_is_found(self):
         def change(copy):
-            self.add(copy, "src/core/error.cpp", "\n" * 20000)
+            self.add(copy, "src/core/messages/error.cpp", "\n" * 20000)
             for number in range(MOST_FILES):
                 self.add(copy, f"src/camera/file_{number}.hpp", "")
         found = self.planted(change)
-        self.assertIn("src/core has 25", found)
+        self.assertIn("src/core/messages has 20", found)
         self.assertIn("src/camera has 7", found)
 
 

@@ -1,6 +1,6 @@
 #include "scan/checkpoint_files.hpp"
 
-#include "core/file.hpp"
+#include "core/files/file.hpp"
 #include "scan/fake_stack.hpp"
 
 #include <gtest/gtest.h>

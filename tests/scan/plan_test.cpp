@@ -1,6 +1,6 @@
 #include "scan/plan.hpp"
 
-#include "core/error.hpp"
+#include "core/messages/error.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

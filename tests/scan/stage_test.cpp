@@ -1,7 +1,7 @@
 // What a stage does to positions, against closed forms, and what tracers make of it.
 #include "scan/staged_tracer.hpp"
 
-#include "core/units.hpp"
+#include "core/mathematics/units.hpp"
 #include "scan/fake_stack.hpp"
 
 #include <gtest/gtest.h>

@@ -1,7 +1,7 @@
 // What files of several images state of them, in the words of the programs that write them.
 #include "scan/stated_series.hpp"
 
-#include "core/error.hpp"
+#include "core/messages/error.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

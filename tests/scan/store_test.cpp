@@ -1,6 +1,6 @@
 #include "scan/store.hpp"
 
-#include "core/error.hpp"
+#include "core/messages/error.hpp"
 #include "fake_stack.hpp"
 #include "scan/stack_file.hpp"
 #include "scan/stack_identity.hpp"

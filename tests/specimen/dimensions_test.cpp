@@ -1,5 +1,5 @@
 // Standards of ISO 25178-70: closed forms of their heights, and their dimensions, found on their truth, are nominal.
-#include "core/units.hpp"
+#include "core/mathematics/units.hpp"
 #include "dimensions/evaluate.hpp"
 #include "specimen/description.hpp"
 #include "specimen/kinds.hpp"

@@ -1,5 +1,5 @@
 // Generated specimens: statistics of the irregular ones, and facets against the continuous function.
-#include "core/fourier.hpp"
+#include "core/mathematics/fourier.hpp"
 #include "specimen/analytic.hpp"
 #include "specimen/intersector.hpp"
 #include "specimen/kinds.hpp"

@@ -1,7 +1,7 @@
 #include "specimen/description.hpp"
 
-#include "core/fourier.hpp"
-#include "core/units.hpp"
+#include "core/mathematics/fourier.hpp"
+#include "core/mathematics/units.hpp"
 #include "specimen/shapes.hpp"
 #include "support/surface_files.hpp"
 #include "surface_files/surface_file.hpp"

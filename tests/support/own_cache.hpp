@@ -1,7 +1,7 @@
 // A test's own cache folder, and damage to a file in it.
 #pragma once
 
-#include "core/user_cache.hpp"
+#include "core/files/user_cache.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,7 +1,7 @@
 // Surfaces and images as files, for tests.
 #pragma once
 
-#include "core/file.hpp"
+#include "core/files/file.hpp"
 #include "images/image_file.hpp"
 #include "surface_files/height_image.hpp"
 #include "surface_files/surface_file.hpp"

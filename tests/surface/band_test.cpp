@@ -1,6 +1,6 @@
 #include "surface/band.hpp"
 
-#include "core/units.hpp"
+#include "core/mathematics/units.hpp"
 #include "surface/filter.hpp"
 #include "surface/height_parameters.hpp"
 #include "surface/maps.hpp"

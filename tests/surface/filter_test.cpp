@@ -1,6 +1,6 @@
 #include "surface/filter.hpp"
 
-#include "core/units.hpp"
+#include "core/mathematics/units.hpp"
 #include "surface/maps.hpp"
 
 #include <gtest/gtest.h>

@@ -1,6 +1,6 @@
 #include "surface/material_ratio.hpp"
 
-#include "core/units.hpp"
+#include "core/mathematics/units.hpp"
 #include "surface/maps.hpp"
 #include "surface/volume_parameters.hpp"
 

@@ -7,7 +7,7 @@
 #include "surface_files/instruments.hpp"
 #include "surface_files/npy.hpp"
 
-#include "core/error.hpp"
+#include "core/messages/error.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

@@ -1,7 +1,7 @@
 // Height maps as OpenEXR: whole files of every layout are read, damaged and lying ones are refused.
 #include "surface_files/height_image.hpp"
 
-#include "core/error.hpp"
+#include "core/messages/error.hpp"
 #include "surface/exr_bytes.hpp"
 
 #include <fmt/ranges.h>

@@ -3,7 +3,7 @@
 #include "support/surface_files.hpp"
 #include "surface_files/surface_file.hpp"
 
-#include "core/error.hpp"
+#include "core/messages/error.hpp"
 #include "images/image_file.hpp"
 #include "surface_files/sdf.hpp"
 #include "surface_files/sur.hpp"

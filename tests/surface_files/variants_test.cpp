@@ -4,7 +4,7 @@
 #include "surface_files/sur.hpp"
 #include "surface_files/x3p.hpp"
 
-#include "core/error.hpp"
+#include "core/messages/error.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

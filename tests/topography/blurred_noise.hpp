@@ -1,9 +1,9 @@
 // White noise that was blurred before pixels gathered it, by its power spectrum.
 #pragma once
 
-#include "core/fourier.hpp"
-#include "core/grid.hpp"
-#include "core/units.hpp"
+#include "core/mathematics/fourier.hpp"
+#include "core/mathematics/grid.hpp"
+#include "core/mathematics/units.hpp"
 #include "topography/noise_gain.hpp"
 
 #include <algorithm>

@@ -2,7 +2,7 @@
 // whose contrast in every pixel is a Gaussian along z around its height.
 #include "topography/topography.hpp"
 
-#include "core/units.hpp"
+#include "core/mathematics/units.hpp"
 
 #include <gtest/gtest.h>
 

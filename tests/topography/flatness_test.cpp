@@ -1,6 +1,6 @@
 #include "topography/flatness.hpp"
 
-#include "core/units.hpp"
+#include "core/mathematics/units.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,6 +1,6 @@
 #include "topography/focus_measure.hpp"
 
-#include "core/error.hpp"
+#include "core/messages/error.hpp"
 #include "topography/noise_gain.hpp"
 
 #include <gtest/gtest.h>

@@ -1,4 +1,4 @@
-#include "core/error.hpp"
+#include "core/messages/error.hpp"
 #include "focus/focus.hpp"
 #include "topography/peak_method.hpp"
 

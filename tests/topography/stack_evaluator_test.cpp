@@ -1,7 +1,7 @@
 #include "topography/topography.hpp"
 
-#include "core/error.hpp"
-#include "core/units.hpp"
+#include "core/mathematics/units.hpp"
+#include "core/messages/error.hpp"
 #include "topography/compare.hpp"
 #include "topography/peak_method.hpp"
 

@@ -1,7 +1,7 @@
 // A rough surface known everywhere in closed form: a sum of waves of random direction and phase.
 #pragma once
 
-#include "core/units.hpp"
+#include "core/mathematics/units.hpp"
 #include "surface/height_map.hpp"
 
 #include <cmath>

@@ -5,8 +5,8 @@
 #include "trace/interface/lattice_generators.hpp"
 #include "trace/microscope.hpp"
 
-#include "core/error.hpp"
-#include "core/units.hpp"
+#include "core/mathematics/units.hpp"
+#include "core/messages/error.hpp"
 #include "support/statistics.hpp"
 
 #include <gtest/gtest.h>

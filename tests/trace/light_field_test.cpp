@@ -6,7 +6,7 @@
 #include "trace/host/host_tracer.hpp"
 #include "trace/microscope.hpp"
 
-#include "core/units.hpp"
+#include "core/mathematics/units.hpp"
 #include "optics/prescriptions/ideal_lens.hpp"
 #include "support/statistics.hpp"
 

@@ -2,7 +2,7 @@
 #include "trace/structures/mesh_lattice.hpp"
 #include "traversal_rays.hpp"
 
-#include "core/error.hpp"
+#include "core/messages/error.hpp"
 
 #include <gtest/gtest.h>
 

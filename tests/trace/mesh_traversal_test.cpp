@@ -1,7 +1,7 @@
 // Meshes against closed forms and the host's reference; which traversal is chosen, and what no device holds.
 #include "traversal_rays.hpp"
 
-#include "core/error.hpp"
+#include "core/messages/error.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

@@ -1,7 +1,7 @@
 // The microscope and specimens that the tests of the trace share.
 #pragma once
 
-#include "core/units.hpp"
+#include "core/mathematics/units.hpp"
 #include "optics/instrument/instrument.hpp"
 #include "specimen/description.hpp"
 #include "trace/interface/tracer.hpp"

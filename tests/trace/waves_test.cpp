@@ -1,6 +1,6 @@
 // The image that waves make of light sorted by pupil cells.
-#include "core/error.hpp"
-#include "core/units.hpp"
+#include "core/mathematics/units.hpp"
+#include "core/messages/error.hpp"
 #include "optics/prescriptions/ideal_lens.hpp"
 #include "optics/waves/airy_pattern.hpp"
 #include "trace/device/device_tracer.hpp"

@@ -1,6 +1,6 @@
 #include "vulkan/device.hpp"
 
-#include "core/error.hpp"
+#include "core/messages/error.hpp"
 #include "shared_device.hpp"
 
 #include <gmock/gmock.h>

@@ -1,6 +1,6 @@
 #include "vulkan/kernel.hpp"
 
-#include "core/error.hpp"
+#include "core/messages/error.hpp"
 #include "shared_device.hpp"
 #include "spirv/probe_vulkan_arithmetic.h"
 

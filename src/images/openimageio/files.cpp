@@ -1,5 +1,5 @@
 // Image files of all kinds: what images/image_file.hpp promises.
-#include "core/error.hpp"
+#include "core/messages/error.hpp"
 #include "images/openimageio/functions.hpp"
 #include "images/openimageio/orientation.hpp"
 #include "images/openimageio/packing.hpp"

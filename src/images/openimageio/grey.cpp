@@ -1,5 +1,5 @@
 // Images of heights and of masks: one grey channel, of any format, by bands.
-#include "core/error.hpp"
+#include "core/messages/error.hpp"
 #include "images/openimageio/functions.hpp"
 #include "images/openimageio/orientation.hpp"
 #include "images/openimageio/packing.hpp"

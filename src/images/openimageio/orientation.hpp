@@ -1,7 +1,7 @@
 // Images stored lying on a side or mirrored, as cameras do, made upright.
 #pragma once
 
-#include "core/grid.hpp"
+#include "core/mathematics/grid.hpp"
 
 #include <OpenImageIO/imageio.h>
 

@@ -1,5 +1,5 @@
 // Letters as pixels: what images/picture.hpp promises.
-#include "core/error.hpp"
+#include "core/messages/error.hpp"
 #include "images/openimageio/functions.hpp"
 
 #include <OpenImageIO/imagebuf.h>

@@ -1,6 +1,6 @@
 #include "images/openimageio/source.hpp"
 
-#include "core/error.hpp"
+#include "core/messages/error.hpp"
 #include "images/exr_header.hpp"
 #include "images/pnm_header.hpp"
 

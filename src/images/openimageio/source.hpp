@@ -1,7 +1,7 @@
 // How every image gets to OpenImageIO, whatever its format and whether it is a file or in memory.
 #pragma once
 
-#include "core/file.hpp"
+#include "core/files/file.hpp"
 
 #include <OpenImageIO/filesystem.h>
 #include <OpenImageIO/imageio.h>

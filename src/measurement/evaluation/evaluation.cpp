@@ -1,7 +1,7 @@
 #include "measurement/evaluation/evaluation.hpp"
 
-#include "core/pixel_grid.hpp"
-#include "core/units.hpp"
+#include "core/mathematics/pixel_grid.hpp"
+#include "core/mathematics/units.hpp"
 #include "surface/filter.hpp"
 #include "surface/height_parameters.hpp"
 #include "surface_files/surface_file.hpp"

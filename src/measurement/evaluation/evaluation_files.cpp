@@ -1,6 +1,6 @@
 #include "measurement/evaluation/evaluation_files.hpp"
 
-#include "core/file.hpp"
+#include "core/files/file.hpp"
 #include "measurement/evaluation/evaluation_figures.hpp"
 #include "measurement/evaluation/stack_page.hpp"
 #include "report/layout.hpp"

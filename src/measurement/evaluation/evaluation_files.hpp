@@ -2,7 +2,7 @@
 #pragma once
 
 #include "configuration/configuration.hpp"
-#include "core/result_folder.hpp"
+#include "core/files/result_folder.hpp"
 #include "measurement/evaluation/evaluation_maps.hpp"
 #include "measurement/evaluation/results_document.hpp"
 #include "optics/instrument/instrument.hpp"

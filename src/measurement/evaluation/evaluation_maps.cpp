@@ -1,8 +1,8 @@
 #include "measurement/evaluation/evaluation_maps.hpp"
 
-#include "core/digest.hpp"
-#include "core/job_queue.hpp"
-#include "core/threads.hpp"
+#include "core/files/digest.hpp"
+#include "core/threads/job_queue.hpp"
+#include "core/threads/threads.hpp"
 #include "images/image_file.hpp"
 #include "report/topography_picture.hpp"
 #include "surface_files/gwy.hpp"

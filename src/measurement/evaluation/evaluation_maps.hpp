@@ -2,7 +2,7 @@
 #pragma once
 
 #include "configuration/configuration.hpp"
-#include "core/result_folder.hpp"
+#include "core/files/result_folder.hpp"
 #include "measurement/evaluation/evaluation.hpp"
 #include "measurement/evaluation/page_data.hpp"
 #include "surface_files/provenance.hpp"

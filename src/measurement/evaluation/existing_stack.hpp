@@ -1,7 +1,7 @@
 // Stacks whose images are there: of vkfv's own, evaluated anew, or of another instrument.
 #pragma once
 
-#include "core/toml_document.hpp"
+#include "core/toml/toml_document.hpp"
 #include "measurement/evaluation/evaluation_files.hpp"
 #include "measurement/evaluation/frame_correction.hpp"
 #include "scan/image_series.hpp"

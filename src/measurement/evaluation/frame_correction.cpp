@@ -1,6 +1,6 @@
 #include "measurement/evaluation/frame_correction.hpp"
 
-#include "core/error.hpp"
+#include "core/messages/error.hpp"
 #include "scan/image_series.hpp"
 
 #include <fmt/format.h>

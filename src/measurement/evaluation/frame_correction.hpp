@@ -2,7 +2,7 @@
 // light.
 #pragma once
 
-#include "core/grid.hpp"
+#include "core/mathematics/grid.hpp"
 
 #include <filesystem>
 #include <optional>

@@ -1,6 +1,6 @@
 #include "measurement/evaluation/page_data.hpp"
 
-#include "core/units.hpp"
+#include "core/mathematics/units.hpp"
 #include "report/markup.hpp"
 #include "report/png.hpp"
 #include "surface/material_ratio.hpp"

@@ -1,7 +1,7 @@
 #include "measurement/evaluation/results_document.hpp"
 
-#include "core/file.hpp"
-#include "core/json_depth.hpp"
+#include "core/files/file.hpp"
+#include "core/parsing/json_depth.hpp"
 #include "report/declared_figures.hpp"
 
 #include <fmt/format.h>

@@ -1,6 +1,6 @@
 #include "measurement/image/camera_images.hpp"
 
-#include "core/error.hpp"
+#include "core/messages/error.hpp"
 #include "measurement/image/camera_report.hpp"
 #include "measurement/image/exposure.hpp"
 #include "measurement/scene/assembly.hpp"

@@ -2,8 +2,8 @@
 #pragma once
 
 #include "configuration/configuration.hpp"
-#include "core/grid.hpp"
-#include "core/pixel_grid.hpp"
+#include "core/mathematics/grid.hpp"
+#include "core/mathematics/pixel_grid.hpp"
 #include "measurement/scene/working_devices.hpp"
 #include "optics/instrument/instrument.hpp"
 #include "scan/store.hpp"

@@ -1,8 +1,8 @@
 #include "measurement/image/image.hpp"
 
-#include "core/file.hpp"
-#include "core/stages.hpp"
-#include "core/units.hpp"
+#include "core/files/file.hpp"
+#include "core/mathematics/units.hpp"
+#include "core/messages/stages.hpp"
 #include "measurement/image/camera_images.hpp"
 #include "measurement/scene/assembly.hpp"
 #include "measurement/scene/specimen_view.hpp"

@@ -1,7 +1,7 @@
 #include "measurement/image/ray_table.hpp"
 
-#include "core/error.hpp"
-#include "core/number_table.hpp"
+#include "core/messages/error.hpp"
+#include "core/parsing/number_table.hpp"
 
 #include <fmt/format.h>
 

@@ -1,6 +1,6 @@
 #include "measurement/instrument/instrument_figures.hpp"
 
-#include "core/units.hpp"
+#include "core/mathematics/units.hpp"
 #include "measurement/image/camera_report.hpp"
 #include "measurement/scene/assembly.hpp"
 #include "measurement/scene/stage_figures.hpp"

@@ -1,11 +1,11 @@
 #include "measurement/instrument/instrument_report.hpp"
 
-#include "core/assets.hpp"
-#include "core/digest.hpp"
-#include "core/files_read.hpp"
-#include "core/installation.hpp"
-#include "core/log.hpp"
-#include "core/user_cache.hpp"
+#include "core/files/assets.hpp"
+#include "core/files/digest.hpp"
+#include "core/files/files_read.hpp"
+#include "core/files/installation.hpp"
+#include "core/files/user_cache.hpp"
+#include "core/messages/log.hpp"
 #include "measurement/instrument/instrument_figures.hpp"
 
 #include <spdlog/spdlog.h>

@@ -1,6 +1,6 @@
 #include "measurement/instrument/wave_figures.hpp"
 
-#include "core/units.hpp"
+#include "core/mathematics/units.hpp"
 #include "optics/waves/zernike.hpp"
 
 #include <fmt/format.h>

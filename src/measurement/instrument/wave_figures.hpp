@@ -2,7 +2,7 @@
 // traced pupils. Lengths in mm in the object unless a name says otherwise.
 #pragma once
 
-#include "core/grid.hpp"
+#include "core/mathematics/grid.hpp"
 #include "optics/waves/point_waves.hpp"
 
 #include <complex>

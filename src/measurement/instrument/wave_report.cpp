@@ -1,6 +1,6 @@
 #include "measurement/instrument/wave_report.hpp"
 
-#include "core/units.hpp"
+#include "core/mathematics/units.hpp"
 #include "optics/waves/airy_pattern.hpp"
 #include "optics/waves/zernike.hpp"
 #include "report/chart.hpp"

@@ -1,8 +1,8 @@
 #include "measurement/scene/assembly.hpp"
 
-#include "core/pixel_grid.hpp"
-#include "core/section.hpp"
-#include "core/units.hpp"
+#include "core/keys/section.hpp"
+#include "core/mathematics/pixel_grid.hpp"
+#include "core/mathematics/units.hpp"
 #include "images/image_file.hpp"
 #include "measurement/scene/light_field.hpp"
 #include "measurement/scene/specimen_view.hpp"

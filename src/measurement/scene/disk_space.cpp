@@ -1,6 +1,6 @@
 #include "measurement/scene/disk_space.hpp"
 
-#include "core/error.hpp"
+#include "core/messages/error.hpp"
 #include "scan/stack_file.hpp"
 
 #include <fmt/format.h>

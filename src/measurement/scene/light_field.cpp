@@ -1,6 +1,6 @@
 #include "measurement/scene/light_field.hpp"
 
-#include "core/section.hpp"
+#include "core/keys/section.hpp"
 
 #include <string>
 #include <utility>

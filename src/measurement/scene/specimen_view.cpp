@@ -1,7 +1,7 @@
 #include "measurement/scene/specimen_view.hpp"
 
-#include "core/pixel_grid.hpp"
-#include "core/units.hpp"
+#include "core/mathematics/pixel_grid.hpp"
+#include "core/mathematics/units.hpp"
 #include "specimen/description.hpp"
 
 #include <fmt/format.h>

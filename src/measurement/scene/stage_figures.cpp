@@ -1,6 +1,6 @@
 #include "measurement/scene/stage_figures.hpp"
 
-#include "core/units.hpp"
+#include "core/mathematics/units.hpp"
 #include "measurement/scene/assembly.hpp"
 #include "report/declared_figures.hpp"
 

@@ -1,6 +1,6 @@
 #include "measurement/scene/wave_limits.hpp"
 
-#include "core/units.hpp"
+#include "core/mathematics/units.hpp"
 
 #include <fmt/format.h>
 

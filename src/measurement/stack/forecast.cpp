@@ -1,7 +1,7 @@
 #include "measurement/stack/forecast.hpp"
 
-#include "core/progress.hpp"
-#include "core/units.hpp"
+#include "core/mathematics/units.hpp"
+#include "core/messages/progress.hpp"
 #include "measurement/evaluation/evaluation.hpp"
 #include "measurement/image/exposure.hpp"
 #include "measurement/scene/assembly.hpp"

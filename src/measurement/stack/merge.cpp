@@ -1,8 +1,8 @@
 // Shards of a stack become one.
-#include "core/error.hpp"
-#include "core/interruption.hpp"
-#include "core/stages.hpp"
-#include "core/toml_reader.hpp"
+#include "core/messages/error.hpp"
+#include "core/messages/interruption.hpp"
+#include "core/messages/stages.hpp"
+#include "core/toml/toml_reader.hpp"
 #include "measurement/scene/disk_space.hpp"
 #include "measurement/stack/stack.hpp"
 #include "measurement/stack/stack_parts.hpp"

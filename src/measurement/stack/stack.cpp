@@ -1,6 +1,6 @@
 #include "measurement/stack/stack.hpp"
 
-#include "core/stages.hpp"
+#include "core/messages/stages.hpp"
 #include "measurement/image/camera_images.hpp"
 #include "measurement/scene/disk_space.hpp"
 #include "measurement/scene/working_devices.hpp"

@@ -1,9 +1,9 @@
 #include "measurement/stack/stack_parts.hpp"
 
-#include "core/background.hpp"
-#include "core/digest.hpp"
-#include "core/stages.hpp"
-#include "core/units.hpp"
+#include "core/files/digest.hpp"
+#include "core/mathematics/units.hpp"
+#include "core/messages/stages.hpp"
+#include "core/threads/background.hpp"
 #include "measurement/image/camera_images.hpp"
 #include "measurement/image/exposure.hpp"
 #include "measurement/scene/assembly.hpp"

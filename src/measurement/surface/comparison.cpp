@@ -1,7 +1,7 @@
 #include "measurement/surface/comparison.hpp"
 
-#include "core/error.hpp"
-#include "core/units.hpp"
+#include "core/mathematics/units.hpp"
+#include "core/messages/error.hpp"
 #include "measurement/surface/surface_report.hpp"
 #include "surface/resample.hpp"
 #include "surface_files/surface_file.hpp"

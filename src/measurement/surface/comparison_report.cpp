@@ -1,7 +1,7 @@
 #include "measurement/surface/comparison_report.hpp"
 
-#include "core/result_folder.hpp"
-#include "core/units.hpp"
+#include "core/files/result_folder.hpp"
+#include "core/mathematics/units.hpp"
 #include "measurement/surface/surface_report.hpp"
 #include "report/parameter_table.hpp"
 #include "report/topography_picture.hpp"

@@ -1,8 +1,8 @@
 #include "measurement/surface/surface_measurement.hpp"
 
-#include "core/error.hpp"
-#include "core/file.hpp"
-#include "core/units.hpp"
+#include "core/files/file.hpp"
+#include "core/mathematics/units.hpp"
+#include "core/messages/error.hpp"
 
 #include <fmt/format.h>
 

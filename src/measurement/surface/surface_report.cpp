@@ -1,6 +1,6 @@
 #include "measurement/surface/surface_report.hpp"
 
-#include "core/units.hpp"
+#include "core/mathematics/units.hpp"
 #include "surface/areal_parameters.hpp"
 
 #include <fmt/format.h>

@@ -1,6 +1,6 @@
 #include "measurement/sweep/sweep.hpp"
 
-#include "core/result_folder.hpp"
+#include "core/files/result_folder.hpp"
 #include "measurement/sweep/sweep_page.hpp"
 #include "measurement/sweep/sweep_rows.hpp"
 

@@ -2,7 +2,7 @@
 #pragma once
 
 #include "configuration/configuration.hpp"
-#include "core/progress.hpp"
+#include "core/messages/progress.hpp"
 #include "measurement/stack/stack.hpp"
 #include "measurement/sweep/sweep_report.hpp"
 

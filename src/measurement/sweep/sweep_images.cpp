@@ -1,7 +1,7 @@
 #include "measurement/sweep/sweep_rows.hpp"
 
-#include "core/digest.hpp"
-#include "core/file.hpp"
+#include "core/files/digest.hpp"
+#include "core/files/file.hpp"
 #include "images/image_file.hpp"
 #include "measurement/image/exposure.hpp"
 #include "measurement/scene/assembly.hpp"

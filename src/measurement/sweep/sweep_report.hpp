@@ -3,7 +3,7 @@
 
 #include "configuration/configuration.hpp"
 
-#include "core/grid.hpp"
+#include "core/mathematics/grid.hpp"
 
 #include <nlohmann/json.hpp>
 

@@ -2,8 +2,8 @@
 #pragma once
 
 #include "configuration/configuration.hpp"
-#include "core/progress.hpp"
-#include "core/result_folder.hpp"
+#include "core/files/result_folder.hpp"
+#include "core/messages/progress.hpp"
 #include "measurement/stack/stack.hpp"
 #include "measurement/sweep/sweep_report.hpp"
 #include "specimen/specimen.hpp"

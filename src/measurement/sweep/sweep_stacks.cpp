@@ -1,6 +1,6 @@
 #include "measurement/sweep/sweep_rows.hpp"
 
-#include "core/units.hpp"
+#include "core/mathematics/units.hpp"
 #include "report/declared_figures.hpp"
 
 #include <fmt/format.h>

@@ -1,6 +1,6 @@
 #include "optics/aim/best_focus.hpp"
 
-#include "core/parallel_list.hpp"
+#include "core/threads/parallel_list.hpp"
 #include "optics/aim/detector_view.hpp"
 
 #include <cmath>

@@ -1,7 +1,7 @@
 #include "optics/aim/detector_aim.hpp"
 
-#include "core/parallel_list.hpp"
-#include "core/units.hpp"
+#include "core/mathematics/units.hpp"
+#include "core/threads/parallel_list.hpp"
 #include "optics/aim/farthest.hpp"
 #include "optics/train/train.hpp"
 

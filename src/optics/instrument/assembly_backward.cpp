@@ -1,7 +1,7 @@
 // The instrument with its light turned round, for paths that start at the detector.
 #include "optics/instrument/assembly.hpp"
 
-#include "core/parallel_list.hpp"
+#include "core/threads/parallel_list.hpp"
 #include "optics/train/first_order.hpp"
 
 #include <algorithm>

@@ -1,6 +1,6 @@
 #include "optics/instrument/assembly.hpp"
 
-#include "core/error.hpp"
+#include "core/messages/error.hpp"
 #include "optics/train/first_order.hpp"
 
 #include <fmt/format.h>

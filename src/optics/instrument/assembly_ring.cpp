@@ -1,6 +1,6 @@
 #include "optics/instrument/assembly.hpp"
 
-#include "core/units.hpp"
+#include "core/mathematics/units.hpp"
 
 #include <fmt/format.h>
 

@@ -1,7 +1,7 @@
 #include "optics/instrument/image_quality.hpp"
 
-#include "core/parallel_list.hpp"
-#include "core/units.hpp"
+#include "core/mathematics/units.hpp"
+#include "core/threads/parallel_list.hpp"
 #include "optics/aim/best_focus.hpp"
 #include "optics/train/first_order.hpp"
 

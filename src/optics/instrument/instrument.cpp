@@ -1,6 +1,6 @@
 #include "optics/instrument/instrument.hpp"
 
-#include "core/units.hpp"
+#include "core/mathematics/units.hpp"
 #include "optics/aim/detector_aim.hpp"
 #include "optics/instrument/assembly.hpp"
 

@@ -1,7 +1,7 @@
 // The instrument, assembled from its parts and reduced to what the trace needs.
 #pragma once
 
-#include "core/pixel_grid.hpp"
+#include "core/mathematics/pixel_grid.hpp"
 #include "optics/media/spectrum.hpp"
 #include "optics/prescriptions/prescription.hpp"
 #include "optics/train/mesh_element.hpp"

@@ -2,7 +2,7 @@
 // beside the lenses.
 #pragma once
 
-#include "core/box_tree.hpp"
+#include "core/mathematics/box_tree.hpp"
 #include "optics/instrument/instrument.hpp"
 
 #include <glm/glm.hpp>

@@ -1,7 +1,7 @@
 #include "optics/instrument/train_polynomials.hpp"
 
-#include "core/parallel_list.hpp"
-#include "core/parallel_rows.hpp"
+#include "core/threads/parallel_list.hpp"
+#include "core/threads/parallel_rows.hpp"
 #include "optics/train/train.hpp"
 
 #include <Eigen/Dense>

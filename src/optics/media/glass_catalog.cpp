@@ -1,8 +1,8 @@
 #include "optics/media/glass_catalog.hpp"
 
-#include "core/assets.hpp"
-#include "core/error.hpp"
-#include "core/toml_reader.hpp"
+#include "core/files/assets.hpp"
+#include "core/messages/error.hpp"
+#include "core/toml/toml_reader.hpp"
 #include "optics/media/agf.hpp"
 #include "optics/media/medium_table.hpp"
 

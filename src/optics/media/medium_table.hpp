@@ -1,7 +1,7 @@
 // Media as TOML describes them: the tables [media.NAME] of prescriptions and of assets/glasses.
 #pragma once
 
-#include "core/toml_reader.hpp"
+#include "core/toml/toml_reader.hpp"
 #include "optics/media/medium.hpp"
 
 #include <string>

@@ -1,9 +1,9 @@
 #include "optics/prescriptions/prescription.hpp"
 
-#include "core/assets.hpp"
-#include "core/error.hpp"
-#include "core/toml_reader.hpp"
-#include "core/units.hpp"
+#include "core/files/assets.hpp"
+#include "core/mathematics/units.hpp"
+#include "core/messages/error.hpp"
+#include "core/toml/toml_reader.hpp"
 #include "optics/media/medium_table.hpp"
 
 #include <fmt/format.h>

@@ -1,7 +1,7 @@
 #include "optics/prescriptions/prescription_writer.hpp"
 
-#include "core/toml_reader.hpp"
-#include "core/units.hpp"
+#include "core/mathematics/units.hpp"
+#include "core/toml/toml_reader.hpp"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>

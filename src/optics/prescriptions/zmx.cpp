@@ -1,8 +1,8 @@
 #include "optics/prescriptions/zmx.hpp"
 
-#include "core/error.hpp"
-#include "core/file.hpp"
-#include "core/units.hpp"
+#include "core/files/file.hpp"
+#include "core/mathematics/units.hpp"
+#include "core/messages/error.hpp"
 #include "optics/prescriptions/zmx_file.hpp"
 
 #include <fmt/format.h>

@@ -1,7 +1,7 @@
 // What a .zmx file says, line by line, before a lens is made of it. Only the files of this import include this.
 #pragma once
 
-#include "core/error.hpp"
+#include "core/messages/error.hpp"
 #include "optics/media/glass_catalog.hpp"
 #include "optics/media/medium.hpp"
 #include "optics/prescriptions/zmx_text.hpp"

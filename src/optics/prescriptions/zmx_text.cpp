@@ -1,6 +1,6 @@
 #include "optics/prescriptions/zmx_text.hpp"
 
-#include "core/error.hpp"
+#include "core/messages/error.hpp"
 
 #include <fmt/format.h>
 

@@ -2,7 +2,7 @@
 // include this.
 #pragma once
 
-#include "core/toml_reader.hpp"
+#include "core/toml/toml_reader.hpp"
 
 #include <filesystem>
 #include <optional>

@@ -1,6 +1,6 @@
 #include "optics/train/mesh_element.hpp"
 
-#include "core/box_tree.hpp"
+#include "core/mathematics/box_tree.hpp"
 
 #include <algorithm>
 #include <bit>

@@ -1,7 +1,7 @@
 // Prescriptions as surfaces that stand somewhere, and the trains of them that light goes through in sequence.
 #pragma once
 
-#include "core/grid.hpp"
+#include "core/mathematics/grid.hpp"
 #include "optics/media/spectrum.hpp"
 #include "optics/prescriptions/prescription.hpp"
 #include "optics/train/pose.hpp"

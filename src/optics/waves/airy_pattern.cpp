@@ -1,6 +1,6 @@
 #include "optics/waves/airy_pattern.hpp"
 
-#include "core/units.hpp"
+#include "core/mathematics/units.hpp"
 
 #include <algorithm>
 #include <cmath>

@@ -1,8 +1,8 @@
 #include "optics/waves/cell_transfer.hpp"
 
-#include "core/error.hpp"
-#include "core/parallel_rows.hpp"
-#include "core/units.hpp"
+#include "core/mathematics/units.hpp"
+#include "core/messages/error.hpp"
+#include "core/threads/parallel_rows.hpp"
 #include "optics/instrument/image_quality.hpp"
 #include "optics/waves/complex_product.hpp"
 

@@ -1,7 +1,7 @@
 // Diffraction of an image, after the trace: geometric optics alone focuses too sharply.
 #pragma once
 
-#include "core/grid.hpp"
+#include "core/mathematics/grid.hpp"
 #include "optics/waves/airy_pattern.hpp"
 
 #include <complex>

@@ -1,7 +1,7 @@
 #include "optics/waves/filter_error.hpp"
 
-#include "core/parallel_list.hpp"
-#include "core/units.hpp"
+#include "core/mathematics/units.hpp"
+#include "core/threads/parallel_list.hpp"
 #include "optics/waves/complex_product.hpp"
 
 #include <algorithm>

@@ -1,6 +1,6 @@
 #include "optics/waves/point_waves.hpp"
 
-#include "core/units.hpp"
+#include "core/mathematics/units.hpp"
 #include "optics/waves/quadrature.hpp"
 #include "optics/waves/transfer.hpp"
 

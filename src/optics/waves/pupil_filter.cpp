@@ -1,7 +1,7 @@
 #include "optics/waves/pupil_filter.hpp"
 
-#include "core/parallel_list.hpp"
-#include "core/units.hpp"
+#include "core/mathematics/units.hpp"
+#include "core/threads/parallel_list.hpp"
 #include "optics/instrument/image_quality.hpp"
 #include "optics/waves/filter_error.hpp"
 

@@ -1,6 +1,6 @@
 #include "optics/waves/zernike.hpp"
 
-#include "core/units.hpp"
+#include "core/mathematics/units.hpp"
 #include "optics/waves/quadrature.hpp"
 
 #include <array>

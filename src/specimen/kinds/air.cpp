@@ -1,7 +1,7 @@
 #include "specimen/kinds/air.hpp"
 
-#include "core/fourier.hpp"
-#include "core/section.hpp"
+#include "core/keys/section.hpp"
+#include "core/mathematics/fourier.hpp"
 #include "specimen/kinds/surface_file.hpp"
 #include "specimen/random_heights.hpp"
 #include "specimen/refined.hpp"

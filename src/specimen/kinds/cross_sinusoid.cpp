@@ -1,6 +1,6 @@
 #include "specimen/kinds/cross_sinusoid.hpp"
 
-#include "core/section.hpp"
+#include "core/keys/section.hpp"
 
 #include <algorithm>
 #include <cmath>

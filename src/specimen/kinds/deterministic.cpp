@@ -1,7 +1,7 @@
 #include "specimen/kinds/deterministic.hpp"
 
-#include "core/parallel_rows.hpp"
-#include "core/section.hpp"
+#include "core/keys/section.hpp"
+#include "core/threads/parallel_rows.hpp"
 
 #include <algorithm>
 #include <cmath>

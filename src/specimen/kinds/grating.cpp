@@ -1,6 +1,6 @@
 #include "specimen/kinds/grating.hpp"
 
-#include "core/section.hpp"
+#include "core/keys/section.hpp"
 
 #include <algorithm>
 #include <cmath>

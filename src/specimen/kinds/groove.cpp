@@ -1,6 +1,6 @@
 #include "specimen/kinds/groove.hpp"
 
-#include "core/section.hpp"
+#include "core/keys/section.hpp"
 
 #include <fmt/format.h>
 

@@ -1,6 +1,6 @@
 #include "specimen/kinds/image.hpp"
 
-#include "core/pixel_grid.hpp"
+#include "core/mathematics/pixel_grid.hpp"
 #include "specimen/file_keys.hpp"
 #include "specimen/files.hpp"
 #include "specimen/lengths.hpp"

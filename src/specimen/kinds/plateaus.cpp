@@ -1,7 +1,7 @@
 #include "specimen/kinds/plateaus.hpp"
 
-#include "core/file.hpp"
-#include "core/section.hpp"
+#include "core/files/file.hpp"
+#include "core/keys/section.hpp"
 #include "images/picture.hpp"
 #include "specimen/files.hpp"
 #include "specimen/generated.hpp"

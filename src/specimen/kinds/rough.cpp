@@ -1,6 +1,6 @@
 #include "specimen/kinds/rough.hpp"
 
-#include "core/section.hpp"
+#include "core/keys/section.hpp"
 
 namespace vkfv::specimen {
 namespace {

@@ -1,6 +1,6 @@
 #include "specimen/kinds/step.hpp"
 
-#include "core/section.hpp"
+#include "core/keys/section.hpp"
 
 #include <cmath>
 

@@ -1,6 +1,6 @@
 #include "specimen/kinds/surface_file.hpp"
 
-#include "core/pixel_grid.hpp"
+#include "core/mathematics/pixel_grid.hpp"
 #include "specimen/file_keys.hpp"
 #include "specimen/lengths.hpp"
 #include "surface/fill.hpp"

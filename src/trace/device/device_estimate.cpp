@@ -1,6 +1,6 @@
 #include "trace/device/device_estimate.hpp"
 
-#include "core/parallel_rows.hpp"
+#include "core/threads/parallel_rows.hpp"
 #include "spirv/estimate_light.h"
 #include "trace/interface/wave_image.hpp"
 

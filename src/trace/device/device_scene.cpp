@@ -50,8 +50,8 @@ ElementBuffers element_buffers(const vulkan::Device& device, const optics::Room&
 bool pays_in_constants(const vulkan::Device& device, const optics::Instrument& instrument,
                        const TraceOptions& options) {
     // Of a microscope with 38 surfaces a processor compiles such kernels in 5 s at every start, 12 s the first time,
-    // and then saves 0.08 us a ray; a GPU compiles them in 1.4 s once, as they are kept (core/user_cache.hpp), and
-    // saves 25 ps a ray.
+    // and then saves 0.08 us a ray; a GPU compiles them in 1.4 s once, as they are kept (core/files/user_cache.hpp),
+    // and saves 25 ps a ray.
     constexpr std::uint64_t rays_that_pay = 100000000;
     const bool pays = !vulkan::is_software(device.report()) || options.rays >= rays_that_pay;
     return instrument.surfaces.size() <= std::size_t{physics::f32::KNOWN_SURFACES} &&

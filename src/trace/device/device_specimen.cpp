@@ -1,6 +1,6 @@
 #include "trace/device/device_specimen.hpp"
 
-#include "core/error.hpp"
+#include "core/messages/error.hpp"
 #include "specimen/description.hpp"
 #include "trace/interface/device_records.hpp"
 #include "trace/structures/bounding_volume_hierarchy.hpp"

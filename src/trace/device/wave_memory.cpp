@@ -1,6 +1,6 @@
 #include "trace/device/wave_memory.hpp"
 
-#include "core/error.hpp"
+#include "core/messages/error.hpp"
 #include "trace/device/wave_planes.hpp"
 
 #include <fmt/format.h>

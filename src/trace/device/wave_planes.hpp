@@ -1,7 +1,7 @@
 // The planes of complex floats that a device transforms for the image of waves.
 #pragma once
 
-#include "core/pixel_grid.hpp"
+#include "core/mathematics/pixel_grid.hpp"
 
 #include <algorithm>
 #include <cstddef>

@@ -1,6 +1,6 @@
 #include "trace/host/host_backward_tracer.hpp"
 
-#include "core/threads.hpp"
+#include "core/threads/threads.hpp"
 #include "specimen/description.hpp"
 #include "trace/host/host_scene.hpp"
 #include "trace/interface/backward_image.hpp"

@@ -1,6 +1,6 @@
 #include "trace/host/host_tracer.hpp"
 
-#include "core/threads.hpp"
+#include "core/threads/threads.hpp"
 #include "optics/instrument/room.hpp"
 #include "specimen/description.hpp"
 #include "specimen/intersector.hpp"

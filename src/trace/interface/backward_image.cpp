@@ -1,6 +1,6 @@
 #include "trace/interface/backward_image.hpp"
 
-#include "core/units.hpp"
+#include "core/mathematics/units.hpp"
 #include "trace/interface/lattice_generators.hpp"
 #include "trace/interface/ledger.hpp"
 

@@ -1,7 +1,7 @@
 #include "trace/interface/device_records.hpp"
 #include "trace/structures/outward.hpp"
 
-#include "core/error.hpp"
+#include "core/messages/error.hpp"
 
 #include <algorithm>
 #include <cmath>

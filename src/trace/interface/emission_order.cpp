@@ -1,6 +1,6 @@
 #include "trace/interface/emission_order.hpp"
 
-#include "core/parallel_rows.hpp"
+#include "core/threads/parallel_rows.hpp"
 #include "statistics/poisson.hpp"
 #include "trace/interface/exposure_record.hpp"
 

@@ -1,6 +1,6 @@
 #include "trace/interface/light_sources.hpp"
 
-#include "core/digest.hpp"
+#include "core/files/digest.hpp"
 #include "trace/interface/backward_image.hpp"
 #include "trace/interface/traced_instrument.hpp"
 

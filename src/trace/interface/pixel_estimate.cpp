@@ -1,6 +1,6 @@
 #include "trace/interface/pixel_estimate.hpp"
 
-#include "core/parallel_rows.hpp"
+#include "core/threads/parallel_rows.hpp"
 
 #include <numeric>
 

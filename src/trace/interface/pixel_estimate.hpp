@@ -1,8 +1,8 @@
 // From the numbers that were counted to the light of each pixel: on the host, to the bits of DeviceEstimate.
 #pragma once
 
-#include "core/grid.hpp"
-#include "core/pixel_grid.hpp"
+#include "core/mathematics/grid.hpp"
+#include "core/mathematics/pixel_grid.hpp"
 #include "estimate/estimate.hpp"
 
 #include <cstddef>

@@ -1,7 +1,7 @@
 // From a seed and a focal position to an image: the trace, on a Vulkan device or on the host in double.
 #pragma once
 
-#include "core/grid.hpp"
+#include "core/mathematics/grid.hpp"
 #include "optics/instrument/instrument.hpp"
 #include "optics/waves/pupil_filter.hpp"
 #include "specimen/specimen.hpp"

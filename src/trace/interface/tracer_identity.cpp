@@ -1,7 +1,7 @@
 #include "trace/interface/tracer_identity.hpp"
 
-#include "core/digest.hpp"
-#include "core/toml_reader.hpp"
+#include "core/files/digest.hpp"
+#include "core/toml/toml_reader.hpp"
 #include "trace/interface/device_records.hpp"
 #include "trace/interface/lattice_generators.hpp"
 #include "vulkan/device.hpp"

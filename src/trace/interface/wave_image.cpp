@@ -1,8 +1,8 @@
 #include "trace/interface/wave_image.hpp"
 
-#include "core/fourier.hpp"
-#include "core/parallel_list.hpp"
-#include "core/units.hpp"
+#include "core/mathematics/fourier.hpp"
+#include "core/mathematics/units.hpp"
+#include "core/threads/parallel_list.hpp"
 
 #include <algorithm>
 #include <atomic>

@@ -1,8 +1,8 @@
 // The image that waves make of light sorted by pupil cells, on the host in double.
 #pragma once
 
-#include "core/grid.hpp"
-#include "core/pixel_grid.hpp"
+#include "core/mathematics/grid.hpp"
+#include "core/mathematics/pixel_grid.hpp"
 #include "optics/waves/pupil_filter.hpp"
 #include "trace/interface/pixel_estimate.hpp"
 #include "trace/interface/tracer.hpp"

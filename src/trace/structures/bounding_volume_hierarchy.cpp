@@ -1,6 +1,6 @@
 #include "trace/structures/bounding_volume_hierarchy.hpp"
 
-#include "core/parallel_list.hpp"
+#include "core/threads/parallel_list.hpp"
 
 #include <algorithm>
 #include <array>

@@ -1,6 +1,6 @@
 #include "trace/structures/entry_nodes.hpp"
 
-#include "core/parallel_rows.hpp"
+#include "core/threads/parallel_rows.hpp"
 
 #include <algorithm>
 #include <bit>

@@ -1,6 +1,6 @@
 #include "trace/structures/triangle_pairs.hpp"
 
-#include "core/parallel_list.hpp"
+#include "core/threads/parallel_list.hpp"
 
 #include <algorithm>
 #include <cstddef>

@@ -2,9 +2,9 @@
 // (chain.hpp).
 #include "chain.hpp"
 
-#include "core/error.hpp"
-#include "core/file.hpp"
-#include "core/units.hpp"
+#include "core/files/file.hpp"
+#include "core/mathematics/units.hpp"
+#include "core/messages/error.hpp"
 #include "images/image_file.hpp"
 #include "measurement/scene/assembly.hpp"
 #include "trace/interface/traced_instrument.hpp"

@@ -1,0 +1,88 @@
+#include "core/messages/interruption.hpp"
+
+#include "core/messages/log.hpp"
+
+#include <unistd.h>
+
+#include <algorithm>
+#include <array>
+#include <atomic>
+#include <csignal>
+#include <cstddef>
+#include <string>
+#include <string_view>
+
+namespace vkfv {
+
+namespace {
+
+constexpr std::size_t most_bytes = 500;
+
+struct Sentence {
+    std::array<char, 6 * most_bytes + 2> text; // in JSON a byte may take six
+    std::size_t bytes;
+};
+
+// A handler may read one while the other is written; a third change during its few microseconds would only garble the
+// text.
+std::array<Sentence, 2> sentences{};
+std::atomic<std::size_t> at_hand{0};
+std::atomic<bool> as_json{false};
+static_assert(std::atomic<std::size_t>::is_always_lock_free, "a signal handler may not wait");
+
+// Calls nothing but what POSIX allows in a handler.
+void say(std::string_view text) {
+    while (!text.empty()) {
+        const ssize_t written = ::write(STDERR_FILENO, text.data(), text.size());
+        if (written <= 0) {
+            return;
+        }
+        text.remove_prefix(static_cast<std::size_t>(written));
+    }
+}
+
+constexpr std::string_view first_sentence = "Give the same command again.";
+
+extern "C" void on_interruption(int signal) {
+    const std::string_view name = signal == SIGINT ? "SIGINT" : signal == SIGTERM ? "SIGTERM" : "SIGHUP";
+    const Sentence& sentence = sentences[at_hand.load()];
+    say(as_json ? "{\"level\":\"error\",\"signal\":\"" : "\nvkfv: ended by ");
+    say(name);
+    say(as_json ? "\",\"text\":" : ". ");
+    say({sentence.text.data(), sentence.bytes});
+    say(as_json ? "}\n" : "\n");
+    ::raise(signal); // its handler is the default again
+}
+
+} // namespace
+
+void explain_interruptions() {
+    say_when_interrupted(first_sentence);
+    for (const int signal : {SIGINT, SIGTERM, SIGHUP}) {
+        struct sigaction before {};
+        if (::sigaction(signal, nullptr, &before) == 0 && before.sa_handler == SIG_IGN) {
+            continue;
+        }
+        struct sigaction action {};
+        action.sa_handler = on_interruption;
+        action.sa_flags = static_cast<int>(SA_RESETHAND) | SA_NODEFER;
+        ::sigaction(signal, &action, nullptr);
+    }
+}
+
+void interruptions_as_json() {
+    as_json = true;
+    say_when_interrupted(first_sentence);
+}
+
+void say_when_interrupted(std::string_view sentence) {
+    sentence = sentence.substr(0, most_bytes);
+    const std::string quoted = as_json ? json_quoted(sentence) : std::string(sentence);
+    const std::size_t next = 1 - at_hand.load();
+    Sentence& into = sentences[next];
+    into.bytes = std::min(quoted.size(), into.text.size());
+    std::copy_n(quoted.begin(), into.bytes, into.text.begin());
+    at_hand.store(next);
+}
+
+} // namespace vkfv

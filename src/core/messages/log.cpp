@@ -1,0 +1,119 @@
+#include "core/messages/log.hpp"
+
+#include "core/messages/interruption.hpp"
+
+#include <fmt/chrono.h>
+#include <nlohmann/json.hpp>
+#include <spdlog/sinks/base_sink.h>
+#include <spdlog/sinks/stdout_color_sinks.h>
+#include <spdlog/spdlog.h>
+
+#include <chrono>
+#include <cstdio>
+#include <memory>
+#include <mutex>
+
+namespace vkfv {
+
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+bool lines_as_json = false;
+
+std::string now_text() {
+    const auto now = std::chrono::time_point_cast<std::chrono::milliseconds>(std::chrono::system_clock::now());
+    const auto milliseconds = now.time_since_epoch().count() % 1000;
+    return fmt::format("{:%FT%T}.{:03}Z", fmt::gmtime(std::chrono::system_clock::to_time_t(now)), milliseconds);
+}
+
+// A message may repeat a file's name in whatever encoding that is.
+std::string dumped(const Json& line) {
+    return line.dump(-1, ' ', false, Json::error_handler_t::replace);
+}
+
+class JsonFormatter final : public spdlog::formatter {
+  public:
+    void format(const spdlog::details::log_msg& message, spdlog::memory_buf_t& line) override {
+        const auto level = spdlog::level::to_string_view(message.level);
+        const std::string text = json_line("level", {level.data(), level.size()},
+                                           {{"text", std::string(message.payload.data(), message.payload.size())}}) +
+                                 "\n";
+        line.append(text.data(), text.data() + text.size());
+    }
+    std::unique_ptr<formatter> clone() const override { return std::make_unique<JsonFormatter>(); }
+};
+
+} // namespace
+
+struct MessagesHeard::Ear final : spdlog::sinks::base_sink<std::mutex> {
+    std::vector<Message> messages;
+
+    std::vector<Message> heard() {
+        const std::scoped_lock lock(mutex_);
+        return messages;
+    }
+
+  private:
+    void sink_it_(const spdlog::details::log_msg& message) override {
+        messages.push_back({static_cast<int>(message.level), {message.payload.data(), message.payload.size()}});
+    }
+    void flush_() override {}
+};
+
+MessagesHeard::MessagesHeard() : ear_(std::make_shared<Ear>()) {
+    spdlog::default_logger()->sinks().push_back(ear_);
+}
+
+MessagesHeard::~MessagesHeard() {
+    std::erase(spdlog::default_logger()->sinks(), ear_);
+}
+
+std::vector<MessagesHeard::Message> MessagesHeard::messages() const {
+    return ear_->heard();
+}
+
+void open_log() {
+    spdlog::set_default_logger(spdlog::stderr_color_mt("vkfv"));
+    spdlog::set_pattern("%^%l%$: %v");
+}
+
+void log_as_json() {
+    lines_as_json = true;
+    spdlog::set_formatter(std::make_unique<JsonFormatter>());
+    interruptions_as_json();
+}
+
+bool logs_json() {
+    return lines_as_json;
+}
+
+std::string json_line(std::string_view kind, std::string_view name, const LogFields& fields) {
+    Json line = {{"time", now_text()}, {kind, name}};
+    for (const auto& [key, value] : fields) {
+        std::visit([&, &key = key](const auto& one) { line[key] = one; }, value);
+    }
+    return dumped(line);
+}
+
+void log_event(std::string_view name, const LogFields& fields) {
+    if (lines_as_json) {
+        std::fputs((json_line("event", name, fields) + "\n").c_str(), stderr);
+    }
+}
+
+std::string json_quoted(std::string_view text) {
+    return dumped(Json(text));
+}
+
+void log_failure(const std::string& message, int exit_code) {
+    if (lines_as_json) {
+        std::fputs(
+            (json_line("level", "error", {{"text", message}, {"exit_code", std::int64_t{exit_code}}}) + "\n").c_str(),
+            stderr);
+    } else {
+        std::fputs(("vkfv: " + message + "\n").c_str(), stderr);
+    }
+}
+
+} // namespace vkfv
