@@ -1,5 +1,19 @@
 // A focus curve as it passes by: each image's value is judged once those within the range after it are there too.
 
+#ifdef __cplusplus
+template <class Scene>
+real joint_value(const Scene& scene, int image) {
+    return scene.joint_value(image);
+}
+template <class Scene>
+real alone_value(const Scene& scene, int image) {
+    return scene.alone_value(image);
+}
+#else
+real joint_value(int image);
+real alone_value(int image);
+#endif
+
 VKFV_FUNCTION CurveRecord empty_curve() {
     CurveRecord curve;
     curve.largest = real(0.0);
@@ -20,6 +34,10 @@ VKFV_FUNCTION CurveRecord empty_curve() {
     curve.peak_2 = real(0.0);
     curve.peak_3 = real(0.0);
     curve.peak_4 = real(0.0);
+    curve.joint = real(0.0);
+    curve.alone = real(0.0);
+    curve.joint_energy = real(0.0);
+    curve.alone_energy = real(0.0);
     return curve;
 }
 
@@ -122,11 +140,17 @@ VKFV_SCENE_FUNCTION CurveStep follow_curve(VKFV_SCENE_PARAMETER FocusPlan plan, 
     step.place = NO_PLACE;
     real value = curve_value(VKFV_SCENE at);
     step.curve = follow_shape(before, value, at);
+    real joint = joint_value(VKFV_SCENE at);
+    real alone = alone_value(VKFV_SCENE at);
+    step.curve.joint_energy = before.joint_energy + joint * joint;
+    step.curve.alone_energy = before.alone_energy + alone * alone;
     bool turns = at == images - 1 || value >= curve_value(VKFV_SCENE min(at + 1, images - 1));
     if (at == 0 || (value > before.largest && turns)) {
         int range = min(plan.peak_range, min(at, images - 1 - at));
         PeakFit fit = locate_peak(VKFV_SCENE plan, at, range);
         step.curve.largest = value;
+        step.curve.joint = joint;
+        step.curve.alone = alone;
         step.curve.bend =
             range > 0 ? real(2.0) * value - curve_value(VKFV_SCENE at - 1) - curve_value(VKFV_SCENE at + 1) : real(0.0);
         step.curve.at = at;

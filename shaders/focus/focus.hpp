@@ -8,6 +8,8 @@
 //   WindowSums window_source(int field, int column, int row) const; level and response of a field (window.glsl)
 //   WindowSums window_row(int field, int column, int row) const;    what window_along_row() gave there
 //   real curve_value(int image) const;
+//   real joint_value(int image) const;                              see CurveRecord (records.glsl)
+//   real alone_value(int image) const;
 #pragma once
 
 #include <cmath>

@@ -6,6 +6,8 @@ layout(local_size_x = 128) in;
 #include "focus/device.glsl"
 
 layout(set = 0, binding = BINDING_CURVES, scalar) readonly buffer Curves { float curves[]; };
+layout(set = 0, binding = BINDING_JOINT, scalar) readonly buffer Joint { float joint[]; };
+layout(set = 0, binding = BINDING_ALONE, scalar) readonly buffer Alone { float alone[]; };
 layout(set = 0, binding = BINDING_RECORDS, scalar) buffer Records { CurveRecord records[]; };
 layout(set = 0, binding = BINDING_PLACES, scalar) writeonly buffer Places { float places[]; };
 
@@ -13,7 +15,13 @@ layout(push_constant, scalar) uniform Push { FollowedImage image; };
 
 int pixels() { return image.plan.columns * image.plan.rows; }
 
-real curve_value(int at) { return curves[(at % image.kept) * pixels() + int(invocation())]; }
+int place_of(int at) { return (at % image.kept) * pixels() + int(invocation()); }
+
+real curve_value(int at) { return curves[place_of(at)]; }
+
+real joint_value(int at) { return joint[place_of(at)]; }
+
+real alone_value(int at) { return alone[place_of(at)]; }
 
 void main() {
     int k = int(invocation());

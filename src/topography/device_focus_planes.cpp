@@ -61,7 +61,8 @@ std::vector<vulkan::Binding> with_planes(std::vector<vulkan::Binding> others,
 class DeviceFocusPlanes final : public FocusPlanes {
   public:
     DeviceFocusPlanes(std::shared_ptr<const vulkan::Device> device, const FocusPlanesPlan& stack)
-        : plan_(plan_in<focus::f32::Arithmetic>(stack.plan)), averaged_curves_(stack.averaged_curves_kept),
+        : plan_(plan_in<focus::f32::Arithmetic>(stack.plan)), images_averaged_(stack.images_averaged),
+          averaged_curves_(stack.averaged_curves_kept),
           pixels_(static_cast<std::size_t>(plan_.columns) * static_cast<std::size_t>(plan_.rows)),
           channels_(static_cast<std::size_t>(plan_.channels)), shared_(std::move(device)), device_(*shared_),
           mean_(device_, "focus_mean", ::focus_mean, with_planes({BINDING_TO}), sizeof(MeanTerms)),
@@ -77,7 +78,8 @@ class DeviceFocusPlanes final : public FocusPlanes {
           single_(device_, "focus_single", ::focus_single, storage_buffers({BINDING_CURVE, BINDING_SINGLES}),
                   sizeof(SingleImage)),
           follow_(device_, "focus_follow", ::focus_follow,
-                  storage_buffers({BINDING_CURVES, BINDING_RECORDS, BINDING_PLACES}), sizeof(FollowedImage)),
+                  storage_buffers({BINDING_CURVES, BINDING_JOINT, BINDING_ALONE, BINDING_RECORDS, BINDING_PLACES}),
+                  sizeof(FollowedImage)),
           gather_(device_, "focus_gather", ::focus_gather,
                   storage_buffers({BINDING_CURVES, BINDING_PIXELS, BINDING_GATHERED}), sizeof(GatheredImage)),
           select_(device_, "focus_select", ::focus_select, with_planes({BINDING_PLACES, BINDING_ALL_IN_FOCUS}),
@@ -86,7 +88,9 @@ class DeviceFocusPlanes final : public FocusPlanes {
           row_sums_(device_, static_cast<std::size_t>(focus_fields(plan_)) * pixels_ * sizeof(WindowSums)),
           weights_(device_, stack.window.weights().size() * sizeof(float)),
           averaged_(device_, static_cast<std::size_t>(averaged_curves_) * pixels_ * sizeof(float)),
-          alone_(device_, pixels_ * sizeof(float)), records_(device_, pixels_ * sizeof(CurveRecord)),
+          joint_(device_, images_averaged_ ? sizeof(float) : averaged_.bytes()),
+          joint_curve_(device_, images_averaged_ ? sizeof(float) : pixels_ * sizeof(float)),
+          alone_(device_, averaged_.bytes()), records_(device_, pixels_ * sizeof(CurveRecord)),
           singles_(device_, pixels_ * sizeof(SingleRecord)), places_(device_, pixels_ * sizeof(float)),
           brightness_(device_, pixels_ * sizeof(float)), all_in_focus_(device_, channels_ * pixels_ * sizeof(float)),
           gathered_count_(stack.gathered_pixels.size()),
@@ -105,6 +109,9 @@ class DeviceFocusPlanes final : public FocusPlanes {
         }
         for (int k = 0; k < stack.curves_kept; ++k) {
             curves_.emplace_back(device_, pixels_ * sizeof(float));
+            if (images_averaged_) {
+                singles_curves_.emplace_back(device_, pixels_ * sizeof(float));
+            }
         }
     }
 
@@ -122,30 +129,36 @@ class DeviceFocusPlanes final : public FocusPlanes {
     }
 
     void measure(int image, std::span<const Share> shares) override {
-        const vulkan::Buffer* measured = &mean_image_;
-        if (shares.size() == 1) {
-            measured = &image_at(shares[0].image);
+        if (images_averaged_) {
+            measure_mean(shares, curve_at(image));
         } else {
-            weighted_mean(
-                shares, [&](int k) -> const vulkan::Buffer& { return image_at(k); }, mean_image_, 0,
-                channels_* pixels_);
+            measure(image_at(image), curve_at(image));
         }
-        measured_alone_ = shares.size() == 1;
-        measure(*measured, curve_at(image));
     }
 
     void measure_alone(int image) override {
-        if (!measured_alone_) {
-            measure(image_at(image), alone_);
+        if (images_averaged_) {
+            measure(image_at(image), single_curve_at(image));
         }
-        dispatch(single_, {{BINDING_CURVE, measured_alone_ ? &curve_at(image) : &alone_}, {BINDING_SINGLES, &singles_}},
+        dispatch(single_, {{BINDING_CURVE, &single_curve_at(image)}, {BINDING_SINGLES, &singles_}},
                  SingleImage{static_cast<std::uint32_t>(pixels_), image}, pixels_);
     }
 
     void average(int image, std::span<const Share> shares) override {
         weighted_mean(
-            shares, [&](int k) -> const vulkan::Buffer& { return curve_at(k); }, averaged_,
-            static_cast<std::size_t>(image % averaged_curves_) * pixels_, pixels_);
+            shares, [&](int k) -> const vulkan::Buffer& { return curve_at(k); }, averaged_, place_of(image), pixels_);
+    }
+
+    void average_alone(int image, std::span<const Share> shares) override {
+        weighted_mean(
+            shares, [&](int k) -> const vulkan::Buffer& { return single_curve_at(k); }, alone_, place_of(image),
+            pixels_);
+    }
+
+    void measure_joint(int image, std::span<const Share> shares) override {
+        measure_mean(shares, joint_curve_);
+        commands().copy(joint_curve_, joint_, pixels_ * sizeof(float), 0, place_of(image) * sizeof(float));
+        commands().barrier();
     }
 
     void gather(int image) override {
@@ -156,15 +169,19 @@ class DeviceFocusPlanes final : public FocusPlanes {
         dispatch(
             gather_,
             {{BINDING_CURVES, &averaged_}, {BINDING_PIXELS, &gathered_pixels_}, {BINDING_GATHERED, &gathered_.back()}},
-            GatheredImage{static_cast<std::uint32_t>(gathered_count_),
-                          static_cast<std::uint32_t>(image % averaged_curves_) * static_cast<std::uint32_t>(pixels_),
+            GatheredImage{static_cast<std::uint32_t>(gathered_count_), static_cast<std::uint32_t>(place_of(image)),
                           static_cast<std::uint32_t>((gathered_images_ % images_a_gathered_buffer) * gathered_count_)},
             gathered_count_);
         ++gathered_images_;
     }
 
     void follow(int image, int images) override {
-        dispatch(follow_, {{BINDING_CURVES, &averaged_}, {BINDING_RECORDS, &records_}, {BINDING_PLACES, &places_}},
+        dispatch(follow_,
+                 {{BINDING_CURVES, &averaged_},
+                  {BINDING_JOINT, images_averaged_ ? &averaged_ : &joint_},
+                  {BINDING_ALONE, &alone_},
+                  {BINDING_RECORDS, &records_},
+                  {BINDING_PLACES, &places_}},
                  FollowedImage{plan_, image, images, averaged_curves_}, pixels_);
         const int first = std::max(0, image - plan_.peak_range);
         const int last = std::min(images - 1, image + plan_.peak_range);
@@ -228,6 +245,11 @@ class DeviceFocusPlanes final : public FocusPlanes {
   private:
     vulkan::Buffer& image_at(int k) { return images_[static_cast<std::size_t>(k) % images_.size()]; }
     vulkan::Buffer& curve_at(int k) { return curves_[static_cast<std::size_t>(k) % curves_.size()]; }
+    vulkan::Buffer& single_curve_at(int k) {
+        return images_averaged_ ? singles_curves_[static_cast<std::size_t>(k) % singles_curves_.size()] : curve_at(k);
+    }
+    // Where an averaged curve's values at the image begin.
+    std::size_t place_of(int image) const { return static_cast<std::size_t>(image % averaged_curves_) * pixels_; }
 
     template <class Push>
     void dispatch(const vulkan::Kernel& kernel, const std::vector<vulkan::Binding>& bindings, const Push& push,
@@ -249,6 +271,12 @@ class DeviceFocusPlanes final : public FocusPlanes {
                  plan_, pixels_);
         dispatch(columns_, {{BINDING_ROW_SUMS, &row_sums_}, {BINDING_WEIGHTS, &weights_}, {BINDING_CURVE, &curve}},
                  plan_, pixels_);
+    }
+
+    void measure_mean(std::span<const Share> shares, const vulkan::Buffer& curve) {
+        weighted_mean(
+            shares, [&](int k) -> const vulkan::Buffer& { return image_at(k); }, mean_image_, 0, channels_* pixels_);
+        measure(mean_image_, curve);
     }
 
     // first_to: in values.
@@ -290,22 +318,23 @@ class DeviceFocusPlanes final : public FocusPlanes {
     }
 
     FocusPlan plan_;
+    bool images_averaged_;
     int averaged_curves_;
     std::size_t pixels_;
     std::size_t channels_;
     std::shared_ptr<const vulkan::Device> shared_;
     const vulkan::Device& device_;
     vulkan::Kernel mean_, add_brightness_, response_, rows_, columns_, single_, follow_, gather_, select_;
-    vulkan::Buffer mean_image_, responses_, row_sums_, weights_, averaged_, alone_, records_, singles_, places_,
-        brightness_, all_in_focus_;
+    vulkan::Buffer mean_image_, responses_, row_sums_, weights_, averaged_, joint_, joint_curve_, alone_, records_,
+        singles_, places_, brightness_, all_in_focus_;
     std::size_t gathered_count_; // pixels
     vulkan::Buffer gathered_pixels_;
     std::deque<vulkan::Buffer> gathered_; // in host memory
     std::size_t gathered_images_ = 0;
-    std::vector<vulkan::Buffer> images_;   // the last few in turn
-    std::vector<vulkan::Buffer> curves_;   // likewise
-    bool measured_alone_ = false;          // what was measured last is an image itself
-    std::vector<vulkan::Buffer> carriers_; // in host memory, in turn
+    std::vector<vulkan::Buffer> images_;         // the last few in turn
+    std::vector<vulkan::Buffer> curves_;         // likewise
+    std::vector<vulkan::Buffer> singles_curves_; // of images themselves, where `curves_` are of averaged ones
+    std::vector<vulkan::Buffer> carriers_;       // in host memory, in turn
     std::unique_ptr<vulkan::Commands> commands_;
     std::unique_ptr<vulkan::Commands> submitted_;
 };

@@ -27,7 +27,10 @@ using RecordTask = std::function<void(std::size_t pixel, const focus::f64::Curve
 struct FocusPlanesPlan {
     focus::f64::FocusPlan plan{};
     FocusWindow window;
-    // How many of the last images and curves are asked for again.
+    // Images are averaged before they are measured: joint_value() (records.glsl) is the averaged curves' value then.
+    bool images_averaged = false;
+    // How many of the last images, of the curves (those of single images too), and of the averaged curves with what
+    // follow() compares are asked for again.
     int images_kept = 0;
     int curves_kept = 0;
     int averaged_curves_kept = 0;
@@ -43,6 +46,10 @@ class FocusPlanes {
     virtual void measure(int image, std::span<const Share> shares) = 0;
     // The focus measure of the image itself, which was measured last, for follow_single() of every pixel.
     virtual void measure_alone(int image) = 0;
+    // alone_value() (records.glsl) at `image`: the weighted mean of what measure_alone() found.
+    virtual void average_alone(int image, std::span<const Share> shares) = 0;
+    // joint_value() at `image` where images are not averaged: the focus measure of the weighted mean of images taken.
+    virtual void measure_joint(int image, std::span<const Share> shares) = 0;
     // The weighted mean of curves measured: the averaged curves' values at `image`.
     virtual void average(int image, std::span<const Share> shares) = 0;
     // Keeps the averaged curves' values at `image`, which was averaged last, of the plan's pixels.

@@ -7,6 +7,7 @@
 #include <cstdint>
 #include <limits>
 #include <numeric>
+#include <random>
 
 namespace vkfv::topography {
 namespace {
@@ -62,6 +63,26 @@ NoiseModel fitted(const std::vector<double>& x, const std::vector<double>& y) {
     const double constant = mean_y - slope * mean_x;
     return constant >= 0 ? NoiseModel{.constant = constant, .slope = slope}
                          : NoiseModel{.constant = 0, .slope = mean_x > 0 ? mean_y / mean_x : 0};
+}
+
+double variance_of(const std::vector<double>& values) {
+    const auto count = static_cast<double>(values.size());
+    const double mean = std::accumulate(values.begin(), values.end(), 0.0) / count;
+    double variance = 0;
+    for (const double value : values) {
+        variance += (value - mean) * (value - mean) / count;
+    }
+    return variance;
+}
+
+// By how much neighbours agree: 0 of values without order, 1 of a smooth curve.
+double neighbours_alike(const std::vector<double>& values) {
+    const double variance = variance_of(values);
+    double steps = 0;
+    for (std::size_t k = 1; k < values.size(); ++k) {
+        steps += (values[k] - values[k - 1]) * (values[k] - values[k - 1]) / static_cast<double>(values.size() - 1);
+    }
+    return variance > 0 ? std::max(0.0, 1 - steps / (2 * variance)) : 0;
 }
 
 // The limit of the smallest quarter.
@@ -221,14 +242,9 @@ double FocusProbes::curve_width() const {
     std::vector<double> structure(static_cast<std::size_t>(lags));
     for (const Probe& probe : probes_) {
         const std::vector<double>& values = probe.singles;
-        const double mean = std::accumulate(values.begin(), values.end(), 0.0) / images_;
-        double variance = 0, steps = 0;
-        for (std::size_t k = 0; k < values.size(); ++k) {
-            variance += (values[k] - mean) * (values[k] - mean) / images_;
-            steps += k > 0 ? (values[k] - values[k - 1]) * (values[k] - values[k - 1]) / (images_ - 1) : 0;
-        }
-        // By how much neighbours agree: noise alone says nothing of a width, but there is much of it.
-        const double weight = variance > 0 ? std::max(0.0, 1 - steps / (2 * variance)) / variance : 0;
+        const double variance = variance_of(values);
+        // Noise alone says nothing of a width, but there is much of it.
+        const double weight = variance > 0 ? neighbours_alike(values) / variance : 0;
         for (int lag = 1; weight > 0 && lag <= lags; ++lag) {
             double sum = 0;
             for (int k = 0; k < images_; ++k) {
@@ -264,26 +280,69 @@ double FocusProbes::curve_width() const {
     return best;
 }
 
-FocusProbes::Differences FocusProbes::differences(const Probe& probe, std::size_t channel) const {
-    const auto pixels = probe.pixels();
-    const auto stride = static_cast<std::size_t>(channels_) * pixels;
-    Differences found;
-    for (int image = 1; image + 1 < images_; ++image) {
-        const float* here = probe.values.data() + static_cast<std::size_t>(image) * stride + channel * pixels;
-        double sum = 0;
-        for (std::size_t k = 0; k < pixels; ++k) {
-            const double second = here[k - stride] - 2.0 * here[k] + here[k + stride];
-            sum += second * second;
-            found.level += here[k];
+std::vector<double> FocusProbes::brightness() const {
+    std::vector<double> brightness(static_cast<std::size_t>(images_));
+    for (const Probe& probe : probes_) {
+        const auto stride = static_cast<std::ptrdiff_t>(probe.values.size() / brightness.size());
+        for (std::size_t image = 0; image < brightness.size(); ++image) {
+            const auto from = probe.values.begin() + static_cast<std::ptrdiff_t>(image) * stride;
+            brightness[image] += std::accumulate(from, from + stride, 0.0) / static_cast<double>(stride);
         }
+    }
+    const double mean = std::accumulate(brightness.begin(), brightness.end(), 0.0) / images_;
+    for (double& value : brightness) {
+        value = mean > 0 && value > 0 ? value / mean : 1;
+    }
+    return brightness;
+}
+
+Saturation FocusProbes::saturation() const {
+    SaturationCount count;
+    for (const Probe& probe : probes_) {
+        count.add(probe.values);
+    }
+    return count.found();
+}
+
+std::optional<double> FocusProbes::second_difference(const Probe& probe, int image, std::size_t k,
+                                                     const Scale& scale) const {
+    const std::size_t stride = static_cast<std::size_t>(channels_) * probe.pixels();
+    const auto at = static_cast<std::size_t>(image);
+    const float* here = probe.values.data() + at * stride + k;
+    const float before = here[-static_cast<std::ptrdiff_t>(stride)], after = here[stride];
+    if (std::max({before, *here, after}) >= scale.saturated) {
+        return std::nullopt;
+    }
+    return before / scale.brightness[at - 1] - 2.0 * *here / scale.brightness[at] + after / scale.brightness[at + 1];
+}
+
+FocusProbes::Differences FocusProbes::differences(const Probe& probe, std::size_t channel, const Scale& scale) const {
+    const auto pixels = probe.pixels();
+    Differences found;
+    std::size_t all = 0;
+    for (int image = 1; image + 1 < images_; ++image) {
+        const auto begin = static_cast<std::size_t>(image * channels_) * pixels;
+        double sum = 0;
+        std::size_t count = 0;
+        for (std::size_t k = channel * pixels; k < (channel + 1) * pixels; ++k) {
+            if (const auto second = second_difference(probe, image, k, scale)) {
+                sum += *second * *second;
+                found.level += probe.values[begin + k];
+                ++count;
+            }
+        }
+        all += count;
         constexpr double gain = 1 + 4 + 1; // of the second difference on the variance of independent values
-        found.variances.push_back(sum / static_cast<double>(pixels) / gain);
+        // Of few values the smallest quarter would be that of the fewest.
+        const bool enough = 2 * count >= pixels;
+        found.variances.push_back(enough ? sum / static_cast<double>(count) / gain
+                                         : std::numeric_limits<double>::infinity());
     }
     if (found.variances.empty()) {
         return found;
     }
     const auto count = static_cast<double>(found.variances.size());
-    found.level /= static_cast<double>(pixels) * count;
+    found.level /= static_cast<double>(std::max<std::size_t>(1, all));
     // Of images that are mostly dark, the quarter that saw no light says nothing.
     const auto dark = std::ranges::count(probe.values, 0.0f);
     found.sparse = static_cast<std::size_t>(dark) > probe.values.size() / 2;
@@ -292,20 +351,20 @@ FocusProbes::Differences FocusProbes::differences(const Probe& probe, std::size_
     return found;
 }
 
-std::vector<FocusProbes::Differences> FocusProbes::all_differences() const {
+std::vector<FocusProbes::Differences> FocusProbes::all_differences(const Scale& scale) const {
     const auto channels = static_cast<std::size_t>(channels_);
     std::vector<Differences> found(probes_.size() * channels);
     parallel_items(static_cast<int>(found.size()), [&](int k) {
         const auto patch = static_cast<std::size_t>(k);
-        found[patch] = differences(probes_[patch / channels], patch % channels);
+        found[patch] = differences(probes_[patch / channels], patch % channels, scale);
     });
     return found;
 }
 
 NoiseModel FocusProbes::noise() const {
     std::vector<double> levels, variances;
-    for (const Differences& found : all_differences()) {
-        if (!found.variances.empty()) {
+    for (const Differences& found : all_differences(scale())) {
+        if (!found.variances.empty() && std::isfinite(found.variance)) {
             levels.push_back(found.level);
             variances.push_back(found.variance);
         }
@@ -313,18 +372,16 @@ NoiseModel FocusProbes::noise() const {
     return levels.empty() ? NoiseModel{} : fitted(levels, variances);
 }
 
-FocusProbes::Products FocusProbes::products_of(const Probe& probe, std::size_t channel) const {
+FocusProbes::Products FocusProbes::products_of(const Probe& probe, std::size_t channel, const Scale& scale) const {
     const auto pixels = probe.pixels();
-    const auto stride = static_cast<std::size_t>(channels_) * pixels;
-    const Differences found = differences(probe, channel);
+    const Differences found = differences(probe, channel, scale);
     Products products{.images = quiet_images(found.variances, found.sparse),
                       .sums = Grid<double>(2 * NoiseCorrelation::reach + 1, NoiseCorrelation::reach + 1)};
     std::vector<double> second;
     for (const int image : products.images) {
-        const float* here = probe.values.data() + static_cast<std::size_t>(image) * stride + channel * pixels;
         second.clear();
-        for (std::size_t k = 0; k < pixels; ++k) {
-            second.push_back(here[k - stride] - 2.0 * here[k] + here[k + stride]);
+        for (std::size_t k = channel * pixels; k < (channel + 1) * pixels; ++k) {
+            second.push_back(second_difference(probe, image, k, scale).value_or(0));
         }
         add_products(second, probe.columns, probe.rows, products.sums);
     }
@@ -338,9 +395,10 @@ NoiseCorrelation FocusProbes::noise_correlation() const {
     }
     const auto channels = static_cast<std::size_t>(channels_);
     std::vector<Products> of_patches(probes_.size() * channels);
+    const Scale scale = this->scale();
     parallel_items(static_cast<int>(of_patches.size()), [&](int k) {
         const auto patch = static_cast<std::size_t>(k);
-        of_patches[patch] = products_of(probes_[patch / channels], patch % channels);
+        of_patches[patch] = products_of(probes_[patch / channels], patch % channels, scale);
     });
     constexpr int reach = NoiseCorrelation::reach;
     // Of pairs (dx, dy) apart: mean products over each patch's variance, with the number of pairs in all patches.
@@ -396,6 +454,108 @@ std::vector<Evidence> FocusProbes::by_chance(const std::vector<double>& axial_we
     return result;
 }
 
+Channels FocusProbes::noise_patch(const Probe& probe, int image, double contrast, const Scale& scale) const {
+    const auto pixels = probe.pixels();
+    std::vector<double> noise(static_cast<std::size_t>(channels_) * pixels);
+    for (std::size_t k = 0; k < noise.size(); ++k) {
+        noise[k] = second_difference(probe, image, k, scale).value_or(0);
+    }
+    Channels patch(static_cast<std::size_t>(channels_), Grid<float>(probe.columns, probe.rows, 1.0f));
+    const double largest = std::abs(*std::ranges::max_element(noise, {}, [](double v) { return std::abs(v); }));
+    if (!(largest > 0)) {
+        return {};
+    }
+    // Twice: the first time by any strength, to learn what measure this strength has.
+    double strength = contrast / largest;
+    for (int time = 0; time < 2; ++time) {
+        for (std::size_t k = 0; k < noise.size(); ++k) {
+            patch[k / pixels].values[k % pixels] = static_cast<float>(1 + strength * noise[k]);
+        }
+        const double found = focus_at(patch, measure_, window_, probe.middle_column, probe.middle_row);
+        if (!(found > 0)) {
+            return {};
+        }
+        strength *= contrast / found;
+    }
+    return patch;
+}
+
+IndependentImages FocusProbes::independent_images(const std::vector<double>& neighbour_weights,
+                                                  bool curves_averaged) const {
+    constexpr std::size_t least_probes = 9;
+    constexpr double contrast = 0.01; // far below 1, where the measure would divide by a brightness that changes
+    constexpr int samples = 400;      // for the standard deviation to a twenty-fifth
+    if (images_ < 3 || probes_.size() < least_probes) {
+        return {};
+    }
+    const Scale scale = this->scale();
+    std::vector<std::vector<int>> quiet;
+    for (const Probe& probe : probes_) {
+        const Differences found = differences(probe, 0, scale);
+        quiet.push_back(quiet_images(found.variances, found.sparse));
+    }
+    const int radius = static_cast<int>(neighbour_weights.size()) - 1;
+    const int images = curves_averaged ? 4 * radius + 1 : 2 * radius + 1, middle = images / 2;
+    const auto shares = all_shares(axial_shares, neighbour_weights, images);
+    const auto& around = shares[static_cast<std::size_t>(middle)];
+    double kept = 0;
+    for (const auto& [image, weight] : around) {
+        kept += static_cast<double>(weight) * static_cast<double>(weight);
+    }
+    std::vector<double> ratios(samples);
+    parallel_items(samples, [&](int sample) {
+        std::mt19937_64 random(static_cast<std::uint64_t>(sample));
+        const std::vector<int> places = random_order(static_cast<int>(probes_.size()), random());
+        std::vector<Channels> patches;
+        for (std::size_t k = 0; static_cast<int>(patches.size()) < images && k < 4 * places.size() + 4; ++k) {
+            const auto place = static_cast<std::size_t>(places[k % places.size()]);
+            const Probe& probe = probes_[place];
+            if (quiet[place].empty() || probe.pixels() != probes_.front().pixels() ||
+                probe.columns != probes_.front().columns) {
+                continue;
+            }
+            Channels patch = noise_patch(probe, quiet[place][random() % quiet[place].size()], contrast, scale);
+            if (!patch.empty()) {
+                patches.push_back(std::move(patch));
+            }
+        }
+        if (static_cast<int>(patches.size()) < images) {
+            return;
+        }
+        const auto value_at = [&](int at) {
+            Channels mean(static_cast<std::size_t>(channels_), Grid<float>(patches[0][0].columns, patches[0][0].rows));
+            for (const auto& [image, weight] : shares[static_cast<std::size_t>(at)]) {
+                const Channels& from = patches[static_cast<std::size_t>(image)];
+                for (std::size_t channel = 0; channel < mean.size(); ++channel) {
+                    for (std::size_t k = 0; k < mean[channel].values.size(); ++k) {
+                        mean[channel].values[k] += weight * from[channel].values[k];
+                    }
+                }
+            }
+            return focus_at(mean, measure_, window_, probes_.front().middle_column, probes_.front().middle_row);
+        };
+        double value = curves_averaged ? 0 : value_at(middle);
+        if (curves_averaged) {
+            for (const auto& [at, weight] : around) {
+                value += weight * value_at(at);
+            }
+        }
+        ratios[static_cast<std::size_t>(sample)] = value * value / (kept * contrast * contrast);
+    });
+    std::erase(ratios, 0.0);
+    if (ratios.size() < samples / 2) {
+        return {};
+    }
+    const auto count = static_cast<double>(ratios.size());
+    IndependentImages found{.mean = std::accumulate(ratios.begin(), ratios.end(), 0.0) / count};
+    double squares = 0;
+    for (const double ratio : ratios) {
+        squares += (ratio - found.mean) * (ratio - found.mean);
+    }
+    found.deviation = std::sqrt(squares / (count - 1));
+    return found;
+}
+
 double FocusProbes::share_with_rival(const std::vector<double>& axial_weights, double most_rival) const {
     // The floor of noise must not pass for a maximum at either end.
     const auto curves = curves_in_order({.images = all_shares(even_shares, axial_weights, images_),
@@ -434,15 +594,51 @@ std::vector<std::vector<double>> FocusProbes::some_curves() const {
     return curves;
 }
 
+double FocusProbes::distance_from_the_ends(double share_nearer) const {
+    struct Place {
+        double distance;
+        double weight;
+    };
+    std::vector<Place> places;
+    double total = 0;
+    const auto means = all_shares(axial_shares, axial_weights(least_smoothing), images_);
+    for (const Probe& probe : probes_) {
+        const std::vector<double> curve = averaged(probe.singles, means);
+        const auto at = static_cast<int>(std::ranges::max_element(curve) - curve.begin());
+        const int distance = std::min(at, images_ - 1 - at);
+        // A maximum at an end is not in the scan, however little is averaged.
+        if (distance > 0) {
+            const double form = neighbours_alike(probe.singles);
+            places.push_back({static_cast<double>(distance), form * form});
+            total += places.back().weight;
+        }
+    }
+    std::ranges::sort(places, {}, &Place::distance);
+    double sum = 0;
+    for (const auto& [distance, weight] : places) {
+        sum += weight;
+        if (sum > share_nearer * total) {
+            return distance;
+        }
+    }
+    return images_;
+}
+
 double FocusProbes::suitable_smoothing() const {
-    return images_ <= few_images ? 0 : topography::suitable_smoothing(curve_width(), images_);
+    if (images_ <= few_images) {
+        return 0;
+    }
+    // Both averages of this standard deviation bring Gaussian curves nearer than 1.6 of it to the end itself, whatever
+    // their width.
+    constexpr double least_distance = 2, share_nearer = 0.05;
+    return std::min(topography::suitable_smoothing(curve_width(), images_),
+                    std::max(least_smoothing, distance_from_the_ends(share_nearer) / least_distance));
 }
 
 double suitable_smoothing(double curve_width, int images) {
     constexpr double most_of_the_scan = 0.1;
-    constexpr double least = 1; // less averages little, but makes three images of curves as narrow as one unimodal
     const double smoothing = std::min(most_smoothing_of_width * curve_width, most_of_the_scan * (images - 1));
-    return smoothing >= least ? smoothing : 0;
+    return smoothing >= least_smoothing ? smoothing : 0;
 }
 
 } // namespace vkfv::topography

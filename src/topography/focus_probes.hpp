@@ -7,8 +7,11 @@
 #include "topography/chance.hpp"
 #include "topography/focus_measure.hpp"
 #include "topography/noise_gain.hpp"
+#include "topography/persistence.hpp"
+#include "topography/saturation.hpp"
 
 #include <cstddef>
+#include <optional>
 #include <vector>
 
 namespace vkfv::topography {
@@ -19,6 +22,10 @@ inline constexpr int least_images_for_correlation = 10;
 // The widest average along z over the standard deviation of the focus curves: two thirds of a Gaussian's half width.
 // Heights are best at 0.6 to 1, of stacks full of noise at 1; the wider, the more of a short scan is blurred.
 inline constexpr double most_smoothing_of_width = 0.8;
+
+// The least average along z that is made, in images: less averages little, but makes three images of curves as narrow
+// as one unimodal.
+inline constexpr double least_smoothing = 1;
 
 // Of single images: variance = constant + slope * value, in the images' unit squared.
 struct NoiseModel {
@@ -40,8 +47,14 @@ class FocusProbes {
     // term alone is noise's. At least 4 images; else 0.
     double curve_width() const;
 
+    // Brightness of every image over the stack's mean, of all probes together.
+    std::vector<double> brightness() const;
+
+    Saturation saturation() const;
+
     // By least squares over all probes, from those second differences along z that are the smallest quarter of each:
-    // texture that comes into focus makes others larger. Of a channel.
+    // texture that comes into focus makes others larger. Of a channel. Images are taken at the mean brightness, so that
+    // flickering light is no noise, and saturated values are left out.
     NoiseModel noise() const;
 
     // Of the same second differences, those between the smallest; every probe counts alike, all channels together. What
@@ -54,6 +67,11 @@ class FocusProbes {
     // the better the less an order costs.
     std::vector<Evidence> by_chance(const std::vector<double>& axial_weights, double rate) const;
 
+    // What images of noise alone would have in common (persistence.hpp), found with the patches of quiet images'
+    // second differences along z, of another probe for every image and all of one strength. neighbour_weights: of an
+    // image's neighbours; curves_averaged: so are the curves. Nothing of few probes, and of stacks without noise.
+    IndependentImages independent_images(const std::vector<double>& neighbour_weights, bool curves_averaged) const;
+
     // Share of the probes whose curves have a second maximum of this prominence over the first's height above the mean,
     // and more than noise brings. Noise is what second differences of single images' curves tell, which narrow peaks
     // make larger: fewer are found then. axial_weights: of both averages.
@@ -62,7 +80,13 @@ class FocusProbes {
     // Of single images at every seventh probe: what the stack as a whole is judged by (chance.hpp).
     std::vector<std::vector<double>> some_curves() const;
 
-    // Standard deviation of the average along z, in images, that suits these curves. None of few_images.
+    // Distance from the nearer end of the scan, in images, than which this share of the curves' maxima is nearer.
+    // Curves count by the square of how much neighbouring images' values agree, and those whose maximum is at an end do
+    // not.
+    double distance_from_the_ends(double share_nearer) const;
+
+    // Standard deviation of the average along z, in images, that suits these curves: that of their width, or less where
+    // it would bring one maximum in twenty or more to an end of the scan. None of few_images.
     double suitable_smoothing() const;
 
   private:
@@ -89,8 +113,19 @@ class FocusProbes {
         double variance = 0;             // by the smallest quarter of the variances; sparse: by all
         bool sparse = false;             // most of the values are 0
     };
-    Differences differences(const Probe& probe, std::size_t channel) const;
-    std::vector<Differences> all_differences() const; // channel by channel of probe by probe
+    // What second differences are taken of: values over the image's brightness, but for saturated ones.
+    struct Scale {
+        std::vector<double> brightness;
+        float saturated;
+    };
+    Scale scale() const { return {.brightness = brightness(), .saturated = saturation().level}; }
+    // Of the image's value k of a patch of all channels; none where one of the three values is saturated.
+    std::optional<double> second_difference(const Probe& probe, int image, std::size_t k, const Scale& scale) const;
+    Differences differences(const Probe& probe, std::size_t channel, const Scale& scale) const;
+    std::vector<Differences> all_differences(const Scale& scale) const; // channel by channel of probe by probe
+
+    // A patch of all channels whose differences from 1 have the focus measure `contrast`; empty where there are none.
+    Channels noise_patch(const Probe& probe, int image, double contrast, const Scale& scale) const;
 
     // Of second differences that are noise: their images, and sums of products of those (dx, dy) apart,
     // 0 <= dy <= reach, -reach <= dx <= reach.
@@ -98,7 +133,7 @@ class FocusProbes {
         std::vector<int> images{};
         Grid<double> sums{};
     };
-    Products products_of(const Probe& probe, std::size_t channel) const;
+    Products products_of(const Probe& probe, std::size_t channel, const Scale& scale) const;
 
     // What every mean is made of: of the images, then of the curve's values.
     struct Means {

@@ -24,8 +24,12 @@ class Ring {
 template <class Real>
 struct CurveScene {
     const Ring<Grid<float>>& curves;
+    const Ring<Grid<float>>& joint;
+    const Ring<Grid<float>>& alone;
     std::size_t pixel;
     Real curve_value(int image) const { return curves[image].values[pixel]; }
+    Real joint_value(int image) const { return joint[image].values[pixel]; }
+    Real alone_value(int image) const { return alone[image].values[pixel]; }
 };
 
 template <class Arithmetic>
@@ -36,7 +40,8 @@ class HostFocusPlanes final : public FocusPlanes {
     explicit HostFocusPlanes(const FocusPlanesPlan& plan)
         : plan_(plan_in<Arithmetic>(plan.plan)), weights_(plan.window.weights().begin(), plan.window.weights().end()),
           gathered_pixels_(plan.gathered_pixels), images_(plan.images_kept), curves_(plan.curves_kept),
-          averaged_(plan.averaged_curves_kept) {
+          averaged_(plan.averaged_curves_kept), images_averaged_(plan.images_averaged),
+          singles_curves_(plan.curves_kept), joint_(plan.averaged_curves_kept), alone_(plan.averaged_curves_kept) {
         summary_.brightness = Grid<float>(plan_.columns, plan_.rows);
         records_ = Grid<typename Arithmetic::Curve>(plan_.columns, plan_.rows, Arithmetic::empty());
         singles_ = Grid<typename Arithmetic::Single>(plan_.columns, plan_.rows);
@@ -53,19 +58,13 @@ class HostFocusPlanes final : public FocusPlanes {
     }
 
     void measure(int image, std::span<const Share> shares) override {
-        alone_ = shares.size() == 1;
-        if (alone_) {
-            curves_[image] = measure_of(images_[image]);
-            return;
-        }
-        Channels mean;
-        for (std::size_t channel = 0; channel < static_cast<std::size_t>(plan_.channels); ++channel)
-            mean.push_back(weighted_mean(shares, [&](int k) -> const Grid<float>& { return images_[k][channel]; }));
-        curves_[image] = measure_of(mean);
+        curves_[image] = images_averaged_ ? measure_of(mean_image(shares)) : measure_of(images_[image]);
     }
 
     void measure_alone(int image) override {
-        const Grid<float> values = alone_ ? curves_[image] : measure_of(images_[image]);
+        if (images_averaged_)
+            singles_curves_[image] = measure_of(images_[image]);
+        const Grid<float>& values = single_curves()[image];
         pixels([&](std::size_t k) {
             singles_.values[k] = follow_single(singles_.values[k], static_cast<Real>(values.values[k]), image);
         });
@@ -75,6 +74,14 @@ class HostFocusPlanes final : public FocusPlanes {
         averaged_[image] = weighted_mean(shares, [&](int k) -> const Grid<float>& { return curves_[k]; });
     }
 
+    void average_alone(int image, std::span<const Share> shares) override {
+        alone_[image] = weighted_mean(shares, [&](int k) -> const Grid<float>& { return single_curves()[k]; });
+    }
+
+    void measure_joint(int image, std::span<const Share> shares) override {
+        joint_[image] = measure_of(mean_image(shares));
+    }
+
     void gather(int image) override {
         for (const std::uint32_t pixel : gathered_pixels_)
             summary_.gathered.push_back(averaged_[image].values[pixel]);
@@ -82,7 +89,8 @@ class HostFocusPlanes final : public FocusPlanes {
 
     void follow(int image, int images) override {
         pixels([&](std::size_t k) {
-            const auto step = follow_curve(CurveScene<Real>{averaged_, k}, plan_, records_.values[k], image, images);
+            const CurveScene<Real> scene{averaged_, images_averaged_ ? averaged_ : joint_, alone_, k};
+            const auto step = follow_curve(scene, plan_, records_.values[k], image, images);
             records_.values[k] = step.curve;
             if (step.place == Arithmetic::no_place()) {
                 return;
@@ -106,6 +114,15 @@ class HostFocusPlanes final : public FocusPlanes {
 
   private:
     Grid<float> measure_of(const Channels& image) const { return focus_values<Arithmetic>(image, plan_, weights_); }
+
+    Channels mean_image(std::span<const Share> shares) const {
+        Channels mean;
+        for (std::size_t channel = 0; channel < static_cast<std::size_t>(plan_.channels); ++channel)
+            mean.push_back(weighted_mean(shares, [&](int k) -> const Grid<float>& { return images_[k][channel]; }));
+        return mean;
+    }
+
+    const Ring<Grid<float>>& single_curves() const { return images_averaged_ ? singles_curves_ : curves_; }
 
     template <class Task>
     void pixels(const Task& task) const {
@@ -136,10 +153,13 @@ class HostFocusPlanes final : public FocusPlanes {
     Ring<Channels> images_;
     Ring<Grid<float>> curves_;
     Ring<Grid<float>> averaged_;
+    bool images_averaged_;
+    Ring<Grid<float>> singles_curves_; // empty unless images are averaged
+    Ring<Grid<float>> joint_;          // empty if images are averaged
+    Ring<Grid<float>> alone_;
     StackSummary summary_;
     Grid<typename Arithmetic::Curve> records_;
     Grid<typename Arithmetic::Single> singles_;
-    bool alone_ = false; // what was measured last is an image itself
 };
 
 } // namespace

@@ -176,6 +176,17 @@ ImageTransform registered(const Grid<float>& reference, const Grid<float>& image
         const Shift shift = shift_of(reference, image, middle_part(columns, rows));
         return {.shift_x = shift.x, .shift_y = shift.y};
     }
+    return measured_transform(reference, image).transform;
+}
+
+MeasuredTransform measured_transform(const Grid<float>& reference, const Grid<float>& image) {
+    const int columns = image.columns, rows = image.rows;
+    struct PartShift {
+        Shift shift;
+        double from_x;
+        double from_y;
+    };
+    std::vector<PartShift> parts;
     // Weighted least squares of shift + (scale - 1) (point - middle) through the parts' shifts.
     double weight = 0, x = 0, y = 0, at_x = 0, at_y = 0, squares = 0, products = 0;
     for (int j = 0; j < 3; ++j) {
@@ -184,6 +195,7 @@ ImageTransform registered(const Grid<float>& reference, const Grid<float>& image
             const Shift shift = shift_of(reference, image, part);
             const double from_x = part.column + 0.5 * (part.columns - columns);
             const double from_y = part.row + 0.5 * (part.rows - rows);
+            parts.push_back({shift, from_x, from_y});
             weight += shift.certainty;
             x += shift.certainty * shift.x;
             y += shift.certainty * shift.y;
@@ -198,7 +210,20 @@ ImageTransform registered(const Grid<float>& reference, const Grid<float>& image
     }
     const double spread = squares - (at_x * at_x + at_y * at_y) / weight;
     const double slope = spread > 0 ? (products - (at_x * x + at_y * y) / weight) / spread : 0;
-    return {.shift_x = (x - slope * at_x) / weight, .shift_y = (y - slope * at_y) / weight, .scale = 1 + slope};
+    const ImageTransform transform{
+        .shift_x = (x - slope * at_x) / weight, .shift_y = (y - slope * at_y) / weight, .scale = 1 + slope};
+    double residual = 0;
+    for (const auto& [shift, from_x, from_y] : parts) {
+        const double off_x = shift.x - transform.shift_x - slope * from_x;
+        const double off_y = shift.y - transform.shift_y - slope * from_y;
+        residual += shift.certainty * (off_x * off_x + off_y * off_y);
+    }
+    // Of nine parts of half the side four do not overlap; three of their eight shifts are fitted.
+    constexpr double independent = 4, free_values = 5;
+    const double variance = residual / weight * independent / free_values; // of a part's shift, either component
+    return {.transform = transform,
+            .shift_deviation = std::sqrt(variance / independent),
+            .scale_deviation = spread > 0 ? std::sqrt(variance / independent * weight / spread) : 0};
 }
 
 std::vector<ImageTransform> in_common_frame(std::span<const ImageTransform> from_neighbour) {

@@ -26,6 +26,14 @@ struct ImageTransform {
 // their shifts. Shifts of up to a quarter of the image, or of a part, are found. Images of one size.
 ImageTransform registered(const Grid<float>& reference, const Grid<float>& image, Registration what);
 
+// Shift and scale with their standard deviations, by what the parts' shifts do not agree on.
+struct MeasuredTransform {
+    ImageTransform transform{};
+    double shift_deviation = 0; // pixels, of either component
+    double scale_deviation = 0;
+};
+MeasuredTransform measured_transform(const Grid<float>& reference, const Grid<float>& image);
+
 // Each image against its neighbour, in their order, and all in the frame of the one in the middle.
 std::vector<ImageTransform> in_common_frame(std::span<const ImageTransform> from_neighbour);
 

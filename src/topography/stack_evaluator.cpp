@@ -146,8 +146,9 @@ std::vector<double> readings_at(const std::vector<double>& places, const std::ve
 
 StackEvaluator::StackEvaluator(const TopographyOptions& options, FocusPlanesMaker make_planes, CurveGrid curve_grid)
     : options_(checked(options)), measure_(options.focus_measure), window_(options.window_px, options.window_shape),
-      axial_weights_(axial_weights(options.smoothing_steps.value_or(0))), make_planes_(std::move(make_planes)),
-      curve_grid_(curve_grid) {}
+      axial_weights_(axial_weights(options.smoothing_steps.value_or(0))),
+      neighbour_weights_(axial_weights_.size() > 1 ? axial_weights_ : std::vector<double>{1, 0.5}),
+      make_planes_(std::move(make_planes)), curve_grid_(curve_grid) {}
 
 void StackEvaluator::check(const Channels& image, double z) const {
     const std::string which = fmt::format("image {}", z_.size());
@@ -202,8 +203,9 @@ void StackEvaluator::begin(const Channels& first) {
     // An image is judged once the curve's average has passed it by the range: its own neighbours are asked for then.
     planes_ = make_planes_({.plan = plan,
                             .window = window_,
-                            .images_kept = 2 * radius + 2 * plan.peak_range + 1,
-                            .curves_kept = 2 * radius + 1,
+                            .images_averaged = radius > 0,
+                            .images_kept = radius + neighbours() + 2 * plan.peak_range + 1,
+                            .curves_kept = 2 * neighbours() + 1,
                             .averaged_curves_kept = 2 * plan.peak_range + 1,
                             .gathered_pixels = curve_pixels_});
 }
@@ -232,8 +234,12 @@ void StackEvaluator::advance(bool all_taken) {
     const int radius = static_cast<int>(axial_weights_.size()) - 1;
     const int images = static_cast<int>(z_.size());
     const auto average = [&](bool all_measured) {
-        while (averaged_ < (all_measured ? measured_ : measured_ - radius)) {
+        while (averaged_ < (all_measured ? measured_ : measured_ - neighbours())) {
             planes_->average(averaged_, axial_shares(axial_weights_, averaged_, measured_));
+            const auto around = axial_shares(neighbour_weights_, averaged_, measured_);
+            planes_->average_alone(averaged_, around);
+            if (radius == 0)
+                planes_->measure_joint(averaged_, around);
             if (curve_grid_.columns > 0 && averaged_ % curve_grid_.every == 0)
                 planes_->gather(averaged_);
             ++averaged_;
@@ -300,6 +306,11 @@ StackFigures StackEvaluator::judge_stack() const {
         figures.limit =
             limit_of(probes_->by_chance(axial_weights_, options_.false_peak_rate), options_.false_peak_rate, images);
     }
+    if (options_.false_peak_rate < 1) {
+        const bool averaged = axial_weights_.size() > 1;
+        figures.persistence = PersistenceLimit(probes_->independent_images(neighbour_weights_, averaged),
+                                               neighbour_weights_, images, options_.false_peak_rate);
+    }
     if (options_.false_peak_rate < 1 && images > few_images) {
         const auto curves = probes_->some_curves();
         figures.whole = mean_evidence(curves, images_in_order(images));
@@ -309,12 +320,14 @@ StackFigures StackEvaluator::judge_stack() const {
 }
 
 PointState StackEvaluator::judge(const focus::f64::CurveRecord& curve, const focus::f64::SingleRecord& single,
-                                 double noise, double averaging, const StackFigures& figures) const {
+                                 const PointNoise& noise_here, const StackFigures& figures) const {
+    const auto& [noise, averaging, window_share] = noise_here;
     if (curve.found == 0) {
         return PointState::no_peak;
     }
     const int images = static_cast<int>(z_.size());
-    if (options_.false_peak_rate < 1 && !figures.limit.exceeded_by(evidence(curve, single, images))) {
+    if (options_.false_peak_rate < 1 && !(figures.limit.exceeded_by(evidence(curve, single, images)) &&
+                                          figures.persistence.exceeded_by(curve, window_share))) {
         return PointState::by_chance;
     }
     const double rise = curve.largest - curve.sum / images;
@@ -391,6 +404,8 @@ Topography StackEvaluator::finish(double x0, double y0, double pitch) {
         return read.empty() ? z_.front() + step * between(at, images, [&](std::size_t point) { return places[point]; })
                             : between(at, images, [&](std::size_t point) { return read[point]; });
     };
+    const double whole_window =
+        window_.pixels(4 * window_.radius(), 4 * window_.radius(), 2 * window_.radius(), 2 * window_.radius());
     std::vector<focus::f64::CurveRecord> of_curves(curve_pixels_.size());
     const auto judge_point = [&](std::size_t pixel, const focus::f64::CurveRecord& curve,
                                  const focus::f64::SingleRecord& single) {
@@ -410,7 +425,9 @@ Topography StackEvaluator::finish(double x0, double y0, double pitch) {
         }
         result.peaks(column, row) = static_cast<std::uint16_t>(focus::f64::count_peaks(curve, images));
         PointState& state = result.state(column, row);
-        state = here > dark * brightness ? judge(curve, single, image_noise, averaging, figures) : PointState::dark;
+        state = here > dark * brightness
+                    ? judge(curve, single, {image_noise, averaging, pixels / whole_window}, figures)
+                    : PointState::dark;
         if (state == PointState::measured) {
             result.height.height(column, row) = height_at(curve.at + curve.offset);
             result.height_noise(column, row) = step * place_noise(curve.bend, image_noise, smoothed);

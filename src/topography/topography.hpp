@@ -90,6 +90,7 @@ struct StackFigures {
     ChanceLimit limit;                    // that a measured point exceeds
     Evidence whole;                       // mean of single images' curves at some places
     double rivalled_share = 0;            // of wide windows' curves that have a second maximum above most_rival
+    PersistenceLimit persistence;         // that a measured point exceeds too
     ChanceLimit limit_of_whole;           // that it exceeds where anything is measured, but for few_images
     double image_noise = 0;               // standard deviation of a pixel over its brightness, at the mean brightness
     NoiseCorrelation noise_correlation{}; // of neighbouring pixels' noise, FocusProbes::noise_correlation()
@@ -145,19 +146,27 @@ class StackEvaluator {
   private:
     void check(const Channels& image, double z) const;
     void begin(const Channels& first);
+    // Images on either side that are compared with an image.
+    int neighbours() const { return static_cast<int>(neighbour_weights_.size()) - 1; }
     void advance(bool all_taken);
     // records: of the curves' pixels, in their order.
     FocusCurves curves_of(const StackSummary& stack, const std::vector<focus::f64::CurveRecord>& records,
                           const std::function<double(double)>& height_at) const;
     StackFigures judge_stack() const;
-    // noise: standard deviation of a single image's measure; averaging: the factor on it that both averages leave.
-    PointState judge(const focus::f64::CurveRecord& curve, const focus::f64::SingleRecord& single, double noise,
-                     double averaging, const StackFigures& figures) const;
+    struct PointNoise {
+        double single = 0;       // standard deviation of a single image's measure
+        double averaging = 1;    // the factor on it that both averages leave
+        double window_share = 1; // pixels of the window that lie in the image, over those of a whole window
+    };
+    PointState judge(const focus::f64::CurveRecord& curve, const focus::f64::SingleRecord& single,
+                     const PointNoise& noise_here, const StackFigures& figures) const;
 
     TopographyOptions options_;
     FocusMeasure measure_;
     FocusWindow window_;
     std::vector<double> axial_weights_;
+    // Of the images that are compared with an image to tell texture from noise (persistence.hpp).
+    std::vector<double> neighbour_weights_;
     FocusPlanesMaker make_planes_;
     CurveGrid curve_grid_;
     std::optional<FocusProbes> probes_;       // from the first image on

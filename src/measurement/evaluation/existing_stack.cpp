@@ -5,6 +5,7 @@
 #include "report/declared_figures.hpp"
 #include "scan/store.hpp"
 #include "specimen/kinds.hpp"
+#include "topography/stack_faults.hpp"
 
 #include <spdlog/spdlog.h>
 
@@ -112,10 +113,13 @@ class LaidImages {
                      last.shift_x - first.shift_x, last.shift_y - first.shift_y, last.scale / first.scale);
     }
 
-    topography::Channels read(int image) const {
-        auto channels = corrected(image);
-        return transforms_.empty() ? channels
-                                   : topography::resampled(channels, transforms_[static_cast<std::size_t>(image)]);
+    topography::Channels read(int image) const { return laid(corrected(image), image); }
+
+    // The same; faults are looked for in what the camera gave.
+    topography::Channels read(int image, topography::StackFaultsFinder& faults) const {
+        auto channels = series_.read(image);
+        faults.add(channels);
+        return laid(correction_.corrected(std::move(channels), series_.name(image)), image);
     }
 
     // Shift in pixels and scale of each image, in their order.
@@ -132,10 +136,48 @@ class LaidImages {
         return correction_.corrected(series_.read(image), series_.name(image));
     }
 
+    topography::Channels laid(topography::Channels channels, int image) const {
+        return transforms_.empty() ? channels
+                                   : topography::resampled(channels, transforms_[static_cast<std::size_t>(image)]);
+    }
+
     const scan::ImageSeries& series_;
     const FrameCorrection& correction_;
     std::vector<topography::ImageTransform> transforms_; // none: as they are
 };
+
+// What faults of a stack do to its heights, and what helps.
+std::vector<std::string> sentences_of(const topography::StackFaults& faults, topography::Registration registration) {
+    constexpr double least_flicker = 0.01, least_saturated = 0.001, least_wander = 1; // pixel
+    std::vector<std::string> sentences;
+    if (faults.flicker >= least_flicker) {
+        sentences.push_back(fmt::format(
+            "The light flickers by {:.2g} % from image to image. Focus is contrast relative to brightness, so heights "
+            "stay, but use a steady lamp and a fixed exposure",
+            100 * faults.flicker));
+    }
+    if (faults.exposure_step != 0) {
+        sentences.push_back(fmt::format(
+            "The brightness changes by {:.2g} % at image {} and stays so: the exposure or the lamp was changed within "
+            "the stack. The noise changes with it: fix exposure, gain and light",
+            100 * faults.exposure_step, faults.step_image));
+    }
+    if (faults.saturated_share >= least_saturated) {
+        sentences.push_back(fmt::format("{:.2g} % of the pixels are saturated: texture is not seen there. Expose less",
+                                        100 * faults.saturated_share));
+    }
+    if (registration == topography::Registration::none &&
+        std::max(faults.wander, faults.corner_wander) >= least_wander) {
+        const bool scaled = faults.corner_wander >= least_wander;
+        sentences.push_back(fmt::format(
+            "The image wanders by {:.2g} pixels from the first to the last image{}: --set "
+            "topography.registration=\"{}\" lays the images over each other",
+            faults.wander,
+            scaled ? fmt::format(" and its scale changes by {:.2g} %", 100 * (faults.scale - 1)) : std::string(),
+            scaled ? "shift-and-scale" : "shift"));
+    }
+    return sentences;
+}
 
 // Images of an instrument that vkfv does not know are read twice: first for the width of their focus curves.
 double smoothing_of(const LaidImages& images, const std::vector<int>& order,
@@ -215,9 +257,10 @@ EvaluatedStack evaluate_images(const scan::ImageSeries& series, const ForeignSta
     spdlog::info("{} images, {} to {}", series.size(), series.name(0), series.name(series.size() - 1));
     KnownField field;
     bool negative = false;
+    topography::StackFaultsFinder finder(series.size());
     for (int place = 0; place < series.size(); ++place) {
         const int image = at_place(place);
-        auto channels = images.read(order[static_cast<std::size_t>(image)]);
+        auto channels = images.read(order[static_cast<std::size_t>(image)], finder);
         if (place == 0) {
             field.flat = read_flat(configuration, {channels.front().columns, channels.front().rows}, stack.pitch);
         }
@@ -229,6 +272,12 @@ EvaluatedStack evaluate_images(const scan::ImageSeries& series, const ForeignSta
             "{}: there are pixels below zero. Focus is contrast relative to brightness: give the images without "
             "any background subtracted.",
             stack.images.string());
+    }
+    const topography::StackFaults faults = finder.finish();
+    if (!stack.shuffle) { // images in random order have other faults
+        for (const auto& sentence : sentences_of(faults, configuration.registration)) {
+            spdlog::warn("{}: {}.", stack.images.string(), sentence);
+        }
     }
     auto origin = report::as_declared("results", {{"stack", stack.images.string()},
                                                   {"images", series.size()},
@@ -245,6 +294,13 @@ EvaluatedStack evaluate_images(const scan::ImageSeries& series, const ForeignSta
     }
     if (stack.corrections.dark || stack.corrections.flat_field) {
         origin["dead_pixels"] = correction.dead_pixels();
+    }
+    if (!stack.shuffle) {
+        origin["image_faults"] = {{"flicker", faults.flicker},
+                                  {"exposure_step", faults.exposure_step},
+                                  {"saturated_share", faults.saturated_share},
+                                  {"wander_pixels", faults.wander},
+                                  {"scale", faults.scale}};
     }
     if (configuration.registration != topography::Registration::none) {
         origin["registration"] = images.json();

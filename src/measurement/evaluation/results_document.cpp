@@ -73,6 +73,7 @@ nlohmann::ordered_json figures_of_curves(const Evaluation& evaluation) {
     figures["curves"] = {{"curve_width_steps", whole.curve_width_steps},
                          {"least_unimodality", whole.limit.least.unimodality},
                          {"least_order", whole.limit.least.order},
+                         {"least_persistence", whole.persistence.least_ratio()},
                          {"chance_rate", whole.limit.rate},
                          {"stack_unimodality", whole.whole.unimodality},
                          {"stack_order", whole.whole.order},

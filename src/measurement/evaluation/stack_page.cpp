@@ -191,8 +191,9 @@ void add_run(report::Page& page, const StackPage& content) {
                  "field_curvature_uncorrected_um", "evaluated_by"});
     add_members(page, "Points by what became of them", results.at("points"));
     add_members(page, "Evaluation", results.at("topography"));
-    constexpr std::array<std::pair<const char*, const char*>, 4> tables = {
-        {{"flatness", "Field curvature, measured on a flat, that was taken off"},
+    constexpr std::array<std::pair<const char*, const char*>, 5> tables = {
+        {{"image_faults", "What the images themselves tell of the light, the exposure and the stage"},
+         {"flatness", "Field curvature, measured on a flat, that was taken off"},
          {"waves", "How far the images are from what waves make (contrast, within two depths of field)"},
          {"camera", "How the camera took them; noise is the root mean square over all pixels and images, of the "
                     "camera temporal, of the rays the Monte Carlo standard error of the light"},

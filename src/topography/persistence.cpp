@@ -1,0 +1,79 @@
+#include "topography/persistence.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <numeric>
+
+namespace vkfv::topography {
+namespace {
+
+// The value that a standard normal variable exceeds with this probability.
+double normal_exceeded_with(double probability) {
+    double low = -10, high = 10;
+    constexpr int halvings = 50;
+    for (int k = 0; k < halvings; ++k) {
+        const double middle = 0.5 * (low + high);
+        (0.5 * std::erfc(middle / std::numbers::sqrt2) > probability ? low : high) = middle;
+    }
+    return 0.5 * (low + high);
+}
+
+// The value over its mean that a chi-square variable of so many degrees of freedom exceeds with this probability
+// (E. B. Wilson and M. M. Hilferty, "The distribution of chi-square", 1931).
+double chi_square_exceeded_with(double probability, double degrees) {
+    const double variance = 2 / (9 * degrees);
+    const double root = 1 - variance + normal_exceeded_with(probability) * std::sqrt(variance);
+    return root * root * root;
+}
+
+} // namespace
+
+PersistenceLimit::PersistenceLimit(const IndependentImages& independent, const std::vector<double>& neighbour_weights,
+                                   int images, double rate)
+    : independent_(independent) {
+    for (int at = 0; at < images; ++at) {
+        const auto shares = axial_shares(neighbour_weights, at, images);
+        kept_.push_back(std::accumulate(shares.begin(), shares.end(), 0.0, [](double sum, const Share& share) {
+            return sum + static_cast<double>(share.weight) * static_cast<double>(share.weight);
+        }));
+    }
+    mean_kept_ = std::accumulate(kept_.begin(), kept_.end(), 0.0) / images;
+    // The largest value of the curve chooses among as many places as means that share few images.
+    const double places = std::max(1.0, images * kept_[kept_.size() / 2]);
+    probability_ = rate / places;
+}
+
+double PersistenceLimit::beyond_chance(double window_share) const {
+    const double relative = independent_.deviation / independent_.mean / std::sqrt(window_share);
+    return independent_.mean * (chi_square_exceeded_with(probability_, 2 / (relative * relative)) - 1);
+}
+
+double PersistenceLimit::least_ratio() const {
+    return independent_.deviation > 0 ? independent_.mean + beyond_chance(1) : 0;
+}
+
+bool PersistenceLimit::exceeded_by(const focus::f64::CurveRecord& curve, double window_share) const {
+    if (!(independent_.deviation > 0)) {
+        return true;
+    }
+    const double images = static_cast<double>(kept_.size());
+    const double mean = independent_.mean, beyond = beyond_chance(window_share);
+    const double kept = kept_[static_cast<std::size_t>(curve.at)];
+    const auto persisting = [mean](double joint, double alone, double share) {
+        return (joint - mean * share * alone) / (1 - mean * share);
+    };
+    const double joint = curve.joint * curve.joint, alone = curve.alone * curve.alone;
+    const double here = persisting(joint, alone, kept);
+    const double passing = std::max(0.0, alone - here);
+    const bool by_chance = joint <= (mean + beyond) * kept * alone && here <= passing;
+    if (by_chance || !(here > 0)) {
+        return false;
+    }
+    const double everywhere = persisting(curve.joint_energy / images, curve.alone_energy / images, mean_kept_);
+    // Noise of the energy N beside what persists: its own deviation, and that of the product of both.
+    const double noise = kept * passing;
+    return here - everywhere > beyond * std::sqrt(noise * noise + 2 * here * noise);
+}
+
+} // namespace vkfv::topography

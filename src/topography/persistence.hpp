@@ -1,0 +1,56 @@
+// What tells texture from noise whose strength changes along z, as the light of a lamp or a camera's gain do. Curves of
+// such noise can be as smooth and as unimodal as those of texture, and images in random order do not show it, since
+// they lose the noise's order too. But noise has another pattern in every image, and texture that comes into focus has
+// the same pattern in several.
+//
+// Of an image and its neighbours, with weights a_k whose squares add up to f: joint energy J, the square of the focus
+// measure of their weighted mean, and alone energy E, the mean square of their own focus measures. Where S persists and
+// the energy N passes from image to image, E = S + N and J = S + f N. Both are found by
+//
+//   S = (J - m f E) / (1 - m f),   N = E - S,
+//
+// where m is what independent images of the stack leave of E in J, over f: near 1, and not quite 1 since measures of
+// absolute values are no energies.
+#pragma once
+
+#include "focus/focus.hpp"
+#include "topography/axial_average.hpp"
+
+#include <vector>
+
+namespace vkfv::topography {
+
+// Of J / (f E) with images of which none knows of another.
+struct IndependentImages {
+    double mean = 1;      // m
+    double deviation = 0; // standard deviation; 0: it is not known, and nothing is asked of a point
+};
+
+class PersistenceLimit {
+  public:
+    // No limit.
+    PersistenceLimit() = default;
+    // Curves of noise alone exceed the limit with the probability `rate`, wherever in the scan they have their maximum.
+    // neighbour_weights: of an image's neighbours, by their distance.
+    PersistenceLimit(const IndependentImages& independent, const std::vector<double>& neighbour_weights, int images,
+                     double rate);
+
+    // Whether the energy that makes the curve's maximum persists: J exceeds what noise alone reaches, or half of E
+    // persists; and S rises above its mean along z by more than the noise there allows, so that a pattern which all
+    // images have (dust on the sensor) does not pass for texture in focus.
+    // window_share: pixels of the window that lie in the image, over those of a whole window.
+    bool exceeded_by(const focus::f64::CurveRecord& curve, double window_share) const;
+
+    // What J / (f E) must exceed where the window is whole; 0: no limit.
+    double least_ratio() const;
+
+  private:
+    double beyond_chance(double window_share) const; // of J / (f E), above its mean
+
+    IndependentImages independent_{};
+    double probability_ = 1;   // of one place of the scan
+    std::vector<double> kept_; // f of every image
+    double mean_kept_ = 0;
+};
+
+} // namespace vkfv::topography

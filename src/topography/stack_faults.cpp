@@ -1,0 +1,117 @@
+#include "topography/stack_faults.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+
+namespace vkfv::topography {
+namespace {
+
+double median(std::vector<double> values) {
+    const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
+    std::ranges::nth_element(values, middle);
+    return *middle;
+}
+
+// Means of so many pixels a side; what is left over at the end is not used.
+Grid<float> binned(const Channels& image, int side) {
+    Grid<float> result(image[0].columns / side, image[0].rows / side);
+    const auto share = static_cast<float>(1.0 / (static_cast<double>(image.size()) * side * side));
+    for (const Grid<float>& channel : image) {
+        for (int row = 0; row < result.rows * side; ++row) {
+            for (int column = 0; column < result.columns * side; ++column) {
+                result(column / side, row / side) += share * channel(column, row);
+            }
+        }
+    }
+    return result;
+}
+
+} // namespace
+
+void find_faults_of_light(const std::vector<double>& brightness, StackFaults& faults) {
+    const auto count = static_cast<int>(brightness.size());
+    if (count < 3) {
+        return;
+    }
+    std::vector<double> seconds;
+    for (std::size_t k = 2; k < brightness.size(); ++k) {
+        seconds.push_back(std::abs(brightness[k - 2] - 2 * brightness[k - 1] + brightness[k]));
+    }
+    // The median is that of normal values: a single step does not enlarge it. Second differences of independent values
+    // have six times their variance.
+    constexpr double median_of_normal = 0.6745;
+    faults.flicker = median(seconds) / (median_of_normal * std::sqrt(6.0));
+    constexpr int side = 3; // images
+    constexpr double least_step = 0.01, least_deviations = 6, least_at_once = 0.7;
+    for (int k = side; k + side <= count; ++k) {
+        const auto at = brightness.begin() + k;
+        const double step = (std::accumulate(at, at + side, 0.0) - std::accumulate(at - side, at, 0.0)) / side;
+        const double at_once = (*at - *(at - 1)) / step;
+        if (std::abs(step) > std::max(least_step, least_deviations * faults.flicker) && at_once > least_at_once &&
+            std::abs(step) > std::abs(faults.exposure_step)) {
+            faults.exposure_step = step;
+            faults.step_image = k;
+        }
+    }
+}
+
+void StackFaultsFinder::add(const Channels& image) {
+    constexpr int most_a_side = 256, most_movements = 20;
+    const int place = static_cast<int>(brightness_.size());
+    double sum = 0;
+    for (const Grid<float>& channel : image) {
+        sum = std::accumulate(channel.values.begin(), channel.values.end(), sum);
+        saturation_.add(channel.values);
+    }
+    brightness_.push_back(sum);
+    if (place == 0) {
+        columns_ = image[0].columns;
+        rows_ = image[0].rows;
+        pixels_a_bin_ = std::ceil(std::max(columns_, rows_) / static_cast<double>(most_a_side));
+    }
+    const int every = (images_ + most_movements - 1) / most_movements;
+    constexpr int least_bins = 32; // of which a quarter of a side can be followed
+    if (place % every != 0 || image[0].columns != columns_ || image[0].rows != rows_ ||
+        std::min(columns_, rows_) < least_bins * pixels_a_bin_) {
+        return;
+    }
+    Grid<float> here = binned(image, static_cast<int>(pixels_a_bin_));
+    if (!before_.values.empty()) {
+        movements_.push_back(std::async(
+            std::launch::async, [before = std::move(before_), here] { return measured_transform(before, here); }));
+    }
+    before_ = std::move(here);
+}
+
+StackFaults StackFaultsFinder::finish() {
+    StackFaults faults{.saturated_share = saturation_.found().share};
+    const double mean = std::accumulate(brightness_.begin(), brightness_.end(), 0.0) /
+                        static_cast<double>(std::max<std::size_t>(1, brightness_.size()));
+    if (mean > 0) {
+        for (double& value : brightness_) {
+            value /= mean;
+        }
+        find_faults_of_light(brightness_, faults);
+    }
+    ImageTransform whole;
+    double shift_variance = 0, scale_variance = 0;
+    for (auto& movement : movements_) {
+        const MeasuredTransform step = movement.get();
+        whole = whole.then(step.transform);
+        shift_variance += step.shift_deviation * step.shift_deviation;
+        scale_variance += step.scale_deviation * step.scale_deviation;
+    }
+    constexpr double least_deviations = 5;
+    const double wander = std::hypot(whole.shift_x, whole.shift_y);
+    if (wander > least_deviations * std::sqrt(shift_variance)) {
+        faults.wander = wander * pixels_a_bin_;
+    }
+    if (std::abs(whole.scale - 1) > least_deviations * std::sqrt(scale_variance)) {
+        faults.scale = whole.scale;
+        faults.corner_wander = std::abs(whole.scale - 1) * 0.5 * std::hypot(columns_, rows_);
+    }
+    return faults;
+}
+
+} // namespace vkfv::topography
