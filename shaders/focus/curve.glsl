@@ -36,8 +36,8 @@ VKFV_FUNCTION CurveRecord empty_curve() {
     curve.peak_4 = real(0.0);
     curve.joint = real(0.0);
     curve.alone = real(0.0);
-    curve.joint_energy = real(0.0);
-    curve.alone_energy = real(0.0);
+    curve.joint_squares = real(0.0);
+    curve.alone_sum = real(0.0);
     return curve;
 }
 
@@ -142,8 +142,8 @@ VKFV_SCENE_FUNCTION CurveStep follow_curve(VKFV_SCENE_PARAMETER FocusPlan plan, 
     step.curve = follow_shape(before, value, at);
     real joint = joint_value(VKFV_SCENE at);
     real alone = alone_value(VKFV_SCENE at);
-    step.curve.joint_energy = before.joint_energy + joint * joint;
-    step.curve.alone_energy = before.alone_energy + alone * alone;
+    step.curve.joint_squares = before.joint_squares + joint * joint;
+    step.curve.alone_sum = before.alone_sum + alone;
     bool turns = at == images - 1 || value >= curve_value(VKFV_SCENE min(at + 1, images - 1));
     if (at == 0 || (value > before.largest && turns)) {
         int range = min(plan.peak_range, min(at, images - 1 - at));

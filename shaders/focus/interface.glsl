@@ -16,7 +16,8 @@ const uint BINDING_PIXELS = 13u;
 const uint BINDING_GATHERED = 14u;
 const uint BINDING_JOINT = 15u; // joint_value() of the last images in turn
 const uint BINDING_ALONE = 16u; // alone_value(), likewise
-const uint BINDING_PLANE = 17u; // the first of MOST_PLANES
+const uint BINDING_SQUARES = 17u; // of single images' focus measures
+const uint BINDING_PLANE = 18u; // the first of MOST_PLANES
 
 // That a dispatch reads at most (planes.glsl).
 const int MOST_PLANES = 8;

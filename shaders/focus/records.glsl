@@ -53,12 +53,12 @@ struct FocusPlan {
     /* Persistence (below), where the curve is largest: joint_value() and alone_value() of that image */ \
     FIELD(real, joint) \
     FIELD(real, alone) \
-    FIELD(real, joint_energy) /* sum of the squares of joint_value() over all images */ \
-    FIELD(real, alone_energy) /* the same of alone_value() */
+    FIELD(real, joint_squares) /* sum of the squares of joint_value() over all images */ \
+    FIELD(real, alone_sum)     /* of alone_value() over all images */
 // Texture stays from image to image, and its measure is the same whether images are averaged before or after it is
 // taken. Noise differs from image to image, and averaging the images before takes it off, however its strength changes
 // along z. So two values of every image are compared: joint_value(), the focus measure of the mean of the images around
-// it, and alone_value(), the mean of those images' own focus measures.
+// it, and alone_value(), the mean square of those images' own focus measures.
 struct CurveRecord {
     VKFV_CURVE_RECORD_FIELDS(VKFV_DECLARE)
 };

@@ -1,11 +1,12 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
-// Every pixel's curve of single images, an image further.
+// Every pixel's curve of single images, an image further; and the square of its value.
 layout(local_size_x = 128) in;
 
 #include "focus/device.glsl"
 
 layout(set = 0, binding = BINDING_CURVE, scalar) readonly buffer Curve { float curve[]; };
+layout(set = 0, binding = BINDING_SQUARES, scalar) writeonly buffer Squares { float squares[]; };
 layout(set = 0, binding = BINDING_SINGLES, scalar) buffer Singles { SingleRecord singles[]; };
 
 layout(push_constant, scalar) uniform Push { SingleImage image; };
@@ -13,6 +14,7 @@ layout(push_constant, scalar) uniform Push { SingleImage image; };
 void main() {
     uint k = invocation();
     if (k < image.pixels) {
+        squares[k] = curve[k] * curve[k];
         singles[k] = follow_single(singles[k], curve[k], image.at);
     }
 }

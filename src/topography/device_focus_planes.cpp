@@ -75,8 +75,8 @@ class DeviceFocusPlanes final : public FocusPlanes {
                 sizeof(FocusPlan)),
           columns_(device_, "focus_columns", ::focus_columns,
                    storage_buffers({BINDING_ROW_SUMS, BINDING_WEIGHTS, BINDING_CURVE}), sizeof(FocusPlan)),
-          single_(device_, "focus_single", ::focus_single, storage_buffers({BINDING_CURVE, BINDING_SINGLES}),
-                  sizeof(SingleImage)),
+          single_(device_, "focus_single", ::focus_single,
+                  storage_buffers({BINDING_CURVE, BINDING_SQUARES, BINDING_SINGLES}), sizeof(SingleImage)),
           follow_(device_, "focus_follow", ::focus_follow,
                   storage_buffers({BINDING_CURVES, BINDING_JOINT, BINDING_ALONE, BINDING_RECORDS, BINDING_PLACES}),
                   sizeof(FollowedImage)),
@@ -90,6 +90,7 @@ class DeviceFocusPlanes final : public FocusPlanes {
           averaged_(device_, static_cast<std::size_t>(averaged_curves_) * pixels_ * sizeof(float)),
           joint_(device_, images_averaged_ ? sizeof(float) : averaged_.bytes()),
           joint_curve_(device_, images_averaged_ ? sizeof(float) : pixels_ * sizeof(float)),
+          single_curve_(device_, images_averaged_ ? pixels_ * sizeof(float) : sizeof(float)),
           alone_(device_, averaged_.bytes()), records_(device_, pixels_ * sizeof(CurveRecord)),
           singles_(device_, pixels_ * sizeof(SingleRecord)), places_(device_, pixels_ * sizeof(float)),
           brightness_(device_, pixels_ * sizeof(float)), all_in_focus_(device_, channels_ * pixels_ * sizeof(float)),
@@ -109,9 +110,7 @@ class DeviceFocusPlanes final : public FocusPlanes {
         }
         for (int k = 0; k < stack.curves_kept; ++k) {
             curves_.emplace_back(device_, pixels_ * sizeof(float));
-            if (images_averaged_) {
-                singles_curves_.emplace_back(device_, pixels_ * sizeof(float));
-            }
+            squares_.emplace_back(device_, pixels_ * sizeof(float));
         }
     }
 
@@ -138,9 +137,12 @@ class DeviceFocusPlanes final : public FocusPlanes {
 
     void measure_alone(int image) override {
         if (images_averaged_) {
-            measure(image_at(image), single_curve_at(image));
+            measure(image_at(image), single_curve_);
         }
-        dispatch(single_, {{BINDING_CURVE, &single_curve_at(image)}, {BINDING_SINGLES, &singles_}},
+        dispatch(single_,
+                 {{BINDING_CURVE, images_averaged_ ? &single_curve_ : &curve_at(image)},
+                  {BINDING_SQUARES, &squares_at(image)},
+                  {BINDING_SINGLES, &singles_}},
                  SingleImage{static_cast<std::uint32_t>(pixels_), image}, pixels_);
     }
 
@@ -151,8 +153,7 @@ class DeviceFocusPlanes final : public FocusPlanes {
 
     void average_alone(int image, std::span<const Share> shares) override {
         weighted_mean(
-            shares, [&](int k) -> const vulkan::Buffer& { return single_curve_at(k); }, alone_, place_of(image),
-            pixels_);
+            shares, [&](int k) -> const vulkan::Buffer& { return squares_at(k); }, alone_, place_of(image), pixels_);
     }
 
     void measure_joint(int image, std::span<const Share> shares) override {
@@ -245,9 +246,7 @@ class DeviceFocusPlanes final : public FocusPlanes {
   private:
     vulkan::Buffer& image_at(int k) { return images_[static_cast<std::size_t>(k) % images_.size()]; }
     vulkan::Buffer& curve_at(int k) { return curves_[static_cast<std::size_t>(k) % curves_.size()]; }
-    vulkan::Buffer& single_curve_at(int k) {
-        return images_averaged_ ? singles_curves_[static_cast<std::size_t>(k) % singles_curves_.size()] : curve_at(k);
-    }
+    vulkan::Buffer& squares_at(int k) { return squares_[static_cast<std::size_t>(k) % squares_.size()]; }
     // Where an averaged curve's values at the image begin.
     std::size_t place_of(int image) const { return static_cast<std::size_t>(image % averaged_curves_) * pixels_; }
 
@@ -325,16 +324,16 @@ class DeviceFocusPlanes final : public FocusPlanes {
     std::shared_ptr<const vulkan::Device> shared_;
     const vulkan::Device& device_;
     vulkan::Kernel mean_, add_brightness_, response_, rows_, columns_, single_, follow_, gather_, select_;
-    vulkan::Buffer mean_image_, responses_, row_sums_, weights_, averaged_, joint_, joint_curve_, alone_, records_,
-        singles_, places_, brightness_, all_in_focus_;
+    vulkan::Buffer mean_image_, responses_, row_sums_, weights_, averaged_, joint_, joint_curve_, single_curve_, alone_,
+        records_, singles_, places_, brightness_, all_in_focus_;
     std::size_t gathered_count_; // pixels
     vulkan::Buffer gathered_pixels_;
     std::deque<vulkan::Buffer> gathered_; // in host memory
     std::size_t gathered_images_ = 0;
-    std::vector<vulkan::Buffer> images_;         // the last few in turn
-    std::vector<vulkan::Buffer> curves_;         // likewise
-    std::vector<vulkan::Buffer> singles_curves_; // of images themselves, where `curves_` are of averaged ones
-    std::vector<vulkan::Buffer> carriers_;       // in host memory, in turn
+    std::vector<vulkan::Buffer> images_;   // the last few in turn
+    std::vector<vulkan::Buffer> curves_;   // likewise
+    std::vector<vulkan::Buffer> squares_;  // of single images' curves, likewise
+    std::vector<vulkan::Buffer> carriers_; // in host memory, in turn
     std::unique_ptr<vulkan::Commands> commands_;
     std::unique_ptr<vulkan::Commands> submitted_;
 };

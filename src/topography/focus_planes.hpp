@@ -29,7 +29,7 @@ struct FocusPlanesPlan {
     FocusWindow window;
     // Images are averaged before they are measured: joint_value() (records.glsl) is the averaged curves' value then.
     bool images_averaged = false;
-    // How many of the last images, of the curves (those of single images too), and of the averaged curves with what
+    // How many of the last images, of the curves (with those of single images), and of the averaged curves with what
     // follow() compares are asked for again.
     int images_kept = 0;
     int curves_kept = 0;
@@ -44,9 +44,10 @@ class FocusPlanes {
     virtual void take(int image, Channels channels) = 0;
     // The focus measure of the weighted mean of images taken: the curves' values at `image`.
     virtual void measure(int image, std::span<const Share> shares) = 0;
-    // The focus measure of the image itself, which was measured last, for follow_single() of every pixel.
+    // The focus measure of the image itself, which was measured last, for follow_single() of every pixel. Keeps its
+    // square.
     virtual void measure_alone(int image) = 0;
-    // alone_value() (records.glsl) at `image`: the weighted mean of what measure_alone() found.
+    // alone_value() (records.glsl) at `image`: the weighted mean of what measure_alone() kept.
     virtual void average_alone(int image, std::span<const Share> shares) = 0;
     // joint_value() at `image` where images are not averaged: the focus measure of the weighted mean of images taken.
     virtual void measure_joint(int image, std::span<const Share> shares) = 0;

@@ -465,26 +465,27 @@ Channels FocusProbes::noise_patch(const Probe& probe, int image, double contrast
     if (!(largest > 0)) {
         return {};
     }
-    // Twice: the first time by any strength, to learn what measure this strength has.
-    double strength = contrast / largest;
-    for (int time = 0; time < 2; ++time) {
+    // Of so little contrast that the measure is in proportion to it, since the brightness stays 1.
+    constexpr double little = 1e-3;
+    const auto fill = [&](double strength) {
         for (std::size_t k = 0; k < noise.size(); ++k) {
             patch[k / pixels].values[k % pixels] = static_cast<float>(1 + strength * noise[k]);
         }
-        const double found = focus_at(patch, measure_, window_, probe.middle_column, probe.middle_row);
-        if (!(found > 0)) {
-            return {};
-        }
-        strength *= contrast / found;
+    };
+    fill(little / largest);
+    const double found = focus_at(patch, measure_, window_, probe.middle_column, probe.middle_row);
+    if (!(found > 0)) {
+        return {};
     }
+    fill(little / largest * contrast / found);
     return patch;
 }
 
 IndependentImages FocusProbes::independent_images(const std::vector<double>& neighbour_weights,
                                                   bool curves_averaged) const {
     constexpr std::size_t least_probes = 9;
-    constexpr double contrast = 0.01; // far below 1, where the measure would divide by a brightness that changes
-    constexpr int samples = 400;      // for the standard deviation to a twenty-fifth
+    constexpr double contrast = 1e-3; // see noise_patch()
+    constexpr int samples = 600;      // for the standard deviation to a thirtieth
     if (images_ < 3 || probes_.size() < least_probes) {
         return {};
     }
@@ -547,7 +548,8 @@ IndependentImages FocusProbes::independent_images(const std::vector<double>& nei
         return {};
     }
     const auto count = static_cast<double>(ratios.size());
-    IndependentImages found{.mean = std::accumulate(ratios.begin(), ratios.end(), 0.0) / count};
+    IndependentImages found{.mean = std::accumulate(ratios.begin(), ratios.end(), 0.0) / count,
+                            .largest = std::ranges::max(ratios)};
     double squares = 0;
     for (const double ratio : ratios) {
         squares += (ratio - found.mean) * (ratio - found.mean);

@@ -40,8 +40,8 @@ class HostFocusPlanes final : public FocusPlanes {
     explicit HostFocusPlanes(const FocusPlanesPlan& plan)
         : plan_(plan_in<Arithmetic>(plan.plan)), weights_(plan.window.weights().begin(), plan.window.weights().end()),
           gathered_pixels_(plan.gathered_pixels), images_(plan.images_kept), curves_(plan.curves_kept),
-          averaged_(plan.averaged_curves_kept), images_averaged_(plan.images_averaged),
-          singles_curves_(plan.curves_kept), joint_(plan.averaged_curves_kept), alone_(plan.averaged_curves_kept) {
+          averaged_(plan.averaged_curves_kept), images_averaged_(plan.images_averaged), squares_(plan.curves_kept),
+          joint_(plan.averaged_curves_kept), alone_(plan.averaged_curves_kept) {
         summary_.brightness = Grid<float>(plan_.columns, plan_.rows);
         records_ = Grid<typename Arithmetic::Curve>(plan_.columns, plan_.rows, Arithmetic::empty());
         singles_ = Grid<typename Arithmetic::Single>(plan_.columns, plan_.rows);
@@ -62,10 +62,11 @@ class HostFocusPlanes final : public FocusPlanes {
     }
 
     void measure_alone(int image) override {
-        if (images_averaged_)
-            singles_curves_[image] = measure_of(images_[image]);
-        const Grid<float>& values = single_curves()[image];
+        const Grid<float> values = images_averaged_ ? measure_of(images_[image]) : curves_[image];
+        Grid<float>& squares = squares_[image];
+        squares = Grid<float>(plan_.columns, plan_.rows);
         pixels([&](std::size_t k) {
+            squares.values[k] = values.values[k] * values.values[k];
             singles_.values[k] = follow_single(singles_.values[k], static_cast<Real>(values.values[k]), image);
         });
     }
@@ -75,7 +76,7 @@ class HostFocusPlanes final : public FocusPlanes {
     }
 
     void average_alone(int image, std::span<const Share> shares) override {
-        alone_[image] = weighted_mean(shares, [&](int k) -> const Grid<float>& { return single_curves()[k]; });
+        alone_[image] = weighted_mean(shares, [&](int k) -> const Grid<float>& { return squares_[k]; });
     }
 
     void measure_joint(int image, std::span<const Share> shares) override {
@@ -122,8 +123,6 @@ class HostFocusPlanes final : public FocusPlanes {
         return mean;
     }
 
-    const Ring<Grid<float>>& single_curves() const { return images_averaged_ ? singles_curves_ : curves_; }
-
     template <class Task>
     void pixels(const Task& task) const {
         parallel_rows(plan_.columns, plan_.rows, [&](int first, int end) {
@@ -154,8 +153,8 @@ class HostFocusPlanes final : public FocusPlanes {
     Ring<Grid<float>> curves_;
     Ring<Grid<float>> averaged_;
     bool images_averaged_;
-    Ring<Grid<float>> singles_curves_; // empty unless images are averaged
-    Ring<Grid<float>> joint_;          // empty if images are averaged
+    Ring<Grid<float>> squares_; // of single images' curves
+    Ring<Grid<float>> joint_;   // empty if images are averaged
     Ring<Grid<float>> alone_;
     StackSummary summary_;
     Grid<typename Arithmetic::Curve> records_;

@@ -45,8 +45,10 @@ PersistenceLimit::PersistenceLimit(const IndependentImages& independent, const s
 }
 
 double PersistenceLimit::beyond_chance(double window_share) const {
-    const double relative = independent_.deviation / independent_.mean / std::sqrt(window_share);
-    return independent_.mean * (chi_square_exceeded_with(probability_, 2 / (relative * relative)) - 1);
+    const double wider = 1 / std::sqrt(window_share);
+    const double relative = independent_.deviation / independent_.mean * wider;
+    return std::max(independent_.mean * (chi_square_exceeded_with(probability_, 2 / (relative * relative)) - 1),
+                    wider * (independent_.largest - independent_.mean));
 }
 
 double PersistenceLimit::least_ratio() const {
@@ -63,17 +65,17 @@ bool PersistenceLimit::exceeded_by(const focus::f64::CurveRecord& curve, double 
     const auto persisting = [mean](double joint, double alone, double share) {
         return (joint - mean * share * alone) / (1 - mean * share);
     };
-    const double joint = curve.joint * curve.joint, alone = curve.alone * curve.alone;
+    const double joint = curve.joint * curve.joint, alone = curve.alone;
     const double here = persisting(joint, alone, kept);
     const double passing = std::max(0.0, alone - here);
     const bool by_chance = joint <= (mean + beyond) * kept * alone && here <= passing;
     if (by_chance || !(here > 0)) {
         return false;
     }
-    const double everywhere = persisting(curve.joint_energy / images, curve.alone_energy / images, mean_kept_);
-    // Noise of the energy N beside what persists: its own deviation, and that of the product of both.
+    const double everywhere = persisting(curve.joint_squares / images, curve.alone_sum / images, mean_kept_);
+    // If the same persisted everywhere: the deviation of noise of the energy N, and of its product with what persists.
     const double noise = kept * passing;
-    return here - everywhere > beyond * std::sqrt(noise * noise + 2 * here * noise);
+    return here - everywhere > beyond * std::sqrt(noise * noise + 2 * std::max(0.0, everywhere) * noise);
 }
 
 } // namespace vkfv::topography

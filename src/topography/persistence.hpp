@@ -24,6 +24,7 @@ namespace vkfv::topography {
 struct IndependentImages {
     double mean = 1;      // m
     double deviation = 0; // standard deviation; 0: it is not known, and nothing is asked of a point
+    double largest = 0;   // that was found: few grey values have rarer and larger ones than the deviation tells
 };
 
 class PersistenceLimit {

@@ -167,6 +167,8 @@ class StackEvaluator {
     std::vector<double> axial_weights_;
     // Of the images that are compared with an image to tell texture from noise (persistence.hpp).
     std::vector<double> neighbour_weights_;
+    // Of their energies: the squares of those; or the same, where averages of curves make them wider again.
+    std::vector<double> energy_weights_;
     FocusPlanesMaker make_planes_;
     CurveGrid curve_grid_;
     std::optional<FocusProbes> probes_;       // from the first image on

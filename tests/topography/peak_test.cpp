@@ -17,6 +17,8 @@ using namespace focus::f64;
 struct Curve {
     std::vector<double> values;
     double curve_value(int image) const { return values.at(static_cast<std::size_t>(image)); }
+    double joint_value(int image) const { return curve_value(image); }
+    double alone_value(int image) const { return curve_value(image); }
 };
 
 // f(-range) ... f(range), the maximum at the image `range`.

@@ -1,0 +1,189 @@
+#include "topography/stack_faults.hpp"
+
+#include "topography/model_stack.hpp"
+#include "topography/topography.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <random>
+#include <vector>
+
+namespace vkfv::topography {
+namespace {
+
+using test::side;
+
+StackFaults faults_of(const std::vector<Grid<float>>& images) {
+    StackFaultsFinder finder(static_cast<int>(images.size()));
+    for (const auto& image : images) {
+        finder.add({image});
+    }
+    return finder.finish();
+}
+
+// Images with texture that is in focus in the middle, and noise of 1 % of the brightness.
+std::vector<Grid<float>> good_images(unsigned seed) {
+    auto images = test::model_stack(41, 4, false, seed).images;
+    std::mt19937 random(seed + 100);
+    std::normal_distribution<double> normal;
+    for (auto& image : images) {
+        for (float& value : image.values) {
+            value += static_cast<float>(1.2 * normal(random));
+        }
+    }
+    return images;
+}
+
+void brighten(Grid<float>& image, double times) {
+    for (float& value : image.values) {
+        value *= static_cast<float>(times);
+    }
+}
+
+TEST(StackFaults, GoodImagesHaveNone) {
+    const StackFaults faults = faults_of(good_images(1));
+    EXPECT_LT(faults.flicker, 0.002);
+    EXPECT_EQ(faults.exposure_step, 0);
+    EXPECT_EQ(faults.saturated_share, 0);
+    EXPECT_LT(faults.wander, 0.5);
+    EXPECT_LT(faults.corner_wander, 0.5);
+}
+
+TEST(StackFaults, FlickerIsTold) {
+    auto images = good_images(2);
+    std::mt19937 random(3);
+    std::normal_distribution<double> normal;
+    for (auto& image : images) {
+        brighten(image, 1 + 0.05 * normal(random));
+    }
+    const StackFaults faults = faults_of(images);
+    EXPECT_NEAR(faults.flicker, 0.05, 0.02); // of 41 images
+    EXPECT_EQ(faults.exposure_step, 0);
+}
+
+TEST(StackFaults, AStepOfTheExposureIsToldWithItsPlace) {
+    auto images = good_images(4);
+    for (std::size_t k = 25; k < images.size(); ++k) {
+        brighten(images[k], 1.2);
+    }
+    const StackFaults faults = faults_of(images);
+    EXPECT_NEAR(faults.exposure_step, 0.2 / (1 + 0.2 * 16 / 41), 0.01);
+    EXPECT_EQ(faults.step_image, 25);
+    EXPECT_LT(faults.flicker, 0.01);
+    // The wrong twin: light that changes slowly.
+    auto slow = good_images(4);
+    for (std::size_t k = 0; k < slow.size(); ++k) {
+        brighten(slow[k], 1 + 0.3 * static_cast<double>(k) / 40);
+    }
+    EXPECT_EQ(faults_of(slow).exposure_step, 0);
+}
+
+TEST(StackFaults, SaturatedPixelsAreCounted) {
+    auto images = good_images(5);
+    std::size_t cut = 0, all = 0;
+    for (auto& image : images) {
+        for (float& value : image.values) {
+            cut += value >= 140 ? 1u : 0u;
+            value = std::min(value, 140.0f);
+        }
+        all += image.values.size();
+    }
+    ASSERT_GT(cut, all / 100);
+    EXPECT_NEAR(faults_of(images).saturated_share, static_cast<double>(cut) / static_cast<double>(all), 1e-12);
+}
+
+TEST(StackFaults, MovementOfTheImageIsTold) {
+    // Spots that every image shows, however far from focus.
+    const auto moved = [](double shift, double scale) {
+        std::vector<Grid<float>> images(41, Grid<float>(side, side));
+        std::mt19937 random(11);
+        std::normal_distribution<double> normal;
+        for (auto& image : images) {
+            std::ranges::generate(image.values, [&] { return static_cast<float>(120 + normal(random)); });
+        }
+        std::uniform_real_distribution<double> place(0, side);
+        std::vector<std::array<double, 2>> spots(60);
+        for (auto& spot : spots) {
+            spot = {place(random), place(random)};
+        }
+        for (std::size_t k = 0; k < images.size(); ++k) {
+            const double part = static_cast<double>(k) / static_cast<double>(images.size() - 1) - 0.5;
+            const double middle = 0.5 * (side - 1), size = 1 + (scale - 1) * part;
+            for (int row = 0; row < side; ++row) {
+                for (int column = 0; column < side; ++column) {
+                    for (const auto& [x, y] : spots) {
+                        const double dx = column - (middle + size * (x - middle) + shift * part);
+                        const double dy = row - (middle + size * (y - middle));
+                        images[k](column, row) += static_cast<float>(40 * std::exp(-(dx * dx + dy * dy) / 18));
+                    }
+                }
+            }
+        }
+        return faults_of(images);
+    };
+    EXPECT_LT(moved(0, 1).wander, 0.3);
+    const StackFaults shifted = moved(4, 1);
+    EXPECT_NEAR(shifted.wander, 4, 1);
+    EXPECT_LT(shifted.corner_wander, 1);
+    const StackFaults scaled = moved(0, 0.94);
+    EXPECT_NEAR(scaled.corner_wander, 0.06 * 0.5 * std::sqrt(2.0) * side, 1);
+    EXPECT_NEAR(std::abs(scaled.scale - 1), 0.06, 0.02);
+}
+
+TEST(StackFaults, ImagesWithoutTextureDoNotMove) {
+    std::mt19937 random(7);
+    std::normal_distribution<double> normal;
+    std::vector<Grid<float>> images(41, Grid<float>(side, side));
+    for (auto& image : images) {
+        std::ranges::generate(image.values, [&] { return static_cast<float>(100 + normal(random)); });
+    }
+    const StackFaults faults = faults_of(images);
+    EXPECT_LT(faults.wander, 1);
+    EXPECT_LT(faults.corner_wander, 1);
+}
+
+double median_noise(const std::vector<Grid<float>>& images) {
+    std::vector<double> z;
+    for (std::size_t k = 0; k < images.size(); ++k) {
+        z.push_back(static_cast<double>(k));
+    }
+    const Topography topography = reconstruct(images, z, 0, 0, 1, {});
+    std::vector<double> noise;
+    std::ranges::copy_if(topography.height_noise.values, std::back_inserter(noise),
+                         [](double value) { return std::isfinite(value); });
+    EXPECT_GT(noise.size(), topography.height_noise.values.size() / 2);
+    std::ranges::nth_element(noise, noise.begin() + static_cast<std::ptrdiff_t>(noise.size() / 2));
+    return noise[noise.size() / 2];
+}
+
+TEST(StackFaults, FlickerIsNoNoise) {
+    const double steady = median_noise(good_images(8));
+    auto images = good_images(8);
+    std::mt19937 random(9);
+    std::normal_distribution<double> normal;
+    for (auto& image : images) {
+        brighten(image, 1 + 0.05 * normal(random));
+    }
+    EXPECT_NEAR(median_noise(images) / steady, 1, 0.15);
+}
+
+TEST(StackFaults, SaturatedPixelsHideNoNoise) {
+    const double whole = median_noise(good_images(10));
+    auto images = good_images(10);
+    for (auto& image : images) {
+        for (int row = 0; row < side / 3; ++row) {
+            for (int column = 0; column < side / 3; ++column) {
+                image(column, row) = 255; // a highlight over a ninth of the image
+            }
+        }
+    }
+    const double cut = median_noise(images);
+    EXPECT_GT(cut, 0.7 * whole);
+    EXPECT_LT(cut, 1.5 * whole);
+}
+
+} // namespace
+} // namespace vkfv::topography
