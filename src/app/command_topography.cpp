@@ -133,6 +133,11 @@ measurement::EvaluatedStack evaluate_foreign(const CommandOptions& options) {
             "the distance of the pixels on the specimen.");
     }
     const double start = own.z_start.value_or(own.z_step ? 0 : stated.z_start.value_or(0));
+    constexpr double start_tolerance = 0.01; // of a step
+    if (own.z_start && stated.z_start && std::abs(start - *stated.z_start) > start_tolerance * std::abs(*z_step)) {
+        spdlog::warn("--z_start_um {:g}, but the file states {:g}. The option is used.", start * um_per_mm,
+                     *stated.z_start * um_per_mm);
+    }
     if (!std::isfinite(start)) {
         refuse_argument("--z_start_um " + fmt::format("{}", start), "a height",
                         "Give that of the first image, or leave it out.");

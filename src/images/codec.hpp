@@ -13,7 +13,6 @@ struct Codec {
     int (*page_count)(const std::filesystem::path& path);
     Grid<float> (*read_image)(const std::filesystem::path& path, int page);
     std::vector<Grid<float>> (*read_channels)(const std::filesystem::path& path, int page);
-    std::string (*image_description)(const std::filesystem::path& path);
     ImageStatement (*image_statement)(const std::filesystem::path& path);
     StoredImage (*parse_tiff)(std::string_view bytes, const std::filesystem::path& path);
     DescribedImage (*parse_image)(std::string_view bytes, const std::filesystem::path& path);

@@ -61,11 +61,6 @@ std::vector<Grid<float>> read_channels(const std::filesystem::path& path, int pa
     return channels;
 }
 
-std::string image_description(const std::filesystem::path& path) {
-    auto image = plain_file(path, TiffPart::header);
-    return image ? std::move(image->description) : codec().image_description(path);
-}
-
 ImageStatement image_statement(const std::filesystem::path& path) {
     return codec().image_statement(path); // plain TIFFs too: it is asked once for a stack
 }

@@ -44,9 +44,6 @@ Grid<float> read_image(const std::filesystem::path& path, int page = 0);
 // The same of grey or colour, a grid a channel; an alpha channel is left out.
 std::vector<Grid<float>> read_channels(const std::filesystem::path& path, int page = 0);
 
-// The first page's ImageDescription; empty without one.
-std::string image_description(const std::filesystem::path& path);
-
 // The size of an image file's first page, its description, and how many of its pixels make a unit of length.
 struct ImageStatement {
     int columns = 0;

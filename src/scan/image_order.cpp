@@ -134,7 +134,7 @@ std::optional<std::vector<int>> steps_of(const std::vector<double>& values, doub
     auto sorted = differences;
     std::ranges::sort(sorted);
     step = sorted[sorted.size() / 2]; // the one that most have
-    constexpr double tolerance = 0.1, most_share = 0.8, most_steps = 1e6;
+    constexpr double tolerance = 0.1, most_steps = 1e6;
     std::vector<int> steps = {0};
     std::size_t single = 0;
     for (const double difference : differences) {
@@ -146,7 +146,7 @@ std::optional<std::vector<int>> steps_of(const std::vector<double>& values, doub
         single += multiple == 1 ? 1 : 0;
         steps.push_back(steps.back() + static_cast<int>(multiple));
     }
-    if (static_cast<double>(single) < most_share * static_cast<double>(differences.size()) ||
+    if (static_cast<double>(single) < share_of_a_series * static_cast<double>(differences.size()) ||
         steps.back() > most_steps) {
         return std::nullopt;
     }
@@ -227,11 +227,10 @@ std::vector<bool> of_one_series(const std::vector<std::string>& names) {
     for (std::size_t k = 0; k < names.size(); ++k) {
         alike[parts_of(names[k]).texts].push_back(k);
     }
-    constexpr double most_share = 0.8;
     constexpr std::size_t fewest = 3;
     for (const auto& [texts, places] : alike) {
         if (places.size() >= fewest &&
-            static_cast<double>(places.size()) >= most_share * static_cast<double>(names.size())) {
+            static_cast<double>(places.size()) >= share_of_a_series * static_cast<double>(names.size())) {
             std::vector<std::string> of_series;
             std::vector<bool> result(names.size(), false);
             for (const std::size_t k : places) {

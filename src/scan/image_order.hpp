@@ -13,6 +13,9 @@ namespace vkfv::scan {
 // lengths (9, 09) are told apart by their text, so that this is a strict order.
 bool naturally_before(std::string_view a, std::string_view b);
 
+// Of images, names or steps, that makes a series of them all: what the others are not is told then.
+inline constexpr double share_of_a_series = 0.8;
+
 struct ImageOrder {
     std::vector<std::size_t> order; // places in `names`
     std::string doubt;              // why this may not be the order of the heights; empty: none

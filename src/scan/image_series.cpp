@@ -42,7 +42,8 @@ int chosen(const std::filesystem::path& path, const std::string& kind, const std
                           : fmt::format("pages: {}, heights: {}, channels: {}, frames: {} ({})", stated.pages.size(),
                                         stated.heights, stated.channels, stated.frames, stated.by),
                     count == 1 ? fmt::format("{} 1, the only one", kind) : fmt::format("one {} of {}", kind, count),
-                    fmt::format("Choose it: --{} 1 to {}.", kind, count));
+                    count == 1 ? fmt::format("Leave --{} out.", kind)
+                               : fmt::format("Choose it: --{} 1 to {}.", kind, count));
     }
     return *asked - 1;
 }
@@ -67,8 +68,8 @@ std::vector<bool> of_one_size(const std::vector<images::ImageStatement>& stateme
         counts[size_of(image)] += 1;
     }
     const auto most = std::ranges::max_element(counts, {}, [](const auto& entry) { return entry.second; });
-    constexpr double most_share = 0.8;
-    const bool is_series = static_cast<double>(most->second) >= most_share * static_cast<double>(statements.size());
+    const bool is_series =
+        static_cast<double>(most->second) >= share_of_a_series * static_cast<double>(statements.size());
     std::vector<bool> result;
     std::ranges::transform(statements, std::back_inserter(result),
                            [&](const auto& image) { return !is_series || size_of(image) == most->first; });
@@ -94,6 +95,9 @@ void leave_out(std::vector<std::filesystem::path>& files, const std::vector<bool
 ImageSeries::ImageSeries(const std::filesystem::path& path, const SeriesChoice& choice) {
     if (std::filesystem::is_directory(path)) {
         take_folder(path);
+        for (const auto& [kind, asked] : {std::pair("channel", choice.channel), std::pair("frame", choice.frame)}) {
+            chosen(path, kind, asked, 1, stated_);
+        }
         return;
     }
     if (!std::filesystem::exists(path)) {

@@ -558,6 +558,80 @@ IndependentImages FocusProbes::independent_images(const std::vector<double>& nei
     return found;
 }
 
+double FocusProbes::measure_of_rounding(double brightness) const {
+    // Of as many values as tell: floats are as good as continuous.
+    constexpr std::size_t most = 4096;
+    std::vector<float> values;
+    for (const Probe& probe : probes_) {
+        const std::size_t count = std::min(probe.values.size(), std::max<std::size_t>(1, most / probes_.size()));
+        values.insert(values.end(), probe.values.begin(), probe.values.begin() + static_cast<std::ptrdiff_t>(count));
+    }
+    std::ranges::sort(values);
+    float step = std::numeric_limits<float>::infinity();
+    for (std::size_t k = 1; k < values.size(); ++k) {
+        if (values[k] > values[k - 1]) {
+            step = std::min(step, values[k] - values[k - 1]);
+        }
+    }
+    if (!std::isfinite(step) || !(brightness > 0)) {
+        return 0;
+    }
+    std::mt19937_64 random(0);
+    Channels patch(static_cast<std::size_t>(channels_), Grid<float>(probes_.front().columns, probes_.front().rows));
+    for (Grid<float>& channel : patch) {
+        for (float& value : channel.values) {
+            const double rounded = static_cast<double>(random() >> 11) * 0x1p-53 - 0.5;
+            value = static_cast<float>(brightness + rounded * step);
+        }
+    }
+    return focus_at(patch, measure_, window_, probes_.front().middle_column, probes_.front().middle_row);
+}
+
+std::optional<double> FocusProbes::persistence_of_strong_texture(const std::vector<double>& neighbour_weights,
+                                                                 bool curves_averaged) const {
+    constexpr double least_rise = 8; // of the measure over its quiet values, along z
+    constexpr double least_share = 0.02;
+    const double mean = [&] {
+        double sum = 0;
+        for (const Probe& probe : probes_) {
+            sum += std::accumulate(probe.values.begin(), probe.values.end(), 0.0) /
+                   static_cast<double>(probe.values.size() * probes_.size());
+        }
+        return sum;
+    }();
+    const double rounding = measure_of_rounding(mean);
+    Means means = means_of(neighbour_weights, images_);
+    if (!curves_averaged) {
+        means.curve = all_shares(axial_shares, {1}, images_);
+    }
+    std::vector<double> shares(probes_.size(), std::numeric_limits<double>::quiet_NaN());
+    parallel_items(static_cast<int>(probes_.size()), [&](int k) {
+        const Probe& probe = probes_[static_cast<std::size_t>(k)];
+        const std::vector<double>& singles = probe.singles;
+        const auto at = static_cast<std::size_t>(std::ranges::max_element(singles) - singles.begin());
+        const double quiet = std::max(smallest_quarter(singles), rounding);
+        if (at == 0 || at + 1 == singles.size() || !(singles[at] > least_rise * quiet)) {
+            return;
+        }
+        const double joint = curve(probe, images_in_order(images_), means)[at];
+        double alone = 0, kept = 0;
+        for (const auto& [image, weight] : means.images[at]) {
+            const double share = static_cast<double>(weight) * static_cast<double>(weight);
+            const double single = singles[static_cast<std::size_t>(image)];
+            kept += share;
+            alone += share * single * single;
+        }
+        shares[static_cast<std::size_t>(k)] = (joint * joint / alone - 1) / (1 / kept - 1);
+    });
+    std::erase_if(shares, [](double share) { return std::isnan(share); });
+    if (static_cast<double>(shares.size()) < std::max(5.0, least_share * static_cast<double>(probes_.size()))) {
+        return std::nullopt;
+    }
+    const auto middle = shares.begin() + static_cast<std::ptrdiff_t>(shares.size() / 2);
+    std::ranges::nth_element(shares, middle);
+    return *middle;
+}
+
 double FocusProbes::share_with_rival(const std::vector<double>& axial_weights, double most_rival) const {
     // The floor of noise must not pass for a maximum at either end.
     const auto curves = curves_in_order({.images = all_shares(even_shares, axial_weights, images_),

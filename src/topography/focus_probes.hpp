@@ -72,6 +72,13 @@ class FocusProbes {
     // image's neighbours; curves_averaged: so are the curves. Nothing of few probes, and of stacks without noise.
     IndependentImages independent_images(const std::vector<double>& neighbour_weights, bool curves_averaged) const;
 
+    // How much of the texture that stands out beyond doubt persists from image to image (persistence.hpp): 0 of what
+    // every image shows anew, 1 of what stays. The median over the probes whose energy rises to far more than noise
+    // that changes along z does, and than grey values round; none where there are hardly any. Images that move, and
+    // scans so coarse that texture is in focus in one image alone, have little.
+    std::optional<double> persistence_of_strong_texture(const std::vector<double>& neighbour_weights,
+                                                        bool curves_averaged) const;
+
     // Share of the probes whose curves have a second maximum of this prominence over the first's height above the mean,
     // and more than noise brings. Noise is what second differences of single images' curves tell, which narrow peaks
     // make larger: fewer are found then. axial_weights: of both averages.
@@ -140,6 +147,9 @@ class FocusProbes {
         std::vector<std::vector<Share>> images, curve;
     };
     static Means means_of(const std::vector<double>& axial_weights, int count);
+
+    // The focus measure of values that were rounded to the grey values which the probes have, about this brightness.
+    double measure_of_rounding(double brightness) const;
 
     // Of the weighted means of images in this order.
     std::vector<double> curve(const Probe& probe, const std::vector<int>& order, const Means& means) const;

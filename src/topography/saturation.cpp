@@ -28,10 +28,12 @@ void SaturationCount::add(std::span<const float> values) {
 
 Saturation SaturationCount::found() const {
     constexpr double least_share = 1e-4;
+    constexpr std::size_t least_values = 1000; // of fewer, any may be the same by chance
     constexpr std::size_t times_as_many = 4;
     const double share = all_ > 0 ? static_cast<double>(there_) / static_cast<double>(all_) : 0;
     // Images of one value everywhere are no photographs.
-    const bool saturated = largest_ > 0 && share >= least_share && there_ > times_as_many * below_ && there_ < all_;
+    const bool saturated = largest_ > 0 && share >= least_share && all_ >= least_values &&
+                           there_ > times_as_many * below_ && there_ < all_;
     return saturated ? Saturation{.level = largest_, .share = share} : Saturation{};
 }
 

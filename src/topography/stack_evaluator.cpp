@@ -310,8 +310,13 @@ StackFigures StackEvaluator::judge_stack() const {
         // Points whose windows overlap pass together: with a third of the rate, a patch of them is rare too.
         constexpr double share_of_rate = 1.0 / 3;
         const bool averaged = axial_weights_.size() > 1;
-        figures.persistence = PersistenceLimit(probes_->independent_images(neighbour_weights_, averaged),
-                                               neighbour_weights_, images, share_of_rate * options_.false_peak_rate);
+        // Where not even texture persists that is beyond doubt, persistence tells nothing of a point.
+        constexpr double least_persistence = 0.25;
+        const auto of_strong = probes_->persistence_of_strong_texture(neighbour_weights_, averaged);
+        if (of_strong.value_or(1) >= least_persistence)
+            figures.persistence =
+                PersistenceLimit(probes_->independent_images(neighbour_weights_, averaged), neighbour_weights_, images,
+                                 share_of_rate * options_.false_peak_rate);
     }
     if (options_.false_peak_rate < 1 && images > few_images) {
         const auto curves = probes_->some_curves();

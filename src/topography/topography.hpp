@@ -16,9 +16,11 @@
 //   than this stack's curves with the images in random order. What is compared is the curve's unimodality, and the
 //   order it shows (curve.glsl). How large they are by chance is found by shuffling the stack at some hundred places
 //   (focus_probes.hpp), so no noise need be known, and it holds for few images and many, for light of few rays and for
-//   texture that a coarse scan jumps over. Nor is a point measured whose curve, averaged or not, has a second maximum
-//   that stands out almost as the first; nor one whose noise could hide a second maximum, where most curves of wider
-//   windows, which have less noise, show one. Further limits of quality can be set.
+//   texture that a coarse scan jumps over. The pattern that makes the maximum must persist from image to image too,
+//   which that of noise does not, however its strength changes along z (persistence.hpp). Nor is a point measured whose
+//   curve, averaged or not, has a second maximum that stands out almost as the first; nor one whose noise could hide a
+//   second maximum, where most curves of wider windows, which have less noise, show one. Further limits of quality can
+//   be set.
 //
 // - The height is that of the window's texture, wherever in the window this lies: it is carried to the window's middle
 //   along the surface's slope (texture_place.hpp).
@@ -123,8 +125,8 @@ struct Topography {
 
 // Evaluates a stack whose images come one at a time, in one pass. With r = ceil(3 smoothing_steps), R =
 // peak_range_steps and C channels it holds, however long the stack, for every pixel about 4 bytes for each of
-// C (2r + 2R + 2) values of images and 2r + 2R + 2 of curves, and 240 + 50 C bytes besides: 500 MB for 1000 x 1000
-// grey pixels with smoothing_steps = 3, 1.3 GB with 20; and 256 MB at most for its probes.
+// C (2r + 2R + 2) values of images and 4r + 4R + 4 of curves, and 270 + 50 C bytes besides: 630 MB for 1000 x 1000
+// grey pixels with smoothing_steps = 3, 1.9 GB with 20; and 256 MB at most for its probes.
 class StackEvaluator {
   public:
     // `make_planes` makes what does the work: the host's cores unless a device is given. Throws InputError where an

@@ -170,6 +170,17 @@ Case camera_fault(const std::string& name, const std::string& keys, std::vector<
 std::vector<Case> cases() {
     const std::vector<std::string> stack = {"--stack", "c.toml"};
     const std::vector<std::string> import = {"--import", "lens.zmx"};
+    const auto with_photographs = [](const std::vector<std::string>& further) {
+        std::vector<std::string> arguments = {"--topography", "photographs", "--z_step_um", "1",
+                                              "--pitch_um",   "1",           "--out",       "out"};
+        arguments.insert(arguments.end(), further.begin(), further.end());
+        return arguments;
+    };
+    const std::map<std::string, std::string> photographs = {{"photographs/i1.pgm", "P2\n2 2\n255\n1 2 3 4\n"},
+                                                            {"photographs/i2.pgm", "P2\n2 2\n255\n1 3 3 4\n"},
+                                                            {"photographs/i3.pgm", "P2\n2 2\n255\n1 2 4 4\n"},
+                                                            {"wide.pgm", "P2\n3 2\n255\n1 2 3 4 5 6\n"},
+                                                            {"unlit.pgm", "P2\n2 2\n255\n0 0 0 0\n"}};
     const std::vector<std::string> rays = {"--trace-rays", "c.toml", "rays.csv"};
     const std::string rays_header = "x_mm,y_mm,z_mm,l,m,n\n";
     return {
@@ -915,6 +926,37 @@ std::vector<Case> cases() {
          {"--set", "trace.rasy", "Did you mean \"rays\"?"},
          {"--check", "c.toml", "--set", "trace.rasy=5"}},
         {"NoStackThere", {}, 2, {"nowhere", "stack.toml"}, {"--topography", "nowhere"}},
+        // Images of other instruments.
+        {"ChannelOfImagesThatHaveOne",
+         {},
+         2,
+         {"photographs: channel 2", "expected channel 1, the only one", "Leave --channel out"},
+         with_photographs({"--channel", "2"}),
+         photographs},
+        {"FrameOfImagesThatHaveOne",
+         {},
+         2,
+         {"photographs: frame 0", "expected frame 1, the only one", "Leave --frame out"},
+         with_photographs({"--frame", "0"}),
+         photographs},
+        {"DarkImageOfAnotherSize",
+         {},
+         2,
+         {"i1.pgm: 2 x 2 pixels", "expected 3 x 2 pixels", "Take it by the same camera"},
+         with_photographs({"--dark", "wide.pgm"}),
+         photographs},
+        {"DarkImageMissing",
+         {},
+         2,
+         {"none.pgm", "Check the path"},
+         with_photographs({"--dark", "none.pgm"}),
+         photographs},
+        {"FlatFieldWithoutLight",
+         {},
+         2,
+         {"unlit.pgm: a median of 0", "Give an image of an even, lit surface"},
+         with_photographs({"--flat-field", "unlit.pgm"}),
+         photographs},
         // Surfaces.
         {"SurfaceMissing", {}, 2, {"part.x3p", "Check the path"}, {"--surface", "part.x3p"}},
         {"SurfaceOfUnknownKind",
@@ -1143,6 +1185,7 @@ TEST_P(BadInput, IsRefusedWithPlaceKeyExpectationAndRemedy) {
     }
     write_file(folder / "c.toml", text);
     for (const auto& [name, content] : given.files) {
+        std::filesystem::create_directories((folder / name).parent_path());
         write_file(folder / name, content);
     }
     const auto result = run_program(given.arguments, folder, given.environment);

@@ -546,6 +546,33 @@ TEST(Topography, DarkAndFlatFieldAreTakenOff) {
 }
 
 // A stack.toml that claims more pixels, or more images, than there are: refused before any work is sized by it.
+TEST(Topography, FaultsOfTheImagesAreTold) {
+    const auto folder = fresh_folder("faults");
+    auto stack = stack_values(40000);
+    write_pages<std::uint16_t>(folder / "good.tif", stack, 1, OIIO::TypeDesc::UINT16);
+    for (std::size_t k = 0; k < stack.size(); ++k) {
+        for (int& value : stack[k]) {
+            value = k < 7 ? value : static_cast<int>(std::lround(1.25 * value)); // longer exposed
+        }
+        std::fill_n(stack[k].begin(), 2 * side, 65535); // a highlight
+    }
+    write_pages<std::uint16_t>(folder / "stack.tif", stack, 1, OIIO::TypeDesc::UINT16);
+    const auto good = evaluate(folder, "good.tif", "good");
+    ASSERT_EQ(good.exit_code, 0) << good.standard_error;
+    EXPECT_THAT(good.standard_error, Not(HasSubstr("warning")));
+    const auto result = evaluate(folder, "stack.tif", "out");
+    ASSERT_EQ(result.exit_code, 0) << result.standard_error;
+    EXPECT_THAT(result.standard_error, HasSubstr("changes by 18 % at image 7 and stays so"));
+    EXPECT_THAT(result.standard_error, HasSubstr("8.3 % of the pixels are saturated"));
+    const auto faults = nlohmann::json::parse(read_file(folder / "out/results.json"))["image_faults"];
+    EXPECT_NEAR(faults["saturated_share"], 2.0 / side, 1e-12);
+    EXPECT_GT(faults["exposure_step"], 0.1);
+    EXPECT_LT(faults["flicker"], 0.01);
+    // In random order a change is no step.
+    const auto shuffled = evaluate(folder, "stack.tif", "shuffled", {"--shuffle", "1"});
+    EXPECT_THAT(shuffled.standard_error, Not(HasSubstr("stays so")));
+}
+
 TEST(Topography, WorkIsSizedByTheImages) {
     const auto folder = fresh_folder("claimed");
     std::filesystem::copy(std::filesystem::path(VKFV_SOURCE_DIR) / "tests/data/stacks_1.0.0/finished", folder / "stack",

@@ -63,8 +63,8 @@ class TiffStacks : public testing::Test {
 
 TEST_F(TiffStacks, EachPageIsItsImage) {
     expect_pages(file_of<float>(PixelBits::float32));
-    EXPECT_THAT(image_description(path), HasSubstr("images=3\nslices=3\nunit=um\nspacing=0.75\nzorigin=2\n"));
-    EXPECT_THAT(image_description(path), HasSubstr("values=W\n"));
+    EXPECT_THAT(image_statement(path).description, HasSubstr("images=3\nslices=3\nunit=um\nspacing=0.75\nzorigin=2\n"));
+    EXPECT_THAT(image_statement(path).description, HasSubstr("values=W\n"));
     expect_pages(file_of<std::uint16_t>(PixelBits::uint16));
     expect_pages(file_of<std::uint8_t>(PixelBits::uint8));
 }

@@ -162,9 +162,6 @@ class PlainTiffs : public testing::Test {
         same(
             "page_count", [&] { return std::to_string(page_count(path_)); },
             [&] { return std::to_string(module.page_count(path_)); });
-        same(
-            "image_description", [&] { return image_description(path_); },
-            [&] { return module.image_description(path_); });
     }
 
     std::filesystem::path path_ =

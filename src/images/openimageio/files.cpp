@@ -174,10 +174,6 @@ std::vector<Grid<float>> read_channels(const std::filesystem::path& path, int pa
     return read_all_channels<float>(open_image(path), path, page);
 }
 
-std::string image_description(const std::filesystem::path& path) {
-    return description_of(open_image(path));
-}
-
 ImageStatement image_statement(const std::filesystem::path& path) {
     const OpenImage image = open_image(path);
     const auto& spec = image.input->spec();

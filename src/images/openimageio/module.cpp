@@ -8,7 +8,6 @@ namespace io = vkfv::images::openimageio;
 const vkfv::images::Codec vkfv_image_codec = {.page_count = io::page_count,
                                               .read_image = io::read_image,
                                               .read_channels = io::read_channels,
-                                              .image_description = io::image_description,
                                               .image_statement = io::image_statement,
                                               .parse_tiff = io::parse_tiff,
                                               .parse_image = io::parse_image,
