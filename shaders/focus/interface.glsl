@@ -14,10 +14,10 @@ const uint BINDING_ALL_IN_FOCUS = 11u;
 const uint BINDING_SINGLES = 12u;
 const uint BINDING_PIXELS = 13u;
 const uint BINDING_GATHERED = 14u;
-const uint BINDING_JOINT = 15u; // joint_value() of the last images in turn
-const uint BINDING_ALONE = 16u; // alone_value(), likewise
+const uint BINDING_JOINT = 15u;   // joint_value() of the last images in turn
+const uint BINDING_ALONE = 16u;   // alone_value(), likewise
 const uint BINDING_SQUARES = 17u; // of single images' focus measures
-const uint BINDING_PLANE = 18u; // the first of MOST_PLANES
+const uint BINDING_PLANE = 18u;   // the first of MOST_PLANES
 
 // That a dispatch reads at most (planes.glsl).
 const int MOST_PLANES = 8;
