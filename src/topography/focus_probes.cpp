@@ -296,6 +296,14 @@ std::vector<double> FocusProbes::brightness() const {
     return brightness;
 }
 
+FocusProbes::Scale FocusProbes::scale() const {
+    Scale scale{.gains = brightness(), .saturated = saturation().level};
+    for (double& gain : scale.gains) {
+        gain = 1 / gain;
+    }
+    return scale;
+}
+
 Saturation FocusProbes::saturation() const {
     SaturationCount count;
     for (const Probe& probe : probes_) {
@@ -313,7 +321,7 @@ std::optional<double> FocusProbes::second_difference(const Probe& probe, int ima
     if (std::max({before, *here, after}) >= scale.saturated) {
         return std::nullopt;
     }
-    return before / scale.brightness[at - 1] - 2.0 * *here / scale.brightness[at] + after / scale.brightness[at + 1];
+    return before * scale.gains[at - 1] - 2.0 * *here * scale.gains[at] + after * scale.gains[at + 1];
 }
 
 FocusProbes::Differences FocusProbes::differences(const Probe& probe, std::size_t channel, const Scale& scale) const {
@@ -490,11 +498,12 @@ IndependentImages FocusProbes::independent_images(const std::vector<double>& nei
         return {};
     }
     const Scale scale = this->scale();
-    std::vector<std::vector<int>> quiet;
-    for (const Probe& probe : probes_) {
-        const Differences found = differences(probe, 0, scale);
-        quiet.push_back(quiet_images(found.variances, found.sparse));
-    }
+    std::vector<std::vector<int>> quiet(probes_.size());
+    parallel_items(static_cast<int>(probes_.size()), [&](int k) {
+        const auto place = static_cast<std::size_t>(k);
+        const Differences found = differences(probes_[place], 0, scale);
+        quiet[place] = quiet_images(found.variances, found.sparse);
+    });
     const int radius = static_cast<int>(neighbour_weights.size()) - 1;
     const int images = curves_averaged ? 4 * radius + 1 : 2 * radius + 1, middle = images / 2;
     const auto shares = all_shares(axial_shares, neighbour_weights, images);

@@ -120,12 +120,13 @@ class FocusProbes {
         double variance = 0;             // by the smallest quarter of the variances; sparse: by all
         bool sparse = false;             // most of the values are 0
     };
-    // What second differences are taken of: values over the image's brightness, but for saturated ones.
+    // What second differences are taken of: values times the gain that gives their image the stack's mean brightness,
+    // but for saturated ones.
     struct Scale {
-        std::vector<double> brightness;
+        std::vector<double> gains;
         float saturated;
     };
-    Scale scale() const { return {.brightness = brightness(), .saturated = saturation().level}; }
+    Scale scale() const;
     // Of the image's value k of a patch of all channels; none where one of the three values is saturated.
     std::optional<double> second_difference(const Probe& probe, int image, std::size_t k, const Scale& scale) const;
     Differences differences(const Probe& probe, std::size_t channel, const Scale& scale) const;
