@@ -1,4 +1,4 @@
-// What there is to say of the configuration's keys, from their declarations (core/keys/key.hpp).
+// The documents of the configuration's keys are written from the keys' declarations (core/keys/key.hpp).
 #pragma once
 
 #include "core/keys/key.hpp"

@@ -13,7 +13,8 @@ namespace vkfv::scan {
 // lengths (9, 09) are told apart by their text, so that this is a strict order.
 bool naturally_before(std::string_view a, std::string_view b);
 
-// Of images, names or steps, that makes a series of them all: what the others are not is told then.
+// Files are a series if at least this share of them has the series' name, size or step. The others are left out or
+// named in a warning.
 inline constexpr double share_of_a_series = 0.8;
 
 struct ImageOrder {

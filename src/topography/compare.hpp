@@ -40,7 +40,8 @@ surface::HeightMap deviation_map(const LevelledPair& treated);
 surface::HeightMap deviation_map(const surface::HeightMap& measured, const surface::HeightMap& truth,
                                  const Band& band = {});
 
-// Both treated and what is between them, made once where several ask.
+// Measured and true heights in one band, with their difference. It is computed once, since figures, maps and files need
+// all of it.
 struct ComparedPair {
     LevelledPair pair;
     surface::HeightMap difference; // deviation_map()

@@ -75,7 +75,7 @@ double variance_of(const std::vector<double>& values) {
     return variance;
 }
 
-// By how much neighbours agree: 0 of values without order, 1 of a smooth curve.
+// The correlation of values with their neighbours: 0 if they have no order, 1 for a smooth curve.
 double neighbours_alike(const std::vector<double>& values) {
     const double variance = variance_of(values);
     double steps = 0;
@@ -341,7 +341,7 @@ FocusProbes::Differences FocusProbes::differences(const Probe& probe, std::size_
         }
         all += count;
         constexpr double gain = 1 + 4 + 1; // of the second difference on the variance of independent values
-        // Of few values the smallest quarter would be that of the fewest.
+        // An image with few unsaturated pixels has an uncertain variance, and the smallest ones are used.
         const bool enough = 2 * count >= pixels;
         found.variances.push_back(enough ? sum / static_cast<double>(count) / gain
                                          : std::numeric_limits<double>::infinity());
@@ -473,7 +473,7 @@ Channels FocusProbes::noise_patch(const Probe& probe, int image, double contrast
     if (!(largest > 0)) {
         return {};
     }
-    // Of so little contrast that the measure is in proportion to it, since the brightness stays 1.
+    // At this contrast the brightness stays 1, so that the focus measure is proportional to the contrast.
     constexpr double little = 1e-3;
     const auto fill = [&](double strength) {
         for (std::size_t k = 0; k < noise.size(); ++k) {
@@ -568,7 +568,7 @@ IndependentImages FocusProbes::independent_images(const std::vector<double>& nei
 }
 
 double FocusProbes::measure_of_rounding(double brightness) const {
-    // Of as many values as tell: floats are as good as continuous.
+    // So many values show the step between a camera's grey values. Floats have hardly any step.
     constexpr std::size_t most = 4096;
     std::vector<float> values;
     for (const Probe& probe : probes_) {

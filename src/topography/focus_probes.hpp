@@ -67,15 +67,17 @@ class FocusProbes {
     // the better the less an order costs.
     std::vector<Evidence> by_chance(const std::vector<double>& axial_weights, double rate) const;
 
-    // What images of noise alone would have in common (persistence.hpp), found with the patches of quiet images'
-    // second differences along z, of another probe for every image and all of one strength. neighbour_weights: of an
-    // image's neighbours; curves_averaged: so are the curves. Nothing of few probes, and of stacks without noise.
+    // The part of their energy that images of noise alone have in common by chance (persistence.hpp). The images are
+    // made of the stack's noise, which is the second differences along z of its quiet images: each image takes the
+    // patch of another probe, scaled to one strength. neighbour_weights: weights of an image's neighbours by their
+    // distance; curves_averaged: the focus curves are averaged by the same weights. The result is empty if there are
+    // few probes or no noise.
     IndependentImages independent_images(const std::vector<double>& neighbour_weights, bool curves_averaged) const;
 
-    // How much of the texture that stands out beyond doubt persists from image to image (persistence.hpp): 0 of what
-    // every image shows anew, 1 of what stays. The median over the probes whose energy rises to far more than noise
-    // that changes along z does, and than grey values round; none where there are hardly any. Images that move, and
-    // scans so coarse that texture is in focus in one image alone, have little.
+    // The share of strong texture that persists from image to image (persistence.hpp): 0 if every image has another
+    // pattern, 1 if the pattern stays. Texture is strong where the focus measure rises to eight times its quiet value
+    // and that of rounding to grey values. The result is the median over the probes with strong texture; it is empty if
+    // hardly any has. The share is small if the images move, or if texture is in focus in one image alone.
     std::optional<double> persistence_of_strong_texture(const std::vector<double>& neighbour_weights,
                                                         bool curves_averaged) const;
 
@@ -120,14 +122,15 @@ class FocusProbes {
         double variance = 0;             // by the smallest quarter of the variances; sparse: by all
         bool sparse = false;             // most of the values are 0
     };
-    // What second differences are taken of: values times the gain that gives their image the stack's mean brightness,
-    // but for saturated ones.
+    // Second differences are taken of values times the gain that gives each image the stack's mean brightness. Values
+    // from `saturated` on are left out.
     struct Scale {
         std::vector<double> gains;
         float saturated;
     };
     Scale scale() const;
-    // Of the image's value k of a patch of all channels; none where one of the three values is saturated.
+    // The second difference along z at value k of the probe's patch (all channels, one after the other); it is empty if
+    // one of the three values is saturated.
     std::optional<double> second_difference(const Probe& probe, int image, std::size_t k, const Scale& scale) const;
     Differences differences(const Probe& probe, std::size_t channel, const Scale& scale) const;
     std::vector<Differences> all_differences(const Scale& scale) const; // channel by channel of probe by probe

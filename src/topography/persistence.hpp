@@ -1,11 +1,12 @@
-// What tells texture from noise whose strength changes along z, as the light of a lamp or a camera's gain do. Curves of
-// such noise can be as smooth and as unimodal as those of texture, and images in random order do not show it, since
-// they lose the noise's order too. But noise has another pattern in every image, and texture that comes into focus has
-// the same pattern in several.
+// Persistence tells texture from noise whose strength changes along z, as it does with a lamp's light or a camera's
+// gain. Curves of such noise can be as smooth and as unimodal as those of texture, and images in random order do not
+// show it, since they lose the noise's order too. But noise has another pattern in every image, and texture that comes
+// into focus has the same pattern in several.
 //
-// Of an image and its neighbours, with weights a_k whose squares add up to f: joint energy J, the square of the focus
-// measure of their weighted mean, and alone energy E, the mean square of their own focus measures. Where S persists and
-// the energy N passes from image to image, E = S + N and J = S + f N. Both are found by
+// An image and its neighbours have weights a_k that add up to 1; their squares add up to f. The joint energy J is the
+// square of the focus measure of the weighted mean of these images. The alone energy E is the mean square of the
+// images' own focus measures. Where S persists and the energy N passes from image to image, E = S + N and J = S + f N.
+// Both are found by
 //
 //   S = (J - m f E) / (1 - m f),   N = E - S,
 //
@@ -20,7 +21,7 @@
 
 namespace vkfv::topography {
 
-// Of J / (f E) with images of which none knows of another.
+// The distribution of J / (f E) over stacks of images with independent noise.
 struct IndependentImages {
     double mean = 1;      // m
     double deviation = 0; // standard deviation; 0: it is not known, and nothing is asked of a point
@@ -42,7 +43,7 @@ class PersistenceLimit {
     // window_share: pixels of the window that lie in the image, over those of a whole window.
     bool exceeded_by(const focus::f64::CurveRecord& curve, double window_share) const;
 
-    // What J / (f E) must exceed where the window is whole; 0: no limit.
+    // The value that J / (f E) must exceed where the whole window lies in the image; 0: there is no limit.
     double least_ratio() const;
 
   private:

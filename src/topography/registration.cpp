@@ -218,7 +218,8 @@ MeasuredTransform measured_transform(const Grid<float>& reference, const Grid<fl
         const double off_y = shift.y - transform.shift_y - slope * from_y;
         residual += shift.certainty * (off_x * off_x + off_y * off_y);
     }
-    // Of nine parts of half the side four do not overlap; three of their eight shifts are fitted.
+    // Four of the nine parts, of half the side each, do not overlap: they give eight independent shifts, and three
+    // values are fitted to these.
     constexpr double independent = 4, free_values = 5;
     const double variance = residual / weight * independent / free_values; // of a part's shift, either component
     return {.transform = transform,

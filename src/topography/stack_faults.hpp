@@ -1,4 +1,4 @@
-// What is wrong with many stacks of photographs, found from the images alone.
+// Faults that many stacks of photographs have are found from the images alone.
 #pragma once
 
 #include "topography/focus_measure.hpp"

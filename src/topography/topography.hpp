@@ -167,9 +167,10 @@ class StackEvaluator {
     FocusMeasure measure_;
     FocusWindow window_;
     std::vector<double> axial_weights_;
-    // Of the images that are compared with an image to tell texture from noise (persistence.hpp).
+    // Weights of the neighbours that an image is compared with (persistence.hpp), by their distance.
     std::vector<double> neighbour_weights_;
-    // Of their energies: the squares of those; or the same, where averages of curves make them wider again.
+    // Weights of these images' energies: the squares of neighbour_weights_. Where curves are averaged too, which widens
+    // the mean again, neighbour_weights_ themselves are nearer to what is averaged.
     std::vector<double> energy_weights_;
     FocusPlanesMaker make_planes_;
     CurveGrid curve_grid_;

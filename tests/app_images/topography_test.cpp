@@ -568,7 +568,7 @@ TEST(Topography, FaultsOfTheImagesAreTold) {
     EXPECT_NEAR(faults["saturated_share"], 2.0 / side, 1e-12);
     EXPECT_GT(faults["exposure_step"], 0.1);
     EXPECT_LT(faults["flicker"], 0.01);
-    // In random order a change is no step.
+    // Images in random order have no step to tell of.
     const auto shuffled = evaluate(folder, "stack.tif", "shuffled", {"--shuffle", "1"});
     EXPECT_THAT(shuffled.standard_error, Not(HasSubstr("stays so")));
 }

@@ -7,7 +7,7 @@
 
 namespace vkfv {
 
-// Of the machine, at least 1.
+// The number of threads that the machine runs at once, at least 1.
 inline int core_count() {
     return static_cast<int>(std::max(1u, std::thread::hardware_concurrency()));
 }

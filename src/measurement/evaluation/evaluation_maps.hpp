@@ -13,7 +13,8 @@
 
 namespace vkfv::measurement {
 
-// What the topography is written to and what its files say of it, nothing that differs from run to run.
+// The files that heights are written to, and what these files say of the images. Nothing in here differs from run to
+// run, so that equal images give equal files.
 struct TopographyFiles {
     std::string image_unit = "DN"; // of the images' values: what other instruments write are grey values
     std::vector<std::string> names = {"topography.tif", "topography.x3p"};
@@ -23,7 +24,7 @@ struct TopographyFiles {
                                       .version = VKFV_VERSION};
 };
 
-// Those of [output] surfaces, with the configuration's digest.
+// The files that [output] surfaces names; they also hold the configuration's digest.
 TopographyFiles topography_files(const Configuration& configuration);
 
 // Into this folder in the results' own, each file by a thread of its own. Returns what the page shows of them; `count`

@@ -115,7 +115,7 @@ class LaidImages {
 
     topography::Channels read(int image) const { return laid(corrected(image), image); }
 
-    // The same; faults are looked for in what the camera gave.
+    // Reads the image as read() does. `faults` sees it as the camera gave it, before any correction.
     topography::Channels read(int image, topography::StackFaultsFinder& faults) const {
         auto channels = series_.read(image);
         faults.add(channels);
@@ -146,7 +146,7 @@ class LaidImages {
     std::vector<topography::ImageTransform> transforms_; // none: as they are
 };
 
-// What faults of a stack do to its heights, and what helps.
+// A sentence for each fault that is large enough to matter: what it does to the heights, and what helps.
 std::vector<std::string> sentences_of(const topography::StackFaults& faults, topography::Registration registration) {
     constexpr double least_flicker = 0.01, least_saturated = 0.001, least_wander = 1; // pixel
     std::vector<std::string> sentences;

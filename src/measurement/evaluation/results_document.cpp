@@ -57,7 +57,7 @@ nlohmann::ordered_json places_json(const topography::FocusCurves& curves, int im
     return {{"file", "curves.npy"}, {"rows", rows}, {"columns", curves.columns}, {"z", curves.z}};
 }
 
-// By the names of assets/schemas, and in the units of the inside.
+// The keys are those of assets/schemas without their unit; values are in mm, which as_declared() converts.
 nlohmann::ordered_json figures_of_curves(const Evaluation& evaluation) {
     nlohmann::ordered_json figures = {{"topography", json_of(evaluation.options)}};
     if (const auto& flatness = evaluation.flatness) {

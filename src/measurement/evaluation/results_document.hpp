@@ -11,15 +11,16 @@
 
 namespace vkfv::measurement {
 
-// Of an evaluated stack, in its folder.
+// The name of the results' file in the folder of an evaluated stack.
 inline constexpr std::string_view results_name = "results.json";
 
-// All but the origin of the images. plain, diffracted: figures_of() the evaluation and of that within it, if there is
-// one.
+// The document holds everything but where the images come from. plain, diffracted: figures_of() of the evaluation and
+// of the one within it, if there is one.
 nlohmann::ordered_json results_of(const Evaluation& evaluation, const std::vector<Figures>& plain,
                                   const std::vector<Figures>& diffracted);
 
-// What the results in a stack's folder say of the trace: device, digest, seed and counts; none if there are no results.
+// The figures of the trace (device, digest, seed and counts) that an earlier results.json of the folder holds; an empty
+// object if there is no such file.
 nlohmann::ordered_json run_of(const std::filesystem::path& folder);
 
 } // namespace vkfv::measurement

@@ -18,7 +18,8 @@ class BackwardTrace {
                   const TraceOptions& options);
 
     void clear(vulkan::Commands& commands) const;
-    // Of an exposure chunks first ... first + count - 1 of a randomisation, count at most most_chunks_at_a_time().
+    // Records the chunks first ... first + count - 1 of a randomisation of the exposure. count is at most
+    // most_chunks_at_a_time().
     void record(vulkan::Commands& commands, const ExposureMemory& exposure, std::uint32_t randomisation,
                 std::uint64_t first, std::uint32_t count) const;
 

@@ -39,7 +39,8 @@ struct EmissionBuffers {
     vulkan::Buffer first_paths; // of each cell, of the exposure under way on the device
 };
 
-// What an exposure has in the device's memory alone, so that the host writes the next one's while this is under way.
+// The device's memory of one exposure. Each exposure has its own, so that the host can write the next one's while this
+// one is traced.
 struct ExposureMemory {
     vulkan::Buffer parameters;                 // the scene's constants with the exposure's own
     std::optional<vulkan::Buffer> first_paths; // of each emission cell; only for forward paths that are sequential
@@ -55,12 +56,13 @@ struct KernelVariants {
 
 // make_device_scene() makes it. The instrument must outlive it.
 struct DeviceScene {
-    // Of the paths of an image, of which there are as many; exposures' memories that are made from now on have it.
+    // Orders where the paths of an image begin on the source; `paths` is how many an image has. Memories of exposures
+    // that are made from now on hold this order.
     void order_emission(std::uint64_t paths);
     ExposureMemory exposure_memory() const;
-    // As many as may be under way at a time.
+    // The memories of all exposures that may be traced at a time.
     std::vector<ExposureMemory> exposure_memories() const;
-    // What was recorded with the memory before must have been done.
+    // All commands that were recorded with the memory before must have ended.
     void write_exposure(ExposureMemory& memory, FocalPosition position, std::uint32_t image) const;
     // Before more is traced: throws where waves cannot be made of it, as far as is known.
     void require_waves() const;

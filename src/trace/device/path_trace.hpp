@@ -30,8 +30,8 @@ class PathTrace {
         commands.barrier();
     }
 
-    // Of an exposure paths first ... first + count - 1, count at most the batch; timestamps around and between its
-    // stages if wanted.
+    // Records the paths first ... first + count - 1 of the exposure. count is at most the batch; timestamps around and
+    // between its stages if wanted.
     virtual void record(vulkan::Commands& commands, const ExposureMemory& exposure, std::uint64_t first,
                         std::uint32_t count, bool timed = false) const = 0;
 

@@ -1,4 +1,4 @@
-// What exposures of forward and backward tracers have in common.
+// The base class of the exposures of forward and backward tracers.
 #pragma once
 
 #include "trace/device/device_estimate.hpp"

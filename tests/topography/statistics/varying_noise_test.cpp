@@ -81,7 +81,7 @@ std::vector<double> steps(int images) {
     return z;
 }
 
-// Of the columns from first to end.
+// The share of measured points in the columns from first to end.
 double measured_share(const Topography& topography, int first, int end) {
     int measured = 0;
     for (int row = 0; row < side; ++row) {
@@ -130,7 +130,7 @@ TEST(VaryingNoise, BesideAnObjectIsNotMeasuredAndTheObjectIs) {
     }
 }
 
-// Of energies that a chi-square variable gives, the limit lets as many pass as its rate says.
+// Noise whose energies are chi-square variables exceeds the limit as often as its rate says.
 TEST(Persistence, TheLimitIsExceededAtItsRate) {
     constexpr int images = 31, degrees = 20, samples = 200000;
     const auto weights = axial_weights(2.0);
