@@ -26,13 +26,21 @@ namespace {
 constexpr double focal_height = 0.002;
 constexpr double level = 1e-3; // false-positive rate of each chi-square test here, on either side
 
-optics::InstrumentDescription small_description() {
-    auto description = test::microscope_description();
+optics::InstrumentDescription small(optics::InstrumentDescription description) {
     description.field_stop_radius = 0.18; // little more than the detector's corners
     description.detector_width = 0.32;
     description.detector_pixels = ImageSize::square(16);
     description.turned = true;
     return description;
+}
+
+optics::InstrumentDescription small_description() {
+    return small(test::microscope_description());
+}
+
+// For what does not depend on the lenses.
+optics::InstrumentDescription ideal_description() {
+    return small(test::ideal_microscope_description());
 }
 
 constexpr std::array objectives = {"5x_0.15", "10x_0.28", "20x_0.41", "50x_0.66", "100x_0.83"}; // of the library
@@ -96,7 +104,7 @@ double agreement(const trace::Image& forward, const trace::Image& backward) {
 }
 
 void expect_agreement(const trace::Image& forward, const trace::Image& backward) {
-    ASSERT_GT(forward.detected, 25'000u);
+    ASSERT_GT(forward.detected, 15'000u);
     const double p = agreement(forward, backward);
     EXPECT_GT(p, level);
     EXPECT_LT(p, 1 - level);
@@ -120,7 +128,7 @@ TEST(Backward, estimates_the_image_that_forward_does) {
 
 // Wrong twins: a slightly sharper lobe, and a bounce too few, are told apart.
 TEST(Backward, another_specimen_does_not_pass) {
-    const auto instrument = optics::assemble(small_description());
+    const auto instrument = optics::assemble(ideal_description());
     const auto rough = test::rough_specimen(0.65);
     EXPECT_LT(agreement(forward_image(instrument, rough, 1), backward_image(instrument, test::rough_specimen(0.68), 1)),
               level);
@@ -144,7 +152,7 @@ TEST(Backward, tells_the_rim_of_the_source_apart) {
     };
     const auto apart = backward_image(instrument, rough, 1);
     EXPECT_LT(variance(apart), 1.5 * variance(backward_image(as_one, rough, 1)));
-    const auto forward = forward_image(instrument, rough, 1, 5'000'000);
+    const auto forward = forward_image(instrument, rough, 1, 2'400'000);
     expect_agreement(forward, apart);
     // Wrong twin: more is taken for sure than is.
     auto too_sure = instrument;
@@ -153,7 +161,7 @@ TEST(Backward, tells_the_rim_of_the_source_apart) {
 }
 
 TEST(Backward, knows_every_material) {
-    const auto instrument = optics::assemble(small_description());
+    const auto instrument = optics::assemble(ideal_description());
     const auto rough = test::rough_specimen();
     const specimen::Material mixture{
         {{"lambertian", 0.4, {}}, {"henyey-greenstein", 0.3, {0.95}}, {"mirror", 0.2, {}}}};
@@ -173,12 +181,12 @@ TEST(Backward, knows_every_material) {
 // GGX loses light at each event, and not the same backward: with the lobe as wide as the source's cone, sharper, and
 // much wider, on facets that light meets again.
 TEST(Backward, knows_what_a_lossy_lobe_absorbs) {
-    const auto instrument = optics::assemble(small_description());
+    const auto instrument = optics::assemble(ideal_description());
     const auto rough = test::rough_specimen();
     for (const double alpha : {0.03, 0.2, 0.7}) {
         SCOPED_TRACE(alpha);
         const auto specimen = with_material(rough, {{{"ggx", 1, {alpha}}}});
-        const auto forward = forward_image(instrument, specimen, 2, 2'400'000);
+        const auto forward = forward_image(instrument, specimen, 2);
         expect_agreement(forward, backward_image(instrument, specimen, 2));
         EXPECT_LT(agreement(forward, backward_image(instrument, with_material(rough, {{{"ggx", 0.9, {alpha}}}}), 2)),
                   level); // wrong twin
@@ -275,7 +283,7 @@ TEST(Backward, host_and_device_follow_the_same_paths_of_three_randomisations) {
 }
 
 TEST(Backward, bits_do_not_depend_on_the_batch) {
-    const auto instrument = optics::assemble(small_description());
+    const auto instrument = optics::assemble(ideal_description());
     const auto specimen = test::rough_specimen();
     auto with = options(trace::Estimator::backward, 1 << 16, 2);
     const auto whole = trace::make_device_tracer(instrument, specimen, with)->expose(focal_height, 4);
@@ -288,7 +296,7 @@ TEST(Backward, bits_do_not_depend_on_the_batch) {
 // The mean of the stated variances is the variance over images: their ratio has a relative spread of about
 // sqrt(2 / 256 (1 / 15 + 1)), the stated one with one degree of freedom a pixel and image; five of those are allowed.
 TEST(Backward, states_its_standard_error) {
-    const auto instrument = optics::assemble(small_description());
+    const auto instrument = optics::assemble(ideal_description());
     const auto specimen = test::plane_specimen(0.3);
     constexpr int images = 16;
     const auto tracer =
@@ -438,7 +446,7 @@ TEST(Backward, the_pupils_rim_adds_no_noise) {
 
 // An LED's die: narrower than the pupil one way, wider the other.
 TEST(Backward, knows_a_rectangular_source) {
-    auto description = small_description();
+    auto description = ideal_description();
     description.source.rectangle = glm::dvec2(2.4, 0.9);
     const auto rough = test::rough_specimen();
     const auto instrument = optics::assemble(description);
@@ -456,7 +464,7 @@ TEST(Backward, knows_a_rectangular_source) {
     auto whole = small;
     whole.directed_emission = false;
     const auto detected = [&](const optics::InstrumentDescription& of) {
-        return forward_image(optics::assemble(of), rough, 1, 6'000'000).ledger.entries.front();
+        return forward_image(optics::assemble(of), rough, 1, 2'000'000).ledger.entries.front();
     };
     const auto aimed = detected(small), analog = detected(whole);
     const double error =
@@ -468,7 +476,7 @@ TEST(Backward, knows_a_rectangular_source) {
 // Light from one side, past the objective: segments with gaps, wide and sharp lobes, mirrors, a spectrum, a cover
 // glass.
 TEST(Backward, knows_a_ring_light) {
-    auto description = small_description();
+    auto description = ideal_description();
     description.detector_width = 0.64;
     description.greatest_defocus = 0.02;
     description.source.ring = optics::RingLightDescription{.distance = 25,
@@ -492,18 +500,18 @@ TEST(Backward, knows_a_ring_light) {
     const auto mixed =
         with_material(rough, {{{"lambertian", 0.4, {}}, {"henyey-greenstein", 0.3, {0.95}}, {"mirror", 0.2, {}}}});
     // Few paths find the ring by a mirror: the errors that they state are large, so one side of the test says nothing.
-    const auto of_mirrors = forward_image(instrument, mixed, 2, 8'000'000);
-    EXPECT_GT(agreement(of_mirrors, backward_image(instrument, mixed, 2, 1 << 20)), level);
+    const auto of_mirrors = forward_image(instrument, mixed, 2, 3'000'000);
+    EXPECT_GT(agreement(of_mirrors, backward_image(instrument, mixed, 2)), level);
     const auto blind = with_material(rough, {{{"lambertian", 0.4, {}}, {"henyey-greenstein", 0.3, {0.95}}}});
-    EXPECT_LT(agreement(of_mirrors, backward_image(instrument, blind, 2, 1 << 20)), level);
+    EXPECT_LT(agreement(of_mirrors, backward_image(instrument, blind, 2)), level);
     description.spectrum = optics::Spectrum::gaussian(0.57, 0.04);
     description.cover_glass =
         optics::CoverGlass{.thickness = 0.05, .glass = optics::Medium::constant("glass", 1.5168), .distance = 2};
     const auto covered = optics::assemble(description);
-    const auto under_glass = forward_image(covered, mixed, 1, 16'000'000);
-    EXPECT_GT(agreement(under_glass, backward_image(covered, mixed, 1, 1 << 20)), level);
+    const auto under_glass = forward_image(covered, mixed, 1, 5'000'000);
+    EXPECT_GT(agreement(under_glass, backward_image(covered, mixed, 1)), level);
     description.cover_glass.reset();
-    EXPECT_LT(agreement(under_glass, backward_image(optics::assemble(description), blind, 1, 1 << 20)), level);
+    EXPECT_LT(agreement(under_glass, backward_image(optics::assemble(description), blind, 1)), level);
 }
 
 // Points that are drawn on a wide band are met by the rays that go there, and gaps and what is beside the band are not.
@@ -545,15 +553,15 @@ TEST(RingLight, is_met_where_it_is_drawn) {
 
 // Columns and rows are told apart, and what lies between the sensitive parts of the pixels is not seen.
 TEST(Backward, knows_rectangular_detectors_with_gaps) {
-    auto description = small_description();
+    auto description = ideal_description();
     description.detector_pixels = {24, 9};
     description.detector_width = 24 * 0.02;
     description.fill_factor = 0.49;
     const auto rough = test::rough_specimen();
     const auto instrument = optics::assemble(description);
-    ASSERT_NEAR(instrument.first_order.pixel_pitch, 0.02 / 9.999284, 1e-8);
+    ASSERT_NEAR(instrument.first_order.pixel_pitch, 0.02 / 10, 1e-8);
     ASSERT_NEAR(instrument.constants.detector_half_height, 9 * 0.01, 1e-12);
-    const auto forward = forward_image(instrument, rough, 2, 3'600'000);
+    const auto forward = forward_image(instrument, rough, 2, 1'800'000);
     const auto backward = backward_image(instrument, rough, 2);
     ASSERT_EQ(forward.flux.columns, 24);
     ASSERT_EQ(forward.flux.rows, 9);

@@ -47,8 +47,9 @@ void PrintTo(const Form& form, std::ostream* to) {
 }
 
 std::unique_ptr<trace::Tracer> tracer_of(const Form& form) {
-    auto description = microscope_description();
+    auto description = ideal_microscope_description();
     description.detector_pixels = ImageSize::square(32);
+    description.detector_width = 0.4; // so that waves take few parts of a pixel
     description.turned = form.backward;
     if (form.mixed) {
         optics::SourceDescription ring;
@@ -60,8 +61,8 @@ std::unique_ptr<trace::Tracer> tracer_of(const Form& form) {
     instruments.push_back(std::make_unique<optics::Instrument>(optics::assemble(description)));
     trace::TraceOptions options;
     options.estimator = form.backward ? trace::Estimator::backward : trace::Estimator::forward;
-    options.rays = 1 << 17;
-    options.batch = 9000;
+    options.rays = 1 << 15;
+    options.batch = 2500;
     options.nonsequential = form.nonsequential;
     options.directed_scatter = form.directed;
     if (form.waves) {

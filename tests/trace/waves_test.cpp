@@ -101,12 +101,11 @@ constexpr int grating_pixels = 32;
 // An ideal lens, pixels of an eighth of the shortest wave that it passes.
 // tilt: of the detector, rad.
 optics::InstrumentDescription ideal_description(double aperture, double tilt = 0) {
-    auto description = test::microscope_description();
+    auto description = test::ideal_microscope_description();
     const double focal_length = aperture > 0.5 ? 4 : 20;
     description.spectrum = optics::Spectrum::line(grating_wavelength * um_per_mm);
     description.source.radius = 0.5;
     description.objective = optics::ideal_objective(focal_length, aperture);
-    description.tube_lens = optics::ideal_lens(200);
     description.detector_pixels = ImageSize::square(grating_pixels);
     description.detector_width = grating_pixels * grating_wavelength / (8 * aperture) * 200 / focal_length;
     description.field_stop_radius = 0.1;
@@ -334,10 +333,7 @@ TEST(Waves, of_rectangular_detectors_with_gaps) {
 
 TEST(Waves, of_a_single_cell_in_focus_are_the_airy_transfer) {
     // All light in one part of a pixel: its image is the point spread.
-    auto description = test::microscope_description();
-    description.objective = optics::ideal_objective(20, 0.28);
-    description.tube_lens = optics::ideal_lens(200);
-    const auto instrument = optics::assemble(description);
+    const auto instrument = optics::assemble(test::ideal_microscope_description());
     const optics::PupilFilter filter(instrument, {.cells = 8, .parts = 4});
     for (const double s : {0.1, 0.4, 0.7}) {
         std::complex<double> mean = 0;
