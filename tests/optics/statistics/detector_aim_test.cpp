@@ -2,9 +2,9 @@
 // detector.
 #include "optics/aim/detector_aim.hpp"
 
+#include "optics/parts.hpp"
 #include "optics/prescriptions/ideal_lens.hpp"
 #include "optics/train/train.hpp"
-#include "parts.hpp"
 
 #include <gtest/gtest.h>
 

@@ -3,10 +3,10 @@
 #include "optics/aim/aim.hpp"
 
 #include "core/mathematics/units.hpp"
+#include "optics/parts.hpp"
 #include "optics/prescriptions/ideal_lens.hpp"
 #include "optics/train/bundle.hpp"
 #include "optics/train/train.hpp"
-#include "parts.hpp"
 
 #include <gtest/gtest.h>
 
