@@ -1207,7 +1207,7 @@ TEST(BadInputTable, DeepNamesNeedNoStack) {
          {"[" + repeated("a.", 50'000) + "a]", "x = " + repeated("[", 50'000), repeated("a.", 50'000) + "a = 1"}) {
         write_file(folder / "c.toml", line + "\n" + small_configuration);
         const std::string command =
-            "cd '" + folder.string() + "' && ulimit -s 256 && '" + VKFV_BINARY_DIR + "/vkfv' --check c.toml 2>message";
+            "cd '" + folder.string() + "' && ulimit -s 256 && '" + program() + "' --check c.toml 2>message";
         const int status = std::system(command.c_str());
         ASSERT_TRUE(WIFEXITED(status));
         EXPECT_EQ(WEXITSTATUS(status), 2);

@@ -187,7 +187,7 @@ pid_t start(const Words& words, const fs::path& folder) {
     const pid_t child = fork();
     if (child == 0) {
         Words all = words;
-        all.insert(all.begin(), VKFV_BINARY_DIR "/vkfv");
+        all.insert(all.begin(), program());
         std::vector<char*> arguments;
         for (auto& word : all) {
             arguments.push_back(word.data());

@@ -56,8 +56,7 @@ TEST(ExitCode, OfAnOutputThatIsLostIsFour) {
     write_file(folder / "c.toml", small_configuration);
     for (const char* arguments : {"--check c.toml --json", "--devices", "--check c.toml", "--help"}) {
         const int status = std::system(
-            fmt::format("cd '{}' && '{}/vkfv' {} >/dev/full 2>error", folder.string(), VKFV_BINARY_DIR, arguments)
-                .c_str());
+            fmt::format("cd '{}' && '{}' {} >/dev/full 2>error", folder.string(), program(), arguments).c_str());
         EXPECT_EQ(WEXITSTATUS(status), 4) << arguments;
         EXPECT_THAT(read_file(folder / "error"), HasSubstr("standard output cannot be written"));
     }
@@ -71,7 +70,7 @@ TEST(ExitCode, OfAnInterruptedStackIsTheSignals) {
         const pid_t child = fork();
         if (child == 0) {
             if (chdir(folder.c_str()) == 0 && freopen("error", "w", stderr) != nullptr) {
-                execl(VKFV_BINARY_DIR "/vkfv", "vkfv", "--stack", "c.toml", "--quiet", nullptr);
+                execl(program().c_str(), "vkfv", "--stack", "c.toml", "--quiet", nullptr);
             }
             _exit(127);
         }

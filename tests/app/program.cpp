@@ -76,6 +76,11 @@ window_px = 3
 directory = "out"
 )";
 
+std::string program() {
+    const char* const chosen = std::getenv("VKFV_PROGRAM");
+    return chosen != nullptr ? chosen : VKFV_BINARY_DIR "/vkfv";
+}
+
 ProgramResult run_program(const std::vector<std::string>& arguments, const std::filesystem::path& folder,
                           const std::map<std::string, std::string>& environment) {
     const auto output = folder / ".stdout";
@@ -84,7 +89,7 @@ ProgramResult run_program(const std::vector<std::string>& arguments, const std::
     for (const auto& [name, value] : environment) {
         command += " " + quoted(name + "=" + value);
     }
-    command += " " + quoted(std::string(VKFV_BINARY_DIR) + "/vkfv");
+    command += " " + quoted(program());
     for (const auto& argument : arguments) {
         command += " " + quoted(argument);
     }

@@ -14,7 +14,10 @@ struct ProgramResult {
     std::string standard_error;
 };
 
-// Runs build/.../vkfv with the arguments, in `folder`, with these environment variables besides its own.
+// The path of the program that tests start: with sanitizers, or its optimised twin where ctest says so (VKFV_PROGRAM).
+std::string program();
+
+// Runs program() with the arguments, in `folder`, with these environment variables besides its own.
 ProgramResult run_program(const std::vector<std::string>& arguments, const std::filesystem::path& folder,
                           const std::map<std::string, std::string>& environment = {});
 

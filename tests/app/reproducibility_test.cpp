@@ -78,7 +78,7 @@ bool run_and_kill(const std::vector<std::string>& arguments, const std::filesyst
         }
         words.push_back(nullptr);
         if (chdir(folder.c_str()) == 0) {
-            execv(VKFV_BINARY_DIR "/vkfv", words.data());
+            execv(program().c_str(), words.data());
         }
         _exit(127);
     }

@@ -311,7 +311,7 @@ void write_stack(const fs::path& file, const fs::path& folder) {
 // A folder as that of a checkout, with the files that documents take for granted.
 void furnish(const fs::path& folder) {
     fs::create_directories(folder / "bin");
-    write_file(folder / "bin/vkfv", replaced(small_vkfv, "PROGRAM", VKFV_BINARY_DIR "/vkfv"));
+    write_file(folder / "bin/vkfv", replaced(small_vkfv, "PROGRAM", program()));
     fs::permissions(folder / "bin/vkfv", fs::perms::owner_all);
     for (const std::string name : {"objectives", "tube_lenses", "illuminators", "specimens", "stacks"}) {
         fs::create_directories(folder / "assets" / name);

@@ -29,7 +29,7 @@ class House:
     def __init__(self, root):
         self.root = root
         self.source = root / "src"
-        self.rooms = re.findall(r"[\w]+", re.search(r"foreach\(room ([^)]*)\)", (root / "CMakeLists.txt").read_text())[1])
+        self.rooms = re.findall(r"[\w]+", re.search(r"set\(VKFV_ROOMS ([^)]*)\)", (root / "CMakeLists.txt").read_text())[1])
         self.includes = {}
         self.lines = {}
         for path in sorted([*self.source.rglob("*"), *(root / "shaders").rglob("*")]):
