@@ -14,7 +14,7 @@ using namespace physics::f64;
 
 inline trace::TraceOptions options(trace::Traversal traversal, bool nonsequential = true) {
     trace::TraceOptions result;
-    result.rays = 400000;
+    result.rays = 200000;
     result.seed = 3;
     result.max_bounces = 2;
     result.traversal = traversal;
