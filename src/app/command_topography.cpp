@@ -85,11 +85,13 @@ measurement::EvaluatedStack evaluate_own(const CommandOptions& options) {
                                             .shuffle = own.shuffle});
 }
 
-// The option, else what the file states. Where they differ by more than 1 % the option counts, and both are told.
+constexpr double tolerance = 0.01; // by which an option may differ from what a file states before both are told
+
+// The option, else what the file states. Where they differ by more than `tolerated` the option counts, and both are
+// told. Lengths are in mm.
 std::optional<double> given_or_stated(const std::string& name, const std::optional<double>& given,
-                                      const std::optional<double>& stated, const std::string& by) {
-    constexpr double tolerance = 0.01;
-    if (given && stated && std::abs(*given - *stated) > tolerance * std::abs(*stated)) {
+                                      const std::optional<double>& stated, const std::string& by, double tolerated) {
+    if (given && stated && std::abs(*given - *stated) > tolerated) {
         spdlog::warn("{} {:g}, but the file states {:g} ({}). The option is used: leave it out to use the file's.",
                      name, *given * um_per_mm, *stated * um_per_mm, by);
     }
@@ -104,7 +106,6 @@ std::optional<double> stated_pitch(const scan::StatedSeries& stated) {
     if (!stated.pitch_x || !stated.pitch_y) {
         return std::nullopt;
     }
-    constexpr double tolerance = 0.01;
     if (std::abs(*stated.pitch_x - *stated.pitch_y) > tolerance * *stated.pitch_x) {
         spdlog::warn("The file states pixels of {:g} x {:g} um ({}), which are not square: not used.",
                      *stated.pitch_x * um_per_mm, *stated.pitch_y * um_per_mm, stated.by);
@@ -120,9 +121,13 @@ measurement::EvaluatedStack evaluate_foreign(const CommandOptions& options) {
     for (const std::string& doubt : stated.doubts) {
         spdlog::warn("{} {}.", options.file.string(), doubt);
     }
-    const auto z_step =
-        given_or_stated("--z_step_um", own.z_step, stated.z_step, stated.z_by.empty() ? stated.by : stated.z_by);
-    const auto pitch = given_or_stated("--pitch_um", options.of<PixelPitch>().value, stated_pitch(stated), stated.by);
+    const std::string& z_by = stated.z_by.empty() ? stated.by : stated.z_by;
+    const auto step_or_pitch = [](const std::string& name, const std::optional<double>& given,
+                                  const std::optional<double>& stated, const std::string& by) {
+        return given_or_stated(name, given, stated, by, tolerance * std::abs(stated.value_or(0)));
+    };
+    const auto z_step = step_or_pitch("--z_step_um", own.z_step, stated.z_step, z_by);
+    const auto pitch = step_or_pitch("--pitch_um", options.of<PixelPitch>().value, stated_pitch(stated), stated.by);
     const bool step_good = z_step && std::isfinite(*z_step) && *z_step != 0;
     if (!step_good || !pitch || !std::isfinite(*pitch) || *pitch <= 0) {
         refuse_argument(
@@ -132,12 +137,9 @@ measurement::EvaluatedStack evaluate_foreign(const CommandOptions& options) {
             "Give --z_step_um UM, the step from image to image (negative if they descend), and --pitch_um UM > 0, "
             "the distance of the pixels on the specimen.");
     }
-    const double start = own.z_start.value_or(own.z_step ? 0 : stated.z_start.value_or(0));
-    constexpr double start_tolerance = 0.01; // of a step
-    if (own.z_start && stated.z_start && std::abs(start - *stated.z_start) > start_tolerance * std::abs(*z_step)) {
-        spdlog::warn("--z_start_um {:g}, but the file states {:g}. The option is used.", start * um_per_mm,
-                     *stated.z_start * um_per_mm);
-    }
+    // A start is compared by the step, since a start of 0 has no relative difference.
+    const double start =
+        given_or_stated("--z_start_um", own.z_start, stated.z_start, z_by, tolerance * std::abs(*z_step)).value_or(0);
     if (!std::isfinite(start)) {
         refuse_argument("--z_start_um " + fmt::format("{}", start), "a height",
                         "Give that of the first image, or leave it out.");

@@ -408,12 +408,40 @@ TEST(Topography, WhatAFileStatesIsUsed) {
     const auto ome = run({"parted.tif", "--channel", "2", "--out", "ome"});
     ASSERT_EQ(ome.exit_code, 0) << ome.standard_error;
     EXPECT_EQ(read_file(folder / "ome/topography.tif"), read_file(folder / "alone/topography.tif"));
+    // Where the planes stand is the start, from which less than a hundredth of a step is no other start.
+    std::string planes;
+    for (std::size_t k = 0; k < stack.size(); ++k) {
+        planes += fmt::format("<Plane TheZ=\"{}\" TheC=\"0\" TheT=\"0\" PositionZ=\"{}\" PositionZUnit=\"um\"/>", k,
+                              3 + 0.5 * static_cast<double>(k));
+    }
+    write_pages<std::uint8_t>(folder / "placed.tif", stack, 1, OIIO::TypeDesc::UINT8,
+                              {"<?xml version=\"1.0\"?><OME><Image ID=\"Image:0\"><Pixels DimensionOrder=\"XYZCT\" "
+                               "SizeX=\"24\" SizeY=\"24\" SizeZ=\"12\" SizeC=\"1\" SizeT=\"1\" Type=\"uint8\" "
+                               "PhysicalSizeX=\"2\" PhysicalSizeY=\"2\">" +
+                               planes + "</Pixels></Image></OME>"});
+    for (const auto& [start, is_other] : {std::pair{"", false}, {"3.004", false}, {"4", true}}) {
+        SCOPED_TRACE(start);
+        std::vector<std::string> arguments = {"placed.tif", "--out", "placed"};
+        if (*start != '\0') {
+            arguments.insert(arguments.end(), {"--z_start_um", start});
+        }
+        const auto placed = run(arguments);
+        ASSERT_EQ(placed.exit_code, 0) << placed.standard_error;
+        const auto told = HasSubstr("--z_start_um 4, but the file states 3");
+        EXPECT_EQ(testing::Value(placed.standard_error, told), is_other) << placed.standard_error;
+        const auto results = nlohmann::json::parse(read_file(folder / "placed/results.json"));
+        EXPECT_EQ(results["z_start_um"], *start == '\0' ? 3 : std::stod(start));
+        std::filesystem::remove_all(folder / "placed");
+    }
     // Resolution tags, and those of a printer.
     write_pages<std::uint8_t>(folder / "tags.tif", stack, 1, OIIO::TypeDesc::UINT8, {"", 5000, "cm"});
     const auto tags = run({"tags.tif", "--z_step_um", "0.5", "--out", "tags"});
     ASSERT_EQ(tags.exit_code, 0) << tags.standard_error;
     EXPECT_EQ(read_file(folder / "tags/topography.tif"), read_file(folder / "alone/topography.tif"));
     write_pages<std::uint8_t>(folder / "print.tif", stack, 1, OIIO::TypeDesc::UINT8, {"", 300, "in"});
+    // The step alone is given: the file's start stands.
+    ASSERT_EQ(run({"placed.tif", "--z_step_um", "0.5", "--out", "placed"}).exit_code, 0);
+    EXPECT_EQ(nlohmann::json::parse(read_file(folder / "placed/results.json"))["z_start_um"], 3);
     const auto print = run({"print.tif", "--z_step_um", "0.5", "--out", "print"});
     EXPECT_EQ(print.exit_code, 2);
     EXPECT_THAT(print.standard_error, HasSubstr("as for a printer"));
