@@ -29,13 +29,7 @@ std::vector<double> arrivals(const Instrument& instrument, std::uint32_t paths) 
     constexpr int rings = 10;
     constexpr int sectors = 8;
     physics::f64::SpecimenRecord specimen{};
-    const physics::f64::Exposure exposure{.top_distance = instrument.front_vertex_height,
-                                          .seed = 41,
-                                          .image = 0,
-                                          .focal_height = 0,
-                                          .top_distance_residual = 0,
-                                          .beside_x = 0,
-                                          .beside_y = 0};
+    const auto exposure = test::exposure_of(instrument.front_vertex_height, 41);
     std::vector<double> cells(rings * sectors);
     for (std::uint32_t k = 0; k < paths; ++k) {
         const auto emission = physics::f64::emit(instrument.scene(), instrument.constants,

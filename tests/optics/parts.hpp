@@ -94,4 +94,15 @@ inline physics::f64::TrainResult trace(const std::vector<physics::f64::Surface>&
                                      {.spectral = 0, .wave_number = 1, .survival = 0});
 }
 
+// Light of this seed above a specimen whose top plane is `top_distance` mm below the front vertex, in focus.
+inline physics::f64::Exposure exposure_of(double top_distance, std::uint32_t seed) {
+    return {.top_distance = top_distance,
+            .seed = seed,
+            .image = 0,
+            .focal_height = 0,
+            .top_distance_residual = 0,
+            .beside_x = 0,
+            .beside_y = 0};
+}
+
 } // namespace vkfv::test

@@ -432,7 +432,7 @@ TEST(MeshElement, ACoverGlassOfFacetsGivesTheImageOfOneOfSurfaces) {
     };
     const auto of_surfaces = image(with_surfaces, 0.001, 2);
     const auto of_mesh = image(with_mesh, 0.001 + lower, 3);
-    EXPECT_GT(of_mesh.detected, 2500u);
+    EXPECT_GT(of_mesh.detected, 5000u);
     EXPECT_GT(same_expectation_p(of_surfaces, of_mesh), 1e-4); // false-positive rate
     EXPECT_LT(std::abs(of_mesh.ledger.residual()), 1e-12 * of_mesh.ledger.emitted);
     // Wrong twin: none at all, a third of a millimetre out of focus.

@@ -39,7 +39,7 @@ inline optics::Prescription ideal_illuminator() {
     return illuminator;
 }
 
-// The microscope with lenses that have no aberrations. Each is one surface, so that a ray crosses a fifth as many as in
+// The microscope with lenses that have no aberrations. Each is one surface, so that rays take less time than in
 // microscope_description(): for tests of what does not depend on the lenses.
 inline optics::InstrumentDescription ideal_microscope_description() {
     optics::InstrumentDescription description = microscope_description();

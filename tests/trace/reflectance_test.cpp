@@ -23,21 +23,17 @@ namespace {
 
 constexpr double level = 1e-3; // false-positive rate of each chi-square test here
 
-// 32 um, 16 pixels of 2 um in the object, and not much light beside them.
-optics::InstrumentDescription small_description() {
+constexpr double field = 0.032; // mm
+
+// 16 pixels of 2 um in the object, and not much light beside them. Without aberrations an image in focus is the
+// object's mean over the pixels.
+optics::Instrument ideal_microscope() {
     auto description = test::ideal_microscope_description();
     description.field_stop_radius = 0.18;
     description.detector_width = 0.32;
     description.detector_pixels = ImageSize::square(16);
     description.turned = true;
-    return description;
-}
-
-constexpr double field = 0.032; // mm
-
-// Without aberrations: an image in focus is the object's mean over the pixels.
-optics::Instrument ideal_microscope() {
-    return optics::assemble(small_description());
+    return optics::assemble(description);
 }
 
 struct Way {
@@ -242,8 +238,8 @@ TEST(ReflectanceMap, another_angle_has_no_such_frequency) {
     EXPECT_GT(std::abs(coefficient(twin, bare, periods_x, -periods_y).value), 0.1);
 }
 
-// Up to four bounces on facets so steep that light meets them again, a mixture of lobes: forward,
-// which counts what the map absorbs, against backward, which multiplies by the map.
+// Up to four bounces on facets so steep that light meets them again, a mixture of lobes: forward, which counts what the
+// map absorbs, against backward, which multiplies by the map.
 TEST(ReflectanceMap, estimators_agree_where_light_is_scattered_again) {
     const auto instrument = ideal_microscope();
     auto steep = test::steep_specimen(0.65);

@@ -357,13 +357,7 @@ TEST(Aim, HoldsThinConesOfAnAssembledIlluminator) {
 
     constexpr std::uint32_t rays = 400000;
     physics::f64::SpecimenRecord specimen{};
-    const physics::f64::Exposure exposure{.top_distance = analog.front_vertex_height,
-                                          .seed = 43,
-                                          .image = 0,
-                                          .focal_height = 0,
-                                          .top_distance_residual = 0,
-                                          .beside_x = 0,
-                                          .beside_y = 0};
+    const auto exposure = test::exposure_of(analog.front_vertex_height, 43);
     const double shift = directed.constants.emission_shift;
     const auto arrived = [&](const Instrument& instrument, auto&& each) {
         int count = 0;

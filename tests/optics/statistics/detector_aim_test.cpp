@@ -91,13 +91,7 @@ std::vector<glm::dvec2> seen_directions(const Instrument& instrument, double gre
     for (std::uint32_t k = 0; k < rays; ++k) {
         // The ends decide.
         const double height = greatest_height * std::clamp(3 * uniform(generator) - 1.5, -1.0, 1.0);
-        const physics::f64::Exposure exposure{.top_distance = instrument.front_vertex_height - height,
-                                              .seed = 43,
-                                              .image = 0,
-                                              .focal_height = 0,
-                                              .top_distance_residual = 0,
-                                              .beside_x = 0,
-                                              .beside_y = 0};
+        const auto exposure = test::exposure_of(instrument.front_vertex_height - height, 43);
         const auto emission = physics::f64::emit(instrument.scene(), constants,
                                                  physics::f64::draw(exposure.seed, exposure.image, {k, 0}, 0u));
         const auto arrival = physics::f64::illuminate(instrument.scene(), constants, plane, exposure, emission);
