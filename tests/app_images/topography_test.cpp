@@ -433,15 +433,15 @@ TEST(Topography, WhatAFileStatesIsUsed) {
         EXPECT_EQ(results["z_start_um"], *start == '\0' ? 3 : std::stod(start));
         std::filesystem::remove_all(folder / "placed");
     }
+    // The step alone is given: the file's start stands.
+    ASSERT_EQ(run({"placed.tif", "--z_step_um", "0.5", "--out", "placed"}).exit_code, 0);
+    EXPECT_EQ(nlohmann::json::parse(read_file(folder / "placed/results.json"))["z_start_um"], 3);
     // Resolution tags, and those of a printer.
     write_pages<std::uint8_t>(folder / "tags.tif", stack, 1, OIIO::TypeDesc::UINT8, {"", 5000, "cm"});
     const auto tags = run({"tags.tif", "--z_step_um", "0.5", "--out", "tags"});
     ASSERT_EQ(tags.exit_code, 0) << tags.standard_error;
     EXPECT_EQ(read_file(folder / "tags/topography.tif"), read_file(folder / "alone/topography.tif"));
     write_pages<std::uint8_t>(folder / "print.tif", stack, 1, OIIO::TypeDesc::UINT8, {"", 300, "in"});
-    // The step alone is given: the file's start stands.
-    ASSERT_EQ(run({"placed.tif", "--z_step_um", "0.5", "--out", "placed"}).exit_code, 0);
-    EXPECT_EQ(nlohmann::json::parse(read_file(folder / "placed/results.json"))["z_start_um"], 3);
     const auto print = run({"print.tif", "--z_step_um", "0.5", "--out", "print"});
     EXPECT_EQ(print.exit_code, 2);
     EXPECT_THAT(print.standard_error, HasSubstr("as for a printer"));
