@@ -8,6 +8,7 @@
 #include <array>
 #include <cmath>
 #include <complex>
+#include <numeric>
 
 namespace vkfv::topography {
 namespace {
@@ -21,43 +22,69 @@ struct Part {
     int rows = 0;
 };
 
-// Without its mean, fading to nothing at its edges, which would agree otherwise wherever the images differ. Beyond the
-// image its border is repeated.
-Spectrum windowed_spectrum(const Grid<float>& image, const Part& part) {
-    const auto value = [&](int column, int row) {
-        return image(std::clamp(part.column + column, 0, image.columns - 1),
-                     std::clamp(part.row + row, 0, image.rows - 1));
-    };
-    double mean = 0;
-    for (int row = 0; row < part.rows; ++row) {
-        for (int column = 0; column < part.columns; ++column) {
-            mean += value(column, row);
-        }
-    }
-    mean /= static_cast<double>(part.columns) * part.rows;
-    const auto hann = [](int k, int count) { return 0.5 - 0.5 * std::cos(2 * pi * (k + 0.5) / count); };
-    Spectrum spectrum(part.columns, part.rows);
-    for (int row = 0; row < part.rows; ++row) {
-        for (int column = 0; column < part.columns; ++column) {
-            spectrum(column, row) = (value(column, row) - mean) * hann(column, part.columns) * hann(row, part.rows);
-        }
-    }
-    fourier_transform(spectrum);
-    return spectrum;
-}
-
 struct Shift {
     double x = 0;
     double y = 0;
     double certainty = 0; // at most 1
 };
 
-// Of the other image's part against the reference's: their phases differ by -2 pi (f, shift). Frequencies count by
-// their power in both: where the images have little, noise and the fading edges decide.
-Spectrum cross_spectrum(const Grid<float>& reference, const Part& part, const Grid<float>& image,
-                        const Part& other_part) {
-    Spectrum cross = windowed_spectrum(reference, part);
-    const Spectrum other = windowed_spectrum(image, other_part);
+// Weights of four neighbours around a fraction of their middle interval.
+std::array<double, 4> cubic_weights(double t) {
+    return {((-0.5 * t + 1) * t - 0.5) * t, (1.5 * t - 2.5) * t * t + 1, ((-1.5 * t + 2) * t + 0.5) * t,
+            (0.5 * t - 0.5) * t * t};
+}
+
+// The image of the part's size that begins at the part's corner plus the shift, between pixels by cubic convolution.
+// Beyond the image its border is repeated.
+Grid<double> cut_out(const Grid<float>& image, const Part& part, const Shift& from) {
+    const double left = std::floor(from.x), top = std::floor(from.y);
+    const auto along_x = cubic_weights(from.x - left), along_y = cubic_weights(from.y - top);
+    const int first_column = part.column + static_cast<int>(left) - 1, first_row = part.row + static_cast<int>(top) - 1;
+    const auto pixel = [&](int column, int row) -> double {
+        return image(std::clamp(column, 0, image.columns - 1), std::clamp(row, 0, image.rows - 1));
+    };
+    Grid<double> between_columns(part.columns, part.rows + 3);
+    for (int row = 0; row < between_columns.rows; ++row) {
+        for (int column = 0; column < part.columns; ++column) {
+            for (int i = 0; i < 4; ++i) {
+                between_columns(column, row) +=
+                    along_x[static_cast<std::size_t>(i)] * pixel(first_column + column + i, first_row + row);
+            }
+        }
+    }
+    Grid<double> result(part.columns, part.rows);
+    for (int row = 0; row < part.rows; ++row) {
+        for (int column = 0; column < part.columns; ++column) {
+            for (int i = 0; i < 4; ++i) {
+                result(column, row) += along_y[static_cast<std::size_t>(i)] * between_columns(column, row + i);
+            }
+        }
+    }
+    return result;
+}
+
+// The spectrum of the part without its mean. It fades to nothing at its edges, which would agree otherwise wherever the
+// images differ.
+Spectrum windowed_spectrum(const Grid<float>& image, const Part& part, const Shift& from) {
+    const Grid<double> values = cut_out(image, part, from);
+    const double mean = std::accumulate(values.values.begin(), values.values.end(), 0.0) /
+                        (static_cast<double>(part.columns) * part.rows);
+    const auto hann = [](int k, int count) { return 0.5 - 0.5 * std::cos(2 * pi * (k + 0.5) / count); };
+    Spectrum spectrum(part.columns, part.rows);
+    for (int row = 0; row < part.rows; ++row) {
+        for (int column = 0; column < part.columns; ++column) {
+            spectrum(column, row) = (values(column, row) - mean) * hann(column, part.columns) * hann(row, part.rows);
+        }
+    }
+    fourier_transform(spectrum);
+    return spectrum;
+}
+
+// The other image's part, which begins at `from`, against the reference's: their phases differ by -2 pi (f, shift).
+// Frequencies count by their power in both: where the images have little, noise and the fading edges decide.
+Spectrum cross_spectrum(const Spectrum& reference, const Grid<float>& image, const Part& part, const Shift& from) {
+    Spectrum cross = reference;
+    const Spectrum other = windowed_spectrum(image, part, from);
     double mean = 0;
     for (std::size_t k = 0; k < cross.values.size(); ++k) {
         cross.values[k] = std::conj(cross.values[k]) * other.values[k];
@@ -119,23 +146,26 @@ Shift whole_shift(Spectrum cross) {
     return best;
 }
 
-// First from the same place in both, then from where that has been found: what both parts show is the same then.
+// The first pass compares the same place in both images, each later one the places that have been found so far, so that
+// both show the same in the end. The plane through the phases alone finds less than the whole rest of a shift, because
+// noise has no slope and the fading edges do not move; what it leaves over, the next pass finds.
 Shift shift_of(const Grid<float>& reference, const Grid<float>& image, const Part& part) {
-    constexpr int most_passes = 3;
-    Part there = part;
+    constexpr int most_passes = 6;
+    constexpr double settled = 0.01; // pixel
+    const Spectrum here = windowed_spectrum(reference, part, {});
     Shift found;
     for (int pass = 0; pass < most_passes; ++pass) {
-        const Spectrum cross = cross_spectrum(reference, part, image, there);
-        const Shift whole = whole_shift(cross);
-        const bool settled = whole.x == 0 && whole.y == 0;
-        const Shift rest = settled ? slope_of_phases(cross) : whole;
-        found = {
-            .x = there.column - part.column + rest.x, .y = there.row - part.row + rest.y, .certainty = whole.certainty};
-        if (settled) {
+        const Spectrum cross = cross_spectrum(here, image, part, found);
+        Shift rest = whole_shift(cross);
+        found.certainty = rest.certainty;
+        if (rest.x == 0 && rest.y == 0) {
+            rest = slope_of_phases(cross);
+        }
+        found.x += rest.x;
+        found.y += rest.y;
+        if (std::hypot(rest.x, rest.y) < settled) {
             break;
         }
-        there.column += static_cast<int>(whole.x);
-        there.row += static_cast<int>(whole.y);
     }
     return found;
 }
@@ -147,12 +177,6 @@ Part middle_part(int columns, int rows) {
     part.column = (columns - part.columns) / 2;
     part.row = (rows - part.rows) / 2;
     return part;
-}
-
-// Weights of four neighbours around a fraction of their middle interval.
-std::array<double, 4> cubic_weights(double t) {
-    return {((-0.5 * t + 1) * t - 0.5) * t, (1.5 * t - 2.5) * t * t + 1, ((-1.5 * t + 2) * t + 0.5) * t,
-            (0.5 * t - 0.5) * t * t};
 }
 
 } // namespace

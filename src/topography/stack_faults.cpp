@@ -94,23 +94,38 @@ StackFaults StackFaultsFinder::finish() {
         }
         find_faults_of_light(brightness_, faults);
     }
-    ImageTransform whole;
-    double shift_variance = 0, scale_variance = 0;
+    // Each of the images that were compared, in the frame of the first, with the variances of what was added up.
+    struct Place {
+        ImageTransform transform{};
+        double shift_variance = 0;
+        double scale_variance = 0;
+    };
+    std::vector<Place> places(1);
     for (auto& movement : movements_) {
         const MeasuredTransform step = movement.get();
-        whole = whole.then(step.transform);
-        shift_variance += step.shift_deviation * step.shift_deviation;
-        scale_variance += step.scale_deviation * step.scale_deviation;
+        const Place& before = places.back();
+        places.push_back({.transform = before.transform.then(step.transform),
+                          .shift_variance = before.shift_variance + step.shift_deviation * step.shift_deviation,
+                          .scale_variance = before.scale_variance + step.scale_deviation * step.scale_deviation});
     }
     constexpr double least_deviations = 5;
-    const double wander = std::hypot(whole.shift_x, whole.shift_y);
-    if (wander > least_deviations * std::sqrt(shift_variance)) {
-        faults.wander = wander * pixels_a_bin_;
+    for (std::size_t later = 1; later < places.size(); ++later) {
+        for (std::size_t earlier = 0; earlier < later; ++earlier) {
+            const Place &from = places[earlier], &to = places[later];
+            const double wander = pixels_a_bin_ * std::hypot(to.transform.shift_x - from.transform.shift_x,
+                                                             to.transform.shift_y - from.transform.shift_y);
+            const double deviation = pixels_a_bin_ * std::sqrt(to.shift_variance - from.shift_variance);
+            if (wander > std::max(faults.wander, least_deviations * deviation)) {
+                faults.wander = wander;
+            }
+            const double change = to.transform.scale / from.transform.scale;
+            const double scale_deviation = std::sqrt(to.scale_variance - from.scale_variance);
+            if (std::abs(change - 1) > std::max(std::abs(faults.scale - 1), least_deviations * scale_deviation)) {
+                faults.scale = change;
+            }
+        }
     }
-    if (std::abs(whole.scale - 1) > least_deviations * std::sqrt(scale_variance)) {
-        faults.scale = whole.scale;
-        faults.corner_wander = std::abs(whole.scale - 1) * 0.5 * std::hypot(columns_, rows_);
-    }
+    faults.corner_wander = std::abs(faults.scale - 1) * 0.5 * std::hypot(columns_, rows_);
     return faults;
 }
 

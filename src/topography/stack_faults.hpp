@@ -15,8 +15,8 @@ struct StackFaults {
     double exposure_step = 0; // the largest lasting change of brightness between two images, over the mean; 0: none
     int step_image = 0;       // the first image after it, by its place in the stack
     double saturated_share = 0;
-    // How far the specimen's image wanders from the first image to the last, in pixels, and its scale there; no
-    // movement unless it is several times its standard deviation.
+    // The farthest that the specimen's image wanders from any image to a later one, in pixels, and the largest change
+    // of its scale between two images; no movement unless it is several times its standard deviation.
     double wander = 0;
     double scale = 1;
     double corner_wander = 0; // of the images' corners by the change of scale, in pixels

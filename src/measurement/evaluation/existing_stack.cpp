@@ -170,7 +170,7 @@ std::vector<std::string> sentences_of(const topography::StackFaults& faults, top
         std::max(faults.wander, faults.corner_wander) >= least_wander) {
         const bool scaled = faults.corner_wander >= least_wander;
         sentences.push_back(fmt::format(
-            "The image wanders by {:.2g} pixels from the first to the last image{}: --set "
+            "The image wanders by {:.2g} pixels within the stack{}: --set "
             "topography.registration=\"{}\" lays the images over each other",
             faults.wander,
             scaled ? fmt::format(" and its scale changes by {:.2g} %", 100 * (faults.scale - 1)) : std::string(),
