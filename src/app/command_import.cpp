@@ -2,6 +2,7 @@
 
 #include "core/files/file.hpp"
 #include "optics/prescriptions/prescription_writer.hpp"
+#include "optics/prescriptions/reversal.hpp"
 #include "optics/prescriptions/zmx.hpp"
 #include "optics/train/first_order.hpp"
 
@@ -19,6 +20,8 @@ namespace {
 
 struct ImportOptions {
     std::vector<std::filesystem::path> glass_catalogs;
+    std::optional<int> configuration;
+    bool reverse = false;
 };
 
 } // namespace
@@ -26,15 +29,27 @@ struct ImportOptions {
 Command import_command() {
     const Option catalogs = {.name = "--glass-catalog",
                              .value = "FILE.agf",
-                             .description = "Glasses besides the built-in ones; may be repeated",
+                             .description = "Glasses besides the built-in ones; may be repeated. A lens's own order of "
+                                            "catalogues (GCAT) decides on a name that several have",
                              .target = into(&ImportOptions::glass_catalogs),
                              .file = true};
+    const Option configuration = {.name = "--configuration",
+                                  .value = "N",
+                                  .description = "Which of several configurations, from 1; without it the active one",
+                                  .target = into(&ImportOptions::configuration),
+                                  .range = {1, 1000}};
+    const Option reverse = {.name = "--reverse",
+                            .value = "",
+                            .description =
+                                "Turn the lens round: an objective that is written from infinity towards its "
+                                "focus must run from the specimen to the back",
+                            .target = into(&ImportOptions::reverse)};
     return {.name = "import",
             .summary =
                 "Write a Zemax lens as a prescription, to --out or standard output, and its focal lengths to the "
-                "log. Objectives must run from the specimen to the back: turn others round in Zemax",
+                "log. Objectives must run from the specimen to the back: --reverse turns others round",
             .operands = {{"LENS.zmx", "Lens of Zemax, sequential", into(&CommandOptions::file)}},
-            .options = {out_option("The prescription"), json_option(), catalogs},
+            .options = {out_option("The prescription"), json_option(), catalogs, configuration, reverse},
             .run = run_import,
             .example = "vkfv import lens.zmx --out lens.toml"};
 }
@@ -58,8 +73,8 @@ FocalLengths focal_lengths(const optics::Prescription& lens, double wavelength_u
             distance += change.thickness;
         }
         const double index_after = surface.medium_after.index(wavelength_um);
-        transfer =
-            transfer.then(optics::free_space(distance, index)).then({.c = -(index_after - index) * surface.curvature});
+        const double power = surface.ideal_power.value_or((index_after - index) * surface.curvature);
+        transfer = transfer.then(optics::free_space(distance, index)).then({.c = -power});
         index = index_after;
         distance = surface.thickness;
     }
@@ -70,11 +85,15 @@ FocalLengths focal_lengths(const optics::Prescription& lens, double wavelength_u
 
 void run_import(const CommandOptions& options) {
     auto glasses = optics::GlassCatalog::builtin();
-    for (const auto& catalog : options.of<ImportOptions>().glass_catalogs) {
+    const auto& own = options.of<ImportOptions>();
+    for (const auto& catalog : own.glass_catalogs) {
         glasses.add(catalog);
     }
-    const auto lens = optics::read_zmx(options.file, glasses);
-    const auto& prescription = lens.prescription;
+    auto lens = optics::read_zmx(options.file, glasses, own.configuration);
+    auto& prescription = lens.prescription;
+    if (own.reverse) {
+        prescription = optics::turned_round(prescription);
+    }
     const auto focal = focal_lengths(prescription, lens.primary_wavelength_um);
     spdlog::info("{}: {} surfaces, wavelengths {} um, of which {} is the primary one", prescription.title,
                  prescription.surfaces.size(), fmt::join(lens.wavelengths_um, ", "), lens.primary_wavelength_um);
@@ -83,6 +102,13 @@ void run_import(const CommandOptions& options) {
                      focal.back, lens.primary_wavelength_um);
     } else {
         spdlog::info("afocal at {} um", lens.primary_wavelength_um);
+    }
+
+    if (lens.from_infinity && !own.reverse && std::isfinite(focal.effective) && focal.back > 0) {
+        spdlog::warn(
+            "{}: the lens is written from infinity towards its focus, as tube lenses are. An objective begins at "
+            "the specimen: import it with --reverse",
+            prescription.title);
     }
 
     const std::string text = optics::prescription_text(prescription);

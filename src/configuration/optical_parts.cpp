@@ -127,13 +127,17 @@ optics::Prescription read_prescription(const Section& section, const TextKey& ke
 optics::Medium read_glass(const Section& section, const TextKey& key, const Configuration& configuration) {
     const TomlTable& table = section.table();
     const std::string name = table.optional_string(key.name).value_or(key.fallback_text());
-    const auto glass = name == optics::Medium::air().name ? optics::Medium::air() : configuration.glasses.find(name);
+    std::optional<optics::Medium> glass;
+    try {
+        glass = name == optics::Medium::air().name ? optics::Medium::air() : configuration.glasses.find(name);
+    } catch (const InputError& error) { // the catalogues do not agree, or the record is wrong
+        section.note(key, error.problem().expected, error.problem().remedy);
+        return optics::Medium::air();
+    }
     if (!glass) {
-        const auto meant = optics::nearest_glass(configuration.glasses, name);
         if (table.sound(glass_catalogs_key)) { // else it may be in the one that could not be read
             section.note(key, "the name of a glass, built in or of a catalogue",
-                         fmt::format("{}Correct the name, or add its catalogue to glass_catalogs.",
-                                     meant ? fmt::format("Did you mean \"{}\"? ", *meant) : ""));
+                         "Correct the name, or add its catalogue to glass_catalogs.");
         }
         return optics::Medium::air();
     }

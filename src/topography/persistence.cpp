@@ -19,11 +19,12 @@ double normal_exceeded_with(double probability) {
     return 0.5 * (low + high);
 }
 
-// The value over its mean that a chi-square variable of so many degrees of freedom exceeds with this probability
-// (E. B. Wilson and M. M. Hilferty, "The distribution of chi-square", 1931).
-double chi_square_exceeded_with(double probability, double degrees) {
+// The value over its mean that a chi-square variable of so many degrees of freedom exceeds with the probability with
+// which a standard normal variable exceeds `normal` (E. B. Wilson and M. M. Hilferty, "The distribution of chi-square",
+// 1931).
+double chi_square_exceeded_as(double normal, double degrees) {
     const double variance = 2 / (9 * degrees);
-    const double root = 1 - variance + normal_exceeded_with(probability) * std::sqrt(variance);
+    const double root = 1 - variance + normal * std::sqrt(variance);
     return root * root * root;
 }
 
@@ -41,13 +42,13 @@ PersistenceLimit::PersistenceLimit(const IndependentImages& independent, const s
     mean_kept_ = std::accumulate(kept_.begin(), kept_.end(), 0.0) / images;
     // The largest value of the curve chooses among as many places as means that share few images.
     const double places = std::max(1.0, images * kept_[kept_.size() / 2]);
-    probability_ = rate / places;
+    normal_ = normal_exceeded_with(rate / places);
 }
 
 double PersistenceLimit::beyond_chance(double window_share) const {
     const double wider = 1 / std::sqrt(window_share);
     const double relative = independent_.deviation / independent_.mean * wider;
-    return std::max(independent_.mean * (chi_square_exceeded_with(probability_, 2 / (relative * relative)) - 1),
+    return std::max(independent_.mean * (chi_square_exceeded_as(normal_, 2 / (relative * relative)) - 1),
                     wider * (independent_.largest - independent_.mean));
 }
 

@@ -50,7 +50,8 @@ class PersistenceLimit {
     double beyond_chance(double window_share) const; // of J / (f E), above its mean
 
     IndependentImages independent_{};
-    double probability_ = 1;   // of one place of the scan
+    double normal_ =
+        0; // what a standard normal variable exceeds as rarely as noise may the limit, at a place of the scan
     std::vector<double> kept_; // f of every image
     double mean_kept_ = 0;
 };

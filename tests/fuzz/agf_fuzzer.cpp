@@ -8,7 +8,7 @@
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
     using namespace vkfv;
     try {
-        for (const auto& glass : optics::parse_agf({reinterpret_cast<const char*>(data), size}, "fuzzed.agf")) {
+        for (const auto& glass : optics::parse_agf({reinterpret_cast<const char*>(data), size}, "fuzzed.agf").media) {
             try {
                 (void)glass.index(0.5875618);
             } catch (const InputError&) {

@@ -8,6 +8,7 @@
 #include <spdlog/sinks/ostream_sink.h>
 #include <spdlog/spdlog.h>
 
+#include <algorithm>
 #include <cmath>
 #include <fstream>
 #include <sstream>
@@ -44,7 +45,8 @@ std::string utf16(const std::string& text, bool big_endian) {
     return bytes;
 }
 
-void expect_catalogue(const std::vector<Medium>& media) {
+void expect_catalogue(const AgfGlasses& glasses) {
+    const auto& media = glasses.media;
     ASSERT_EQ(media.size(), 2u);
     EXPECT_EQ(media[0].name, "ONE");
     EXPECT_EQ(media[0].source, "x.agf");
@@ -72,19 +74,21 @@ TEST(Agf, ReadsEveryEncodingAndLineEnd) {
     // The same letter of a name in Latin-1, UTF-8 and UTF-16.
     const std::string rest = " 5\nCD 1.5\nLD 1 2\n";
     const std::string expected = "\xc3\xa9";
-    EXPECT_EQ(parse_agf("NM \xe9" + rest, "x")[0].name, expected);
-    EXPECT_EQ(parse_agf("NM " + expected + rest, "x")[0].name, expected);
+    EXPECT_EQ(parse_agf("NM \xe9" + rest, "x").media[0].name, expected);
+    EXPECT_EQ(parse_agf("NM " + expected + rest, "x").media[0].name, expected);
     const auto wide = utf16("NM ", false) + std::string("\xe9\0", 2) + utf16(rest, false).substr(2);
-    EXPECT_EQ(parse_agf(wide, "x")[0].name, expected);
+    EXPECT_EQ(parse_agf(wide, "x").media[0].name, expected);
     // A code point beyond 16 bits, and half of one.
     const std::string pair = std::string("\x3c\xd8", 2) + "\x0d\xdf"; // U+1F30D
-    EXPECT_EQ(parse_agf(utf16("NM ", false) + pair + utf16(rest, false).substr(2), "x")[0].name, "\xf0\x9f\x8c\x8d");
-    EXPECT_EQ(parse_agf(utf16("NM ", false) + pair.substr(0, 2) + utf16(rest, false).substr(2), "x")[0].name, "?");
+    EXPECT_EQ(parse_agf(utf16("NM ", false) + pair + utf16(rest, false).substr(2), "x").media[0].name,
+              "\xf0\x9f\x8c\x8d");
+    EXPECT_EQ(parse_agf(utf16("NM ", false) + pair.substr(0, 2) + utf16(rest, false).substr(2), "x").media[0].name,
+              "?");
 }
 
 TEST(Agf, TakesAllThirteenFormulas) {
     for (int number = 1; number <= 13; ++number) {
-        const auto media = parse_agf("NM G " + std::to_string(number) + "\nCD 1.25 0.5\nLD 1 2\n", "x.agf");
+        const auto media = parse_agf("NM G " + std::to_string(number) + "\nCD 1.25 0.5\nLD 1 2\n", "x.agf").media;
         const auto& glass = std::get<GlassFormula>(media.at(0).dispersion);
         EXPECT_EQ(static_cast<int>(glass.formula), number);
         ASSERT_EQ(glass.coefficients.size(), coefficient_count(glass.formula));
@@ -100,15 +104,15 @@ TEST(Agf, LinesOfNumbersContinueTheOneBefore) {
     const std::string wrapped = "NM G 13 1 1.5\n70 0 0 1\nCD 2.25 0.001 -2E-4 9E-3 \r\n7E-5 4E-6 -1E-7 0\n"
                                 "! a remark between\n+0 0\nTD 1 2 3\n4 5 6 7\nLD 0.4\n 2.1\nIT 0.4\n.9 10\n"
                                 "NM H 5\nCD 1.5\nLD 0.4 0.7\n";
-    const auto expected = parse_agf(whole, "x.agf");
-    const auto media = parse_agf(wrapped, "x.agf");
+    const auto expected = parse_agf(whole, "x.agf").media;
+    const auto media = parse_agf(wrapped, "x.agf").media;
     ASSERT_EQ(media.size(), 2u);
     EXPECT_EQ(media[0].dispersion, expected[0].dispersion);
     EXPECT_EQ(media[1].dispersion, expected[1].dispersion);
     const auto& coefficients = std::get<GlassFormula>(media[0].dispersion).coefficients;
     EXPECT_EQ(coefficients.at(4), 7E-5); // the first of the second line
     // The wrong twin: without the continued lines the index is another.
-    const auto cut = parse_agf("NM G 13\nCD 2.25 0.001 -2E-4 9E-3\nLD 0.4 2.1\n", "x.agf");
+    const auto cut = parse_agf("NM G 13\nCD 2.25 0.001 -2E-4 9E-3\nLD 0.4 2.1\n", "x.agf").media;
     EXPECT_NE(cut[0].index(0.5), media[0].index(0.5));
 }
 
@@ -118,9 +122,9 @@ TEST(Agf, TheFirstGlassOfANameIsTakenAndTheLogTellsOfOthers) {
     spdlog::set_default_logger(
         std::make_shared<spdlog::logger>("test", std::make_shared<spdlog::sinks::ostream_sink_st>(log)));
     const std::string first = "NM G 5\nCD 1.5\nLD 1 2\n";
-    const auto same = parse_agf(first + first, "x.agf");
+    const auto same = parse_agf(first + first, "x.agf").media;
     const std::string without_twins = log.str();
-    const auto media = parse_agf(first + "NM F 5\nCD 1.7\nLD 1 2\nNM G 5\nCD 1.6\nLD 1 2\n", "x.agf");
+    const auto media = parse_agf(first + "NM F 5\nCD 1.7\nLD 1 2\nNM G 5\nCD 1.6\nLD 1 2\n", "x.agf").media;
     spdlog::set_default_logger(before);
     EXPECT_EQ(same.size(), 1u);
     EXPECT_EQ(without_twins, ""); // the same glass twice
@@ -130,7 +134,7 @@ TEST(Agf, TheFirstGlassOfANameIsTakenAndTheLogTellsOfOthers) {
     EXPECT_THAT(log.str(), HasSubstr("G (lines 1 and 7)"));
     // Names that a catalogue does not tell apart.
     GlassCatalog glasses;
-    glasses.add(parse_agf("NM A-B 5\nCD 1.5\nLD 1 2\nNM a_b 5\nCD 1.6\nLD 1 2\n", "x.agf"));
+    glasses.add(parse_agf("NM A-B 5\nCD 1.5\nLD 1 2\nNM a_b 5\nCD 1.6\nLD 1 2\n", "x.agf"), "x.agf");
     EXPECT_DOUBLE_EQ(glasses.get("A-B").index(1.5), 1.5);
 }
 
@@ -172,7 +176,7 @@ TEST(Agf, FaultsNameFileLineAndKeyword) {
         {"NM G 5\nCD 1.5\n0 1,2\nLD 1 2\n", 3, "CD of \"G\"", "1,2"},
         {"NM G 5\nCD 1.5\n0,1 2\nLD 1 2\n", 3, "0,1 of \"G\"", "0,1"},
         {"NM G 5\nLD 1 2\n", 1, "CD of \"G\"", "nothing"},
-        {"NM F 5\nCD 1.5\nNM G 5\nCD 1.5\nLD 1 2\n", 1, "LD of \"F\"", "nothing"},
+        {"NM F 5\nCD 1.5\nNM G 5\nCD 1.5\n", 1, "LD of \"F\"", "nothing"},
     };
     for (const auto& row : rows) {
         SCOPED_TRACE(row.text);
@@ -186,6 +190,30 @@ TEST(Agf, FaultsNameFileLineAndKeyword) {
             EXPECT_THAT(problem.key, HasSubstr(row.key));
             EXPECT_THAT(problem.found, HasSubstr(row.found));
             EXPECT_FALSE(problem.expected.empty() || problem.remedy.empty());
+        }
+    }
+}
+
+// A record that is wrong costs its own glass alone, wherever in the file it stands.
+TEST(Agf, OtherGlassesAreReadBesideAWrongRecord) {
+    const std::string good = "NM G 5\nCD 1.5\nLD 1 2\n";
+    for (const std::string wrong : {"NM F 5\nCD 1.5\nLD 0 0\n", "NM F 5\nCD 1,5\nLD 1 2\n", "NM F 99\nCD 1.5\nLD 1 2\n",
+                                    "NM F 5\nLD 1 2\n", "NM F 5\nCD 1.5\nXY 1\nLD 1 2\n"}) {
+        for (const std::string& text : {wrong + good, good + wrong, wrong + good + "NM H 5\nCD 1.6\nLD 1 2\n"}) {
+            SCOPED_TRACE(text);
+            const AgfGlasses read = parse_agf(text, "x.agf");
+            EXPECT_EQ(std::ranges::count(read.media, "G", &Medium::name), 1);
+            EXPECT_EQ(std::ranges::count(read.media, "F", &Medium::name), 0);
+            ASSERT_EQ(read.unusable.count("F"), 1u);
+            GlassCatalog glasses;
+            glasses.add(read, "x.agf");
+            EXPECT_DOUBLE_EQ(glasses.get("G").index(1.5), 1.5);
+            try {
+                glasses.get("F");
+                ADD_FAILURE() << "accepted";
+            } catch (const InputError& error) {
+                EXPECT_THAT(error.what(), HasSubstr("x.agf:"));
+            }
         }
     }
 }

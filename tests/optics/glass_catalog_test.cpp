@@ -6,6 +6,7 @@
 #include "optics/prescriptions/prescription.hpp"
 #include "parts.hpp"
 
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -172,11 +173,11 @@ TEST(GlassCatalog, KnowsNamesInAnyCaseAndSpelling) {
     }
     EXPECT_EQ(glasses.get("water").name, "WATER");
     EXPECT_EQ(glasses.get("CaF2").name, "CAF2");
-    EXPECT_FALSE(glasses.find("BK7")); // another glass than N-BK7
+    EXPECT_EQ(glasses.get("BK7").name, "N-BK7"); // the old name
     EXPECT_FALSE(glasses.find(""));
 }
 
-TEST(GlassCatalog, UnknownGlassIsNamedWithTheNearest) {
+TEST(GlassCatalog, AnUnknownGlassIsNamedAndNoOtherSuggested) {
     const auto glasses = GlassCatalog::builtin();
     const auto message = [&](const char* name) -> std::string {
         try {
@@ -186,24 +187,83 @@ TEST(GlassCatalog, UnknownGlassIsNamedWithTheNearest) {
         }
         return "found";
     };
-    EXPECT_THAT(message("N-BK8"), HasSubstr("\"N-BK8\""));
-    EXPECT_THAT(message("N-BK8"), HasSubstr("Did you mean \"N-BK7\"?"));
-    EXPECT_THAT(message("fused silca"), HasSubstr("Did you mean \"FUSED-SILICA\"?"));
+    for (const char* name : {"N-BK8", "fused silca", "K8"}) {
+        EXPECT_THAT(message(name), HasSubstr("\"" + std::string(name) + "\""));
+        EXPECT_THAT(message(name), ::testing::Not(HasSubstr("Did you mean")));
+    }
     // A code is no glass; what to write is said.
     EXPECT_THAT(message("516640"), HasSubstr("nd = 1.516 and vd = 64.0"));
 }
 
-TEST(GlassCatalog, LaterCataloguesGoFirst) {
-    const auto catalogue = [](double index) {
-        return parse_agf("NM n-bk7 5\nCD " + std::to_string(index) + "\nLD 0.4 0.7\n", "x.agf");
-    };
+TEST(GlassCatalog, ACodeIsAnIndexAndAnAbbeNumber) {
+    EXPECT_EQ(glass_of_code("517642"), (ModelGlass{1.517, 64.2}));
+    EXPECT_EQ(glass_of_code("517.642"), (ModelGlass{1.517, 64.2}));
+    EXPECT_EQ(glass_of_code("001050"), (ModelGlass{1.001, 5.0}));
+    for (const char* name : {"", "51764", "5176420", "51764a", "5.17642", "-17642"}) {
+        EXPECT_FALSE(glass_of_code(name)) << name;
+    }
+}
+
+// A catalogue whose glass of this name has the index, without dispersion, from 0.4 to 0.7 um.
+AgfGlasses with_glass(const std::string& name, double index) {
+    return parse_agf("NM " + name + " 5\nCD " + fmt::format("{:.9f}", index) + "\nLD 0.4 0.7\n", "x.agf");
+}
+
+TEST(GlassCatalog, ACatalogueGoesBeforeTheBuiltInGlasses) {
     auto glasses = GlassCatalog::builtin();
-    glasses.add(catalogue(1.25));
+    glasses.add(with_glass("n-bk7", 1.25), "mine.agf");
     EXPECT_EQ(glasses.get("N-BK7").index(0.5), 1.25);
-    glasses.add(catalogue(1.75));
-    EXPECT_EQ(glasses.get("N-BK7").index(0.5), 1.75);
     EXPECT_NEAR(glasses.get("F2").index(line_d), 1.62004, 1e-5);
     EXPECT_NEAR(GlassCatalog::builtin().get("N-BK7").index(line_d), 1.5168, 1e-5); // a value
+}
+
+TEST(GlassCatalog, CataloguesThatDisagreeAreNeverChosenByTheirOrder) {
+    const std::vector<std::pair<std::string, double>> files = {{"folder/A.agf", 1.5}, {"b.AGF", 1.6}};
+    for (const bool swapped : {false, true}) {
+        GlassCatalog glasses;
+        glasses.add(with_glass("G", files[swapped ? 1 : 0].second), files[swapped ? 1 : 0].first);
+        glasses.add(with_glass("G", files[swapped ? 0 : 1].second), files[swapped ? 0 : 1].first);
+        try {
+            glasses.find("g");
+            ADD_FAILURE() << "accepted";
+        } catch (const InputError& error) {
+            EXPECT_THAT(error.what(), ::testing::AllOf(HasSubstr("folder/A.agf"), HasSubstr("b.AGF"), HasSubstr("GCAT"),
+                                                       HasSubstr("--glass-catalog"), HasSubstr("glass_catalogs")));
+        }
+        EXPECT_EQ(glasses.find("G", {.order = {"a", "B"}})->index(0.5), 1.5);
+        EXPECT_EQ(glasses.find("G", {.order = {"B", "A"}})->index(0.5), 1.6);
+        EXPECT_EQ(glasses.find("G", {.order = {"OTHER", "B"}})->index(0.5), 1.6);
+        EXPECT_THROW(glasses.find("G", {.order = {"OTHER"}}), InputError);
+    }
+}
+
+TEST(GlassCatalog, CataloguesAgreeToAMillionthOfTheIndexWhereTheLensIsUsed) {
+    const auto both = [](double difference, const std::string& more) {
+        GlassCatalog glasses;
+        glasses.add(with_glass("G", 1.5), "a.agf");
+        glasses.add(
+            parse_agf("NM G 5\nCD " + fmt::format("{:.9f}", 1.5 + difference) + more + "\nLD 0.4 0.7\n", "b.agf"),
+            "b.agf");
+        return glasses;
+    };
+    EXPECT_EQ(both(9e-7, "").get("G").index(0.5), 1.5); // of the first by name
+    EXPECT_THROW(both(1.1e-6, "").get("G"), InputError);
+    // They agree at one wavelength alone: 0.001 / x - 0.002 is 0 at 0.5 um.
+    const auto crossing = both(-0.002, " 0.001");
+    EXPECT_THROW(crossing.find("G"), InputError);
+    EXPECT_TRUE(crossing.find("G", {.used = {.minimum_um = 0.5, .maximum_um = 0.5}}));
+    // Where none of both is valid they cannot agree.
+    EXPECT_THROW(both(1e-9, "").find("G", {.used = {.minimum_um = 1, .maximum_um = 2}}), InputError);
+}
+
+// The built-in glasses of a vendor are asked in the order of GCAT too.
+TEST(GlassCatalog, AVendorsBuiltInGlassesAreACatalogueOfItsName) {
+    auto glasses = GlassCatalog::builtin();
+    glasses.add(with_glass("F2", 1.25), "mine.agf");
+    EXPECT_EQ(glasses.get("F2").index(0.5), 1.25);
+    EXPECT_NEAR(glasses.find("F2", {.order = {"SCHOTT", "MINE"}})->index(line_d), 1.62004, 1e-5);
+    EXPECT_EQ(glasses.find("F2", {.order = {"MINE", "SCHOTT"}})->index(0.5), 1.25);
+    EXPECT_EQ(glasses.find("F2", {.order = {"OHARA"}})->index(0.5), 1.25);
 }
 
 } // namespace

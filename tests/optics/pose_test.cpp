@@ -1,4 +1,4 @@
-#include "optics/train/pose.hpp"
+#include "optics/prescriptions/pose.hpp"
 
 #include "core/mathematics/units.hpp"
 

@@ -1,15 +1,19 @@
 #include "optics/prescriptions/zmx.hpp"
 
 #include "core/messages/error.hpp"
+#include "optics/media/agf.hpp"
 #include "optics/prescriptions/prescription_writer.hpp"
 #include "parts.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <spdlog/sinks/ostream_sink.h>
+#include <spdlog/spdlog.h>
 
 #include <bit>
 #include <cmath>
 #include <iterator>
+#include <sstream>
 
 namespace vkfv::optics {
 namespace {
@@ -209,8 +213,8 @@ TEST(Zmx, AModelGlassOfAbbeNumberZeroHasNoDispersion) {
 }
 
 TEST(Zmx, TellsOfAllGlassesThatAreMissing) {
-    auto text = replaced(file_text("doublet.zmx"), "___BLANK 1 0 1.5168", "N-BK77 1 0 1.5168");
-    text = replaced(text, "___BLANK 1 0 1.672", "F22 1 0 1.672");
+    auto text = replaced(file_text("doublet.zmx"), "___BLANK 1 0 1.5168 6.417E+1", "N-BK77 1 0 1.5 40");
+    text = replaced(text, "___BLANK 1 0 1.672 3.22E+1", "F22 1 0 1.5 40");
     try {
         parsed(text);
         FAIL() << "accepted";
@@ -250,14 +254,16 @@ TEST_P(ZmxFault, NamesLineSurfaceAndKeyword) {
 INSTANTIATE_TEST_SUITE_P(
     Table, ZmxFault,
     ::testing::Values(
-        Fault{"UnknownKeyword", "  SLAB 1", "  SCBD 1", "surface 1: SCBD", 28, "understands"},
-        Fault{"UnknownInHeader", "GCAT SCHOTT", "GLUE SCHOTT", "GLUE", 8, "understands"},
-        Fault{"UnknownBehind", "TOL TOFF ", "TOLL TOFF", "TOLL", 47, "understands"},
-        Fault{"SquareAperture", "  FLAP 0 6.25 0", "  SQAP 5 5", "surface 1: SQAP", 33, "understands"},
+        Fault{"SquareAperture", "  FLAP 0 6.25 0", "  SQAP 5 5", "surface 1: SQAP", 33, "circular aperture"},
+        Fault{"Spider", "  FLAP 0 6.25 0", "  SPID 1 3", "surface 1: SPID", 33, "circular aperture"},
+        Fault{"ExtraData", "  SLAB 1", "  XDAT 1 1e-5", "surface 1: XDAT", 28, "no extra data"},
         Fault{"Obscuration", "  FLAP 0 6.25 0", "  CLAP 1 6.25 0", "surface 1: CLAP", 33, "obscuration"},
         Fault{"DecentredAperture", "  FLAP 0 6.25 0", "  OBDC 0 1", "surface 1: OBDC", 33, "vertex"},
-        Fault{"Mirror", "GLAS N-BK7 0", "GLAS MIRROR 0", "surface 1: GLAS", 30, "refracting"},
-        Fault{"MissingGlass", "GLAS N-BK7 0", "GLAS N-BK77 0", "surface 1: GLAS", 30, "Did you mean \"N-BK7\"?"},
+        Fault{"Mirror", "GLAS N-BK7 0", "GLAS MIRROR 0", "surface 1: GLAS", 30, "a plane mirror"},
+        Fault{"MissingGlass", "GLAS N-BK7 0 0 1.5168 6.417E+1", "GLAS N-BK77 0 0 1.5 40", "surface 1: GLAS", 30,
+              "--glass-catalog"},
+        Fault{"ParaxialWithoutFocalLength", "  TYPE STANDARD\n  FIMP", "  TYPE PARAXIAL\n  FIMP", "surface 1: TYPE", 23,
+              "plane PARAXIAL surface in air"},
         Fault{"NoGlass", "GLAS N-BK7 0 0 1.5168 6.417E+1 0 0 0 0 0 0", "GLAS", "surface 1: GLAS", 30, "name"},
         Fault{"ModelWithoutNumbers", "GLAS N-BK7 0 0 1.5168 6.417E+1 0 0 0 0 0 0", "GLAS ___BLANK 1 0 1.5",
               "surface 1: GLAS", 30, "value 5"},
@@ -295,7 +301,6 @@ INSTANTIATE_TEST_SUITE_P(
         Fault{"SurfaceBehind", "MNUM 1 1", "SURF 4", "SURF", 48, "surface 4"},
         Fault{"SecondStop", "  MAZH 0 0", "  STOP", "surface 2: STOP", 38, "one stop"},
         Fault{"StopAtTheObject", "  DISZ INFINITY", "  DISZ INFINITY\n  STOP", "surface 0: STOP", 20, "stop"},
-        Fault{"TwoConfigurations", "MNUM 1 1", "MNUM 2 1", "MNUM", 48, "one configuration"},
         Fault{"NoPrimary", "PWAV 2", "PWAV 4", "PWAV", 15, "one of the 3"},
         Fault{"WavelengthOfZero", "WAVM 1 4.861327E-1", "WAVM 1 0", "WAVM", 11, "> 0"}),
     [](const ::testing::TestParamInfo<Fault>& info) { return info.param.name; });
@@ -316,20 +321,178 @@ TEST(Zmx, TruncatedFilesAreRefused) {
     EXPECT_GT(accepted, 0);
 }
 
-TEST(Zmx, WhatIsNoTextIsRefused) {
+TEST(Zmx, AFileThatIsNoLensFileIsCalledSo) {
     const auto text = file_text("singlet.zmx");
-    EXPECT_THAT(problem_of("").found, HasSubstr("0 surfaces"));
-    EXPECT_THAT(problem_of(std::string("VERS\0 1", 7)).found, HasSubstr("NUL"));
-    EXPECT_EQ(problem_of(std::string("VERS\0 1", 7)).where.byte_offset, 4u);
-    EXPECT_THAT(problem_of(as_utf16(text, true) + "x").found, HasSubstr("half a UTF-16"));
-    EXPECT_THAT(problem_of(std::string("\xff\xfe\x35\xd8x\0", 6)).found, HasSubstr("surrogate"));
-    EXPECT_THAT(problem_of(std::string("\xff\xfe\0\0", 4)).found, HasSubstr("NUL"));
-    for (const char* bytes : {"\xff", "\xc3", "\xc0\xaf", "\xe0\x80\xaf", "\xed\xa0\x80", "\xf5\x80\x80\x80",
-                              "\xf4\x90\x80\x80", "\xc3x", "\x80"}) {
-        EXPECT_THAT(problem_of(replaced(text, "Biconvex", bytes)).found, HasSubstr("not UTF-8"));
+    const std::pair<std::string, const char*> rows[] = {{"", "without a line SURF"},
+                                                        {"title = \"no lens\"\n", "without a line SURF"},
+                                                        {std::string("VERS\0 1", 7), "no text"},
+                                                        {std::string(100, '\xff'), "without a line SURF"},
+                                                        {"PK\3\4 and more", "a ZIP archive"}};
+    for (const auto& [bytes, found] : rows) {
+        const auto problem = problem_of(bytes);
+        EXPECT_THAT(problem.found, HasSubstr(found));
+        EXPECT_THAT(problem.expected, HasSubstr("a lens file"));
     }
     EXPECT_THROW(read_zmx("no/such/file.zmx", GlassCatalog::builtin()), InputError);
     EXPECT_THROW(read_zmx(test::source_folder(), GlassCatalog::builtin()), InputError);
+}
+
+// Notes hold whatever their authors typed.
+TEST(Zmx, BytesThatAreNotUtf8AreLatin1) {
+    const auto text = file_text("singlet.zmx");
+    for (const char* bytes : {"\xff", "\xc3x", "\x80"}) {
+        EXPECT_EQ(parsed(replaced(text, "GCAT SCHOTT", std::string("NOTE 0 ") + bytes)).prescription.surfaces.size(),
+                  2u);
+    }
+    EXPECT_EQ(parsed(replaced(text, "\"Biconvex singlet\"", "gro\xdf")).prescription.title, "gro\xc3\x9f");
+}
+
+// What an import says in the log.
+std::string log_of(const std::string& bytes, std::optional<int> configuration = std::nullopt) {
+    std::ostringstream log;
+    const auto before = spdlog::default_logger();
+    spdlog::set_default_logger(
+        std::make_shared<spdlog::logger>("test", std::make_shared<spdlog::sinks::ostream_sink_st>(log)));
+    try {
+        parse_zmx(bytes, "lens.zmx", GlassCatalog::builtin(), configuration);
+    } catch (...) {
+        spdlog::set_default_logger(before);
+        throw;
+    }
+    spdlog::set_default_logger(before);
+    return log.str();
+}
+
+TEST(Zmx, KeywordsWithoutOpticalMeaningArePassedOver) {
+    const auto text = file_text("singlet.zmx");
+    const auto whole = digest(parsed(text));
+    for (const char* keyword : {"WAVN 0.5 0.6", "AUTH somebody", "DBDT 1", "SCOL 0", "TOLE 1 2", "LUID x-1", "SSID 3",
+                                "FCOM a b", "IWDP 0", "BLNK"}) {
+        for (const char* place : {"GCAT SCHOTT\n", "  SLAB 1\n", "MNUM 1 1\n"}) {
+            const auto with = replaced(text, place, std::string(place) + "  " + keyword + "\n");
+            EXPECT_EQ(digest(parsed(with)), whole) << keyword << place;
+            EXPECT_EQ(log_of(with), log_of(text)) << keyword << place;
+        }
+    }
+}
+
+TEST(Zmx, OtherKeywordsAreToldOfAndPassedOver) {
+    const auto text = file_text("singlet.zmx");
+    const auto whole = digest(parsed(text));
+    EXPECT_THAT(log_of(text), ::testing::Not(HasSubstr("passed over")));
+    const std::pair<const char*, const char*> rows[] = {
+        {"  SLAB 1", "  SCBD 1"}, {"GCAT SCHOTT", "GLUE SCHOTT"}, {"TOL TOFF ", "TOLL TOFF "}};
+    for (const auto& [from, to] : rows) {
+        const auto with = replaced(text, from, to);
+        EXPECT_EQ(digest(parsed(with)), whole) << to;
+        EXPECT_THAT(log_of(with),
+                    AllOf(HasSubstr("passed over"), HasSubstr(std::string(to).substr(to[0] == ' ' ? 2 : 0, 4))));
+    }
+}
+
+// A glass of the singlet's first surface.
+std::string with_glass(const std::string& glass) {
+    return replaced(file_text("singlet.zmx"), "GLAS N-BK7 0 0 1.5168 6.417E+1", "GLAS " + glass);
+}
+
+TEST(Zmx, GlassesGivenByNumbersAreModelGlasses) {
+    const auto model = [](const std::string& glass) {
+        EXPECT_THAT(log_of(with_glass(glass)), HasSubstr("model glass")) << glass;
+        return std::get<ModelGlass>(parsed(with_glass(glass)).prescription.surfaces[0].medium_after.dispersion);
+    };
+    EXPECT_EQ(model("517642 0 0 1.5 40"), (ModelGlass{1.517, 64.2}));
+    EXPECT_EQ(model("517.642 0 0 1.5 40"), (ModelGlass{1.517, 64.2}));
+    EXPECT_EQ(model("UNOBTAINIUM 0 0 1.62 36.3"), (ModelGlass{1.62, 36.3}));
+    EXPECT_EQ(parsed(with_glass("BK7 0 0 1.5 40")).prescription.surfaces[0].medium_after.name, "N-BK7");
+    // Zemax's numbers for a glass that it does not know are no glass.
+    EXPECT_THROW(parsed(with_glass("UNOBTAINIUM 0 0 1.5 40")), InputError);
+    EXPECT_THROW(parsed(with_glass("UNOBTAINIUM")), InputError);
+}
+
+TEST(Zmx, TheCataloguesOfGcatAreAskedInItsOrder) {
+    const auto index_with = [](const char* order, bool swapped) {
+        GlassCatalog glasses;
+        for (const bool first : {!swapped, swapped}) {
+            glasses.add(parse_agf(first ? "NM N-BK7 5\nCD 1.5\nLD 0.4 0.7\n" : "NM N-BK7 5\nCD 1.6\nLD 0.4 0.7\n", "x"),
+                        first ? "VENDORA.agf" : "vendorb.agf");
+        }
+        const auto text = replaced(file_text("singlet.zmx"), "GCAT SCHOTT", std::string("GCAT ") + order);
+        return parse_zmx(text, "lens.zmx", glasses).prescription.surfaces[0].medium_after.index(0.5);
+    };
+    for (const bool swapped : {false, true}) {
+        EXPECT_EQ(index_with("VENDORA VENDORB", swapped), 1.5);
+        EXPECT_EQ(index_with("VENDORB VENDORA", swapped), 1.6);
+        EXPECT_THROW(index_with("SCHOTT", swapped), InputError);
+    }
+}
+
+TEST(Zmx, AParaxialSurfaceInAirIsAnIdealLens) {
+    const std::string text = "MODE SEQ\nUNIT CM\nWAVM 1 0.55 1\nSURF 0\n  TYPE STANDARD\n  CURV 0\n  DISZ INFINITY\n"
+                             "SURF 1\n  STOP\n  TYPE PARAXIAL\n  CURV 0\n  DISZ 2\n  PARM 1 2\n  PARM 2 1\n"
+                             "SURF 2\n  TYPE STANDARD\n  CURV 0\n  DISZ 0\n";
+    const auto surface = parsed(text).prescription.surfaces.at(0);
+    EXPECT_DOUBLE_EQ(surface.ideal_power.value(), 1 / 20.0);
+    EXPECT_THAT(log_of(text), HasSubstr("ideal lens"));
+    EXPECT_THROW(parsed(replaced(text, "PARM 1 2", "PARM 1 0")), InputError);
+    EXPECT_THROW(parsed(replaced(text, "  DISZ 2", "  DISZ 2\n  GLAS N-BK7")), InputError);
+}
+
+// A lens, a mirror at 45 degrees that sends light down, and another lens behind it: the lens is that without the
+// mirror.
+TEST(Zmx, APlaneMirrorIsUnfolded) {
+    const std::string head = "MODE SEQ\nUNIT MM\nWAVM 1 0.55 1\nSURF 0\n  TYPE STANDARD\n  CURV 0\n  DISZ INFINITY\n"
+                             "SURF 1\n  TYPE STANDARD\n  CURV 0.02\n  DISZ 4\n  GLAS N-BK7\n"
+                             "SURF 2\n  TYPE STANDARD\n  CURV -0.01\n  DISZ ";
+    const std::string straight = head + "50\nSURF 3\n  TYPE EVENASPH\n  CURV 0.03\n  DISZ 5\n  GLAS F2\n  PARM 2 1e-6\n"
+                                        "SURF 4\n  TYPE STANDARD\n  CURV 0.005\n  DISZ 30\n"
+                                        "SURF 5\n  TYPE STANDARD\n  CURV 0\n  DISZ 0\n";
+    const std::string folded = head + "20\nSURF 3\n  TYPE COORDBRK\n  CURV 0\n  DISZ 0\n  PARM 3 45\n"
+                                      "SURF 4\n  TYPE STANDARD\n  CURV 0\n  DISZ 0\n  GLAS MIRROR\n"
+                                      "SURF 5\n  TYPE COORDBRK\n  CURV 0\n  DISZ -30\n  PARM 3 45\n"
+                                      "SURF 6\n  TYPE EVENASPH\n  CURV -0.03\n  DISZ -5\n  GLAS F2\n  PARM 2 -1e-6\n"
+                                      "SURF 7\n  TYPE STANDARD\n  CURV -0.005\n  DISZ -30\n"
+                                      "SURF 8\n  TYPE STANDARD\n  CURV 0\n  DISZ 0\n";
+    EXPECT_EQ(digest(parsed(folded)), digest(parsed(straight)));
+    EXPECT_THAT(log_of(folded), HasSubstr("unfolded"));
+    // The wrong twin: a mirror that does not send light along the next part's axis leaves that part tilted.
+    EXPECT_NE(digest(parsed(replaced(folded, "DISZ -30\n  PARM 3 45", "DISZ -30\n  PARM 3 44"))),
+              digest(parsed(straight)));
+    // Twice folded, light goes along z again.
+    const std::string twice =
+        head +
+        "20\nSURF 3\n  TYPE STANDARD\n  CURV 0\n  DISZ -12\n  GLAS MIRROR\n"
+        "SURF 4\n  TYPE STANDARD\n  CURV 0\n  DISZ 18\n  GLAS MIRROR\n" +
+        replaced(replaced(replaced(straight.substr(head.size() + 3), "SURF 3", "SURF 5"), "SURF 4", "SURF 6"),
+                 "SURF 5\n  TYPE STANDARD\n  CURV 0\n", "SURF 7\n  TYPE STANDARD\n  CURV 0\n");
+    EXPECT_EQ(digest(parsed(twice)), digest(parsed(straight)));
+}
+
+TEST(Zmx, AConfigurationIsChosenByItsNumber) {
+    const auto text =
+        replaced(file_text("singlet.zmx"), "MNUM 1 1",
+                 "MNUM 3 2\nLTTL 0 1 \"far\" 0\nLTTL 0 2 \"near\" 0\nMOFF 0 1 \"\" 0\n"
+                 "THIC 1 1 7.5 0 0 0 1 1 1 0 0 \"\" 0\nTHIC 1 2 5.0 0 0 0 1 1 1 0 0 \"\" 0\nTHIC 1 3 9.5 0 0 0\n"
+                 "CRVT 1 3 0.03 0 0 0\nCONN 2 3 -0.5 0 0 0\nGLSS 1 3 \"F2\" 0 0\nTHIC 0 3 1e10 0 0 0");
+    const auto of = [&](std::optional<int> configuration) {
+        return parse_zmx(text, "lens.zmx", GlassCatalog::builtin(), configuration).prescription;
+    };
+    const auto saved = parsed(file_text("singlet.zmx")).prescription;
+    EXPECT_EQ(prescription_text(of(std::nullopt)), prescription_text(saved));
+    EXPECT_EQ(prescription_text(of(2)), prescription_text(saved));
+    EXPECT_THAT(log_of(text), AllOf(HasSubstr("3 configurations"), HasSubstr("number 2")));
+    EXPECT_THAT(log_of(text, 2), ::testing::Not(HasSubstr("configurations")));
+    EXPECT_EQ(of(1).surfaces[0].thickness, 7.5);
+    const auto third = of(3);
+    EXPECT_EQ(third.surfaces[0].thickness, 9.5);
+    EXPECT_EQ(third.surfaces[0].curvature, 0.03);
+    EXPECT_EQ(third.surfaces[0].medium_after.name, "F2");
+    EXPECT_EQ(third.surfaces[1].conic, -0.5);
+    EXPECT_THROW(of(4), InputError);
+    // What another configuration changes and the import does not understand is no lens of it.
+    const auto with_parameter = replaced(text, "MNUM 3 2", "MNUM 3 2\nPRAM 1 3 0.5 0 0");
+    EXPECT_THROW(parse_zmx(with_parameter, "lens.zmx", GlassCatalog::builtin(), 3), InputError);
+    EXPECT_EQ(parse_zmx(with_parameter, "lens.zmx", GlassCatalog::builtin(), 1).prescription.surfaces[0].thickness,
+              7.5);
 }
 
 } // namespace

@@ -6,6 +6,7 @@
 #include "measurement/scene/stage_figures.hpp"
 #include "measurement/scene/wave_limits.hpp"
 #include "optics/instrument/image_quality.hpp"
+#include "optics/prescriptions/reversal.hpp"
 #include "trace/device/wave_memory.hpp"
 
 #include <fmt/format.h>
@@ -237,6 +238,34 @@ void warn_of_range(const Relief& relief, const ScanFigures& scan, const optics::
     }
 }
 
+// A prescription that is written from infinity towards its focus, as most designs are, makes a valid microscope that
+// forms no image. It is recognised by what the objective does when it is turned round.
+void warn_of_direction(const Configuration& configuration, const optics::ImageQuality& quality,
+                       std::vector<std::string>& warnings) {
+    constexpr double suspicious = 0.25; // waves RMS: a Strehl ratio below 0.1
+    constexpr double far_better = 0.25; // of the wavefront
+    const double listed = quality.axis.wavefront_rms;
+    if (!(listed > suspicious)) {
+        return;
+    }
+    Configuration other = configuration;
+    other.instrument.objective = optics::turned_round(configuration.instrument.objective);
+    double turned = 0;
+    try {
+        turned = optics::image_quality(other.instrument, assemble_for_figures(other)).axis.wavefront_rms;
+    } catch (const std::runtime_error&) { // no microscope at all
+        return;
+    }
+    if (turned < far_better * listed) {
+        warnings.push_back(fmt::format(
+            "The objective {} seems to be written from infinity towards its focus: its wavefront on the axis is off by "
+            "{:.3g} waves RMS, and by {:.3g} when it is turned round. An objective's prescription begins at the "
+            "specimen "
+            "(vkfv import --reverse)",
+            configuration.instrument.objective.name, listed, turned));
+    }
+}
+
 // Aligned, at most 110 columns wide.
 std::string line_of(const char* name, const std::string& value, const std::string& meaning) {
     return fmt::format("  {:<35} {:>12}  {}\n", name, value, meaning);
@@ -272,6 +301,7 @@ InstrumentFigures instrument_figures(const Configuration& configuration) {
     figures.groups.push_back(aberrations(first_order, quality));
     auto& warnings = figures.warnings;
     warnings.insert(warnings.end(), quality.warnings.begin(), quality.warnings.end());
+    warn_of_direction(configuration, quality, warnings);
     if (waves) {
         figures.groups.push_back(*std::move(waves));
         warnings.insert(warnings.end(), warnings_of_waves.begin(), warnings_of_waves.end());

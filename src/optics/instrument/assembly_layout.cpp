@@ -39,7 +39,7 @@ AxialLayout place_lenses(const InstrumentDescription& description) {
     if (!(layout.working_distance > 0 && std::isfinite(layout.working_distance))) {
         refuse("objective.prescription", description.objective.name,
                "an objective whose front focal point lies in front of its first surface",
-               "List it from the specimen to the back.", description.objective.file);
+               "List it from the specimen to the back: vkfv import --reverse does so.", description.objective.file);
     }
     if (!(layout.detector_distance > 0 && std::isfinite(layout.detector_distance))) {
         refuse("tube_lens.prescription", description.tube_lens.name,

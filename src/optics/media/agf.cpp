@@ -2,6 +2,7 @@
 
 #include "core/files/file.hpp"
 #include "core/messages/error.hpp"
+#include "core/parsing/text_encoding.hpp"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -11,7 +12,6 @@
 #include <array>
 #include <charconv>
 #include <cmath>
-#include <cstdint>
 #include <iterator>
 #include <map>
 #include <optional>
@@ -24,85 +24,6 @@ namespace {
 
 constexpr std::array<std::string_view, 8> skipped_keywords = {"CC", "GC", "ED", "TD", "OD", "IT", "MD", "BD"};
 constexpr std::size_t longest_quotation = 60; // characters of a line that a message repeats
-
-void append_utf8(std::string& text, std::uint32_t code) {
-    if (code < 0x80) {
-        text += static_cast<char>(code);
-    } else if (code < 0x800) {
-        text += static_cast<char>(0xc0 | (code >> 6));
-        text += static_cast<char>(0x80 | (code & 0x3f));
-    } else if (code < 0x10000) {
-        text += static_cast<char>(0xe0 | (code >> 12));
-        text += static_cast<char>(0x80 | ((code >> 6) & 0x3f));
-        text += static_cast<char>(0x80 | (code & 0x3f));
-    } else {
-        text += static_cast<char>(0xf0 | (code >> 18));
-        text += static_cast<char>(0x80 | ((code >> 12) & 0x3f));
-        text += static_cast<char>(0x80 | ((code >> 6) & 0x3f));
-        text += static_cast<char>(0x80 | (code & 0x3f));
-    }
-}
-
-// UTF-16 with a byte-order mark as UTF-8; half a surrogate pair becomes a question mark.
-std::string utf8_of_utf16(std::string_view bytes, bool big_endian) {
-    const auto unit = [&](std::size_t i) {
-        const auto first = static_cast<unsigned char>(bytes[i]);
-        const auto second = static_cast<unsigned char>(bytes[i + 1]);
-        return static_cast<std::uint32_t>(big_endian ? first << 8 | second : second << 8 | first);
-    };
-    std::string text;
-    text.reserve(bytes.size() / 2);
-    for (std::size_t i = 2; i + 1 < bytes.size(); i += 2) {
-        const std::uint32_t high = unit(i);
-        if (high < 0xd800 || high >= 0xe000) {
-            append_utf8(text, high);
-            continue;
-        }
-        const std::uint32_t low = high < 0xdc00 && i + 3 < bytes.size() ? unit(i + 2) : 0;
-        if (low >= 0xdc00 && low < 0xe000) {
-            append_utf8(text, 0x10000 + ((high - 0xd800) << 10) + (low - 0xdc00));
-            i += 2;
-        } else {
-            text += '?';
-        }
-    }
-    return text;
-}
-
-bool is_utf8(std::string_view text) {
-    for (std::size_t i = 0; i < text.size();) {
-        const auto lead = static_cast<unsigned char>(text[i++]);
-        const int following = lead < 0x80 ? 0 : lead >> 5 == 6 ? 1 : lead >> 4 == 14 ? 2 : lead >> 3 == 30 ? 3 : -1;
-        if (following < 0) {
-            return false;
-        }
-        for (int k = 0; k < following; ++k, ++i) {
-            if (i == text.size() || (static_cast<unsigned char>(text[i]) & 0xc0) != 0x80) {
-                return false;
-            }
-        }
-    }
-    return true;
-}
-
-// Messages and names are UTF-8 whatever the file is.
-std::string as_utf8(std::string_view bytes) {
-    if (bytes.starts_with("\xff\xfe") || bytes.starts_with("\xfe\xff")) {
-        return utf8_of_utf16(bytes, bytes.starts_with("\xfe\xff"));
-    }
-    if (bytes.starts_with("\xef\xbb\xbf")) {
-        bytes.remove_prefix(3);
-    }
-    if (is_utf8(bytes)) {
-        return std::string(bytes);
-    }
-    std::string text;
-    text.reserve(bytes.size() + bytes.size() / 8);
-    for (const char byte : bytes) { // Latin-1: a byte is its code point
-        append_utf8(text, static_cast<unsigned char>(byte));
-    }
-    return text;
-}
 
 bool is_space(char character) {
     return character == ' ' || character == '\t' || character == '\v' || character == '\f';
@@ -167,18 +88,26 @@ class Reader {
         }
     }
 
-    std::vector<Medium> finish() {
+    AgfGlasses finish() {
         take_pending();
-        finish_glass();
-        if (media_.empty()) {
+        end_record();
+        if (glasses_.media.empty() && glasses_.unusable.empty()) {
             throw InputError({.where = {.file = file_},
                               .key = "NM",
                               .found = "no glass",
                               .expected = "a glass catalogue in the AGF format",
                               .remedy = "Check that the file is a glass catalogue and complete."});
         }
+        if (glasses_.media.empty()) { // none can be used
+            std::vector<InputProblem> problems;
+            for (const auto& [name, problem] : glasses_.unusable) {
+                problems.push_back(problem);
+            }
+            throw InputError(std::move(problems));
+        }
         warn_of_twins();
-        return std::move(media_);
+        warn_of_unusable();
+        return std::move(glasses_);
     }
 
   private:
@@ -192,14 +121,34 @@ class Reader {
         double maximum_um = 0; // 0: no LD yet
     };
 
+    // What is wrong with a record makes its glass unusable, and no other.
     void take_pending() {
         if (pending_.empty()) {
             return;
         }
         const auto words = std::exchange(pending_, {});
+        const bool begins = words[0].text == "NM";
+        if (begins) {
+            end_record();
+            skipping_ = false;
+        }
+        if (skipping_) {
+            return;
+        }
+        try {
+            take(words);
+        } catch (const InputError& error) {
+            skipping_ = true;
+            const std::string name = glass_                       ? glass_->name
+                                     : begins && words.size() > 1 ? std::string(words[1].text)
+                                                                  : "";
+            leave_out(name, error.problem());
+        }
+    }
+
+    void take(const std::vector<Word>& words) {
         const std::string_view keyword = words[0].text;
         if (keyword == "NM") {
-            finish_glass();
             begin_glass(words);
         } else if (keyword == "CD") {
             require_glass(words[0]);
@@ -220,6 +169,19 @@ class Reader {
                  "NM, CD, LD, or CC, GC, ED, TD, OD, IT, MD, BD, which are skipped, or numbers that continue a line",
                  "Correct the line, or begin it with '!' if it is a remark.");
         }
+    }
+
+    void end_record() {
+        try {
+            finish_glass();
+        } catch (const InputError& error) {
+            leave_out(glass_->name, error.problem());
+        }
+    }
+
+    void leave_out(const std::string& name, const InputProblem& problem) {
+        glasses_.unusable.try_emplace(name, problem);
+        glass_.reset();
     }
 
     static std::string joined(const std::vector<Word>& words) {
@@ -327,11 +289,11 @@ class Reader {
 
     // Vendors' catalogues have names twice. The first stays: a search from the front finds it.
     void add(Medium medium, int line) {
-        const auto [known, is_new] = index_of_.try_emplace(medium.name, media_.size());
+        const auto [known, is_new] = index_of_.try_emplace(medium.name, glasses_.media.size());
         if (is_new) {
             lines_.push_back(line);
-            media_.push_back(std::move(medium));
-        } else if (media_[known->second].dispersion != medium.dispersion) {
+            glasses_.media.push_back(std::move(medium));
+        } else if (glasses_.media[known->second].dispersion != medium.dispersion) {
             twins_.push_back(fmt::format("{} (lines {} and {})", medium.name, lines_[known->second], line));
         }
     }
@@ -349,19 +311,27 @@ class Reader {
             twins_.size() > named ? fmt::format(" and {} more", twins_.size() - named) : "");
     }
 
+    void warn_of_unusable() const {
+        for (const auto& [name, problem] : glasses_.unusable) {
+            spdlog::warn("{}: {} = {}: expected {}. {} is left out", problem.where.to_string(), problem.key,
+                         problem.found, problem.expected, name.empty() ? "The record" : "The glass " + name);
+        }
+    }
+
     const std::filesystem::path& file_;
     int line_ = 0;
+    bool skipping_ = false;     // the rest of a record that is left out
     std::vector<Word> pending_; // the last line, which may go on
     std::optional<Glass> glass_;
-    std::map<std::string, std::size_t, std::less<>> index_of_; // of each name in media_
+    std::map<std::string, std::size_t, std::less<>> index_of_; // of each name in glasses_.media
     std::vector<int> lines_;                                   // of each medium's NM
     std::vector<std::string> twins_;
-    std::vector<Medium> media_;
+    AgfGlasses glasses_;
 };
 
 } // namespace
 
-std::vector<Medium> parse_agf(std::string_view bytes, const std::filesystem::path& name) {
+AgfGlasses parse_agf(std::string_view bytes, const std::filesystem::path& name) {
     const std::string text = as_utf8(bytes);
     Reader reader(name);
     for (std::string_view rest = text; !rest.empty();) {
@@ -376,7 +346,7 @@ std::vector<Medium> parse_agf(std::string_view bytes, const std::filesystem::pat
     return reader.finish();
 }
 
-std::vector<Medium> read_agf(const std::filesystem::path& file) {
+AgfGlasses read_agf(const std::filesystem::path& file) {
     return parse_agf(read_file(file, {.expected = "a glass catalogue (.agf)"}), file);
 }
 

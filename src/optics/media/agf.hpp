@@ -1,22 +1,32 @@
 // Glass catalogues in the AGF format of Zemax.
 #pragma once
 
+#include "core/messages/error.hpp"
 #include "optics/media/medium.hpp"
 
 #include <filesystem>
+#include <map>
+#include <string>
 #include <string_view>
 #include <vector>
 
 namespace vkfv::optics {
 
-// The glasses of a catalogue in the order of the file: name, formula (NM), coefficients (CD) and valid range
-// (LD); their source is the file's name. The lines CC, GC, ED, TD, OD, IT, MD and BD, and those that begin
-// with '!' or '#', are skipped: temperature, transmission, price and remarks change no index. Other text
-// before the first NM is skipped too (some files begin with a remark); the encoding is UTF-8, UTF-16 or
-// Latin-1. A line that begins with a number continues the one before it. Of glasses with the same name the first is
-// taken, with a warning in the log if they differ. Throws InputError that names file, line and keyword.
-std::vector<Medium> read_agf(const std::filesystem::path& file);
+struct AgfGlasses {
+    std::vector<Medium> media; // in the order of the file
+    // Glasses whose records are wrong, and what is wrong with the first of each name. A record without a name has the
+    // name "".
+    std::map<std::string, InputProblem> unusable;
+};
+
+// Reads name, formula (NM), coefficients (CD) and valid range (LD) of each glass; the source is the file's name. The
+// lines CC, GC, ED, TD, OD, IT, MD and BD, and those that begin with '!' or '#', are skipped: temperature,
+// transmission, price and remarks change no index. Other text before the first NM is skipped too (some files begin with
+// a remark); the encoding is any of as_utf8(). A line that begins with a number continues the one before it. Of glasses
+// with the same name the first is taken, with a warning in the log if they differ. A record that cannot be used is left
+// out, with a warning that names file, line and keyword. Throws InputError if there is none that can be used.
+AgfGlasses read_agf(const std::filesystem::path& file);
 // The same of the bytes of a file; `name` stands for it in messages.
-std::vector<Medium> parse_agf(std::string_view bytes, const std::filesystem::path& name);
+AgfGlasses parse_agf(std::string_view bytes, const std::filesystem::path& name);
 
 } // namespace vkfv::optics

@@ -51,15 +51,21 @@ Medium medium_named(const Media& media, const TomlTable& table, std::string_view
     if (const auto found = media.own.find(*name); found != media.own.end()) {
         return found->second;
     }
-    if (auto found = media.glasses.find(*name)) {
-        return std::move(*found);
+    try {
+        if (auto found = media.glasses.find(*name)) {
+            return std::move(*found);
+        }
+    } catch (const InputError& error) { // the catalogues do not agree, or the record is wrong
+        table.note(key, error.problem().expected, error.problem().remedy);
+        return Medium::air();
     }
     std::vector<std::string> names = {"air"};
     for (const auto& [known, medium] : media.own) {
         names.push_back(known);
     }
+    const auto meant = nearest_word(*name, names); // of the file's own
     table.fail(key, fmt::format("a medium (one of {}, or a glass of a catalogue)", fmt::join(names, ", ")),
-               remedy_for_unknown_glass(media.glasses, *name, names));
+               (meant ? fmt::format("Did you mean \"{}\"? ", *meant) : "") + remedy_for_unknown_glass(*name));
     return Medium::air();
 }
 

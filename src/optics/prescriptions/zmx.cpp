@@ -3,6 +3,7 @@
 #include "core/files/file.hpp"
 #include "core/mathematics/units.hpp"
 #include "core/messages/error.hpp"
+#include "optics/prescriptions/pose.hpp"
 #include "optics/prescriptions/zmx_file.hpp"
 
 #include <fmt/format.h>
@@ -49,6 +50,8 @@ class Builder {
             check(surface);
         }
         check_image();
+        unfold_mirrors();
+        result.from_infinity = std::isinf(*file_.surfaces.front().thickness);
         prescription.medium_before = file_.surfaces.front().medium.value_or(Medium::air());
         std::vector<CoordinateBreak> breaks;
         bool has_stop = false;
@@ -57,6 +60,13 @@ class Builder {
             if (surface.kind == SurfaceKind::coordinate_break) {
                 breaks.push_back(break_of(surface));
                 continue;
+            }
+            if (unfolded_ && stands_straight(breaks)) {
+                const double distance = Pose().along(breaks).origin.z;
+                breaks.clear();
+                if (!prescription.surfaces.empty()) {
+                    prescription.surfaces.back().thickness += distance;
+                }
             }
             prescription.surfaces.push_back(prescribed(surface));
             prescription.surfaces.back().breaks = std::exchange(breaks, {});
@@ -104,6 +114,66 @@ class Builder {
         }
     }
 
+    // Light that a plane mirror sends back goes on as if there were no mirror, through what follows as the mirror shows
+    // it. Behind the mirror Zemax counts along the old z, so that distances, curvatures and the tilts about x and y
+    // have the opposite signs of those in the mirror's image. The lens is laterally reversed by each mirror, which no
+    // distance, angle or centred surface tells.
+    void unfold_mirrors() {
+        bool reversed = false;
+        for (Surface& surface : file_.surfaces) {
+            if (surface.kind == SurfaceKind::paraxial && reversed) {
+                refuse(place_of(surface), surface.kind_line, "PARAXIAL behind an odd number of mirrors",
+                       "PARAXIAL surfaces that light meets along z", "Unfold the lens in Zemax.");
+            }
+            if (reversed) {
+                *surface.curvature = -*surface.curvature + 0.0;
+                for (auto& [number, parameter] : surface.parameters) {
+                    const bool tilt = number == 3 || number == 4;
+                    if (surface.kind == SurfaceKind::even_asphere ||
+                        (surface.kind == SurfaceKind::coordinate_break && tilt)) {
+                        parameter.value = -parameter.value + 0.0;
+                    }
+                }
+            }
+            const bool is_image = &surface == &file_.surfaces.back();
+            if (surface.mirror && !is_image) {
+                require_plane(surface);
+                spdlog::info("{}:{}: the plane mirror of surface {} is unfolded", file_.path.string(),
+                             surface.medium_line.number, surface.number);
+                unfolded_ = true;
+                reversed = !reversed;
+                surface.kind = SurfaceKind::coordinate_break; // that is only a distance
+                surface.parameters.clear();
+            }
+            if (reversed && std::isfinite(*surface.thickness)) {
+                *surface.thickness = -*surface.thickness + 0.0;
+            }
+        }
+    }
+
+    void require_plane(const Surface& surface) const {
+        const bool plane = *surface.curvature == 0 && surface.kind == SurfaceKind::standard;
+        if (!plane || surface.number == 0) {
+            refuse(place_of(surface), surface.medium_line, surface.medium_line.rest, "a plane mirror",
+                   "Curved mirrors are not imported.");
+        }
+        if (surface.stop) {
+            refuse(place_of(surface), surface.stop_line, "a stop at a mirror", "a stop at a surface of the lens",
+                   "Put the stop in front of the mirror.");
+        }
+    }
+
+    // Whether the breaks leave the axis where it is.
+    static bool stands_straight(const std::vector<CoordinateBreak>& breaks) {
+        constexpr double negligible = 1e-9; // mm, and of the axes' components
+        const Pose pose = Pose().along(breaks);
+        double off = std::max(std::abs(pose.origin.x), std::abs(pose.origin.y));
+        for (int axis = 0; axis < 3; ++axis) {
+            off = std::max(off, std::abs(pose.axes[axis][axis] - 1));
+        }
+        return off < negligible;
+    }
+
     void check(const Surface& surface) const {
         if (!surface.curvature || !surface.thickness) {
             refuse(place_of(surface), surface.line, surface.curvature ? "no DISZ" : "no CURV",
@@ -115,14 +185,16 @@ class Builder {
                    "Make a surface of the lens the stop.");
         }
         if (surface.kind == SurfaceKind::coordinate_break) {
-            if (surface.medium || *surface.curvature != 0 || surface.conic != 0) {
-                refuse(place_of(surface), surface.medium ? surface.medium_line : surface.kind_line,
+            if (surface.medium || surface.mirror || *surface.curvature != 0 || surface.conic != 0) {
+                refuse(place_of(surface), surface.medium || surface.mirror ? surface.medium_line : surface.kind_line,
                        "a coordinate break that refracts", "no glass and no curvature",
                        "Give them to the next surface.");
             }
         }
+        // A paraxial surface has a focal length, and a number for how path lengths are counted.
         const int most = surface.kind == SurfaceKind::standard           ? 0
                          : surface.kind == SurfaceKind::coordinate_break ? 6
+                         : surface.kind == SurfaceKind::paraxial         ? 2
                                                                          : 8;
         for (const auto& [number, parameter] : surface.parameters) {
             if (parameter.value != 0 && (number < 1 || number > most)) {
@@ -135,6 +207,21 @@ class Builder {
             refuse(place_of(surface), line, line.rest, "0 as the coefficient of r^2",
                    "Make it part of the curvature: add twice the coefficient to it, and refit the conic.");
         }
+    }
+
+    // The power of a PARAXIAL surface, 1/mm.
+    double ideal_power_of(const Surface& surface) const {
+        const double focal_length = in_mm(surface, surface.kind_line, parameter_of(surface, 1));
+        const Surface& before = file_.surfaces[static_cast<std::size_t>(surface.number) - 1];
+        if (surface.medium || before.medium || *surface.curvature != 0 || surface.conic != 0) {
+            refuse(place_of(surface), surface.kind_line, surface.kind_line.rest, "a plane PARAXIAL surface in air",
+                   "Make it so in Zemax.");
+        }
+        if (focal_length == 0 || !std::isfinite(1 / focal_length)) {
+            refuse(place_of(surface), surface.kind_line, fmt::format("a focal length of {} mm", focal_length),
+                   "a focal length as PARM 1", "Give it.");
+        }
+        return 1 / focal_length;
     }
 
     static double parameter_of(const Surface& surface, int number) {
@@ -199,10 +286,16 @@ class Builder {
         result.curvature = in_mm(surface, surface.line, *surface.curvature, -1);
         result.conic = surface.conic;
         for (const auto& [number, parameter] : surface.parameters) {
-            if (number >= 2 && number <= 8) { // coefficient of r^(2 number)
+            if (surface.kind == SurfaceKind::even_asphere && number >= 2 &&
+                number <= 8) { // coefficient of r^(2 number)
                 result.aspheric[static_cast<std::size_t>(number - 2)] =
                     in_mm(surface, parameter.line, parameter.value, 1 - 2 * number);
             }
+        }
+        if (surface.kind == SurfaceKind::paraxial) {
+            result.ideal_power = ideal_power_of(surface);
+            spdlog::warn("{}:{}: the PARAXIAL surface becomes an ideal lens, which keeps Abbe's sine condition",
+                         file_.path.string(), surface.kind_line.number);
         }
         result.medium_after = surface.medium.value_or(Medium::air());
         const double semi_diameter = surface.aperture > 0 ? surface.aperture : surface.diameter;
@@ -235,16 +328,18 @@ class Builder {
     }
 
     File file_;
+    bool unfolded_ = false; // mirrors
 };
 
 } // namespace
 
-ZmxLens parse_zmx(std::string_view bytes, const std::filesystem::path& file, const GlassCatalog& glasses) {
-    return Builder(read_lines(bytes, file, glasses)).lens();
+ZmxLens parse_zmx(std::string_view bytes, const std::filesystem::path& file, const GlassCatalog& glasses,
+                  std::optional<int> configuration) {
+    return Builder(read_lines(bytes, file, glasses, configuration)).lens();
 }
 
-ZmxLens read_zmx(const std::filesystem::path& file, const GlassCatalog& glasses) {
-    return parse_zmx(read_file(file, {.expected = "a Zemax lens file (.zmx)"}), file, glasses);
+ZmxLens read_zmx(const std::filesystem::path& file, const GlassCatalog& glasses, std::optional<int> configuration) {
+    return parse_zmx(read_file(file, {.expected = "a Zemax lens file (.zmx)"}), file, glasses, configuration);
 }
 
 } // namespace vkfv::optics

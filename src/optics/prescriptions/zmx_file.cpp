@@ -1,8 +1,11 @@
 #include "optics/prescriptions/zmx_file.hpp"
 
+#include "core/parsing/text_encoding.hpp"
 #include "optics/prescriptions/zmx_glasses.hpp"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
+#include <spdlog/spdlog.h>
 
 #include <algorithm>
 #include <cmath>
@@ -13,19 +16,26 @@ namespace vkfv::optics::zmx {
 
 namespace {
 
-// What Zemax computes, optimizes, simulates or displays with: no lens depends on it.
+// Keywords for what Zemax computes, optimizes, tolerances, draws or displays with: no lens depends on these.
 constexpr std::string_view without_geometry[] = {
-    "VERS", "NOTE", "PFIL", "LANG", "ENPD", "FNUM", "OBNA", "FLOA", "GFAC", "GCAT", "RAIM", "PUSH", "SDMA", "OMMA",
-    "ROPD", "HYPR", "PICB", "XFLN", "YFLN", "FWGN", "XFLD", "YFLD", "FWGT", "VDXN", "VDYN", "VCXN", "VCYN", "VANN",
-    "ZVDX", "ZVDY", "ZVCX", "ZVCY", "ZVAN", "WWGT", "WWGN", "POLS", "GLRS", "GSTD", "NSCD", "COFN"};
+    "VERS", "NOTE", "PFIL", "LANG", "ENPD", "FNUM", "OBNA", "FLOA", "GFAC", "RAIM", "PUSH", "SDMA", "OMMA",
+    "ROPD", "HYPR", "PICB", "XFLN", "YFLN", "FWGN", "XFLD", "YFLD", "FWGT", "VDXN", "VDYN", "VCXN", "VCYN",
+    "VANN", "ZVDX", "ZVDY", "ZVCX", "ZVCY", "ZVAN", "WWGT", "WWGN", "POLS", "GLRS", "GSTD", "NSCD", "COFN",
+    "WAVN", "AUTH", "DBDT", "SCOL", "TOLE", "LUID", "SSID", "FCOM", "IWDP", "BLNK", "TOL",  "MOFF", "DMFS"};
 
-// Of a surface. Solves, pick-ups and variables (MAZH, PZUP, PPAR, VDSZ, VPAR, VCON) leave their outcome in
-// the value itself; MEMA is the glass's edge beyond the aperture.
+// The same of a surface. Solves, pick-ups and variables (MAZH, PZUP, PPAR, VDSZ, VPAR, VCON, TOLE) leave their outcome
+// in the value itself; MEMA is the glass's edge beyond the aperture.
 constexpr std::string_view without_geometry_of_surfaces[] = {"COMM", "FIMP", "HIDE", "MIRR", "SLAB", "POPS", "COAT",
                                                              "MEMA", "MAZH", "PZUP", "PPAR", "VDSZ", "VPAR", "VCON"};
 
 constexpr std::string_view of_surfaces[] = {"TYPE", "CURV", "DISZ", "GLAS", "CONI", "PARM",
-                                            "DIAM", "CLAP", "FLAP", "OBDC", "STOP"};
+                                            "XDAT", "DIAM", "CLAP", "FLAP", "OBDC", "STOP"};
+
+// Apertures that are not circular, and what stands in them.
+constexpr std::string_view other_apertures[] = {"SQAP", "ELAP", "USAP", "OBSC", "SQOB", "ELOB", "USOB", "SPID"};
+
+// Operands of configurations that change a lens in a way that is not taken over.
+constexpr std::string_view other_operands[] = {"PRAM", "IGNM", "TEMP", "PRES"};
 
 bool is_one_of(std::string_view word, std::span<const std::string_view> words) {
     return std::find(words.begin(), words.end(), word) != words.end();
@@ -37,13 +47,15 @@ std::string source_of(const std::filesystem::path& path) {
 
 class Reader {
   public:
-    Reader(const std::filesystem::path& path, const GlassCatalog& glasses) : glasses_(glasses, source_of(path)) {
+    Reader(const std::filesystem::path& path, const GlassCatalog& glasses, std::optional<int> configuration)
+        : configuration_(configuration), glasses_(glasses, source_of(path)) {
         file_.path = path;
         file_.source = source_of(path);
     }
 
     File read(std::string_view bytes) {
-        const std::string text = decode(bytes, file_.path);
+        const std::string text = as_utf8(bytes);
+        require_lens_file(bytes, text);
         int number = 0;
         for (std::size_t begin = 0; begin < text.size();) {
             const std::size_t end = std::min(text.find('\n', begin), text.size());
@@ -57,10 +69,30 @@ class Reader {
             refuse(place(), file_.last_line, file_.last_line.rest, "a line that ends",
                    "The file looks cut off: copy it again.");
         }
+        warn_of_unknown();
+        choose_configuration();
+        for (Surface& surface : file_.surfaces) {
+            take_medium(surface);
+        }
         return std::move(file_);
     }
 
   private:
+    // Other files that are named .zmx, or given by mistake.
+    void require_lens_file(std::string_view bytes, std::string_view text) const {
+        const char* found = bytes.starts_with("PK")                       ? "a ZIP archive"
+                            : text.find('\0') != std::string_view::npos   ? "bytes that are no text"
+                            : text.find("SURF") == std::string_view::npos ? "a text without a line SURF"
+                                                                          : nullptr;
+        if (found) {
+            throw InputError({.where = {.file = file_.path},
+                              .key = "",
+                              .found = found,
+                              .expected = "a lens file of Zemax's sequential mode (.zmx)",
+                              .remedy = "Give the lens file; of an archive, the .zmx file inside it."});
+        }
+    }
+
     // Of the surface that is being read.
     Place place() const {
         const bool in_surface = !file_.surfaces.empty() && !behind_surfaces_;
@@ -78,6 +110,11 @@ class Reader {
             if (is_one_of(keyword, of_surfaces)) {
                 take_property(file_.surfaces.back(), line);
             }
+        } else if (is_one_of(keyword, other_apertures)) {
+            refuse(place(), line, line.rest, "a circular aperture (CLAP, FLAP) and nothing in it",
+                   "Make the aperture circular in Zemax, or remove it.");
+        } else if (keyword == "GCAT") {
+            search_.order = line.words;
         } else if (keyword == "MODE") {
             if (line.rest != "SEQ") {
                 refuse(place(), line, line.rest, "the sequential mode, SEQ",
@@ -103,30 +140,153 @@ class Reader {
             file_.primary_line = line;
         } else if (keyword == "MNUM") {
             behind_surfaces_ = true;
-            if (integer_at(place(), line, 0, 0, 1000) > 1) {
-                refuse(place(), line, line.rest, "one configuration",
-                       "Keep only the one that is wanted, in Zemax's multi-configuration editor.");
-            }
-        } else if (!is_one_of(keyword, without_geometry)) {
+            configurations_ = std::max(1, integer_at(place(), line, 0, 0, 1000));
+            active_ = line.words.size() > 1 ? std::max(1, integer_at(place(), line, 1, 0, configurations_)) : 1;
+        } else if (is_one_of(keyword, without_geometry)) {
+            // Notes, tolerances and the like may stand anywhere.
+        } else if (configurations_ > 1 && line.words.size() > 2) {
+            operands_.push_back(line);
+        } else {
             take_other(line);
         }
     }
 
-    // Behind the surfaces stand the merit function, whose operands are too many to list, tolerances and
-    // configurations: text behind few keywords, numbers behind all others.
+    // The operands of the merit function behind the surfaces are too many to list, but have numbers alone behind them.
     void take_other(const Line& line) {
-        const bool behind = !file_.surfaces.empty() && !line.indented;
-        const bool text =
-            line.keyword == "BLNK" || line.keyword == "TOL" || line.keyword == "MOFF" || line.keyword == "DMFS";
         const bool numbers = line.keyword.size() == 4 && !line.words.empty() &&
                              std::all_of(line.words.begin(), line.words.end(), [](const std::string& word) {
                                  return word == "\"\"" || as_number(word).has_value();
                              });
-        if (!behind || !(text || numbers)) {
-            refuse(place(), line, line.rest, "a keyword that this import understands",
-                   "Remove in Zemax what it describes, or describe the lens as a prescription by hand.");
+        const bool operand = numbers && !file_.surfaces.empty() && !line.indented;
+        behind_surfaces_ = behind_surfaces_ || operand;
+        if (!operand) {
+            unknown_.try_emplace(line.keyword, line.number);
         }
-        behind_surfaces_ = true;
+    }
+
+    void warn_of_unknown() const {
+        if (unknown_.empty()) {
+            return;
+        }
+        constexpr std::size_t most_named = 10;
+        std::vector<std::string> named;
+        for (const auto& [keyword, line] : unknown_) {
+            if (named.size() == most_named) {
+                named.push_back(fmt::format("{} more", unknown_.size() - most_named));
+                break;
+            }
+            named.push_back(fmt::format("{} (line {})", keyword.substr(0, 20), line));
+        }
+        spdlog::warn("{}: keywords that this import does not know are passed over: {}. Check that they do not describe "
+                     "the lens",
+                     file_.path.string(), fmt::join(named, ", "));
+    }
+
+    // The values of the surfaces are those of the configuration that was active. Another one's stand behind MNUM, as
+    // operand, surface or wavelength, configuration and value.
+    void choose_configuration() {
+        if (!configuration_) {
+            if (configurations_ > 1) {
+                spdlog::warn(
+                    "{}: of {} configurations, number {} is imported, which was active when the file was saved. "
+                    "Choose another by --configuration",
+                    file_.path.string(), configurations_, active_);
+            }
+            return;
+        }
+        if (*configuration_ > configurations_) {
+            throw InputError({.where = {.file = file_.path},
+                              .key = "--configuration",
+                              .found = fmt::format("{}", *configuration_),
+                              .expected = fmt::format("one of the {} configurations of the file", configurations_),
+                              .remedy = "Count from 1."});
+        }
+        if (*configuration_ == active_) {
+            return;
+        }
+        for (const Line& line : operands_) {
+            const auto number = as_number(line.words[1]);
+            if (number && *number == *configuration_) {
+                take_operand(line);
+            }
+        }
+    }
+
+    void take_operand(const Line& line) {
+        const Place lens{file_.path};
+        if (is_one_of(line.keyword, other_operands)) {
+            refuse(lens, line, line.rest, "operands of configurations THIC, CRVT, CONN, GLSS, SDIA, WAVE and PRWV",
+                   "Make the wanted configuration the active one in Zemax, and save the lens.");
+        }
+        if (line.keyword == "WAVE") {
+            file_.wavelengths_um[integer_at(lens, line, 0, 1, 1000)] =
+                number_at(lens, line, 2, NumberRange::positive());
+            return;
+        }
+        if (line.keyword == "PRWV") {
+            file_.primary = integer_at(lens, line, 2, 1, 1000);
+            file_.primary_line = line;
+            return;
+        }
+        constexpr std::string_view of_a_surface[] = {"THIC", "CRVT", "CONN", "GLSS", "SDIA"};
+        if (!is_one_of(line.keyword, of_a_surface)) {
+            return; // fields, apertures, titles
+        }
+        Surface& surface = file_.surfaces[static_cast<std::size_t>(
+            integer_at(lens, line, 0, 0, static_cast<int>(file_.surfaces.size()) - 1))];
+        constexpr double infinite = 1e10; // as Zemax writes an infinite thickness here
+        if (line.keyword == "THIC") {
+            const double thickness = number_at(lens, line, 2);
+            surface.thickness = thickness >= infinite ? INFINITY : thickness;
+            surface.thickness_line = line;
+        } else if (line.keyword == "CRVT") {
+            surface.curvature = number_at(lens, line, 2);
+        } else if (line.keyword == "CONN") {
+            surface.conic = number_at(lens, line, 2);
+        } else if (line.keyword == "SDIA") {
+            surface.diameter = number_at(lens, line, 2, {.minimum = 0, .minimum_included = true});
+        } else { // GLSS
+            surface.medium_line = line;
+            std::string name = line.words[2];
+            if (name.size() >= 2 && name.front() == '"' && name.back() == '"') {
+                name = name.substr(1, name.size() - 2);
+            }
+            surface.medium_line.words = {name.empty() ? "AIR" : name};
+        }
+    }
+
+    // Glasses are looked up when the catalogues (GCAT) and the wavelengths are known, which may stand behind them.
+    void take_medium(Surface& surface) {
+        const Line& line = surface.medium_line;
+        if (line.keyword.empty()) {
+            return;
+        }
+        if (!line.words.empty() && line.words.front() == "MIRROR") {
+            surface.mirror = true;
+            return;
+        }
+        GlassSearch search = search_;
+        const auto range = wavelengths();
+        search.used = range.value_or(search.used);
+        const Place place{file_.path, surface.number};
+        try {
+            surface.medium = glasses_.medium_of(place, line, search);
+        } catch (const InputError& error) { // none if this turns out to be the image
+            surface.medium = Medium::air();
+            surface.medium_problems = error.problems();
+        }
+    }
+
+    std::optional<Medium::Range> wavelengths() const {
+        std::optional<Medium::Range> range;
+        for (const auto& [number, wavelength] : file_.wavelengths_um) {
+            if (!file_.wavelength_count || number <= *file_.wavelength_count) {
+                range = range ? Medium::Range{std::min(range->minimum_um, wavelength),
+                                              std::max(range->maximum_um, wavelength)}
+                              : Medium::Range{wavelength, wavelength};
+            }
+        }
+        return range;
     }
 
     void take_surface(const Line& line) {
@@ -170,12 +330,13 @@ class Reader {
     }
 
     SurfaceKind kind_at(const Line& line) const {
-        for (const auto kind : {SurfaceKind::standard, SurfaceKind::even_asphere, SurfaceKind::coordinate_break}) {
+        for (const auto kind :
+             {SurfaceKind::standard, SurfaceKind::even_asphere, SurfaceKind::coordinate_break, SurfaceKind::paraxial}) {
             if (!line.words.empty() && line.words.front() == name_of(kind)) {
                 return kind;
             }
         }
-        refuse(place(), line, line.rest, "one of the surfaces STANDARD, EVENASPH and COORDBRK",
+        refuse(place(), line, line.rest, "one of the surfaces STANDARD, EVENASPH, COORDBRK and PARAXIAL",
                "Replace the surface in Zemax by one of these.");
     }
 
@@ -191,18 +352,16 @@ class Reader {
             surface.thickness_line = line;
         } else if (line.keyword == "GLAS") {
             surface.medium_line = line;
-            surface.medium_problems.clear();
-            try {
-                surface.medium = glasses_.medium_of(place(), line);
-            } catch (const InputError& error) { // none if this turns out to be the image
-                surface.medium = Medium::air();
-                surface.medium_problems = error.problems();
-            }
         } else if (line.keyword == "CONI") {
             surface.conic = number_at(place(), line, 0);
         } else if (line.keyword == "PARM") {
             surface.parameters[integer_at(place(), line, 0, 0, 1000)] = {.value = number_at(place(), line, 1),
                                                                          .line = line};
+        } else if (line.keyword == "XDAT") {
+            if (number_at(place(), line, 1) != 0) {
+                refuse(place(), line, line.rest, "no extra data, or zeros",
+                       "Replace the surface in Zemax by one that needs none.");
+            }
         } else if (line.keyword == "DIAM") {
             surface.diameter = number_at(place(), line, 0, {.minimum = 0, .minimum_included = true});
         } else if (line.keyword == "CLAP" || line.keyword == "FLAP") {
@@ -224,6 +383,12 @@ class Reader {
 
     File file_;
     bool behind_surfaces_ = false;
+    std::optional<int> configuration_; // that is asked for
+    int configurations_ = 1;
+    int active_ = 1;
+    std::vector<Line> operands_;         // of configurations
+    std::map<std::string, int> unknown_; // keywords, with their first lines
+    GlassSearch search_;
     Glasses glasses_;
 };
 
@@ -235,14 +400,17 @@ const char* name_of(SurfaceKind kind) {
         return "EVENASPH";
     case SurfaceKind::coordinate_break:
         return "COORDBRK";
+    case SurfaceKind::paraxial:
+        return "PARAXIAL";
     case SurfaceKind::standard:
         break;
     }
     return "STANDARD";
 }
 
-File read_lines(std::string_view bytes, const std::filesystem::path& path, const GlassCatalog& glasses) {
-    return Reader(path, glasses).read(bytes);
+File read_lines(std::string_view bytes, const std::filesystem::path& path, const GlassCatalog& glasses,
+                std::optional<int> configuration) {
+    return Reader(path, glasses, configuration).read(bytes);
 }
 
 } // namespace vkfv::optics::zmx

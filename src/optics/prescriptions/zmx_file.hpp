@@ -15,7 +15,7 @@
 
 namespace vkfv::optics::zmx {
 
-enum class SurfaceKind { standard, even_asphere, coordinate_break };
+enum class SurfaceKind { standard, even_asphere, coordinate_break, paraxial };
 const char* name_of(SurfaceKind kind); // as files write it: "STANDARD"
 
 struct Parameter {
@@ -34,7 +34,8 @@ struct Surface {
     Line thickness_line;
     double conic = 0;
     std::map<int, Parameter> parameters;
-    std::optional<Medium> medium; // none: air
+    std::optional<Medium> medium; // none: air, or a mirror
+    bool mirror = false;
     Line medium_line;
     std::vector<InputProblem> medium_problems; // what is wrong with it, if light goes there
     double diameter = 0;                       // half of it; 0: none
@@ -56,7 +57,11 @@ struct File {
     Line last_line;
 };
 
-// Throws InputError at a line that is not understood. Glasses that are not known are noted with their surfaces.
-File read_lines(std::string_view bytes, const std::filesystem::path& path, const GlassCatalog& glasses);
+// Throws InputError for a file that is no lens file, and at a line that may change the lens and is not understood.
+// Keywords without optical meaning are passed over, others that are not known with a warning in the log. Glasses that
+// are not known are noted with their surfaces. configuration: the number of the one to read, of those that the file
+// has; none: the one that was active when it was saved.
+File read_lines(std::string_view bytes, const std::filesystem::path& path, const GlassCatalog& glasses,
+                std::optional<int> configuration);
 
 } // namespace vkfv::optics::zmx

@@ -3,17 +3,34 @@
 #include "optics/media/medium_table.hpp"
 
 #include <fmt/format.h>
+#include <spdlog/spdlog.h>
+
+#include <optional>
 
 namespace vkfv::optics::zmx {
 
-Medium Glasses::medium_of(const Place& place, const Line& line) {
+namespace {
+
+// The nd and vd that stand behind the name of a glass. Zemax writes 1.5 and 40 where it knows neither.
+std::optional<ModelGlass> stated_in(const Line& line) {
+    if (line.words.size() < 5) {
+        return std::nullopt;
+    }
+    const auto nd = as_number(line.words[3]), vd = as_number(line.words[4]);
+    if (!nd || !vd || !index_range.contains(*nd) || *nd == 1 || !abbe_range.contains(*vd) ||
+        (*nd == 1.5 && *vd == 40)) {
+        return std::nullopt;
+    }
+    return ModelGlass{.nd = *nd, .vd = *vd};
+}
+
+} // namespace
+
+Medium Glasses::medium_of(const Place& place, const Line& line, const GlassSearch& search) {
     if (line.words.empty()) {
         refuse(place, line, "", "the name of a glass", "Name it, or remove the line for air.");
     }
     const std::string& name = line.words.front();
-    if (name == "MIRROR") {
-        refuse(place, line, line.rest, "a refracting surface", "Mirrors are not imported: unfold the lens in Zemax.");
-    }
     if (name == "AIR") {
         return Medium::air();
     }
@@ -31,13 +48,25 @@ Medium Glasses::medium_of(const Place& place, const Line& line) {
         }
         return model(nd, vd);
     }
-    if (auto found = catalog_.find(name)) {
-        return *std::move(found);
+    try {
+        if (auto found = catalog_.find(name, search)) {
+            return *std::move(found);
+        }
+    } catch (const InputError& error) { // the catalogues do not agree, or the record is wrong
+        refuse(place, line, name, error.problem().expected, error.problem().remedy);
     }
-    const auto meant = nearest_word(name, catalog_.names());
-    refuse(place, line, name, "a glass of the catalogues",
-           fmt::format("{}Add its catalogue with --glass-catalog, or make it a model glass in Zemax.",
-                       meant ? fmt::format("Did you mean \"{}\"? ", *meant) : ""));
+    auto stated = glass_of_code(name);
+    if (!stated) {
+        stated = stated_in(line);
+    }
+    if (!stated) {
+        refuse(place, line, name, "a glass of the catalogues",
+               "Add its catalogue with --glass-catalog, or make it a model glass in Zemax.");
+    }
+    spdlog::warn("{}:{}: no catalogue has the glass {}: it is a model glass of nd = {} and vd = {}, whose index away "
+                 "from the d line is an estimate",
+                 place.file.string(), line.number, name, stated->nd, stated->vd);
+    return model(stated->nd, stated->vd);
 }
 
 Medium Glasses::model(double nd, double vd) {

@@ -7,7 +7,6 @@
 #include <algorithm>
 #include <charconv>
 #include <cmath>
-#include <cstdint>
 #include <utility>
 
 namespace vkfv::optics::zmx {
@@ -28,107 +27,7 @@ std::vector<std::string> words_of(std::string_view text) {
     return words;
 }
 
-// The files' text as UTF-8.
-class Decoder {
-  public:
-    Decoder(std::string_view bytes, const std::filesystem::path& file) : bytes_(bytes), file_(file) {}
-
-    std::string decode() {
-        if (bytes_.starts_with("\xff\xfe") || bytes_.starts_with("\xfe\xff")) {
-            return decode_utf16(bytes_.front() == '\xff');
-        }
-        if (bytes_.starts_with("\xef\xbb\xbf")) {
-            bytes_.remove_prefix(3);
-            offset_ = 3;
-        }
-        check_utf8();
-        return std::string(bytes_);
-    }
-
-  private:
-    [[noreturn]] void refuse(std::size_t position, const char* found) const {
-        throw InputError({.where = {.file = file_, .byte_offset = offset_ + position},
-                          .key = "",
-                          .found = found,
-                          .expected = "text in UTF-16 with a byte-order mark, or in UTF-8",
-                          .remedy = "Save the lens in Zemax again, or convert the text to UTF-8."});
-    }
-
-    std::string decode_utf16(bool little_endian) const {
-        const auto unit_at = [&](std::size_t i) {
-            const auto first = static_cast<unsigned char>(bytes_[i]);
-            const auto second = static_cast<unsigned char>(bytes_[i + 1]);
-            return static_cast<std::uint32_t>(little_endian ? first | second << 8 : second | first << 8);
-        };
-        if (bytes_.size() % 2 != 0) {
-            refuse(bytes_.size() - 1, "half a UTF-16 character");
-        }
-        std::string text;
-        for (std::size_t i = 2; i < bytes_.size(); i += 2) {
-            std::uint32_t point = unit_at(i);
-            if (point >= 0xd800 && point < 0xe000) {
-                const std::uint32_t low = i + 2 < bytes_.size() ? unit_at(i + 2) : 0;
-                if (point >= 0xdc00 || low < 0xdc00 || low >= 0xe000) {
-                    refuse(i, "half a UTF-16 surrogate pair");
-                }
-                point = 0x10000 + ((point - 0xd800) << 10) + (low - 0xdc00);
-                i += 2;
-            }
-            if (point == 0) {
-                refuse(i, "a NUL character");
-            }
-            append_utf8(text, point);
-        }
-        return text;
-    }
-
-    static void append_utf8(std::string& text, std::uint32_t point) {
-        if (point < 0x80) {
-            text += static_cast<char>(point);
-            return;
-        }
-        const int following = point < 0x800 ? 1 : point < 0x10000 ? 2 : 3;
-        constexpr std::uint32_t lead[] = {0, 0xc0, 0xe0, 0xf0};
-        text += static_cast<char>(lead[following] | point >> (6 * following));
-        for (int i = following - 1; i >= 0; --i) {
-            text += static_cast<char>(0x80 | (point >> (6 * i) & 0x3f));
-        }
-    }
-
-    // Well-formed as the Unicode standard's table 3-7 says: no overlong forms, no surrogates.
-    void check_utf8() const {
-        for (std::size_t i = 0; i < bytes_.size();) {
-            const auto lead = static_cast<unsigned char>(bytes_[i]);
-            if (lead == 0) {
-                refuse(i, "a NUL character");
-            }
-            const std::size_t length = lead < 0x80 ? 1 : lead < 0xc2 ? 0 : lead < 0xe0 ? 2 : lead < 0xf0 ? 3 : 4;
-            if (length == 0 || lead > 0xf4 || i + length > bytes_.size()) {
-                refuse(i, "bytes that are not UTF-8");
-            }
-            for (std::size_t j = 1; j < length; ++j) {
-                const auto byte = static_cast<unsigned char>(bytes_[i + j]);
-                const bool second = j == 1;
-                const unsigned low = second && lead == 0xe0 ? 0xa0 : second && lead == 0xf0 ? 0x90 : 0x80;
-                const unsigned high = second && lead == 0xed ? 0x9f : second && lead == 0xf4 ? 0x8f : 0xbf;
-                if (byte < low || byte > high) {
-                    refuse(i, "bytes that are not UTF-8");
-                }
-            }
-            i += length;
-        }
-    }
-
-    std::string_view bytes_;
-    const std::filesystem::path& file_;
-    std::size_t offset_ = 0;
-};
-
 } // namespace
-
-std::string decode(std::string_view bytes, const std::filesystem::path& file) {
-    return Decoder(bytes, file).decode();
-}
 
 Line line_of(std::string_view text, int number) {
     Line line{.number = number, .indented = text.starts_with(' ') || text.starts_with('\t')};

@@ -12,9 +12,6 @@
 
 namespace vkfv::optics::zmx {
 
-// As UTF-8. UTF-16 with a byte-order mark, or UTF-8; else an InputError.
-std::string decode(std::string_view bytes, const std::filesystem::path& file);
-
 struct Line {
     int number = 0;
     bool indented = false;

@@ -2,7 +2,7 @@
 #pragma once
 
 #include "optics/media/medium.hpp"
-#include "optics/train/pose.hpp"
+#include "optics/prescriptions/pose.hpp"
 #include "physics/physics.hpp"
 
 #include <glm/glm.hpp>

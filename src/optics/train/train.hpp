@@ -3,8 +3,8 @@
 
 #include "core/mathematics/grid.hpp"
 #include "optics/media/spectrum.hpp"
+#include "optics/prescriptions/pose.hpp"
 #include "optics/prescriptions/prescription.hpp"
-#include "optics/train/pose.hpp"
 #include "physics/physics.hpp"
 
 #include <optional>

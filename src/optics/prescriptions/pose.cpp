@@ -1,4 +1,4 @@
-#include "optics/train/pose.hpp"
+#include "optics/prescriptions/pose.hpp"
 
 #include <cmath>
 
@@ -30,6 +30,14 @@ Pose Pose::turned(const CoordinateBreak& change) const {
         return {origin + tilted * decentre, tilted};
     }
     return {point(decentre), axes * x * y * z};
+}
+
+Pose Pose::along(const std::vector<CoordinateBreak>& changes) const {
+    Pose pose = *this;
+    for (const CoordinateBreak& change : changes) {
+        pose = pose.after(change);
+    }
+    return pose;
 }
 
 Pose Pose::mirrored_in(const Pose& mirror) const {

@@ -5,6 +5,8 @@
 
 #include <glm/glm.hpp>
 
+#include <vector>
+
 namespace vkfv::optics {
 
 struct Pose {
@@ -18,6 +20,7 @@ struct Pose {
     // Decentred and tilted about the own origin; without the thickness.
     Pose turned(const CoordinateBreak& change) const;
     Pose after(const CoordinateBreak& change) const { return turned(change).along_z(change.thickness); }
+    Pose along(const std::vector<CoordinateBreak>& changes) const; // after each of them, in their order
     // For light the other way: half a turn about the own x axis.
     Pose half_turn() const { return {origin, glm::dmat3(axes[0], -axes[1], -axes[2])}; }
     // This one as it is seen in a mirror that stands in another's plane z = 0.

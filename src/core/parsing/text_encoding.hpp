@@ -1,0 +1,15 @@
+// Text files of other programs as UTF-8, whatever they were saved in.
+#pragma once
+
+#include <string>
+#include <string_view>
+
+namespace vkfv {
+
+// The bytes of a text file as UTF-8, without a byte-order mark. Recognised are UTF-8, UTF-16 with a byte-order mark and
+// UTF-16 of mostly Latin letters without one; all other bytes are taken as Latin-1. Half a surrogate pair becomes a
+// question mark, and half a character at the end is left out. NUL characters stay: a caller that wants text looks for
+// them.
+std::string as_utf8(std::string_view bytes);
+
+} // namespace vkfv
