@@ -50,6 +50,19 @@ Command camera_command() {
             .example = "vkfv camera assets/stacks/camera.toml --out camera"};
 }
 
+namespace {
+
+// The line above the images of one irradiation in a descriptor file of the EMVA 1288 reference implementation: exposure
+// time in ns, and photons a pixel if there is light.
+std::string descriptor_set(const camera::TakenImage& what) {
+    constexpr double ns_per_s = 1e9;
+    const double exposure = what.exposure_time * ns_per_s;
+    return what.photons > 0 ? fmt::format("b {:.1f} {:.6f}\n", exposure, what.photons)
+                            : fmt::format("d {:.1f}\n", exposure);
+}
+
+} // namespace
+
 void run_camera(const CommandOptions& options) {
     const auto own = options.of<CameraCommandOptions>();
     const auto configuration = load_configuration(options.file, options.overrides, Needs::instrument);
@@ -63,14 +76,24 @@ void run_camera(const CommandOptions& options) {
     const camera::Camera camera(*configuration.camera, configuration.instrument.spectrum);
     ResultFolder results(options.out.value_or(options.file.stem().string() + "-camera"));
     std::string list = "file,series,photons,exposure_s\n";
+    std::string descriptor = fmt::format("# Images of a camera that vkfv simulates\nv 3.0\nn {} {} {}\n",
+                                         camera.options().bit_depth, own.pixels, own.pixels);
     camera::ImageTaker take;
     if (own.images) {
         constexpr int bits_of_bytes = 8;
         const auto type = camera.options().bit_depth > bits_of_bytes ? scan::PixelType::uint16 : scan::PixelType::uint8;
-        take = [&results, &list, type](const camera::TakenImage& what, const Grid<float>& image) {
+        std::string set; // of images at one irradiation
+        take = [&results, &list, &descriptor, type, set](const camera::TakenImage& what,
+                                                         const Grid<float>& image) mutable {
             const std::string file = "images/" + what.file + ".tif";
             results.write(file, scan::frame_bytes(image, type, 0, "grey values in DN"));
             list += fmt::format("{},{},{},{}\n", file, what.series, what.photons, what.exposure_time);
+            const std::string line = descriptor_set(what);
+            if (what.series + line != set) {
+                descriptor += line;
+                set = what.series + line;
+            }
+            descriptor += fmt::format("i {}\n", file);
         };
     }
     const auto measurement = measurement::measure_camera(
@@ -82,10 +105,13 @@ void run_camera(const CommandOptions& options) {
     results.write("linearity.svg", measurement::linearity_chart(measurement));
     if (own.images) {
         results.write("images.csv", list);
+        results.write("emva1288.txt", descriptor);
     }
     results.write_checksums();
-    for (const auto& warning : measurement::warnings_of(camera)) {
-        spdlog::warn(warning);
+    for (const auto& warnings : {measurement::warnings_of(camera), measurement::warnings_of(measurement)}) {
+        for (const auto& warning : warnings) {
+            spdlog::warn(warning);
+        }
     }
     fmt::print("{}", measurement::summary(measurement));
 }

@@ -25,8 +25,9 @@ Command compare_command() {
             .summary = "Height maps (any format that vkfv reads) against the truth: shift, deviation, transfer, ISO "
                        "25178-2 parameters; several measurements of one field also give systematic and random part",
             .operands = {{"MEASURED... TRUTH", "Height maps, the last of them true", into(&CompareOptions::files)}},
-            .options = together(
-                {{out_option("Folder for tables, maps and pictures"), json_option()}, band_options(), {align}}),
+            .options = together({{out_option("Folder for tables, maps and pictures"), json_option()},
+                                 band_options(),
+                                 {align, accept_checksum_option()}}),
             .run = run_compare,
             .example = "vkfv compare measured.x3p truth.tif --out compared"};
 }
@@ -37,6 +38,7 @@ void run_compare(const CommandOptions& options) {
     const measurement::ComparisonRequest request{.measurements = {files.begin(), files.end() - 1},
                                                  .truth = files.back(),
                                                  .align = own.align,
+                                                 .accept_checksum = options.of<AcceptChecksum>().value,
                                                  .band = options.of<surface::Band>()};
     const auto result = measurement::compare_files(request);
     if (options.out) {

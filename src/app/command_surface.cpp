@@ -116,10 +116,10 @@ Command surface_command() {
                        "form removed and filtered, its ISO 25178-2 "
                        "parameters; with --out also written, in another format if so named",
             .operands = {{"FILE", "Surface", into(&CommandOptions::file)}},
-            .options =
-                together({{out_option("A .x3p, .sur, .sdf, .gwy, .gsf, .csv, .npy, .tif or .ply file"), json_option()},
-                          band_options(),
-                          {pitch_option(), unit, profile, profile_filter, profile_setting, sought}}),
+            .options = together(
+                {{out_option("A .x3p, .sur, .sdf, .gwy, .gsf, .csv, .npy, .tif or .ply file"), json_option()},
+                 band_options(),
+                 {pitch_option(), unit, profile, profile_filter, profile_setting, sought, accept_checksum_option()}}),
             .run = run_surface,
             .example = "vkfv surface measured.x3p --form polynomial-2 --s_filter_um 5 --out treated.sur"};
 }
@@ -129,6 +129,7 @@ void run_surface(const CommandOptions& options) {
     const auto figures =
         measurement::measure_surface({.file = options.file,
                                       .scale = {.pitch = options.of<PixelPitch>().value, .unit = own.unit},
+                                      .accept_checksum = options.of<AcceptChecksum>().value,
                                       .band = options.of<surface::Band>(),
                                       .line = own.line,
                                       .setting = own.setting,

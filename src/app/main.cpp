@@ -12,11 +12,16 @@
 #include "vulkan/failure.hpp"
 
 #include <CLI/Error.hpp>
+#include <fcntl.h>
 #include <fmt/format.h>
+#include <unistd.h>
 
+#include <cerrno>
 #include <cstdio>
 #include <iostream>
 #include <new>
+#include <stdexcept>
+#include <system_error>
 
 namespace {
 
@@ -38,9 +43,27 @@ bool standard_output_is_whole() {
     return std::cout.good() && std::fflush(stdout) == 0 && std::ferror(stdout) == 0;
 }
 
+// A file that is opened while one of the three standard descriptors is closed would take its number, and get what is
+// said there.
+void hold_standard_descriptors_open() {
+    for (int descriptor = STDIN_FILENO; descriptor <= STDERR_FILENO; ++descriptor) {
+        if (::fcntl(descriptor, F_GETFD) == -1 && errno == EBADF) {
+            (void)::open("/dev/null", descriptor == STDIN_FILENO ? O_RDONLY : O_WRONLY); // takes the lowest free number
+        }
+    }
+}
+
+int report_lack_of_memory() {
+    return report(
+        "the host has not enough memory. Choose fewer pixels, fewer positions or a coarser specimen, or allow "
+        "the program more (ulimit -v)",
+        run_failed);
+}
+
 } // namespace
 
 int main(int argument_count, char** argument_values) {
+    hold_standard_descriptors_open();
     vkfv::enter_stage("command line, configuration");
     vkfv::explain_interruptions();
     const vkfv::vulkan::DriverScope drivers;
@@ -67,10 +90,15 @@ int main(int argument_count, char** argument_values) {
                                   error.what()),
                       run_failed);
     } catch (const std::bad_alloc&) {
-        std::fputs("vkfv: the host has not enough memory. Choose fewer pixels, fewer positions or a coarser "
-                   "specimen.\n",
-                   stderr);
-        return run_failed;
+        return report_lack_of_memory();
+    } catch (const std::length_error&) { // more elements than memory can hold
+        return report_lack_of_memory();
+    } catch (const std::system_error& error) {
+        return report(
+            fmt::format("the system refused what the program needs: {}. Allow it more threads and memory (ulimit "
+                        "-u, -v), and run the same command again",
+                        error.what()),
+            run_failed);
     } catch (const std::exception& error) {
         if (std::ferror(stdout) != 0) { // fmt says so by an exception of its own
             return report_lost_output();

@@ -11,7 +11,11 @@ namespace vkfv::camera {
 namespace {
 
 constexpr double quantisation_variance = 1.0 / 12; // DN^2
-constexpr double linear_share = 0.7;               // of saturation, to which gain and responsivity are fitted
+// Below this variance in the dark the noise of quantisation is not that of evenly spread values.
+constexpr double least_dark_variance = 0.24;            // DN^2
+constexpr double bound_of_dark_noise = 0.40;            // DN
+constexpr double dark_deviation_of_quantisation = 0.49; // DN
+constexpr double linear_share = 0.7;                    // of saturation, to which gain and responsivity are fitted
 constexpr double linearity_from = 0.05, linearity_to = 0.95;
 constexpr double decibels = 20;
 
@@ -153,10 +157,14 @@ PhotonTransferFigures figures_without(const PhotonTransferData& data, int left_o
     const double efficiency = slope_through_origin(response) / gain;
     figures.gain.value = gain;
     figures.quantum_efficiency.value = efficiency;
-    figures.read_noise.value = root_of(dark_variance - quantisation_variance) / gain;
+    const bool quantised = dark_variance < least_dark_variance;
+    figures.read_noise = {.value =
+                              (quantised ? bound_of_dark_noise : root_of(dark_variance - quantisation_variance)) / gain,
+                          .bounded = quantised};
     figures.capacity.value = efficiency * saturation;
     figures.signal_to_noise_db.value = decibels * std::log10(std::sqrt(efficiency * saturation));
-    figures.threshold.value = (root_of(dark_variance) / gain + 0.5) / efficiency;
+    const double dark_deviation = quantised ? dark_deviation_of_quantisation : root_of(dark_variance);
+    figures.threshold.value = (dark_deviation / gain + 0.5) / efficiency;
     figures.dynamic_range_db.value = decibels * std::log10(saturation / figures.threshold.value);
     const auto spatial_dark = nonuniformity_of(data.dark_stack, data.averaged, left_out);
     const auto spatial_flat = nonuniformity_of(data.flat_stack, data.averaged, left_out);
@@ -208,7 +216,9 @@ PhotonTransferFigures photon_transfer_figures(const PhotonTransferData& data) {
         for (const auto& one : without) {
             square += ((one.*member).value - mean) * ((one.*member).value - mean);
         }
-        (figures.*member).error = std::sqrt(square * (count - 1) / count);
+        if (!(figures.*member).bounded) {
+            (figures.*member).error = std::sqrt(square * (count - 1) / count);
+        }
     }
     return figures;
 }

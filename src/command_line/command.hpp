@@ -57,6 +57,11 @@ struct PixelPitch {
     std::optional<double> value;
 };
 
+// Whether surface files whose checksums are stale are read.
+struct AcceptChecksum {
+    bool value = false;
+};
+
 // Puts the value of an option where it belongs.
 template <class Value>
 using Take = std::function<void(CommandOptions&, const Value&)>;
@@ -147,6 +152,7 @@ Option out_option(std::string description);
 Option json_option();
 Option markdown_option();
 Option pitch_option();              // a PixelPitch
+Option accept_checksum_option();    // an AcceptChecksum
 std::vector<Option> band_options(); // form and filters: a surface::Band
 // One list after the other.
 std::vector<Option> together(std::vector<std::vector<Option>> lists);

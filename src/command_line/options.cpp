@@ -123,6 +123,13 @@ Option pitch_option() {
             .target = in_mm(&PixelPitch::value)};
 }
 
+Option accept_checksum_option() {
+    return {.name = "--accept-checksum",
+            .value = "",
+            .description = "Read X3P files whose contents do not have the checksums that they state, with a warning",
+            .target = into(&AcceptChecksum::value)};
+}
+
 std::vector<Option> band_options() {
     const auto take_l_filter = [](CommandOptions& options, double um) {
         options.of<surface::Band>().l_filter = nesting_index(um);

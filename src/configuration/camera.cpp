@@ -22,8 +22,8 @@ constexpr double largest_photo_response = 10;                   // %, beyond whi
 
 const ChoiceKey<Preset> preset("preset",
                                {{Preset::none, "none", "all values are given here"},
-                                {Preset::imx250, "IMX250", "a camera with Sony's IMX250, as published at 525 nm"},
-                                {Preset::imx900, "IMX900", "a camera with Sony's IMX900, as published at 536 nm"}},
+                                {Preset::imx250, "IMX250", "a camera with Sony's IMX250 at 525 nm, by figures that are not verified"},
+                                {Preset::imx900, "IMX900", "a camera with Sony's IMX900 at 536 nm, by figures that are not verified"}},
                                Preset::none, "The camera whose values hold where none are given.");
 const Default of_preset = Default::in_words("the preset's; must be given without one");
 const NumberKey efficiency("quantum_efficiency", NumberRange::share(), of_preset,

@@ -13,7 +13,6 @@ namespace vkfv {
 
 namespace {
 
-constexpr double most_smoothing_steps = 100; // 1202 images in memory
 constexpr std::int64_t most_peak_range_steps = 100;
 constexpr std::int64_t most_pupil_cells = 32; // 512 images of light
 constexpr std::int64_t most_parts = 16;
@@ -39,7 +38,7 @@ const IntegerKey window = without_influence(
 const auto window_shape = named("window_shape", topography::window_shape_names(), topography::window_shape_from_name,
                                 defaults.window_shape, "Weights in the window.");
 const NumberKey smoothing =
-    without_influence(NumberKey("smoothing_steps", NumberRange::within(0, most_smoothing_steps),
+    without_influence(NumberKey("smoothing_steps", NumberRange::within(0, topography::most_smoothing_steps),
                                 Default::in_words("as suits the width of the focus curves"),
                                 "Standard deviation of the Gaussian average along z, in steps of the scan; 0: none."));
 const NumberKey false_peak_rate =

@@ -75,7 +75,7 @@ StoredImage parse_tiff(std::string_view bytes, const std::filesystem::path& path
 
 DescribedImage parse_image(std::string_view bytes, const std::filesystem::path& path) {
     auto image = plain_tiff(bytes, TiffPart::all);
-    if (!image || image->channels != 1) {
+    if (!image || image->channels != 1 || image->description.starts_with("ImageJ=")) {
         return codec().parse_image(bytes, path);
     }
     return {.values = image->channel<double>(0), .description = std::move(image->description)};

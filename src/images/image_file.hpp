@@ -66,8 +66,10 @@ struct StoredImage {
 StoredImage parse_tiff(std::string_view bytes, const std::filesystem::path& path);
 
 struct DescribedImage {
-    Grid<double> values;     // as stored
-    std::string description; // ImageDescription; empty without one
+    Grid<double> values;         // as stored
+    std::string description;     // ImageDescription; empty without one
+    double columns_per_unit = 0; // resolution tags of a TIFF that ImageJ wrote; 0: none
+    double rows_per_unit = 0;    // likewise
 };
 
 // The first page of a whole single-channel file in memory; `path` names it in messages.

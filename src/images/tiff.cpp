@@ -324,6 +324,24 @@ std::optional<PlainTiff> plain_tiff(std::string_view bytes, TiffPart part) {
     return read_plain(source, part);
 }
 
+std::string tiff_text(std::string_view bytes, std::uint32_t tag) {
+    if (!bytes.starts_with("II") && !bytes.starts_with("MM")) {
+        return {};
+    }
+    TiffBytes source{.there = bytes, .size = bytes.size()};
+    const OpenTiff tiff = open_tiff(source, "rmc");
+    // libtiff gives a tag that it does not know with its count.
+    std::uint32_t count = 0;
+    const char* text = nullptr;
+    const TIFFField* field = tiff ? TIFFFindField(tiff.get(), tag, TIFF_ASCII) : nullptr;
+    if (field == nullptr || TIFFFieldPassCount(field) == 0 || TIFFFieldReadCount(field) != TIFF_VARIABLE2 ||
+        TIFFGetField(tiff.get(), tag, &count, &text) != 1 || text == nullptr) {
+        return {};
+    }
+    const std::string_view whole(text, count);
+    return std::string(whole.substr(0, whole.find('\0')));
+}
+
 std::optional<PlainTiff> plain_tiff_file(const std::filesystem::path& path, TiffPart part) {
     const InputFile file(path, FileRequest{.expected = "an image file"});
     TiffBytes source{.file = &file, .size = file.bytes()};

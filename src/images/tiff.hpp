@@ -53,4 +53,7 @@ std::optional<PlainTiff> plain_tiff(std::string_view bytes, TiffPart part);
 // Throws InputError where there is no such regular file.
 std::optional<PlainTiff> plain_tiff_file(const std::filesystem::path& path, TiffPart part);
 
+// The text of a tag of the first page, as programs of other fields define their own; empty: it is no TIFF, or has none.
+std::string tiff_text(std::string_view bytes, std::uint32_t tag);
+
 } // namespace vkfv::images

@@ -56,7 +56,9 @@ std::vector<double> marks(const Axis& axis, double pixels) {
     if (!axis.decades)
         return ticks(axis.from, axis.to, std::max(2, static_cast<int>(pixels / 55)));
     std::vector<double> result;
-    for (double decade = std::ceil(std::log10(axis.from) - 1e-9); decade <= std::log10(axis.to) + 1e-9; ++decade)
+    const int first = static_cast<int>(std::ceil(std::log10(axis.from) - 1e-9));
+    const int last = static_cast<int>(std::floor(std::log10(axis.to) + 1e-9));
+    for (int decade = first; decade <= last; ++decade)
         result.push_back(std::pow(10, decade));
     return result;
 }
@@ -140,9 +142,14 @@ std::vector<double> ticks(double from, double to, int count) {
     const double power = std::pow(10, std::floor(std::log10(raw)));
     const double multiple = raw / power;
     const double step = power * (multiple <= 1 ? 1 : multiple <= 2 ? 2 : multiple <= 5 ? 5 : 10);
+    // Whole numbers of steps are told apart below this; beyond, the range is as good as none.
+    constexpr double most_steps = 1e12;
+    const double first = std::ceil(from / step - 1e-9), last = std::floor(to / step + 1e-9);
+    if (!(step > 0) || !(std::abs(first) < most_steps && std::abs(last) < most_steps))
+        return {from};
     std::vector<double> result;
-    for (double k = std::ceil(from / step - 1e-9); k * step <= to + 1e-9 * step; ++k)
-        result.push_back(k * step);
+    for (int k = 0; k <= static_cast<int>(last - first); ++k)
+        result.push_back((first + k) * step);
     return result;
 }
 

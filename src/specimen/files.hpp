@@ -7,8 +7,10 @@
 
 #include <glm/glm.hpp>
 
+#include <array>
 #include <cstdint>
 #include <filesystem>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -41,8 +43,10 @@ FileMesh read_gltf(const std::filesystem::path& file, const SourceLocation& ment
 // Points of a surface as a text file has them (csv, txt, xyz), a line each: x, y and z, in its own unit and frame; what
 // further columns hold is left out. Lines with a gap in the first three (NaN, BAD, empty) are not measured.
 struct FilePoints {
-    std::vector<glm::dvec3> points; // finite, at least one
-    std::size_t not_measured = 0;   // lines
+    std::vector<glm::dvec3> points;               // finite, at least one
+    std::size_t not_measured = 0;                 // lines
+    std::array<std::optional<double>, 3> units{}; // of x, y and z, mm; as the names of the columns say
+    std::string column_names{};                   // that line; empty: there is none with units
 };
 FilePoints read_points(const std::filesystem::path& file, const SourceLocation& mention);
 

@@ -1,5 +1,8 @@
 #include "specimen/files.hpp"
 
+#include "core/parsing/text_encoding.hpp"
+#include "surface_files/lengths.hpp"
+#include "surface_files/table_header.hpp"
 #include "surface_files/table_text.hpp"
 
 #include <fmt/format.h>
@@ -12,7 +15,8 @@ FilePoints parse_points(std::string_view bytes, const std::filesystem::path& fil
     const auto refuse = [&](std::string found, std::string expected, std::string remedy) {
         refuse_file(file, "points", std::move(found), std::move(expected), std::move(remedy));
     };
-    const auto table = surface::parse_table_text(bytes, file, "lines of x, y and z");
+    const std::string text = as_utf8(bytes);
+    const auto table = surface::parse_table_text(text, file, "lines of x, y and z");
     // Colours, normals and intensities follow the coordinates; a line of more numbers is one of a matrix of heights.
     constexpr std::size_t least_columns = 3, most_columns = 12;
     if (table.columns < least_columns || table.columns > most_columns) {
@@ -20,12 +24,17 @@ FilePoints parse_points(std::string_view bytes, const std::filesystem::path& fil
                fmt::format("x, y and z in the first {} of at most {} columns", least_columns, most_columns),
                "Export the points with their coordinates; for a matrix of heights choose kind = \"surface\".");
     }
-    FilePoints result;
+    const auto header = surface::table_header(table.header, table.columns, table.separator);
+    FilePoints result{.points = {},
+                      .not_measured = 0,
+                      .units = header.column_units,
+                      .column_names = header.column_names.value_or("")};
     result.points.reserve(table.rows);
     for (std::size_t row = 0; row < table.rows; ++row) {
         const double* values = &table.values[row * table.columns];
         const glm::dvec3 point(values[0], values[1], values[2]);
-        if (std::isfinite(point.x) && std::isfinite(point.y) && std::isfinite(point.z)) {
+        const bool marked = header.not_measured && surface::is_mark(point.z, *header.not_measured);
+        if (!marked && std::isfinite(point.x) && std::isfinite(point.y) && std::isfinite(point.z)) {
             result.points.push_back(point);
         } else {
             ++result.not_measured;

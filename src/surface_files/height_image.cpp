@@ -2,9 +2,12 @@
 
 #include "core/mathematics/units.hpp"
 #include "core/messages/error.hpp"
+#include "core/parsing/byte_reader.hpp"
 #include "images/exr_header.hpp"
 #include "images/image_file.hpp"
+#include "images/tiff.hpp"
 #include "surface_files/image_scale.hpp"
+#include "surface_files/lengths.hpp"
 
 #include <fmt/format.h>
 
@@ -12,6 +15,8 @@
 #include <charconv>
 #include <cmath>
 #include <limits>
+#include <optional>
+#include <string_view>
 
 namespace vkfv::surface {
 namespace {
@@ -54,6 +59,47 @@ HeightMap height_map_of(const images::DescribedImage& image, const std::filesyst
     return map;
 }
 
+// What ImageJ's description says of a map of heights: lengths in mm, and heights by offset + gain value.
+struct Calibration {
+    std::optional<double> pitch_x{}, pitch_y{}, unit{};
+    double offset = 0, gain = 1;
+};
+
+Calibration calibration_of(const images::DescribedImage& image, const std::filesystem::path& path) {
+    Calibration result;
+    if (!image.description.starts_with("ImageJ="))
+        return result;
+    const auto value_of = [&](std::string_view key) -> std::string_view {
+        const std::string_view text = image.description;
+        const auto at = text.find(fmt::format("\n{}=", key));
+        if (at == std::string_view::npos)
+            return {};
+        const std::string_view rest = text.substr(at + key.size() + 2);
+        const std::string_view value = rest.substr(0, rest.find('\n'));
+        return value.ends_with('\r') ? value.substr(0, value.size() - 1) : value;
+    };
+    const auto along_x = mm_per_unit(value_of("unit"));
+    const auto along_y = value_of("yunit").empty() ? along_x : mm_per_unit(value_of("yunit"));
+    if (along_x && along_y && image.columns_per_unit > 0 && image.rows_per_unit > 0) {
+        result.pitch_x = *along_x / image.columns_per_unit;
+        result.pitch_y = *along_y / image.rows_per_unit;
+    }
+    // Values that are calibrated have a unit of their own; others are lengths in that of the plane.
+    result.unit = value_of("vunit").empty() ? along_x : mm_per_unit(value_of("vunit"));
+    if (const std::string_view function = value_of("cf"); !function.empty()) {
+        constexpr std::string_view straight_line = "0", none = "20";
+        if (function == straight_line) {
+            result.offset = number_in<double>(value_of("c0")).value_or(0);
+            result.gain = number_in<double>(value_of("c1")).value_or(1);
+        } else if (function != none) {
+            refuse_file(path, "cf", std::string(function),
+                        "values that are calibrated by a straight line, or not at all",
+                        "Convert the image to 32 bits in ImageJ: that keeps calibrated values.");
+        }
+    }
+    return result;
+}
+
 } // namespace
 
 std::string height_map_bytes(const HeightMap& map, const Provenance& provenance) {
@@ -91,13 +137,32 @@ SurfaceFile parse_height_image(std::string_view bytes, const std::filesystem::pa
         result.provenance = parse_provenance(std::string_view(description).substr(rest));
         return result;
     }
-    check_scale(path, scale);
     SurfaceFile result;
-    result.map.pitch_x = result.map.pitch_y = *scale.pitch;
+    const Calibration stated = calibration_of(image, path);
+    const ImageScale whole{.pitch = scale.pitch ? scale.pitch : stated.pitch_x,
+                           .unit = scale.unit ? scale.unit : stated.unit};
+    check_scale(path, whole);
+    const auto warn = [&](const char* what, const std::optional<double>& given, const std::optional<double>& own) {
+        constexpr double alike = 0.01;
+        if (given && own && std::abs(*given - *own) > alike * *own)
+            result.warnings.push_back(
+                fmt::format("{}: the {} of {:.6g} um of the option is used, not the {:.6g} um that the "
+                            "file states",
+                            path.string(), what, *given * um_per_mm, *own * um_per_mm));
+    };
+    warn("pitch", scale.pitch, stated.pitch_x);
+    warn("unit", scale.unit, stated.unit);
+    result.map.pitch_x = *whole.pitch;
+    result.map.pitch_y = scale.pitch ? *scale.pitch : stated.pitch_y.value_or(*whole.pitch);
+    constexpr std::uint32_t gdal_nodata = 42113;
+    const auto mark = number_in<double>(images::tiff_text(bytes, gdal_nodata));
     result.map.height = Grid<double>(image.values.columns, image.values.rows);
     for (std::size_t k = 0; k < image.values.values.size(); ++k) {
-        const double height = image.values.values[k] * *scale.unit;
-        result.map.height.values[k] = std::isfinite(height) ? height : std::numeric_limits<double>::quiet_NaN();
+        const double value = image.values.values[k];
+        const double height = (stated.offset + stated.gain * value) * *whole.unit;
+        const bool measured =
+            std::isfinite(height) && std::abs(value) < not_measured_from && !(mark && is_mark(value, *mark));
+        result.map.height.values[k] = measured ? height : std::numeric_limits<double>::quiet_NaN();
     }
     return result;
 }

@@ -2,12 +2,15 @@
 
 #include "core/mathematics/units.hpp"
 #include "core/parsing/byte_reader.hpp"
+#include "core/parsing/text_encoding.hpp"
 #include "surface_files/image_scale.hpp"
 #include "surface_files/lengths.hpp"
+#include "surface_files/table_header.hpp"
 #include "surface_files/table_text.hpp"
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <span>
 #include <sstream>
 #include <vector>
@@ -19,50 +22,36 @@ constexpr std::string_view table_title = "# vkfv heights in um";
 constexpr std::size_t title_lines = 5; // with the scale; provenance follows, whose text may look like either
 constexpr double nan = std::numeric_limits<double>::quiet_NaN();
 
-// What a header says of lengths, in mm.
-struct Header {
-    std::optional<double> unit, pitch_x, pitch_y, width, height, x0, y0;
-};
-
-// "10.0 um" or a number, which is of um in our own header.
-std::optional<double> length_in(std::string_view text) {
-    text = bare(text);
-    const auto blank = text.find(' ');
-    if (blank == std::string_view::npos)
-        return std::nullopt;
-    const auto value = number_in<double>(text.substr(0, blank));
-    const auto unit = mm_per_unit(bare(text.substr(blank)));
-    return value && unit ? std::optional(*value * *unit) : std::nullopt;
-}
-
 bool is_own(const std::vector<std::string_view>& header) {
     return !header.empty() && header.front().starts_with(table_title);
 }
 
-Header header_of(std::span<const std::string_view> lines) {
-    Header header;
-    const std::array<std::pair<std::string_view, std::optional<double>*>, 4> own = {{{"x0_mm=", &header.x0},
-                                                                                     {"y0_mm=", &header.y0},
-                                                                                     {"pitch_x_mm=", &header.pitch_x},
-                                                                                     {"pitch_y_mm=", &header.pitch_y}}};
-    const std::array<std::pair<std::string_view, std::optional<double>*>, 2> gwyddion = {
-        {{"Width:", &header.width}, {"Height:", &header.height}}};
-    for (std::string_view line : lines) {
-        if (line.starts_with(table_title))
-            header.unit = mm_per_um;
-        if (!line.starts_with('#'))
-            continue;
-        line = bare(line.substr(1));
-        for (const auto& [key, member] : own)
+// Our own header says more, and its provenance may look like anything.
+TableHeader own_header(std::span<const std::string_view> lines) {
+    TableHeader header;
+    header.unit = mm_per_um;
+    const std::array<std::pair<std::string_view, std::optional<double>*>, 4> keys = {
+        {{"x0_mm=", &header.x0},
+         {"y0_mm=", &header.y0},
+         {"pitch_x_mm=", &header.pitch_x},
+         {"pitch_y_mm=", &header.pitch_y}}};
+    for (std::string_view line : lines.first(std::min(lines.size(), title_lines))) {
+        line = bare(line.substr(std::min<std::size_t>(1, line.size())));
+        for (const auto& [key, member] : keys)
             if (line.starts_with(key))
                 *member = number_in<double>(line.substr(key.size()));
-        for (const auto& [key, member] : gwyddion)
-            if (line.starts_with(key))
-                *member = length_in(line.substr(key.size()));
-        if (constexpr std::string_view key = "Value units:"; line.starts_with(key) && !header.unit)
-            header.unit = mm_per_unit(bare(line.substr(key.size())));
     }
     return header;
+}
+
+// An option that contradicts the file is told of, with both values.
+void warn_of_contradiction(const std::filesystem::path& path, const char* option, const std::optional<double>& given,
+                           double stated, const std::string& where, SurfaceFile& result) {
+    constexpr double alike = 0.01;
+    if (given && std::abs(*given - stated) > alike * std::abs(stated))
+        result.warnings.push_back(fmt::format("{}: its {} of {:.6g} um is used, not the {:.6g} um of the option",
+                                              where.empty() ? path.string() : path.string() + ": " + where, option,
+                                              stated * um_per_mm, *given * um_per_mm));
 }
 
 // Coordinates on a line of equal distances.
@@ -132,21 +121,61 @@ HeightMap matrix_of(const TableText& table) {
     return map;
 }
 
-// A pitch of the header or of `scale`.
-void set_pitch(const std::filesystem::path& path, const Header& header, const ImageScale& scale, HeightMap& map) {
+// A profile is a position and a height a line, or heights alone. The first column of a map of heights ascends evenly, as
+// positions do, only by a rare chance.
+bool is_profile(const TableText& table) {
+    constexpr std::size_t least_rows = 4, most_columns = 3;
+    if (table.columns > most_columns || table.rows < least_rows)
+        return false;
+    if (table.columns == 1)
+        return true;
+    double shortest = std::numeric_limits<double>::infinity(), longest = -shortest;
+    for (std::size_t row = 1; row < table.rows; ++row) {
+        const double step = table.values[row * table.columns] - table.values[(row - 1) * table.columns];
+        if (!std::isfinite(step))
+            return false;
+        shortest = std::min(shortest, step);
+        longest = std::max(longest, step);
+    }
+    constexpr double regular = 1.5; // of positions that are rounded
+    const bool ascending = shortest > 0, descending = longest < 0;
+    const double ratio = ascending ? longest / shortest : shortest / longest;
+    return (ascending || descending) && (table.columns == 2 || ratio < regular);
+}
+
+void set_pitch(const std::filesystem::path& path, const TableHeader& header, const ImageScale& scale,
+               SurfaceFile& result) {
+    HeightMap& map = result.map;
     const auto pitch = [](const std::optional<double>& own, const std::optional<double>& extent, int points) {
         return own ? own : extent ? std::optional(*extent / points) : std::nullopt;
     };
     const auto x = pitch(header.pitch_x, header.width, map.columns()),
                y = pitch(header.pitch_y, header.height, map.rows());
-    if (x && y && scale.pitch)
-        refuse_second_scale(path, {.pitch = scale.pitch, .unit = {}});
-    if (!(x && y) || !(*x > 0 && *y > 0))
+    const bool stated = x && y && *x > 0 && *y > 0;
+    if (!stated)
         check_scale(path, {.pitch = scale.pitch, .unit = 1});
-    map.pitch_x = x && y && *x > 0 && *y > 0 ? *x : *scale.pitch;
-    map.pitch_y = x && y && *x > 0 && *y > 0 ? *y : *scale.pitch;
+    else
+        warn_of_contradiction(path, "pitch", scale.pitch, *x, "", result);
+    map.pitch_x = stated ? *x : *scale.pitch;
+    map.pitch_y = stated ? *y : *scale.pitch;
     map.x0 = header.x0.value_or(0);
     map.y0 = header.y0.value_or(0);
+}
+
+// ESRI's grids count in one unit along all axes.
+void take_cells(double unit, TableHeader& header) {
+    if (!header.cells)
+        return;
+    const double cell = *header.cells * unit;
+    const auto position = [&](const std::optional<double>& centre, const std::optional<double>& corner) {
+        return centre   ? std::optional(*centre * unit)
+               : corner ? std::optional(*corner * unit + 0.5 * cell)
+                        : std::nullopt;
+    };
+    header.pitch_x = header.pitch_x.value_or(cell);
+    header.pitch_y = header.pitch_y.value_or(cell);
+    header.x0 = position(header.x_centre, header.x_corner);
+    header.y0 = position(header.y_centre, header.y_corner);
 }
 
 } // namespace
@@ -157,41 +186,60 @@ bool named_like_height_table(std::string_view name) {
 }
 
 SurfaceFile parse_height_table(std::string_view bytes, const std::filesystem::path& path, const ImageScale& scale) {
-    const ByteReader file(bytes, path);
-    const TableText table = parse_table_text(bytes, path, "a table of heights");
+    const std::string text = as_utf8(bytes);
+    const ByteReader file(text, path);
+    TableText table = parse_table_text(text, path, "a table of heights");
     const bool own = is_own(table.header);
-    const Header header = header_of(
-        std::span(table.header).first(std::min(table.header.size(), own ? title_lines : table.header.size())));
+    TableHeader header = own ? own_header(table.header) : table_header(table.header, table.columns, table.separator);
     file.check_size(table.columns, table.rows);
-    if (header.unit && scale.unit)
+    if (own && scale.unit)
         refuse_second_scale(path, {.pitch = {}, .unit = scale.unit});
+    if (own && scale.pitch && header.pitch_x)
+        refuse_second_scale(path, {.pitch = scale.pitch, .unit = {}});
     const bool named = path.extension() == ".xyz" || path.extension() == ".XYZ";
     auto points = grid_of_points(table, named ? 64 : 2); // a matrix of three columns is as good as never half a grid
     if (named && !points)
         file.fail({}, "x, y", fmt::format("{} lines of {} numbers", table.rows, table.columns),
                   "x, y and z of points of a regular grid", "Export the surface on a grid.");
+    if (!own && !points && is_profile(table))
+        file.fail(
+            {}, "", fmt::format("a profile: {} lines of {} numbers", table.rows, table.columns), "a map of heights",
+            "Profiles are not evaluated; export the whole surface. If it is a map of so few columns, exchange its "
+            "lines and columns.");
+    // Of three columns the third is the height.
+    const auto& columns = header.column_units;
+    const std::optional<double> in_names = points ? columns[2] : columns[0];
+    if (!header.unit)
+        header.unit = in_names;
     const double unit = header.unit.value_or(scale.unit.value_or(0));
+    take_cells(unit, header);
     if (points ? !(unit > 0) : !(unit > 0) && !scale.pitch && !header.pitch_x && !header.width)
         check_scale(path, {.pitch = points ? std::optional(1.0) : scale.pitch, .unit = scale.unit});
     if (!(unit > 0 && std::isfinite(unit)))
         check_scale(path, {.pitch = 1, .unit = scale.unit});
     SurfaceFile result;
+    if (header.unit)
+        warn_of_contradiction(path, "unit", scale.unit, unit, header.column_names.value_or(""), result);
     if (points) {
+        const double along_x = columns[0].value_or(unit), along_y = columns[1].value_or(unit);
         result.map = std::move(*points);
-        result.map.x0 = mm_from(result.map.x0, unit);
-        result.map.y0 = mm_from(result.map.y0, unit);
-        result.map.pitch_x = scale.pitch.value_or(result.map.pitch_x * unit);
-        result.map.pitch_y = scale.pitch.value_or(result.map.pitch_y * unit);
-        if (!std::isfinite(result.map.x0) || !std::isfinite(result.map.y0))
+        HeightMap& map = result.map;
+        map.x0 = mm_from(map.x0, along_x);
+        map.y0 = mm_from(map.y0, along_y);
+        if (columns[0] && columns[1])
+            warn_of_contradiction(path, "pitch", scale.pitch, map.pitch_x * along_x, *header.column_names, result);
+        map.pitch_x = columns[0] ? map.pitch_x * along_x : scale.pitch.value_or(map.pitch_x * along_x);
+        map.pitch_y = columns[1] ? map.pitch_y * along_y : scale.pitch.value_or(map.pitch_y * along_y);
+        if (!std::isfinite(map.x0) || !std::isfinite(map.y0))
             file.fail({}, "x, y", "lengths that overflow", "finite ones");
     } else {
         result.map = matrix_of(table);
-        set_pitch(path, header, scale, result.map);
+        set_pitch(path, header, scale, result);
     }
     file.check_spacing(result.map.pitch_x, "pitch along x");
     file.check_spacing(result.map.pitch_y, "pitch along y");
     for (double& height : result.map.height.values)
-        height = height_from(height, unit);
+        height = header.not_measured && is_mark(height, *header.not_measured) ? nan : height_from(height, unit);
     std::string provenance;
     for (std::size_t k = title_lines; own && k < table.header.size(); ++k)
         if (const std::string_view line = table.header[k]; line.starts_with('#'))

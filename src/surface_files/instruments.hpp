@@ -16,7 +16,8 @@ SurfaceFile parse_plu(std::string_view bytes, const std::filesystem::path& file)
 
 // OPD, Wyko's and Veeco's (now Bruker's) interferometers (facts: Gwyddion's opdfile module, surfalize).
 bool looks_like_opd(std::string_view bytes);
-// The array RAW_DATA, or SAMPLE_DATA: int16 or float32 waves; the file's array is by columns, from the lowest y.
+// The array RAW_DATA, Raw (Vision64) or SAMPLE_DATA: int16 or float32 waves; the file's array is by columns, from the
+// lowest y.
 SurfaceFile parse_opd(std::string_view bytes, const std::filesystem::path& file);
 
 // MetroPro's DAT, Zygo's interferometers; big-endian (facts: Zygo's MetroPro Reference Guide, Gwyddion's metropro

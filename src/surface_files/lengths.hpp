@@ -19,7 +19,9 @@ inline constexpr std::array length_units = {
     std::pair{std::string_view("mm"), 1.0},         std::pair{std::string_view("um"), 1e-3},
     std::pair{std::string_view("\xC2\xB5m"), 1e-3}, std::pair{std::string_view("\xCE\xBCm"), 1e-3},
     std::pair{std::string_view("\xB5m"), 1e-3},     std::pair{std::string_view("nm"), 1e-6},
-    std::pair{std::string_view("pm"), 1e-9},        std::pair{std::string_view("inch"), 25.4}};
+    std::pair{std::string_view("pm"), 1e-9},        std::pair{std::string_view("inch"), 25.4},
+    std::pair{std::string_view("\\u00B5m"), 1e-3}, // as Java programs escape it
+    std::pair{std::string_view("micron"), 1e-3},    std::pair{std::string_view("microns"), 1e-3}};
 inline constexpr double mm_per_nm = 1e-6;
 inline constexpr const char* length_unit_names = "a unit of length: m, cm, mm, um, nm, pm or inch";
 
@@ -42,6 +44,21 @@ inline double mm_from(double value, double unit) {
 inline double height_from(double value, double unit) {
     const double mm = mm_from(value, unit);
     return std::isfinite(mm) ? mm : std::numeric_limits<double>::quiet_NaN();
+}
+
+// Values of at least this size say "not measured": Surfer's 1.70141e38, the largest float, and all others that no
+// length reaches.
+inline constexpr double not_measured_from = 1e37;
+
+// The same of a value of a file whose formats have no mark of their own.
+inline double measured_height(double value, double unit) {
+    return std::abs(value) < not_measured_from ? height_from(value, unit) : std::numeric_limits<double>::quiet_NaN();
+}
+
+// Whether a value is the one that a file names for points that are not measured; files round it.
+inline bool is_mark(double value, double mark) {
+    constexpr double rounding = 1e-6;
+    return std::abs(value - mark) <= rounding * std::abs(mark);
 }
 
 // Gwyddion's files state the whole grid's extent, in metres.

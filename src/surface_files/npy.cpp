@@ -6,6 +6,8 @@
 #include "surface_files/lengths.hpp"
 
 #include <algorithm>
+#include <cmath>
+#include <vector>
 
 namespace vkfv::surface {
 namespace {
@@ -35,20 +37,28 @@ struct Shape {
     std::uint64_t rows, columns;
 };
 
+// One map: lengths of 1 besides its two are of no meaning.
 Shape shape_of(const ByteReader& file, std::string_view text) {
     const auto end = text.find(')');
-    const auto comma = text.find(',');
-    std::optional<std::uint64_t> rows, columns;
-    if (text.starts_with('(') && end != std::string_view::npos && comma < end) {
-        std::string_view second = text.substr(comma + 1, end - comma - 1);
-        second = second.substr(0, second.find_last_not_of(" \t\n,") + 1); // a comma at the end is Python's too
-        rows = number_in<std::uint64_t>(text.substr(1, comma - 1));
-        columns = number_in<std::uint64_t>(second);
+    std::vector<std::uint64_t> lengths;
+    bool good = text.starts_with('(') && end != std::string_view::npos;
+    for (std::size_t at = 1; good && at < end;) {
+        const std::size_t comma = std::min(text.find(',', at), end);
+        const std::string_view length = text.substr(at, comma - at);
+        at = comma + 1;
+        if (length.find_first_not_of(blanks) == std::string_view::npos)
+            continue; // a comma at the end is Python's too
+        const auto value = number_in<std::uint64_t>(length);
+        good = value.has_value();
+        lengths.push_back(value.value_or(0));
     }
-    if (!rows || !columns)
+    for (auto one = std::ranges::find(lengths, 1u); lengths.size() > 2 && one != lengths.end();
+         one = std::ranges::find(lengths, 1u))
+        lengths.erase(one);
+    if (!good || lengths.size() != 2)
         file.fail(length_at, "shape", plain_line(text.substr(0, std::min<std::size_t>(end, 60))),
                   "two dimensions, rows and columns", "Save one height map as an array of two dimensions.");
-    return {*rows, *columns};
+    return {lengths[0], lengths[1]};
 }
 
 struct Element {
@@ -62,9 +72,9 @@ Element element_of(const ByteReader& file, std::string_view text) {
     const bool order = name.size() == 5 && std::string_view("<>|=").find(name[1]) != std::string_view::npos;
     if (order && std::string_view("fiu").find(name[2]) != std::string_view::npos && (name[4] == '\'' || name[4] == '"'))
         for (const std::size_t bytes : {1, 2, 4, 8})
-            if (static_cast<std::size_t>(name[3] - '0') == bytes && !(name[2] == 'f' && bytes < 4))
+            if (static_cast<std::size_t>(name[3] - '0') == bytes && !(name[2] == 'f' && bytes < 2))
                 return {name[2], bytes, name[1] == '>'};
-    file.fail(length_at, "descr", plain_line(name), "f4, f8, or integers i or u of 1, 2, 4 or 8 bytes",
+    file.fail(length_at, "descr", plain_line(name), "f2, f4, f8, or integers i or u of 1, 2, 4 or 8 bytes",
               "Save the array as float64.");
 }
 
@@ -77,11 +87,22 @@ double value_at(std::string_view points, std::size_t index, bool swapped) {
     return static_cast<double>(std::bit_cast<Stored>(bytes));
 }
 
+// IEEE 754's binary16.
+double half_at(std::string_view points, std::size_t index, bool swapped) {
+    const auto bits = static_cast<std::uint16_t>(value_at<std::uint16_t>(points, index, swapped));
+    const int exponent = bits >> 10 & 0x1f, fraction = bits & 0x3ff;
+    constexpr int bias = 15, fraction_bits = 10;
+    const double size = exponent == 0x1f ? (fraction == 0 ? INFINITY : NAN)
+                        : exponent == 0  ? std::ldexp(fraction, 1 - bias - fraction_bits)
+                                         : std::ldexp(0x400 + fraction, exponent - bias - fraction_bits);
+    return (bits & 0x8000) != 0 ? -size : size;
+}
+
 using ValueAt = double (*)(std::string_view, std::size_t, bool);
 
 ValueAt reader_of(const Element& type) {
     if (type.kind == 'f')
-        return type.bytes == 4 ? value_at<float> : value_at<double>;
+        return type.bytes == 2 ? half_at : type.bytes == 4 ? value_at<float> : value_at<double>;
     const bool with_sign = type.kind == 'i';
     switch (type.bytes) {
     case 1:
@@ -129,7 +150,7 @@ SurfaceFile parse_npy(std::string_view bytes, const std::filesystem::path& path,
         for (std::size_t column = 0; column < shape.columns; ++column) {
             const std::size_t index = by_columns ? column * shape.rows + line : line * shape.columns + column;
             heights(static_cast<int>(column), static_cast<int>(shape.rows - 1 - line)) =
-                height_from(value(points, index, type.swapped), *scale.unit);
+                measured_height(value(points, index, type.swapped), *scale.unit);
         }
     return result;
 }

@@ -99,7 +99,7 @@ SurfaceFile parse_opd(std::string_view bytes, const std::filesystem::path& path)
     const ByteReader file(bytes, path);
     const Blocks blocks(file);
     const Block* data = nullptr;
-    for (const char* name : {"RAW_DATA", "RAW DATA", "SAMPLE_DATA", "OPD"})
+    for (const char* name : {"RAW_DATA", "RAW DATA", "Raw", "SAMPLE_DATA", "OPD"})
         if (!data)
             data = blocks.find(name);
     if (!data)

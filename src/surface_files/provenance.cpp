@@ -3,8 +3,11 @@
 #include <fmt/format.h>
 
 #include <array>
+#include <charconv>
 #include <chrono>
+#include <cstdint>
 #include <cstdio>
+#include <cstdlib>
 #include <utility>
 
 namespace vkfv::surface {
@@ -100,6 +103,28 @@ DateTime date_time(std::string_view text) {
         !result.valid())
         return {};
     return result;
+}
+
+std::string source_date() {
+    const char* variable = std::getenv("SOURCE_DATE_EPOCH");
+    const std::string_view text = variable ? variable : "";
+    std::int64_t seconds = -1;
+    const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), seconds);
+    constexpr std::int64_t last = 253402300799; // of the year 9999
+    if (error != std::errc() || end != text.data() + text.size() || seconds < 0 || seconds > last) {
+        return {};
+    }
+    const std::chrono::sys_seconds time{std::chrono::seconds(seconds)};
+    const auto day = std::chrono::floor<std::chrono::days>(time);
+    const std::chrono::year_month_day date(day);
+    const std::chrono::hh_mm_ss clock(time - day);
+    return DateTime{static_cast<int>(date.year()),
+                    static_cast<int>(static_cast<unsigned>(date.month())),
+                    static_cast<int>(static_cast<unsigned>(date.day())),
+                    static_cast<int>(clock.hours().count()),
+                    static_cast<int>(clock.minutes().count()),
+                    static_cast<int>(clock.seconds().count())}
+        .text();
 }
 
 std::string known_date(std::string_view text) {

@@ -37,6 +37,9 @@ struct DateTime {
 };
 // What formats that cannot leave the date out get for one that is unknown or damaged: 1970-01-01T00:00:00.
 DateTime date_time(std::string_view text);
+// The date in the environment variable SOURCE_DATE_EPOCH, seconds since 1970 in UTC, which makes results the same
+// whenever they are made; empty without one, and for one that is no such number.
+std::string source_date();
 // The same as a text, which is empty for that date.
 std::string known_date(std::string_view text);
 

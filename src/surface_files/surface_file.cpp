@@ -1,6 +1,7 @@
 #include "surface_files/surface_file.hpp"
 
 #include "core/files/file.hpp"
+#include "core/mathematics/units.hpp"
 #include "core/messages/error.hpp"
 #include "images/image_file.hpp"
 #include "surface_files/al3d.hpp"
@@ -16,8 +17,12 @@
 #include "surface_files/sur.hpp"
 #include "surface_files/x3p.hpp"
 
+#include <fmt/format.h>
+#include <spdlog/spdlog.h>
+
 #include <algorithm>
 #include <cctype>
+#include <cmath>
 
 namespace vkfv::surface {
 namespace {
@@ -34,11 +39,10 @@ struct Format {
     bool (*looks_like)(std::string_view bytes);
     SurfaceFile (*parse)(std::string_view bytes, const std::filesystem::path& file);
 };
-constexpr Format formats[] = {{looks_like_x3p, parse_x3p}, {looks_like_sur, parse_sur},
-                              {looks_like_sdf, parse_sdf}, {looks_like_al3d, parse_al3d},
-                              {looks_like_gsf, parse_gsf}, {looks_like_gwy, parse_gwy},
-                              {looks_like_opd, parse_opd}, {looks_like_metropro, parse_metropro},
-                              {looks_like_nms, parse_nms}, {looks_like_plu, parse_plu}};
+constexpr Format formats[] = {
+    {looks_like_sur, parse_sur},           {looks_like_sdf, parse_sdf}, {looks_like_al3d, parse_al3d},
+    {looks_like_gsf, parse_gsf},           {looks_like_gwy, parse_gwy}, {looks_like_opd, parse_opd},
+    {looks_like_metropro, parse_metropro}, {looks_like_nms, parse_nms}, {looks_like_plu, parse_plu}};
 // Those that need one.
 struct UnscaledFormat {
     bool (*looks_like)(std::string_view bytes);
@@ -47,13 +51,15 @@ struct UnscaledFormat {
 constexpr UnscaledFormat unscaled_formats[] = {{looks_like_height_image, parse_height_image},
                                                {looks_like_npy, parse_npy}};
 
-} // namespace
-
-SurfaceFile read_surface(const std::filesystem::path& path, const ImageScale& scale) {
-    const std::string bytes = read_file(path, {.expected = "a surface or image file"});
+SurfaceFile parse_surface(std::string_view bytes, const std::filesystem::path& path, const ImageScale& scale,
+                          Checksums checksums) {
     for (const auto& [looks_like, parse] : unscaled_formats)
         if (looks_like(bytes))
             return parse(bytes, path, scale);
+    if (looks_like_x3p(bytes)) {
+        refuse_second_scale(path, scale);
+        return parse_x3p(bytes, path, checksums);
+    }
     for (const auto& [looks_like, parse] : formats)
         if (looks_like(bytes)) {
             refuse_second_scale(path, scale);
@@ -67,7 +73,56 @@ SurfaceFile read_surface(const std::filesystem::path& path, const ImageScale& sc
                 "Export the surface in one of these formats.");
 }
 
-std::string surface_bytes(const std::filesystem::path& path, const HeightMap& map, const Provenance& provenance) {
+// The value below which this share of the values lies. Changes their order.
+double quantile(std::vector<double>& values, double share) {
+    const auto place = values.begin() + static_cast<std::ptrdiff_t>(share * static_cast<double>(values.size() - 1));
+    std::ranges::nth_element(values, place);
+    return *place;
+}
+
+void warn_of_implausible_heights(const std::filesystem::path& path, SurfaceFile& file) {
+    constexpr std::size_t most_looked_at = std::size_t{1} << 22;
+    constexpr double most_ranges = 1e4, most_length = 1000; // mm
+    const auto& all = file.map.height.values;
+    const std::size_t every = all.size() / most_looked_at + 1;
+    std::vector<double> some;
+    for (std::size_t k = 0; k < all.size(); k += every)
+        if (std::isfinite(all[k]))
+            some.push_back(all[k]);
+    if (some.empty())
+        return;
+    const double median = quantile(some, 0.5), range = quantile(some, 0.9) - quantile(some, 0.1);
+    const double most = range > 0 ? std::min(most_ranges * range, most_length) : most_length;
+    std::size_t count = 0;
+    double farthest = 0;
+    for (const double height : all)
+        if (const double off = std::abs(height - median); off > most) {
+            ++count;
+            farthest = std::max(farthest, off);
+        }
+    if (count > 0)
+        file.warnings.push_back(
+            fmt::format("{}: {} heights lie up to {:.3g} um from the median, where the heights of the 10 to 90 % in "
+                        "the middle span "
+                        "{:.3g} um. If they mark points that were not measured, export these as NaN",
+                        path.string(), count, farthest * um_per_mm, range * um_per_mm));
+}
+
+} // namespace
+
+SurfaceFile read_surface(const std::filesystem::path& path, const ImageScale& scale, Checksums checksums) {
+    const std::string bytes = read_file(path, {.expected = "a surface or image file"});
+    SurfaceFile result = parse_surface(bytes, path, scale, checksums);
+    warn_of_implausible_heights(path, result);
+    for (const auto& warning : result.warnings)
+        spdlog::warn("{}", warning);
+    return result;
+}
+
+std::string surface_bytes(const std::filesystem::path& path, const HeightMap& map, const Provenance& of_map) {
+    Provenance provenance = of_map;
+    if (provenance.date.empty())
+        provenance.date = source_date();
     const std::string name = name_of(path);
     if (name.ends_with(".x3p"))
         return x3p_bytes(map, provenance);

@@ -1,9 +1,12 @@
 #include "surface_files/table_text.hpp"
 
 #include "core/parsing/byte_reader.hpp"
+#include "surface_files/lengths.hpp"
 #include "surface_files/provenance.hpp"
+#include "surface_files/table_header.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
 #include <optional>
 
@@ -16,22 +19,6 @@ struct Style {
     bool decimal_comma = false;
 };
 
-template <class Take>
-void for_cells(std::string_view line, const Style& style, Take take) {
-    line = bare(line);
-    for (bool more = !line.empty(); more;) {
-        const auto end = style.separator == ' ' ? line.find_first_of(" \t") : line.find(style.separator);
-        take(bare(line.substr(0, end)));
-        more = end != std::string_view::npos;
-        if (more)
-            line.remove_prefix(end + 1);
-        if (style.separator == ' ')
-            line = bare(line);
-        // A separator at the line's end closes the last cell.
-        more = more && !line.empty();
-    }
-}
-
 std::optional<double> number_of(std::string_view cell, const Style& style) {
     if (!style.decimal_comma)
         return number_in<double>(cell);
@@ -40,9 +27,9 @@ std::optional<double> number_of(std::string_view cell, const Style& style) {
     return number_in<double>(text);
 }
 
-// Of a line of numbers: a semicolon or a tab separates in any case, and a comma is a decimal one then; a comma that a
-// digit follows at once is a decimal one if blanks separate.
-Style style_of(std::string_view line) {
+// The style of a line of numbers, whose quoted parts are left out: a semicolon or a tab separates in any case, and a
+// comma is a decimal one then; a comma that a digit follows at once is a decimal one if blanks separate.
+Style style_outside_quotes(std::string_view line) {
     line = bare(line);
     const bool comma = line.find(',') != std::string_view::npos;
     for (const char separator : {';', '\t'})
@@ -58,9 +45,25 @@ Style style_of(std::string_view line) {
     return {' ', true};
 }
 
+// A comma between quotes is a decimal one.
+Style style_of(std::string_view line) {
+    if (line.find('"') == std::string_view::npos)
+        return style_outside_quotes(line);
+    std::string outside, inside;
+    bool quoted = false;
+    for (const char c : line) {
+        quoted = quoted != (c == '"');
+        if (c != '"')
+            (quoted ? inside : outside) += c;
+    }
+    Style style = style_outside_quotes(outside);
+    style.decimal_comma = inside.find(',') != std::string::npos && inside.find('.') == std::string::npos;
+    return style;
+}
+
 bool is_data(std::string_view line, const Style& style) {
     bool first = true, numbers = false, words = false;
-    for_cells(line, style, [&](std::string_view cell) {
+    for (const std::string_view cell : cells_of(line, style.separator)) {
         const bool number = number_of(cell, style).has_value();
         // A line of data may begin with a gap, which is no word of a heading.
         const bool gap = cell.empty() || cell == "NaN" || cell == "nan" || cell == "NAN" || cell == "BAD" ||
@@ -68,7 +71,7 @@ bool is_data(std::string_view line, const Style& style) {
         words = words || (first && !number && !gap);
         numbers = numbers || number || !cell.empty();
         first = false;
-    });
+    }
     return numbers && !words;
 }
 
@@ -82,10 +85,8 @@ std::string_view bare(std::string_view text) {
 
 TableText parse_table_text(std::string_view text, const std::filesystem::path& path, const char* meant) {
     const ByteReader file(text, path);
-    if (text.starts_with("\xEF\xBB\xBF")) // the byte-order mark of UTF-8
-        text.remove_prefix(3);
     if (text.find('\0') != std::string_view::npos)
-        file.fail(text.find('\0'), "", "a NUL", "text", "Export the table as plain text, ASCII or UTF-8.");
+        file.fail(text.find('\0'), "", "a NUL", "text", "Export the table as plain text.");
     TableText table;
     std::optional<Style> style;
     int number = 0;
@@ -103,7 +104,7 @@ TableText parse_table_text(std::string_view text, const std::filesystem::path& p
         }
         style = own;
         std::size_t count = 0;
-        for_cells(content, own, [&](std::string_view cell) {
+        for (const std::string_view cell : cells_of(content, own.separator)) {
             const bool word = cell.find_first_of("0123456789") == std::string_view::npos;
             const auto value = number_of(cell, own);
             if (!value && !word)
@@ -112,9 +113,10 @@ TableText parse_table_text(std::string_view text, const std::filesystem::path& p
                                   .found = plain_line(cell.substr(0, 40)),
                                   .expected = "a number, or a word for a point that is not measured",
                                   .remedy = "Export the table anew, with one separator and one decimal sign."});
-            table.values.push_back(value.value_or(std::numeric_limits<double>::quiet_NaN()));
+            const bool measured = value && std::abs(*value) < not_measured_from;
+            table.values.push_back(measured ? *value : std::numeric_limits<double>::quiet_NaN());
             ++count;
-        });
+        }
         if (table.rows > 0 && count != table.columns)
             throw InputError({.where = {.file = file.file(), .line = number},
                               .key = "columns",
@@ -126,6 +128,7 @@ TableText parse_table_text(std::string_view text, const std::filesystem::path& p
     }
     if (table.rows == 0)
         file.fail({}, "", "no line of numbers", meant);
+    table.separator = style->separator;
     return table;
 }
 

@@ -147,9 +147,10 @@ class Document {
         const auto result = document_.load_buffer(xml.data(), xml.size());
         if (!result)
             file.fail({}, xml_name, fmt::format("{} at byte {}", result.description(), result.offset), "XML");
-        root_ = child(document_, "ISO5436_2");
-        if (!root_)
-            file.fail({}, xml_name, "another root element", "the element ISO5436_2");
+        // Programs name the root otherwise, or without a prefix; the records tell.
+        root_ = document_.document_element();
+        if (!child(root_, "Record1") || !child(root_, "Record3"))
+            file.fail({}, xml_name, "another root element", "the element ISO5436_2, with its records");
     }
 
     pugi::xml_node root() const { return root_; }
@@ -178,16 +179,32 @@ class Document {
     pugi::xml_node root_;
 };
 
-void check_md5(const ByteReader& file, const std::string& what, const std::string& bytes, const std::string& stated) {
+// What the parts of a file are read with.
+struct Reading {
+    const ByteReader& file;
+    Checksums checksums;
+    std::vector<std::string>& warnings;
+};
+
+void check_md5(const Reading& reading, const std::string& what, const std::string& bytes, const std::string& stated) {
+    const ByteReader& file = reading.file;
     if (stated.empty()) {
         spdlog::warn("{}: {} has no MD5 checksum", file.file().string(), what);
         return;
     }
     std::string digits = stated;
     std::ranges::transform(digits, digits.begin(), [](unsigned char c) { return std::tolower(c); });
-    if (const std::string md5 = md5_of(bytes); md5 != digits)
-        file.fail({}, fmt::format("MD5 of {}", what), md5, fmt::format("the checksum {} that the file states", digits),
-                  "The file is damaged or was changed by hand: export or copy it anew.");
+    const std::string md5 = md5_of(bytes);
+    if (md5 == digits)
+        return;
+    if (reading.checksums == Checksums::must_hold)
+        file.fail(
+            {}, fmt::format("MD5 of {}", what), md5, fmt::format("the checksum {} that the file states", digits),
+            "The file is damaged, or was changed by hand: export or copy it anew. --accept-checksum reads it as it "
+            "is.");
+    reading.warnings.push_back(fmt::format("{}: {} does not have the MD5 checksum that the file states: it was changed "
+                                           "or damaged after that",
+                                           file.file().string(), what));
 }
 
 template <class Stored>
@@ -345,18 +362,27 @@ std::string zip_of(const std::vector<std::pair<const char*, std::string_view>>& 
     return bytes;
 }
 
-// A bit a point, set where it was measured; empty: all were.
-std::string valid_points(const ByteReader& file, const Archive& archive, const pugi::xml_node& link,
+// A bit a point, set where it was measured; empty: all were. Some writers (pyx3p) store a byte a point.
+std::string valid_points(const Reading& reading, const Archive& archive, const pugi::xml_node& link,
                          std::uint64_t count) {
     const std::string name = text_of(link, "ValidPointsLink");
     if (name.empty())
         return {};
     const std::uint64_t bytes = (count + 7) / 8;
-    const auto content = archive.read(name, bytes);
-    if (!content || content->size() != bytes)
-        file.fail({}, name, content ? fmt::format("{} bytes", content->size()) : "no such entry",
-                  fmt::format("{} bytes, a bit a point", bytes));
-    check_md5(file, name, *content, text_of(link, "MD5ChecksumValidPoints"));
+    auto content = archive.read(name, count);
+    if (!content || (content->size() != bytes && content->size() != count))
+        reading.file.fail({}, name, content ? fmt::format("{} bytes", content->size()) : "no such entry",
+                          fmt::format("{} bytes, a bit a point", bytes));
+    check_md5(reading, name, *content, text_of(link, "MD5ChecksumValidPoints"));
+    if (content->size() != bytes) {
+        reading.warnings.push_back(fmt::format("{}: {} has a byte for each point, where ISO 25178-72 has a bit",
+                                               reading.file.file().string(), name));
+        std::string bits(bytes, '\0');
+        for (std::size_t k = 0; k < count; ++k)
+            if ((*content)[k] != '\0')
+                bits[k / 8] = static_cast<char>(bits[k / 8] | 1 << (k % 8));
+        content = std::move(bits);
+    }
     return *content;
 }
 
@@ -381,8 +407,9 @@ struct Scale {
     double offset, increment;
 };
 
-Grid<double> linked_heights(const ByteReader& file, const Archive& archive, const pugi::xml_node& link,
+Grid<double> linked_heights(const Reading& reading, const Archive& archive, const pugi::xml_node& link,
                             const Scale& scale, std::uint64_t columns, std::uint64_t rows) {
+    const ByteReader& file = reading.file;
     const std::string name = text_of(link, "PointDataLink");
     if (name.empty())
         file.fail({}, fmt::format("{}: Record3.DataLink", xml_name), "nothing",
@@ -395,8 +422,8 @@ Grid<double> linked_heights(const ByteReader& file, const Archive& archive, cons
         file.fail(
             {}, name, points ? fmt::format("{} bytes", points->size()) : "no such entry",
             fmt::format("{} bytes for {} x {} points of type {}", count * point_bytes, columns, rows, scale.type));
-    check_md5(file, name, *points, text_of(link, "MD5ChecksumPointData"));
-    const std::string valid = valid_points(file, archive, link, count);
+    check_md5(reading, name, *points, text_of(link, "MD5ChecksumPointData"));
+    const std::string valid = valid_points(reading, archive, link, count);
     Grid<double> heights(static_cast<int>(columns), static_cast<int>(rows));
     (scale.type == "I"   ? read_x3p_heights<std::int16_t>
      : scale.type == "L" ? read_x3p_heights<std::int32_t>
@@ -438,8 +465,10 @@ bool looks_like_x3p(std::string_view bytes) {
     return bytes.starts_with("PK\x03\x04");
 }
 
-SurfaceFile parse_x3p(std::string_view bytes, const std::filesystem::path& path) {
+SurfaceFile parse_x3p(std::string_view bytes, const std::filesystem::path& path, Checksums checksums) {
     const ByteReader file(bytes, path);
+    SurfaceFile result;
+    const Reading reading{file, checksums, result.warnings};
     const Archive archive(file);
     if (!archive.has(xml_name))
         refuse_file(path, "", fmt::format("a ZIP archive of another kind, without {}", xml_name),
@@ -454,7 +483,6 @@ SurfaceFile parse_x3p(std::string_view bytes, const std::filesystem::path& path)
     const auto x = child(axes, "CX"), y = child(axes, "CY"), z = child(axes, "CZ");
     document.require(x, "AxisType", "I");
     document.require(y, "AxisType", "I");
-    SurfaceFile result;
     const auto pitch = [&](const pugi::xml_node& axis) {
         const double mm = mm_from_metres(document.number<double>(axis, "Increment"));
         file.check_spacing(mm, axis.name());
@@ -486,10 +514,10 @@ SurfaceFile parse_x3p(std::string_view bytes, const std::filesystem::path& path)
     file.check_size(columns, rows);
     document.require(matrix, "SizeZ", "1");
     const auto checksum = archive.read(checksum_name, largest_checksum_file);
-    check_md5(file, xml_name, *xml, checksum ? checksum->substr(0, md5_digits) : "");
+    check_md5(reading, xml_name, *xml, checksum ? checksum->substr(0, md5_digits) : "");
     const auto list = child(record3, "DataList");
     result.map.height = list ? listed_heights(file, list, scale, columns, rows)
-                             : linked_heights(file, archive, child(record3, "DataLink"), scale, columns, rows);
+                             : linked_heights(reading, archive, child(record3, "DataLink"), scale, columns, rows);
     result.provenance = read_provenance(child(document.root(), "Record2"));
     return result;
 }

@@ -1,6 +1,7 @@
 #include "topography/focus_probes.hpp"
 
 #include "core/threads/parallel_list.hpp"
+#include "topography/topography.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -722,7 +723,8 @@ double FocusProbes::suitable_smoothing() const {
 
 double suitable_smoothing(double curve_width, int images) {
     constexpr double most_of_the_scan = 0.1;
-    const double smoothing = std::min(most_smoothing_of_width * curve_width, most_of_the_scan * (images - 1));
+    const double smoothing =
+        std::min({most_smoothing_of_width * curve_width, most_of_the_scan * (images - 1), most_smoothing_steps});
     return smoothing >= least_smoothing ? smoothing : 0;
 }
 

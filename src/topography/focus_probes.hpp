@@ -169,7 +169,7 @@ class FocusProbes {
 };
 
 // Standard deviation of the average along z, in images, that suits focus curves of this standard deviation in images:
-// most_smoothing_of_width, or a tenth of the scan.
+// most_smoothing_of_width, or a tenth of the scan, and most_smoothing_steps at most.
 double suitable_smoothing(double curve_width, int images);
 
 } // namespace vkfv::topography

@@ -40,9 +40,10 @@ const TopographyOptions& checked(const TopographyOptions& options) {
             "topography.peak_range_steps", fmt::format("{}", options.peak_range_steps),
             fmt::format("an integer in [1, {}]", most_peak_range_steps),
             "Give the half width of the range around the maximum in steps of the scan.");
-    require(options.smoothing_steps.value_or(0) >= 0 && options.smoothing_steps.value_or(0) <= 100,
+    require(options.smoothing_steps.value_or(0) >= 0 && options.smoothing_steps.value_or(0) <= most_smoothing_steps,
             "topography.smoothing_steps", fmt::format("{}", options.smoothing_steps.value_or(0)),
-            "a number in [0, 100]", "Give the average's standard deviation in steps of the scan.");
+            fmt::format("a number in [0, {:g}]", most_smoothing_steps),
+            "Give the average's standard deviation in steps of the scan.");
     require(options.false_peak_rate > 0 && options.false_peak_rate <= 1, "topography.false_peak_rate",
             fmt::format("{}", options.false_peak_rate), "a number in (0, 1]",
             "Give the share of points that may pass by chance; 1 for no such limit.");

@@ -48,6 +48,8 @@
 
 namespace vkfv::topography {
 
+inline constexpr double most_smoothing_steps = 100; // 1202 images in memory
+
 struct TopographyOptions {
     FocusMeasure focus_measure = FocusMeasure::wavelet; // the least noise in tools/studies/focus_table
     int window_px = 7;                                  // odd, at least 3

@@ -11,7 +11,7 @@ LINES_UM = {"F": 0.4861327, "d": 0.5875618, "C": 0.6562725}
 
 
 class Lens:
-    """Surfaces as (curvature, thickness, medium behind) in mm, the first one that light meets first; media by name."""
+    """Surfaces as (curvature, thickness, medium behind, semi-diameter) in mm, in the order of light; media by name."""
 
     def __init__(self, name, surfaces, media):
         self.name, self.surfaces, self.media = name, surfaces, media
@@ -23,7 +23,8 @@ class Lens:
         for surface in table["surface"]:
             radius = surface.get("radius_mm", 0)
             curvature = 1 / radius if radius else surface.get("curvature_per_mm", 0.0)
-            surfaces.append([curvature, surface.get("thickness_mm", 0.0), surface.get("medium", "air")])
+            surfaces.append([curvature, surface.get("thickness_mm", 0.0), surface.get("medium", "air"),
+                             surface.get("semi_diameter_mm", 100.0)])
         surfaces[-1][1] = 0.0
         media = {name: coefficients(medium["wavelengths_um"], medium["indices"])
                  for name, medium in table.get("media", {}).items() if "indices" in medium}
@@ -33,15 +34,15 @@ class Lens:
         return 1.0 if medium == "air" else index(self.media[medium], wavelength_um)
 
     def turned(self):
-        behind = ["air"] + [medium for _, _, medium in self.surfaces[:-1]]
-        distances = [0.0] + [distance for _, distance, _ in self.surfaces[:-1]]
-        return Lens(self.name, [[-curvature, distance, medium] for (curvature, _, _), distance, medium in
+        behind = ["air"] + [medium for _, _, medium, _ in self.surfaces[:-1]]
+        distances = [0.0] + [distance for _, distance, _, _ in self.surfaces[:-1]]
+        return Lens(self.name, [[-curvature, distance, medium, radius] for (curvature, _, _, radius), distance, medium in
                                 zip(reversed(self.surfaces), reversed(distances), reversed(behind))], self.media)
 
     def focal_lengths(self, wavelength_um):
         """The effective and the back focal length, by a ray that comes parallel to the axis."""
         height, slope, before = 1.0, 0.0, 1.0
-        for curvature, distance, medium in self.surfaces:
+        for curvature, distance, medium, _ in self.surfaces:
             behind = self.index(medium, wavelength_um)
             slope = (before * slope - height * curvature * (behind - before)) / behind
             last = height
@@ -95,11 +96,11 @@ def file_of(lens, *, unit="MM", scale=1.0, header=(), in_surfaces=(), behind=(),
              *wavelengths, f"PWAV {primary}", "GCAT VENDORA MISC"]
     count = 0
 
-    def surface(curvature, distance, medium="air", *more, surface_kind="STANDARD"):
+    def surface(curvature, distance, medium="air", *more, surface_kind="STANDARD", radius=100.0):
         nonlocal count
         text = distance if isinstance(distance, str) else f"{distance / scale:.16E}"
         lines.extend([f"SURF {count}", f"  TYPE {surface_kind}", *(f"  {line}" for line in in_surfaces),
-                      f"  CURV {curvature * scale:.16E} 0 0 0 0 \"\"", f"  DISZ {text}", "  DIAM 1.0E+2 1 0 0 1 \"\""])
+                      f"  CURV {curvature * scale:.16E} 0 0 0 0 \"\"", f"  DISZ {text}", f"  DIAM {radius / scale:.16E} 1 0 0 1 \"\""])
         if medium not in ("air", "MIRROR"):
             lines.append(f"  GLAS {glass(medium)} 0 0 1.5 40 0 0 0 0 0 0")
         elif medium == "MIRROR":
@@ -108,10 +109,10 @@ def file_of(lens, *, unit="MM", scale=1.0, header=(), in_surfaces=(), behind=(),
         count += 1
 
     surface(0.0, object_distance)
-    for k, (curvature, distance, medium) in enumerate(lens.surfaces):
+    for k, (curvature, distance, medium, radius) in enumerate(lens.surfaces):
         stop = ["STOP"] if k == 0 else []
         last = k + 1 == len(lens.surfaces)
-        surface(curvature, 10.0 if last else distance, medium, *stop, surface_kind=kind)
+        surface(curvature, 10.0 if last else distance, medium, *stop, surface_kind=kind, radius=radius)
         if dummies and medium == "air" and not last:
             surface(0.0, 0.0)
     if fold:
@@ -149,12 +150,13 @@ def shapes_of(lens):
     yield "folded", text_of(file_of(lens, fold=True)).encode(), [], d
     yield "turned round", text_of(file_of(lens.turned())).encode(), ["--reverse"], d
     behind = ["MNUM 2 1"]
-    for k, (curvature, distance, _) in enumerate(lens.surfaces):
+    for k, (curvature, distance, _, _) in enumerate(lens.surfaces):
         behind += [f"CRVT {k + 1} 1 {2 * curvature:.16E} 0 0 0 1 1 1 0 0 \"\" 0",
                    f"CRVT {k + 1} 2 {curvature:.16E} 0 0 0 1 1 1 0 0 \"\" 0",
                    f"THIC {k + 1} 1 {distance + 1:.16E} 0 0 0 1 1 1 0 0 \"\" 0",
                    f"THIC {k + 1} 2 {distance:.16E} 0 0 0 1 1 1 0 0 \"\" 0"]
-    other = Lens(lens.name, [[2 * curvature, distance + 1, medium] for curvature, distance, medium in lens.surfaces],
+    other = Lens(lens.name, [[2 * curvature, distance + 1, medium, radius] for curvature, distance, medium, radius in
+                             lens.surfaces],
                  lens.media)
     yield "the second configuration", text_of(file_of(other, behind=behind)).encode(), ["--configuration", "2"], d
 
@@ -163,6 +165,6 @@ def lenses():
     folders = ("objectives", "tube_lenses", "illuminators")
     for file in sorted(file for folder in folders for file in (ROOT / "assets" / folder).glob("*.toml")):
         lens = Lens.of(file)
-        if lens.media and all(medium == "air" or medium in lens.media for _, _, medium in lens.surfaces):
+        if lens.media and all(medium == "air" or medium in lens.media for _, _, medium, _ in lens.surfaces):
             if "ideal_focal_length" not in file.read_text() and math.isfinite(lens.focal_lengths(LINES_UM["d"])[0]):
                 yield lens

@@ -3,6 +3,7 @@
 import fcntl
 import json
 import os
+import shutil
 import signal
 import subprocess
 import sys
@@ -167,6 +168,20 @@ class RunTest(unittest.TestCase):
 
 
 class ErrorTest(unittest.TestCase):
+    def test_names_are_no_options(self):
+        """What a file is called reaches the program as a file."""
+        for name in ("--help", "--version", "-x.toml", "--json"):
+            for command in (vkfv.check, vkfv.run):
+                with self.subTest(name=name, command=command.__name__), self.assertRaisesRegex(vkfv.InputError, "no such file"):
+                    command(name)
+        shutil.copy(shared.configuration(), shared.folder() / "-x.toml")
+        here = Path.cwd()
+        try:
+            os.chdir(shared.folder())
+            self.assertIn("magnification", vkfv.check("-x.toml"))
+        finally:
+            os.chdir(here)
+
     def test_input(self):
         with self.assertRaises(vkfv.InputError) as caught:
             vkfv.run(shared.configuration(), trace={"ray": 1e6})

@@ -85,10 +85,58 @@ class X3pTest(unittest.TestCase):
             damaged.writestr("bindata/data.bin", bytes(12))
         with self.assertRaisesRegex(ValueError, "MD5"):
             vkfv.read_x3p(file)
+        with self.assertWarnsRegex(UserWarning, "MD5"):
+            self.assertEqual(vkfv.read_x3p(file, accept_checksum=True).values.shape, (2, 3))
         with zipfile.ZipFile(file, "w") as other:
             other.writestr("readme", "no surface")
         with self.assertRaisesRegex(ValueError, "no main.xml"):
             vkfv.read_x3p(file)
+
+    def test_every_checksum_is_held_to(self):
+        whole = write_x3p("whole.x3p", "D", "<f8", valid=bytes([0b110111]))
+        with zipfile.ZipFile(whole) as archive:
+            entries = {name: archive.read(name) for name in archive.namelist()}
+        digest = hashlib.md5(entries["main.xml"]).hexdigest()
+        file = shared.folder() / "changed.x3p"
+
+        def read(changed, **options):
+            with zipfile.ZipFile(file, "w") as archive:
+                for name, content in {**entries, **changed}.items():
+                    archive.writestr(name, content)
+            return vkfv.read_x3p(file, **options)
+
+        good = {"md5checksum.hex": f"{digest} *main.xml\n"}
+        self.assertEqual(read(good).values.shape, (2, 3))
+        pitch = entries["main.xml"].decode().replace("2e-6", "3e-6", 1).encode()
+        self.assertNotEqual(pitch, entries["main.xml"])
+        for name, content in {"main.xml": pitch, "bindata/data.bin": bytes(48)}.items():
+            with self.subTest(name), self.assertRaisesRegex(ValueError, f"{name} does not have the MD5"):
+                read({**good, name: content})
+            with self.assertWarnsRegex(UserWarning, "MD5"):
+                read({**good, name: content}, accept_checksum=True)
+
+    def test_what_unpacks_to_more_is_refused(self):
+        file = shared.folder() / "large.x3p"
+        with zipfile.ZipFile(file, "w", zipfile.ZIP_DEFLATED) as archive:
+            archive.writestr("main.xml", "<a>" + " " * (17 << 20) + "</a>")
+        with self.assertRaisesRegex(ValueError, "longer than"):
+            vkfv.read_x3p(file)
+        text = main_xml("D", bytes(48), "", "").replace("<SizeX>3<", "<SizeX>20000<").replace("<SizeY>2<", "<SizeY>10000<")
+        with zipfile.ZipFile(file, "w") as archive:
+            archive.writestr("main.xml", text)
+            archive.writestr("bindata/data.bin", bytes(48))
+        with self.assertRaisesRegex(ValueError, "more than a file of its size holds"):
+            vkfv.read_x3p(file)
+        with zipfile.ZipFile(file, "w") as archive:
+            archive.writestr("main.xml", text.replace("20000", "200000"))
+        with self.assertRaisesRegex(ValueError, "at most"):
+            vkfv.read_x3p(file)
+
+    def test_valid_points_may_be_a_byte_each(self):
+        with self.assertWarnsRegex(UserWarning, "a byte for each point"):
+            read = vkfv.read_x3p(write_x3p("bytes.x3p", "D", "<f8", valid=bytes([1, 1, 1, 0, 1, 1])))
+        self.assertTrue(numpy.isnan(read.values[1, 0]))
+        self.assertEqual(numpy.isnan(read.values).sum(), 1)
 
 
 if __name__ == "__main__":

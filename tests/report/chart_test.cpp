@@ -113,6 +113,12 @@ TEST(Ticks, are_round_numbers_within_the_ends) {
     EXPECT_EQ(ticks(0, 10, 5), (std::vector<double>{0, 2, 4, 6, 8, 10}));
     EXPECT_EQ(ticks(-0.5, 0.5, 4), (std::vector<double>{-0.5, 0, 0.5}));
     EXPECT_EQ(ticks(3, 3, 5), std::vector<double>{3});
+    // Ranges of which a double does not tell the steps apart.
+    for (const double from : {1.0, -1.0, 1e300, 1e-300}) {
+        EXPECT_LE(ticks(from, std::nextafter(from, INFINITY), 5).size(), 12u) << from;
+    }
+    EXPECT_LE(ticks(0, 5e-324, 5).size(), 12u);
+    EXPECT_LE(ticks(-1.7e308, 1.7e308, 5).size(), 12u);
     EXPECT_EQ(with_prefix(12345678), "12.3 M");
 }
 

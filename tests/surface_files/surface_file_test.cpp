@@ -413,6 +413,16 @@ TEST_F(SurfaceFiles, X3pChecksumsAreChecked) {
     expect_refused(with("bindata/valid.bin", [](std::string& content) { content[0] ^= 1; }),
                    "MD5 of bindata/valid.bin");
     expect_refused(with("main.xml", [](std::string& content) { content += ' '; }), "MD5 of main.xml");
+    // Stale sums are read where that is asked for, with a warning for each; others have none.
+    const auto warnings = [&](const std::string& name) {
+        const auto read =
+            read_surface(with(name, [](std::string& content) { content += ' '; }), {}, Checksums::may_be_stale);
+        EXPECT_EQ(read.map.height.values.size(), letter_map().height.values.size());
+        return read.warnings;
+    };
+    ASSERT_EQ(warnings("main.xml").size(), 1u);
+    EXPECT_THAT(warnings("main.xml")[0], testing::HasSubstr("main.xml does not have the MD5 checksum"));
+    EXPECT_TRUE(warnings("none").empty());
     // Hash-only files are read, and files without checksums.
     EXPECT_NO_THROW((void)read_surface(with("md5checksum.hex", [](std::string& content) { content.resize(32); })));
     EXPECT_NO_THROW((void)read_surface(with("md5checksum.hex", [](std::string& content) { content.clear(); })));

@@ -116,6 +116,50 @@ TEST(SurfaceVariants, X3pOfAFolderAndWithTheIdentity) {
             "otation");
 }
 
+// What the root element is called does not matter.
+TEST(SurfaceVariants, X3pOfAnyRoot) {
+    const std::string xml = main_xml(data_list({"1e-6", "2e-6", "3e-6", "4e-6"}));
+    const auto expected = parse_x3p(zipped({{"main.xml", xml}}), "a.x3p").map.height.values;
+    for (const char* root : {"ISO5436_2", "ISO5436", "q:ISO5436_2"}) {
+        std::string other = xml;
+        for (const char* end : {"<", "</"}) {
+            const std::string from = std::string(end) + "p:ISO5436_2";
+            const auto at = other.find(from);
+            ASSERT_NE(at, std::string::npos);
+            other.replace(at, from.size(), std::string(end) + root);
+        }
+        if (root[0] == 'q')
+            other.replace(other.find("xmlns:p"), 7, "xmlns:q");
+        EXPECT_EQ(parse_x3p(zipped({{"main.xml", other}}), "a.x3p").map.height.values, expected) << root;
+    }
+    EXPECT_THROW((void)parse_x3p(zipped({{"main.xml", "<ISO5436_2><Record1/></ISO5436_2>"}}), "a.x3p"), InputError);
+}
+
+// pyx3p stores a byte for each point, where a bit is meant.
+TEST(SurfaceVariants, X3pWhoseValidPointsAreAByteEach) {
+    std::string points;
+    for (const double metres : {1e-6, 2e-6, 3e-6, 4e-6})
+        points.append(reinterpret_cast<const char*>(&metres), sizeof metres);
+    const std::string xml = main_xml("<DataLink><PointDataLink>bindata/data.bin</PointDataLink>"
+                                     "<ValidPointsLink>bindata/valid.bin</ValidPointsLink></DataLink>");
+    const auto read = [&](const std::string& valid) {
+        return parse_x3p(zipped({{"main.xml", xml}, {"bindata/data.bin", points}, {"bindata/valid.bin", valid}}),
+                         "a.x3p");
+    };
+    const SurfaceFile bits = read("\x0b"), bytes = read(std::string("\1\1\0\1", 4));
+    EXPECT_TRUE(bits.warnings.empty());
+    ASSERT_EQ(bytes.warnings.size(), 1u);
+    EXPECT_THAT(bytes.warnings[0], testing::HasSubstr("a byte for each point"));
+    for (const SurfaceFile& file : {bits, bytes}) {
+        // The first line of the file has the highest y.
+        EXPECT_DOUBLE_EQ(file.map.height(0, 1), 1e-3);
+        EXPECT_DOUBLE_EQ(file.map.height(1, 1), 2e-3);
+        EXPECT_TRUE(std::isnan(file.map.height(0, 0)));
+        EXPECT_DOUBLE_EQ(file.map.height(1, 0), 4e-3);
+    }
+    EXPECT_THROW((void)read("\1\1"), InputError);
+}
+
 TEST(SurfaceVariants, OtherZipsAreNotCalledX3p) {
     for (const ZipEntries& entries :
          {ZipEntries{{"index.xml", "<xml/>"}, {"LAYER_0.raw", "1"}}, ZipEntries{{"[Content_Types].xml", "<Types/>"}}})

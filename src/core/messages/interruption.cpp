@@ -43,8 +43,18 @@ void say(std::string_view text) {
 
 constexpr std::string_view first_sentence = "Give the same command again.";
 
+// Those that a user, a scheduler or a limit sends to end a program.
+struct Signal {
+    int number;
+    std::string_view name;
+};
+constexpr std::array signals = {Signal{SIGINT, "SIGINT"},   Signal{SIGTERM, "SIGTERM"}, Signal{SIGHUP, "SIGHUP"},
+                                Signal{SIGQUIT, "SIGQUIT"}, Signal{SIGXCPU, "SIGXCPU"}, Signal{SIGUSR1, "SIGUSR1"},
+                                Signal{SIGUSR2, "SIGUSR2"}, Signal{SIGALRM, "SIGALRM"}};
+
 extern "C" void on_interruption(int signal) {
-    const std::string_view name = signal == SIGINT ? "SIGINT" : signal == SIGTERM ? "SIGTERM" : "SIGHUP";
+    const auto known = std::ranges::find(signals, signal, &Signal::number);
+    const std::string_view name = known == signals.end() ? "a signal" : known->name;
     const Sentence& sentence = sentences[at_hand.load()];
     say(as_json ? "{\"level\":\"error\",\"signal\":\"" : "\nvkfv: ended by ");
     say(name);
@@ -58,7 +68,9 @@ extern "C" void on_interruption(int signal) {
 
 void explain_interruptions() {
     say_when_interrupted(first_sentence);
-    for (const int signal : {SIGINT, SIGTERM, SIGHUP}) {
+    // A write beyond a limit of files' sizes fails then like any other, by EFBIG, and says so where the file is needed.
+    std::signal(SIGXFSZ, SIG_IGN);
+    for (const auto& [signal, name] : signals) {
         struct sigaction before {};
         if (::sigaction(signal, nullptr, &before) == 0 && before.sa_handler == SIG_IGN) {
             continue;

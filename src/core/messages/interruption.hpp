@@ -5,9 +5,9 @@
 
 namespace vkfv {
 
-// SIGINT, SIGTERM and SIGHUP print the sentence at hand on standard error and then end the program as if nobody had
-// caught them, so that a shell sees the signal (130, 143, 129). One that was ignored at the start stays ignored
-// (nohup).
+// SIGINT, SIGTERM, SIGHUP and other signals that a user, a scheduler or a limit sends print the sentence at hand on
+// standard error and then end the program as if nobody had caught them, so that a shell sees the signal (130, 143,
+// 129). One that was ignored at the start stays ignored (nohup). SIGXFSZ is ignored.
 void explain_interruptions();
 
 // The sentence from now on; at most 500 bytes of it are said.

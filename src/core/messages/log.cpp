@@ -4,6 +4,7 @@
 
 #include <fmt/chrono.h>
 #include <nlohmann/json.hpp>
+#include <spdlog/pattern_formatter.h>
 #include <spdlog/sinks/base_sink.h>
 #include <spdlog/sinks/stdout_color_sinks.h>
 #include <spdlog/spdlog.h>
@@ -12,6 +13,9 @@
 #include <cstdio>
 #include <memory>
 #include <mutex>
+#include <string>
+#include <string_view>
+#include <utility>
 
 namespace vkfv {
 
@@ -42,6 +46,31 @@ class JsonFormatter final : public spdlog::formatter {
         line.append(text.data(), text.data() + text.size());
     }
     std::unique_ptr<formatter> clone() const override { return std::make_unique<JsonFormatter>(); }
+};
+
+// What stands in a message may come from a file or its name: a terminal must not take it for a command. Control
+// characters but ends of lines become "\xNN".
+std::string for_terminal(std::string_view text) {
+    std::string result;
+    for (const char character : text) {
+        const auto code = static_cast<unsigned char>(character);
+        if ((code < 0x20 && character != '\n' && character != '\t') || code == 0x7f) {
+            result += fmt::format("\\x{:02x}", code);
+        } else {
+            result += character;
+        }
+    }
+    return result;
+}
+
+// The message itself, without the colours that the sink adds around it.
+class SafeMessage final : public spdlog::custom_flag_formatter {
+  public:
+    void format(const spdlog::details::log_msg& message, const std::tm&, spdlog::memory_buf_t& line) override {
+        const std::string text = for_terminal({message.payload.data(), message.payload.size()});
+        line.append(text.data(), text.data() + text.size());
+    }
+    std::unique_ptr<custom_flag_formatter> clone() const override { return std::make_unique<SafeMessage>(); }
 };
 
 } // namespace
@@ -75,7 +104,9 @@ std::vector<MessagesHeard::Message> MessagesHeard::messages() const {
 
 void open_log() {
     spdlog::set_default_logger(spdlog::stderr_color_mt("vkfv"));
-    spdlog::set_pattern("%^%l%$: %v");
+    auto formatter = std::make_unique<spdlog::pattern_formatter>();
+    formatter->add_flag<SafeMessage>('*').set_pattern("%^%l%$: %*");
+    spdlog::set_formatter(std::move(formatter));
 }
 
 void log_as_json() {
@@ -112,7 +143,7 @@ void log_failure(const std::string& message, int exit_code) {
             (json_line("level", "error", {{"text", message}, {"exit_code", std::int64_t{exit_code}}}) + "\n").c_str(),
             stderr);
     } else {
-        std::fputs(("vkfv: " + message + "\n").c_str(), stderr);
+        std::fputs(("vkfv: " + for_terminal(message) + "\n").c_str(), stderr);
     }
 }
 

@@ -203,8 +203,13 @@ StoredImage parse_tiff(std::string_view bytes, const std::filesystem::path& path
 
 DescribedImage parse_image(std::string_view bytes, const std::filesystem::path& path) {
     const OpenImage image = open_image(bytes, path);
-    std::string description = description_of(image);
-    return {.values = read_page<double>(image, path, 0), .description = std::move(description)};
+    DescribedImage result{.values = {}, .description = description_of(image)};
+    if (result.description.starts_with("ImageJ=")) {
+        result.columns_per_unit = image.input->spec().get_float_attribute("XResolution");
+        result.rows_per_unit = image.input->spec().get_float_attribute("YResolution");
+    }
+    result.values = read_page<double>(image, path, 0);
+    return result;
 }
 
 } // namespace vkfv::images::openimageio

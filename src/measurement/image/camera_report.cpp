@@ -69,14 +69,16 @@ std::string summary(const CameraMeasurement& measurement) {
     std::string text = fmt::format("{:<42} {:>12} {:>12} {:>10} {:>11}\n", "EMVA 1288, photon transfer", "put in",
                                    "measured", "std error", "deviation");
     for (const Row& row : rows) {
-        const auto& [value, error] = measurement.figures.*row.figure;
+        const auto& [value, error, bounded] = measurement.figures.*row.figure;
         const double expected = (measurement.expected.*row.figure).value;
         if (!std::isfinite(value)) {
             continue;
         }
-        text += fmt::format("{:<42} {:>12.6g} {:>12.6g} {:>10.2g} {:>11}\n", row.words, expected * row.unit,
-                            value * row.unit, error * row.unit,
-                            expected > 0 ? fmt::format("{:+.2f} %", percent * (value / expected - 1)) : "");
+        const std::string measured = fmt::format("{}{:.6g}", bounded ? "< " : "", value * row.unit);
+        const bool compared = expected > 0 && !bounded;
+        text += fmt::format("{:<42} {:>12.6g} {:>12} {:>10} {:>11}\n", row.words, expected * row.unit, measured,
+                            bounded ? "" : fmt::format("{:.2g}", error * row.unit),
+                            compared ? fmt::format("{:+.2f} %", percent * (value / expected - 1)) : "");
     }
     return text +
            fmt::format("of {} pairs of images, and 2 x {} averaged ones, {} x {} pixels; a pixel's charge ends at "
@@ -88,11 +90,17 @@ std::string summary(const CameraMeasurement& measurement) {
 nlohmann::ordered_json camera_json(const CameraMeasurement& measurement) {
     nlohmann::ordered_json json;
     for (const Row& row : rows) {
-        const auto& [value, error] = measurement.figures.*row.figure;
+        const auto& [value, error, bounded] = measurement.figures.*row.figure;
         const double expected = (measurement.expected.*row.figure).value;
-        if (std::isfinite(value)) {
-            json[row.name] = {
-                {"put_in", expected * row.unit}, {"measured", value * row.unit}, {"standard_error", error * row.unit}};
+        if (!std::isfinite(value)) {
+            continue;
+        }
+        auto& figure = json[row.name] = {{"put_in", expected * row.unit}};
+        if (bounded) {
+            figure["below"] = value * row.unit;
+        } else {
+            figure["measured"] = value * row.unit;
+            figure["standard_error"] = error * row.unit;
         }
     }
     json["clip_e"] = measurement.camera.clip();
@@ -104,8 +112,23 @@ nlohmann::ordered_json camera_json(const CameraMeasurement& measurement) {
     json["offset_dn"] = measurement.camera.options().offset;
     json["bit_depth"] = measurement.camera.options().bit_depth;
     json["seed"] = measurement.camera.options().seed;
-    json["warnings"] = warnings_of(measurement.camera);
+    auto warnings = warnings_of(measurement.camera);
+    const auto further = warnings_of(measurement);
+    warnings.insert(warnings.end(), further.begin(), further.end());
+    json["warnings"] = warnings;
     return json;
+}
+
+std::vector<std::string> warnings_of(const CameraMeasurement& measurement) {
+    std::vector<std::string> warnings;
+    if (const auto& noise = measurement.figures.read_noise; noise.bounded) {
+        warnings.push_back(
+            fmt::format("Quantisation dominates the noise in the dark, whose variance is below 0.24 DN^2: the temporal "
+                        "dark noise is not "
+                        "measured, but below {:.3g} e- (EMVA 1288). A larger camera.gain_dn_per_e would show it",
+                        noise.value));
+    }
+    return warnings;
 }
 
 std::vector<std::string> warnings_of(const camera::Camera& camera) {

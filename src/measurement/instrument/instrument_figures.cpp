@@ -193,6 +193,18 @@ SpecimenFigures figures_of_specimen(const Configuration& configuration, const op
     return {.sides = {x_max - x_min, y_max - y_min}, .relief = relief};
 }
 
+void warn_of_smoothing(const Configuration& configuration, const optics::Instrument& instrument,
+                       std::vector<std::string>& warnings) {
+    if (!configuration.topography.smoothing_steps &&
+        evaluation_options(configuration, instrument).smoothing_steps == topography::most_smoothing_steps) {
+        warnings.push_back(
+            fmt::format("The scan's steps are so fine that the average along z, topography.smoothing_steps, "
+                        "ends at its largest, {:g} steps, below what suits the focus curves: noise is "
+                        "averaged less. Take coarser steps.",
+                        topography::most_smoothing_steps));
+    }
+}
+
 void warn_of_step(const Configuration& configuration, const ScanFigures& scan, const optics::FirstOrder& first_order,
                   std::vector<std::string>& warnings) {
     const double coarsest = 0.5 * first_order.depth_of_field;
@@ -318,6 +330,7 @@ InstrumentFigures instrument_figures(const Configuration& configuration) {
     if (configuration.scan) {
         figures.scan = figures_of_scan(configuration);
         warn_of_step(configuration, *figures.scan, first_order, warnings);
+        warn_of_smoothing(configuration, instrument, warnings);
     }
     if (configuration.specimen) {
         figures.specimen = figures_of_specimen(configuration, instrument, specimen.get(), warnings);

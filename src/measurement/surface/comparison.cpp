@@ -11,6 +11,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <string>
 
 namespace vkfv::measurement {
@@ -34,11 +35,20 @@ bool same_grid(const HeightMap& a, const HeightMap& b) {
            near(a.y0, a.pitch_y, a.rows(), b.y0, b.pitch_y);
 }
 
+HeightMap map_of(const std::filesystem::path& file, const ComparisonRequest& request,
+                 std::vector<std::string>& warnings) {
+    auto read = surface::read_surface(
+        file, {}, request.accept_checksum ? surface::Checksums::may_be_stale : surface::Checksums::must_hold);
+    std::ranges::move(read.warnings, std::back_inserter(warnings));
+    return std::move(read.map);
+}
+
 // Of one field, each with heights.
-std::vector<HeightMap> read_measurements(const std::vector<std::filesystem::path>& files) {
+std::vector<HeightMap> read_measurements(const ComparisonRequest& request, std::vector<std::string>& warnings) {
+    const auto& files = request.measurements;
     std::vector<HeightMap> measurements;
     for (const auto& file : files) {
-        measurements.push_back(surface::read_surface(file).map);
+        measurements.push_back(map_of(file, request, warnings));
         if (!same_grid(measurements.front(), measurements.back())) {
             refuse_file(file, "--compare", grid_text(measurements.back()),
                         fmt::format("the grid of {}: {}", files.front().string(), grid_text(measurements.front())),
@@ -80,8 +90,9 @@ ComparedProfile compared_profile(const topography::LevelledPair& pair) {
 } // namespace
 
 ComparisonResult compare_files(const ComparisonRequest& request) {
-    const HeightMap truth = surface::read_surface(request.truth).map;
-    const auto measurements = read_measurements(request.measurements);
+    std::vector<std::string> warnings;
+    const HeightMap truth = map_of(request.truth, request, warnings);
+    const auto measurements = read_measurements(request, warnings);
     check_place(request, measurements.front(), truth);
     auto comparison = topography::compare_with_truth(measurements, truth, request.align, request.band);
     auto pair = topography::levelled_pair(measurements.front(), comparison.truth, request.band);
@@ -92,7 +103,10 @@ ComparisonResult compare_files(const ComparisonRequest& request) {
                     "a form that the points of both surfaces settle", "Choose --form plane or --form polynomial-2.");
     }
     auto profile = compared_profile(pair);
-    return {.comparison = std::move(comparison), .pair = std::move(pair), .profile = std::move(profile)};
+    return {.comparison = std::move(comparison),
+            .pair = std::move(pair),
+            .profile = std::move(profile),
+            .warnings = std::move(warnings)};
 }
 
 } // namespace vkfv::measurement

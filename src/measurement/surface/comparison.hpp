@@ -6,6 +6,7 @@
 #include "topography/comparison.hpp"
 
 #include <filesystem>
+#include <string>
 #include <vector>
 
 namespace vkfv::measurement {
@@ -13,7 +14,8 @@ namespace vkfv::measurement {
 struct ComparisonRequest {
     std::vector<std::filesystem::path> measurements; // at least one; repeated ones stand on one grid
     std::filesystem::path truth;
-    bool align = false; // the lateral shift is removed
+    bool align = false;           // the lateral shift is removed
+    bool accept_checksum = false; // of files whose checksums are stale
     surface::Band band;
 };
 
@@ -27,6 +29,7 @@ struct ComparisonResult {
     topography::Comparison comparison;
     topography::LevelledPair pair; // the first measurement and the truth under it, treated
     ComparedProfile profile;
+    std::vector<std::string> warnings; // of the files
 };
 
 // Throws InputError for files that cannot be read, or of surfaces that cannot be compared.

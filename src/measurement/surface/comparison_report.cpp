@@ -260,6 +260,7 @@ std::string picture_of(const topography::Comparison& comparison, topography::Lev
 Json comparison_json(const ComparisonRequest& request, const ComparisonResult& result) {
     auto report = json_of(result.comparison, request);
     report["profile"] = profile_json(result.profile);
+    report["warnings"] = result.warnings;
     return report;
 }
 

@@ -9,6 +9,7 @@
 #include <algorithm>
 #include <cmath>
 #include <string>
+#include <utility>
 
 namespace vkfv::measurement {
 
@@ -26,7 +27,9 @@ surface::SurfaceFile requested_surface(const SurfaceRequest& request) {
     check("--pitch_um", request.scale.pitch);
     check("--unit_um", request.scale.unit);
     try {
-        return surface::read_surface(request.file, request.scale);
+        return surface::read_surface(request.file, request.scale,
+                                     request.accept_checksum ? surface::Checksums::may_be_stale
+                                                             : surface::Checksums::must_hold);
     } catch (const InputError& error) {
         throw error.with_each([](InputProblem& problem) {
             if (problem.key == surface::scale_pitch_key ||
@@ -115,7 +118,7 @@ std::vector<StandardDimension> sought_dimensions(const SurfaceRequest& request, 
 } // namespace
 
 SurfaceFigures measure_surface(const SurfaceRequest& request) {
-    auto [original, provenance] = requested_surface(request);
+    auto [original, provenance, warnings] = requested_surface(request);
     const HeightMap map = treated(request, original);
     const surface::ProfileLine line = line_of(request, map);
     if (request.out) {
@@ -129,6 +132,7 @@ SurfaceFigures measure_surface(const SurfaceRequest& request) {
         write_file(*request.out, surface::surface_bytes(*request.out, map, provenance));
     }
     auto figures = surface_figures(map, line, request.setting, request.band);
+    figures.warnings = std::move(warnings);
     check_class(request, figures.profile);
     if (request.sought) {
         figures.dimensions = sought_dimensions(request, original);

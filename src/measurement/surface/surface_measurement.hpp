@@ -13,6 +13,7 @@ namespace vkfv::measurement {
 struct SurfaceRequest {
     std::filesystem::path file;
     surface::ImageScale scale;                // of an image that states none itself
+    bool accept_checksum = false;             // of a file whose checksums are stale
     surface::Band band;                       // what is done to the surface
     std::optional<surface::ProfileLine> line; // none: the middle row
     surface::ProfileSetting setting;          // the profile's own filters

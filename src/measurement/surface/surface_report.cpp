@@ -74,6 +74,7 @@ nlohmann::ordered_json surface_json(const SurfaceFigures& figures, const std::fi
     report["profile"].update(profile_filter_json(figures.profile));
     report["profile"].update(report::json_of(report::parameter_rows(figures.profile.parameters)));
     add_dimensions(report, figures.dimensions);
+    report["warnings"] = figures.warnings;
     report["evaluated_by"] = fmt::format("vkfv {}", VKFV_VERSION);
     return report;
 }

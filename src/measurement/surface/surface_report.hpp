@@ -29,6 +29,7 @@ struct SurfaceFigures {
     surface::ProfileLine line;
     surface::RoughnessProfile profile;
     std::vector<StandardDimension> dimensions{}; // of what was sought
+    std::vector<std::string> warnings{};         // of the file
 };
 
 // Of a surface that was treated by `band`, and of the profile along the line.

@@ -8,6 +8,7 @@
 #include <spdlog/spdlog.h>
 
 #include <algorithm>
+#include <cmath>
 #include <ranges>
 
 namespace vkfv::specimen {
@@ -57,6 +58,23 @@ void require_apart(const std::vector<glm::dvec2>& points, const std::vector<std:
     }
 }
 
+// Coordinates whose unit the file states are brought to the units of the keys, in which the rest of the way counts.
+void take_stated_units(double unit, double height_unit, const std::filesystem::path& file, FilePoints& read) {
+    constexpr double alike = 0.01;
+    for (int axis = 0; axis < 3; ++axis) {
+        const auto stated = read.units[static_cast<std::size_t>(axis)];
+        const double given = axis == 2 ? height_unit : unit;
+        if (!stated || std::abs(*stated - given) <= alike * *stated) {
+            continue;
+        }
+        spdlog::warn("{}: the unit of {} is that of the columns' names, \"{}\", not that of the configuration",
+                     file.string(), "xyz"[axis], read.column_names);
+        for (glm::dvec3& point : read.points) {
+            point[axis] *= *stated / given;
+        }
+    }
+}
+
 // Without the points that no triangle has.
 FileMesh used(const std::vector<glm::dvec3>& points, std::vector<glm::uvec3> triangles) {
     constexpr std::uint32_t unused = ~0u;
@@ -95,7 +113,10 @@ Points Points::read(const Section& section) {
 }
 
 Mesh Points::mesh(const SourceLocation& mention) const {
-    auto [points, not_measured] = read_points(file, mention);
+    FilePoints read = read_points(file, mention);
+    take_stated_units(unit, height_unit > 0 ? height_unit : unit, file, read);
+    auto& points = read.points;
+    const std::size_t not_measured = read.not_measured;
     std::vector<glm::dvec2> plane(points.begin(), points.end());
     auto [triangles, place] = delaunay(plane);
     require_apart(plane, place, file);

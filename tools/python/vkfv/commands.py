@@ -20,6 +20,12 @@ from .tiff import read_map
 PathLike = str | os.PathLike
 
 
+def _path(path: PathLike) -> str:
+    """As an argument that is no option, whatever the file is called."""
+    text = os.fspath(path)
+    return os.path.join(os.curdir, text) if text.startswith("-") else text
+
+
 def _call(
     command: str,
     operand: PathLike,
@@ -30,11 +36,11 @@ def _call(
     program: PathLike | None,
     on_event: Callable[[Event], None] | None,
 ) -> Outcome:
-    arguments = [command, os.fspath(operand), *options]
+    arguments = [command, _path(operand), *options]
     for setting in settings(overrides):
         arguments += ["--set", setting]
     if out is not None:
-        arguments += ["--out", os.fspath(out)]
+        arguments += ["--out", _path(out)]
     return call(arguments, program=program, on_event=on_event)
 
 
@@ -114,8 +120,10 @@ def evaluate(
     channel and frame from 1, of a file of several; dark and flat_field are images that are taken off."""
     given = {"--z_step_um": z_step_um, "--pitch_um": pitch_um, "--z_start_um": z_start_um}
     options = tuple(word for name, value in given.items() if value is not None for word in (name, repr(float(value))))
-    further = {"--channel": channel, "--frame": frame, "--dark": dark, "--flat-field": flat_field}
+    further = {"--channel": channel, "--frame": frame}
     options += tuple(word for name, value in further.items() if value is not None for word in (name, str(value)))
+    files = {"--dark": dark, "--flat-field": flat_field}
+    options += tuple(word for name, file in files.items() if file is not None for word in (name, _path(file)))
     _call("topography", images, overrides, out=out, options=options, program=program, on_event=None)
     return Stack(out)
 

@@ -1,0 +1,172 @@
+#include "surface_files/table_header.hpp"
+
+#include "core/mathematics/units.hpp"
+#include "core/parsing/byte_reader.hpp"
+#include "surface_files/lengths.hpp"
+#include "surface_files/table_text.hpp"
+
+#include <algorithm>
+#include <cctype>
+
+namespace vkfv::surface {
+namespace {
+
+bool is_one_of(std::string_view word, std::initializer_list<std::string_view> words) {
+    return std::ranges::find(words, word) != words.end();
+}
+
+// "NODATA_value" and "No data  value" are one key.
+std::string plain_key(std::string_view text) {
+    std::string key;
+    for (const char c : text) {
+        const bool blank = c == ' ' || c == '\t' || c == '_' || c == '-' || c == '#';
+        if (!blank)
+            key += static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
+        else if (!key.empty() && key.back() != ' ')
+            key += ' ';
+    }
+    while (key.ends_with(' '))
+        key.pop_back();
+    return key;
+}
+
+// "x [mm]", "z (um)" or "Z/nm"; none without a unit of length.
+std::optional<double> unit_in_name(std::string_view name) {
+    for (const std::string_view brackets : {"[]", "()"}) {
+        const auto open = name.rfind(brackets[0]);
+        const auto close = name.rfind(brackets[1]);
+        if (open != std::string_view::npos && close != std::string_view::npos && open < close)
+            return mm_per_unit(bare(name.substr(open + 1, close - open - 1)));
+    }
+    const auto slash = name.rfind('/');
+    return slash == std::string_view::npos ? std::nullopt : mm_per_unit(bare(name.substr(slash + 1)));
+}
+
+// A key, and what stands behind it: "XY Calibration","2000","nm", "cellsize 2.0" or "# Width: 10 um".
+struct Statement {
+    std::string key;
+    std::vector<std::string_view> values;
+
+    std::optional<double> number() const { return values.empty() ? std::nullopt : number_in<double>(values[0]); }
+    std::optional<double> length() const {
+        if (values.empty())
+            return std::nullopt;
+        if (const auto value = number(); value && values.size() > 1) {
+            const auto unit = mm_per_unit(values[1]);
+            return unit ? std::optional(*value * *unit) : std::nullopt;
+        }
+        const auto blank = values[0].find(' ');
+        if (blank == std::string_view::npos)
+            return std::nullopt;
+        const auto value = number_in<double>(values[0].substr(0, blank));
+        const auto unit = mm_per_unit(bare(values[0].substr(blank)));
+        return value && unit ? std::optional(*value * *unit) : std::nullopt;
+    }
+};
+
+Statement statement_of(std::string_view line) {
+    line = bare(line.substr(std::min(line.find_first_not_of("# \t"), line.size())));
+    for (const char separator : {'\t', ';', ',', '=', ':'}) {
+        auto cells = cells_of(line, separator);
+        if (cells.size() > 1)
+            return {plain_key(cells[0]), {cells.begin() + 1, cells.end()}};
+    }
+    const auto blank = line.find_last_of(" \t");
+    if (blank == std::string_view::npos)
+        return {plain_key(line), {}};
+    return {plain_key(line.substr(0, blank)), {bare(line.substr(blank))}};
+}
+
+void take(const Statement& statement, TableHeader& header) {
+    const auto first = [](std::optional<double>& member, const std::optional<double>& value) {
+        if (!member)
+            member = value;
+    };
+    const std::string& key = statement.key;
+    if (is_one_of(key,
+                  {"nodata", "nodata value", "no data", "no data value", "missing", "missing value", "missing data",
+                   "bad value", "bad data", "invalid value", "invalid data", "fill value", "void value", "blank value",
+                   "blanking value", "undefined value", "not measured", "null value"}))
+        first(header.not_measured, statement.number());
+    else if (is_one_of(key,
+                       {"xy calibration", "xy pitch", "pixel size", "pixel pitch", "pitch", "lateral resolution"})) {
+        first(header.pitch_x, statement.length());
+        first(header.pitch_y, statement.length());
+    } else if (is_one_of(key, {"x pitch", "pitch x", "dx", "x step", "x spacing", "x calibration"}))
+        first(header.pitch_x, statement.length());
+    else if (is_one_of(key, {"y pitch", "pitch y", "dy", "y step", "y spacing", "y calibration"}))
+        first(header.pitch_y, statement.length());
+    else if (is_one_of(key, {"cellsize", "cell size"}))
+        first(header.cells, statement.number());
+    else if (key == "width")
+        first(header.width, statement.length());
+    else if (key == "height")
+        first(header.height, statement.length());
+    else if (key == "xllcorner")
+        first(header.x_corner, statement.number());
+    else if (key == "yllcorner")
+        first(header.y_corner, statement.number());
+    else if (key == "xllcenter")
+        first(header.x_centre, statement.number());
+    else if (key == "yllcenter")
+        first(header.y_centre, statement.number());
+    else if (is_one_of(key, {"unit", "units", "height unit", "z unit", "value unit", "value units"}) &&
+             !statement.values.empty())
+        first(header.unit, mm_per_unit(bare(statement.values[0])));
+}
+
+} // namespace
+
+std::vector<std::string_view> cells_of(std::string_view line, char separator) {
+    std::vector<std::string_view> cells;
+    line = bare(line);
+    for (bool more = !line.empty(); more;) {
+        std::size_t end = 0;
+        for (bool quoted = false; end < line.size(); ++end) {
+            quoted = quoted != (line[end] == '"');
+            if (!quoted && (line[end] == separator || (separator == ' ' && line[end] == '\t')))
+                break;
+        }
+        std::string_view cell = bare(line.substr(0, end));
+        if (cell.size() >= 2 && cell.front() == '"' && cell.back() == '"')
+            cell = bare(cell.substr(1, cell.size() - 2));
+        cells.push_back(cell);
+        more = end < line.size();
+        line.remove_prefix(std::min(end + 1, line.size()));
+        if (separator == ' ')
+            line = bare(line);
+        // A separator at the line's end closes the last cell.
+        more = more && !line.empty();
+    }
+    return cells;
+}
+
+TableHeader table_header(std::span<const std::string_view> lines, std::size_t columns, char separator) {
+    TableHeader header;
+    for (const std::string_view line : lines)
+        take(statement_of(line), header);
+    // The names of columns stand on the last line that has a unit for some of them; a matrix has one name or none.
+    const auto take_names = [&](std::string_view names, char between, std::size_t count) {
+        const auto cells = cells_of(names, between);
+        if (cells.size() != count)
+            return false;
+        std::array<std::optional<double>, 3> units;
+        for (std::size_t k = 0; k < std::min(count, units.size()); ++k)
+            units[k] = unit_in_name(cells[k]);
+        if (std::ranges::none_of(units, [](const auto& unit) { return unit.has_value(); }))
+            return false;
+        header.column_units = units;
+        header.column_names = std::string(names);
+        return true;
+    };
+    for (auto line = lines.rbegin(); line != lines.rend() && !header.column_names; ++line) {
+        const std::string_view names = bare(line->substr(std::min(line->find_first_not_of("# \t"), line->size())));
+        for (const std::size_t count : {columns, std::size_t{1}})
+            for (const char between : {separator, ';', '\t', ','})
+                if (take_names(names, between, count))
+                    return header;
+    }
+    return header;
+}
+
+} // namespace vkfv::surface
