@@ -33,7 +33,8 @@ FilePoints parse_points(std::string_view bytes, const std::filesystem::path& fil
     for (std::size_t row = 0; row < table.rows; ++row) {
         const double* values = &table.values[row * table.columns];
         const glm::dvec3 point(values[0], values[1], values[2]);
-        const bool marked = header.not_measured && surface::is_mark(point.z, *header.not_measured);
+        const bool marked = !(std::abs(point.z) < surface::not_measured_from) ||
+                            (header.not_measured && surface::is_mark(point.z, *header.not_measured));
         if (!marked && std::isfinite(point.x) && std::isfinite(point.y) && std::isfinite(point.z)) {
             result.points.push_back(point);
         } else {

@@ -121,8 +121,8 @@ HeightMap matrix_of(const TableText& table) {
     return map;
 }
 
-// A profile is a position and a height a line, or heights alone. The first column of a map of heights ascends evenly, as
-// positions do, only by a rare chance.
+// A profile is a position and a height a line, or heights alone. The first column of a map of heights ascends evenly,
+// as positions do, only by a rare chance.
 bool is_profile(const TableText& table) {
     constexpr std::size_t least_rows = 4, most_columns = 3;
     if (table.columns > most_columns || table.rows < least_rows)
@@ -239,7 +239,7 @@ SurfaceFile parse_height_table(std::string_view bytes, const std::filesystem::pa
     file.check_spacing(result.map.pitch_x, "pitch along x");
     file.check_spacing(result.map.pitch_y, "pitch along y");
     for (double& height : result.map.height.values)
-        height = header.not_measured && is_mark(height, *header.not_measured) ? nan : height_from(height, unit);
+        height = header.not_measured && is_mark(height, *header.not_measured) ? nan : measured_height(height, unit);
     std::string provenance;
     for (std::size_t k = title_lines; own && k < table.header.size(); ++k)
         if (const std::string_view line = table.header[k]; line.starts_with('#'))

@@ -1,12 +1,10 @@
 #include "surface_files/table_text.hpp"
 
 #include "core/parsing/byte_reader.hpp"
-#include "surface_files/lengths.hpp"
 #include "surface_files/provenance.hpp"
 #include "surface_files/table_header.hpp"
 
 #include <algorithm>
-#include <cmath>
 #include <limits>
 #include <optional>
 
@@ -113,8 +111,7 @@ TableText parse_table_text(std::string_view text, const std::filesystem::path& p
                                   .found = plain_line(cell.substr(0, 40)),
                                   .expected = "a number, or a word for a point that is not measured",
                                   .remedy = "Export the table anew, with one separator and one decimal sign."});
-            const bool measured = value && std::abs(*value) < not_measured_from;
-            table.values.push_back(measured ? *value : std::numeric_limits<double>::quiet_NaN());
+            table.values.push_back(value.value_or(std::numeric_limits<double>::quiet_NaN()));
             ++count;
         }
         if (table.rows > 0 && count != table.columns)

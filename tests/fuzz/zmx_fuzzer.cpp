@@ -2,6 +2,7 @@
 // written the same again.
 #include "core/messages/error.hpp"
 #include "optics/prescriptions/prescription_writer.hpp"
+#include "optics/prescriptions/reversal.hpp"
 #include "optics/prescriptions/zmx.hpp"
 
 #include <cstddef>
@@ -15,6 +16,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     try {
         const auto lens = optics::parse_zmx({reinterpret_cast<const char*>(data), size}, "fuzzed.zmx", glasses);
         text = optics::prescription_text(lens.prescription);
+        (void)optics::turned_round(lens.prescription);
     } catch (const InputError&) {
         return 0;
     }

@@ -288,6 +288,32 @@ TEST_F(ScatteredPoints, TrianglesWithLongEdgesAreLeftOut) {
                 testing::AllOf(HasSubstr("specimen.longest_edge_um = 0.5"), HasSubstr("triangles")));
 }
 
+TEST_F(ScatteredPoints, UnitsInTheNamesOfColumnsAndMarksAreUsed) {
+    const std::string lines = "0,0,1\n0.01,0,2\n0,0.01,3\n0.01,0.01,4\n";
+    const auto read = [&](const std::string& header, const std::string& more) {
+        return parse_points(header + lines + more, "p.csv");
+    };
+    const FilePoints plain = read("", "0.02,0,1.70141e38\n");
+    EXPECT_EQ(plain.points.size(), 4u);
+    EXPECT_EQ(plain.not_measured, 1u);
+    EXPECT_FALSE(plain.units[0]);
+    const FilePoints stated = read("Missing value: -9999\nx [mm],y [mm],z (\xc2\xb5m)\n", "0.02,0,-9999\n");
+    EXPECT_EQ(stated.points.size(), 4u);
+    EXPECT_EQ(stated.not_measured, 1u);
+    EXPECT_EQ(stated.units[0], 1.0);
+    EXPECT_EQ(stated.units[1], 1.0);
+    EXPECT_EQ(stated.units[2], 1e-3);
+    // The file's units hold, whatever the configuration says.
+    for (const double unit : {1.0, 1e-3, 25.4}) {
+        Points points = points_of(write("stated.csv", "x [mm],y [mm],z [um]\n" + lines));
+        points.unit = unit;
+        const Specimen specimen = make({.shape = points});
+        EXPECT_NEAR(record(specimen, 1).x_max - record(specimen, 1).x_min, 0.01, 1e-8) << unit;
+        const auto heights = truth(specimen, 1, 1, 0.0049, 0.0049, 1e-6, 1e-6).height;
+        EXPECT_NEAR(heights(0, 0), 1e-3 + 0.1 * 0.0049 + 0.2 * 0.0049, 1e-7) << unit; // of the plane through the points
+    }
+}
+
 TEST_F(ScatteredPoints, DamageIsNamed) {
     const std::vector<std::tuple<const char*, std::string, std::vector<std::string>>> cases = {
         {"empty.csv", "", {"empty.csv", "no line of numbers", "x, y and z"}},
