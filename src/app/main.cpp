@@ -94,15 +94,15 @@ int main(int argument_count, char** argument_values) {
     } catch (const std::length_error&) { // more elements than memory can hold
         return report_lack_of_memory();
     } catch (const std::system_error& error) {
+        if (std::ferror(stdout) != 0) { // fmt says so by an exception of this kind
+            return report_lost_output();
+        }
         return report(
             fmt::format("the system refused what the program needs: {}. Allow it more threads and memory (ulimit "
                         "-u, -v), and run the same command again",
                         error.what()),
             run_failed);
     } catch (const std::exception& error) {
-        if (std::ferror(stdout) != 0) { // fmt says so by an exception of its own
-            return report_lost_output();
-        }
         return report(fmt::format("unexpected failure: {}. Please report it with the command line and the "
                                   "configuration.",
                                   error.what()),
