@@ -20,11 +20,12 @@ constexpr std::int64_t fewest_bits = 6, most_bits = 16, most_frames = 10000;
 constexpr double least_full_well = 50, largest_full_well = 1e7; // e-
 constexpr double largest_photo_response = 10;                   // %, beyond which a mean response means little
 
-const ChoiceKey<Preset> preset("preset",
-                               {{Preset::none, "none", "all values are given here"},
-                                {Preset::imx250, "IMX250", "a camera with Sony's IMX250 at 525 nm, by figures that are not verified"},
-                                {Preset::imx900, "IMX900", "a camera with Sony's IMX900 at 536 nm, by figures that are not verified"}},
-                               Preset::none, "The camera whose values hold where none are given.");
+const ChoiceKey<Preset>
+    preset("preset",
+           {{Preset::none, "none", "all values are given here"},
+            {Preset::imx250, "IMX250", "a camera with Sony's IMX250 at 525 nm, by figures that are not verified"},
+            {Preset::imx900, "IMX900", "a camera with Sony's IMX900 at 536 nm, by figures that are not verified"}},
+           Preset::none, "The camera whose values hold where none are given.");
 const Default of_preset = Default::in_words("the preset's; must be given without one");
 const NumberKey efficiency("quantum_efficiency", NumberRange::share(), of_preset,
                            "Electrons a photon, at all wavelengths.");
