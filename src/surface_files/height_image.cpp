@@ -59,7 +59,7 @@ HeightMap height_map_of(const images::DescribedImage& image, const std::filesyst
     return map;
 }
 
-// What ImageJ's description says of a map of heights: lengths in mm, and heights by offset + gain value.
+// The scale that ImageJ's description states for a map of heights: lengths in mm, and heights by offset + gain value.
 struct Calibration {
     std::optional<double> pitch_x{}, pitch_y{}, unit{};
     double offset = 0, gain = 1;
@@ -143,8 +143,7 @@ SurfaceFile parse_height_image(std::string_view bytes, const std::filesystem::pa
                            .unit = scale.unit ? scale.unit : stated.unit};
     check_scale(path, whole);
     const auto warn = [&](const char* what, const std::optional<double>& given, const std::optional<double>& own) {
-        constexpr double alike = 0.01;
-        if (given && own && std::abs(*given - *own) > alike * *own)
+        if (given && own && contradicts(*given, *own))
             result.warnings.push_back(
                 fmt::format("{}: the {} of {:.6g} um of the option is used, not the {:.6g} um that the "
                             "file states",

@@ -26,7 +26,7 @@ bool is_own(const std::vector<std::string_view>& header) {
     return !header.empty() && header.front().starts_with(table_title);
 }
 
-// Our own header says more, and its provenance may look like anything.
+// The header that height_table() writes. Lines of provenance follow it, whose text may look like any other header.
 TableHeader own_header(std::span<const std::string_view> lines) {
     TableHeader header;
     header.unit = mm_per_um;
@@ -47,8 +47,7 @@ TableHeader own_header(std::span<const std::string_view> lines) {
 // An option that contradicts the file is told of, with both values.
 void warn_of_contradiction(const std::filesystem::path& path, const char* option, const std::optional<double>& given,
                            double stated, const std::string& where, SurfaceFile& result) {
-    constexpr double alike = 0.01;
-    if (given && std::abs(*given - stated) > alike * std::abs(stated))
+    if (given && contradicts(*given, stated))
         result.warnings.push_back(fmt::format("{}: its {} of {:.6g} um is used, not the {:.6g} um of the option",
                                               where.empty() ? path.string() : path.string() + ": " + where, option,
                                               stated * um_per_mm, *given * um_per_mm));
@@ -206,7 +205,7 @@ SurfaceFile parse_height_table(std::string_view bytes, const std::filesystem::pa
             {}, "", fmt::format("a profile: {} lines of {} numbers", table.rows, table.columns), "a map of heights",
             "Profiles are not evaluated; export the whole surface. If it is a map of so few columns, exchange its "
             "lines and columns.");
-    // Of three columns the third is the height.
+    // Points have their heights in the third column, and a matrix has one name for all of its columns.
     const auto& columns = header.column_units;
     const std::optional<double> in_names = points ? columns[2] : columns[0];
     if (!header.unit)

@@ -55,6 +55,13 @@ inline double measured_height(double value, double unit) {
     return std::abs(value) < not_measured_from ? height_from(value, unit) : std::numeric_limits<double>::quiet_NaN();
 }
 
+// Whether an option's length is so far from the one that a file states that the user should hear of it; files and users
+// round.
+inline bool contradicts(double given, double stated) {
+    constexpr double alike = 0.01;
+    return std::abs(given - stated) > alike * std::abs(stated);
+}
+
 // Whether a value is the one that a file names for points that are not measured; files round it.
 inline bool is_mark(double value, double mark) {
     constexpr double rounding = 1e-6;

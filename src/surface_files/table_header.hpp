@@ -1,4 +1,5 @@
-// What the lines above a table of numbers say of it. Only the files of this room include this.
+// The statements that the lines above a table of numbers make about it: units, pitches, the mark of points that were
+// not measured.
 #pragma once
 
 #include <array>
@@ -17,7 +18,7 @@ struct TableHeader {
     std::optional<double> cells;            // the same, in the unit of the heights (ESRI's grids)
     std::optional<double> width, height;    // of the whole grid
     std::optional<double> x0, y0;           // of the point with the lowest x and y
-    // Of ESRI's grids, in the unit of the heights: that point, or the corner of its cell.
+    // The place of that point, or of the corner of its cell, in the unit of the heights, as ESRI's grids state it.
     std::optional<double> x_centre, y_centre, x_corner, y_corner;
     std::optional<double> not_measured;                  // the value that says so
     std::array<std::optional<double>, 3> column_units{}; // of the first three columns, from a line of their names

@@ -268,5 +268,24 @@ TEST(SurfaceFormats, FilesOfInstruments) {
     }
 }
 
+// Vision64 names its block otherwise.
+TEST(SurfaceFormats, OpdOfEveryNameOfItsBlock) {
+    const std::string bytes = instrument_file("opd");
+    const auto expected = parse_opd(bytes, "a.opd").map.height.values;
+    const auto at = bytes.find("RAW_DATA");
+    ASSERT_NE(at, std::string::npos);
+    const auto named = [&](std::string name) {
+        name.resize(8, '\0');
+        return std::string(bytes).replace(at, 8, name);
+    };
+    for (const char* name : {"Raw", "RAW DATA", "OPD"}) {
+        const auto found = parse_opd(named(name), "a.opd").map.height.values;
+        ASSERT_EQ(found.size(), expected.size()) << name;
+        for (std::size_t k = 0; k < found.size(); ++k)
+            EXPECT_TRUE(found[k] == expected[k] || (std::isnan(found[k]) && std::isnan(expected[k]))) << name << k;
+    }
+    EXPECT_THROW((void)parse_opd(named("Other"), "a.opd"), InputError);
+}
+
 } // namespace
 } // namespace vkfv::surface::formats

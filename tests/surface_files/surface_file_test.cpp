@@ -21,6 +21,7 @@
 
 #include <array>
 #include <cmath>
+#include <cstdlib>
 #include <cstring>
 #include <fstream>
 #include <functional>
@@ -691,6 +692,27 @@ TEST_F(SurfaceFiles, HostileAl3dIsRefused) {
 }
 
 // --- images ---
+
+// Surfaces without a date get that of SOURCE_DATE_EPOCH, 2023-11-14T22:13:00Z here (SDF counts in minutes), and others
+// keep their own.
+TEST_F(SurfaceFiles, TheEnvironmentDatesSurfacesThatHaveNoDate) {
+    const auto date_of = [&](const Provenance& provenance, const char* ending) {
+        const auto file = folder_ / (std::string("dated") + ending);
+        std::ofstream(file, std::ios::binary) << surface_bytes(file, letter_map(), provenance);
+        return read_surface(file).provenance.date;
+    };
+    for (const char* ending : {".x3p", ".sdf", ".gsf"}) {
+        ::setenv("SOURCE_DATE_EPOCH", "1699999980", 1);
+        EXPECT_EQ(date_of({}, ending), "2023-11-14T22:13:00Z") << ending;
+        EXPECT_EQ(date_of({.date = "2024-02-29T01:02:00Z"}, ending), "2024-02-29T01:02:00Z") << ending;
+        for (const char* wrong : {"", "-1", "tomorrow", "1700000000x", "99999999999999"}) {
+            ::setenv("SOURCE_DATE_EPOCH", wrong, 1);
+            EXPECT_EQ(date_of({}, ending), "") << ending << wrong;
+        }
+        ::unsetenv("SOURCE_DATE_EPOCH");
+        EXPECT_EQ(date_of({}, ending), "") << ending;
+    }
+}
 
 TEST_F(SurfaceFiles, ForeignImagesNeedTheirScale) {
     Grid<float> values(2, 2);

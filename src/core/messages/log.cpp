@@ -48,8 +48,8 @@ class JsonFormatter final : public spdlog::formatter {
     std::unique_ptr<formatter> clone() const override { return std::make_unique<JsonFormatter>(); }
 };
 
-// What stands in a message may come from a file or its name: a terminal must not take it for a command. Control
-// characters but ends of lines become "\xNN".
+// The text of a message as a terminal may have it. A file or its name may have put control characters there, which a
+// terminal would obey: all but tabs and ends of lines become "\xNN".
 std::string for_terminal(std::string_view text) {
     std::string result;
     for (const char character : text) {
@@ -63,7 +63,8 @@ std::string for_terminal(std::string_view text) {
     return result;
 }
 
-// The message itself, without the colours that the sink adds around it.
+// A flag of spdlog's pattern for the message made safe. The colours around it, which are control characters too, are
+// the sink's own and stay.
 class SafeMessage final : public spdlog::custom_flag_formatter {
   public:
     void format(const spdlog::details::log_msg& message, const std::tm&, spdlog::memory_buf_t& line) override {

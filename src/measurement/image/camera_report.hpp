@@ -25,7 +25,7 @@ std::string summary(const CameraMeasurement& measurement);
 nlohmann::ordered_json camera_json(const CameraMeasurement& measurement);
 // Sentences on what the camera's values do to its figures.
 std::vector<std::string> warnings_of(const camera::Camera& camera);
-// The same of what could not be measured.
+// Sentences on figures that the measurement could only bound.
 std::vector<std::string> warnings_of(const CameraMeasurement& measurement);
 
 // SVG: variance over mean; signal to noise ratio over photons, with the model's; grey value over photons, and its

@@ -121,7 +121,7 @@ class Reader {
         double maximum_um = 0; // 0: no LD yet
     };
 
-    // What is wrong with a record makes its glass unusable, and no other.
+    // A fault in a record makes its own glass unusable, and no other.
     void take_pending() {
         if (pending_.empty()) {
             return;

@@ -67,9 +67,9 @@ class GlassCatalog {
     std::vector<std::filesystem::path> files_;
 };
 
-// What to do about a name that no catalogue has, as sentences. Another glass is never suggested by its spelling: F2 and
-// F5 are as different as two names can be. A six-digit code ("516640") is never taken as a model glass by itself, as
-// several glasses of other dispersion share it.
+// Sentences that tell what to do about a name that no catalogue has. They never suggest another glass by its spelling:
+// F2 and F5 are as different as two names can be. A six-digit code ("516640") is never taken as a model glass by
+// itself, as several glasses of other dispersion share it.
 std::string remedy_for_unknown_glass(std::string_view name);
 
 // The nd and vd that a six-digit code stands for, "517642" or "517.642": 1.517 and 64.2. None if it is no code.

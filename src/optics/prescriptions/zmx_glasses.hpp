@@ -15,8 +15,8 @@ class Glasses {
     // source: of the model glasses, for their users.
     Glasses(const GlassCatalog& catalog, std::string source) : catalog_(catalog), source_(std::move(source)) {}
 
-    // What a GLAS line names: a glass of the catalogues, else a model glass by its six-digit code or by the nd and vd
-    // in the line, with a warning in the log. Throws InputError.
+    // The medium that a GLAS line names: a glass of the catalogues, else a model glass by its six-digit code or by the
+    // nd and vd in the line, with a warning in the log. Throws InputError.
     Medium medium_of(const Place& place, const Line& line, const GlassSearch& search);
 
   private:

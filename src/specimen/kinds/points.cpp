@@ -3,6 +3,7 @@
 #include "specimen/delaunay.hpp"
 #include "specimen/file_keys.hpp"
 #include "specimen/lengths.hpp"
+#include "surface_files/lengths.hpp"
 
 #include <fmt/format.h>
 #include <spdlog/spdlog.h>
@@ -60,11 +61,10 @@ void require_apart(const std::vector<glm::dvec2>& points, const std::vector<std:
 
 // Coordinates whose unit the file states are brought to the units of the keys, in which the rest of the way counts.
 void take_stated_units(double unit, double height_unit, const std::filesystem::path& file, FilePoints& read) {
-    constexpr double alike = 0.01;
     for (int axis = 0; axis < 3; ++axis) {
         const auto stated = read.units[static_cast<std::size_t>(axis)];
         const double given = axis == 2 ? height_unit : unit;
-        if (!stated || std::abs(*stated - given) <= alike * *stated) {
+        if (!stated || !surface::contradicts(given, *stated)) {
             continue;
         }
         spdlog::warn("{}: the unit of {} is that of the columns' names, \"{}\", not that of the configuration",
