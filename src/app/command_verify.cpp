@@ -1,6 +1,7 @@
 #include "app/commands.hpp"
 
 #include "core/files/result_folder.hpp"
+#include "scan/repair.hpp"
 #include "scan/stack_identity.hpp"
 #include "scan/store.hpp"
 
@@ -11,11 +12,27 @@
 
 namespace vkfv::app {
 
+namespace {
+
+struct VerifyOptions {
+    bool repair = false;
+};
+
+} // namespace
+
 Command verify_command() {
+    const Option repair = {.name = "--repair",
+                           .value = "",
+                           .description =
+                               "Write a stack's lost or changed stack.toml again from its copy, if the images "
+                               "and the ledger agree with it; the old one is kept beside it, and results "
+                               "say that the stack was repaired",
+                           .target = into(&VerifyOptions::repair)};
     return {.name = "verify",
             .summary =
                 "Check that the files of a stack, a sweep or other results are whole and those that were written",
             .operands = {{"FOLDER", "Folder of results", into(&CommandOptions::file)}},
+            .options = {repair},
             .run = run_verify,
             .example = "vkfv verify demo"};
 }
@@ -33,7 +50,8 @@ bool has(const fs::path& folder, std::string_view name) {
 std::vector<fs::path> result_folders(const fs::path& folder) {
     std::vector<fs::path> folders;
     const auto add = [&](const fs::path& candidate) {
-        if (has(candidate, checksums_name) || has(candidate, scan::configuration_name)) {
+        if (has(candidate, checksums_name) || has(candidate, scan::configuration_name) ||
+            has(candidate, scan::configuration_copy_name)) {
             folders.push_back(candidate);
         }
     };
@@ -45,6 +63,12 @@ std::vector<fs::path> result_folders(const fs::path& folder) {
     }
     std::ranges::sort(folders);
     return folders;
+}
+
+// Whether the configuration of a stack is among what is damaged.
+bool lacks_configuration(const Check& check) {
+    return std::ranges::any_of(check.damages,
+                               [](const Damage& damage) { return damage.file == scan::configuration_name; });
 }
 
 } // namespace
@@ -66,11 +90,17 @@ void run_verify(const CommandOptions& options) {
     }
     std::size_t files = 0;
     std::vector<std::string> sentences;
+    bool repairable = false;
     for (const auto& folder : folders) {
+        if (options.of<VerifyOptions>().repair && has(folder, scan::configuration_copy_name) && scan::repair(folder)) {
+            fmt::print("{}: written again; what was there is {}\n", (folder / scan::configuration_name).string(),
+                       scan::before_repair_name);
+        }
         auto check = check_by_checksums(folder);
         if (has(folder, scan::configuration_name)) {
             check.add(scan::check_images(folder));
         }
+        repairable = repairable || (has(folder, scan::configuration_copy_name) && lacks_configuration(check));
         files += check.files.size();
         for (const auto& [file, what] : check.damages) {
             sentences.push_back(fmt::format("{}: {}", (folder / file).string(), what));
@@ -84,10 +114,12 @@ void run_verify(const CommandOptions& options) {
     }
     fmt::print("{} files checked in {}, {} damaged\n", files, options.file.string(), sentences.size());
     if (!sentences.empty()) {
-        throw RunError(
-            fmt::format("{}: {} of its files are not those that were written, the first: {}. Run the command that "
-                        "made them again: it keeps what is whole",
-                        options.file.string(), sentences.size(), sentences.front()));
+        throw RunError(fmt::format("{}: {} of its files are not those that were written, the first: {}. {}",
+                                   options.file.string(), sentences.size(), sentences.front(),
+                                   repairable ? fmt::format("vkfv verify {} --repair writes stack.toml again, if the "
+                                                            "images are whole",
+                                                            options.file.string())
+                                              : "Run the command that made them again: it keeps what is whole"));
     }
 }
 

@@ -28,7 +28,7 @@ struct CommandOptions {
     std::optional<std::filesystem::path> out;
     bool quiet = false;
     bool timings = false;
-    bool log_json = false;
+    bool log_json = false; // acted upon before anything else is read: run_command_line()
     bool json = false;
     bool markdown = false;
 

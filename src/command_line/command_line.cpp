@@ -2,6 +2,7 @@
 
 #include "command_line/command.hpp"
 #include "command_line/reference.hpp"
+#include "core/messages/heartbeat.hpp"
 #include "core/messages/log.hpp"
 #include "core/messages/stages.hpp"
 
@@ -16,6 +17,7 @@
 #include <functional>
 #include <iterator>
 #include <map>
+#include <string_view>
 
 namespace vkfv::command_line {
 
@@ -59,9 +61,6 @@ class CommandLine {
         for (const auto& take : taken_) {
             take();
         }
-        if (options_.log_json) {
-            log_as_json();
-        }
         const Command& command = named_ != nullptr ? *named_ : chosen();
         for (const auto& option : all_options()) {
             check_needed(option, command);
@@ -71,7 +70,10 @@ class CommandLine {
         }
         place_operands(command);
         spdlog::set_level(options_.quiet ? spdlog::level::warn : spdlog::level::info);
-        command.run(options_);
+        {
+            const Heartbeat heartbeat;
+            command.run(options_);
+        }
         if (options_.timings) {
             fmt::print(options_.json ? stderr : stdout, "{}", stage_table()); // JSON stands alone
         }
@@ -305,6 +307,11 @@ void declare_commands(std::vector<Command> commands, std::function<std::string()
 }
 
 void run_command_line(int argument_count, char** argument_values) {
+    // A wrong command line is told in JSON too.
+    if (std::any_of(argument_values, argument_values + argument_count,
+                    [](const char* word) { return std::string_view(word) == "--log-json"; })) {
+        log_as_json();
+    }
     const std::string first = argument_count > 1 ? argument_values[1] : "";
     const bool is_name = !first.empty() && !first.starts_with('-');
     const Command* named = is_name ? &command_named(first) : nullptr;

@@ -237,7 +237,8 @@ std::string keys_json() {
 std::string keys_markdown() {
     std::string text = "# The keys of a configuration\n\n"
                        "A configuration is a TOML file. Lengths, angles and the like carry their unit in the key's "
-                       "name. This page is written by `vkfv keys --markdown`; `vkfv explain KEY` tells of one key, "
+                       "name. A length is 0, where its range says so, or from 1 pm to 1000 km. This page is written by "
+                       "`vkfv keys --markdown`; `vkfv explain KEY` tells of one key, "
                        "`vkfv template` prints a configuration with all of them, `vkfv keys --schema` a JSON Schema "
                        "for editors.\n";
     for (const KeyTable* table : key_tables()) {

@@ -7,6 +7,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cctype>
 
 namespace vkfv {
 
@@ -181,8 +182,10 @@ void read_sweep(const TomlTable& root, Configuration& configuration) {
         }
         // The last word of the key, unless there is a better one.
         parameter.label = one.optional_string(label.name).value_or(parameter.key.substr(parameter.key.rfind('.') + 1));
-        if (parameter.label.find_first_of("/\\=") != std::string::npos) {
-            one.fail(label.name, "a word without '/', '\\' and '='", "Folders are named after it.");
+        const auto is_control = [](char character) { return std::iscntrl(static_cast<unsigned char>(character)) != 0; };
+        if (parameter.label.find_first_of("/\\=") != std::string::npos ||
+            std::ranges::any_of(parameter.label, is_control)) {
+            one.fail(label.name, "a word without '/', '\\', '=' and control characters", "Folders are named after it.");
         }
         parameter.values = one.value_texts(values.name);
         sweep.parameters.push_back(std::move(parameter));

@@ -2,6 +2,7 @@
 
 #include "core/mathematics/units.hpp"
 #include "core/messages/error.hpp"
+#include "core/messages/heartbeat.hpp"
 #include "core/messages/interruption.hpp"
 #include "core/threads/job_queue.hpp"
 #include "scan/checkpoint_files.hpp"
@@ -75,6 +76,7 @@ StackSummary run_stack(const trace::Tracer& tracer, ImageStore& store, Progress&
     }
     const int images = static_cast<int>(of_shard.size());
     progress.begin(images, summary.kept);
+    const CountedWork work(static_cast<double>(to_trace.size()));
 
     const auto tell_what_is_stored = [&] {
         say_when_interrupted(fmt::format("{} of {} images are stored in {}: give the same command again to continue.",
@@ -90,8 +92,8 @@ StackSummary run_stack(const trace::Tracer& tracer, ImageStore& store, Progress&
             throw;
         } catch (const std::runtime_error& error) {
             const std::scoped_lock lock(counting);
-            throw RunError(fmt::format("{}. {} of {} images are stored in {}: free the disk, then give the same "
-                                       "command again to continue",
+            throw RunError(fmt::format("{}. {} of {} images are stored in {}. When that is mended, the same command "
+                                       "continues",
                                        error.what(), summary.kept + summary.traced, images, store.folder().string()));
         }
         checkpoints->drop(static_cast<std::uint32_t>(image));
@@ -156,6 +158,7 @@ StackSummary run_stack(const trace::Tracer& tracer, ImageStore& store, Progress&
     }
     writing.finish();
     if (shard.is_whole()) {
+        store.restore_configuration();
         store.write_ledger();
     }
     progress.end();

@@ -29,16 +29,6 @@ std::vector<std::string> lines_of(std::string_view text) {
     return lines;
 }
 
-std::string identity_of(std::string_view stack_text) {
-    std::string identity;
-    for (const std::string& line : lines_of(stack_text)) {
-        if (line.starts_with(identity_prefix)) {
-            identity += line.substr(identity_prefix.size()) + "\n";
-        }
-    }
-    return identity;
-}
-
 // How messages name the table of a header line; arrays: how many tables there were of each array so far. "[[source]]"
 // becomes "source[1]" if it is the second, and "[source.spectrum]" below it "source[1].spectrum".
 std::string table_of(const std::string& header, std::map<std::string, int>& arrays) {
@@ -73,6 +63,22 @@ std::map<std::string, std::string> values_by_key(std::string_view identity) {
 }
 
 } // namespace
+
+std::string identity_in(std::string_view stack_text) {
+    std::string identity;
+    for (const std::string& line : lines_of(stack_text)) {
+        if (line.starts_with(identity_prefix)) {
+            identity += line.substr(identity_prefix.size()) + "\n";
+        }
+    }
+    return identity;
+}
+
+std::string digest_in(std::string_view stack_text) {
+    const auto place = stack_text.find(digest_label);
+    return std::string(place == std::string_view::npos ? std::string_view()
+                                                       : stack_text.substr(place + digest_label.size(), digest_digits));
+}
 
 std::string stack_text(const StackDescription& description) {
     std::string text =
@@ -110,7 +116,7 @@ std::string identity_differences(std::string_view there, std::string_view here) 
 
 std::string stored_identity(const fs::path& folder) {
     const fs::path path = folder / configuration_name;
-    std::string identity = identity_of(read_file(path, {.expected = "the configuration of a stack"}));
+    std::string identity = identity_in(read_file(path, {.expected = "the configuration of a stack"}));
     if (identity.empty()) {
         refuse_file(path, "", "a file without the identity of a stack", "the stack.toml of a stack that vkfv traced",
                     "Give another --out: the configuration belongs outside of the output folder.");
@@ -119,9 +125,7 @@ std::string stored_identity(const fs::path& folder) {
 }
 
 std::string stored_digest(const fs::path& folder) {
-    const std::string text = read_file(folder / configuration_name);
-    const auto place = text.find(digest_label);
-    return place == std::string::npos ? "" : text.substr(place + digest_label.size(), digest_digits);
+    return digest_in(read_file(folder / configuration_name));
 }
 
 } // namespace vkfv::scan

@@ -14,6 +14,11 @@ inline constexpr std::string_view configuration_name = "stack.toml";
 // stack.toml: the configuration, and above it the identity as comments.
 std::string stack_text(const StackDescription& description);
 
+// The identity that such a text has, as StackDescription has it; empty: it has none. Likewise the digest that it
+// states.
+std::string identity_in(std::string_view stack_text);
+std::string digest_in(std::string_view stack_text);
+
 // The identity of the stack in a folder, as StackDescription has it. Throws InputError if there is none.
 std::string stored_identity(const std::filesystem::path& folder);
 // Its digest; empty if there is none. Throws InputError if the file cannot be read.

@@ -5,9 +5,11 @@
 #include "core/mathematics/units.hpp"
 #include "core/messages/error.hpp"
 #include "images/image_file.hpp"
+#include "scan/repair.hpp"
 #include "scan/stack_identity.hpp"
 
 #include <fmt/format.h>
+#include <spdlog/spdlog.h>
 
 #include <algorithm>
 #include <cmath>
@@ -188,6 +190,34 @@ Grid<float> read_frame(const fs::path& folder, int image, double z) {
     return std::move(read_whole_frame(folder, image, z).image.values);
 }
 
+std::vector<SealedImage> sealed_images(const fs::path& folder) {
+    std::vector<SealedImage> images;
+    std::error_code error;
+    for (fs::directory_iterator entry(folder / images_name, error), end; !error && entry != end;
+         entry.increment(error)) {
+        if (!is_unfinished_file(entry->path())) {
+            images.emplace_back().name = fs::path(images_name) / entry->path().filename();
+        }
+    }
+    std::ranges::sort(images, {}, &SealedImage::name);
+    for (SealedImage& image : images) {
+        try {
+            const std::string bytes = read_file(folder / image.name);
+            image.whole = seal_is_whole(bytes);
+            image.damage = image.whole ? "" : "is not the file that was written";
+            if (image.whole) {
+                const std::string text = images::parse_tiff(bytes, image.name).description;
+                image.digest = described(text, "stack");
+                image.ledger_row = described(text, "ledger_row");
+            }
+        } catch (const InputError& problem) {
+            image.whole = false;
+            image.damage = problem.problem().found;
+        }
+    }
+    return images;
+}
+
 Check check_images(const fs::path& folder) {
     Check check;
     std::string digest;
@@ -196,26 +226,16 @@ Check check_images(const fs::path& folder) {
     } catch (const InputError& error) {
         check.damages.push_back({fs::path(configuration_name), error.problem().found});
     }
-    std::vector<fs::path> names;
-    std::error_code error;
-    for (fs::directory_iterator entry(folder / images_name, error), end; !error && entry != end;
-         entry.increment(error)) {
-        if (!is_unfinished_file(entry->path())) {
-            names.push_back(fs::path(images_name) / entry->path().filename());
-        }
+    std::error_code none;
+    if (check.damages.empty() && fs::exists(folder / configuration_copy_name, none) &&
+        checksum_of_file(folder / configuration_copy_name) != checksum_of_file(folder / configuration_name)) {
+        check.damages.push_back(
+            {fs::path(configuration_name), fmt::format("is not what its copy {} says", configuration_copy_name)});
     }
-    std::ranges::sort(names);
-    for (const fs::path& name : names) {
-        check.files.push_back(name.generic_string());
-        try {
-            const std::string bytes = read_file(folder / name);
-            if (!seal_is_whole(bytes)) {
-                check.damages.push_back({name, "is not the file that was written"});
-            } else if (described(images::parse_tiff(bytes, name).description, "stack") != digest) {
-                check.damages.push_back({name, "is an image of another stack"});
-            }
-        } catch (const InputError& error) {
-            check.damages.push_back({name, error.problem().found});
+    for (const SealedImage& image : sealed_images(folder)) {
+        check.files.push_back(image.name.generic_string());
+        if (!image.whole || image.digest != digest) {
+            check.damages.push_back({image.name, image.whole ? "is an image of another stack" : image.damage});
         }
     }
     return check;
@@ -247,7 +267,12 @@ ImageStore::ImageStore(const fs::path& folder, StackDescription description, Sha
     if (fs::exists(folder, none) && !fs::exists(folder / configuration_name, none) &&
         !holds_nothing_but_a_beginning(folder) && !fs::exists(folder / configuration_name, none)) {
         refuse_file(folder, "", fmt::format("a folder with other files and without {}", configuration_name),
-                    "a new folder, an empty one, or that of the same stack", "Give another --out.");
+                    "a new folder, an empty one, or that of the same stack",
+                    fs::exists(folder / configuration_copy_name, none)
+                        ? fmt::format("If {} was lost, vkfv verify {} --repair writes it again; else give another "
+                                      "--out.",
+                                      configuration_name, folder.string())
+                        : "Give another --out.");
     }
     results_ = std::make_unique<ResultFolder>(folder, part_name(shard_));
     {
@@ -270,8 +295,12 @@ void ImageStore::create_or_compare() {
     const fs::path path = folder() / configuration_name;
     const std::string text = stack_text(description_);
     std::error_code none;
-    if (!fs::exists(path, none)) {
+    const auto write = [&] {
         results_->write(configuration_name, text);
+        results_->write(configuration_copy_name, text);
+    };
+    if (!fs::exists(path, none)) {
+        write();
         return;
     }
     const std::string difference = identity_differences(stored_identity(folder()), description_.identity);
@@ -280,10 +309,22 @@ void ImageStore::create_or_compare() {
                     "Give another --out, or remove the folder. What differs:" + difference);
     }
     // What does not touch the images, such as the evaluation, may differ.
-    if (read_file(path) != text) {
-        results_->write(configuration_name, text);
+    const fs::path copy = folder() / configuration_copy_name;
+    if (read_file(path) != text || !fs::exists(copy, none) || read_file(copy) != text) {
+        write();
     } else {
         results_->note(configuration_name, text);
+        results_->note(configuration_copy_name, text);
+    }
+}
+
+void ImageStore::restore_configuration() {
+    const std::string text = stack_text(description_);
+    const fs::path path = folder() / configuration_name;
+    std::error_code none;
+    if (!fs::exists(path, none) || read_file(path) != text) {
+        spdlog::warn("{}: was changed while the stack was traced; it is written again", path.string());
+        results_->write(configuration_name, text);
     }
 }
 

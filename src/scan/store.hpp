@@ -1,6 +1,7 @@
 // The folder of one stack, from the first image to the last, over as many runs as it takes.
 //
 //   stack.toml              the configuration, and in comments the identity: what the images depend on
+//   .stack.toml             a copy of it, for repair.hpp
 //   images/z_0000.tif ...   one exposure each, float32 W per pixel, or a camera's grey values; the file's first row has
 //                           the highest y
 //   partial_0007            an exposure that was ended before its time, if it is a long one: checkpoint_files.hpp
@@ -100,6 +101,8 @@ class ImageStore {
     // is not whole or one of another stack, RunError if the disk fails.
     bool take(int image, const std::filesystem::path& folder);
 
+    // Writes stack.toml again, with a warning, where another program has changed or removed it since. Throws RunError.
+    void restore_configuration();
     // Rewrites ledger.csv in the order of the images. Throws RunError.
     void write_ledger();
     // A line of timings.csv, or of the shard's: see append_timing().
@@ -123,6 +126,18 @@ class ImageStore {
     std::vector<std::string> notes_;       // of each image
     std::vector<std::string> damaged_;
 };
+
+// What an image file says of itself.
+struct SealedImage {
+    std::filesystem::path name; // relative to the stack's folder
+    bool whole = false;         // its bytes are those that were stored
+    std::string damage;         // of one that is not: what it is instead
+    std::string digest;         // of its stack's identity
+    std::string ledger_row;
+};
+
+// Of all files among a stack's images, in the order of their names.
+std::vector<SealedImage> sealed_images(const std::filesystem::path& folder);
 
 // The images of a stack, finished or not: whether each is whole, and one of this stack.
 Check check_images(const std::filesystem::path& folder);

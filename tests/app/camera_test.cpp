@@ -8,6 +8,8 @@
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
+#include <map>
+#include <sstream>
 
 namespace vkfv::test {
 namespace {
@@ -163,6 +165,45 @@ TEST(CameraCommand, WritesFiguresChartsAndImages) {
                              "images.csv", "images/transfer_000_a.tif"}) {
         EXPECT_TRUE(fs::exists(folder / "m" / file)) << file;
     }
+    // The descriptor has the images of the list, each in a set of its own light and time (s there, ns here).
+    std::map<std::string, std::pair<double, double>> listed; // photons and exposure time by file
+    std::istringstream list(read_file(folder / "m/images.csv"));
+    std::string line;
+    std::getline(list, line);
+    while (std::getline(list, line)) {
+        std::istringstream cells(line);
+        std::string file, series, photons, exposure;
+        std::getline(std::getline(std::getline(std::getline(cells, file, ','), series, ','), photons, ','), exposure);
+        listed[file] = {std::stod(photons), std::stod(exposure)};
+    }
+    std::istringstream descriptor(read_file(folder / "m/emva1288.txt"));
+    std::getline(descriptor, line);
+    EXPECT_TRUE(line.starts_with('#'));
+    std::string word;
+    EXPECT_TRUE(std::getline(descriptor, line) && line == "v 3.0");
+    EXPECT_TRUE(std::getline(descriptor, line) && line == "n 12 48 48");
+    double exposure_ns = 0, photons = 0;
+    std::size_t images = 0;
+    while (descriptor >> word) {
+        if (word == "i") {
+            std::string file;
+            descriptor >> file;
+            ASSERT_TRUE(listed.contains(file)) << file;
+            EXPECT_NEAR(listed[file].first, photons, 1e-6 + 1e-9 * photons) << file;
+            EXPECT_NEAR(1e9 * listed[file].second, exposure_ns, 0.1) << file;
+            EXPECT_TRUE(fs::exists(folder / "m" / file)) << file;
+            ++images;
+        } else {
+            ASSERT_TRUE(word == "b" || word == "d") << word;
+            descriptor >> exposure_ns;
+            photons = 0;
+            if (word == "b") {
+                descriptor >> photons;
+                EXPECT_GT(photons, 0);
+            }
+        }
+    }
+    EXPECT_EQ(images, listed.size());
     const auto without = run_program({"camera", "absent.toml"}, folder);
     EXPECT_EQ(without.exit_code, 2);
 }

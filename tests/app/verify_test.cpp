@@ -71,6 +71,54 @@ TEST(Verify, FindsEveryDamagedFileOfAStack) {
     expect_found_and_healed(folder, "out", command);
 }
 
+TEST(Verify, RepairsTheConfigurationOfWholeImagesAlone) {
+    const auto folder = fresh_folder("repair");
+    write_file(folder / "c.toml", small_configuration);
+    ASSERT_EQ(run_program({"--stack", "c.toml", "--quiet"}, folder).exit_code, 0);
+    const fs::path out = folder / "out", stack = out / "stack.toml";
+    const std::string whole = read_file(stack), image = read_file(out / "images/z_0001.tif"),
+                      ledger = read_file(out / "ledger.csv"), copy = read_file(out / ".stack.toml");
+    const auto repaired = [&] { return run_program({"verify", "out", "--repair"}, folder); };
+    const auto refused = [&](const std::string& why) {
+        const auto result = repaired();
+        EXPECT_EQ(result.exit_code, 2) << why;
+        EXPECT_THAT(result.standard_error, AllOf(HasSubstr(why), HasSubstr("Nothing was written")));
+        EXPECT_FALSE(fs::exists(out / "stack.toml.before_repair"));
+    };
+    EXPECT_EQ(repaired().exit_code, 0); // nothing to do
+
+    const std::string edited = replaced(whole, "seed = 7", "seed = 8");
+    write_file(stack, edited);
+    const auto found = run_program({"verify", "out"}, folder);
+    EXPECT_EQ(found.exit_code, 4);
+    EXPECT_THAT(found.standard_error, HasSubstr("vkfv verify out --repair writes stack.toml again"));
+
+    damage(out / "images/z_0001.tif");
+    refused("not the file that was written");
+    write_file(out / "images/z_0001.tif", image);
+    write_file(out / "ledger.csv", replaced(ledger, "\n1,", "\n9,"));
+    refused("rows that the images carry");
+    write_file(out / "ledger.csv", ledger);
+    write_file(out / ".stack.toml", replaced(copy, "#: seed = 7", "#: seed = 8"));
+    refused("an identity of another digest than it states");
+    write_file(out / ".stack.toml", copy);
+
+    const auto done = repaired();
+    EXPECT_EQ(done.exit_code, 0) << done.standard_error;
+    EXPECT_EQ(read_file(stack), whole);
+    EXPECT_EQ(read_file(out / "stack.toml.before_repair"), edited);
+    EXPECT_EQ(run_program({"verify", "out"}, folder).exit_code, 0);
+
+    // What was lost as a whole comes back too, and results say so.
+    fs::remove(stack);
+    EXPECT_EQ(run_program({"verify", "out"}, folder).exit_code, 4);
+    EXPECT_THAT(run_program({"--stack", "c.toml"}, folder).standard_error, HasSubstr("vkfv verify out --repair"));
+    EXPECT_EQ(repaired().exit_code, 0);
+    EXPECT_EQ(read_file(stack), whole);
+    ASSERT_EQ(run_program({"topography", "out"}, folder).exit_code, 0);
+    EXPECT_THAT(read_file(out / "results.json"), HasSubstr("\"repaired\": true"));
+}
+
 TEST(Verify, FindsEveryDamagedFileOfASweep) {
     const auto folder = fresh_folder("sweep");
     write_file(folder / "c.toml", small_configuration + R"(

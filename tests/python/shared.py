@@ -2,7 +2,9 @@
 
 import functools
 import os
+import shutil
 import struct
+import subprocess
 import sys
 import tempfile
 from pathlib import Path
@@ -156,6 +158,22 @@ def foreign() -> vkfv.Stack:
         flat_field=even["flat"],
         topography={"registration": "shift"},
     )
+
+
+@functools.cache
+def repaired() -> vkfv.Stack:
+    """with_camera_and_stage() after its stack.toml was edited and written again."""
+    copy = folder() / "repaired"
+    shutil.copytree(with_camera_and_stage().folder, copy)
+    with (copy / "stack.toml").open("a", encoding="utf-8") as file:
+        file.write("# edited\n")
+    subprocess.run([vkfv.find_program(), "verify", copy, "--repair"], check=True, capture_output=True)
+    return vkfv.evaluate(copy, out=copy)
+
+
+def stacks() -> tuple[vkfv.Stack, ...]:
+    """Between them they have all files and figures that there are."""
+    return tilted(), with_camera_and_stage(), evaluated(), foreign(), repaired()
 
 
 def program_environment() -> dict[str, str]:

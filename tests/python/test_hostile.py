@@ -1,9 +1,14 @@
 """The program among unlucky circumstances: limits, closed descriptors, names that a terminal would obey."""
 
+import ctypes
+import hashlib
+import json
 import os
 import resource
+import select
 import subprocess
 import tempfile
+import time
 import unittest
 from pathlib import Path
 
@@ -21,6 +26,13 @@ def run(*arguments, before=None, **environment):
         env={**os.environ, **environment},
         check=False,
     )
+
+
+def obey_permissions():
+    """Root reads and writes what it likes, unless these two capabilities are gone."""
+    drop_capability, override, read_search = 24, 1, 2
+    for capability in (override, read_search):
+        ctypes.CDLL(None).prctl(drop_capability, capability, 0, 0, 0)
 
 
 class HostileTest(unittest.TestCase):
@@ -91,6 +103,114 @@ class HostileTest(unittest.TestCase):
         done = run("compare", surface, surface, "--out", shared.folder() / "same")
         self.assertEqual(done.returncode, 0, done.stderr)
         self.assertTrue(Path(shared.folder() / "same" / "compare.svg").exists())
+
+    def test_lengths_are_those_that_something_has(self):
+        for setting in ("detector.size_mm=1e-310", "objective.focal_length_mm=1e12", "scan.z_stop_um=1e300"):
+            done = run("check", shared.configuration(), "--set", setting)
+            self.assertEqual(done.returncode, 2, (setting, done.stderr))
+            self.assertIn(b"(1 pm)", done.stderr)
+
+    def test_a_folder_whose_name_is_no_text(self):
+        done = run("stack", shared.configuration(), "--out", os.fsdecode(b"bytes\xff"), "--rays", "1e3")
+        self.assertEqual(done.returncode, 2, done.stderr)
+        self.assertIn(b"UTF-8", done.stderr)
+
+    def test_permissions_are_told_as_such(self):
+        surface = shared.tilted().folder / "topography.x3p"
+        closed = shared.folder() / "closed"
+        closed.mkdir()
+        closed.chmod(0o555)
+        hidden = shared.folder() / "hidden"
+        hidden.mkdir()
+        (hidden / "c.toml").write_bytes(shared.configuration().read_bytes())
+        hidden.chmod(0)
+        try:
+            for command, code in (
+                (("surface", surface, "--out", closed / "s.csv"), 4),
+                (("surface", surface, "--out", closed / "below" / "s.csv"), 4),
+                (("stack", shared.configuration(), "--rays", "1e3", "--out", closed / "stack"), 4),
+                (("image", shared.configuration(), "--z", "0", "--rays", "1e3", "--out", closed / "i.tif"), 4),
+                (("check", hidden / "c.toml"), 2),
+                (("surface", hidden / "s.x3p"), 2),
+                (("verify", hidden), 4),
+            ):
+                done = run(*command, before=obey_permissions)
+                self.assertEqual(done.returncode, code, (command, done.stderr))
+                self.assertIn(b"Permission denied", done.stderr, command)
+                self.assertNotIn(b"install vkfv again", done.stderr, command)
+        finally:
+            closed.chmod(0o755)
+            hidden.chmod(0o755)
+
+    def test_a_link_to_another_file_is_not_emptied(self):
+        precious = shared.folder() / "precious.txt"
+        precious.write_text("kept", encoding="utf-8")
+        (shared.folder() / ".linked.csv.part").hardlink_to(precious)
+        done = run("surface", shared.tilted().folder / "topography.x3p", "--out", "linked.csv")
+        self.assertEqual(done.returncode, 0, done.stderr)
+        self.assertEqual(precious.read_text(encoding="utf-8"), "kept")
+        self.assertTrue((shared.folder() / "linked.csv").exists())
+
+    def test_a_cache_of_another_making_is_none(self):
+        with tempfile.TemporaryDirectory() as cache:
+            first = run("check", shared.configuration(), XDG_CACHE_HOME=cache)
+            kept = [file for file in Path(cache).rglob("*") if file.is_file()]
+            self.assertTrue(kept)
+            mark = b"vkfv cache 3\n"
+            for text in (b"[", b"[]", b'{"files": 3}', b'{"text": 1, "json": 2, "files": [[]], "messages": []}'):
+                for file in kept:
+                    self.assertTrue(file.read_bytes().startswith(mark))
+                    file.write_bytes(mark + hashlib.sha256(text).hexdigest().encode() + text)
+                again = run("check", shared.configuration(), XDG_CACHE_HOME=cache)
+                self.assertEqual((again.returncode, again.stdout), (0, first.stdout), (text, again.stderr))
+
+    def test_a_wrong_command_line_is_told_in_json(self):
+        for words in (("stack", "--log-json", "--no-such"), ("nothing", "--log-json")):
+            done = run(*words)
+            self.assertEqual(done.returncode, 2)
+            self.assertEqual(json.loads(done.stderr.splitlines()[-1])["exit_code"], 2)
+
+    def test_a_long_image_is_told_of_and_forecast(self):
+        """Nobody sits before a silent program for more than ten seconds."""
+        for command in (("stack",), ("image", "--z", "0")):
+            process = subprocess.Popen(
+                [vkfv.find_program(), command[0], shared.configuration(), *command[1:], "--rays", "1e11", "--device",
+                 "host", "--log-json", "--set", 'trace.estimator="forward"', "--out", f"long_{command[0]}"],
+                stderr=subprocess.PIPE,
+                stdout=subprocess.DEVNULL,
+                cwd=shared.folder(),
+            )
+            try:
+                told = None
+                end = time.monotonic() + 60
+                while told is None and time.monotonic() < end:
+                    before = time.monotonic()
+                    self.assertTrue(select.select([process.stderr], [], [], 30)[0])
+                    line = json.loads(process.stderr.readline())
+                    self.assertLess(time.monotonic() - before, 15)
+                    told = line if line.get("event") == "at work" and line.get("share", 0) > 0 else None
+                self.assertIsNotNone(told)
+                self.assertGreater(told["seconds_left"], 3600)
+                self.assertIn("left at this speed", json.loads(process.stderr.readline())["text"])
+            finally:
+                process.kill()
+                process.communicate()
+
+    def test_a_stack_whose_configuration_is_changed_meanwhile(self):
+        out = shared.folder() / "changed"
+        process = subprocess.Popen(
+            [vkfv.find_program(), "stack", shared.configuration(), "--device", "host", "--rays", "2e5", "--out", out],
+            stderr=subprocess.PIPE,
+            stdout=subprocess.DEVNULL,
+        )
+        while not (out / "images" / "z_0000.tif").exists():
+            self.assertIsNone(process.poll())
+            time.sleep(0.01)
+        (out / "stack.toml").write_text("# overwritten\n", encoding="utf-8")
+        _, said = process.communicate(timeout=300)
+        self.assertEqual(process.returncode, 0, said)
+        self.assertIn(b"was changed while the stack was traced", said)
+        self.assertEqual(run("verify", out).returncode, 0)
 
 
 if __name__ == "__main__":

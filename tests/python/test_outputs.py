@@ -75,7 +75,7 @@ class SchemaTest(unittest.TestCase):
 
     def test_results(self):
         """All of the keys are met with, and no other."""
-        stacks = (shared.tilted(), shared.with_camera_and_stage(), shared.evaluated(), shared.foreign())
+        stacks = shared.stacks()
         for stack in stacks:
             validate(stack.results, "results")
         met = set().union(*(stack.results for stack in stacks))
@@ -103,7 +103,7 @@ class SchemaTest(unittest.TestCase):
 
 class FilesTest(unittest.TestCase):
     def test_every_file_is_told_of(self):
-        stacks = (shared.tilted(), shared.with_camera_and_stage(), shared.evaluated(), shared.foreign())
+        stacks = shared.stacks()
         for stack in stacks:
             self.assertEqual(undocumented(stack.folder, "stack"), [])
         # And every file that is told of exists, but for those of runs that are under way.

@@ -162,6 +162,11 @@ int open_unfinished(const fs::path& beside, const fs::path& path) {
         }
         // Meanwhile the other one may have given it its name.
         if (same_file(file.number(), beside)) {
+            struct stat status {};
+            if (::fstat(file.number(), &status) == 0 && status.st_nlink > 1) {
+                ::unlink(beside.c_str()); // it is also another file, whose bytes are not ours to remove
+                continue;
+            }
             if (::ftruncate(file.number(), 0) != 0) {
                 fail_to_write(path, errno);
             }

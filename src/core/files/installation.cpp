@@ -1,5 +1,7 @@
 #include "core/files/installation.hpp"
 
+#include "core/messages/error.hpp"
+
 #include <dlfcn.h>
 #include <elf.h>
 #include <fmt/format.h>
@@ -9,9 +11,11 @@
 
 #include <algorithm>
 #include <bit>
+#include <cerrno>
 #include <cstdint>
 #include <cstring>
 #include <span>
+#include <system_error>
 
 namespace vkfv {
 
@@ -52,11 +56,17 @@ std::vector<fs::path> with_parents(const fs::path& folder) {
 }
 
 std::optional<fs::path> find_installed(const fs::path& relative) {
-    std::error_code none;
+    fs::path refused;
     for (const auto& folder : with_parents(own_file().parent_path())) {
-        if (fs::exists(folder / relative, none)) {
+        std::error_code error;
+        if (fs::exists(folder / relative, error)) {
             return folder / relative;
         }
+        refused = refused.empty() && error == std::errc::permission_denied ? folder / relative : refused;
+    }
+    if (!refused.empty()) {
+        throw RunError(fmt::format("{}: {}. Give yourself the permission to read it, and the folders above it",
+                                   refused.string(), std::generic_category().message(EACCES)));
     }
     return std::nullopt;
 }

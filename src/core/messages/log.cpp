@@ -1,5 +1,6 @@
 #include "core/messages/log.hpp"
 
+#include "core/messages/heartbeat.hpp"
 #include "core/messages/interruption.hpp"
 
 #include <fmt/chrono.h>
@@ -74,6 +75,12 @@ class SafeMessage final : public spdlog::custom_flag_formatter {
     std::unique_ptr<custom_flag_formatter> clone() const override { return std::make_unique<SafeMessage>(); }
 };
 
+// What the log says delays the next heartbeat.
+class HeartbeatDelay final : public spdlog::sinks::base_sink<std::mutex> {
+    void sink_it_(const spdlog::details::log_msg&) override { note_that_something_was_said(); }
+    void flush_() override {}
+};
+
 } // namespace
 
 struct MessagesHeard::Ear final : spdlog::sinks::base_sink<std::mutex> {
@@ -105,6 +112,7 @@ std::vector<MessagesHeard::Message> MessagesHeard::messages() const {
 
 void open_log() {
     spdlog::set_default_logger(spdlog::stderr_color_mt("vkfv"));
+    spdlog::default_logger()->sinks().push_back(std::make_shared<HeartbeatDelay>());
     auto formatter = std::make_unique<spdlog::pattern_formatter>();
     formatter->add_flag<SafeMessage>('*').set_pattern("%^%l%$: %*");
     spdlog::set_formatter(std::move(formatter));
@@ -130,6 +138,7 @@ std::string json_line(std::string_view kind, std::string_view name, const LogFie
 
 void log_event(std::string_view name, const LogFields& fields) {
     if (lines_as_json) {
+        note_that_something_was_said();
         std::fputs((json_line("event", name, fields) + "\n").c_str(), stderr);
     }
 }

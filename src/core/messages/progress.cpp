@@ -59,12 +59,15 @@ Progress Progress::on_standard_error(bool quiet) {
 }
 
 Progress::~Progress() {
+    tell_heartbeats_by({});
     if (line_open_) {
         *stream_ << '\n' << std::flush;
     }
 }
 
 void Progress::begin(int total, int done) {
+    tell_heartbeats_by([this](const HeartbeatState& state) { beat(state); });
+    const std::scoped_lock lock(mutex_);
     total_ = total;
     done_ = done;
     rays_ = 0;
@@ -81,6 +84,7 @@ void Progress::begin(int total, int done) {
 }
 
 void Progress::advance(std::uint64_t rays, const LogFields& fields) {
+    const std::scoped_lock lock(mutex_);
     ++done_;
     rays_ += rays;
     const auto now = clock_();
@@ -106,6 +110,8 @@ void Progress::advance(std::uint64_t rays, const LogFields& fields) {
 }
 
 void Progress::end() {
+    tell_heartbeats_by({});
+    const std::scoped_lock lock(mutex_);
     if (rays_ == 0 && window_.size() <= 1) {
         return;
     }
@@ -121,6 +127,22 @@ void Progress::end() {
          true);
     window_.clear();
     rays_ = 0;
+}
+
+void Progress::beat(const HeartbeatState& state) {
+    const std::scoped_lock lock(mutex_);
+    if (style_ == Style::json) {
+        tell("at work", {{"done", std::int64_t{done_}},
+                         {"images", std::int64_t{total_}},
+                         {"seconds", state.seconds},
+                         {"share", state.share},
+                         {"seconds_left", state.seconds_left}});
+    } else {
+        show(state.share > 0
+                 ? fmt::format("{:.2g} % of the work  {} left", 100 * state.share, duration_text(state.seconds_left))
+                 : fmt::format("at work for {}", duration_text(state.seconds)),
+             false);
+    }
 }
 
 double Progress::rays_per_second() const {
@@ -139,6 +161,7 @@ std::string Progress::figures() const {
 }
 
 void Progress::tell(const char* event, const LogFields& fields) {
+    note_that_something_was_said();
     *stream_ << json_line("event", event, fields) + "\n" << std::flush;
 }
 
@@ -147,6 +170,7 @@ void Progress::show(const std::string& text, bool last) {
         return;
     }
     shown_ = clock_();
+    note_that_something_was_said();
     std::string line = fmt::format("images {}/{}", done_, total_);
     if (!text.empty()) {
         line += "  " + text;

@@ -1,6 +1,7 @@
 // How far a run of many images has come: one line that renews itself on a terminal, plain lines elsewhere.
 #pragma once
 
+#include "core/messages/heartbeat.hpp"
 #include "core/messages/log.hpp"
 
 #include <chrono>
@@ -8,12 +9,14 @@
 #include <deque>
 #include <functional>
 #include <iosfwd>
+#include <mutex>
 #include <optional>
 #include <string>
 
 namespace vkfv {
 
-// Reports one job at a time: begin, advance after each image, end. Not for several threads at once.
+// Reports one job at a time: begin, advance after each image, end. While a job goes on, heartbeats are told in the same
+// way.
 class Progress {
   public:
     enum class Style {
@@ -39,6 +42,8 @@ class Progress {
     void advance(std::uint64_t rays, const LogFields& fields = {});
     // Reports the time the job took. Does nothing for a job without a single advance.
     void end();
+    // The images done, how much of the work of all is, and the time left.
+    void beat(const HeartbeatState& state);
 
   private:
     struct Mark {
@@ -53,6 +58,7 @@ class Progress {
     void tell(const char* event, const LogFields& fields);
     void show(const std::string& text, bool last);
 
+    std::mutex mutex_; // of all that follows
     std::ostream* stream_;
     Style style_;
     Clock clock_;

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <chrono>
+#include <mutex>
 #include <vector>
 
 namespace vkfv {
@@ -18,6 +19,7 @@ struct Stage {
 };
 
 struct Stages {
+    std::mutex mutex; // of all that follows
     std::vector<Stage> all;
     std::size_t now = 0;
     Clock::time_point since{};
@@ -44,6 +46,7 @@ double seconds(Clock::duration time) {
 
 void enter_stage(std::string_view name) {
     Stages& known = stages();
+    const std::scoped_lock lock(known.mutex);
     known.leave();
     const auto found = std::ranges::find(known.all, name, &Stage::name);
     known.now = static_cast<std::size_t>(found - known.all.begin());
@@ -52,8 +55,15 @@ void enter_stage(std::string_view name) {
     }
 }
 
+std::pair<std::string, Clock::time_point> stage_now() {
+    Stages& known = stages();
+    const std::scoped_lock lock(known.mutex);
+    return {known.all.empty() ? std::string() : known.all[known.now].name, known.since};
+}
+
 std::string stage_table() {
     Stages& known = stages();
+    const std::scoped_lock lock(known.mutex);
     known.leave();
     Clock::duration sum{};
     for (const Stage& stage : known.all) {

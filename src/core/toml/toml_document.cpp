@@ -126,6 +126,11 @@ toml::table parse_override(const TomlOverride& given) {
         try {
             return as_document(toml_quoted(given.value));
         } catch (const toml::parse_error&) {
+            throw InputError({.where = {.file = given.origin},
+                              .key = given.key,
+                              .found = "bytes that are no UTF-8",
+                              .expected = "text in UTF-8, as a configuration is written in",
+                              .remedy = "Give another text; rename the folder or file whose name this is."});
         }
     }
     throw InputError({.where = {.file = given.origin},

@@ -115,13 +115,17 @@ std::optional<double> TomlTable::optional_number(std::string_view key, const Num
         return std::nullopt;
     }
     const auto value = as_number(*node);
-    if (value && range.contains(*value)) {
-        return value;
-    }
     const std::string path = dotted(state_->path, key);
-    state_->note(key, node, described("a finite number", range),
-                 value ? remedy_for_number(path, key, *value, range) : fmt::format("Correct {}.", path));
-    return std::nullopt;
+    if (!value || !range.contains(*value)) {
+        state_->note(key, node, described("a finite number", range),
+                     value ? remedy_for_number(path, key, *value, range) : fmt::format("Correct {}.", path));
+        return std::nullopt;
+    }
+    if (const auto expected = expected_length(key, *value)) {
+        state_->note(key, node, *expected, fmt::format("Correct {}.", path));
+        return std::nullopt;
+    }
+    return value;
 }
 
 double TomlTable::number(std::string_view key, const NumberRange& range) const {
@@ -324,6 +328,10 @@ std::optional<std::vector<double>> TomlTable::optional_numbers(std::string_view 
             const std::string name = fmt::format("{}[{}]", key, values.size());
             state_->note(name, &element, described("a finite number", range),
                          value ? remedy_for_number("this element", name, *value, range) : "Correct this element.");
+            return std::nullopt;
+        }
+        if (const auto expected_of_it = expected_length(key, *value)) {
+            state_->note(fmt::format("{}[{}]", key, values.size()), &element, *expected_of_it, "Correct this element.");
             return std::nullopt;
         }
         values.push_back(*value);

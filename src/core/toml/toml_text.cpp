@@ -30,6 +30,21 @@ std::string shortest_toml(double value) {
     return text.find_first_of(".e") == std::string::npos ? text + ".0" : text;
 }
 
+std::optional<std::string> expected_length(std::string_view key, double value) {
+    const std::string_view name = key.substr(0, key.find('['));
+    const bool in_um = name.ends_with("_um");
+    if ((!in_um && !name.ends_with("_mm")) || value == 0) {
+        return std::nullopt;
+    }
+    const double shortest = in_um ? 1e-6 : 1e-9, longest = in_um ? 1e12 : 1e9;
+    const double length = std::abs(value);
+    if (length >= shortest && length <= longest) {
+        return std::nullopt;
+    }
+    return fmt::format("a length that can be, 0 or from {:g} (1 pm) to {:g} {} (1000 km)", shortest, longest,
+                       in_um ? "um" : "mm");
+}
+
 std::optional<std::string> remedy_for_length_um(double value, const NumberRange& range) {
     constexpr double um_per_nm = 1e-3;
     if (!(value > range.maximum && range.contains(value * um_per_nm))) {

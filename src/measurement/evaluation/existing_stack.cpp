@@ -3,6 +3,7 @@
 #include "measurement/scene/assembly.hpp"
 #include "measurement/scene/stage_figures.hpp"
 #include "report/declared_figures.hpp"
+#include "scan/repair.hpp"
 #include "scan/store.hpp"
 #include "specimen/kinds.hpp"
 #include "topography/stack_faults.hpp"
@@ -230,6 +231,9 @@ EvaluatedStack evaluate_own_stack(const OwnStack& stack) {
                   {"images", positions.size()},
                   {"rays_per_image", trace::launched_rays(configuration.trace, configuration.instrument)},
                   {"seed", configuration.trace.seed}};
+    }
+    if (scan::was_repaired(stack.folder)) {
+        origin["repaired"] = true;
     }
     return {.evaluation = evaluation.finish(truth_on_pixels(instrument, configuration, specimen), configuration.band,
                                             field, specimen::feature_of(configuration.specimen->shape)),

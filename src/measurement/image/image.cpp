@@ -2,6 +2,7 @@
 
 #include "core/files/file.hpp"
 #include "core/mathematics/units.hpp"
+#include "core/messages/heartbeat.hpp"
 #include "core/messages/stages.hpp"
 #include "measurement/image/camera_images.hpp"
 #include "measurement/scene/assembly.hpp"
@@ -87,6 +88,7 @@ ImageResult measure_image(const Configuration& configuration, double focal_heigh
     const auto instrument = instrument_for(configuration, specimen, focal_height);
     auto checkpoint = file;
     checkpoint += ".partial";
+    const CountedWork work(1);
     ImageResult result{.exposure = expose(configuration, devices, instrument, specimen, focal_height, checkpoint),
                        .focal_height = focal_height,
                        .file = file,

@@ -3,6 +3,8 @@
 #include "core/mathematics/units.hpp"
 #include "measurement/image/camera_report.hpp"
 #include "measurement/scene/assembly.hpp"
+#include "measurement/scene/disk_space.hpp"
+#include "measurement/scene/host_memory.hpp"
 #include "measurement/scene/stage_figures.hpp"
 #include "measurement/scene/wave_limits.hpp"
 #include "optics/instrument/image_quality.hpp"
@@ -122,6 +124,12 @@ FigureGroup figures_of_waves(const optics::WaveOptions& options, const optics::I
     std::uint64_t memory = 0; // each source's light is sorted by itself
     for (const WaveLimits& light : of_lights) {
         memory += trace::wave_memory(light.cells, light.parts, instrument.detector_pixels()).all();
+    }
+    if (const std::uint64_t there = memory_of_host(); memory > there) {
+        warnings.push_back(
+            fmt::format("Images as waves make them take {} of memory, and this machine has {}. Take fewer "
+                        "detector.pixels or fewer diffraction.cells, or a device that has as much.",
+                        bytes_text(memory), bytes_text(there)));
     }
     const auto error_of = [&](std::size_t point) { return limits.points[point].error.difference; };
     return {"Images as waves make them, within two depths of field",

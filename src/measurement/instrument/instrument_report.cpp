@@ -63,15 +63,22 @@ std::optional<KeptReport> read_kept(const std::string& name) {
     if (bytes.empty()) {
         return std::nullopt;
     }
-    // Its checksum holds: this program has written it.
-    const Json json = Json::parse(std::string_view(reinterpret_cast<const char*>(bytes.data()), bytes.size()));
-    KeptReport kept{.files = {}, .messages = {}, .report = {.text = json["text"], .json = json["json"]}};
-    for (const Json& file : json["files"]) {
-        kept.files.push_back(
-            {.path = file[0], .device = file[1], .number = file[2], .bytes = file[3], .changed = file[4]});
-    }
-    for (const Json& message : json["messages"]) {
-        kept.messages.push_back({.level = message[0], .text = message[1]});
+    KeptReport kept;
+    try {
+        const Json json = Json::parse(std::string_view(reinterpret_cast<const char*>(bytes.data()), bytes.size()));
+        kept.report = {.text = json.at("text"), .json = json.at("json")};
+        for (const Json& file : json.at("files")) {
+            kept.files.push_back({.path = file.at(0),
+                                  .device = file.at(1),
+                                  .number = file.at(2),
+                                  .bytes = file.at(3),
+                                  .changed = file.at(4)});
+        }
+        for (const Json& message : json.at("messages")) {
+            kept.messages.push_back({.level = message.at(0), .text = message.at(1)});
+        }
+    } catch (const Json::exception&) { // whole, and yet of another making: a cache is made anew
+        return std::nullopt;
     }
     return kept;
 }

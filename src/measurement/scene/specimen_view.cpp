@@ -7,6 +7,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <limits>
 #include <numeric>
 
 namespace vkfv::measurement {
@@ -77,6 +78,14 @@ std::vector<std::string> warning_of_lost_light(const trace::Image& image) {
                                       : fmt::format(" Most of it ends as \"{}\" ({} of what is emitted).", most->name,
                                                     percent(most->power / ledger.emitted));
         return {fmt::format("No light reaches the detector.{} {}; or launch more rays.", where, likely_causes)};
+    }
+    const double brightest = *std::ranges::max_element(image.flux.values);
+    if (brightest < std::numeric_limits<float>::min()) {
+        return {
+            fmt::format("The brightest pixel has {:.3g} W, and an image holds no less than {:.3g} W: its pixels are 0 "
+                        "or lose their digits. A transmittance or reflectance may be too small; source.flux_W "
+                        "scales all light.",
+                        brightest, std::numeric_limits<float>::min())};
     }
     double beside = 0, met = 0;
     for (const auto& entry : ledger.entries) {

@@ -24,8 +24,8 @@ Relief relief_of(const specimen::Specimen& specimen, ImageSize pixels, double pi
 // A sentence where the specimen fills less than half of the field.
 std::vector<std::string> warning_of_sparse_field(const specimen::Specimen& specimen, const Relief& relief);
 
-// A sentence where no light was detected, or nearly all that came as far fell beside the specimen: where it went, and
-// what that may come from.
+// A sentence where no light was detected, or less than the numbers of an image hold, or where nearly all that came as
+// far fell beside the specimen: where it went, and what that may come from.
 std::vector<std::string> warning_of_lost_light(const trace::Image& image);
 
 } // namespace vkfv::measurement

@@ -6,13 +6,12 @@
 #include "measurement/image/exposure.hpp"
 #include "measurement/scene/assembly.hpp"
 #include "measurement/scene/disk_space.hpp"
+#include "measurement/scene/host_memory.hpp"
 #include "measurement/scene/working_devices.hpp"
 #include "scan/store.hpp"
 #include "vulkan/device.hpp"
 
 #include <fmt/format.h>
-
-#include <unistd.h>
 
 #include <algorithm>
 #include <cmath>
@@ -41,10 +40,6 @@ std::uint64_t peak_memory() {
         }
     }
     return 0;
-}
-
-std::uint64_t memory_there() {
-    return static_cast<std::uint64_t>(::sysconf(_SC_PHYS_PAGES)) * static_cast<std::uint64_t>(::sysconf(_SC_PAGESIZE));
 }
 
 struct Probe {
@@ -146,7 +141,7 @@ Forecast forecast(const Configuration& configuration) {
     result.device_memory = probe.device_memory;
     result.device_memory_there = probe.device_memory_there;
     result.host_memory = peak_memory() + (configuration.scan ? bytes_a_pixel_of_run * pixels.count() : 0);
-    result.host_memory_there = memory_there();
+    result.host_memory_there = memory_of_host();
     result.disk = static_cast<std::uint64_t>(result.images) * image_bytes(pixels) +
                   (configuration.scan ? results_bytes(configuration) : 0);
     result.disk_there = free_bytes(configuration.output_directory);

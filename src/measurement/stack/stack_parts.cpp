@@ -8,6 +8,7 @@
 #include "measurement/image/exposure.hpp"
 #include "measurement/scene/assembly.hpp"
 #include "measurement/scene/stage_figures.hpp"
+#include "scan/repair.hpp"
 #include "scan/stack_file.hpp"
 #include "specimen/geometry_digest.hpp"
 #include "specimen/kinds.hpp"
@@ -124,6 +125,9 @@ EvaluatedStack GrowingEvaluation::finish(scan::ImageStore& store, const trace::T
         }
     }
     warn_of_noise(configuration, stack.evaluation);
+    if (scan::was_repaired(store.folder())) {
+        stack.origin["repaired"] = true;
+    }
     if (configuration.stage) {
         stack.origin["stage"] = stage_figures(configuration);
     }

@@ -10,7 +10,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <ranges>
 
 namespace vkfv::specimen {
 namespace {
@@ -137,8 +136,10 @@ Mesh Points::mesh(const SourceLocation& mention) const {
         require_um(false, mention, "longest_edge_um", longest_edge,
                    fmt::format("a length that leaves at least one of {} triangles", left_out));
     }
-    const auto repeated = std::ssize(points) - std::ranges::count_if(std::views::iota(std::size_t{0}, place.size()),
-                                                                     [&](std::size_t k) { return place[k] == k; });
+    std::size_t repeated = 0;
+    for (std::size_t k = 0; k < place.size(); ++k) {
+        repeated += place[k] != k ? 1 : 0;
+    }
     points = with_mean_heights(std::move(points), place);
     if (height_unit > 0) {
         for (glm::dvec3& point : points) {

@@ -1,5 +1,7 @@
 #include "trace/device/device_exposures.hpp"
 
+#include "core/messages/heartbeat.hpp"
+
 #include <algorithm>
 #include <chrono>
 
@@ -39,6 +41,12 @@ void DeviceExposures::give_back(std::size_t slot) const {
     given_back_.notify_one();
 }
 
+std::uint64_t DeviceExposures::submitted(DeviceExposure& exposure, std::uint64_t first, std::uint64_t end) const {
+    const std::uint64_t done = exposure.submit(first, end);
+    advance_work(static_cast<double>(done - first) / static_cast<double>(units()));
+    return done;
+}
+
 void DeviceExposures::trace(DeviceExposure& exposure, std::uint32_t image, const Checkpoints* checkpoints) const {
     std::uint64_t done = 0;
     auto found = checkpoints != nullptr ? checkpoints->load(image) : std::nullopt;
@@ -51,7 +59,7 @@ void DeviceExposures::trace(DeviceExposure& exposure, std::uint32_t image, const
     found.reset();
     CheckpointClock clock(checkpoints);
     while (done < units()) {
-        done = exposure.submit(done, units());
+        done = submitted(exposure, done, units());
         if (done < units() && clock.due()) {
             const auto begun = CheckpointClock::Clock::now();
             checkpoints->save(image, {done, exposure.numbers()});
@@ -80,7 +88,7 @@ ExposurePart DeviceExposures::count(FocalPosition position, std::uint32_t image,
     DeviceExposure& exposure = *under_way.exposure;
     exposure.set_out({});
     while (first < end) {
-        first = exposure.submit(first, end);
+        first = submitted(exposure, first, end);
     }
     ExposurePart part{.numbers = exposure.numbers()};
     for (const ExposureWork* work : exposure.works()) {

@@ -71,6 +71,8 @@ class DeviceExposures : public Tracer {
 
     std::size_t take_slot() const;
     void give_back(std::size_t slot) const;
+    // What the exposure submits, counted as work.
+    std::uint64_t submitted(DeviceExposure& exposure, std::uint64_t first, std::uint64_t end) const;
     void trace(DeviceExposure& exposure, std::uint32_t image, const Checkpoints* checkpoints) const;
     Image finished(UnderWay& exposure) const;
 

@@ -1,5 +1,6 @@
 #include "trace/host/host_backward_tracer.hpp"
 
+#include "core/messages/heartbeat.hpp"
 #include "core/threads/threads.hpp"
 #include "specimen/description.hpp"
 #include "trace/host/host_scene.hpp"
@@ -43,6 +44,7 @@ class HostBackwardTracer final : public Tracer {
             on_threads(core_count(), [&](int thread) {
                 for (auto pixel = static_cast<std::size_t>(thread); pixel < own.size(); pixel += workers) {
                     own[pixel] = sum_of_pixel(scene, exposure, static_cast<std::uint32_t>(pixel), randomisation, light);
+                    advance_work(1 / static_cast<double>(sums.size()));
                 }
             });
         }

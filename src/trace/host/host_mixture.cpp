@@ -1,5 +1,6 @@
 #include "trace/host/host_mixture.hpp"
 
+#include "core/messages/heartbeat.hpp"
 #include "trace/interface/image_sum.hpp"
 #include "trace/interface/light_sources.hpp"
 
@@ -14,6 +15,7 @@ class HostMixture final : public Tracer {
     explicit HostMixture(std::vector<std::unique_ptr<Tracer>> tracers) : tracers_(std::move(tracers)) {}
 
     Image expose(FocalPosition position, std::uint32_t image) const override {
+        const PartOfWork of_one_light(1 / static_cast<double>(tracers_.size()));
         Image sum = tracers_.front()->expose(position, image);
         for (std::size_t light = 1; light < tracers_.size(); ++light) {
             add(sum, tracers_[light]->expose(position, image));

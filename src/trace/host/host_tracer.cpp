@@ -1,5 +1,6 @@
 #include "trace/host/host_tracer.hpp"
 
+#include "core/messages/heartbeat.hpp"
 #include "core/threads/threads.hpp"
 #include "optics/instrument/room.hpp"
 #include "specimen/description.hpp"
@@ -23,6 +24,9 @@ namespace vkfv::trace {
 namespace {
 
 using namespace physics::f64;
+
+// Of a thread; several a second.
+constexpr std::uint64_t paths_between_words = 4096;
 
 uvec2 path_of(std::uint64_t index) {
     return {static_cast<uint>(index), static_cast<uint>(index >> 32)};
@@ -89,8 +93,14 @@ class HostTracer final : public Tracer {
         CellLight light(filter_, instrument_.detector_pixels());
         on_threads(core_count(), [&](int thread) {
             const auto worker = static_cast<std::size_t>(thread);
+            std::uint64_t told = worker;
             for (std::uint64_t path = worker; path < options_.rays; path += workers) {
                 trace_path(scene, exposure, path, counts[worker], fates[worker], light);
+                if (path - told >= paths_between_words * workers) {
+                    advance_work(static_cast<double>(path - told) / static_cast<double>(workers) /
+                                 static_cast<double>(options_.rays));
+                    told = path;
+                }
             }
         });
         for (std::size_t worker = 1; worker < workers; ++worker) {
