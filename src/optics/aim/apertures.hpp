@@ -43,8 +43,8 @@ Imaging at_wavelength(Imaging imaging, double spectral);
 // Directions in which a search goes out from the axis: one for a symmetric train, else all round.
 std::vector<glm::dvec2> search_directions(bool symmetric);
 
-// The rim of the cone of light that passes all apertures from a point of the object plane, as radii in direction
-// cosines about the paraxial chief ray.
+// The rim of the cone of light that passes all apertures from a point of the object plane in the reference wavelength,
+// as radii in direction cosines about the paraxial chief ray.
 struct Outline {
     glm::dvec2 position;
     glm::dvec2 centre;         // direction cosines
@@ -68,7 +68,8 @@ std::vector<ConeRay> fill_cone(const Outline& outline, int panels = 1);
 // least. The cone is that of the object plane.
 double least_spot(const Imaging& imaging, const Outline& outline);
 
-// Of physics::Instrument, for light from within field_radius and from heights between lowest and highest.
+// Of physics::Instrument, for light of the reference wavelength from within field_radius and from heights between
+// lowest and highest.
 double gate_radius(const Imaging& imaging, double field_radius, double lowest, double highest);
 
 } // namespace vkfv::optics

@@ -5,6 +5,7 @@
 
 #include "optics/aim/aim.hpp"
 #include "optics/aim/apertures.hpp"
+#include "optics/aim/light_hull.hpp"
 #include "optics/instrument/instrument.hpp"
 
 #include <filesystem>
@@ -63,6 +64,8 @@ struct ImagingTrain {
     int surfaces_before_splitter = 0;
     std::size_t aperture_stop = 0; // of the objective's surfaces
     Imaging imaging;               // the train's surfaces linked
+    // The train of light from the detector, which ends in the plane of the front vertex.
+    std::vector<physics::f64::Surface> from_detector;
 };
 ImagingTrain place_imaging(const InstrumentDescription& description, const AxialLayout& layout);
 
@@ -78,6 +81,30 @@ struct MeasuredImaging {
 };
 MeasuredImaging measure_imaging(const InstrumentDescription& description, const AxialLayout& layout,
                                 const ImagingTrain& imaging);
+
+// What holds all light of the description's source between detector and specimen, over the spectrum and the detector's
+// field, on planes up to the greatest defocus above and below best focus (greatest_of()).
+class DetectorHulls {
+  public:
+    DetectorHulls(const InstrumentDescription& description, const AxialLayout& layout, const ImagingTrain& imaging,
+                  const MeasuredImaging& measured);
+
+    double gate_radius() const;  // of physics::Instrument
+    double field_radius() const; // mm, about the axis: what the detector sees of those planes
+    // Of the exit pupil, a disc of slopes about per_position (1/mm) times the place on the detector.
+    double pupil_radius(double per_position) const;
+    // The least distance from that disc's middle at which light ends, radius: the disc's.
+    double least_pupil_rim(double per_position, double radius) const;
+
+    const Range& spectral() const { return light_.spectral; } // x of physics::Light
+    const Range& heights() const { return heights_; }         // mm, of those planes above the paraxial object plane
+
+  private:
+    DiscLight light_;
+    Range heights_;
+    double working_distance_;
+    double gate_position_;
+};
 
 struct Illumination {
     PlacedSurfaces illuminator; // with its aperture; none for a ring light
@@ -101,7 +128,7 @@ Illumination place_illuminator(const InstrumentDescription& description, const A
 
 // The light the other way. `instrument` has its trains and constants.
 TurnedInstrument turn_round(const InstrumentDescription& description, const AxialLayout& layout,
-                            const ImagingTrain& imaging, const Illumination& illumination,
+                            const ImagingTrain& imaging, const DetectorHulls& hulls, const Illumination& illumination,
                             const Instrument& instrument);
 
 // Every element once, the light's way folded, heights over the plane of best focus.

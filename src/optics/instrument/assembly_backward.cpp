@@ -83,7 +83,7 @@ double with_level_rims(double per_position, const std::vector<Rim>& rims) {
     return per_position - (products - distances * rates / count) / (squares - rates * rates / count);
 }
 
-ExitPupil exit_pupil(const Imaging& imaging, double field_half_width, double field_radius) {
+ExitPupil exit_pupil(const Imaging& imaging, double field_half_width, double field_radius, const DetectorHulls& hulls) {
     glm::dvec2 mean_position(0);
     glm::dvec2 mean_slope(0);
     const auto add = [&](glm::dvec2 field, double times) {
@@ -119,7 +119,12 @@ ExitPupil exit_pupil(const Imaging& imaging, double field_half_width, double fie
         most = std::max(most, distance);
         sum += distance;
     }
-    pupil.radius = outside_margin * most;
+    const double hull = hulls.pupil_radius(pupil.per_position);
+    pupil.radius = std::max(outside_margin * most, hull);
+    if (hulls.spectral().radius() > 0) { // other wavelengths have other rims
+        most = std::max(most, hull);
+        least = std::min(least, hulls.least_pupil_rim(pupil.per_position, pupil.radius));
+    }
     // Of rims that are taken for a circle. Uneven ones would be of no use, nor do harm: the disc holds all light
     // anyway.
     constexpr double level = 0.99;
@@ -159,12 +164,50 @@ SeenSource seen_source(const Imaging& seen, double seen_radius) {
             .inner_radius = inside_margin * seen_radius * std::max(sure_points, 0) / field_points};
 }
 
-PlacedSurfaces detector_to_specimen(const AxialLayout& layout, const ImagingTrain& imaging) {
-    PlacedSurfaces train = reversed(imaging.train);
-    end_in(train, dummy_plane(layout.object_index, layout.front.half_turn(), "front vertex' plane"));
-    link(train, imaging.detector_pose.half_turn());
-    return train;
-}
+// Light between the specimen and the source, and where it crosses as its slopes at the paraxial object plane say:
+// BackwardOptics.
+class SourceLight {
+  public:
+    // to_source must outlive this. reach: the crossing, about as large as expected.
+    SourceLight(const std::vector<Surface>& to_source, const AxialLayout& layout, const DetectorHulls& hulls,
+                double source_position, double reach)
+        : light_{.train = to_source,
+                 .radius = 0,
+                 .distance = {},
+                 .spectral = hulls.spectral(),
+                 .middle = glm::dvec2(0),
+                 .towards = -source_position,
+                 .reach = reach,
+                 .symmetric = !has_displaced(to_source)},
+          source_position_(source_position), working_distance_(layout.working_distance) {}
+
+    // Of light from within field_radius, mm, at any of the heights.
+    double largest_crossing(double field_radius, const Range& heights) const {
+        return greatest_of(from(field_radius, heights), ConePart::rim,
+                           [&](const PassingRay& ray) { return crossing(ray); });
+    }
+    // On the rims of the cones from within field_radius on the object plane; none is larger than `largest`.
+    double least_rim(double field_radius, double largest) const {
+        return largest - greatest_of(from(field_radius, {}), ConePart::rim,
+                                     [&](const PassingRay& ray) { return std::max(0.0, largest - crossing(ray)); });
+    }
+
+  private:
+    DiscLight from(double field_radius, const Range& heights) const {
+        DiscLight light = light_;
+        light.radius = field_radius;
+        light.distance = {working_distance_ - heights.high, working_distance_ - heights.low};
+        return light;
+    }
+    double crossing(const PassingRay& ray) const {
+        const glm::dvec2 place = ray.start + (ray.distance - working_distance_) * ray.start_slope;
+        return glm::length(source_position_ * place + ray.start_slope);
+    }
+
+    DiscLight light_;
+    double source_position_;
+    double working_distance_;
+};
 
 // The outline of a disc of this radius is the last surface; a ring light stands behind its cover glass, if there is
 // one.
@@ -205,8 +248,9 @@ void draw_ring(physics::f64::BackwardOptics& optics, const InstrumentDescription
                        "Use estimator = \"forward\", or another glass.");
             }
         }
-        constexpr double aslant = 2; // light meets the band within 60 degrees of its normal
-        optics.ring.half_width += aslant * description.cover_glass->thickness;
+        // The flatter light meets the band, the farther along it a step aside leads.
+        const double flattest = std::max(optics.ring_cosine, 1e-2);
+        optics.ring.half_width += std::max(2.0, 1 / flattest) * description.cover_glass->thickness;
         optics.ring.fill = 1;
         optics.ring.segments = 1;
         optics.ring.switched_on = 1;
@@ -218,9 +262,9 @@ void draw_ring(physics::f64::BackwardOptics& optics, const InstrumentDescription
 } // namespace
 
 TurnedInstrument turn_round(const InstrumentDescription& description, const AxialLayout& layout,
-                            const ImagingTrain& imaging, const Illumination& illumination,
+                            const ImagingTrain& imaging, const DetectorHulls& hulls, const Illumination& illumination,
                             const Instrument& instrument) {
-    const std::vector<Surface> to_specimen = surfaces_of(detector_to_specimen(layout, imaging));
+    const std::vector<Surface>& to_specimen = imaging.from_detector;
     const SourceDescription& source = description.source;
     const auto to_disc = [&](double radius) {
         return surfaces_of(specimen_to_source(description, layout, illumination, radius));
@@ -235,7 +279,7 @@ TurnedInstrument turn_round(const InstrumentDescription& description, const Axia
     turned.constants.imaging_count = static_cast<int>(to_source.size());
 
     const double field_radius = 1.05 * layout.field_half_diagonal;
-    const ExitPupil pupil = exit_pupil(imaging.imaging, layout.field_corner.x, field_radius);
+    const ExitPupil pupil = exit_pupil(imaging.imaging, layout.field_corner.x, field_radius, hulls);
     auto& optics = turned.optics;
     optics.pupil_radius = pupil.radius;
     turned.pupil_rim = pupil.rim;
@@ -252,23 +296,33 @@ TurnedInstrument turn_round(const InstrumentDescription& description, const Axia
                                   .then(transfer_of_train(to_source));
     optics.source_position = whole.a / (whole.b * layout.object_index.centre);
     optics.object_distance = layout.working_distance;
+    const double seen_radius = field_radius + description.greatest_defocus;
     const auto seen_through = [&](const std::vector<Surface>& train) {
         return seen_source({.train = train,
                             .working_distance = layout.working_distance,
                             .detector_distance = 0,
                             .pupil_curvature = optics.source_position,
                             .symmetric = !has_displaced(train)},
-                           field_radius + description.greatest_defocus);
+                           seen_radius);
     };
     SeenSource seen = seen_through(to_source);
-    optics.source_outer = seen.outer;
-    if (source.rectangle) { // outside is what no point of the circle about it sends, sure what the circle in it does
-        seen = seen_through(to_disc(source.inner_radius()));
-    }
+    constexpr double any_slope = 1; // where light of the reference wavelength does not come from the source
+    const auto light_through = [&](const std::vector<Surface>& train) {
+        return SourceLight(train, layout, hulls, optics.source_position, seen.outer > 0 ? seen.outer : any_slope);
+    };
+    // Light that is scattered more than once may come from beside what the detector sees, as far as seen_radius.
+    optics.source_outer = std::max(seen.outer, light_through(to_source).largest_crossing(
+                                                   std::max(seen_radius, hulls.field_radius()), hulls.heights()));
+    // Sure of a rectangle is what the circle in it sends.
+    const std::vector<Surface> to_inner = source.rectangle ? to_disc(source.inner_radius()) : to_source;
+    seen = source.rectangle ? seen_through(to_inner) : seen;
     // Other wavelengths have other rims, and losses must be traced.
     const bool nothing_sure =
         !description.spectrum.monochromatic() || (instrument.features & physics::f64::FEATURE_LOSSES) != 0;
-    optics.source_inner = nothing_sure ? 0 : seen.inner;
+    if (!nothing_sure && seen.inner > 0) {
+        optics.source_inner =
+            std::min(seen.inner, light_through(to_inner).least_rim(seen.inner_radius, optics.source_outer));
+    }
     optics.inner_field = seen.inner_radius;
     return turned;
 }

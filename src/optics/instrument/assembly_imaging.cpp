@@ -86,6 +86,14 @@ std::size_t aperture_stop_of(const InstrumentDescription& description, const Pla
     return *stop;
 }
 
+PlacedSurfaces train_from_detector(const AxialLayout& layout, const PlacedSurfaces& imaging,
+                                   const Pose& detector_pose) {
+    PlacedSurfaces train = reversed(imaging);
+    end_in(train, dummy_plane(layout.object_index, layout.front.half_turn(), "front vertex' plane"));
+    link(train, detector_pose.half_turn());
+    return train;
+}
+
 } // namespace
 
 ImagingTrain place_imaging(const InstrumentDescription& description, const AxialLayout& layout) {
@@ -125,6 +133,7 @@ ImagingTrain place_imaging(const InstrumentDescription& description, const Axial
                            .then(transfer_to_surface(imaging.train, layout.cover.size() + result.aperture_stop)));
     imaging.pupil_curvature = pupil.curvature / layout.object_index.centre;
     imaging.symmetric = !has_displaced(imaging.train);
+    result.from_detector = surfaces_of(train_from_detector(layout, train, result.detector_pose));
     return result;
 }
 

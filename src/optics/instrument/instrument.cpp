@@ -50,7 +50,7 @@ FirstOrder first_order_of(const InstrumentDescription& description, const AxialL
 }
 
 physics::f64::Instrument constants_of(const InstrumentDescription& description, const AxialLayout& layout,
-                                      const ImagingTrain& imaging, const MeasuredImaging& measured,
+                                      const ImagingTrain& imaging, const DetectorHulls& hulls,
                                       const Illumination& illumination) {
     const Spectrum& spectrum = description.spectrum;
     physics::f64::Instrument constants{};
@@ -75,9 +75,9 @@ physics::f64::Instrument constants_of(const InstrumentDescription& description, 
     constants.gate_position = imaging.imaging.pupil_curvature;
     constants.gate_slope = 1;
     // A little more than the field: aberrations let the detector see past its paraxial edge.
-    constants.gate_radius = gate_radius(imaging.imaging, 1.05 * layout.field_half_diagonal,
-                                        measured.best_focus_offset - description.greatest_defocus,
-                                        measured.best_focus_offset + description.greatest_defocus);
+    constants.gate_radius =
+        std::max(hulls.gate_radius(), gate_radius(imaging.imaging, 1.05 * layout.field_half_diagonal,
+                                                  hulls.heights().low, hulls.heights().high));
     constants.light_field = description.light_field.value_or(LightField{}).record;
     constants.spectrum_centre = spectrum.centre();
     constants.spectrum_half_width = spectrum.half_width();
@@ -127,14 +127,14 @@ void check(const InstrumentDescription& description) {
 
 // The instrument as the trace takes it; without its elements in the room and its turned form.
 Instrument reduce(const InstrumentDescription& description, const AxialLayout& layout, const ImagingTrain& imaging,
-                  const MeasuredImaging& measured, const Illumination& illumination) {
+                  const MeasuredImaging& measured, const DetectorHulls& hulls, const Illumination& illumination) {
     Instrument instrument;
     instrument.surfaces = surfaces_of(illumination.train);
     instrument.surfaces.insert(instrument.surfaces.end(), imaging.imaging.train.begin(), imaging.imaging.train.end());
     name_surfaces(instrument.surface_names, "illumination", illumination.train);
     name_surfaces(instrument.surface_names, "imaging", imaging.train);
     instrument.spectral_bins = description.source.spectrum.value_or(description.spectrum).bins;
-    instrument.constants = constants_of(description, layout, imaging, measured, illumination);
+    instrument.constants = constants_of(description, layout, imaging, hulls, illumination);
     instrument.features = features_of(description, instrument.surfaces);
     if ((instrument.features & physics::f64::FEATURE_LIGHT_FIELD) != 0) { // a ring light passes it by
         instrument.light_field = description.light_field;
@@ -268,12 +268,13 @@ Instrument assemble(const InstrumentDescription& description) {
         InstrumentDescription lit = description;
         lit.source = source;
         const Illumination illumination = source.ring ? place_ring(lit, layout, measured) : illuminator.get();
-        Instrument instrument = reduce(lit, layout, imaging, measured, illumination);
+        const DetectorHulls hulls(lit, layout, imaging, measured);
+        Instrument instrument = reduce(lit, layout, imaging, measured, hulls, illumination);
         if (lit.single_scatter) {
             instrument.single_scatter_aim = single_scatter_aim(lit, imaging.imaging, instrument);
         }
         if (lit.turned) {
-            instrument.turned = turn_round(lit, layout, imaging, illumination, instrument);
+            instrument.turned = turn_round(lit, layout, imaging, hulls, illumination, instrument);
         }
         FoldedElements folded = fold(lit, layout, imaging, measured, illumination);
         instrument.elements = std::move(folded.elements);
