@@ -1,7 +1,7 @@
 #include "measurement/scene/known_truth.hpp"
 
-#include "core/mathematics/pixel_grid.hpp"
 #include "measurement/scene/assembly.hpp"
+#include "optics/instrument/image_quality.hpp"
 #include "specimen/description.hpp"
 #include "specimen/kinds.hpp"
 
@@ -116,6 +116,20 @@ class PixelTruth {
 };
 
 } // namespace
+
+PixelGrid grid_of_image(const optics::Instrument& instrument, const Configuration& configuration, double focal_height) {
+    PixelGrid grid = PixelGrid::centred(configuration.instrument.detector_pixels, instrument.first_order.pixel_pitch);
+    glm::dvec2 shift(0);
+    if (!optics::imaging_of(instrument).symmetric) {
+        shift = optics::PixelMapping(configuration.instrument, instrument).deviation().shift;
+    }
+    if (const auto motion = stage_motion(configuration)) {
+        shift -= motion->mean(focal_height, image_index(configuration, focal_height)).beside;
+    }
+    grid.x0 += shift.x;
+    grid.y0 += shift.y;
+    return grid;
+}
 
 KnownTruth truth_on_pixels(const optics::Instrument& instrument, const Configuration& configuration,
                            const specimen::Specimen& specimen) {

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "configuration/configuration.hpp"
+#include "core/mathematics/pixel_grid.hpp"
 #include "optics/instrument/instrument.hpp"
 #include "optics/instrument/pixel_mapping.hpp"
 #include "specimen/specimen.hpp"
@@ -22,6 +23,10 @@ struct KnownTruth {
     // specimen by its stage while the pixels are in focus.
     optics::MappingDeviation mapping;
 };
+
+// The regular grid of an image of the configuration at this focal height (mm): as that of KnownTruth, but with the
+// stage where it is at this image.
+PixelGrid grid_of_image(const optics::Instrument& instrument, const Configuration& configuration, double focal_height);
 
 // Of the configuration's stack. With a stage that moves the specimen sideways a pixel's place is that at which the
 // specimen stands while the pixel is in focus.
