@@ -5,8 +5,13 @@
 #include "specimen/shape.hpp"
 #include "specimen/specimen.hpp"
 
+#include "core/mathematics/pixel_grid.hpp"
 #include "core/messages/error.hpp"
+#include "surface/height_map.hpp"
 
+#include <glm/glm.hpp>
+
+#include <functional>
 #include <optional>
 
 namespace vkfv::specimen {
@@ -26,8 +31,19 @@ struct Description {
 // are those of the configuration ("specimen.pitch_um").
 Specimen make(const Description& description);
 
+// What a pixel sees of the object plane, mm: a parallelogram.
+struct PixelArea {
+    glm::dvec2 middle = glm::dvec2(0);
+    glm::dvec2 along_row = glm::dvec2(0);    // its sides: from one column to the next,
+    glm::dvec2 along_column = glm::dvec2(0); // and from one row to the next
+};
+
 // Truth on the detector's pixels: the mean of the surface's height over each pixel's area (5 x 5 points), seen from
-// +z (the uppermost surface). Points off the specimen are NaN.
+// +z (the uppermost surface). Points off the specimen are NaN. The map stands on the grid, wherever the pixels look;
+// area_of is called by several threads.
+surface::HeightMap truth(const Specimen& specimen, const PixelGrid& grid,
+                         const std::function<PixelArea(int column, int row)>& area_of);
+// Where the pixels look at the grid's own points.
 surface::HeightMap truth(const Specimen& specimen, int columns, int rows, double x0, double y0, double pitch_x,
                          double pitch_y);
 

@@ -13,14 +13,116 @@ namespace {
 constexpr int subdivision = 5;
 constexpr double off_specimen = -std::numeric_limits<double>::infinity();
 
-// The points of a band of pixel rows.
-struct SamplePoints {
-    double x0, y0, pitch_x, pitch_y; // of the pixels
-    int first_row;                   // of points
-    Grid<double> heights;            // off_specimen where there is none
+// The points of a band of pixel rows, and the height at each: off_specimen where there is none. Places are a regular
+// grid, whose steps are the mean ones along rows and columns, and what pixels look aside of it.
+class SamplePoints {
+  public:
+    SamplePoints(int columns, int first_row, int rows, const std::function<PixelArea(int column, int row)>& area_of)
+        : heights(columns * subdivision, rows * subdivision, off_specimen),
+          places_(columns * subdivision, rows * subdivision) {
+        for (int row = 0; row < rows; ++row) {
+            for (int column = 0; column < columns; ++column) {
+                const PixelArea area = area_of(column, first_row + row);
+                for (int j = 0; j < subdivision; ++j) {
+                    for (int i = 0; i < subdivision; ++i) {
+                        places_(column * subdivision + i, row * subdivision + j) =
+                            area.middle + part_at(i) * area.along_row + part_at(j) * area.along_column;
+                    }
+                }
+            }
+        }
+        measure(area_of(columns / 2, first_row + rows / 2));
+    }
 
-    double x(int column) const { return x0 + ((column + 0.5) / subdivision - 0.5) * pitch_x; }
-    double y(int row) const { return y0 + ((first_row + row + 0.5) / subdivision - 0.5) * pitch_y; }
+    // Calls function(x, y, height) for all points of a rectangle, and for others near it.
+    template <class Function>
+    void each(glm::dvec2 lower, glm::dvec2 upper, Function function) {
+        if (!(upper.x >= lower_.x && lower.x <= upper_.x && upper.y >= lower_.y && lower.y <= upper_.y)) {
+            return;
+        }
+        const Range range = range_of(lower, upper);
+        for (int row = range.row_begin; row < range.row_end; ++row) {
+            for (int column = range.column_begin; column < range.column_end; ++column) {
+                const glm::dvec2& place = places_(column, row);
+                function(place.x, place.y, heights(column, row));
+            }
+        }
+    }
+
+    Grid<double> heights;
+
+  private:
+    struct Range {
+        int column_begin, column_end, row_begin, row_end;
+    };
+
+    static double part_at(int k) { return (k + 0.5) / subdivision - 0.5; }
+
+    glm::dvec2 aside(int column, int row) const { return places_(column, row) - step_ * glm::dvec2(column, row); }
+
+    void measure(const PixelArea& middle) {
+        // Pixels look at right angles to each other but for what is aside.
+        step_ = glm::dvec2(middle.along_row.x, middle.along_column.y) / static_cast<double>(subdivision);
+        lower_ = upper_ = places_(0, 0);
+        const glm::dvec2 origin = places_(0, 0);
+        double steepest = 0;
+        for (int row = 0; row < places_.rows; ++row) {
+            for (int column = 0; column < places_.columns; ++column) {
+                lower_ = glm::min(lower_, places_(column, row));
+                upper_ = glm::max(upper_, places_(column, row));
+                const glm::dvec2 here = aside(column, row);
+                farthest_aside_ = glm::max(farthest_aside_, glm::abs((here - origin) / step_));
+                const glm::dvec2 along = column > 0 ? (here - aside(column - 1, row)) / step_ : glm::dvec2(0);
+                const glm::dvec2 across = row > 0 ? (here - aside(column, row - 1)) / step_ : glm::dvec2(0);
+                for (const glm::dvec2& change : {along, across}) {
+                    steepest = std::max({steepest, std::abs(change.x), std::abs(change.y)});
+                }
+            }
+        }
+        constexpr double rounding = 1e-9;
+        steepest_ = steepest + rounding;
+    }
+
+    int clamped(double value, int limit) const {
+        return static_cast<int>(std::clamp(value, 0.0, static_cast<double>(limit)));
+    }
+
+    // Points whose places may be in the rectangle. From a point q on, a place changes by step_ times the way in columns
+    // and rows, and by at most steepest_ of the sum of both. So with the rectangle's bounds counted from q's place, in
+    // steps, a column within is no further than the bounds and steepest_ times that sum, which is bounded likewise.
+    Range range_of(glm::dvec2 lower, glm::dvec2 upper) const {
+        const int columns = places_.columns;
+        const int rows = places_.rows;
+        const glm::dvec2 middle = 0.5 * (lower + upper);
+        // The point about the rectangle's middle, by a few corrections; that it is near saves time alone.
+        glm::ivec2 q(columns / 2, rows / 2);
+        for (int correction = 0; correction < 3; ++correction) {
+            const glm::dvec2 towards = (middle - aside(q.x, q.y)) / step_;
+            q = {clamped(std::round(towards.x), columns - 1), clamped(std::round(towards.y), rows - 1)};
+        }
+        const glm::dvec2 one = (lower - places_(q.x, q.y)) / step_;
+        const glm::dvec2 other = (upper - places_(q.x, q.y)) / step_;
+        const glm::dvec2 least = glm::min(one, other);
+        const glm::dvec2 most = glm::max(one, other);
+        const glm::dvec2 reach = glm::max(glm::abs(least), glm::abs(most));
+        constexpr double steep = 0.4;
+        glm::dvec2 margin = 2.0 * farthest_aside_;
+        if (steepest_ < steep) {
+            margin = glm::min(margin, glm::dvec2(steepest_ * (reach.x + reach.y) / (1 - 2 * steepest_)));
+        }
+        // One more on either side for rounding; the function decides.
+        return {.column_begin = clamped(std::floor(q.x + least.x - margin.x) - 1, columns),
+                .column_end = clamped(std::ceil(q.x + most.x + margin.x) + 2, columns),
+                .row_begin = clamped(std::floor(q.y + least.y - margin.y) - 1, rows),
+                .row_end = clamped(std::ceil(q.y + most.y + margin.y) + 2, rows)};
+    }
+
+    Grid<glm::dvec2> places_;
+    glm::dvec2 step_ = glm::dvec2(1); // mm, from point to point
+    glm::dvec2 lower_ = glm::dvec2(0);
+    glm::dvec2 upper_ = glm::dvec2(0);
+    glm::dvec2 farthest_aside_ = glm::dvec2(0); // of what is aside, from the first point's; steps
+    double steepest_ = 0; // the most by which what is aside changes from point to point, in steps of its direction
 };
 
 // Twice the signed area of (a, b, p), computed for either order of a and b from the same numbers, so that two
@@ -36,29 +138,8 @@ double edge(const glm::dvec2& a, const glm::dvec2& b, const glm::dvec2& p) {
 struct Fill {
     SamplePoints& points;
 
-    template <class Function>
-    void each(double x_min, double x_max, double y_min, double y_max, Function function) const {
-        const auto index = [](double value, int limit) {
-            return static_cast<int>(std::clamp(value, 0.0, static_cast<double>(limit)));
-        };
-        // One more on either side for rounding; the function decides.
-        const double step_x = points.pitch_x / subdivision;
-        const double step_y = points.pitch_y / subdivision;
-        const int columns = points.heights.columns;
-        const int rows = points.heights.rows;
-        const int column_begin = index(std::floor((x_min - points.x(0)) / step_x) - 1, columns);
-        const int column_end = index(std::ceil((x_max - points.x(0)) / step_x) + 2, columns);
-        const int row_begin = index(std::floor((y_min - points.y(0)) / step_y) - 1, rows);
-        const int row_end = index(std::ceil((y_max - points.y(0)) / step_y) + 2, rows);
-        for (int row = row_begin; row < row_end; ++row) {
-            for (int column = column_begin; column < column_end; ++column) {
-                function(points.x(column), points.y(row), points.heights(column, row));
-            }
-        }
-    }
-
     void operator()(const HeightField& field) const {
-        each(field.x_min, field.x_max(), field.y_min, field.y_max(), [&](double x, double y, double& height) {
+        const auto height_at = [&](double x, double y, double& height) {
             const double u = (x - field.x_min) / field.pitch_x;
             const double v = (y - field.y_min) / field.pitch_y;
             const Grid<float>& h = field.heights;
@@ -82,7 +163,8 @@ struct Fill {
             const double larger = std::max(a, b);
             const double smaller = std::min(a, b);
             height = low + larger * (corner - low) + smaller * (high - corner);
-        });
+        };
+        points.each({field.x_min, field.y_min}, {field.x_max(), field.y_max()}, height_at);
     }
 
     void operator()(const Mesh& mesh) const {
@@ -92,7 +174,7 @@ struct Fill {
             const glm::dvec3 c(mesh.vertices[triangle.z]);
             const glm::dvec3 lower = glm::min(a, glm::min(b, c));
             const glm::dvec3 upper = glm::max(a, glm::max(b, c));
-            each(lower.x, upper.x, lower.y, upper.y, [&](double x, double y, double& height) {
+            points.each(glm::dvec2(lower), glm::dvec2(upper), [&](double x, double y, double& height) {
                 const glm::dvec2 p(x, y);
                 const double u = edge(glm::dvec2(b), glm::dvec2(c), p);
                 const double v = edge(glm::dvec2(c), glm::dvec2(a), p);
@@ -109,38 +191,33 @@ struct Fill {
     void operator()(const Analytic& analytic) const {
         const physics::f64::SpecimenRecord record = specimen::record({analytic, {}}, 1);
         const LatticeScene scene{analytic.lattice ? &*analytic.lattice : nullptr};
-        each(analytic.x_min, analytic.x_max, analytic.y_min, analytic.y_max, [&](double x, double y, double& height) {
+        const auto height_at = [&](double x, double y, double& height) {
             if (x >= analytic.x_min && x <= analytic.x_max && y >= analytic.y_min && y <= analytic.y_max) {
                 height = physics::f64::surface_height(scene, record, x, y).height;
             }
-        });
+        };
+        points.each({analytic.x_min, analytic.y_min}, {analytic.x_max, analytic.y_max}, height_at);
     }
 };
 
 } // namespace
 
-surface::HeightMap truth(const Specimen& specimen, int columns, int rows, double x0, double y0, double pitch_x,
-                         double pitch_y) {
-    surface::HeightMap map;
-    map.height = Grid<double>(columns, rows);
-    map.x0 = x0;
-    map.y0 = y0;
-    map.pitch_x = pitch_x;
-    map.pitch_y = pitch_y;
+surface::HeightMap truth(const Specimen& specimen, const PixelGrid& grid,
+                         const std::function<PixelArea(int column, int row)>& area_of) {
+    surface::HeightMap map{.height = Grid<double>(grid.columns, grid.rows),
+                           .x0 = grid.x0,
+                           .y0 = grid.y0,
+                           .pitch_x = grid.pitch_x,
+                           .pitch_y = grid.pitch_y};
     // Bands of rows keep the points of a large detector within some megabytes a thread.
-    const int points_per_row = columns * subdivision * subdivision;
+    const int points_per_row = grid.columns * subdivision * subdivision;
     const int band = std::max(1, (1 << 20) / std::max(1, points_per_row));
-    parallel_bands(rows, band, [&](int first, int end) {
+    parallel_bands(grid.rows, band, [&](int first, int end) {
         const int count = end - first;
-        SamplePoints points{x0,
-                            y0,
-                            pitch_x,
-                            pitch_y,
-                            first * subdivision,
-                            Grid<double>(columns * subdivision, count * subdivision, off_specimen)};
+        SamplePoints points(grid.columns, first, count, area_of);
         std::visit(Fill{points}, specimen.geometry);
         for (int row = 0; row < count; ++row) {
-            for (int column = 0; column < columns; ++column) {
+            for (int column = 0; column < grid.columns; ++column) {
                 double sum = 0;
                 for (int j = 0; j < subdivision; ++j) {
                     for (int i = 0; i < subdivision; ++i) {
@@ -153,6 +230,16 @@ surface::HeightMap truth(const Specimen& specimen, int columns, int rows, double
         }
     });
     return map;
+}
+
+surface::HeightMap truth(const Specimen& specimen, int columns, int rows, double x0, double y0, double pitch_x,
+                         double pitch_y) {
+    const PixelGrid grid{.columns = columns, .rows = rows, .x0 = x0, .y0 = y0, .pitch_x = pitch_x, .pitch_y = pitch_y};
+    return truth(specimen, grid, [&](int column, int row) {
+        return PixelArea{.middle = {x0 + column * pitch_x, y0 + row * pitch_y},
+                         .along_row = {pitch_x, 0},
+                         .along_column = {0, pitch_y}};
+    });
 }
 
 } // namespace vkfv::specimen

@@ -48,6 +48,9 @@ TEST_P(ExampleStack, RunsWithFewRays) {
         EXPECT_TRUE(std::filesystem::exists(folder / "out" / name)) << name;
     }
     EXPECT_FALSE(std::filesystem::exists(folder / "out/images/z_0003.tif"));
+    // Where the pixels look is known to a hundredth of the finest pixel.
+    const auto results = nlohmann::json::parse(read_file(folder / "out/results.json"));
+    EXPECT_LT(results.at("mapping").at("interpolation_error_um"), 2e-3);
 }
 
 INSTANTIATE_TEST_SUITE_P(Assets, ExampleStack, testing::ValuesIn(example_stacks()),

@@ -252,11 +252,12 @@ void StackEvaluation::reconstruct(double x0, double y0, double pitch, const Know
     evaluation_.frames = frames.get();
 }
 
-Evaluation StackEvaluation::finish(surface::HeightMap truth, const topography::Band& band, const KnownField& field,
+Evaluation StackEvaluation::finish(KnownTruth known, const topography::Band& band, const KnownField& field,
                                    const std::optional<dimensions::Feature>& feature) {
     if (diffracted_) {
-        evaluation_.diffracted = std::make_shared<Evaluation>(diffracted_->finish(truth, band, field, feature));
+        evaluation_.diffracted = std::make_shared<Evaluation>(diffracted_->finish(known, band, field, feature));
     }
+    surface::HeightMap& truth = known.heights;
     {
         const Stopwatch stopwatch(evaluation_.seconds);
         reconstruct(truth.x0, truth.y0, truth.pitch_x, field);
@@ -276,9 +277,10 @@ Evaluation StackEvaluation::finish(surface::HeightMap truth, const topography::B
             evaluation_.filtered = topography::compared_pair(measured, truth, band);
         }
         if (feature) {
-            evaluation_.dimensions = standard_dimensions(*feature, measured, truth);
+            evaluation_.dimensions = standard_dimensions(*feature, measured, known.undistorted);
         }
         evaluation_.truth = std::move(truth);
+        evaluation_.mapping = known.mapping;
     }
     return std::move(evaluation_);
 }

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "configuration/configuration.hpp"
+#include "measurement/scene/known_truth.hpp"
 #include "measurement/surface/standard.hpp"
 #include "optics/instrument/field_curvature.hpp"
 #include "optics/waves/diffraction.hpp"
@@ -67,6 +68,7 @@ struct Evaluation {
     std::optional<Flatness> flatness;        // of `diffracted` too, by the same flat; none: no correction
     std::optional<double> field_curvature;   // mm peak-to-valley over the measured points, by design, not corrected
     std::optional<surface::HeightMap> truth; // none of a stack that another instrument took; nor deviations
+    std::optional<optics::MappingDeviation> mapping; // with a truth, which it belongs to
     LevelledMaps levelled;
     std::optional<topography::Deviation> deviation; // levelled
     std::optional<double> beyond_uncertainty;       // share of the points levelled beyond coverage_factor times theirs
@@ -99,7 +101,7 @@ class StackEvaluation {
     // As StackEvaluator::add().
     void add(topography::Channels image, double z, std::optional<double> reading = {});
     // On the truth's grid, with the deviation from it. Feature: what is measured on the specimen.
-    Evaluation finish(surface::HeightMap truth, const topography::Band& band, const KnownField& field = {},
+    Evaluation finish(KnownTruth known, const topography::Band& band, const KnownField& field = {},
                       const std::optional<dimensions::Feature>& feature = {});
     // Without a truth; the grid's middle is the origin, pitch in mm.
     Evaluation finish(double pitch, const surface::Form& form, const KnownField& field = {});

@@ -1,6 +1,7 @@
 #include "measurement/evaluation/existing_stack.hpp"
 
 #include "measurement/scene/assembly.hpp"
+#include "measurement/scene/known_truth.hpp"
 #include "measurement/scene/stage_figures.hpp"
 #include "report/declared_figures.hpp"
 #include "scan/repair.hpp"

@@ -66,6 +66,16 @@ nlohmann::ordered_json figures_of_curves(const Evaluation& evaluation) {
                                {"z_flt_s_filter", flatness->s_filter},
                                {"polynomial_peak_to_valley", flatness->polynomial_peak_to_valley}};
     }
+    if (const auto& mapping = evaluation.mapping) {
+        figures["mapping"] = {{"shift_x", mapping->shift.x},
+                              {"shift_y", mapping->shift.y},
+                              {"amplification_x", mapping->amplification.x},
+                              {"amplification_y", mapping->amplification.y},
+                              {"rotation", mapping->rotation},
+                              {"perpendicularity", mapping->perpendicularity},
+                              {"distortion", mapping->residual},
+                              {"interpolation_error", mapping->error}};
+    }
     if (evaluation.field_curvature) {
         figures["field_curvature_uncorrected"] = *evaluation.field_curvature;
     }

@@ -2,12 +2,12 @@
 
 #include "core/files/digest.hpp"
 #include "core/files/file.hpp"
-#include "core/mathematics/pixel_grid.hpp"
 #include "core/mathematics/units.hpp"
 #include "core/messages/stages.hpp"
 #include "images/image_file.hpp"
 #include "measurement/image/camera_images.hpp"
 #include "measurement/scene/assembly.hpp"
+#include "measurement/scene/known_truth.hpp"
 #include "measurement/scene/wave_limits.hpp"
 #include "scan/checkpoint_files.hpp"
 #include "specimen/geometry_digest.hpp"
@@ -35,7 +35,7 @@ Grid<float> in_float(const Grid<double>& image) {
 Exposure expose(const Configuration& configuration, WorkingDevices& devices, const optics::Instrument& instrument,
                 const specimen::Specimen& specimen, double focal_height, const std::filesystem::path& checkpoint) {
     Exposure exposure;
-    exposure.grid = PixelGrid::centred(configuration.instrument.detector_pixels, instrument.first_order.pixel_pitch);
+    exposure.grid = grid_of_image(instrument, configuration, focal_height);
     exposure.type = configuration.pixel_type;
     work_with_devices(devices, [&](const WorkingDevices& working) {
         enter_stage("device, kernels");

@@ -1,7 +1,6 @@
 #include "measurement/scene/assembly.hpp"
 
 #include "core/keys/section.hpp"
-#include "core/mathematics/pixel_grid.hpp"
 #include "core/mathematics/units.hpp"
 #include "images/image_file.hpp"
 #include "measurement/scene/light_field.hpp"
@@ -182,12 +181,6 @@ topography::TopographyOptions evaluation_options(const Configuration& configurat
                                                                  static_cast<int>(positions.size()));
     }
     return options;
-}
-
-surface::HeightMap truth_on_pixels(const optics::Instrument& instrument, const Configuration& configuration,
-                                   const specimen::Specimen& specimen) {
-    const auto grid = PixelGrid::centred(configuration.instrument.detector_pixels, instrument.first_order.pixel_pitch);
-    return specimen::truth(specimen, grid.columns, grid.rows, grid.x0, grid.y0, grid.pitch_x, grid.pitch_y);
 }
 
 } // namespace vkfv::measurement

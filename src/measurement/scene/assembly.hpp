@@ -6,7 +6,6 @@
 #include "optics/waves/diffraction.hpp"
 #include "scan/stage.hpp"
 #include "specimen/specimen.hpp"
-#include "surface/height_map.hpp"
 #include "trace/interface/tracer.hpp"
 #include "trace/interface/tracer_identity.hpp"
 
@@ -61,9 +60,5 @@ std::optional<optics::Diffraction> diffraction_of_evaluation(const Configuration
 // "waves" waves of twice the resolution limit where these are longer.
 topography::TopographyOptions evaluation_options(const Configuration& configuration,
                                                  const optics::Instrument& instrument);
-
-// The true surface on the detector's pixels, in the object plane.
-surface::HeightMap truth_on_pixels(const optics::Instrument& instrument, const Configuration& configuration,
-                                   const specimen::Specimen& specimen);
 
 } // namespace vkfv::measurement

@@ -4,6 +4,7 @@
 #include "configuration/configuration.hpp"
 #include "measurement/evaluation/evaluation.hpp"
 #include "measurement/evaluation/evaluation_files.hpp"
+#include "measurement/scene/known_truth.hpp"
 #include "measurement/scene/wave_limits.hpp"
 #include "optics/instrument/instrument.hpp"
 #include "scan/store.hpp"
@@ -49,7 +50,7 @@ class GrowingEvaluation {
     KnownField field_;
     StackEvaluation evaluation_;
     bool any_light_ = false;
-    std::future<surface::HeightMap> truth_;
+    std::future<KnownTruth> truth_;
     std::future<StackSource> source_;
     std::optional<std::future<WaveLimits>> wave_limits_;
 };

@@ -15,6 +15,8 @@ struct Sample {
     double path = 0;    // W, mm
     double defocus = 0; // what a plane higher by 1 mm adds
     double weight = 0;
+    glm::dvec2 place = glm::dvec2(0); // in the paraxial object plane, mm
+    glm::dvec2 slope = glm::dvec2(0);
 };
 
 // Takes the mean and the fitted tilt out of the paths and of the defocus.
@@ -49,11 +51,10 @@ void level(std::vector<Sample>& samples) {
 
 } // namespace
 
-double best_focus(const Imaging& imaging, double magnification, const Outline& outline,
-                  std::span<const SpectralNode> spectrum) {
-    const auto chief = imaging.trace(outline.position, 0, outline.centre, 0);
-    if (!chief || !(outline.area() > 0)) {
-        return NAN;
+PencilFocus focus_of_pencil(const Imaging& imaging, double magnification, const Outline& outline, glm::dvec2 detector,
+                            std::span<const SpectralNode> spectrum) {
+    if (!(outline.area() > 0)) {
+        return {.height = NAN, .centroid = glm::dvec2(NAN)};
     }
     const auto cone = fill_cone(outline);
     const auto samples_of = [&](int k) {
@@ -63,16 +64,19 @@ double best_focus(const Imaging& imaging, double magnification, const Outline& o
                                 .index = index,
                                 .magnification = magnification,
                                 .plane = 0,
-                                .detector = chief->position,
+                                .detector = detector,
                                 .guess = outline.position};
         std::vector<Sample> samples;
         for (const auto& [cosines, weight] : cone) {
             const glm::dvec2 p = index * cosines;
             if (const auto traced = view.trace(p, 0)) {
+                const double axial = std::sqrt(index * index - glm::dot(p, p));
                 samples.push_back({.p = p,
                                    .path = -traced->path_length - glm::dot(p, traced->object_point - outline.position),
-                                   .defocus = std::sqrt(index * index - glm::dot(p, p)),
-                                   .weight = weight});
+                                   .defocus = axial,
+                                   .weight = weight,
+                                   .place = traced->object_point,
+                                   .slope = p / axial});
             }
         }
         level(samples);
@@ -81,15 +85,29 @@ double best_focus(const Imaging& imaging, double magnification, const Outline& o
     const auto all = parallel_list(static_cast<int>(spectrum.size()), samples_of);
     double numerator = 0;
     double denominator = 0;
+    double light = 0;
+    PencilFocus focus;
+    glm::dvec2 slope(0);
     for (std::size_t k = 0; k < all.size(); ++k) {
         const SpectralNode& node = spectrum[k];
         for (const Sample& sample : all[k]) {
             const double weight = node.weight * sample.weight / (node.wavelength_um * node.wavelength_um);
             numerator += weight * sample.path * sample.defocus;
             denominator += weight * sample.defocus * sample.defocus;
+            light += node.weight * sample.weight;
+            focus.centroid += node.weight * sample.weight * sample.place;
+            slope += node.weight * sample.weight * sample.slope;
         }
     }
-    return denominator > 0 ? -numerator / denominator : 0;
+    focus.height = denominator > 0 ? -numerator / denominator : 0;
+    focus.centroid = (focus.centroid + focus.height * slope) / light;
+    return focus;
+}
+
+double best_focus(const Imaging& imaging, double magnification, const Outline& outline,
+                  std::span<const SpectralNode> spectrum) {
+    const auto chief = imaging.trace(outline.position, 0, outline.centre, 0);
+    return chief ? focus_of_pencil(imaging, magnification, outline, chief->position, spectrum).height : NAN;
 }
 
 } // namespace vkfv::optics

@@ -9,8 +9,8 @@
 // the integral of exp(i k (W(p) - p . x)) over the pupil.
 #pragma once
 
+#include "core/mathematics/plane_polynomial.hpp"
 #include "optics/instrument/image_quality.hpp"
-#include "optics/waves/plane_polynomial.hpp"
 
 #include <cmath>
 #include <span>

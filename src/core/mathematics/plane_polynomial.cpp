@@ -1,11 +1,11 @@
-#include "optics/waves/plane_polynomial.hpp"
+#include "core/mathematics/plane_polynomial.hpp"
 
 #include <algorithm>
 #include <cmath>
 #include <stdexcept>
 #include <utility>
 
-namespace vkfv::optics {
+namespace vkfv {
 
 double PlanePolynomial::value(glm::dvec2 at) const {
     double sum = 0;
@@ -179,4 +179,4 @@ std::vector<PlanePolynomial> fit_polynomials(int degree, const std::vector<glm::
     return fitted;
 }
 
-} // namespace vkfv::optics
+} // namespace vkfv

@@ -6,7 +6,7 @@
 #include <span>
 #include <vector>
 
-namespace vkfv::optics {
+namespace vkfv {
 
 // The sum of c_ij x^i y^j over i + j <= degree.
 class PlanePolynomial {
@@ -40,4 +40,4 @@ std::vector<PlanePolynomial> fit_polynomials(int degree, const std::vector<glm::
                                              const std::vector<std::vector<double>>& values,
                                              Parity parity = Parity::any, const std::vector<double>& weights = {});
 
-} // namespace vkfv::optics
+} // namespace vkfv

@@ -1,0 +1,162 @@
+// Stacks of displaced instruments through the real program: measured heights lie where the truth has them.
+#include "app/program.hpp"
+#include "support/surface_files.hpp"
+
+#include <fmt/format.h>
+#include <gtest/gtest.h>
+#include <nlohmann/json.hpp>
+
+#include <array>
+#include <cmath>
+#include <filesystem>
+#include <string>
+#include <vector>
+
+namespace vkfv::test {
+namespace {
+
+// NA 0.45, pixels of 1 um in the object, texture of a micrometre, 32 paths a pixel.
+const std::string microscope = R"(
+[source]
+radius_mm = 1.6
+wavelength_um = 0.5876
+[illumination]
+prescription = "koehler"
+field_stop_radius_mm = 1.5
+[objective]
+kind = "ideal"
+focal_length_mm = 10.0
+numerical_aperture = 0.45
+[tube_lens]
+kind = "ideal"
+focal_length_mm = 200.0
+[detector]
+pixels = [48, 40]
+pixel_um = 20.0
+[specimen]
+size_mm = 0.16
+SPECIMEN
+[specimen.reflectance]
+kind = "noise"
+pitch_um = 0.2
+correlation_length_um = 1.0
+mean = 0.5
+standard_deviation = 0.2
+[specimen.material]
+scatter = "lambertian"
+[scan]
+z_start_um = -5.0
+z_stop_um = 5.0
+z_step_um = 1.0
+[trace]
+rays = 61440
+estimator = "backward"
+max_bounces = 1
+[topography]
+window_px = 7
+)";
+
+struct Measured {
+    surface::HeightMap heights, truth;
+    nlohmann::json results;
+};
+
+Measured measured(const std::string& name, const std::string& specimen, const std::vector<std::string>& settings) {
+    const auto folder = fresh_folder(name);
+    write_file(folder / "c.toml", replaced(microscope, "SPECIMEN", specimen));
+    std::vector<std::string> words = {"stack", "c.toml", "--out", "out", "--quiet", "--device", "host"};
+    for (const auto& setting : settings) {
+        words.insert(words.end(), {"--set", setting});
+    }
+    const auto result = run_program(words, folder);
+    EXPECT_EQ(result.exit_code, 0) << result.standard_error;
+    return {.heights = surface::read_height_map(folder / "out/topography.tif"),
+            .truth = surface::read_height_map(folder / "out/truth.tif"),
+            .results = nlohmann::json::parse(read_file(folder / "out/results.json"))};
+}
+
+// By how many pixels the measured heights lie aside of the true ones, to first order: a least-squares fit of
+//   measured = a + b x + c y + g (truth - s . gradient of truth).
+glm::dvec2 aside(const Measured& stack) {
+    constexpr int terms = 6;
+    std::array<std::array<double, terms + 1>, terms> normal{};
+    for (int row = 1; row + 1 < stack.truth.rows(); ++row) {
+        for (int column = 1; column + 1 < stack.truth.columns(); ++column) {
+            const auto& t = stack.truth.height;
+            const double height = stack.heights.height(column, row);
+            const double along = 0.5 * (t(column + 1, row) - t(column - 1, row));
+            const double across = 0.5 * (t(column, row + 1) - t(column, row - 1));
+            const std::array<double, terms + 1> values = {
+                1, column / 20.0 - 1, row / 20.0 - 1, t(column, row), along, across, height};
+            if (!std::isfinite(height) || !std::isfinite(t(column, row) + along + across)) {
+                continue;
+            }
+            for (std::size_t i = 0; i < terms; ++i) {
+                for (std::size_t j = 0; j <= terms; ++j) {
+                    normal[i][j] += values[i] * values[j];
+                }
+            }
+        }
+    }
+    for (std::size_t i = 0; i < terms; ++i) { // positive definite: no pivots
+        for (std::size_t k = 0; k < terms; ++k) {
+            const double factor = k == i ? 0 : normal[k][i] / normal[i][i];
+            for (std::size_t j = i; j <= terms; ++j) {
+                normal[k][j] -= factor * normal[i][j];
+            }
+        }
+    }
+    const auto solved = [&](std::size_t i) { return normal[i][terms] / normal[i][i]; };
+    return {-solved(4) / solved(3), -solved(5) / solved(3)};
+}
+
+const std::string waves = "kind = \"cross-sinusoid\"\namplitude_um = 1.5\nperiod_um = 24.0";
+
+// shift: of the pixels on the specimen, um. It is up to half a wave, so heights against the truth of other places would
+// not correlate.
+void expect_registered(const std::string& name, const std::vector<std::string>& settings, glm::dvec2 shift) {
+    const auto stack = measured(name, waves, settings);
+    EXPECT_LT(glm::length(aside(stack)), 0.15) << name;
+    EXPECT_GT(stack.results.at("correlation"), 0.95) << name;
+    const auto& mapping = stack.results.at("mapping");
+    EXPECT_NEAR(mapping.at("shift_x_um"), shift.x, 0.02) << name;
+    EXPECT_NEAR(mapping.at("shift_y_um"), shift.y, 0.02) << name;
+    EXPECT_LT(mapping.at("interpolation_error_um"), 0.001) << name;
+    // The middle of the maps.
+    const auto& map = stack.truth;
+    EXPECT_NEAR(1e3 * 0.5 * (map.x(0) + map.x(map.columns() - 1)), mapping.at("shift_x_um"), 1e-3) << name;
+    EXPECT_NEAR(1e3 * 0.5 * (map.y(0) + map.y(map.rows() - 1)), mapping.at("shift_y_um"), 1e-3) << name;
+}
+
+TEST(PixelPlaces, OfACentredInstrument) {
+    expect_registered("centred", {}, {0, 0});
+}
+
+// An image of 20 times, turned by half a turn.
+TEST(PixelPlaces, OfADisplacedDetector) {
+    expect_registered("detector", {"detector.decentre_x_mm=0.24", "detector.decentre_y_mm=-0.1"}, {-12, 5});
+}
+
+TEST(PixelPlaces, OfADisplacedObjective) {
+    expect_registered("objective", {"objective.decentre_x_mm=-0.01", "objective.decentre_y_mm=0.012"}, {-10, 12});
+}
+
+// 1 um from image to image, so that a wave that is in focus somewhere in the middle lies 5 um aside.
+TEST(PixelPlaces, OfASpecimenThatDrifts) {
+    const auto stack = measured("drift", waves, {"stage.lateral_drift_um_per_s=[2.0, 0.0]", "stage.interval_s=0.5"});
+    EXPECT_LT(glm::length(aside(stack)), 0.2);
+    EXPECT_GT(stack.results.at("correlation"), 0.95);
+    EXPECT_NEAR(stack.results.at("mapping").at("shift_x_um"), -5, 0.5);
+}
+
+// The regions of a step are where it is seen, and its true height is that of the specimen.
+TEST(PixelPlaces, TakeTheRegionsOfAStandardAlong) {
+    const auto stack = measured("step", "kind = \"step\"\nheight_um = 4.0",
+                                {"detector.decentre_x_mm=0.2", "topography.form=\"truth\""});
+    const auto& step = stack.results.at("dimensions").at(0);
+    EXPECT_NEAR(step.at("true"), 4, 0.01);
+    EXPECT_NEAR(step.at("error"), 0, 0.3);
+}
+
+} // namespace
+} // namespace vkfv::test
