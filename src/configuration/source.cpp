@@ -57,7 +57,8 @@ const NumberKey wavelength("wavelength_um", wavelength_range_um, 0.5876,
 
 const ChoiceKey<SpectrumKind>
     spectrum_kind("kind",
-                  {{SpectrumKind::gaussian, "gaussian", "a bell, cut off at three standard deviations"},
+                  {{SpectrumKind::gaussian, "gaussian",
+                    fmt::format("a bell, cut off at {} standard deviations", optics::gaussian_reach)},
                    {SpectrumKind::lines, "lines", "several lines"},
                    {SpectrumKind::monochromatic, "monochromatic", "one line"},
                    {SpectrumKind::table, "table", "a density by points, linear between them"}},

@@ -98,6 +98,42 @@ TEST(OpticsCommand, TellsAShippedObjectivesWavefront) {
     EXPECT_EQ(run_program({"verify", "out"}, folder).exit_code, 0);
 }
 
+// Coefficients are means over the disc: piston of W, tilts of W 2 x and W 2 y.
+TEST(OpticsCommand, TellsOneWavefrontInBothTables) {
+    const auto folder = fresh_folder("optics_tables");
+    const auto result = run_program({"optics", stacks + "bench_paper_chain.toml", "--out", "out"}, folder);
+    ASSERT_EQ(result.exit_code, 0) << result.standard_error;
+    const Rows zernike = rows_of(folder / "out/zernike.csv", 3);
+    std::istringstream lines(read_file(folder / "out/wavefront.csv"));
+    std::string line;
+    std::getline(lines, line);
+    struct Sums {
+        double rim = 0, count = 0, piston = 0, tilt_x = 0, tilt_y = 0, square = 0;
+    };
+    std::map<std::string, Sums> points; // whose pupils are round
+    while (std::getline(lines, line)) {
+        std::istringstream cells(line);
+        std::string point, x, y, waves;
+        std::getline(std::getline(std::getline(std::getline(cells, point, ','), x, ','), y, ','), waves);
+        const double value = std::stod(waves);
+        Sums& sums = points[point];
+        sums.rim = std::max(sums.rim, std::hypot(std::stod(x), std::stod(y)));
+        sums.count += 1;
+        sums.piston += value;
+        sums.tilt_x += value * 2 * std::stod(x);
+        sums.tilt_y += value * 2 * std::stod(y);
+        sums.square += value * value;
+    }
+    ASSERT_EQ(points.size(), 3u);
+    for (const auto& [point, sums] : points) {
+        EXPECT_NEAR(zernike.at(point + ",1,piston").back(), sums.piston / sums.count, 3e-3) << point;
+        EXPECT_NEAR(zernike.at(point + ",2,tilt x").back(), sums.tilt_x / sums.rim / sums.count, 3e-3) << point;
+        EXPECT_NEAR(zernike.at(point + ",3,tilt y").back(), sums.tilt_y / sums.rim / sums.count, 3e-3) << point;
+    }
+    // As much as vkfv check says of the same points by another way.
+    EXPECT_NEAR(std::sqrt(points["corner"].square / points["corner"].count), 0.1995, 2e-3);
+}
+
 TEST(OpticsCommand, SaysWhatIsWrong) {
     const auto folder = fresh_folder("optics_wrong");
     write_file(folder / "file", "");

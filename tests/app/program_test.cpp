@@ -172,9 +172,29 @@ TEST(Program, TraceRaysWritesOneLineARay) {
     ASSERT_EQ(result.exit_code, 0) << result.standard_error;
     const auto lines = lines_of(result.standard_output);
     ASSERT_EQ(lines.size(), 3u);
-    EXPECT_EQ(lines[0], "x_mm,y_mm,l,m,n,opl_mm,status");
-    EXPECT_THAT(lines[1], testing::MatchesRegex("-?0,-?0,-?0,-?0,1,[0-9.]+,ok"));
-    EXPECT_THAT(lines[2], testing::AnyOf(testing::EndsWith(",vignetted"), testing::EndsWith(",missed")));
+    EXPECT_EQ(lines[0], "x_mm,y_mm,l,m,n,opl_mm,status,z_origin");
+    EXPECT_THAT(lines[1], testing::MatchesRegex("-?0,-?0,-?0,-?0,1,[0-9.]+,ok,paraxial"));
+    EXPECT_THAT(lines[2],
+                testing::AnyOf(testing::EndsWith(",vignetted,paraxial"), testing::EndsWith(",missed,paraxial")));
+}
+
+TEST(Program, TraceRaysCountsFromThePlaneThatIsNamed) {
+    const auto folder = fresh_folder("trace_rays_origin");
+    write_file(folder / "c.toml", small_configuration); // its best focus is 6 um from the paraxial plane
+    const auto figures = nlohmann::json::parse(run_program({"check", "c.toml", "--json"}, folder).standard_output);
+    const double offset = 1e-3 * figures.at("best_focus_offset_um").get<double>();
+    ASSERT_GT(std::abs(offset), 1e-3);
+    const auto path_of = [&](double z, const std::string& origin) {
+        write_file(folder / "rays.csv", fmt::format("x_mm,y_mm,z_mm,l,m,n\n0.01,0,{},0.1,0,{}\n", z, std::sqrt(0.99)));
+        const auto result = run_program({"trace-rays", "c.toml", "rays.csv", "--origin", origin}, folder);
+        const std::string line = lines_of(result.standard_output).at(1);
+        EXPECT_THAT(line, testing::EndsWith(",ok," + origin)) << result.standard_error;
+        const auto end = line.find(",ok");
+        return std::stod(line.substr(line.rfind(',', end - 1) + 1, end));
+    };
+    EXPECT_NEAR(path_of(0, "best-focus"), path_of(offset, "paraxial"), 1e-9);
+    // The ray's path is shorter by what its start is nearer, but for the aberrations.
+    EXPECT_NEAR(path_of(0, "best-focus") - path_of(0, "paraxial"), -offset / std::sqrt(0.99), 0.01 * std::abs(offset));
 }
 
 TEST(Program, ImageOfAScanPositionIsThatImageOfTheStack) {

@@ -34,9 +34,9 @@ TEST(RayTable, ReadsNumbersBitByBit) {
 TEST(RayTable, WritesEnoughDigitsToReadBack) {
     const double third = 1.0 / 3;
     const trace::TracedRay ray{third, -third, 0, 0, 1, 345.44180682537205, "ok"};
-    const auto text = ray_table_text(std::span(&ray, 1));
-    EXPECT_EQ(text, "x_mm,y_mm,l,m,n,opl_mm,status\n"
-                    "0.33333333333333331,-0.33333333333333331,0,0,1,345.44180682537205,ok\n");
+    const auto text = ray_table_text(std::span(&ray, 1), "paraxial");
+    EXPECT_EQ(text, "x_mm,y_mm,l,m,n,opl_mm,status,z_origin\n"
+                    "0.33333333333333331,-0.33333333333333331,0,0,1,345.44180682537205,ok,paraxial\n");
     EXPECT_EQ(std::stod(text.substr(text.find('\n') + 1)), third);
 }
 

@@ -33,11 +33,11 @@ std::vector<trace::RayInput> read_ray_table(const std::filesystem::path& file) {
     return rays;
 }
 
-std::string ray_table_text(std::span<const trace::TracedRay> rays) {
-    std::string text = "x_mm,y_mm,l,m,n,opl_mm,status\n";
+std::string ray_table_text(std::span<const trace::TracedRay> rays, std::string_view origin) {
+    std::string text = "x_mm,y_mm,l,m,n,opl_mm,status,z_origin\n";
     for (const auto& ray : rays) {
-        fmt::format_to(std::back_inserter(text), "{:.17g},{:.17g},{:.17g},{:.17g},{:.17g},{:.17g},{}\n", ray.x, ray.y,
-                       ray.l, ray.m, ray.n, ray.path_length, ray.status);
+        fmt::format_to(std::back_inserter(text), "{:.17g},{:.17g},{:.17g},{:.17g},{:.17g},{:.17g},{},{}\n", ray.x,
+                       ray.y, ray.l, ray.m, ray.n, ray.path_length, ray.status, origin);
     }
     return text;
 }

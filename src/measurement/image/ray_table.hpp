@@ -6,6 +6,7 @@
 #include <filesystem>
 #include <span>
 #include <string>
+#include <string_view>
 #include <vector>
 
 namespace vkfv::measurement {
@@ -15,8 +16,8 @@ namespace vkfv::measurement {
 // and directions whose length is not 1 to a millionth.
 std::vector<trace::RayInput> read_ray_table(const std::filesystem::path& file);
 
-// `x_mm,y_mm,l,m,n,opl_mm,status` and a ray a line with 17 significant digits, so that every double reads
-// back.
-std::string ray_table_text(std::span<const trace::TracedRay> rays);
+// `x_mm,y_mm,l,m,n,opl_mm,status,z_origin` and a ray a line with 17 significant digits, so that every double reads
+// back. origin: a word for the plane that z of the given rays counts from.
+std::string ray_table_text(std::span<const trace::TracedRay> rays, std::string_view origin);
 
 } // namespace vkfv::measurement

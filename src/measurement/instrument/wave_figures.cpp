@@ -1,6 +1,7 @@
 #include "measurement/instrument/wave_figures.hpp"
 
 #include "core/mathematics/units.hpp"
+#include "optics/waves/levelled_wavefront.hpp"
 #include "optics/waves/zernike.hpp"
 
 #include <fmt/format.h>
@@ -45,28 +46,25 @@ int count(const std::vector<double>& values) {
 void measure_wavefront(WavePoint& point, const optics::Wavefront& wavefront) {
     point.aperture = std::sqrt(wavefront.area() / pi);
     point.wavelength_um = wavefront.wavelength() * um_per_mm;
+    const optics::LevelledWavefront levelled = optics::levelled(wavefront);
+    point.wavefront_rms = levelled.rms / wavefront.wavelength();
     point.zernike = optics::zernike_coefficients(wavefront, zernike_terms);
+    const double along_disc = wavefront.smallest_rim() / 2; // Z2 = 2 x, Z3 = 2 y
+    point.zernike[0] -= levelled.piston / wavefront.wavelength();
+    point.zernike[1] -= along_disc * levelled.tilt.x / wavefront.wavelength();
+    point.zernike[2] -= along_disc * levelled.tilt.y / wavefront.wavelength();
     point.pupil_radius = wavefront.largest_rim();
     point.wavefront = Grid<double>(2 * half_pupil + 1, 2 * half_pupil + 1);
-    const double tilt = 2; // Z2 = 2 x, Z3 = 2 y, of a disc of the smallest rim
     for (int row = 0; row < point.wavefront.rows; ++row) {
         for (int column = 0; column < point.wavefront.columns; ++column) {
             const glm::dvec2 p = point.pupil_radius / half_pupil * glm::dvec2(column - half_pupil, row - half_pupil);
-            const glm::dvec2 scaled = p / wavefront.smallest_rim();
-            point.wavefront(column, row) = wavefront.passes(wavefront.chief() + p)
-                                               ? wavefront.path(wavefront.chief() + p) / wavefront.wavelength() -
-                                                     point.zernike[0] -
-                                                     tilt * (point.zernike[1] * scaled.x + point.zernike[2] * scaled.y)
-                                               : std::numeric_limits<double>::quiet_NaN();
+            point.wavefront(column, row) =
+                wavefront.passes(wavefront.chief() + p)
+                    ? (wavefront.path(wavefront.chief() + p) - levelled.piston - glm::dot(levelled.tilt, p)) /
+                          wavefront.wavelength()
+                    : std::numeric_limits<double>::quiet_NaN();
         }
     }
-    double square = 0;
-    double pixels = 0;
-    for (const double value : point.wavefront.values) {
-        square += std::isfinite(value) ? value * value : 0;
-        pixels += std::isfinite(value) ? 1 : 0;
-    }
-    point.wavefront_rms = std::sqrt(square / pixels);
 }
 
 // mirrored: about the radial direction, as of a symmetric instrument.

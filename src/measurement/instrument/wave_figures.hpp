@@ -27,8 +27,9 @@ struct WavePoint {
     double aperture = 0; // of a disc of the pupil's area, NA
     // At z = 0 and the wavelength in the middle of the flux.
     double wavelength_um = 0;
+    // All of the wavefront without piston and tilt of the whole pupil (optics/waves/levelled_wavefront.hpp).
     std::vector<double> zernike; // waves, Noll's numbers from 1
-    double wavefront_rms = 0;    // waves, without piston and tilt
+    double wavefront_rms = 0;    // waves
     Grid<double> wavefront;      // waves, over the square about the pupil; NaN outside it
     double pupil_radius = 0;     // half the side of that square, in p
     // At z = 0, over the spectrum.

@@ -15,8 +15,7 @@ namespace {
 
 using physics::f64::SpectralBin;
 
-constexpr double gaussian_reach = 4; // standard deviations: 6e-5 of the flux lies beyond
-constexpr int gaussian_bins = 128;   // a linear density in 1/16 standard deviation is right to 5e-4
+constexpr int gaussian_bins = 128; // a linear density in 1/16 standard deviation is right to 5e-4
 // Standard deviation of a Gaussian over its full width at half maximum: 1 / (2 sqrt(2 ln 2)).
 constexpr double sigma_per_full_width = 0.42466090014400953;
 

@@ -8,6 +8,9 @@
 
 namespace vkfv::optics {
 
+// Of a Gaussian spectrum, in standard deviations on either side of its centre: 6e-5 of the flux lies beyond.
+inline constexpr int gaussian_reach = 4;
+
 struct Spectrum {
     // Shares of the flux, their sum 1, ascending in wavelength (um).
     std::vector<physics::f64::SpectralBin> bins;
@@ -24,7 +27,7 @@ struct Spectrum {
     static Spectrum line(double wavelength_um);
     // Relative fluxes of single wavelengths.
     static Spectrum lines(const std::vector<double>& wavelengths_um, const std::vector<double>& weights);
-    // A Gaussian in wavelength, of the given full width at half maximum, cut at four standard deviations.
+    // A Gaussian in wavelength, of the given full width at half maximum, cut at gaussian_reach.
     static Spectrum gaussian(double centre_um, double full_width_um);
     // A spectral flux that is linear between the points and zero outside. All three throw InputError.
     static Spectrum table(const std::vector<double>& wavelengths_um, const std::vector<double>& densities);
