@@ -2,7 +2,7 @@
 #include "app/program.hpp"
 #include "support/surface_files.hpp"
 
-#include <fmt/format.h>
+#include <glm/glm.hpp>
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
 
