@@ -4,7 +4,7 @@
 
 #include "core/mathematics/units.hpp"
 #include "optics/instrument/image_quality.hpp"
-#include "parts.hpp"
+#include "optics/parts.hpp"
 
 #include <gtest/gtest.h>
 
