@@ -64,11 +64,13 @@ std::map<std::string, std::string> values_by_key(std::string_view identity) {
 
 } // namespace
 
+// In the comments the empty lines are left out that stand before headers in an identity (Section, image_identity()).
 std::string identity_in(std::string_view stack_text) {
     std::string identity;
     for (const std::string& line : lines_of(stack_text)) {
         if (line.starts_with(identity_prefix)) {
-            identity += line.substr(identity_prefix.size()) + "\n";
+            const std::string own = line.substr(identity_prefix.size());
+            identity += (own.starts_with('[') ? "\n" : "") + own + "\n";
         }
     }
     return identity;

@@ -105,7 +105,7 @@ class HostileTest(unittest.TestCase):
         self.assertTrue(Path(shared.folder() / "same" / "compare.svg").exists())
 
     def test_lengths_are_those_that_something_has(self):
-        for setting in ("detector.size_mm=1e-310", "objective.focal_length_mm=1e12", "scan.z_stop_um=1e300"):
+        for setting in ("detector.pixel_um=1e-310", "objective.focal_length_mm=1e12", "scan.z_stop_um=1e300"):
             done = run("check", shared.configuration(), "--set", setting)
             self.assertEqual(done.returncode, 2, (setting, done.stderr))
             self.assertIn(b"(1 pm)", done.stderr)
@@ -127,7 +127,7 @@ class HostileTest(unittest.TestCase):
         try:
             for command, code in (
                 (("surface", surface, "--out", closed / "s.csv"), 4),
-                (("surface", surface, "--out", closed / "below" / "s.csv"), 4),
+                (("stack", shared.configuration(), "--rays", "1e3", "--out", closed / "below" / "stack"), 4),
                 (("stack", shared.configuration(), "--rays", "1e3", "--out", closed / "stack"), 4),
                 (("image", shared.configuration(), "--z", "0", "--rays", "1e3", "--out", closed / "i.tif"), 4),
                 (("check", hidden / "c.toml"), 2),
