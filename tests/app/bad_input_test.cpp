@@ -636,6 +636,8 @@ std::vector<Case> cases() {
         map_fault("GratingOfNoPeriod", "kind = \"grating\"\nperiod_um = 0\n",
                   {"c.toml:32:13", "specimen.reflectance.period_um = 0", "a finite number > 0"}),
         map_fault("GratingTooFineForFloats", "kind = \"grating\"\nperiod_um = 1e-30\n",
+                  {"c.toml:32:13", "specimen.reflectance.period_um", "0 or from 1e-06 (1 pm) to 1e+12 um"}),
+        map_fault("GratingTooCoarseForFloats", "kind = \"grating\"\nperiod_um = 1e11\n",
                   {"c.toml:32:13", "specimen.reflectance.period_um", "a length from 1e-07 to 1e+09 um"}),
         map_fault("SideOfAGrating", "kind = \"grating\"\nperiod_um = 8\nside_um = 4\n",
                   {"c.toml:33:11", "specimen.reflectance.side_um", "kind \"checkerboard\""}),

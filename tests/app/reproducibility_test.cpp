@@ -52,7 +52,7 @@ std::map<std::string, std::string> bytes_of(const std::filesystem::path& folder)
 // configuration tells.
 std::map<std::string, std::string> bytes_but_names(const std::filesystem::path& folder) {
     auto bytes = bytes_of(folder);
-    for (const char* name : {"topography.svg", "report.html", "stack.toml", "checksums.sha256"}) {
+    for (const char* name : {"topography.svg", "report.html", "stack.toml", ".stack.toml", "checksums.sha256"}) {
         EXPECT_EQ(bytes.erase(name), 1u) << name;
     }
     return bytes;
