@@ -705,7 +705,7 @@ std::vector<Case> cases() {
          2,
          {"c.toml:38:13", "scan.z_stop_um = -3", "Exchange"},
          stack},
-        {"EndlessScan", {{"z_step_um = 1.0", "z_step_um = 1e-9"}}, 2, {"c.toml:39:13", "at most 10000"}, stack},
+        {"EndlessScan", {{"z_step_um = 1.0", "z_step_um = 1e-5"}}, 2, {"c.toml:39:13", "at most 10000"}, stack},
         {"NoScan",
          {{"[scan]\nz_start_um = -2.0\nz_stop_um = 2.0\nz_step_um = 1.0\n", ""}},
          2,

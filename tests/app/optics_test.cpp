@@ -110,7 +110,7 @@ TEST(OpticsCommand, TellsOneWavefrontInBothTables) {
     struct Sums {
         double rim = 0, count = 0, piston = 0, tilt_x = 0, tilt_y = 0, square = 0;
     };
-    std::map<std::string, Sums> points; // whose pupils are round
+    std::map<std::string, Sums> points;
     while (std::getline(lines, line)) {
         std::istringstream cells(line);
         std::string point, x, y, waves;
@@ -125,7 +125,8 @@ TEST(OpticsCommand, TellsOneWavefrontInBothTables) {
         sums.square += value * value;
     }
     ASSERT_EQ(points.size(), 3u);
-    for (const auto& [point, sums] : points) {
+    for (const std::string point : {"axis", "edge"}) { // the corner's pupil is clipped, and the disc is part of it
+        const Sums& sums = points.at(point);
         EXPECT_NEAR(zernike.at(point + ",1,piston").back(), sums.piston / sums.count, 3e-3) << point;
         EXPECT_NEAR(zernike.at(point + ",2,tilt x").back(), sums.tilt_x / sums.rim / sums.count, 3e-3) << point;
         EXPECT_NEAR(zernike.at(point + ",3,tilt y").back(), sums.tilt_y / sums.rim / sums.count, 3e-3) << point;
