@@ -353,8 +353,11 @@ void make_folder(const fs::path& folder) {
     whole = whole.has_filename() ? whole : whole.parent_path();
     make_folder(whole.parent_path());
     // Another program may have made it by now.
-    if (::mkdir(whole.c_str(), 0777) != 0 && !fs::is_directory(whole, error)) {
-        fail(folder, "cannot be made", reason_of(errno == EEXIST ? ENOTDIR : errno));
+    if (::mkdir(whole.c_str(), 0777) != 0) {
+        const int reason = errno; // which the next call may change
+        if (!fs::is_directory(whole, error)) {
+            fail(folder, "cannot be made", reason_of(reason == EEXIST ? ENOTDIR : reason));
+        }
     }
     sync_folder(whole.parent_path());
 }
