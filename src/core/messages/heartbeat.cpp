@@ -23,7 +23,7 @@ std::atomic<Clock::rep> last_said{0};
 std::atomic<double> work_done{0};
 std::atomic<double> share_of_parts{1};
 
-// Of the work under way.
+// The counted work that is under way, if one is.
 struct Work {
     std::mutex mutex;
     bool under_way = false;

@@ -75,7 +75,7 @@ class SafeMessage final : public spdlog::custom_flag_formatter {
     std::unique_ptr<custom_flag_formatter> clone() const override { return std::make_unique<SafeMessage>(); }
 };
 
-// What the log says delays the next heartbeat.
+// A message in the log is a word too, so that the next heartbeat waits a whole interval again.
 class HeartbeatDelay final : public spdlog::sinks::base_sink<std::mutex> {
     void sink_it_(const spdlog::details::log_msg&) override { note_that_something_was_said(); }
     void flush_() override {}

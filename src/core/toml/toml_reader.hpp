@@ -40,10 +40,10 @@ struct NumberRange {
     std::string to_string() const;
 };
 
-// What is expected of the value of a key whose name ends in a unit of length, "_mm" or "_um", where that is a length
-// that nothing has: 0 and lengths of either sign from 1 pm, a hundredth of an atom, to 1000 km are. None where it is
-// one of these, and for keys without such a unit. Beyond, squares and quotients of lengths leave the numbers of a
-// double.
+// A length that nothing has is refused in these words, which say what is expected in its place: 0, or a length of
+// either sign from 1 pm, a hundredth of an atom, to 1000 km. None for such a length, and for a key whose name ends
+// neither in
+// "_mm" nor in "_um". Squares and quotients of lengths beyond these would leave the numbers that a double can hold.
 std::optional<std::string> expected_length(std::string_view key, double value);
 
 // What to do about a length in um beyond its range that most likely was given in nm; none if it was not.

@@ -1,4 +1,4 @@
-// What the machine has of memory.
+// The memory of the machine that the program runs on.
 #pragma once
 
 #include <unistd.h>

@@ -60,7 +60,7 @@ class PixelTruth {
     PixelTruth(const optics::PixelMapping& mapping, const specimen::Specimen& specimen, const PixelGrid& nominal)
         : mapping_(mapping), specimen_(specimen), nominal_(nominal) {}
 
-    // Of a specimen that is displaced by aside(column, row) while the pixel is in focus.
+    // The heights of a specimen that stands displaced by aside(column, row), mm, while that pixel is in focus.
     template <class Aside>
     surface::HeightMap displaced(const Aside& aside) const {
         return specimen::truth(specimen_, nominal_, [&](int column, int row) {

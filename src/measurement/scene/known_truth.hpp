@@ -28,8 +28,8 @@ struct KnownTruth {
 // stage where it is at this image.
 PixelGrid grid_of_image(const optics::Instrument& instrument, const Configuration& configuration, double focal_height);
 
-// Of the configuration's stack. With a stage that moves the specimen sideways a pixel's place is that at which the
-// specimen stands while the pixel is in focus.
+// The truth that the configuration's stack is compared with. Where a stage moves the specimen sideways, a pixel's place
+// is the one that the pixel sees at the moment when it is in focus.
 KnownTruth truth_on_pixels(const optics::Instrument& instrument, const Configuration& configuration,
                            const specimen::Specimen& specimen);
 

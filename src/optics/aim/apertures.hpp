@@ -68,8 +68,8 @@ std::vector<ConeRay> fill_cone(const Outline& outline, int panels = 1);
 // least. The cone is that of the object plane.
 double least_spot(const Imaging& imaging, const Outline& outline);
 
-// Of physics::Instrument, for light of the reference wavelength from within field_radius and from heights between
-// lowest and highest.
+// The gate_radius of physics::Instrument (a slope) that lets pass all light of the reference wavelength that comes from
+// within field_radius of the axis and from heights between lowest and highest, mm.
 double gate_radius(const Imaging& imaging, double field_radius, double lowest, double highest);
 
 } // namespace vkfv::optics
