@@ -40,8 +40,8 @@ class PartOfWork {
     double before_;
 };
 
-// A heartbeat tells the stage of the main thread (core/messages/stages.hpp), how long it has lasted, and how much of the
-// counted work is done.
+// A heartbeat tells the stage of the main thread (core/messages/stages.hpp), how long it has lasted, and how much of
+// the counted work is done.
 struct HeartbeatState {
     std::string stage;
     double seconds = 0;      // in the stage, or since the counted work began
