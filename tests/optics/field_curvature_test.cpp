@@ -16,17 +16,7 @@ namespace {
 // radius is the focal length n R / (2 (n - 1)). The ideal tube lens adds nothing.
 TEST(FieldCurvature, OfABallIsASphereAboutItsCentre) {
     constexpr double radius = 10, index = 1.5, focal_length = index * radius / (2 * (index - 1));
-    auto description = test::ideal_microscope(0.05);
-    const Medium glass = Medium::constant("glass", index);
-    auto stop = test::prescribed(0, radius, glass);
-    stop.semi_diameter = 0.4;
-    stop.role = PrescribedSurface::Role::aperture_stop;
-    description.objective = {};
-    description.objective.medium_before = Medium::air();
-    description.objective.surfaces = {test::prescribed(1 / radius, radius, glass), stop,
-                                      test::prescribed(-1 / radius, 0, Medium::air())};
-    description.source.ring = RingLightDescription{
-        .distance = 30, .elevation = 0.5, .width = 1, .segments = 1, .fill = 1, .on = {true}, .lit_radius = 0.1};
+    auto description = test::ball_microscope(radius, index);
     description.detector_width = 40; // 3 mm in the object
     const auto instrument = assemble(description);
     const FirstOrder& first_order = instrument.first_order;

@@ -84,6 +84,22 @@ inline optics::PrescribedSurface prescribed(double curvature, double thickness, 
     return result;
 }
 
+// A ball of glass with its stop in the middle in place of the objective, under a ring light; radius in mm.
+inline optics::InstrumentDescription ball_microscope(double radius, double index) {
+    auto description = ideal_microscope(0.05);
+    const optics::Medium glass = optics::Medium::constant("glass", index);
+    auto stop = prescribed(0, radius, glass);
+    stop.semi_diameter = 0.4;
+    stop.role = optics::PrescribedSurface::Role::aperture_stop;
+    description.objective = {};
+    description.objective.medium_before = optics::Medium::air();
+    description.objective.surfaces = {prescribed(1 / radius, radius, glass), stop,
+                                      prescribed(-1 / radius, 0, optics::Medium::air())};
+    description.source.ring = optics::RingLightDescription{
+        .distance = 30, .elevation = 0.5, .width = 1, .segments = 1, .fill = 1, .on = {true}, .lit_radius = 0.1};
+    return description;
+}
+
 inline physics::f64::TrainResult trace(const std::vector<physics::f64::Surface>& train, glm::dvec3 position,
                                        glm::dvec3 direction, unsigned apertures = 0u) {
     physics::f64::Ray ray{};

@@ -7,6 +7,22 @@
 
 namespace vkfv {
 
+namespace {
+
+// The value, or one that does no harm where it is a length that nothing has, which is noted then. Files that other
+// programs made, such as lens designs with their roundings of 0, are not read by keys and keep their numbers.
+double with_physical_length(const TomlTable& table, const Key& key, double value) {
+    const auto expected = expected_length(key.name, value);
+    if (!expected) {
+        return value;
+    }
+    table.note(key.name, *expected,
+               fmt::format("Correct {}{}{}.", table.path(), table.path().empty() ? "" : ".", key.name));
+    return 1;
+}
+
+} // namespace
+
 Section::Section(const TomlTable& table, const KeyTable& keys, ReadKeys& read)
     : table_(table), keys_(&keys), read_(&read) {
     const auto& path = table.path();
@@ -24,32 +40,36 @@ Section::Section(const TomlTable& table, const KeyTable& keys, ReadKeys& read)
 }
 
 double Section::number(const NumberKey& key) const {
-    const double value = key.value ? table_.optional_number(key.name, key.range).value_or(*key.value)
-                                   : table_.number(key.name, key.range);
-    return record(key, shortest_toml(value)), value;
+    return number_in(key, key.range);
 }
 
 double Section::number(const NumberKey& key, double fallback) const {
-    const double value = table_.optional_number(key.name, key.range).value_or(fallback);
+    const double value =
+        with_physical_length(table_, key, table_.optional_number(key.name, key.range).value_or(fallback));
     return record(key, shortest_toml(value)), value;
 }
 
 double Section::number_in(const NumberKey& key, const NumberRange& range) const {
-    const double value =
-        key.value ? table_.optional_number(key.name, range).value_or(*key.value) : table_.number(key.name, range);
+    const double value = with_physical_length(table_, key,
+                                              key.value ? table_.optional_number(key.name, range).value_or(*key.value)
+                                                        : table_.number(key.name, range));
     return record(key, shortest_toml(value)), value;
 }
 
 std::optional<double> Section::number_if_given(const NumberKey& key) const {
-    const auto value = table_.optional_number(key.name, key.range);
+    auto value = table_.optional_number(key.name, key.range);
     if (value) {
+        value = with_physical_length(table_, key, *value);
         record(key, shortest_toml(*value));
     }
     return value;
 }
 
 std::vector<double> Section::numbers(const NumbersKey& key) const {
-    const auto values = table_.numbers(key.name, key.range);
+    auto values = table_.numbers(key.name, key.range);
+    for (double& value : values) {
+        value = with_physical_length(table_, key, value);
+    }
     std::vector<std::string> texts;
     std::ranges::transform(values, std::back_inserter(texts), shortest_toml);
     return record(key, fmt::format("[{}]", fmt::join(texts, ", "))), values;

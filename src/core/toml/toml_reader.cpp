@@ -37,12 +37,6 @@ double stand_in(const NumberRange& range) {
     return range.contains(1) ? 1 : range.contains(any) ? any : 0;
 }
 
-// Surfaces of prescriptions have what a program of lens design wrote, with roundings of 0 among it and any
-// semi-diameter.
-bool is_of_design(std::string_view path) {
-    return path.starts_with("surface[");
-}
-
 std::string remedy_for_number(const std::string& path, std::string_view key, double value, const NumberRange& range) {
     const bool in_um = key.substr(0, key.find('[')).ends_with("_um");
     const auto remedy = in_um ? remedy_for_length_um(value, range) : std::nullopt;
@@ -125,10 +119,6 @@ std::optional<double> TomlTable::optional_number(std::string_view key, const Num
     if (!value || !range.contains(*value)) {
         state_->note(key, node, described("a finite number", range),
                      value ? remedy_for_number(path, key, *value, range) : fmt::format("Correct {}.", path));
-        return std::nullopt;
-    }
-    if (const auto expected = expected_length(key, *value); expected && !is_of_design(state_->path)) {
-        state_->note(key, node, *expected, fmt::format("Correct {}.", path));
         return std::nullopt;
     }
     return value;
@@ -334,10 +324,6 @@ std::optional<std::vector<double>> TomlTable::optional_numbers(std::string_view 
             const std::string name = fmt::format("{}[{}]", key, values.size());
             state_->note(name, &element, described("a finite number", range),
                          value ? remedy_for_number("this element", name, *value, range) : "Correct this element.");
-            return std::nullopt;
-        }
-        if (const auto expected_of_it = expected_length(key, *value); expected_of_it && !is_of_design(state_->path)) {
-            state_->note(fmt::format("{}[{}]", key, values.size()), &element, *expected_of_it, "Correct this element.");
             return std::nullopt;
         }
         values.push_back(*value);
