@@ -426,11 +426,9 @@ void ImageStore::store(int image, const trace::Image& exposure, const Frame& fra
     ledger_header_ = header;
     ledger_rows_[index] = row;
     notes_[index] = frame.note;
-    if (shard_.is_whole() && ledger_grows_) {
+    if (shard_.is_whole()) {
         // For those who watch; a row lost here is in its image, and the next opening writes the file anew.
-        ledger_grows_ = false;
         append_line(folder() / ledger_name, (first ? header + "\n" : "") + row);
-        ledger_grows_ = true;
     }
     append_timing(fmt::format("image {}", image), exposure.seconds, static_cast<double>(exposure.rays));
 }

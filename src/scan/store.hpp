@@ -122,7 +122,6 @@ class ImageStore {
     Shard shard_;
     std::mutex mutex_;                     // of the ledger
     std::string ledger_header_;            // empty until the first image
-    bool ledger_grows_ = true;             // its file has every row so far; no row is added behind one that is missing
     std::vector<std::string> ledger_rows_; // of each image, without line end; empty: not stored
     std::vector<std::string> notes_;       // of each image
     std::vector<std::string> damaged_;

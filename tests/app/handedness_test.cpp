@@ -43,17 +43,23 @@ TEST(Handedness, ALetterReadsCorrectlyFromEveryKindOfFile) {
             highest = std::max(highest, h);
             lowest = std::min(lowest, h);
         }
-        // Share of raised points in a part of the letter's bounding box, u to the right and v up, both 0 to 1.
+        // Share of raised points in a part of the letter's bounding box, u to the right and v up, both 0 to 1. A row or
+        // a column belongs to the letter from a tenth of the side on: single points on the flanks are of neither.
         int left = side, right = 0, bottom = side, top = 0;
         const auto raised = [&](int i, int j) { return truth.height(i, j) > 0.5 * (highest + lowest); };
-        for (int j = 0; j < side; ++j) {
-            for (int i = 0; i < side; ++i) {
-                if (raised(i, j)) {
-                    left = std::min(left, i);
-                    right = std::max(right, i);
-                    bottom = std::min(bottom, j);
-                    top = std::max(top, j);
-                }
+        for (int k = 0; k < side; ++k) {
+            int in_column = 0, in_row = 0;
+            for (int other = 0; other < side; ++other) {
+                in_column += raised(k, other) ? 1 : 0;
+                in_row += raised(other, k) ? 1 : 0;
+            }
+            if (10 * in_column >= side) {
+                left = std::min(left, k);
+                right = std::max(right, k);
+            }
+            if (10 * in_row >= side) {
+                bottom = std::min(bottom, k);
+                top = std::max(top, k);
             }
         }
         const auto share = [&](double u0, double u1, double v0, double v1) {

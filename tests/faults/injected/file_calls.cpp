@@ -92,6 +92,12 @@ bool is_for_writing(int flags) {
     return (flags & O_ACCMODE) != O_RDONLY || (flags & O_CREAT) != 0;
 }
 
+// Whether a file would be longer: to make it shorter needs no space, on a full disk either.
+bool grows(int file, long long bytes) {
+    struct stat status {};
+    return ::fstat(file, &status) == 0 && bytes > static_cast<long long>(status.st_size);
+}
+
 std::atomic<long> opens, writes, syncs, renames, closes, truncations, folders, removals;
 
 // `write` a given number of bytes, `write_all` of them.
@@ -163,7 +169,8 @@ extern "C" {
     }
 #define FTRUNCATE(name, offset_type)                                                                                   \
     int name(int file, offset_type bytes) noexcept {                                                                   \
-        return fails("ftruncate", Path(file), truncations) ? -1 : next(::name, #name)(file, bytes);                    \
+        return fails("ftruncate", Path(file), truncations, grows(file, bytes)) ? -1                                    \
+                                                                               : next(::name, #name)(file, bytes);     \
     }
 #define SYNC(name)                                                                                                     \
     int name(int file) {                                                                                               \
