@@ -1,12 +1,15 @@
 #include "optics/media/medium.hpp"
 
 #include "core/messages/error.hpp"
+#include "optics/media/glass_catalog.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <array>
 #include <cmath>
+#include <variant>
+#include <vector>
 
 namespace vkfv::optics {
 namespace {
@@ -15,7 +18,7 @@ using ::testing::HasSubstr;
 
 TEST(Medium, IsCauchysFormulaThroughItsPoints) {
     const auto cauchy = [](double um) { return 1.5 + 0.0042 / (um * um) + 1e-5 / (um * um * um * um); };
-    const std::vector<double> wavelengths_um = {0.486133, 0.587562, 0.656273};
+    const std::vector<double> wavelengths_um = {0.486, 0.59, 0.656}; // not the lines F, d and C
     std::vector<double> indices;
     for (const double um : wavelengths_um) {
         indices.push_back(cauchy(um));
@@ -28,9 +31,88 @@ TEST(Medium, IsCauchysFormulaThroughItsPoints) {
     for (const double um : {0.4785, 0.52, 0.6, 0.663}) {
         EXPECT_NEAR(medium.index(um), cauchy(um), 1e-14) << um;
     }
-    EXPECT_THROW(medium.index(0.476), InputError);
+    EXPECT_THROW(medium.index(0.4759), InputError);
     EXPECT_THROW(medium.index(0.667), InputError);
     EXPECT_THROW(medium.index(std::nan("")), InputError);
+    EXPECT_EQ(medium.dispersion_uncertainty(0.4785), 0);
+}
+
+// A glass as a patent gives it: its indices at F, d and C.
+Medium of_three_lines(const Medium& glass) {
+    const std::vector<double> lines_um = {0.4861327, 0.5875618, 0.6562725};
+    std::vector<double> indices;
+    for (const double um : lines_um) {
+        indices.push_back(glass.index(um));
+    }
+    return Medium::tabulated(glass.name, lines_um, indices);
+}
+
+TEST(Medium, OfThreeLinesIsCauchysFormulaBetweenThem) {
+    const Medium medium = Medium::tabulated("glass", {0.486133, 0.587562, 0.656273}, {1.5224, 1.5168, 1.5143});
+    const Medium cauchy = Medium::tabulated("glass", {0.4862, 0.5876, 0.6563}, {1.5224, 1.5168, 1.5143});
+    EXPECT_NEAR(medium.index(0.55), cauchy.index(0.55), 5e-6) << "whose lines lie up to 0.07 nm beside";
+    for (const double line_um : {0.486133, 0.656273}) { // where the two meet
+        EXPECT_NEAR(medium.index(line_um - 1e-7), medium.index(line_um + 1e-7), 1e-7);
+        EXPECT_NEAR(medium.dispersion_uncertainty(line_um), 0, 1e-12);
+    }
+    EXPECT_EQ(medium.dispersion_uncertainty(0.55), 0);
+    EXPECT_GT(medium.dispersion_uncertainty(0.45), 0);
+    EXPECT_GT(medium.dispersion_uncertainty(0.70), 0);
+    EXPECT_THROW(medium.index(0.369), InputError);
+    EXPECT_THROW(medium.index(0.721), InputError);
+}
+
+// SCHOTT's data sheets: h, g and r of two glasses of the normal line.
+TEST(Medium, OfThreeLinesHasTheIndicesOfDataSheetsBeyondThem) {
+    constexpr double printed = 0.5e-5; // half of the last digit
+    const struct {
+        double f, d, c, h, g, r;
+    } sheets[] = {
+        {1.52238, 1.51680, 1.51432, 1.53024, 1.52668, 1.51289}, // N-BK7
+        {1.63208, 1.62004, 1.61503, 1.65064, 1.64202, 1.61227}, // F2
+    };
+    for (const auto& sheet : sheets) {
+        const Medium glass = Medium::tabulated("glass", {0.4861327, 0.5875618, 0.6562725}, {sheet.f, sheet.d, sheet.c});
+        // The formula through rounded indices has up to 12 times their rounding at h, 5 times at g, 2 times at r.
+        EXPECT_NEAR(glass.index(0.4046561), sheet.h, glass.dispersion_uncertainty(0.4046561) + 13 * printed);
+        EXPECT_NEAR(glass.index(0.4358343), sheet.g, glass.dispersion_uncertainty(0.4358343) + 6 * printed);
+        EXPECT_NEAR(glass.index(0.7065188), sheet.r, glass.dispersion_uncertainty(0.7065188) + 3 * printed);
+    }
+}
+
+// n = A + B / lambda^2 + C / lambda^4 through the indices at F, d and C, in Newton's form.
+double cauchy_through(const Medium& glass, double um) {
+    const auto x = [](double wavelength) { return 1 / (wavelength * wavelength); };
+    const double f = 0.4861327, d = 0.5875618, c = 0.6562725;
+    const double slope_fd = (glass.index(d) - glass.index(f)) / (x(d) - x(f));
+    const double slope_dc = (glass.index(c) - glass.index(d)) / (x(c) - x(d));
+    const double curvature = (slope_dc - slope_fd) / (x(c) - x(f));
+    return glass.index(f) + (x(um) - x(f)) * (slope_fd + (x(um) - x(d)) * curvature);
+}
+
+// The formulas of catalogues are known; the indices at three lines alone find them again as well as is said. The wrong
+// twin is Cauchy's formula, which knows nothing of how glasses go on.
+TEST(Medium, OfThreeLinesIsAsNearToGlassesAsItSays) {
+    const auto catalog = GlassCatalog::builtin();
+    int compared = 0, near = 0, near_by_cauchy = 0;
+    for (const auto& name : catalog.names()) {
+        const Medium glass = catalog.get(name);
+        const auto range = glass.valid_range();
+        if (!std::holds_alternative<GlassFormula>(glass.dispersion) || range->minimum_um > 0.4047 ||
+            range->maximum_um < 0.7065) {
+            continue;
+        }
+        const Medium guessed = of_three_lines(glass);
+        for (const double um : {0.4047, 0.4358, 0.46, 0.68, 0.7065}) {
+            const double uncertainty = guessed.dispersion_uncertainty(um);
+            ++compared;
+            near += std::abs(guessed.index(um) - glass.index(um)) < uncertainty ? 1 : 0;
+            near_by_cauchy += std::abs(cauchy_through(glass, um) - glass.index(um)) < uncertainty ? 1 : 0;
+        }
+    }
+    EXPECT_GT(compared, 250);
+    EXPECT_GT(near, 0.9 * compared);
+    EXPECT_LT(near_by_cauchy, 0.7 * compared);
 }
 
 TEST(Medium, TakesTheThreeNearestOfMore) {

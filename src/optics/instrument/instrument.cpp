@@ -3,12 +3,14 @@
 #include "core/mathematics/units.hpp"
 #include "optics/aim/detector_aim.hpp"
 #include "optics/instrument/assembly.hpp"
+#include "optics/instrument/unknown_dispersion.hpp"
 
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <cmath>
 #include <future>
+#include <iterator>
 #include <span>
 #include <utility>
 
@@ -149,6 +151,7 @@ Instrument reduce(const InstrumentDescription& description, const AxialLayout& l
     instrument.front_vertex_height = layout.working_distance - measured.best_focus_offset;
     instrument.warnings = measured.warnings;
     instrument.warnings.insert(instrument.warnings.end(), illumination.warnings.begin(), illumination.warnings.end());
+    std::ranges::move(warning_of_unknown_dispersion(description), std::back_inserter(instrument.warnings));
     return instrument;
 }
 

@@ -41,7 +41,9 @@ struct ConstantIndex { // the same at every wavelength
 };
 
 // Indices at ascending wavelengths, and between them the Cauchy formula n = A + B / lambda^2 + C / lambda^4
-// through the three nearest (one: constant, two: A and B). Valid 10 nm beyond the ends too.
+// through the three nearest (one: constant, two: A and B). Valid 10 nm beyond the ends too. A table of the F, d and C
+// lines alone, as patents and old catalogues print it, is a glass: it holds from 0.37 um to 0.72 um, and beyond F and C
+// it has the partial dispersion that is usual for its Abbe number (Medium::dispersion_uncertainty).
 struct IndexTable {
     std::vector<double> wavelengths_um;
     std::vector<double> indices;
@@ -96,6 +98,11 @@ struct Medium {
     // Throws InputError, naming medium, wavelength and range, outside the valid range, and for a formula that
     // has no index there.
     double index(double wavelength_um) const;
+
+    // How far the index may be off because the source says nothing of this wavelength: a glass known by its indices at
+    // F, d and C alone, beyond these lines. Of 735 glasses of three vendors 95 in 100 are nearer than this to what
+    // their indices at the three lines let expect. 0 where the source's own numbers hold.
+    double dispersion_uncertainty(double wavelength_um) const;
 
     // The dispersion's form and numbers as text, for digests: equal for equal dispersions only.
     std::string dispersion_text() const;
