@@ -2,6 +2,7 @@
 #include "configuration/optical_parts.hpp"
 #include "configuration/ranges.hpp"
 #include "configuration/tables.hpp"
+#include "optics/prescriptions/ideal_lens.hpp"
 
 #include <fmt/format.h>
 
@@ -16,9 +17,28 @@ using InterfaceModel = optics::Interfaces::Model;
 constexpr double default_splitter_reflectance = 0.5;
 constexpr double share_rounding = 1e-12; // of 0.7 + 0.3
 
-const TextKey illuminator("prescription", Default::of(std::string("koehler")),
-                          "Prescription of the illuminator, from the source on: a name in assets/illuminators, or a "
-                          "path.");
+enum class IlluminatorKind { prescription, ideal };
+
+constexpr double default_field_lens = 150; // mm
+
+const ChoiceKey<IlluminatorKind>
+    illuminator_kind("kind",
+                     {{IlluminatorKind::ideal, "ideal", "Köhler illumination by two lenses without aberrations"},
+                      {IlluminatorKind::prescription, "prescription", "an illuminator by its surfaces"}},
+                     IlluminatorKind::prescription, "How the illuminator is described.");
+const TextKey illuminator = of_kinds(
+    {"prescription"}, TextKey("prescription", Default::of(std::string("koehler")),
+                              "Prescription of the illuminator, from the source on: a name in assets/illuminators, or "
+                              "a path."));
+const NumberKey condenser_focal_length = of_kinds(
+    {"ideal"},
+    for_example("26.0", NumberKey("condenser_focal_length_mm", NumberRange::positive(), needed,
+                                  "Focal length of the condenser. The source, or the aperture stop before it, "
+                                  "stands in its front focal plane, the field stop in its back focal plane.")));
+const NumberKey field_lens_focal_length =
+    of_kinds({"ideal"}, NumberKey("field_lens_focal_length_mm", NumberRange::positive(), default_field_lens,
+                                  "Focal length of the field lens, which images the source towards the objective's "
+                                  "pupil, as many times larger as its focal length is longer than the condenser's."));
 const NumberKey field_stop("field_stop_radius_mm", NumberRange::positive(), Default::in_words("the prescription's"),
                            "Radius of the field stop.");
 const NumberKey aperture("aperture_radius_mm", NumberRange::positive(), Default::in_words("the source's edge"),
@@ -89,8 +109,9 @@ const KeyTable& illumination_keys() {
                                 .presence = KeyTable::Presence::optional,
                                 .meaning = "The illuminator between a disc or rectangle and the beam splitter.",
                                 .subject = "an illumination",
-                                .kind = "",
-                                .keys = {&illuminator, &field_stop, &aperture, &objective_distance}};
+                                .kind = "kind",
+                                .keys = {&illuminator_kind, &illuminator, &condenser_focal_length,
+                                         &field_lens_focal_length, &field_stop, &aperture, &objective_distance}};
     return table;
 }
 
@@ -140,8 +161,13 @@ void read_illumination(const TomlTable& root, Configuration& configuration) {
         return;
     }
     const Section section(root.table_or_empty("illumination"), illumination_keys(), configuration);
-    instrument.illumination =
-        read_prescription(section, illuminator, configuration, "illuminators", illuminator.fallback_text());
+    if (section.kind(illuminator_kind) == IlluminatorKind::ideal) {
+        const double condenser = section.number(condenser_focal_length);
+        instrument.illumination = optics::ideal_koehler(condenser, section.number(field_lens_focal_length));
+    } else {
+        instrument.illumination =
+            read_prescription(section, illuminator, configuration, "illuminators", illuminator.fallback_text());
+    }
     instrument.field_stop_radius = section.number_if_given(field_stop);
     instrument.illumination_aperture_radius = section.number_if_given(aperture);
     instrument.illumination_to_objective = section.number_if_given(objective_distance);

@@ -125,5 +125,48 @@ TEST(KoehlerField, IsUniformByTheRadianceThatReachesIt) {
     EXPECT_LT(irradiance(instrument, 0.6, 0) / middle, 0.8);
 }
 
+// Fourier lenses one after another (physics/ideal_lens.glsl): light from s at the source in the direction u crosses the
+// field stop at f_condenser u, the pupil at -(f_field / f_condenser) s, and meets the specimen at the stop's image.
+TEST(KoehlerField, IdealLensesMapPlacesToDirectionsAndBack) {
+    constexpr double condenser = 30, field_lens = 120, objective = 20, aperture = 0.3;
+    auto description = test::ideal_microscope(aperture);
+    description.illumination = ideal_koehler(condenser, field_lens);
+    description.field_stop_radius = 0.6;
+    description.source.radius = 1.2 * objective * aperture * condenser / field_lens;
+    const auto instrument = assemble(description);
+    EXPECT_NEAR(instrument.first_order.pupil_radius_in_source, objective * aperture * condenser / field_lens, 1e-9);
+    EXPECT_NEAR(instrument.first_order.source_magnification, -field_lens / condenser, 1e-9);
+    EXPECT_NEAR(std::abs(instrument.first_order.field_stop_magnification), objective / field_lens, 1e-9);
+    EXPECT_NEAR(instrument.constants.source_distance, condenser, 1e-12);
+
+    physics::f64::SpecimenRecord specimen{};
+    const auto exposure = test::exposure_of(instrument.front_vertex_height, 41);
+    int arrived = 0, beside_the_stop = 0, beside_the_pupil = 0;
+    constexpr std::uint32_t paths = 20000;
+    for (std::uint32_t k = 0; k < paths; ++k) {
+        const auto emission = physics::f64::emit(instrument.scene(), instrument.constants,
+                                                 physics::f64::draw(exposure.seed, exposure.image, {k, 0}, 0u));
+        const auto arrival =
+            physics::f64::illuminate(instrument.scene(), instrument.constants, specimen, exposure, emission);
+        const glm::dvec2 place(emission.ray.position), direction(emission.ray.direction);
+        const bool through_the_stop = glm::length(condenser * direction) < 0.6;
+        const bool through_the_pupil = glm::length(field_lens / condenser * place) < objective * aperture;
+        beside_the_stop += through_the_stop ? 0 : 1;
+        beside_the_pupil += through_the_pupil ? 0 : 1;
+        ASSERT_EQ(arrival.fate.status == PATH_ALIVE, through_the_stop && through_the_pupil) << k;
+        if (arrival.fate.status != PATH_ALIVE) {
+            continue;
+        }
+        ++arrived;
+        // The specimen's z points against the light, so one of its axes is turned: lengths alone are compared.
+        EXPECT_NEAR(glm::length(glm::dvec2(arrival.position)),
+                    objective / field_lens * condenser * glm::length(direction), 1e-9);
+        EXPECT_NEAR(glm::length(glm::dvec2(arrival.direction)), field_lens / condenser * glm::length(place) / objective,
+                    1e-9);
+    }
+    EXPECT_GT(arrived, 1000);
+    EXPECT_GT(beside_the_pupil, 1000) << "else the pupil was not seen to limit the light";
+}
+
 } // namespace
 } // namespace vkfv::optics

@@ -27,4 +27,20 @@ Prescription ideal_objective(double focal_length, double numerical_aperture) {
     return objective;
 }
 
+Prescription ideal_koehler(double condenser_focal_length, double field_lens_focal_length) {
+    Prescription illuminator = ideal_lens(condenser_focal_length);
+    illuminator.name = fmt::format("ideal Köhler illuminator, condenser f = {:g} mm, field lens f = {:g} mm",
+                                   condenser_focal_length, field_lens_focal_length);
+    illuminator.title = illuminator.name;
+    illuminator.source_distance = condenser_focal_length;
+    illuminator.surfaces.front().thickness = condenser_focal_length;
+    PrescribedSurface field_stop;
+    field_stop.medium_after = Medium::air();
+    field_stop.thickness = field_lens_focal_length;
+    field_stop.role = PrescribedSurface::Role::field_stop;
+    illuminator.surfaces.push_back(field_stop);
+    illuminator.surfaces.push_back(ideal_lens(field_lens_focal_length).surfaces.front());
+    return illuminator;
+}
+
 } // namespace vkfv::optics

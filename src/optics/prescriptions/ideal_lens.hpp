@@ -1,4 +1,4 @@
-// Lenses for whoever has no prescription: aplanatic, without aberrations (physics::pass_ideal_lens).
+// Lenses for whoever has no prescription: aplanatic, without aberrations and dispersion (physics::pass_ideal_lens).
 #pragma once
 
 #include "optics/prescriptions/prescription.hpp"
@@ -11,5 +11,12 @@ Prescription ideal_lens(double focal_length);
 // A lens, and the aperture stop in its back focal plane, where Abbe's sine condition gives the numerical aperture's
 // cone the radius focal_length * numerical_aperture.
 Prescription ideal_objective(double focal_length, double numerical_aperture);
+
+// Köhler illumination by two such lenses, from the source on. The source stands in the front focal plane of the
+// condenser, the field stop in the condenser's back focal plane, which is the front focal plane of the field lens. So
+// each point of the source lights the whole field stop evenly, and the source is imaged into the back focal plane of
+// the field lens, field_lens_focal_length / condenser_focal_length times larger. Focal lengths in mm; the field stop is
+// open.
+Prescription ideal_koehler(double condenser_focal_length, double field_lens_focal_length);
 
 } // namespace vkfv::optics
