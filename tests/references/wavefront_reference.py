@@ -4,7 +4,7 @@ point_waves_test.cpp.
 
 Shares no code with vkfv: a fan of meridional rays is traced from the detector's middle backward through spheres of the
 prescriptions, and what vkfv fits over the pupil is integrated here along its radius. Prints the wavefront's Zernike
-coefficients (Noll's order, unit RMS, waves), the transfer function H(f, z), and the heights at which gratings have their
+coefficients (Noll's order, unit RMS, waves), its RMS and Strehl ratio, the transfer function H(f, z), and the heights at which gratings have their
 highest contrast. Heights: of the specimen, towards the objective, um.
 Usage: tests/references/wavefront_reference.py [objective [period_um ...]]
 """
@@ -157,6 +157,10 @@ def main():
     for where, z in (("least variance", focus), ("least spot", spot)):
         print(f"Zernike coefficients (waves) at the {where}: "
               + ", ".join(f"Z{j} {a:+.6f}" for j, a in scope.zernike(z).items()))
+    p, weight = scope.over_pupil()
+    waves = scope.at(p, focus) / WAVELENGTH
+    rms = np.sqrt(np.sum(weight * (waves - np.sum(weight * waves))**2))
+    print(f"at the least variance: RMS {rms:.7f} waves, Strehl ratio {abs(np.sum(weight * np.exp(2j * np.pi * waves)))**2:.7f}")
     for period in periods:
         best = scope.best_contrast(period * 1e-3, focus, 4 * depth)
         print(f"period {period:g} um: highest contrast {scope.transfer(1e3 / period, best):.5f} at "

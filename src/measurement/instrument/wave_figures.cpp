@@ -16,7 +16,6 @@ namespace vkfv::measurement {
 
 namespace {
 
-constexpr int wavelengths = 5; // of a continuous spectrum
 constexpr int half_heights = 20;
 constexpr int frequency_steps = 48;
 constexpr int half_places = 40;
@@ -43,11 +42,14 @@ int count(const std::vector<double>& values) {
     return static_cast<int>(values.size());
 }
 
-void measure_wavefront(WavePoint& point, const optics::Wavefront& wavefront) {
+void measure_wavefront(WavePoint& point, const optics::PointWaves& image) {
+    const optics::Wavefront& wavefront = image.middle();
     point.aperture = std::sqrt(wavefront.area() / pi);
     point.wavelength_um = wavefront.wavelength() * um_per_mm;
     const optics::LevelledWavefront levelled = optics::levelled(wavefront);
-    point.wavefront_rms = levelled.rms / wavefront.wavelength();
+    const optics::WavefrontQuality quality = optics::wavefront_quality(image);
+    point.wavefront_rms = quality.rms;
+    point.strehl = quality.strehl;
     point.zernike = optics::zernike_coefficients(wavefront, zernike_terms);
     const double along_disc = wavefront.smallest_rim() / 2; // Z2 = 2 x, Z3 = 2 y
     point.zernike[0] -= levelled.piston / wavefront.wavelength();
@@ -72,7 +74,6 @@ void measure_spread(WavePoint& point, const WaveAxes& axes, const optics::PointW
     const double reach = axes.places.back();
     const optics::PointSpread spread = image.point_spread(std::sqrt(2.0) * reach);
     const glm::dvec2 tangential(-point.radial.y, point.radial.x);
-    point.strehl = spread.strehl();
     point.dark_rings = spread.dark_rings(3);
     point.encircled_in_rings = spread.encircled(point.dark_rings);
     std::vector<double> radii;
@@ -132,7 +133,7 @@ WaveFigures wave_figures(const optics::Instrument& instrument, double reach) {
     for (const auto& [name, field, radial] : {std::tuple{"axis", glm::dvec2(0), glm::dvec2(1, 0)},
                                               std::tuple{"edge", glm::dvec2(edge, 0), glm::dvec2(1, 0)},
                                               std::tuple{"corner", corner, glm::normalize(corner)}}) {
-        const optics::PointWaves image(instrument, field, wavelengths);
+        const optics::PointWaves image(instrument, field, optics::wavelengths_of_figures);
         if (image.middle().largest_rim() == 0) {
             continue;
         }
@@ -144,7 +145,7 @@ WaveFigures wave_figures(const optics::Instrument& instrument, double reach) {
             point.name = name;
             point.field = field;
             point.radial = radial;
-            measure_wavefront(point, image.middle());
+            measure_wavefront(point, image);
             measure_spread(point, axes, image, symmetric);
             measure_through_focus(point, axes, image, symmetric && field == glm::dvec2(0));
             return point;

@@ -10,7 +10,6 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <complex>
 #include <cstdint>
 #include <future>
 
@@ -33,8 +32,6 @@ constexpr double least_relative_light = 0.9;
 // A ray at the detector: where it lands, its direction (of length index) and its optical path from the object.
 struct Arrival {
     glm::dvec2 position;
-    glm::dvec2 direction;
-    double path_length = 0;
     double weight = 0;
 };
 
@@ -56,10 +53,7 @@ std::vector<Arrival> arrivals(const Imaging& imaging, const Outline& outline, co
             continue;
         }
         const Ray landed = physics::f64::fly_to_plane(result.ray, imaging.detector_distance, result.index);
-        list.push_back({.position = {landed.position.x, landed.position.y},
-                        .direction = {landed.direction.x, landed.direction.y},
-                        .path_length = landed.path_length,
-                        .weight = weight});
+        list.push_back({.position = {landed.position.x, landed.position.y}, .weight = weight});
         total += weight;
     }
     for (Arrival& arrival : list) {
@@ -68,7 +62,7 @@ std::vector<Arrival> arrivals(const Imaging& imaging, const Outline& outline, co
     return list;
 }
 
-// Shares of the cone, each with the eight rings of fill_cone, so that phases of several waves are resolved.
+// Shares of the cone, each with the eight rings of fill_cone.
 constexpr int cone_panels = 3;
 
 CardinalPoints cardinal_points(const Prescription& prescription, const Spectrum& spectrum) {
@@ -147,7 +141,7 @@ PointImage point_image(const Imaging& imaging, const Outline& outline, double he
     PointImage image{.position = outline.position};
     if (!(outline.area() > 0)) { // nothing arrives: nothing is defined
         image.centroid = glm::dvec2(NAN);
-        image.rms_spot = image.wavefront_rms = image.strehl = NAN;
+        image.rms_spot = NAN;
         return image;
     }
     const auto cone = fill_cone(outline, cone_panels);
@@ -161,51 +155,14 @@ PointImage point_image(const Imaging& imaging, const Outline& outline, double he
         }
     }
 
-    // The angle characteristic about the centroid, without its mean; a shift of the centre by d adds direction . d to
-    // it.
     double mean_square = 0;
-    glm::dmat2 normal(0);
-    glm::dvec2 right(0);
-    std::vector<double> wave_numbers; // 1/mm
     for (std::size_t node = 0; node < light.size(); ++node) {
-        const double wave_number = 1 / (spectrum[node].wavelength_um * mm_per_um);
-        wave_numbers.push_back(wave_number);
-        double mean_path = 0;
-        glm::dvec2 mean_direction(0);
-        for (Arrival& ray : light[node]) {
+        for (const Arrival& ray : light[node]) {
             const glm::dvec2 deviation = ray.position - image.centroid;
             mean_square += spectrum[node].weight * ray.weight * glm::dot(deviation, deviation);
-            ray.path_length -= glm::dot(ray.direction, deviation);
-            mean_path += ray.weight * ray.path_length;
-            mean_direction += ray.weight * ray.direction;
-        }
-        for (Arrival& ray : light[node]) {
-            ray.path_length -= mean_path;
-            ray.direction -= mean_direction;
-            const double weight = spectrum[node].weight * ray.weight * wave_number * wave_number;
-            normal += weight * glm::outerProduct(ray.direction, ray.direction);
-            right += weight * ray.path_length * ray.direction;
         }
     }
     image.rms_spot = std::sqrt(mean_square);
-    const glm::dvec2 tilt = glm::determinant(normal) > 0 ? glm::inverse(normal) * right : glm::dvec2(0);
-
-    double variance = 0;
-    double reached = 0;
-    double ideal = 0;
-    for (std::size_t node = 0; node < light.size(); ++node) {
-        std::complex<double> sum = 0;
-        for (const Arrival& ray : light[node]) {
-            const double waves = wave_numbers[node] * (ray.path_length - glm::dot(tilt, ray.direction));
-            variance += spectrum[node].weight * ray.weight * waves * waves;
-            sum += ray.weight * std::polar(1.0, 2 * pi * waves);
-        }
-        const double weight = spectrum[node].weight * wave_numbers[node] * wave_numbers[node];
-        reached += weight * std::norm(sum);
-        ideal += weight;
-    }
-    image.wavefront_rms = std::sqrt(variance);
-    image.strehl = reached / ideal;
     return image;
 }
 

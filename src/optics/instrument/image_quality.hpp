@@ -20,14 +20,7 @@ struct PointImage {
     glm::dvec2 position = glm::dvec2(0); // of the object, on the plane of best focus
     glm::dvec2 centroid = glm::dvec2(0); // of its light on the detector
     double rms_spot = 0;                 // RMS distance from the centroid, on the detector, over cone and spectrum
-    // Of the optical path against the best-fitting sphere, in wavelengths: its centre stays in the detector's plane, so
-    // piston and tilt are removed and defocus is not. Paths are compared on spheres of infinite radius (the angle
-    // characteristic about the centre; Born and Wolf, "Principles of Optics", section 4.1).
-    double wavefront_rms = 0;
-    // Irradiance at that sphere's centre over that without aberrations: |<exp(2 pi i W / lambda)>|^2 (Born and Wolf,
-    // section 9.1), over the spectrum weighted by flux / lambda^2. Below 0.01 no more than an order of magnitude.
-    double strehl = 0;
-    double relative_light = 0; // area of its cone over that on the axis
+    double relative_light = 0;           // area of its cone over that on the axis
 };
 
 // Of the outline's point at `height` above the paraxial object plane; NaN where no light arrives. relative_light stays

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <vector>
 
 namespace vkfv::optics {
@@ -56,6 +57,19 @@ LevelledWavefront levelled(const Wavefront& wavefront) {
     }
     result.rms = std::sqrt(square / area);
     return result;
+}
+
+WavefrontQuality wavefront_quality(const PointWaves& waves) {
+    const Wavefront& middle = waves.middle();
+    if (!(middle.largest_rim() > 0)) {
+        constexpr double none = std::numeric_limits<double>::quiet_NaN();
+        return {.rms = none, .strehl = none};
+    }
+    return {.rms = levelled(middle).rms / middle.wavelength(), .strehl = waves.point_spread(0).strehl()};
+}
+
+WavefrontQuality wavefront_quality(const Instrument& instrument, glm::dvec2 field) {
+    return wavefront_quality(PointWaves(instrument, field, wavelengths_of_figures));
 }
 
 } // namespace vkfv::optics

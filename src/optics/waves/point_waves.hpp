@@ -10,6 +10,9 @@
 
 namespace vkfv::optics {
 
+// Figures and pictures of a continuous spectrum are computed for at most so many wavelengths.
+inline constexpr int wavelengths_of_figures = 5;
+
 // All wavelengths of one point of the field.
 class PointWaves {
   public:
