@@ -231,7 +231,7 @@ void StackEvaluation::add(topography::Channels image, double z, std::optional<do
     evaluator_.add(std::move(image), z, reading);
 }
 
-void StackEvaluation::reconstruct(double x0, double y0, double pitch, const KnownField& field) {
+void StackEvaluation::reconstruct(double x0, double y0, double pitch, const KnownInstrument& field) {
     auto frames = std::async(std::launch::async, [&] { return frames_ ? frames_->finish() : report::Frames(); });
     evaluation_.topography = evaluator_.finish(x0, y0, pitch);
     auto noise = std::async(std::launch::async, [&] { return median_of(evaluation_.topography.height_noise); });
@@ -247,12 +247,17 @@ void StackEvaluation::reconstruct(double x0, double y0, double pitch, const Know
             topography::add_curvature(evaluation_.topography.height_uncertainty, evaluation_.topography.height,
                                       [&](double x, double y) { return -design->height(x, y); });
     }
+    if (field.hidden > 0) {
+        for (double& uncertainty : evaluation_.topography.height_uncertainty.values) {
+            uncertainty = std::hypot(uncertainty, field.hidden);
+        }
+    }
     evaluation_.height_uncertainty = median_of(evaluation_.topography.height_uncertainty);
     evaluation_.height_noise = noise.get();
     evaluation_.frames = frames.get();
 }
 
-Evaluation StackEvaluation::finish(KnownTruth known, const topography::Band& band, const KnownField& field,
+Evaluation StackEvaluation::finish(KnownTruth known, const topography::Band& band, const KnownInstrument& field,
                                    const std::optional<dimensions::Feature>& feature) {
     if (diffracted_) {
         evaluation_.diffracted = std::make_shared<Evaluation>(diffracted_->finish(known, band, field, feature));
@@ -278,6 +283,11 @@ Evaluation StackEvaluation::finish(KnownTruth known, const topography::Band& ban
         }
         if (feature) {
             evaluation_.dimensions = standard_dimensions(*feature, measured, known.undistorted);
+            if (field.hidden > 0) {
+                for (auto& dimension : evaluation_.dimensions) {
+                    dimension.measured.standard_error = surface::undefined;
+                }
+            }
         }
         evaluation_.truth = std::move(truth);
         evaluation_.mapping = known.mapping;
@@ -285,7 +295,7 @@ Evaluation StackEvaluation::finish(KnownTruth known, const topography::Band& ban
     return std::move(evaluation_);
 }
 
-Evaluation StackEvaluation::finish(double pitch, const surface::Form& form, const KnownField& field) {
+Evaluation StackEvaluation::finish(double pitch, const surface::Form& form, const KnownInstrument& field) {
     evaluation_.band.form = form;
     {
         const Stopwatch stopwatch(evaluation_.seconds);

@@ -2,6 +2,7 @@
 
 #include "measurement/scene/assembly.hpp"
 #include "measurement/scene/known_truth.hpp"
+#include "measurement/scene/phase_limits.hpp"
 #include "measurement/scene/stage_figures.hpp"
 #include "report/declared_figures.hpp"
 #include "scan/repair.hpp"
@@ -211,8 +212,11 @@ EvaluatedStack evaluate_own_stack(const OwnStack& stack) {
     const auto specimen = make_specimen(configuration);
     const auto instrument = assemble_instrument(configuration, specimen, positions);
     const ImageSize pixels = configuration.instrument.detector_pixels;
-    const KnownField field{.flat = read_flat(configuration, pixels, instrument.first_order.pixel_pitch),
-                           .design = optics::field_curvature(instrument.first_order)};
+    KnownInstrument field{.flat = read_flat(configuration, pixels, instrument.first_order.pixel_pitch),
+                          .design = optics::field_curvature(instrument.first_order)};
+    if (configuration.trace.waves) {
+        field.hidden = phase_limits(configuration.instrument, instrument, specimen).height_uncertainty();
+    }
     const auto order = order_of_images(positions.size(), stack.shuffle);
     StackEvaluation evaluation(
         evaluation_options(configuration, instrument),
@@ -260,7 +264,7 @@ EvaluatedStack evaluate_images(const scan::ImageSeries& series, const ForeignSta
         options, focus_planes_for_files(configuration.evaluate_on, configuration.trace.device, order.size()),
         std::nullopt, series.size());
     spdlog::info("{} images, {} to {}", series.size(), series.name(0), series.name(series.size() - 1));
-    KnownField field;
+    KnownInstrument field;
     bool negative = false;
     topography::StackFaultsFinder finder(series.size());
     for (int place = 0; place < series.size(); ++place) {

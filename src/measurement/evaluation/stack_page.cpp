@@ -182,6 +182,19 @@ void add_light(report::Page& page, const scan::MeanLedger& ledger) {
     page.table("Mean of all images; what is not listed took none", rows);
 }
 
+// A reader of the report alone has not seen the log, so the warnings of waves and camera stand here too.
+void add_warnings(report::Page& page, const nlohmann::ordered_json& results) {
+    for (const char* part : {"waves", "camera"}) {
+        const auto found = results.find(part);
+        if (found == results.end() || !found->contains("warnings")) {
+            continue;
+        }
+        for (const std::string warning : found->at("warnings")) {
+            page.paragraph("Warning: " + warning);
+        }
+    }
+}
+
 void add_run(report::Page& page, const StackPage& content) {
     const auto& results = content.results;
     page.section("run", "Run and settings");
@@ -214,6 +227,7 @@ std::string stack_page(const StackPage& content) {
     report::Page page;
     const auto& plain = content.plain;
     page.section("results", "Results");
+    add_warnings(page, content.results);
     if (plain.figures.front().deviation) {
         add_deviations(page, content);
     } else {

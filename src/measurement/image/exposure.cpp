@@ -8,6 +8,7 @@
 #include "measurement/image/camera_images.hpp"
 #include "measurement/scene/assembly.hpp"
 #include "measurement/scene/known_truth.hpp"
+#include "measurement/scene/phase_limits.hpp"
 #include "measurement/scene/wave_limits.hpp"
 #include "scan/checkpoint_files.hpp"
 #include "specimen/geometry_digest.hpp"
@@ -62,6 +63,9 @@ Exposure expose(const Configuration& configuration, WorkingDevices& devices, con
         }
         if (const auto filters = tracer->pupil_filters(); !filters.empty()) {
             for (const auto& warning : warnings_of(worst_of(limits_of_lights(filters, instrument)))) {
+                spdlog::warn(warning);
+            }
+            for (const auto& warning : warnings_of(phase_limits(configuration.instrument, instrument, specimen))) {
                 spdlog::warn(warning);
             }
         }

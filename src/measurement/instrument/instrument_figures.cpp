@@ -5,10 +5,12 @@
 #include "measurement/scene/assembly.hpp"
 #include "measurement/scene/disk_space.hpp"
 #include "measurement/scene/host_memory.hpp"
+#include "measurement/scene/phase_limits.hpp"
 #include "measurement/scene/stage_figures.hpp"
 #include "measurement/scene/wave_limits.hpp"
 #include "optics/instrument/image_quality.hpp"
 #include "optics/prescriptions/reversal.hpp"
+#include "optics/waves/levelled_wavefront.hpp"
 #include "trace/device/wave_memory.hpp"
 
 #include <fmt/format.h>
@@ -16,6 +18,7 @@
 #include <algorithm>
 #include <cmath>
 #include <future>
+#include <iterator>
 #include <limits>
 #include <optional>
 #include <utility>
@@ -85,7 +88,23 @@ std::vector<FigureGroup> groups_of(const Configuration& configuration, const opt
     };
 }
 
-FigureGroup aberrations(const optics::FirstOrder& first_order, const optics::ImageQuality& quality) {
+// At the points that the image quality tells of.
+struct WavefrontQualities {
+    optics::WavefrontQuality axis, edge, corner;
+};
+
+WavefrontQualities wavefronts_at(const optics::Instrument& instrument, const optics::ImageQuality& quality) {
+    const auto at = [&](const optics::PointImage& point) {
+        return std::async(std::launch::async, [&instrument, place = point.position] {
+            return optics::wavefront_quality(instrument, place);
+        });
+    };
+    auto axis = at(quality.axis), edge = at(quality.edge), corner = at(quality.corner);
+    return {.axis = axis.get(), .edge = edge.get(), .corner = corner.get()};
+}
+
+FigureGroup aberrations(const optics::FirstOrder& first_order, const optics::ImageQuality& quality,
+                        const WavefrontQualities& wavefront) {
     const double absolute_magnification = std::abs(first_order.magnification);
     const auto in_object_um = [&](double on_detector) { return on_detector / absolute_magnification * um_per_mm; };
     constexpr double percent = 100;
@@ -97,12 +116,12 @@ FigureGroup aberrations(const optics::FirstOrder& first_order, const optics::Ima
              {"detector_rms_spot_axis_um", quality.axis.rms_spot * um_per_mm, "RMS radius at the detector"},
              {"detector_rms_spot_edge_um", quality.edge.rms_spot * um_per_mm, "the same at the edge"},
              {"detector_rms_spot_corner_um", quality.corner.rms_spot * um_per_mm, "the same in the corner"},
-             {"wavefront_rms_axis_waves", quality.axis.wavefront_rms, "RMS, defocus included, tilt removed"},
-             {"wavefront_rms_edge_waves", quality.edge.wavefront_rms, "the same at the edge"},
-             {"wavefront_rms_corner_waves", quality.corner.wavefront_rms, "the same in the corner"},
-             {"strehl_axis", quality.axis.strehl, "Strehl ratio of that wavefront; 1: no aberrations"},
-             {"strehl_edge", quality.edge.strehl, "the same at the edge"},
-             {"strehl_corner", quality.corner.strehl, "the same in the corner"},
+             {"wavefront_rms_axis_waves", wavefront.axis.rms, "RMS, defocus included, tilt removed; mid-spectrum"},
+             {"wavefront_rms_edge_waves", wavefront.edge.rms, "the same at the edge"},
+             {"wavefront_rms_corner_waves", wavefront.corner.rms, "the same in the corner"},
+             {"strehl_axis", wavefront.axis.strehl, "Strehl ratio, over the spectrum; 1: no aberrations"},
+             {"strehl_edge", wavefront.edge.strehl, "the same at the edge"},
+             {"strehl_corner", wavefront.corner.strehl, "the same in the corner"},
              {"field_curvature_um", first_order.field_curvature * um_per_mm,
               "best focus at the edge over that on the axis"},
              {"field_curvature_corner_um", first_order.field_curvature_corner * um_per_mm, "the same in the corner"},
@@ -140,6 +159,15 @@ FigureGroup figures_of_waves(const optics::WaveOptions& options, const optics::I
              {"wave_contrast_error_axis", error_of(0), "of the pupil's cells against Hopkins' integral"},
              {"wave_contrast_error_edge", error_of(1), "the same at the edge, by the filter of the axis"},
              {"wave_contrast_error_corner", error_of(2), "the same in the corner"}}};
+}
+
+FigureGroup figures_of_phase(const PhaseLimits& limits, std::vector<std::string>& warnings) {
+    std::ranges::move(warnings_of(limits), std::back_inserter(warnings));
+    return {"Whether images of waves hold: a filled pupil, or relief above lambda / (4 pi)",
+            {{"wave_source_fill", limits.source_fill, "of the objective's aperture, by the source; 0: a ring"},
+             {"wave_scatter_fill", limits.scatter_fill, "the same by the specimen's scatter; 0: a mirror"},
+             {"wave_texture_um", limits.texture * um_per_mm, "standard deviation of the specimen's texture"},
+             {"wave_phase_height_um", limits.phase_height * um_per_mm, "lambda / (4 pi)"}}};
 }
 
 FigureGroup figures_of_stage(const Configuration& configuration, std::vector<std::string>& warnings) {
@@ -259,12 +287,10 @@ void warn_of_range(const Relief& relief, const ScanFigures& scan, const optics::
 }
 
 // A prescription that is written from infinity towards its focus, as most designs are, makes a valid microscope that
-// forms no image. It is recognised by what the objective does when it is turned round.
-void warn_of_direction(const Configuration& configuration, const optics::ImageQuality& quality,
-                       std::vector<std::string>& warnings) {
+// forms no image. It is recognised by what the objective does when it is turned round. listed: waves RMS on the axis.
+void warn_of_direction(const Configuration& configuration, double listed, std::vector<std::string>& warnings) {
     constexpr double suspicious = 0.25; // waves RMS: a Strehl ratio below 0.1
     constexpr double far_better = 0.25; // of the wavefront
-    const double listed = quality.axis.wavefront_rms;
     if (!(listed > suspicious)) {
         return;
     }
@@ -272,7 +298,7 @@ void warn_of_direction(const Configuration& configuration, const optics::ImageQu
     other.instrument.objective = optics::turned_round(configuration.instrument.objective);
     double turned = 0;
     try {
-        turned = optics::image_quality(other.instrument, assemble_for_figures(other)).axis.wavefront_rms;
+        turned = optics::wavefront_quality(assemble_for_figures(other), {0, 0}).rms;
     } catch (const std::runtime_error&) { // no microscope at all
         return;
     }
@@ -318,10 +344,11 @@ InstrumentFigures instrument_figures(const Configuration& configuration) {
                               .scan = {},
                               .specimen = {},
                               .warnings = instrument.warnings};
-    figures.groups.push_back(aberrations(first_order, quality));
+    const WavefrontQualities wavefront = wavefronts_at(instrument, quality);
+    figures.groups.push_back(aberrations(first_order, quality, wavefront));
     auto& warnings = figures.warnings;
     warnings.insert(warnings.end(), quality.warnings.begin(), quality.warnings.end());
-    warn_of_direction(configuration, quality, warnings);
+    warn_of_direction(configuration, wavefront.axis.rms, warnings);
     if (waves) {
         figures.groups.push_back(*std::move(waves));
         warnings.insert(warnings.end(), warnings_of_waves.begin(), warnings_of_waves.end());
@@ -341,7 +368,12 @@ InstrumentFigures instrument_figures(const Configuration& configuration) {
         warn_of_smoothing(configuration, instrument, warnings);
     }
     if (configuration.specimen) {
-        figures.specimen = figures_of_specimen(configuration, instrument, specimen.get(), warnings);
+        const specimen::Specimen made = specimen.get();
+        figures.specimen = figures_of_specimen(configuration, instrument, made, warnings);
+        if (configuration.trace.waves) {
+            figures.groups.push_back(
+                figures_of_phase(phase_limits(configuration.instrument, instrument, made), warnings));
+        }
         warn_of_size(*figures.specimen, first_order, quality, warnings);
         if (figures.scan) {
             warn_of_range(figures.specimen->relief, *figures.scan, first_order, warnings);

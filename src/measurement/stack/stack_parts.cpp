@@ -8,6 +8,7 @@
 #include "measurement/image/exposure.hpp"
 #include "measurement/scene/assembly.hpp"
 #include "measurement/scene/stage_figures.hpp"
+#include "report/declared_figures.hpp"
 #include "scan/repair.hpp"
 #include "scan/stack_file.hpp"
 #include "specimen/geometry_digest.hpp"
@@ -17,6 +18,7 @@
 
 #include <algorithm>
 #include <cstddef>
+#include <iterator>
 #include <utility>
 
 namespace vkfv::measurement {
@@ -81,6 +83,8 @@ GrowingEvaluation::GrowingEvaluation(const StackScene& scene, topography::FocusP
     if (!filters.empty()) {
         wave_limits_ =
             in_background([&scene, filters] { return worst_of(limits_of_lights(filters, scene.instrument)); });
+        phase_limits_ = in_background(
+            [&scene] { return phase_limits(scene.configuration.instrument, scene.instrument, scene.specimen); });
     }
 }
 
@@ -97,6 +101,11 @@ EvaluatedStack GrowingEvaluation::finish(scan::ImageStore& store, const trace::T
         spdlog::warn("No light reaches the detector in any image. vkfv --image of one position tells where it goes");
     }
     enter_stage("heights and truth");
+    std::optional<PhaseLimits> phase;
+    if (phase_limits_) {
+        phase = phase_limits_->get();
+        field_.hidden = phase->height_uncertainty();
+    }
     EvaluatedStack stack{
         .evaluation = evaluation_.finish(truth_.get(), configuration.band, field_,
                                          specimen::feature_of(configuration.specimen->shape)),
@@ -110,11 +119,14 @@ EvaluatedStack GrowingEvaluation::finish(scan::ImageStore& store, const trace::T
     stack.source.ledger = scan::mean_ledger(store.folder());
     if (wave_limits_) {
         const WaveLimits limits = wave_limits_->get();
-        for (const auto& warning : warnings_of(limits)) {
+        auto warnings = warnings_of(limits);
+        std::ranges::move(warnings_of(phase.value()), std::back_inserter(warnings));
+        for (const auto& warning : warnings) {
             spdlog::warn(warning);
         }
         stack.origin["waves"] = json_of(limits);
-        stack.origin["waves"]["warnings"] = warnings_of(limits);
+        stack.origin["waves"].update(report::as_declared("results.waves", json_of(*phase)));
+        stack.origin["waves"]["warnings"] = warnings;
     }
     if (camera) {
         stack.origin["camera"] = camera_json(*configuration.camera, *camera);

@@ -5,6 +5,7 @@
 #include "measurement/evaluation/evaluation.hpp"
 #include "measurement/evaluation/evaluation_files.hpp"
 #include "measurement/scene/known_truth.hpp"
+#include "measurement/scene/phase_limits.hpp"
 #include "measurement/scene/wave_limits.hpp"
 #include "optics/instrument/instrument.hpp"
 #include "scan/store.hpp"
@@ -47,12 +48,13 @@ class GrowingEvaluation {
 
   private:
     const StackScene& scene_;
-    KnownField field_;
+    KnownInstrument field_;
     StackEvaluation evaluation_;
     bool any_light_ = false;
     std::future<KnownTruth> truth_;
     std::future<StackSource> source_;
     std::optional<std::future<WaveLimits>> wave_limits_;
+    std::optional<std::future<PhaseLimits>> phase_limits_;
 };
 
 // The files of a stack's evaluation in the store's folder.

@@ -1,0 +1,171 @@
+#include "measurement/scene/phase_limits.hpp"
+
+#include "core/mathematics/pixel_grid.hpp"
+#include "core/mathematics/units.hpp"
+#include "specimen/description.hpp"
+#include "surface/filter.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <utility>
+#include <vector>
+
+namespace vkfv::measurement {
+
+namespace {
+
+// Pupils that are filled less than this by both, and surfaces that scatter more narrowly, are told. A mirror lit with
+// 0.8 of the aperture passes frequencies up to 1.8 NA / lambda, where a filled pupil's contrast is 0.04.
+constexpr double least_fill = 0.8;
+constexpr double mirror_like = 0.25;
+
+constexpr double resolutions_of_texture = 10;
+constexpr int most_points = 256;               // a side of the part of the field whose texture is looked at
+constexpr double deviations_a_median = 1.4826; // of a normal distribution
+constexpr double flat = 1e-9;                  // mm: rounding of heights that are meant to be equal
+
+double median_of(std::vector<double> values) {
+    if (values.empty()) {
+        return 0;
+    }
+    const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
+    std::ranges::nth_element(values, middle);
+    return *middle;
+}
+
+// incoming: unit, from the middle of the source, or from the middle of a ring's band.
+double scatter_fill_of(const specimen::Material& material, glm::dvec3 incoming, double aperture_sine) {
+    constexpr std::uint32_t paths = 8192;
+    constexpr std::size_t fewest =
+        30; // of the paths: less light enters by no lobe of the specimen's, but by its slopes
+    constexpr std::uint32_t seed = 1, blocks_of_emission = 1;
+    const auto record = specimen::material_record(material);
+    std::vector<double> sines;
+    for (std::uint32_t path = 0; path < paths; ++path) {
+        const auto scattered =
+            physics::f64::scatter(record, incoming, {0, 0, 1}, seed, 0, {path, 0}, blocks_of_emission);
+        const double sine = std::hypot(scattered.direction.x, scattered.direction.y);
+        if (scattered.accepted && sine <= aperture_sine) {
+            sines.push_back(sine);
+        }
+    }
+    const double of_filled = aperture_sine * std::sqrt(0.5);
+    return sines.size() < fewest ? 0 : std::min(1.0, median_of(std::move(sines)) / of_filled);
+}
+
+// The one with the most flux of the description's sources, and the instrument as it stands for it.
+struct StrongestLight {
+    const optics::SourceDescription* source;
+    const optics::Instrument* instrument;
+};
+
+StrongestLight strongest_of(const optics::InstrumentDescription& description, const optics::Instrument& instrument) {
+    const auto sources = description.sources();
+    const auto lights = instrument.lights();
+    const auto strongest = std::ranges::max_element(sources, {}, &optics::SourceDescription::flux);
+    return {.source = *strongest, .instrument = lights[static_cast<std::size_t>(strongest - sources.begin())]};
+}
+
+double source_fill_of(const optics::InstrumentDescription& description, const StrongestLight& light) {
+    const double filling = light.instrument->first_order.pupil_radius_in_source;
+    if (light.source->ring || !(filling > 0)) {
+        return 0;
+    }
+    const double radius = light.source->inner_radius();
+    return std::min(1.0, std::min(radius, description.illumination_aperture_radius.value_or(radius)) / filling);
+}
+
+double texture_of(const specimen::Specimen& specimen, const optics::Instrument& instrument, double resolution) {
+    const auto pixels = instrument.detector_pixels();
+    const double pitch = instrument.first_order.pixel_pitch;
+    const int columns = std::min(pixels.columns, most_points);
+    const int rows = std::min(pixels.rows, most_points);
+    const auto grid = PixelGrid::centred(columns, rows, pitch);
+    const auto heights = specimen::truth(specimen, columns, rows, grid.x0, grid.y0, grid.pitch_x, grid.pitch_y);
+    const auto smooth = surface::gaussian_low_pass(heights, std::max(resolutions_of_texture * resolution, 4 * pitch));
+    std::vector<double> deviations;
+    double square = 0;
+    for (std::size_t k = 0; k < heights.height.values.size(); ++k) {
+        const double deviation = std::abs(heights.height.values[k] - smooth.height.values[k]);
+        if (std::isfinite(deviation)) {
+            deviations.push_back(deviation);
+            square += deviation * deviation;
+        }
+    }
+    if (deviations.empty()) {
+        return 0;
+    }
+    const double standard_deviation = std::sqrt(square / static_cast<double>(deviations.size()));
+    return std::min(standard_deviation, deviations_a_median * median_of(std::move(deviations)));
+}
+
+} // namespace
+
+bool PhaseLimits::fills_pupil() const {
+    return std::hypot(scatter_fill, source_fill) >= least_fill;
+}
+
+bool PhaseLimits::is_relief_of_phase() const {
+    return scatter_fill < mirror_like && texture > flat && texture < phase_height;
+}
+
+double PhaseLimits::height_uncertainty() const {
+    return fills_pupil() && !is_relief_of_phase() ? 0 : depth_of_field;
+}
+
+PhaseLimits phase_limits(const optics::InstrumentDescription& description, const optics::Instrument& instrument,
+                         const specimen::Specimen& specimen) {
+    const auto& first_order = instrument.first_order;
+    const double wavelength = description.spectrum.reference_um * mm_per_um;
+    const double resolution = wavelength / (2 * first_order.numerical_aperture);
+    const StrongestLight light = strongest_of(description, instrument);
+    glm::dvec3 incoming(0, 0, -1);
+    if (const auto& ring = light.source->ring) {
+        incoming = {std::cos(ring->elevation), 0, -std::sin(ring->elevation)};
+    }
+    return {.scatter_fill =
+                scatter_fill_of(specimen.material, incoming, first_order.numerical_aperture / first_order.object_index),
+            .source_fill = source_fill_of(description, light),
+            .texture = texture_of(specimen, instrument, resolution),
+            .phase_height = wavelength / (4 * pi * first_order.object_index),
+            .depth_of_field = first_order.depth_of_field};
+}
+
+std::vector<std::string> warnings_of(const PhaseLimits& limits) {
+    std::vector<std::string> warnings;
+    if (!limits.fills_pupil()) {
+        warnings.push_back(fmt::format(
+            "Images of waves do not hold here: the source fills {:.2g} of the objective's aperture and the specimen's "
+            "scatter {:.2g}, together less than {:g}. Light from a point of the specimen then interferes with that of "
+            "its "
+            "neighbours, which vkfv leaves out: fine waves have too much contrast, and heights may be off by a depth "
+            "of "
+            "field, {:.3g} um. Fill the pupil (source.radius_mm), or take a specimen that scatters more widely.",
+            limits.source_fill, limits.scatter_fill, least_fill, limits.depth_of_field * um_per_mm));
+    }
+    if (limits.is_relief_of_phase()) {
+        warnings.push_back(fmt::format("Images of waves do not hold here: the specimen is like a mirror (its scatter "
+                                       "fills {:.2g} of the objective's "
+                                       "aperture), and its texture, {:.3g} um of standard deviation, is below lambda / "
+                                       "(4 pi) = {:.3g} um, so that "
+                                       "it changes the light's phase alone. Its contrast is wrong, largest out of "
+                                       "focus, and heights may be off by "
+                                       "a depth of field, {:.3g} um.",
+                                       limits.scatter_fill, limits.texture * um_per_mm, limits.phase_height * um_per_mm,
+                                       limits.depth_of_field * um_per_mm));
+    }
+    return warnings;
+}
+
+nlohmann::ordered_json json_of(const PhaseLimits& limits) {
+    return {{"scatter_fill", limits.scatter_fill},
+            {"source_fill", limits.source_fill},
+            {"texture", limits.texture},
+            {"phase_height", limits.phase_height},
+            {"hidden_height_uncertainty", limits.height_uncertainty()}};
+}
+
+} // namespace vkfv::measurement
