@@ -25,6 +25,7 @@ const uint BINDING_LIGHT_POINTS = 20u; // the grid of what the plane of the fiel
 const uint BINDING_EMISSION_CELLS = 21u;
 const uint BINDING_EMISSION_FIRST = 22u;
 const uint BINDING_ENTRY_NODES = 23u;
+const uint BINDING_MATERIAL = 24u; // of a specimen: the numbers of its material
 
 const uint FACET_BIT = 0x80000000u; // in the order of the elements' boxes: it is a facet's, whose index follows
 

@@ -15,6 +15,10 @@ real lattice_at(int column, int row) { return heights[row * specimen.columns + c
 // Rows as the heights'.
 layout(set = 0, binding = BINDING_REFLECTANCES, scalar) readonly buffer Reflectances { real reflectances[]; };
 
+layout(set = 0, binding = BINDING_MATERIAL, scalar) readonly buffer MaterialNumbers { real material_numbers[]; };
+
+real material_number(int index) { return material_numbers[index]; }
+
 layout(set = 0, binding = BINDING_LIGHT_POINTS, scalar) readonly buffer LightPoints { real light_points[]; };
 
 real pattern_point(Pattern pattern, int column, int row) {

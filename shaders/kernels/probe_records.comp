@@ -16,6 +16,7 @@ Hit specimen_hit(real3 origin, real3 direction) {
     return hit;
 }
 real lattice_at(int column, int row) { return real(0.0); }
+real material_number(int index) { return real(0.0); }
 real pattern_point(Pattern pattern, int column, int row) { return real(0.0); }
 
 int count = 0;

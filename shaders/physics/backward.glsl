@@ -285,11 +285,11 @@ VKFV_SCENE_FUNCTION VKFV_FUNCTION Connection connect(VKFV_SCENE_PARAMETER Materi
         real3 direction = candidate.direction;
         real cosine = dot(direction, hit.normal);
         if (candidate.usable && cosine > real(0.0)) {
-            real flux = scatter_bsdf(material, -direction, hit.normal, outgoing) * cosine;
+            real flux = scatter_bsdf(VKFV_SCENE material, -direction, hit.normal, outgoing) * cosine;
             real density = real(cone_candidates) * candidate.density;
             if (backward.lobe_candidates != 0u) {
-                density = density +
-                          real(backward.lobe_candidates) * scatter_density(material, -outgoing, hit.normal, direction);
+                density = density + real(backward.lobe_candidates) *
+                                        scatter_density(VKFV_SCENE material, -outgoing, hit.normal, direction);
             }
             real weight = flux / density;
             connection.weight = connection.weight + weight;
@@ -317,15 +317,20 @@ VKFV_FUNCTION Material material_of_lobe(Lobe lobe) {
     return material;
 }
 
-// Whether a lobe is a delta: what has a density has one in the mirror direction too.
-VKFV_FUNCTION bool lobe_is_delta(Lobe lobe) {
+// Whether a lobe is a delta: what has a density of its own has one in the mirror direction too. What is read from a
+// file is none.
+VKFV_SCENE_FUNCTION VKFV_FUNCTION bool lobe_is_delta(VKFV_SCENE_PARAMETER Lobe lobe) {
     bool delta = false;
     if ((scatter_models & SCATTER_DELTA) != 0u) {
         real3 up = real3(real(0.0), real(0.0), real(1.0));
-        delta = scatter_density(material_of_lobe(lobe), -up, up, up) == real(0.0);
+        delta = !lobe_has_numbers(lobe) && scatter_density(VKFV_SCENE material_of_lobe(lobe), -up, up, up) == real(0.0);
     }
     return delta;
 }
+
+#ifdef __cplusplus
+inline bool lobe_is_delta(Lobe lobe) { return lobe_is_delta(NoNumbers{}, lobe); }
+#endif
 
 // Where on a pixel and in the pupil a path starts.
 struct BackwardStart {
@@ -390,6 +395,7 @@ VKFV_SCENE_FUNCTION VKFV_FUNCTION real trace_backward(VKFV_SCENE_PARAMETER Instr
         real index = specimen_medium_index(instrument, light);
         throughput = throughput / (index * index);
     }
+    Material material = material_of_light(VKFV_SCENE instrument, specimen, specimen.material, light);
     real3 direction = arrival.direction;
     real plane = object_plane(backward, specimen, exposure);
     // Counters that no forward path has; a lattice has fewer than 2^15 points.
@@ -422,8 +428,8 @@ VKFV_SCENE_FUNCTION VKFV_FUNCTION real trace_backward(VKFV_SCENE_PARAMETER Instr
             draws.u2 = bounce == 0 ? draws.u2 : further.u2;
         }
         bool last = bounce + 1 == specimen.max_bounces;
-        Lobe lobe = choose_lobe(specimen.material, draws.u3);
-        bool delta = lobe_is_delta(lobe);
+        Lobe lobe = choose_lobe(material, draws.u3);
+        bool delta = lobe_is_delta(VKFV_SCENE lobe);
         Material alone = material_of_lobe(lobe);
         // One draw of the lobe, as if the light came from the detector: a candidate for the connection, and the way on.
         bool absorbed = lobe.model == SCATTER_NONE;
@@ -432,7 +438,8 @@ VKFV_SCENE_FUNCTION VKFV_FUNCTION real trace_backward(VKFV_SCENE_PARAMETER Instr
         scattered.accepted = false;
         scattered.direction = outgoing;
         if (under_way || (backward.lobe_candidates != 0u && !absorbed)) {
-            scattered = scatter(alone, direction, hit.normal, exposure.seed, exposure.image, path, block + 1u);
+            scattered =
+                scatter(VKFV_SCENE alone, direction, hit.normal, exposure.seed, exposure.image, path, block + 1u);
         }
         under_way = under_way && scattered.accepted;
         scattered.accepted = scattered.accepted && !delta;
@@ -453,7 +460,7 @@ VKFV_SCENE_FUNCTION VKFV_FUNCTION real trace_backward(VKFV_SCENE_PARAMETER Instr
             seen.outer = part == 0u ? sure : whole.outer;
             seen.inner = rim ? sure : real(0.0);
             Connection connection =
-                connect(VKFV_SCENE specimen.material, backward, plane, seen,
+                connect(VKFV_SCENE material, backward, plane, seen,
                         rim      ? 1u
                         : parted ? backward.sure_candidates
                                  : backward.cone_candidates,
@@ -476,8 +483,8 @@ VKFV_SCENE_FUNCTION VKFV_FUNCTION real trace_backward(VKFV_SCENE_PARAMETER Instr
         if (under_way) {
             if (!delta) {
                 real cosine = dot(scattered.direction, hit.normal);
-                throughput = throughput * scatter_bsdf(alone, -scattered.direction, hit.normal, outgoing) * cosine /
-                             scatter_density(alone, direction, hit.normal, scattered.direction);
+                throughput = throughput * scatter_bsdf(VKFV_SCENE alone, -scattered.direction, hit.normal, outgoing) *
+                             cosine / scatter_density(VKFV_SCENE alone, direction, hit.normal, scattered.direction);
             }
             direction = scattered.direction;
             hit = displaced_hit(VKFV_SCENE exposure, origin, direction);

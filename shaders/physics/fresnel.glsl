@@ -11,6 +11,25 @@ VKFV_FUNCTION real fresnel_reflectance(real index_before, real index_after, real
     return cosine_after_squared > real(0.0) ? real(0.5) * (s * s + p * p) : real(1.0);
 }
 
+// Of an absorbing medium with the index n + i k over that of the medium before: the same equations with a complex index
+// (section 14.2), a + i b being the square root of (n + i k)^2 - sin^2.
+VKFV_FUNCTION real absorbing_reflectance(real n, real k, real cosine) {
+    real cosine_squared = cosine * cosine;
+    real sine_squared = max(real(1.0) - cosine_squared, real(0.0));
+    real real_part = (n - k) * (n + k) - sine_squared;
+    real imaginary_part = real(2.0) * n * k;
+    real magnitude = sqrt(real_part * real_part + imaginary_part * imaginary_part); // a^2 + b^2
+    real a_squared = real(0.5) * (magnitude + real_part);
+    if (real_part < real(0.0)) { // without its cancellation
+        a_squared = real(0.5) * imaginary_part * imaginary_part / (magnitude - real_part);
+    }
+    real cross_term = real(2.0) * sqrt(a_squared) * cosine;
+    real s = (magnitude + cosine_squared - cross_term) / (magnitude + cosine_squared + cross_term);
+    real even = cosine_squared * magnitude + sine_squared * sine_squared;
+    real p = s * (even - cross_term * sine_squared) / (even + cross_term * sine_squared);
+    return real(0.5) * (s + p);
+}
+
 // One polarisation through one layer: amplitudes of its two interfaces, and the cosine of the phase between them.
 VKFV_FUNCTION real two_interface_reflectance(real first, real second, real cosine_phase) {
     real cross_term = real(2.0) * first * second * cosine_phase;

@@ -272,9 +272,10 @@ VKFV_SCENE_FUNCTION VKFV_FUNCTION Detection trace_nonsequential(VKFV_SCENE_PARAM
             if (bounces == specimen.max_bounces) {
                 detection.fate = make_fate(PATH_BOUNCE_LIMIT, -1);
             } else {
-                Scattered scattered =
-                    scatter(material_at(VKFV_SCENE specimen, hit.position), direction, hit.normal, exposure.seed,
-                            exposure.image, path, SCATTER_FIRST_BLOCK + uint(bounces) * SCATTER_BLOCKS);
+                Material material = material_of_light(VKFV_SCENE instrument, specimen,
+                                                      material_at(VKFV_SCENE specimen, hit.position), emission.light);
+                Scattered scattered = scatter(VKFV_SCENE material, direction, hit.normal, exposure.seed, exposure.image,
+                                              path, SCATTER_FIRST_BLOCK + uint(bounces) * SCATTER_BLOCKS);
                 direction = scattered.direction;
                 origin = scatter_origin(hit) - to_specimen;
                 detection.fate = make_fate(scattered.absorbed   ? PATH_ABSORBED

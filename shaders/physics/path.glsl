@@ -212,8 +212,9 @@ VKFV_FUNCTION bool within_disc(GateDisc disc, real3 direction) {
 }
 
 // p / q of a direction within the gate; d(omega) = z^3 d(slopes). 0 for a delta.
-VKFV_FUNCTION real density_ratio(Lobe lobe, Incidence incidence, GateDisc disc, real3 direction) {
-    real density = lobe_bsdf(lobe, incidence, direction) * max(dot(direction, incidence.normal), real(0.0));
+VKFV_SCENE_FUNCTION VKFV_FUNCTION real density_ratio(VKFV_SCENE_PARAMETER Lobe lobe, Incidence incidence, GateDisc disc,
+                                                     real3 direction) {
+    real density = lobe_bsdf(VKFV_SCENE lobe, incidence, direction) * max(dot(direction, incidence.normal), real(0.0));
     return density * (real(3.14159265358979324) * disc.radius * disc.radius) *
            (direction.z * direction.z * direction.z);
 }
@@ -230,7 +231,8 @@ struct GatedScatter {
     real3 direction;
 };
 
-VKFV_FUNCTION GatedScatter scatter_into_gate(Lobe lobe, Incidence incidence, GateDisc disc, real u0, real u1, real u2) {
+VKFV_SCENE_FUNCTION VKFV_FUNCTION GatedScatter scatter_into_gate(VKFV_SCENE_PARAMETER Lobe lobe, Incidence incidence,
+                                                                 GateDisc disc, real u0, real u1, real u2) {
     // Unit directions are no further apart than their slopes.
     real scale = inversesqrt(real(1.0) + disc.centre.x * disc.centre.x + disc.centre.y * disc.centre.y);
     real3 off = real3(disc.centre.x * scale, disc.centre.y * scale, scale) - incidence.mirror;
@@ -245,7 +247,7 @@ VKFV_FUNCTION GatedScatter scatter_into_gate(Lobe lobe, Incidence incidence, Gat
     result.direction = incidence.mirror;
     if (result.applies && u2 < ceiling) {
         result.direction = direction_in_disc(disc, u0, u1);
-        result.passes = u2 < density_ratio(lobe, incidence, disc, result.direction);
+        result.passes = u2 < density_ratio(VKFV_SCENE lobe, incidence, disc, result.direction);
     }
     if (from_above && ceiling > real(1.0)) {
         real chord = to_centre + disc.radius;
@@ -256,6 +258,15 @@ VKFV_FUNCTION GatedScatter scatter_into_gate(Lobe lobe, Incidence incidence, Gat
     }
     return result;
 }
+
+#ifdef __cplusplus
+inline real density_ratio(Lobe lobe, Incidence incidence, GateDisc disc, real3 direction) {
+    return density_ratio(NoNumbers{}, lobe, incidence, disc, direction);
+}
+inline GatedScatter scatter_into_gate(Lobe lobe, Incidence incidence, GateDisc disc, real u0, real u1, real u2) {
+    return scatter_into_gate(NoNumbers{}, lobe, incidence, disc, u0, u1, u2);
+}
+#endif
 
 struct Selection {
     real weight; // of all samples so far
@@ -288,7 +299,7 @@ VKFV_FUNCTION uint weight_square(uint weight) {
 // the specimen; on the last one the gate comes first and the test is left to the second half.
 VKFV_SCENE_FUNCTION VKFV_FUNCTION Departure scatter_at_specimen(VKFV_SCENE_PARAMETER Instrument instrument,
                                                                 SpecimenRecord specimen, Exposure exposure, uvec2 path,
-                                                                real3 origin, real3 direction) {
+                                                                real3 origin, real3 direction, Light light) {
     bool directed = (features(VKFV_SCENE_ALONE) & FEATURE_DIRECTED_SCATTER) != 0u;
     uint status = PATH_ALIVE;
     uint mark = 0u;
@@ -307,17 +318,19 @@ VKFV_SCENE_FUNCTION VKFV_FUNCTION Departure scatter_at_specimen(VKFV_SCENE_PARAM
         uint first_block = 1u + uint(bounce) * SCATTER_BLOCKS;
         bool last = bounce + 1 == specimen.max_bounces;
         Incidence incidence = make_incidence(direction, hit.normal);
-        Material material = material_at(VKFV_SCENE specimen, hit.position - displacement(exposure));
+        Material material =
+            material_of_light(VKFV_SCENE instrument, specimen,
+                              material_at(VKFV_SCENE specimen, hit.position - displacement(exposure)), light);
         origin = scatter_origin(hit);
         GatedScatter gated;
         gated.applies = false;
         if (last && !directed) {
             Draws draws = draw(exposure.seed, exposure.image, path, first_block);
-            gated = scatter_into_gate(scattering_lobe(material, draws), incidence,
+            gated = scatter_into_gate(VKFV_SCENE scattering_lobe(material, draws), incidence,
                                       gate_disc(instrument, specimen.top, origin), draws.u0, draws.u1, draws.u2);
         }
-        Scattered scattered = scatter_by_tries(material, incidence, exposure.seed, exposure.image, path, first_block,
-                                               gated.applies ? 0u : SCATTER_BLOCKS - 1u);
+        Scattered scattered = scatter_by_tries(VKFV_SCENE material, incidence, exposure.seed, exposure.image, path,
+                                               first_block, gated.applies ? 0u : SCATTER_BLOCKS - 1u);
         direction = gated.applies ? gated.direction : scattered.direction;
         under_way = gated.applies ? gated.passes : scattered.accepted;
         status = under_way            ? PATH_ALIVE
@@ -330,10 +343,10 @@ VKFV_SCENE_FUNCTION VKFV_FUNCTION Departure scatter_at_specimen(VKFV_SCENE_PARAM
             Draws draws = draw(exposure.seed, exposure.image, path, first_block + SCATTER_BLOCKS - 1u);
             GateDisc disc = gate_disc(instrument, specimen.top, origin);
             real3 aimed = direction_in_disc(disc, draws.u0, draws.u1);
-            real ratio = density_ratio(scattered.lobe, incidence, disc, aimed);
+            real ratio = density_ratio(VKFV_SCENE scattered.lobe, incidence, disc, aimed);
             selection = offer(selection, ratio / (real(1.0) + ratio), origin, aimed,
                               last ? SURVIVOR_TO_TEST : SURVIVOR_TO_TEST | SURVIVOR_TWIN, draws.u2);
-            real own_ratio = density_ratio(scattered.lobe, incidence, disc, direction);
+            real own_ratio = density_ratio(VKFV_SCENE scattered.lobe, incidence, disc, direction);
             own_share = own_ratio > real(0.0) ? own_ratio / (real(1.0) + own_ratio) : real(1.0);
             own_choice = draws.u3;
         }
@@ -379,8 +392,8 @@ VKFV_SCENE_FUNCTION VKFV_FUNCTION Departure trace_to_departure(VKFV_SCENE_PARAME
     departure.fate = arrival.fate;
     departure.survives = false;
     if (arrival.fate.status == PATH_ALIVE) {
-        departure =
-            scatter_at_specimen(VKFV_SCENE instrument, specimen, exposure, path, arrival.position, arrival.direction);
+        departure = scatter_at_specimen(VKFV_SCENE instrument, specimen, exposure, path, arrival.position,
+                                        arrival.direction, arrival.light);
         departure.survivor.spectral = arrival.light.spectral;
         if ((features(VKFV_SCENE_ALONE) & FEATURE_LOSSES) != 0u) {
             // The block after those of the last scatter event.

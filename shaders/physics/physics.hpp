@@ -13,6 +13,7 @@
 //   ElementHit nearest_element(real3 origin, real3 direction, PathPlace from) const;   likewise
 //   Facet facet_at(int index) const;                  only with FEATURE_FACETS
 //   real lattice_at(int column, int row) const;      only for analytic specimens with a lattice
+//   real material_number(int index) const;            only of materials that have numbers
 #pragma once
 
 #include <algorithm>

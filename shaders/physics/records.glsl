@@ -35,14 +35,15 @@ const uint FEATURE_PLACEMENT = 1u; // surfaces decentred or tilted against each 
 const uint FEATURE_LOSSES = 2u;    // interfaces that reflect, mirrors that absorb
 const uint FEATURE_SPECTRUM = 4u;  // more than one wavelength
 const uint FEATURE_IDEAL_LENS = 8u;
-const uint FEATURE_RING = 16u;              // a ring light instead of the disc
-const uint FEATURE_DIRECTED_SCATTER = 32u;  // of the trace, not of the instrument: survivors have weights
-const uint FEATURE_PUPIL_CELLS = 128u;      // likewise: light is sorted by where it crosses the pupil
-const uint FEATURE_REFLECTANCE_MAP = 64u;   // of the specimen
-const uint FEATURE_RECTANGLE = 256u;        // a rectangle instead of the disc
-const uint FEATURE_FACETS = 512u;           // elements whose form is a mesh
-const uint FEATURE_LIGHT_FIELD = 1024u;     // a pattern or uneven light in the plane of the field stop
-const uint FEATURE_AIMED_RECTANGLE = 2048u; // directions of the source are a rectangle instead of a disc
+const uint FEATURE_RING = 16u;                // a ring light instead of the disc
+const uint FEATURE_DIRECTED_SCATTER = 32u;    // of the trace, not of the instrument: survivors have weights
+const uint FEATURE_PUPIL_CELLS = 128u;        // likewise: light is sorted by where it crosses the pupil
+const uint FEATURE_REFLECTANCE_MAP = 64u;     // of the specimen
+const uint FEATURE_RECTANGLE = 256u;          // a rectangle instead of the disc
+const uint FEATURE_FACETS = 512u;             // elements whose form is a mesh
+const uint FEATURE_LIGHT_FIELD = 1024u;       // a pattern or uneven light in the plane of the field stop
+const uint FEATURE_AIMED_RECTANGLE = 2048u;   // directions of the source are a rectangle instead of a disc
+const uint FEATURE_SPECTRAL_MATERIAL = 4096u; // of the specimen: its material changes with the wavelength
 
 const int SURFACE_CAPACITY = 128;  // surfaces of both trains together that the device's uniform block holds
 const int KNOWN_SURFACES = 64;     // of them, that a kernel can have as constants (device/prescription.glsl)
@@ -291,7 +292,7 @@ const uint SHAPE_SPHERE = 2u;
 const uint SHAPE_SINUSOID = 3u;
 const uint SHAPE_CHIRP = 4u;
 
-const int LOBE_TABLE_SIZE = 13;
+const int LOBE_TABLE_SIZE = 16;
 
 // One way in which a material scatters; shaders/physics/scatter/ has the models.
 #define VKFV_LOBE_FIELDS(FIELD, ARRAY) \
@@ -338,6 +339,7 @@ struct Material {
     FIELD(int, columns)            /* points of the height field or lattice; 0 x 0: none */ \
     FIELD(int, rows) \
     FIELD(int, max_bounces)        /* scatter events permitted */ \
+    FIELD(int, material_spectral_points) /* of FEATURE_SPECTRAL_MATERIAL, at least 2 */ \
     FIELD(uint, kind)              /* SPECIMEN_* */ \
     FIELD(uint, shape)             /* SHAPE_* */
 struct SpecimenRecord {

@@ -27,28 +27,31 @@ VKFV_FUNCTION Lobe choose_lobe(Material material, real u) {
     return lobe;
 }
 
-VKFV_FUNCTION real weighted_bsdf(Lobe lobe, Incidence incidence, real3 outgoing) {
-    return lobe.weight > real(0.0) ? lobe.weight * lobe_bsdf(lobe, incidence, outgoing) : real(0.0);
+VKFV_SCENE_FUNCTION VKFV_FUNCTION real weighted_bsdf(VKFV_SCENE_PARAMETER Lobe lobe, Incidence incidence,
+                                                     real3 outgoing) {
+    return lobe.weight > real(0.0) ? lobe.weight * lobe_bsdf(VKFV_SCENE lobe, incidence, outgoing) : real(0.0);
 }
 
 // Share of the incident light per sr of the unit direction outgoing, divided by the cosine of its angle with the
 // normal, 1/sr: finite at grazing, 0 unless both directions are above the surface. Deltas, which have no density, count
 // nothing. incoming: unit, towards the surface; normal: unit, on the incoming side.
-VKFV_FUNCTION real scatter_bsdf(Material material, real3 incoming, real3 normal, real3 outgoing) {
+VKFV_SCENE_FUNCTION VKFV_FUNCTION real scatter_bsdf(VKFV_SCENE_PARAMETER Material material, real3 incoming,
+                                                    real3 normal, real3 outgoing) {
     Incidence incidence = make_incidence(incoming, normal);
-    real bsdf = weighted_bsdf(material.lobe_0, incidence, outgoing);
+    real bsdf = weighted_bsdf(VKFV_SCENE material.lobe_0, incidence, outgoing);
     if ((scatter_models & SCATTER_CHOICE) != 0u) {
-        bsdf = bsdf + weighted_bsdf(material.lobe_1, incidence, outgoing) +
-               weighted_bsdf(material.lobe_2, incidence, outgoing) +
-               weighted_bsdf(material.lobe_3, incidence, outgoing);
+        bsdf = bsdf + weighted_bsdf(VKFV_SCENE material.lobe_1, incidence, outgoing) +
+               weighted_bsdf(VKFV_SCENE material.lobe_2, incidence, outgoing) +
+               weighted_bsdf(VKFV_SCENE material.lobe_3, incidence, outgoing);
     }
     return dot(incoming, normal) < real(0.0) && dot(outgoing, normal) > real(0.0) ? bsdf : real(0.0);
 }
 
 // The same per sr of the outgoing direction: its integral over the hemisphere is the reflectance,
 // less what lossy lobes absorb.
-VKFV_FUNCTION real scatter_density(Material material, real3 incoming, real3 normal, real3 outgoing) {
-    return scatter_bsdf(material, incoming, normal, outgoing) * max(dot(outgoing, normal), real(0.0));
+VKFV_SCENE_FUNCTION VKFV_FUNCTION real scatter_density(VKFV_SCENE_PARAMETER Material material, real3 incoming,
+                                                       real3 normal, real3 outgoing) {
+    return scatter_bsdf(VKFV_SCENE material, incoming, normal, outgoing) * max(dot(outgoing, normal), real(0.0));
 }
 
 // Henyey-Greenstein's acceptance is no less than about cos(theta_i) for sharp lobes with g > 0, and about 0.01 for
@@ -74,8 +77,9 @@ VKFV_FUNCTION Lobe scattering_lobe(Material material, Draws draws) {
 }
 
 // blocks: of random numbers at most, two tries each; the first block's second try where its numbers choose no lobe.
-VKFV_FUNCTION Scattered scatter_by_tries(Material material, Incidence incidence, uint seed, uint image, uvec2 path,
-                                         uint first_block, uint most_blocks) {
+VKFV_SCENE_FUNCTION VKFV_FUNCTION Scattered scatter_by_tries(VKFV_SCENE_PARAMETER Material material,
+                                                             Incidence incidence, uint seed, uint image, uvec2 path,
+                                                             uint first_block, uint most_blocks) {
     Lobe lobe = material.lobe_0;
     Scattered result;
     result.accepted = false;
@@ -91,10 +95,11 @@ VKFV_FUNCTION Scattered scatter_by_tries(Material material, Incidence incidence,
             lobe = scattering_lobe(material, draws);
             result.absorbed = lobe.model == SCATTER_NONE;
         }
-        ScatterTry attempt = lobe_try(lobe, incidence, draws.u0, draws.u1, draws.u2);
-        result.absorbed = result.absorbed || (!attempt.accepted && lobe_is_lossy(lobe));
+        ScatterTry attempt = lobe_try(VKFV_SCENE lobe, incidence, draws.u0, draws.u1, draws.u2);
+        result.absorbed = result.absorbed || attempt.absorbed || (!attempt.accepted && lobe_is_lossy(lobe));
         if (!attempt.accepted && !result.absorbed && !chooses) {
-            attempt = lobe_try(lobe, incidence, draws.u3, draws.u4, draws.u5);
+            attempt = lobe_try(VKFV_SCENE lobe, incidence, draws.u3, draws.u4, draws.u5);
+            result.absorbed = attempt.absorbed;
         }
         result.accepted = attempt.accepted;
         result.direction = attempt.direction;
@@ -105,8 +110,21 @@ VKFV_FUNCTION Scattered scatter_by_tries(Material material, Incidence incidence,
 }
 
 // incoming: unit, towards the surface; normal: unit, on the incoming side.
-VKFV_FUNCTION Scattered scatter(Material material, real3 incoming, real3 normal, uint seed, uint image, uvec2 path,
-                                uint first_block) {
-    return scatter_by_tries(material, make_incidence(incoming, normal), seed, image, path, first_block,
+VKFV_SCENE_FUNCTION VKFV_FUNCTION Scattered scatter(VKFV_SCENE_PARAMETER Material material, real3 incoming,
+                                                    real3 normal, uint seed, uint image, uvec2 path, uint first_block) {
+    return scatter_by_tries(VKFV_SCENE material, make_incidence(incoming, normal), seed, image, path, first_block,
                             SCATTER_BLOCKS - 1u);
 }
+
+#ifdef __cplusplus
+inline real scatter_bsdf(Material material, real3 incoming, real3 normal, real3 outgoing) {
+    return scatter_bsdf(NoNumbers{}, material, incoming, normal, outgoing);
+}
+inline real scatter_density(Material material, real3 incoming, real3 normal, real3 outgoing) {
+    return scatter_density(NoNumbers{}, material, incoming, normal, outgoing);
+}
+inline Scattered scatter(Material material, real3 incoming, real3 normal, uint seed, uint image, uvec2 path,
+                         uint first_block) {
+    return scatter(NoNumbers{}, material, incoming, normal, seed, image, path, first_block);
+}
+#endif

@@ -8,16 +8,23 @@
 //     asked for above the surface alone, 1/sr: the density per sr of the outgoing direction divided by its cosine, so
 //     that the integral of bsdf * cosine over the hemisphere is 1; a delta has 0
 // The line `// lossy` says that the first try decides: what it does not accept is absorbed, and the integral is the
-// share that is accepted. With the line `// table`, NAME_bsdf takes `real table[LOBE_TABLE_SIZE]` after the parameters,
-// and the host fills it: src/specimen/scatter_tables.cpp.
+// share that is accepted. With the line `// absorbs` the integral is that share too, but tries say themselves what is
+// absorbed. With the line `// table`, NAME_bsdf takes `real table[LOBE_TABLE_SIZE]` after the parameters, and the host
+// fills it: src/specimen/scatter_tables.cpp. With the line `// drawn_by_table`, NAME_try takes it too.
 
 // With the line `// cone`, NAME_cone(parameters..., [table,] Incidence incidence, real versine, real u0, real u1) draws
 // a direction within the cone of that versine (1 - cos of its half angle) about the mirror direction: ConeDraw.
+
+// The line `// index` says that the first two parameters are the real and the imaginary part of a refractive index over
+// that of the medium: material_of_light() divides by it. With the line `// numbers` both functions take VKFV_SCENE
+// first and may ask material_number() for what the host has read from a file (src/specimen/tabulated_bsdf.cpp); the
+// table has where it begins.
 
 // The models that the specimen's material has, bit k for model k, and SCATTER_CHOICE unless it is one lobe that
 // reflects everything: what it has not is compiled out of a kernel.
 const uint SCATTER_CHOICE = 0x80000000u;
 const uint SCATTER_DELTA = 0x40000000u; // set where a lobe is a delta
+const uint SCATTER_INDEX = 0x20000000u; // set where a lobe has a refractive index
 #ifdef __cplusplus
 const uint scatter_models = 0xFFFFFFFFu;
 #else
@@ -33,8 +40,23 @@ struct Incidence {
 
 struct ScatterTry {
     bool accepted;
+    bool absorbed;   // the light; if neither holds, there is another try
     real3 direction; // unit
 };
+
+#ifdef __cplusplus
+template <class Scene>
+real material_number(const Scene& scene, int index) {
+    return scene.material_number(index);
+}
+
+// The scene where no model asks for numbers.
+struct NoNumbers {
+    real material_number(int /*index*/) const { return real(0.0); }
+};
+#else
+real material_number(int index); // the kernel's bindings say where they are kept
+#endif
 
 // A direction drawn within a cone, and the density that is wanted there over the density that it was drawn by: the
 // chance by which it is kept, if it is nowhere above 1.
@@ -80,4 +102,70 @@ VKFV_FUNCTION real3 direction_around(real3 axis, real versine, real azimuth) {
     real sine = sqrt(max(versine * (real(2.0) - versine), real(0.0)));
     Turn phi = turn_of(azimuth);
     return axis * (real(1.0) - versine) + frame.first * (sine * phi.cosine) + frame.second * (sine * phi.sine);
+}
+
+// exp(x) - 1 and log(1 + x) without their cancellation near 0, to 1e-10 of themselves.
+VKFV_FUNCTION real exp_minus_one(real x) {
+    real series = real(1.0) + x * real(0.125);
+    series = real(1.0) + x * real(0.142857142857142857) * series;
+    series = real(1.0) + x * real(0.166666666666666667) * series;
+    series = real(1.0) + x * real(0.2) * series;
+    series = real(1.0) + x * real(0.25) * series;
+    series = real(1.0) + x * real(0.333333333333333333) * series;
+    series = real(1.0) + x * real(0.5) * series;
+    return abs(x) < real(0.25) ? x * series : exp(x) - real(1.0);
+}
+
+VKFV_FUNCTION real log_one_plus(real x) {
+    real z = x / (real(2.0) + x);
+    real square = z * z;
+    real series =
+        real(0.142857142857142857) + square * (real(0.111111111111111111) + square * real(0.0909090909090909));
+    series = real(1.0) + square * (real(0.333333333333333333) + square * (real(0.2) + square * series));
+    return abs(x) < real(0.25) ? real(2.0) * z * series : log(real(1.0) + x);
+}
+
+// Lobes over the plane of direction cosines: their bsdf depends on the distance of the outgoing direction's cosines
+// from the mirror direction's alone, and falls with it. Cosines are the parts of unit vectors along the surface.
+
+// Square of that distance.
+VKFV_FUNCTION real cosines_apart_squared(Incidence incidence, real3 outgoing) {
+    real3 apart = outgoing - incidence.mirror;
+    apart = apart - incidence.normal * dot(apart, incidence.normal);
+    return dot(apart, apart);
+}
+
+struct CosinesDraw {
+    bool folded;     // to a larger distance than that which was drawn
+    real distance;   // of the direction's cosines from the mirror direction's
+    bool above;      // the surface
+    real3 direction; // unit
+};
+
+// The direction at a distance of at most 1, at the azimuth of a share of a turn. Cosines beyond the unit circle belong
+// to no direction. The line halfway between the circle's centre and the mirror direction's cosines mirrors them onto
+// cosines within the circle that are more than 1 from the mirror direction's, which no draw gives: where a draw is
+// folded and kept with the chance of the quotient of both distances' bsdf, all directions have their density.
+VKFV_FUNCTION CosinesDraw draw_in_cosines(Incidence incidence, real distance, real azimuth) {
+    real incoming_cosine = -dot(incidence.incoming, incidence.normal);
+    real3 centre = incidence.incoming + incidence.normal * incoming_cosine;
+    Frame frame = frame_around(incidence.normal);
+    Turn turn = turn_of(azimuth);
+    real3 offset = frame.first * (distance * turn.cosine) + frame.second * (distance * turn.sine);
+    real3 cosines = centre + offset;
+    real length_squared = dot(cosines, cosines);
+    real centre_squared = dot(centre, centre);
+    CosinesDraw result;
+    result.folded = length_squared > real(1.0) && centre_squared > real(0.0);
+    result.distance = distance;
+    if (result.folded) {
+        result.distance = sqrt(length_squared);
+        cosines = cosines - centre * (real(2.0) * dot(cosines, centre) / centre_squared - real(1.0));
+        offset = cosines - centre;
+    }
+    // 1 - dot(cosines, cosines), near grazing incidence too.
+    real height_squared = incoming_cosine * incoming_cosine - dot(offset, centre + cosines);
+    result.above = height_squared > real(0.0);
+    result.direction = cosines + incidence.normal * sqrt(max(height_squared, real(0.0)));
+    return result;
 }

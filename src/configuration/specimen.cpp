@@ -2,8 +2,12 @@
 #include "configuration/ranges.hpp"
 #include "configuration/tables.hpp"
 #include "core/files/assets.hpp"
+#include "core/files/digest.hpp"
+#include "core/mathematics/units.hpp"
+#include "core/parsing/number_table.hpp"
 #include "physics/scatter_registry.hpp"
 #include "specimen/kinds.hpp"
+#include "specimen/scatter_tables.hpp"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -11,7 +15,9 @@
 #include <algorithm>
 #include <cctype>
 #include <deque>
+#include <functional>
 #include <map>
+#include <span>
 
 namespace vkfv {
 
@@ -122,13 +128,16 @@ struct LobeKeys {
         table.keys.push_back(&scatter);
         for (const auto& model : scatter_registry) {
             for (const auto& parameter : model.parameters) {
-                parameters.push_back(of_kinds({std::string(model.name)},
-                                              NumberKey(std::string(parameter.name),
-                                                        NumberRange::within(parameter.minimum, parameter.maximum),
-                                                        parameter.fallback, sentence_of(parameter.meaning))));
-                table.keys.push_back(&parameters.back());
+                declare(std::string(model.name), parameter);
             }
         }
+        for (const NumberKey& key : parameters) {
+            table.keys.push_back(&key);
+        }
+        const std::initializer_list<const Key*> further = {
+            &sq,   &sq_wavelength,     &index_wavelengths,       &refractive_indices, &extinctions,     &index_file,
+            &file, &reciprocity_limit, &reflectance_wavelengths, &reflectances,       &reflectance_file};
+        table.keys.insert(table.keys.end(), further);
         table.keys.push_back(&share);
     }
     LobeKeys(const LobeKeys&) = delete;
@@ -142,10 +151,74 @@ struct LobeKeys {
         return list;
     }
 
+    // Models share a key whose parameter is the same; one of the same name is the same in all.
+    void declare(const std::string& model, const physics::ScatterParameter& parameter) {
+        const auto known = std::ranges::find(parameters, parameter.name, &NumberKey::name);
+        if (known != parameters.end()) {
+            known->kinds.push_back(model);
+            return;
+        }
+        parameters.push_back(of_kinds({model}, NumberKey(std::string(parameter.name),
+                                                         NumberRange::within(parameter.minimum, parameter.maximum),
+                                                         parameter.fallback, sentence_of(parameter.meaning))));
+    }
+
     ChoiceKey<std::size_t> scatter;   // index in the registry
-    std::deque<NumberKey> parameters; // of all models, in their order
+    std::deque<NumberKey> parameters; // of all models
+    NumberKey sq = of_kinds(
+        {"abg", "harvey-shack"},
+        NumberKey(
+            "sq_um", NumberRange::positive(), Default::in_words("this lobe is scattered light alone"),
+            "Root mean square height of the surface's finish. It parts the light at normal incidence: the share "
+            "1 - exp(-(4 pi sq_um / sq_wavelength_um)^2) is scattered, the rest mirrored, as a lobe of its own."));
+    NumberKey sq_wavelength =
+        of_kinds({"abg", "harvey-shack"},
+                 NumberKey("sq_wavelength_um", wavelength_range_um, Default::in_words("needed with sq_um"),
+                           "Wavelength of that share, which all light has."));
+    NumbersKey index_wavelengths =
+        of_kinds(index_models(), NumbersKey("index_wavelengths_um", wavelength_range_um,
+                                            Default::in_words("the index is the same at all wavelengths"),
+                                            "Ascending wavelengths in vacuum of refractive_indices, instead of "
+                                            "refractive_index and extinction_coefficient: linear in between, held "
+                                            "beyond."));
+    NumbersKey refractive_indices =
+        of_kinds(index_models(), NumbersKey("refractive_indices", index_range(),
+                                            Default::in_words("needed with "
+                                                              "index_wavelengths_um"),
+                                            "Real part n of the index at each of index_wavelengths_um."));
+    NumbersKey extinctions =
+        of_kinds(index_models(), NumbersKey("extinction_coefficients", extinction_range(),
+                                            Default::in_words("needed with index_wavelengths_um"),
+                                            "Imaginary part k of the index at each of index_wavelengths_um."));
+    FileKey index_file =
+        of_kinds(index_models(), FileKey("index_file", Default::in_words("the index in the configuration"),
+                                         "CSV file of wavelength_um,refractive_index,extinction_coefficient."));
+    FileKey file = of_kinds(
+        {"tabulated"},
+        for_example("\"bsdf.csv\"", FileKey("file", Default::none(),
+                                            "CSV file of incidence_deg,scatter_deg,azimuth_deg,bsdf_per_sr, or "
+                                            "without azimuth_deg: each combination of its angles once. Azimuths "
+                                            "are counted from the mirror direction's, 0 to 180 degrees.")));
+    NumberKey reciprocity_limit = without_influence(
+        of_kinds({"tabulated"}, NumberKey("reciprocity_limit", NumberRange::at_least(0), 0.1,
+                                          "A table is refused whose bsdf deviates more from reciprocity: mean of "
+                                          "|f(i, o) - f(o, i)| over that of f.")));
+    NumbersKey reflectance_wavelengths{"reflectance_wavelengths_um", wavelength_range_um,
+                                       Default::in_words("the reflectance is the same at all wavelengths"),
+                                       "Ascending wavelengths in vacuum of reflectances."};
+    NumbersKey reflectances{
+        "reflectances", NumberRange::within(0, 1), Default::in_words("needed with reflectance_wavelengths_um"),
+        "Share of this light that is kept at each of reflectance_wavelengths_um: linear in between, "
+        "held beyond."};
+    FileKey reflectance_file{"reflectance_file", Default::in_words("the reflectances in the configuration"),
+                             "CSV file of wavelength_um,reflectance, instead of reflectances."};
     NumberKey share;
     KeyTable table;
+
+  private:
+    static std::vector<std::string> index_models() { return {"conductor", "ggx-conductor"}; }
+    static NumberRange index_range() { return NumberRange::within(0.01, 20); }
+    static NumberRange extinction_range() { return NumberRange::within(0, 20); }
 };
 
 const LobeKeys& material_keys() {
@@ -178,31 +251,160 @@ const LobeKeys& lobe_keys() {
     return keys;
 }
 
-// A scatter model and its parameters. Those of another model are refused.
+bool is_of(const Key& key, const std::string& model) {
+    return key.kinds.empty() || std::ranges::find(key.kinds, model) != key.kinds.end();
+}
+
+// Columns over the wavelength, by two or more keys of the configuration or by a file, whose first column is
+// wavelength_um. Nothing if neither is given.
+struct SpectralKeys {
+    const NumbersKey* wavelengths;
+    std::vector<const NumbersKey*> values;
+    const FileKey* file;
+    std::vector<std::string_view> columns;
+};
+
+std::vector<specimen::SpectralFunction> read_spectral_file(const Section& section, const SpectralKeys& keys) {
+    const TomlTable& table = section.table();
+    const auto file = looked_for(table.file_path(keys.file->name));
+    Digest digest;
+    std::vector<specimen::SpectralFunction> functions(keys.values.size());
+    as_named(table, keys.file->name, file, [&] {
+        for (const auto& point : read_number_table(file, keys.columns, table.path() + "." + keys.file->name, "point")) {
+            digest.add_values(std::span<const double>(point.values));
+            const auto require = [&](std::size_t column, bool holds, std::string expected) {
+                if (!holds) {
+                    throw InputError({.where = {.file = file, .line = point.line, .column = 1},
+                                      .key = std::string(keys.columns[column]),
+                                      .found = fmt::format("{}", point.values[column]),
+                                      .expected = std::move(expected),
+                                      .remedy = "Correct this field."});
+                }
+            };
+            require(0, wavelength_range_um.contains(point.values[0]),
+                    "a wavelength " + wavelength_range_um.to_string() + " um");
+            require(0,
+                    functions.front().wavelengths_um.empty() ||
+                        point.values[0] > functions.front().wavelengths_um.back(),
+                    "wavelengths that ascend");
+            for (std::size_t k = 0; k < functions.size(); ++k) {
+                const NumberRange& range = keys.values[k]->range;
+                require(k + 1, range.contains(point.values[k + 1]), "a number " + range.to_string());
+                functions[k].wavelengths_um.push_back(point.values[0]);
+                functions[k].values.push_back(point.values[k + 1]);
+            }
+        }
+    });
+    section.record_reference(*keys.file, absolute_path(file).string(), digest.text());
+    return functions;
+}
+
+std::vector<specimen::SpectralFunction> read_spectral(const Section& section, const SpectralKeys& keys) {
+    const auto is_given = [&](const Key* key) { return section.has(*key); };
+    const bool by_keys = is_given(keys.wavelengths) || std::ranges::any_of(keys.values, is_given);
+    if (section.has(*keys.file)) {
+        if (by_keys) {
+            section.fail(*keys.file, fmt::format("{} or {}, not both", keys.file->name, keys.wavelengths->name),
+                         "Remove one of the two.");
+        }
+        return read_spectral_file(section, keys);
+    }
+    if (!by_keys) {
+        return {};
+    }
+    const auto wavelengths = section.numbers(*keys.wavelengths);
+    if (wavelengths.empty() ||
+        std::ranges::adjacent_find(wavelengths, std::ranges::greater_equal()) != wavelengths.end()) {
+        section.fail(*keys.wavelengths, "wavelengths that ascend", "Sort them, and give each once.");
+    }
+    std::vector<specimen::SpectralFunction> functions;
+    for (const NumbersKey* key : keys.values) {
+        functions.push_back({wavelengths, section.numbers(*key)});
+        if (functions.back().values.size() != wavelengths.size()) {
+            section.fail(*key, fmt::format("as many numbers as {}, {}", keys.wavelengths->name, wavelengths.size()),
+                         "Give one for each wavelength.");
+        }
+    }
+    return functions;
+}
+
+specimen::TabulatedBsdf read_tabulated(const Section& section, const LobeKeys& keys) {
+    const TomlTable& table = section.table();
+    const double limit = section.number(keys.reciprocity_limit);
+    table.require(keys.file.name);
+    const auto file = looked_for(table.file_path(keys.file.name));
+    specimen::TabulatedBsdf bsdf;
+    as_named(table, keys.file.name, file,
+             [&] { bsdf = specimen::read_tabulated_bsdf(file, table.path() + "." + keys.file.name, limit); });
+    Digest digest;
+    for (const auto* values : {&bsdf.incidences, &bsdf.scatters, &bsdf.azimuths, &bsdf.values}) {
+        digest.add_values(std::span<const double>(*values));
+    }
+    section.record_reference(keys.file, absolute_path(file).string(), digest.text());
+    return bsdf;
+}
+
+// A scatter model, its parameters, and what changes it with the wavelength. Keys of another model are refused.
 specimen::Lobe read_lobe(const Section& section, const LobeKeys& keys) {
     const auto& model = scatter_registry[section.choice(keys.scatter)];
     section.table().require(keys.scatter.name);
     specimen::Lobe lobe;
     lobe.model = model.name;
     lobe.parameters.clear();
-    std::map<std::string, std::vector<std::string>> models_with;
-    for (const NumberKey& key : keys.parameters) {
-        models_with[key.name].push_back(key.kinds.front());
+    for (const auto& parameter : model.parameters) {
+        lobe.parameters.push_back(
+            section.number(*std::ranges::find(keys.parameters, parameter.name, &NumberKey::name)));
     }
-    for (const NumberKey& key : keys.parameters) {
-        if (key.kinds.front() == lobe.model) {
-            lobe.parameters.push_back(section.number(key));
-            models_with.erase(key.name);
+    for (const Key* key : keys.table.keys) {
+        if (!is_of(*key, lobe.model) && section.has(*key)) {
+            section.note(*key, fmt::format("no such key for scatter = \"{}\"", lobe.model),
+                         fmt::format("Remove it; it belongs to scatter = \"{}\".", fmt::join(key->kinds, "\" or \"")));
         }
     }
-    for (const auto& [key, models] : models_with) {
-        if (section.table().has(key)) {
-            section.table().note(
-                key, fmt::format("no such key for scatter = \"{}\"", lobe.model),
-                fmt::format("Remove it; it belongs to scatter = \"{}\".", fmt::join(models, "\" or \"")));
+    if (is_of(keys.index_file, lobe.model)) {
+        const auto index = read_spectral(section, {&keys.index_wavelengths,
+                                                   {&keys.refractive_indices, &keys.extinctions},
+                                                   &keys.index_file,
+                                                   {"wavelength_um", "refractive_index", "extinction_coefficient"}});
+        if (!index.empty()) {
+            lobe.refractive_index = index[0];
+            lobe.extinction_coefficient = index[1];
         }
+    }
+    if (model.from_file) {
+        lobe.bsdf = read_tabulated(section, keys);
+    }
+    const auto reflectance = read_spectral(section, {&keys.reflectance_wavelengths,
+                                                     {&keys.reflectances},
+                                                     &keys.reflectance_file,
+                                                     {"wavelength_um", "reflectance"}});
+    if (!reflectance.empty()) {
+        lobe.reflectance = reflectance[0];
     }
     return lobe;
+}
+
+// The lobe, and where the height of the surface's finish parts its light a mirror's beside it.
+std::vector<specimen::Lobe> read_lobes(const Section& section, const LobeKeys& keys) {
+    specimen::Lobe lobe = read_lobe(section, keys);
+    lobe.weight = section.number(keys.share);
+    const auto sq = is_of(keys.sq, lobe.model) ? section.number_if_given(keys.sq) : std::nullopt;
+    const auto wavelength = is_of(keys.sq, lobe.model) ? section.number_if_given(keys.sq_wavelength) : std::nullopt;
+    if (sq.has_value() != wavelength.has_value()) {
+        section.fail(sq ? keys.sq_wavelength : keys.sq, "sq_um and sq_wavelength_um together, or neither",
+                     "Give both, or remove the one.");
+    }
+    std::vector<specimen::Lobe> lobes;
+    if (sq) {
+        const double scattered = specimen::total_scatter(from_um(*sq), *wavelength);
+        specimen::Lobe mirror{.model = "mirror", .weight = lobe.weight * (1 - scattered), .parameters = {}};
+        mirror.reflectance = lobe.reflectance;
+        lobe.weight *= scattered;
+        lobes.push_back(std::move(mirror));
+    }
+    lobes.push_back(std::move(lobe));
+    std::erase_if(lobes, [](const auto& one) { return !(one.weight > 0); });
+    return lobes;
 }
 
 // One lobe in the table itself, or several in [[specimen.material.lobe]].
@@ -212,11 +414,7 @@ specimen::Material read_material(const TomlTable& table, ReadKeys& read) {
     specimen::Material material;
     material.lobes.clear();
     if (lobe_tables.empty()) {
-        specimen::Lobe lobe = read_lobe(section, material_keys());
-        lobe.weight = section.number(material_keys().share);
-        if (lobe.weight > 0) {
-            material.lobes.push_back(lobe);
-        }
+        material.lobes = read_lobes(section, material_keys());
         return material;
     }
     for (const auto& key : table.keys()) {
@@ -231,14 +429,19 @@ specimen::Material read_material(const TomlTable& table, ReadKeys& read) {
     double reflectance = 0;
     for (const auto& one : lobe_tables) {
         const Section lobe_section(one, lobe_keys().table, read);
-        material.lobes.push_back(read_lobe(lobe_section, lobe_keys()));
-        material.lobes.back().weight = lobe_section.number(lobe_keys().share);
-        reflectance += material.lobes.back().weight;
+        for (specimen::Lobe& lobe : read_lobes(lobe_section, lobe_keys())) {
+            reflectance += lobe.weight;
+            material.lobes.push_back(std::move(lobe));
+        }
         if (reflectance > 1 + specimen::weight_rounding) {
             lobe_section.fail(lobe_keys().share,
                               fmt::format("weights that add up to at most 1, not {:.6g}", reflectance),
                               "Choose smaller weights; what they leave of 1 is absorbed.");
         }
+    }
+    if (material.lobes.size() > specimen::most_lobes) {
+        table.fail("lobe", fmt::format("at most {} lobes; one with sq_um is two", specimen::most_lobes),
+                   "Leave the weakest out.");
     }
     return material;
 }

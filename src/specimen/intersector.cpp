@@ -236,6 +236,7 @@ class Marcher {
 struct Intersector::State {
     std::variant<FieldWalk, Triangles, Marcher> geometry;
     std::optional<ReflectanceMap> reflectance;
+    MaterialNumbers material;
 };
 
 Intersector::Intersector(const Specimen& specimen) {
@@ -245,7 +246,8 @@ Intersector::Intersector(const Specimen& specimen) {
         Geometry operator()(const Mesh& mesh) const { return Triangles(mesh); }
         Geometry operator()(const Analytic& analytic) const { return Marcher(analytic); }
     };
-    state_ = std::make_unique<State>(State{std::visit(Prepare{}, specimen.geometry), specimen.reflectance});
+    state_ = std::make_unique<State>(
+        State{std::visit(Prepare{}, specimen.geometry), specimen.reflectance, material_numbers(specimen.material)});
 }
 
 Intersector::~Intersector() = default;
@@ -256,11 +258,16 @@ Hit Intersector::hit(glm::dvec3 origin, glm::dvec3 direction) const {
 }
 
 std::uint32_t Intersector::features() const {
-    return state_->reflectance ? physics::f64::FEATURE_REFLECTANCE_MAP : 0u;
+    return (state_->reflectance ? physics::f64::FEATURE_REFLECTANCE_MAP : 0u) |
+           (state_->material.spectral_points > 0 ? physics::f64::FEATURE_SPECTRAL_MATERIAL : 0u);
 }
 
 double Intersector::reflectance_at(int column, int row) const {
     return static_cast<double>(state_->reflectance->values(column, row));
+}
+
+double Intersector::material_number(int index) const {
+    return static_cast<double>(state_->material.numbers[static_cast<std::size_t>(index)]);
 }
 
 } // namespace vkfv::specimen

@@ -18,9 +18,11 @@ class Intersector {
     // Nearest meeting at a distance > 0 (mm for a unit direction); specimen frame.
     physics::f64::Hit hit(glm::dvec3 origin, glm::dvec3 direction) const;
 
-    // What the shared physics asks of the specimen besides: FEATURE_REFLECTANCE_MAP if it has one, and its grid.
+    // What the shared physics asks of the specimen besides: FEATURE_REFLECTANCE_MAP if it has one, and its grid;
+    // FEATURE_SPECTRAL_MATERIAL if the wavelength changes its material, and that material's numbers.
     std::uint32_t features() const;
     double reflectance_at(int column, int row) const;
+    double material_number(int index) const;
 
   private:
     struct State;

@@ -1,5 +1,7 @@
 #include "specimen/rational_fit.hpp"
 
+#include "core/mathematics/units.hpp"
+
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -58,17 +60,105 @@ std::vector<double> least_squares(std::vector<std::vector<double>> columns, std:
     return x;
 }
 
+float polynomial(const std::vector<double>& coefficients, float at) {
+    float sum = 0;
+    for (std::size_t k = coefficients.size(); k-- > 0;) {
+        sum = sum * at + static_cast<float>(coefficients[k]);
+    }
+    return sum;
+}
+
+struct Samples {
+    std::vector<double> t, f;
+};
+
+// At Chebyshev's points, or between them.
+Samples sample(const std::function<double(double)>& f, int points, double shift) {
+    Samples samples;
+    for (int k = 0; k < points; ++k) {
+        const double t = 0.5 - 0.5 * std::cos(pi * (k + shift) / points);
+        samples.t.push_back(t);
+        samples.f.push_back(f(t));
+    }
+    return samples;
+}
+
+// t P / Q of one degree, linearised.
+RationalFit linearised_from_zero(const Samples& at, const std::vector<double>& weights, std::size_t degree) {
+    std::vector<std::vector<double>> columns(2 * degree + 1, std::vector<double>(at.t.size()));
+    std::vector<double> right(at.t.size());
+    for (std::size_t i = 0; i < at.t.size(); ++i) {
+        double power = weights[i];
+        for (std::size_t k = 0; k <= degree; ++k) {
+            columns[k][i] = at.t[i] * power;
+            if (k > 0) {
+                columns[degree + k][i] = -at.f[i] * power;
+            }
+            power *= 2 * at.t[i] - 1;
+        }
+        right[i] = at.f[i] * weights[i];
+    }
+    const auto solution = least_squares(columns, right);
+    const auto middle = solution.begin() + static_cast<std::ptrdiff_t>(degree) + 1;
+    RationalFit fit{{solution.begin(), middle}, {1.0}, 0};
+    fit.denominator.insert(fit.denominator.end(), middle, solution.end());
+    return fit;
+}
+
+double from_zero(const RationalFit& fit, double t) {
+    const auto place = static_cast<float>(t), z = 2 * place - 1;
+    return static_cast<double>(place * polynomial(fit.numerator, z) / polynomial(fit.denominator, z));
+}
+
 } // namespace
+
+RationalFit fit_rational_from_zero(const std::function<double(double)>& f, std::size_t highest_degree) {
+    constexpr int points = 120;
+    constexpr double softening = 0.3; // of f in the weight of an error, 1 / (f + softening)
+    const Samples fitted = sample(f, points, 0.5), between = sample(f, 3 * points, 0.25);
+    RationalFit best;
+    best.error = std::numeric_limits<double>::infinity();
+    constexpr int evenings = 8, rounds = 5; // it has settled after these
+    for (std::size_t degree = 5; degree <= highest_degree; ++degree) {
+        std::vector<double> importance;
+        for (const double value : fitted.f) {
+            importance.push_back(1 / (value + softening));
+        }
+        const std::vector<double> counted = importance;
+        for (int evening = 0; evening < evenings; ++evening) {
+            RationalFit fit;
+            std::vector<double> weights = importance;
+            for (int round = 0; round < rounds; ++round) {
+                fit = linearised_from_zero(fitted, weights, degree);
+                for (std::size_t i = 0; i < weights.size(); ++i) {
+                    const auto z = static_cast<float>(2 * fitted.t[i] - 1);
+                    weights[i] = importance[i] / std::abs(static_cast<double>(polynomial(fit.denominator, z)));
+                }
+            }
+            std::vector<double> errors;
+            double largest = 0;
+            for (std::size_t i = 0; i < fitted.t.size(); ++i) {
+                errors.push_back(counted[i] * std::abs(from_zero(fit, fitted.t[i]) - fitted.f[i]));
+                largest = std::max(largest, errors.back());
+            }
+            for (std::size_t i = 0; i < errors.size(); ++i) {
+                importance[i] *= std::sqrt(errors[i] / largest + 0.05);
+            }
+            fit.error = 0;
+            for (std::size_t i = 0; i < between.t.size(); ++i) {
+                const double error = std::abs(from_zero(fit, between.t[i]) - between.f[i]);
+                fit.error = error <= fit.error ? fit.error : error; // not a number counts as the largest
+            }
+            if (fit.error < best.error) {
+                best = fit;
+            }
+        }
+    }
+    return best;
+}
 
 RationalFit fit_rational(const std::vector<double>& x, const std::vector<double>& f, std::size_t highest_degree,
                          double wanted_error) {
-    const auto polynomial = [](const std::vector<double>& coefficients, float at) {
-        float sum = 0;
-        for (std::size_t k = coefficients.size(); k-- > 0;) {
-            sum = sum * at + static_cast<float>(coefficients[k]);
-        }
-        return sum;
-    };
     RationalFit best;
     best.error = std::numeric_limits<double>::infinity();
     constexpr int rounds = 10; // it has settled after four or five

@@ -277,6 +277,7 @@ SpecimenRecord record_of_geometry(const Specimen& specimen) {
 SpecimenRecord record(const Specimen& specimen, int max_bounces) {
     SpecimenRecord result = record_of_geometry(specimen);
     result.material = material_record(specimen.material);
+    result.material_spectral_points = material_numbers(specimen.material).spectral_points;
     result.max_bounces = max_bounces;
     return result;
 }

@@ -65,10 +65,107 @@ LobeRecord with_henyey_greenstein_norm(LobeRecord lobe) {
     return lobe;
 }
 
+// What ggx_multiple_scatter_lack() evaluates, and the bound of its proposals.
+LobeRecord with_ggx_lack(LobeRecord lobe) {
+    const double alpha = lobe.parameter_0;
+    const double power = alpha >= 0.6 ? 4 : 2, scale = 2 * alpha;
+    const auto lack = [&](double t) {
+        const double y = std::pow(t, power) / (1 + scale);
+        return 1 - ggx_kept(alpha, std::min(scale * y / (1 - y), 1.0));
+    };
+    const RationalFit fit = fit_rational_from_zero(lack, 7);
+    std::ranges::fill(lobe.table, 0.0);
+    std::ranges::copy(fit.numerator, lobe.table);
+    std::copy(fit.denominator.begin() + 1, fit.denominator.end(), lobe.table + 8);
+    // Of the fit itself, so that what is lost is what is given back. The cosine is s^3.
+    constexpr int panels = 4000;
+    double mean = 0, most = 0, most_flat = 0;
+    for (int k = 0; k < panels; ++k) {
+        const double s = (k + 0.5) / panels, cosine = s * s * s;
+        const double value = physics::f64::ggx_multiple_scatter_lack(alpha, lobe.table, cosine);
+        mean += 2 * cosine * value * 3 * s * s / panels;
+        most = std::max(most, value);
+        most_flat = std::max(most_flat, 2 * cosine * value);
+    }
+    for (int k = 0; k < 8; ++k) {
+        lobe.table[k] /= std::sqrt(mean);
+    }
+    constexpr double margin = 1.01; // between the points, and in float
+    const bool smooth_surface = physics::f64::ggx_multiple_scatter_is_smooth(alpha);
+    lobe.table[15] = margin * (smooth_surface ? most_flat : most) / std::sqrt(mean);
+    return lobe;
+}
+
+LobeRecord with_harvey_shack_scale(LobeRecord lobe) {
+    const double shoulder = lobe.parameter_0, p = 1 + 0.5 * lobe.parameter_1;
+    const double last = std::log1p(1 / (shoulder * shoulder));
+    lobe.table[0] = 1 / (pi * shoulder * shoulder * (p == 0 ? last : std::expm1(p * last) / p));
+    return lobe;
+}
+
+// A of the integral of d / (B + d^g) over d up to 1, in y = -log(d).
+LobeRecord with_abg_scale(LobeRecord lobe) {
+    const double b = lobe.parameter_0, g = lobe.parameter_1;
+    const double last = 20 - std::log(b) / g; // what lies beyond is lost in rounding
+    const int panels = static_cast<int>(std::ceil(20 * last));
+    const double half_panel = 0.5 * last / panels;
+    constexpr double places[] = {-0.774596669241483377, 0, 0.774596669241483377}, weights[] = {5, 8, 5};
+    double sum = 0;
+    for (int point = 0; point < 3 * panels; ++point) {
+        const double y = half_panel * (2 * (point / 3) + 1 + places[point % 3]);
+        sum += weights[point % 3] / 9 * half_panel * std::exp(-2 * y) / (b + std::exp(-g * y));
+    }
+    lobe.table[0] = 1 / (2 * pi * sum);
+    return lobe;
+}
+
 } // namespace
 
+double ggx_kept(double alpha, double cosine) {
+    const double incidence = std::acos(cosine), sine = std::sin(incidence);
+    const double width = 0.5 * alpha * std::max(cosine, 1e-12); // of the lobe; the horizon is no nearer
+    const auto reach = [&](double c) { return std::sqrt(alpha * alpha + (1 - alpha) * (1 + alpha) * c * c); };
+    constexpr int panels = 200;
+    constexpr double places[] = {-0.774596669241483377, 0, 0.774596669241483377}, weights[] = {5, 8, 5};
+    const double first = std::asinh(-incidence / width), last = std::asinh((pi / 2 - incidence) / width);
+    const double half_panel = 0.5 * (last - first) / panels;
+    double sum = 0;
+    for (int point = 0; point < 3 * panels; ++point) {
+        const double t = first + half_panel * (2 * (point / 3) + 1 + places[point % 3]);
+        const double apart = width * std::sinh(t), theta = incidence + apart;
+        const double c_o = std::cos(theta), s_o = std::sin(theta), up = cosine + c_o;
+        const double sines_apart = 2 * std::cos(incidence + 0.5 * apart) * std::sin(0.5 * apart);
+        const double spread = alpha * alpha * up * up;
+        const double least = spread + sines_apart * sines_apart;  // c - b
+        const double most = spread + (sine + s_o) * (sine + s_o); // c + b
+        const double middle = 0.5 * (least + most), r = std::sqrt(least * most);
+        const double d = (1 - alpha) * (1 + alpha) * up * up;
+        const double shadowed = reach(cosine) * c_o + cosine * reach(c_o);
+        const double value = alpha * alpha / shadowed * (1 + 2 * d / r + d * d * middle / (r * r * r));
+        sum += weights[point % 3] / 9 * half_panel * width * std::cosh(t) * value * c_o * s_o;
+    }
+    return sum;
+}
+
+double total_scatter(double sq, double wavelength_um) {
+    const double phase = 4 * pi * sq * um_per_mm / wavelength_um;
+    return -std::expm1(-phase * phase);
+}
+
 LobeRecord tabulated(LobeRecord lobe) {
-    return lobe.model == physics::f64::SCATTER_HENYEY_GREENSTEIN ? with_henyey_greenstein_norm(lobe) : lobe;
+    using namespace physics::f64;
+    switch (lobe.model) {
+    case SCATTER_HENYEY_GREENSTEIN:
+        return with_henyey_greenstein_norm(lobe);
+    case SCATTER_GGX_MULTIPLE_SCATTER:
+        return with_ggx_lack(lobe);
+    case SCATTER_HARVEY_SHACK:
+        return with_harvey_shack_scale(lobe);
+    case SCATTER_ABG:
+        return with_abg_scale(lobe);
+    default:
+        return lobe;
+    }
 }
 
 } // namespace vkfv::specimen

@@ -18,4 +18,16 @@ physics::f64::Lobe tabulated(physics::f64::Lobe lobe);
 // Gauss points.
 double henyey_greenstein_exact_norm(double g, double cosine);
 
+// The share of light at this cosine of incidence that facets of ggx reflect once and that gets away, to 2e-9 (to 4e-7
+// with alpha below 0.05): the integral of f cos(theta). Over the azimuth it is a closed form: with f = (1/(2 pi))
+// (alpha ratio)^2 / shadowed of ggx.glsl, ratio = 1 + d / (c + b cos(phi)), the integrals of 1, 1/(c + b cos(phi)) and
+// its square are 2 pi, 2 pi / r and 2 pi c / r^3, r = sqrt(c^2 - b^2). Over the angle of scatter it is one by Gauss
+// points in the inverse hyperbolic sine of the distance from the mirror direction, in units of alpha and the cosine.
+double ggx_kept(double alpha, double cosine);
+
+// The total integrated scatter of a surface of the root mean square height sq (mm, of the spatial wavelengths that
+// scatter) at a wavelength (um), at normal incidence: 1 - exp(-(4 pi sq / wavelength)^2), H. Davies, Proc. IEE 101
+// (1954) 209; H. E. Bennett and J. O. Porteus, J. Opt. Soc. Am. 51 (1961) 123.
+double total_scatter(double sq, double wavelength_um);
+
 } // namespace vkfv::specimen

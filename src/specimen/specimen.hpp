@@ -5,6 +5,7 @@
 #include "core/messages/error.hpp"
 #include "physics/physics.hpp"
 #include "specimen/reflectance.hpp"
+#include "specimen/tabulated_bsdf.hpp"
 #include "surface/height_map.hpp"
 
 #include <glm/glm.hpp>
@@ -48,12 +49,25 @@ struct Analytic {
     std::optional<HeightField> lattice;
 };
 
+// A function of the wavelength in vacuum: linear between its points, held beyond the ends.
+struct SpectralFunction {
+    std::vector<double> wavelengths_um; // ascending; empty: there is none
+    std::vector<double> values;
+
+    bool operator==(const SpectralFunction&) const = default;
+    double at(double wavelength_um) const;
+};
+
 // One way in which a material scatters: a model of shaders/physics/scatter/ by its name, and its parameters in that
 // file's order.
 struct Lobe {
     std::string model = "henyey-greenstein";
     double weight = 1; // share of the incident light, in (0, 1]
     std::vector<double> parameters = {0};
+    SpectralFunction reflectance{};            // factors of the weight, in [0, 1]
+    SpectralFunction refractive_index{};       // in place of the first two parameters, of models that have an index
+    SpectralFunction extinction_coefficient{}; // of the same wavelengths
+    std::optional<TabulatedBsdf> bsdf{};       // of a model that is read from a file
 
     bool operator==(const Lobe&) const = default;
 };
@@ -72,6 +86,14 @@ struct Material {
 // The record the trace takes. Throws InputError (placed at `where`) for an unknown model, parameters out of
 // their ranges, and weights that add up to more than 1.
 physics::f64::Material material_record(const Material& material, const SourceLocation& where = {});
+
+// The numbers that the record refers to.
+struct MaterialNumbers {
+    int spectral_points = 0;      // SpecimenRecord::material_spectral_points; 0: no wavelength changes the material
+    std::vector<float> numbers{}; // material_number(): its spectrum, then the tables of bsdfs
+};
+MaterialNumbers material_numbers(const Material& material);
+
 // The same errors, without the tables of the record, which take milliseconds.
 void check_material(const Material& material, const SourceLocation& where);
 

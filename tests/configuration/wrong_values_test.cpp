@@ -46,6 +46,16 @@ const std::map<std::string, std::string> beside_it = {
     {"illumination.field.brightest_x_mm", "kind = \"even\"\n"},
     {"illumination.field.brightest_y_mm", "kind = \"even\"\n"},
     {"specimen.material.lobe.weight", "scatter = \"mirror\"\n"},
+    {"specimen.material.sq_wavelength_um", "sq_um = 0.01\n"},
+    {"specimen.material.refractive_indices", "index_wavelengths_um = [0.5]\n"},
+    {"specimen.material.extinction_coefficients", "index_wavelengths_um = [0.5]\nrefractive_indices = [1.0]\n"},
+    {"specimen.material.reflectances", "reflectance_wavelengths_um = [0.5]\n"},
+    {"specimen.material.lobe.sq_wavelength_um", "sq_um = 0.01\n"},
+    {"specimen.material.lobe.refractive_indices", "index_wavelengths_um = [0.5]\n"},
+    {"specimen.material.lobe.extinction_coefficients", "index_wavelengths_um = [0.5]\nrefractive_indices = [1.0]\n"},
+    {"specimen.material.lobe.reflectances", "scatter = \"mirror\"\nreflectance_wavelengths_um = [0.5]\n"},
+    {"specimen.material.lobe.reflectance_wavelengths_um", "scatter = \"mirror\"\n"},
+    {"specimen.material.lobe.reflectance_file", "scatter = \"mirror\"\n"},
 };
 
 // A table's kind, which has no default, for keys of every kind.

@@ -56,6 +56,7 @@ struct Bench {
     SpectralBin spectral_bin(int) const { return {}; }
     Hit specimen_hit(real3, real3) const { return {}; }
     double pattern_point(const Pattern&, int, int) const { return 1; }
+    double material_number(int) const { return 0; }
     LightField light_field() const { return {}; }
     Element element_at(int index) const { return room.elements[static_cast<std::size_t>(index)]; }
     Facet facet_at(int index) const { return room.facets[static_cast<std::size_t>(index)]; }

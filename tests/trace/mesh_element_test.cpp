@@ -261,6 +261,7 @@ struct SingleBench {
     physics::f32::SpectralBin spectral_bin(int) const { return {}; }
     physics::f32::Hit specimen_hit(glm::vec3, glm::vec3) const { return {}; }
     float pattern_point(const physics::f32::Pattern&, int, int) const { return 1; }
+    float material_number(int) const { return 0; }
     physics::f32::LightField light_field() const { return {}; }
     physics::f32::Element element_at(int index) const { return elements[static_cast<std::size_t>(index)]; }
     physics::f32::Facet facet_at(int index) const { return facets[static_cast<std::size_t>(index)]; }

@@ -35,6 +35,7 @@ VKFV_FUNCTION ScatterTry henyey_greenstein_try(real g, Incidence incidence, real
     // The cosine law: cos^2(theta_o) uniform; 1 - sqrt(u) without its cancellation.
     real versine = cosine_law ? (real(1.0) - u0) / (real(1.0) + sqrt(u0)) : draw_henyey_greenstein_versine(g, u0);
     ScatterTry result;
+    result.absorbed = false;
     result.direction = direction_around(cosine_law ? incidence.normal : incidence.mirror, versine, u1);
     real least = real(1.0) - abs(g);
     real ratio = least * least / (real(1.0) + g * g - real(2.0) * g * dot(result.direction, incidence.mirror));

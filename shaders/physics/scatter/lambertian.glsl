@@ -4,6 +4,7 @@
 // cos^2(theta_o) is uniform; 1 - sqrt(u) without its cancellation.
 VKFV_FUNCTION ScatterTry lambertian_try(Incidence incidence, real u0, real u1, real) {
     ScatterTry result;
+    result.absorbed = false;
     result.direction = direction_around(incidence.normal, (real(1.0) - u0) / (real(1.0) + sqrt(u0)), u1);
     result.accepted = dot(result.direction, incidence.normal) > real(0.0);
     return result;

@@ -3,6 +3,7 @@
 
 VKFV_FUNCTION ScatterTry mirror_try(Incidence incidence, real, real, real) {
     ScatterTry result;
+    result.absorbed = false;
     result.direction = incidence.mirror;
     result.accepted = dot(incidence.mirror, incidence.normal) > real(0.0);
     return result;

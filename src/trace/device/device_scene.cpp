@@ -170,8 +170,7 @@ DeviceScene make_device_scene(const optics::Instrument& instrument, const specim
                       .accounts = std::move(accounts),
                       .features = instrument.features |
                                   (options.directed_scatter ? physics::f32::FEATURE_DIRECTED_SCATTER : 0u) |
-                                  (waves ? physics::f32::FEATURE_PUPIL_CELLS : 0u) |
-                                  (specimen.reflectance ? physics::f32::FEATURE_REFLECTANCE_MAP : 0u),
+                                  (waves ? physics::f32::FEATURE_PUPIL_CELLS : 0u) | device_specimen.features(),
                       .illumination = polynomials.valid() ? polynomials.get() : std::nullopt,
                       .traversal = std::move(traversal),
                       .device_specimen = std::move(device_specimen),

@@ -387,6 +387,12 @@ DeviceSpecimen::DeviceSpecimen(const vulkan::Device& device, const specimen::Spe
         uploader.put(kernels::BINDING_REFLECTANCES, "reflectances", specimen.reflectance->values.values);
     }
     uploader.leave_unread(kernels::BINDING_REFLECTANCES);
+    if (const specimen::MaterialNumbers material = specimen::material_numbers(specimen.material);
+        !material.numbers.empty()) {
+        has_spectral_material_ = material.spectral_points > 0;
+        uploader.put(kernels::BINDING_MATERIAL, "scatter tables", material.numbers);
+    }
+    uploader.leave_unread(kernels::BINDING_MATERIAL);
     uploader.leave_unread(kernels::BINDING_HEIGHTS);
     if (traversal != Traversal::quadtree) {
         uploader.leave_unread(kernels::BINDING_VERTICES);
@@ -419,11 +425,13 @@ std::vector<vulkan::BindingDeclaration> DeviceSpecimen::declarations() const {
 
 std::vector<vulkan::SpecializationConstant> DeviceSpecimen::constants() const {
     const auto& material = record_.material;
-    const bool one_white_lobe = material.lobe_0.weight >= 1 && material.lobe_1.weight <= 0 && !has_reflectance_map_;
+    const bool one_white_lobe =
+        material.lobe_0.weight >= 1 && material.lobe_1.weight <= 0 && !has_reflectance_map_ && !has_spectral_material_;
     std::uint32_t models = one_white_lobe ? 0u : physics::f32::SCATTER_CHOICE;
     for (const auto& lobe : {material.lobe_0, material.lobe_1, material.lobe_2, material.lobe_3}) {
         models |= lobe.weight > 0 ? 1u << lobe.model : 0u;
         models |= lobe.weight > 0 && physics::f32::lobe_is_delta(lobe) ? physics::f32::SCATTER_DELTA : 0u;
+        models |= lobe.weight > 0 && physics::f32::lobe_has_index(lobe) ? physics::f32::SCATTER_INDEX : 0u;
     }
     return {{kernels::CONSTANT_SPECIMEN_KIND, record_.kind},
             {kernels::CONSTANT_SCATTER_MODELS, models},
@@ -434,6 +442,11 @@ physics::f32::SpecimenRecord DeviceSpecimen::record(int max_bounces) const {
     physics::f32::SpecimenRecord result = record_;
     result.max_bounces = max_bounces;
     return result;
+}
+
+std::uint32_t DeviceSpecimen::features() const {
+    return (has_reflectance_map_ ? physics::f32::FEATURE_REFLECTANCE_MAP : 0u) |
+           (has_spectral_material_ ? physics::f32::FEATURE_SPECTRAL_MATERIAL : 0u);
 }
 
 std::size_t DeviceSpecimen::bytes() const {

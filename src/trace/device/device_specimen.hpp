@@ -40,7 +40,8 @@ class DeviceSpecimen {
     std::vector<vulkan::SpecializationConstant> constants() const; // the specimen's kind and its scatter models
     // In float; bottom and top still enclose the surface.
     physics::f32::SpecimenRecord record(int max_bounces) const;
-    std::size_t bytes() const; // device memory taken
+    std::uint32_t features() const; // FEATURE_* that the specimen has
+    std::size_t bytes() const;      // device memory taken
     // Of the elements' tree: its root among the nodes, and which element its k-th box is.
     std::uint32_t elements_root() const { return elements_root_; }
     const std::vector<std::uint32_t>& element_order() const { return element_order_; }
@@ -48,6 +49,7 @@ class DeviceSpecimen {
   private:
     physics::f32::SpecimenRecord record_{};
     bool has_reflectance_map_ = false;
+    bool has_spectral_material_ = false;
     bool has_falling_cells_ = false;                  // of a mesh that is a height field: mesh_lattice.hpp
     std::map<std::uint32_t, vulkan::Buffer> buffers_; // by slot
     std::unique_ptr<vulkan::AccelerationStructure> structure_;

@@ -27,6 +27,7 @@ struct HostScene {
         return pattern.of_light != 0 ? trains.pattern_point(pattern, column, row)
                                      : intersector->reflectance_at(column, row);
     }
+    double material_number(int index) const { return intersector->material_number(index); }
     const physics::f64::Element& element_at(int index) const { return room->elements[static_cast<std::size_t>(index)]; }
     const physics::f64::Facet& facet_at(int index) const { return room->facets[static_cast<std::size_t>(index)]; }
     physics::f64::ElementHit nearest_element(physics::f64::real3 origin, physics::f64::real3 direction,

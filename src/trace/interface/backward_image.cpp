@@ -61,7 +61,9 @@ physics::f64::BackwardOptics backward_optics(const optics::Instrument& instrumen
     for (const Lobe& lobe : {material.lobe_0, material.lobe_1, material.lobe_2, material.lobe_3}) {
         if (lobe.weight > 0) {
             const real3 up(0, 0, 1);
-            peak = std::max(peak, scatter_bsdf(material_of_lobe(lobe), -up, up, up) * solid_angle);
+            const double bsdf =
+                lobe_has_numbers(lobe) ? lobe.table[4] : scatter_bsdf(material_of_lobe(lobe), -up, up, up);
+            peak = std::max(peak, bsdf * solid_angle);
         }
     }
     // A lobe much narrower than the cone is found by drawing it, not by drawing the cone.

@@ -6,6 +6,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <functional>
 #include <string>
@@ -48,10 +49,14 @@ struct Case {
 };
 
 // Each model with its parameters at several places of their ranges; no place is an end, where a model may degenerate.
+// Those that are read from a file have tests of their own.
 std::vector<Case> cases() {
     std::vector<Case> result;
     for (uint model = 0; model < vkfv::physics::scatter_registry.size(); ++model) {
         const auto& entry = vkfv::physics::scatter_registry[model];
+        if (entry.from_file) {
+            continue;
+        }
         const std::vector<double> places =
             entry.parameters.empty() ? std::vector<double>{0} : std::vector<double>{0.3, 0.55, 0.8, 0.93};
         for (const double place : places) {
@@ -72,9 +77,9 @@ std::vector<Case> cases() {
 }
 
 // Simpson in t, the cosine being 1 - t^2, and the trapezoidal rule in the azimuth: both resolve the sharpest lobe, of
-// about 0.1 rad.
+// about 0.1 rad, and at grazing incidence 0.04 rad in the azimuth.
 double share_scattered(const Material& material, double theta) {
-    const int azimuths = 256;
+    const int azimuths = 512;
     double sum = 0;
     for (int k = 0; k < azimuths; ++k) {
         const double phi = 2 * M_PI * k / azimuths;
@@ -235,6 +240,9 @@ TEST(Scatter, a_sum_of_lobes_has_the_weighted_mean_density) {
 
 TEST(Scatter, reflectance_is_the_share_that_is_not_absorbed) {
     for (const auto& [name, delta, lossy, material] : cases()) {
+        if (delta && lossy) { // no density to integrate: conductor_test.cpp
+            continue;
+        }
         Material grey = material;
         grey.lobe_0.weight = 0.8;
         double scattered = 0;
@@ -451,12 +459,18 @@ TEST(Scatter, float_draws_the_same_directions_as_double) {
                          float(lobe.parameter_2),
                          float(lobe.parameter_3),
                          {}};
+        std::ranges::transform(lobe.table, single.lobe_0.table, [](double value) { return float(value); });
+        // What draws in the plane of direction cosines has its precision there; their height over the surface loses it
+        // near the horizon.
+        const bool in_cosines = lobe.model == SCATTER_ABG || lobe.model == SCATTER_HARVEY_SHACK;
         uint count = 0;
         for (uint k = 0; k < 20000; ++k) {
             const auto in = incoming_at(0.3);
             const Scattered a = scatter(material, in, up, 27u, 1u, uvec2(k, 0u), 1u);
             const auto b = f32::scatter(single, glm::vec3(in), glm::vec3(up), 27u, 1u, uvec2(k, 0u), 1u);
-            count += glm::length(glm::dvec3(b.direction) - a.direction) > 1e-6 ? 1u : 0u;
+            real3 apart = glm::dvec3(b.direction) - a.direction;
+            apart.z = in_cosines ? 0 : apart.z;
+            count += glm::length(apart) > 1e-6 || (in_cosines && a.accepted != b.accepted) ? 1u : 0u;
         }
         return count;
     };
