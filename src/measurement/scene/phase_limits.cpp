@@ -36,17 +36,24 @@ double median_of(std::vector<double> values) {
     return *middle;
 }
 
+// The numbers of a material that the shared physics asks its scene for.
+struct MaterialScene {
+    specimen::MaterialNumbers material;
+    double material_number(int index) const { return material.numbers[static_cast<std::size_t>(index)]; }
+};
+
 // incoming: unit, from the middle of the source, or from the middle of a ring's band.
 double scatter_fill_of(const specimen::Material& material, glm::dvec3 incoming, double aperture_sine) {
     constexpr std::uint32_t paths = 8192;
-    constexpr std::size_t fewest =
-        30; // of the paths: less light enters by no lobe of the specimen's, but by its slopes
+    // Where fewer of the paths enter, light comes in by the specimen's slopes and not by its lobes.
+    constexpr std::size_t fewest = 30;
     constexpr std::uint32_t seed = 1, blocks_of_emission = 1;
     const auto record = specimen::material_record(material);
+    const MaterialScene scene{specimen::material_numbers(material)};
     std::vector<double> sines;
     for (std::uint32_t path = 0; path < paths; ++path) {
         const auto scattered =
-            physics::f64::scatter(record, incoming, {0, 0, 1}, seed, 0, {path, 0}, blocks_of_emission);
+            physics::f64::scatter(scene, record, incoming, {0, 0, 1}, seed, 0, {path, 0}, blocks_of_emission);
         const double sine = std::hypot(scattered.direction.x, scattered.direction.y);
         if (scattered.accepted && sine <= aperture_sine) {
             sines.push_back(sine);
