@@ -207,23 +207,24 @@ std::optional<double> TabulatedBsdf::reciprocity_deviation() const {
     if (given_incidences < 2) {
         return std::nullopt;
     }
-    double apart = 0, mean = 0;
-    const auto weight = [](const std::vector<double>& angles, std::size_t k, std::size_t count) {
-        return 0.5 * (angles[std::min(k + 1, count - 1)] - angles[k > 0 ? k - 1 : 0]);
+    // The projected solid angle that an incidence stands for, and the azimuth likewise.
+    const auto edge = [&](std::size_t k) { return 0.5 * (incidences[k] + incidences[k + 1]); };
+    const auto area = [&](std::size_t k) {
+        const double lower = k > 0 ? edge(k - 1) : incidences.front();
+        const double upper = k + 1 < given_incidences ? edge(k) : incidences[given_incidences - 1];
+        return std::sin(upper - lower) * std::sin(upper + lower);
     };
+    const auto turn = [&](std::size_t k) {
+        return 0.5 * (azimuths[std::min(k + 1, azimuths.size() - 1)] - azimuths[k > 0 ? k - 1 : 0]);
+    };
+    double apart = 0, mean = 0;
     for (std::size_t i = 0; i < given_incidences; ++i) {
-        for (std::size_t s = 0; s < scatters.size(); ++s) {
-            const double incidence = incidences[i], scatter = scatters[s];
-            if (scatter < incidences.front() || scatter > incidences[given_incidences - 1]) {
-                continue;
-            }
-            const double area = weight(incidences, i, given_incidences) * weight(scatters, s, scatters.size()) *
-                                std::sin(2 * incidence) * std::sin(2 * scatter);
+        for (std::size_t o = 0; o < given_incidences; ++o) {
             for (std::size_t a = 0; a < azimuths.size(); ++a) {
-                const double there = value(i, s, a), back = at(scatter, incidence, azimuths[a]);
-                const double turn = weight(azimuths, a, azimuths.size());
-                apart += area * turn * std::abs(there - back);
-                mean += area * turn * 0.5 * (there + back);
+                const double there = at(incidences[i], incidences[o], azimuths[a]);
+                const double back = at(incidences[o], incidences[i], azimuths[a]);
+                apart += area(i) * area(o) * turn(a) * std::abs(there - back);
+                mean += area(i) * area(o) * turn(a) * 0.5 * (there + back);
             }
         }
     }

@@ -26,8 +26,8 @@ struct TabulatedBsdf {
     double at(double incidence, double scatter, double azimuth) const;
     // Share of the light that one incidence keeps: the integral of f cos(theta) over the hemisphere.
     double kept(std::size_t incidence) const;
-    // How far it is from reciprocal, of the incidences that the table was given: the integral of |f(i, o) - f(o, i)|
-    // over that of their mean, over all angles of scatter up to the largest incidence. None with one incidence.
+    // How far it is from reciprocal: the sum of |f(i, o) - f(o, i)| over that of their mean, for i and o the incidences
+    // that the table was given, by projected solid angles. None with one incidence.
     std::optional<double> reciprocity_deviation() const;
 
     std::size_t given_incidences = 0; // others hold the last one up to grazing incidence
