@@ -8,7 +8,7 @@
     FIELD(SpecimenRecord, specimen) \
     FIELD(Exposure, exposure) \
     FIELD(PupilCells, pupil_cells) \
-    FIELD(uvec2, cell_light)              /* address of the light sorted by cells, 64 bits a part of a pixel */ \
+    FIELD(uvec2, cell_light)              /* address of the table of CellAddress */ \
     FIELD(uvec4, emission_drawn)          /* EmissionCell::drawn */ \
     FIELD(uint, emission_cells)           /* their number */ \
     FIELD(real, emission_cells_per_path)

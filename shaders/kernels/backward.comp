@@ -27,7 +27,7 @@ layout(constant_id = CONSTANT_QUERY_CAPACITY) const uint query_capacity =
     12u; // more than a path asks: once at each bounce, and at its end
 SourceQuery queries[query_capacity];
 uint query_count = 0u;
-// With pupil cells: where the light of the path under way, and of each query, is sorted to.
+// With pupil cells: the address that the light of the path under way, and of each query, is added at.
 uint64_t path_cell = uint64_t(0);
 uint64_t query_cells[query_capacity];
 
@@ -64,8 +64,8 @@ void main() {
             for (bool room = true; room; ++point) {
                 uint place = chunk * batch.chunk_points + point;
                 if (sorts_light) {
-                    path_cell = cell_index(backward_place(known, pupil_cells, column, row,
-                                                          backward_start(backward.lattice, shift, place)));
+                    path_cell = cell_address(backward_place(known, pupil_cells, column, row,
+                                                            backward_start(backward.lattice, shift, place)));
                 }
                 real value = trace_backward(known_instrument(), known, known_specimen(), exposure, column, row,
                                             batch.randomisation, backward.lattice, shift, place);

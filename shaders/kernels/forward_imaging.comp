@@ -36,7 +36,7 @@ void main() {
             atomicAdd(pixels[pixel], uint64_t(1));
         }
         if (counted && sorts_light) {
-            add_cell_light(cell_index(detection_place(instrument, pupil_cells, detection)),
+            add_cell_light(cell_address(detection_place(instrument, pupil_cells, detection)),
                            weighted ? uint64_t(weight) : uint64_t(1));
         }
         if (weighted && detection.fate.status == PATH_ALIVE) {

@@ -13,10 +13,11 @@ layout(set = 0, binding = WAVES_BINDING_PLANES, scalar) writeonly buffer Planes 
 layout(push_constant, scalar) uniform Push { WaveGroups groups; };
 
 layout(buffer_reference, scalar, buffer_reference_align = 8) readonly buffer Light { uint64_t light; };
+layout(buffer_reference, scalar, buffer_reference_align = 8) readonly buffer CellAddress { uint64_t first; };
 
 float light_at(uint cell, uint column, uint row) {
-    uint64_t index = (uint64_t(cell) * groups.rows + row) * groups.columns + column;
-    return float(Light(packUint2x32(groups.light) + uint64_t(8) * index).light);
+    uint64_t image = CellAddress(packUint2x32(groups.light) + uint64_t(8) * uint64_t(cell)).first;
+    return float(Light(image + uint64_t(8) * (uint64_t(row) * groups.columns + column)).light);
 }
 
 // Where the k-th value of a transform of so many comes from.

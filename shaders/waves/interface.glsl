@@ -9,7 +9,7 @@ const uint WAVES_BINDING_PIXELS = 4u;
 
 // Some groups of cells, each of four that are mirror images.
 struct WaveGroups {
-    uvec2 light;  // address of the sorted light
+    uvec2 light;  // address of a table of the addresses of the cells' images
     uint columns; // parts of pixels
     uint rows;
     uint cells_side; // cells across the pupil

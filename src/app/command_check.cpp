@@ -1,6 +1,7 @@
 #include "app/commands.hpp"
 #include "core/messages/error.hpp"
 #include "measurement/instrument/instrument_report.hpp"
+#include "measurement/scene/wave_devices.hpp"
 #include "measurement/stack/forecast.hpp"
 
 #include <fmt/format.h>
@@ -41,6 +42,13 @@ void run_check(const CommandOptions& options) {
     const auto configuration =
         load_configuration(options.file, options.overrides, with_forecast ? Needs::exposure : Needs::instrument);
     auto report = measurement::instrument_report(configuration, options.file);
+    if (const auto cells = report.json.find("wave_cells"); cells != report.json.end()) {
+        // The report is kept from run to run; devices come and go.
+        for (const auto& warning : measurement::wave_warnings_of_device(configuration, cells->get<int>())) {
+            report.json["warnings"].push_back(warning);
+            report.text += fmt::format("  warning: {}\n", warning);
+        }
+    }
     std::optional<measurement::Forecast> forecast;
     if (with_forecast) {
         forecast = measurement::forecast(configuration);

@@ -93,6 +93,27 @@ TEST(Camera, ChargeAndGreyValuesEnd) {
     EXPECT_GT(dark.mean, 0); // what is below 0 is 0
 }
 
+// A filter of waves leaves some pixels below zero. A camera counts no electrons there, and its dark charge as anywhere.
+TEST(Camera, LightBelowZeroIsNone) {
+    CameraOptions options = plain();
+    const auto dark = image_of(options, -20);
+    EXPECT_EQ(dark.mean, 200); // the offset
+    EXPECT_EQ(dark.variance, 0);
+    options.dark_current = 5e4; // 50 electrons in 1 ms: mean and variance of their number, within four standard errors
+    const auto charged = image_of(options, -20);
+    EXPECT_NEAR(charged.mean, 4 * 50 + 200, 4 * std::sqrt(16 * 50.0 / 30000));
+    EXPECT_NEAR(charged.variance, 16 * 50, 4 * 16 * 50 * std::sqrt(2.0 / 30000));
+    // The light that is told is that which is counted: of 300 electrons and of -100, 150 in the mean.
+    const Camera camera(options, green);
+    Grid<double> flux(20, 10, 300 / camera.electrons_per_joule());
+    for (int column = 0; column < 20; column += 2) {
+        for (int row = 0; row < 10; ++row) {
+            flux(column, row) *= -1.0 / 3;
+        }
+    }
+    EXPECT_NEAR(camera.light_of(flux, Grid<double>(20, 10), 1).mean, 150, 1e-9);
+}
+
 TEST(Camera, APixelDependsOnItsPlaceImageAndSeedAlone) {
     CameraOptions options = plain();
     options.photo_response = 0.01;

@@ -150,7 +150,7 @@ TEST(PixelEstimate, of_waves_is_their_light_with_the_noise_that_filtering_leaves
     for (const MadeBy waves_by : {MadeBy::device, MadeBy::host}) {
         const trace::SceneWaves waves(device, filter, pixels, waves_by);
         vulkan::Commands commands(device);
-        commands.copy(given, waves.sorted_light(), given.bytes());
+        commands.copy(given, *waves.sorted_light().buffers().front(), given.bytes());
         commands.submit_and_wait();
         if (waves.on_device()) {
             trace::DispatchPace pace(1);

@@ -5,11 +5,13 @@
 #include "optics/waves/airy_pattern.hpp"
 #include "trace/device/device_tracer.hpp"
 #include "trace/device/device_wave_image.hpp"
+#include "trace/device/sorted_light.hpp"
 #include "trace/device/wave_memory.hpp"
 #include "trace/host/host_tracer.hpp"
 #include "trace/interface/wave_image.hpp"
 #include "trace/microscope.hpp"
 
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -57,6 +59,15 @@ Grid<double> unfiltered(std::span<const std::uint64_t> light, int pixels, int pa
         }
     }
     return image;
+}
+
+std::vector<float> made_by_device(const vulkan::Device& device, const optics::PupilFilter& filter, ImageSize pixels,
+                                  const trace::SortedLight& light) {
+    const trace::DeviceWaveImage image(device, filter, pixels, light);
+    vulkan::Commands commands(device);
+    image.record(commands);
+    commands.submit_and_wait();
+    return image.light_of_pixels().read_values<float>(pixels.count());
 }
 
 trace::TraceOptions with_waves(trace::Estimator estimator) {
@@ -250,13 +261,65 @@ TEST(Waves, take_fewer_parts_where_the_device_cannot_hold_them) {
     EXPECT_EQ(memory.light, 8u * 64 * 32 * 32 * 9);
     EXPECT_EQ(parts({.most_memory = memory.all()}), 3);
     EXPECT_EQ(parts({.most_memory = memory.all() - 1}), 2);
-    device.max_allocation_bytes = memory.light;
+    // The cells' images lie in as many buffers as they need, 128 bytes less than an allocation each. In one must fit
+    // what is transformed at once, the image with its mirror images: 8 bytes for each of four times the parts.
+    const std::uint64_t image = 4 * memory.light / 64;
+    device.max_allocation_bytes = image + 128;
+    EXPECT_EQ(parts({}), 3);
+    device.max_allocation_bytes = image + 127;
     EXPECT_EQ(parts({}), 2);
     // What is asked for is not changed behind the asker's back.
     EXPECT_THROW(parts({.parts = 3}), InputError);
     EXPECT_EQ(parts({.parts = 2}), 2);
     device.memory_bytes = 1000;
     EXPECT_THROW(parts({}), InputError);
+}
+
+// Of limits as lavapipe has them. What the host transforms no kernel is given: 800 x 800 pixels needed 164 MB in one
+// binding of 134 MB, and 2448 x 2048 pixels need 2.6 GB of light, which is more than one allocation gives.
+TEST(Waves, of_many_pixels_fit_where_they_are_tiled) {
+    auto instrument = ideal_microscope(0.28);
+    vulkan::DeviceReport device;
+    device.name = "small";
+    device.type = "CPU";
+    device.memory_bytes = std::uint64_t{24} << 30;
+    device.max_allocation_bytes = std::uint64_t{1} << 31;
+    device.max_storage_buffer_bytes = std::uint64_t{1} << 27;
+    const auto fitted = [&](ImageSize pixels, const optics::WaveOptions& options) {
+        instrument.constants.detector_columns = pixels.columns;
+        instrument.constants.detector_rows = pixels.rows;
+        return trace::waves_on_device(options, instrument, device).parts;
+    };
+    constexpr ImageSize square{800, 800}, camera{2448, 2048};
+    EXPECT_EQ(fitted(square, {.cells = 8, .parts = 2}), 2);
+    EXPECT_EQ(fitted(camera, {.cells = 8, .parts = 1}), 1);
+    // A GPU of the same limits transforms fewer planes at a time; the image with its mirror images, 32 bytes a part,
+    // must fit in a binding: 82 MB do, 160 MB do not.
+    device.type = "discrete GPU";
+    EXPECT_EQ(fitted({1600, 1600}, {.cells = 8, .parts = 1}), 1);
+    const auto refused = [&](ImageSize pixels, const optics::WaveOptions& options) -> std::string {
+        try {
+            fitted(pixels, options);
+        } catch (const InputError& error) {
+            return error.what();
+        }
+        return "nothing";
+    };
+    using testing::HasSubstr;
+    EXPECT_THAT(refused(camera, {.cells = 8, .parts = 1}),
+                AllOf(HasSubstr("160432128 bytes for the transform"), HasSubstr("at most 134217728 bytes")));
+    // Each message names the limit that is violated.
+    device.type = "CPU";
+    EXPECT_THAT(refused(camera, {.cells = 8, .parts = 1, .most_memory = std::uint64_t{1} << 31}),
+                AllOf(HasSubstr("2566914048 bytes of light"), HasSubstr("at most 2147483648 bytes in all, by "
+                                                                        "diffraction.most_memory_gib")));
+    device.memory_bytes = std::uint64_t{1} << 30; // of which four fifths are for waves
+    EXPECT_THAT(refused(camera, {.cells = 8, .parts = 1}),
+                AllOf(HasSubstr("at most 858993459 bytes in all"), HasSubstr("of the memory of small")));
+    device.memory_bytes = std::uint64_t{24} << 30;
+    device.max_allocation_bytes = 40'000'000; // one cell's image takes 8 x 2448 x 2048
+    EXPECT_THAT(refused(camera, {.cells = 8, .parts = 1}),
+                AllOf(HasSubstr("40108032 bytes of light for each cell"), HasSubstr("largest allocation of small")));
 }
 
 // How light is sorted is known before a tracer is made, and is that of the tracer's filter.
@@ -357,13 +420,10 @@ TEST(Waves, are_the_same_on_the_device_and_on_the_host) {
         for (std::size_t k = 0; k < light.size(); k += 7) {
             light[k] *= 1 + k * 5 / light.size();
         }
-        vulkan::Buffer buffer(device, light.size() * sizeof(light.front()));
-        buffer.write_values(std::span<const std::uint64_t>(light));
-        const trace::DeviceWaveImage on_device(device, filter, pixels, buffer);
-        vulkan::Commands commands(device);
-        on_device.record(commands);
-        commands.submit_and_wait();
-        const auto values = on_device.light_of_pixels().read_values<float>(pixels.count());
+        const auto cell_count = static_cast<std::size_t>(filter.cell_count());
+        trace::SortedLight sorted(device, cell_count, on_host.numbers_a_cell());
+        sorted.write(light);
+        const auto values = made_by_device(device, filter, pixels, sorted);
         const std::vector<double> found(values.begin(), values.end());
         const auto expected = on_host.apply(light);
         const double mean = sum(expected.values) / static_cast<double>(expected.values.size());
@@ -371,6 +431,39 @@ TEST(Waves, are_the_same_on_the_device_and_on_the_host) {
             ASSERT_NEAR(found[pixel], expected.values[pixel], 2e-6 * mean) << pixels.columns << ' ' << pixel;
         }
         EXPECT_NEAR(sum(found) / sum(expected.values), 1, 1e-6);
+    }
+}
+
+// A device bounds the size of one allocation: the cells' images lie in several.
+TEST(Waves, are_the_same_bits_of_light_in_several_buffers) {
+    const auto instrument = test::microscope();
+    const vulkan::Device device;
+    constexpr ImageSize pixels{11, 6};
+    const optics::PupilFilter filter(instrument, {.cells = 4, .parts = 3});
+    const trace::WaveImage on_host(filter, pixels);
+    const auto light = noisy_light(on_host.numbers(), 50);
+    const std::size_t image = on_host.numbers_a_cell() * sizeof(std::uint64_t);
+    std::vector<std::vector<float>> found;
+    for (const auto& [most_bytes, buffers] : {std::pair<std::size_t, std::size_t>{0, 1}, {7 * image - 1, 3}, {1, 16}}) {
+        trace::SortedLight sorted(device, 16, on_host.numbers_a_cell(), most_bytes);
+        ASSERT_EQ(sorted.buffers().size(), buffers);
+        sorted.write(light);
+        found.push_back(made_by_device(device, filter, pixels, sorted));
+        EXPECT_EQ(found.back(), found.front());
+        const auto of_cells = on_host.apply([&](int cell) {
+            std::vector<std::uint64_t> numbers(on_host.numbers_a_cell());
+            sorted.read(static_cast<std::size_t>(cell), numbers);
+            return numbers;
+        });
+        EXPECT_EQ(of_cells.values, on_host.apply(light).values);
+        vulkan::Commands commands(device);
+        sorted.clear(commands);
+        commands.submit_and_wait();
+        for (std::size_t cell = 0; cell < 16; ++cell) {
+            std::vector<std::uint64_t> numbers(on_host.numbers_a_cell(), 1);
+            sorted.read(cell, numbers);
+            EXPECT_EQ(numbers, std::vector<std::uint64_t>(numbers.size(), 0));
+        }
     }
 }
 

@@ -1,10 +1,9 @@
 #include "measurement/instrument/instrument_figures.hpp"
 
 #include "core/mathematics/units.hpp"
+#include "core/threads/threads.hpp"
 #include "measurement/image/camera_report.hpp"
 #include "measurement/scene/assembly.hpp"
-#include "measurement/scene/disk_space.hpp"
-#include "measurement/scene/host_memory.hpp"
 #include "measurement/scene/phase_limits.hpp"
 #include "measurement/scene/stage_figures.hpp"
 #include "measurement/scene/wave_limits.hpp"
@@ -140,21 +139,19 @@ FigureGroup figures_of_waves(const optics::WaveOptions& options, const optics::I
     const WaveLimits limits = worst_of(of_lights);
     const auto further = warnings_of(limits);
     warnings.insert(warnings.end(), further.begin(), further.end());
-    std::uint64_t memory = 0; // each source's light is sorted by itself
+    std::uint64_t memory = 0, memory_of_host = 0; // each source's light is sorted by itself
     for (const WaveLimits& light : of_lights) {
-        memory += trace::wave_memory(light.cells, light.parts, instrument.detector_pixels()).all();
-    }
-    if (const std::uint64_t there = memory_of_host(); memory > there) {
-        warnings.push_back(
-            fmt::format("Images as waves make them take {} of memory, and this machine has {}. Take fewer "
-                        "detector.pixels or fewer diffraction.cells, or a device that has as much.",
-                        bytes_text(memory), bytes_text(there)));
+        const ImageSize pixels = instrument.detector_pixels();
+        memory += trace::wave_memory(light.cells, light.parts, pixels).all();
+        memory_of_host += trace::wave_memory_of_host(light.cells, light.parts, pixels, core_count()).all();
     }
     const auto error_of = [&](std::size_t point) { return limits.points[point].error.difference; };
     return {"Images as waves make them, within two depths of field",
             {{"wave_cells", static_cast<double>(limits.cells), "across the pupil that light is sorted by"},
              {"wave_parts_per_pixel", static_cast<double>(limits.parts), "of a pixel's side that light is sorted in"},
              {"wave_memory_gib", static_cast<double>(memory) / bytes_per_gib, "that a GPU needs, at most"},
+             {"wave_memory_host_gib", static_cast<double>(memory_of_host) / bytes_per_gib,
+              "that this machine needs where its processor is the device"},
              {"wave_folded_contrast", limits.folded_contrast, "what waves too fine for the parts are off by"},
              {"wave_contrast_error_axis", error_of(0), "of the pupil's cells against Hopkins' integral"},
              {"wave_contrast_error_edge", error_of(1), "the same at the edge, by the filter of the axis"},

@@ -22,6 +22,13 @@ class DeviceNumbers {
     void write(ExposureWork& work, std::span<const std::uint64_t> numbers) const;
 
   private:
+    struct Piece { // of a buffer
+        const vulkan::Buffer* buffer;
+        std::size_t first_byte;
+        std::size_t bytes;
+    };
+    // All of the buffers, one after the other, in loads of at most so many bytes, a multiple of 8.
+    std::vector<std::vector<Piece>> loads(std::size_t most_bytes) const;
     vulkan::Buffer& staging() const;
 
     const vulkan::Device* device_;

@@ -231,7 +231,7 @@ void DeviceScene::give_emission_order(vulkan::Commands& commands, const Exposure
 }
 
 std::vector<const vulkan::Buffer*> DeviceScene::light_buffers() const {
-    return waves ? std::vector{&waves->sorted_light()} : std::vector<const vulkan::Buffer*>{};
+    return waves ? waves->sorted_light().buffers() : std::vector<const vulkan::Buffer*>{};
 }
 
 std::optional<optics::PupilFilter> DeviceScene::filter() const {

@@ -46,16 +46,17 @@ vulkan::Kernel kernel_of(const vulkan::Device& device, const char* name, std::sp
 } // namespace
 
 DeviceWaveImage::DeviceWaveImage(const vulkan::Device& device, const optics::PupilFilter& filter, ImageSize pixels,
-                                 const vulkan::Buffer& light)
+                                 const SortedLight& light)
     : light_(light), pixels_(pixels),
       cells_(to_float(filter.cells())), size_{pixels.columns * static_cast<int>(cells_.parts),
                                               pixels.rows * static_cast<int>(cells_.parts)},
-      sizes_(static_cast<int>(cells_.side), size_), steps_(static_cast<std::uint32_t>(filter.steps())),
-      steps_a_column_(steps_a_line(filter, size_.columns)), steps_a_row_(steps_a_line(filter, size_.rows)),
-      planes_(buffer_of(device, sizes_.plane_bytes())), table_(table_of(device, filter)),
-      spectrum_(buffer_of(device, sizes_.spectrum_bytes())), image_(buffer_of(device, sizes_.image_bytes())),
-      result_(device, bytes(pixels)), forward_(device, planes_, size_.columns, size_.rows, sizes_.planes_at_once(),
-                                               vulkan::FourierPlanes::Direction::forward),
+      sizes_(static_cast<int>(cells_.side), size_, largest_binding(device.report())),
+      steps_(static_cast<std::uint32_t>(filter.steps())), steps_a_column_(steps_a_line(filter, size_.columns)),
+      steps_a_row_(steps_a_line(filter, size_.rows)), planes_(buffer_of(device, sizes_.plane_bytes())),
+      table_(table_of(device, filter)), spectrum_(buffer_of(device, sizes_.spectrum_bytes())),
+      image_(buffer_of(device, sizes_.image_bytes())), result_(device, bytes(pixels)),
+      forward_(device, planes_, size_.columns, size_.rows, sizes_.planes_at_once(),
+               vulkan::FourierPlanes::Direction::forward),
       inverse_(device, image_, 2 * size_.columns, 2 * size_.rows, 1, vulkan::FourierPlanes::Direction::inverse),
       sort_(kernel_of(device, "wave_sort", wave_sort, {WAVES_BINDING_PLANES}, sizeof(WaveGroups))),
       filter_(kernel_of(device, "wave_filter", wave_filter,

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "optics/waves/pupil_filter.hpp"
+#include "trace/device/sorted_light.hpp"
 #include "trace/device/wave_planes.hpp"
 #include "vulkan/fourier_planes.hpp"
 
@@ -11,9 +12,9 @@ namespace vkfv::trace {
 
 class DeviceWaveImage {
   public:
-    // light: as WaveImage::numbers() of 64 bits. Device, filter and light must outlive it.
+    // light: of the filter's cells, WaveImage::numbers_a_cell() each. Device, filter and light must outlive it.
     DeviceWaveImage(const vulkan::Device& device, const optics::PupilFilter& filter, ImageSize pixels,
-                    const vulkan::Buffer& light);
+                    const SortedLight& light);
 
     // Of the light as it is when the commands run.
     void record(vulkan::Commands& commands) const;
@@ -25,7 +26,7 @@ class DeviceWaveImage {
     void dispatch(vulkan::Commands& commands, const vulkan::Kernel& kernel, std::span<const vulkan::Binding> bindings,
                   std::span<const std::byte> push, std::size_t places) const;
 
-    const vulkan::Buffer& light_;
+    const SortedLight& light_;
     ImageSize pixels_;
     physics::f32::PupilCells cells_;
     ImageSize size_; // in parts of pixels

@@ -1,18 +1,17 @@
 #include "trace/device/scene_waves.hpp"
 
-#include "trace/device/wave_memory.hpp"
 #include "trace/interface/wave_image.hpp"
 
 #include <chrono>
 #include <cstdint>
 #include <utility>
+#include <vector>
 
 namespace vkfv::trace {
 
 SceneWaves::SceneWaves(const vulkan::Device& device, optics::PupilFilter filter, ImageSize pixels, MadeBy by)
     : filter_(std::move(filter)), pixels_(pixels),
-      light_(device, WaveImage(filter_, pixels).numbers() * sizeof(std::uint64_t), vulkan::Buffer::Memory::device,
-             wave_memory_remedy) {
+      light_(device, static_cast<std::size_t>(filter_.cell_count()), WaveImage(filter_, pixels).numbers_a_cell()) {
     if (by == MadeBy::device) {
         on_device_ = std::async(std::launch::async, [&device, this] {
                          return std::make_unique<const DeviceWaveImage>(device, filter_, pixels_, light_);
@@ -24,8 +23,7 @@ SceneWaves::SceneWaves(const vulkan::Device& device, optics::PupilFilter filter,
 SceneWaves::~SceneWaves() = default; // waits for the threads
 
 void SceneWaves::clear(vulkan::Commands& commands) const {
-    commands.fill_zero(light_);
-    commands.barrier();
+    light_.clear(commands);
 }
 
 void SceneWaves::require() const {
@@ -43,7 +41,11 @@ void SceneWaves::make_image(ExposureWork& work) const {
 
 Grid<double> SceneWaves::light_by_host() const {
     const WaveImage image(filter_, pixels_);
-    return image.apply(light_.read_values<std::uint64_t>(image.numbers()));
+    return image.apply([&](int cell) {
+        std::vector<std::uint64_t> numbers(image.numbers_a_cell());
+        light_.read(static_cast<std::size_t>(cell), numbers);
+        return numbers;
+    });
 }
 
 } // namespace vkfv::trace

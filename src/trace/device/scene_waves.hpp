@@ -4,6 +4,7 @@
 #include "optics/waves/pupil_filter.hpp"
 #include "trace/device/device_wave_image.hpp"
 #include "trace/device/exposure_work.hpp"
+#include "trace/device/sorted_light.hpp"
 #include "vulkan/buffer.hpp"
 
 #include <future>
@@ -26,7 +27,7 @@ class SceneWaves {
     SceneWaves& operator=(const SceneWaves&) = delete;
 
     const optics::PupilFilter& filter() const { return filter_; }
-    const vulkan::Buffer& sorted_light() const { return light_; } // WaveImage::numbers() of 64 bits
+    const SortedLight& sorted_light() const { return light_; } // WaveImage::numbers() of 64 bits
     // Of an image before its first path.
     void clear(vulkan::Commands& commands) const;
     // If not, the host filters what an exposure has sorted, and the next one must wait for that.
@@ -44,7 +45,7 @@ class SceneWaves {
   private:
     optics::PupilFilter filter_;
     ImageSize pixels_;
-    vulkan::Buffer light_;
+    SortedLight light_;
     std::shared_future<std::unique_ptr<const DeviceWaveImage>> on_device_;
     std::future<double> noise_; // the filter's: found while the device traces, kept by what its copies share
 };

@@ -6,6 +6,9 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <optional>
+#include <string>
+#include <utility>
 
 namespace vkfv::trace {
 
@@ -14,61 +17,113 @@ namespace {
 constexpr double usable_share = 0.8; // of a device's memory: the specimen, the kernels and other programs have the rest
 constexpr std::uint64_t padding = 128; // of a buffer (vulkan/buffer.hpp)
 
-struct Limits {
-    std::uint64_t memory = 0;
-    std::uint64_t buffer = 0;  // of one, reached by its address
-    std::uint64_t binding = 0; // of one that kernels are given
+ImageSize in_parts(int parts, ImageSize pixels) {
+    return {pixels.columns * parts, pixels.rows * parts};
+}
+
+std::uint64_t light_bytes(int cells, int parts, ImageSize pixels) {
+    const auto count = static_cast<std::uint64_t>(cells) * static_cast<std::uint64_t>(cells);
+    return count * in_parts(parts, pixels).count() * sizeof(std::uint64_t);
+}
+
+// A limit of a device that does not hold the light or its transforms.
+struct Violation {
+    const char* key;
+    std::string found;
+    std::string expected;
 };
 
-Limits limits_of(const optics::WaveOptions& options, const vulkan::DeviceReport& device) {
+// What of the device forbids so many cells and parts.
+std::optional<Violation> violation(const optics::WaveOptions& options, int parts, ImageSize pixels,
+                                   const vulkan::DeviceReport& device) {
+    const int cells = options.cells;
+    const bool software = vulkan::is_software(device);
+    const std::uint64_t binding = largest_binding(device);
+    // One group at a time is what a host cannot do without: the parts do not depend on its number of cores.
+    const WaveMemory memory =
+        software ? wave_memory_of_host(cells, parts, pixels, 1) : wave_memory(cells, parts, pixels, binding);
     const auto usable = static_cast<std::uint64_t>(usable_share * static_cast<double>(device.memory_bytes));
-    const std::uint64_t all = options.most_memory > 0 ? std::min(options.most_memory, usable) : usable;
-    return {.memory = all / static_cast<std::uint64_t>(options.sharers),
-            .buffer = device.max_allocation_bytes - padding,
-            .binding = std::min(device.max_storage_buffer_bytes, device.max_allocation_bytes - padding)};
-}
-
-WavePlanes planes_of(int cells, int parts, ImageSize pixels) {
-    return {cells, {pixels.columns * parts, pixels.rows * parts}};
-}
-
-bool fits(int cells, int parts, ImageSize pixels, const Limits& limits) {
-    const WaveMemory memory = wave_memory(cells, parts, pixels);
-    return memory.all() <= limits.memory && memory.light <= limits.buffer &&
-           planes_of(cells, parts, pixels).largest_bytes() <= limits.binding;
+    const bool bounded = options.most_memory > 0 && options.most_memory < usable;
+    const std::uint64_t allowed =
+        (bounded ? options.most_memory : usable) / static_cast<std::uint64_t>(options.sharers);
+    const std::string sorted = fmt::format("{} x {} cells, {} x {} parts of {} x {} pixels", cells, cells, parts, parts,
+                                           pixels.columns, pixels.rows);
+    if (memory.all() > allowed) {
+        return Violation{
+            .key = "diffraction.cells",
+            .found =
+                fmt::format("{}: {} bytes of light and {} to transform it", sorted, memory.light, memory.transforms),
+            .expected = fmt::format("at most {} bytes in all, {}{}", allowed,
+                                    bounded ? "by diffraction.most_memory_gib"
+                                            : fmt::format("four fifths of the memory of {}", device.name),
+                                    options.sharers > 1 ? fmt::format(" shared by {} sources", options.sharers) : "")};
+    }
+    if (const std::uint64_t image = light_bytes(1, parts, pixels); image > largest_buffer(device)) {
+        return Violation{.key = "detector.pixels",
+                         .found = fmt::format("{}: {} bytes of light for each cell", sorted, image),
+                         .expected = fmt::format("at most {} bytes, the largest allocation of {}",
+                                                 largest_buffer(device), device.name)};
+    }
+    const std::uint64_t transform = WavePlanes(cells, in_parts(parts, pixels), binding).largest_bytes();
+    if (!software && transform > binding) {
+        return Violation{.key = "detector.pixels",
+                         .found = fmt::format("{}: {} bytes for the transform of the image with its mirror images",
+                                              sorted, transform),
+                         .expected = fmt::format("at most {} bytes, the largest buffer that {} lets a kernel have",
+                                                 binding, device.name)};
+    }
+    return std::nullopt;
 }
 
 } // namespace
 
-WaveMemory wave_memory(int cells, int parts, ImageSize pixels) {
-    const auto in_a_pixel = static_cast<std::uint64_t>(parts) * static_cast<std::uint64_t>(parts);
-    const auto count = static_cast<std::uint64_t>(cells) * static_cast<std::uint64_t>(cells);
-    const WavePlanes planes = planes_of(cells, parts, pixels);
-    return {.light = count * in_a_pixel * pixels.count() * sizeof(std::uint64_t),
+std::uint64_t largest_buffer(const vulkan::DeviceReport& device) {
+    return device.max_allocation_bytes - std::min(padding, device.max_allocation_bytes);
+}
+
+std::uint64_t largest_binding(const vulkan::DeviceReport& device) {
+    return std::min(device.max_storage_buffer_bytes, largest_buffer(device));
+}
+
+std::size_t cells_in_a_buffer(std::uint64_t most_bytes, std::size_t bytes_a_cell) {
+    return std::max<std::size_t>(1, most_bytes / std::max<std::size_t>(1, bytes_a_cell));
+}
+
+WaveMemory wave_memory(int cells, int parts, ImageSize pixels, std::uint64_t binding) {
+    const WavePlanes planes(cells, in_parts(parts, pixels), binding);
+    return {.light = light_bytes(cells, parts, pixels),
             .transforms = 2 * (planes.plane_bytes() + planes.image_bytes()) + planes.spectrum_bytes()};
+}
+
+WaveMemory wave_memory_of_host(int cells, int parts, ImageSize pixels, int groups_at_once) {
+    const std::uint64_t count = in_parts(parts, pixels).count();
+    const auto at_once = static_cast<std::uint64_t>(std::min(groups_at_once, cells * cells / 4));
+    constexpr std::uint64_t complex_bytes = 2 * sizeof(double), cells_a_group = 4;
+    // Of each part of a pixel: two frequencies of the spectrum, beside the images and the transforms of the cells at a
+    // time, and afterwards beside the image with its mirror images and the pixels.
+    const std::uint64_t spectrum = 2 * complex_bytes;
+    const std::uint64_t groups = at_once * cells_a_group * (sizeof(std::uint64_t) + sizeof(double));
+    const std::uint64_t image = 4 * complex_bytes + sizeof(double);
+    return {.light = light_bytes(cells, parts, pixels), .transforms = count * (spectrum + std::max(groups, image))};
 }
 
 optics::WaveOptions waves_on_device(const optics::WaveOptions& options, const optics::Instrument& instrument,
                                     const vulkan::DeviceReport& device) {
     const ImageSize pixels = instrument.detector_pixels();
-    const Limits limits = limits_of(options, device);
     optics::WaveOptions fitted = options;
     fitted.cells = optics::cells_of(options, instrument);
     fitted.parts = optics::parts_of(options, instrument);
     const int least = options.parts > 0 ? options.parts : 1;
-    while (fitted.parts >= least && !fits(fitted.cells, fitted.parts, pixels, limits)) {
+    while (auto forbidden = violation(fitted, fitted.parts, pixels, device)) {
+        if (fitted.parts == least) {
+            throw InputError({.where = {},
+                              .key = options.parts > 0 ? "diffraction.parts_per_pixel" : forbidden->key,
+                              .found = std::move(forbidden->found),
+                              .expected = std::move(forbidden->expected),
+                              .remedy = "Take fewer detector.pixels, fewer diffraction.cells or diffraction."
+                                        "parts_per_pixel, another device, or diffraction.model = \"none\"."});
+        }
         --fitted.parts;
-    }
-    if (fitted.parts < least) {
-        throw InputError({.where = {},
-                          .key = options.parts > 0 ? "diffraction.parts_per_pixel" : "diffraction.cells",
-                          .found = fmt::format("{} x {} cells, {} x {} parts of {} x {} pixels: {} bytes of light",
-                                               fitted.cells, fitted.cells, least, least, pixels.columns, pixels.rows,
-                                               wave_memory(fitted.cells, least, pixels).all()),
-                          .expected = fmt::format("at most {} bytes on {}, {} in one buffer", limits.memory,
-                                                  device.name, limits.buffer),
-                          .remedy = "Take fewer detector.pixels, fewer diffraction.cells or diffraction."
-                                    "parts_per_pixel, another device, or diffraction.model = \"none\"."});
     }
     return fitted;
 }

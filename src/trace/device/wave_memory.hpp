@@ -4,7 +4,9 @@
 #include "optics/waves/pupil_filter.hpp"
 #include "vulkan/device.hpp"
 
+#include <cstddef>
 #include <cstdint>
+#include <limits>
 #include <string_view>
 
 namespace vkfv::trace {
@@ -20,12 +22,22 @@ struct WaveMemory {
     std::uint64_t all() const { return light + transforms; }
 };
 
-// On a GPU. cells: across the pupil; parts: of a pixel's side; pixels: of the detector.
-WaveMemory wave_memory(int cells, int parts, ImageSize pixels);
+// Bytes of the largest buffer that a device allocates, and of the largest that it lets kernels have by a binding.
+std::uint64_t largest_buffer(const vulkan::DeviceReport& device);
+std::uint64_t largest_binding(const vulkan::DeviceReport& device);
+// How many cells' images of so many bytes lie in one buffer of at most so many, at least one.
+std::size_t cells_in_a_buffer(std::uint64_t most_bytes, std::size_t bytes_a_cell);
+
+// On a GPU. cells: across the pupil; parts: of a pixel's side; pixels: of the detector; binding: largest_binding().
+WaveMemory wave_memory(int cells, int parts, ImageSize pixels,
+                       std::uint64_t binding = std::numeric_limits<std::uint64_t>::max());
+// Where the host's own cores are the device, and the host makes the transforms: of so many groups of four cells at a
+// time, as many as it has cores.
+WaveMemory wave_memory_of_host(int cells, int parts, ImageSize pixels, int groups_at_once);
 
 // The options with the pupil cells and the parts of a pixel that light is sorted in: those asked for, or as many as
-// waves ask for, or where these are too many parts for the device, as many as it can hold. Throws InputError where it
-// holds not even one, or not what was asked for.
+// waves ask for, or where these are too many parts for the device, as many as it can hold. Throws InputError, which
+// names the limit of the device, where it holds not even one, or not what was asked for.
 optics::WaveOptions waves_on_device(const optics::WaveOptions& options, const optics::Instrument& instrument,
                                     const vulkan::DeviceReport& device);
 

@@ -13,12 +13,13 @@ class WavePlanes {
   public:
     static constexpr std::uint64_t a_group = 2; // planes, of four cells that are mirror images
 
-    // cells: across the pupil; image: in parts of pixels.
-    WavePlanes(int cells, ImageSize image) : plane_(image.count() * complex_bytes) {
+    // cells: across the pupil; image: in parts of pixels; binding: bytes of a buffer that kernels are given, at most.
+    // The planes that are transformed at once fit in it where two do.
+    WavePlanes(int cells, ImageSize image, std::uint64_t binding) : plane_(image.count() * complex_bytes) {
         groups_ = static_cast<std::uint32_t>(cells / 2) * static_cast<std::uint32_t>(cells / 2);
         // More at once is no quicker on an H100, and a driver takes a tenth of a second to give gigabytes back.
         constexpr std::uint64_t most_bytes = std::uint64_t{1} << 28;
-        const std::uint64_t most = std::max<std::uint64_t>(1, most_bytes / (a_group * plane_));
+        const std::uint64_t most = std::max<std::uint64_t>(1, std::min(most_bytes, binding) / (a_group * plane_));
         at_once_ = static_cast<std::uint32_t>(std::min<std::uint64_t>(most, groups_));
         // In equal parts: the transform is made for one number of planes.
         while (groups_ % at_once_ != 0) {

@@ -40,10 +40,7 @@ std::array<int, 4> WaveImage::mirror_images(int cell) const {
     return {cell, filter_.mirrored(cell), upright, filter_.mirrored(upright)};
 }
 
-WaveImage::Parts WaveImage::transform(std::span<const std::uint64_t> light, const std::array<int, 4>& cells) const {
-    const std::size_t count = size_.count();
-    const auto image = [&](std::size_t k) { return light.subspan(static_cast<std::size_t>(cells[k]) * count, count); };
-    const std::array images = {image(0), image(1), image(2), image(3)};
+WaveImage::Parts WaveImage::transform(const CellImages& images) const {
     Parts parts;
     parts.fill(Grid<double>(size_.columns, size_.rows));
     for (int row = 0; row < size_.rows; ++row) {
@@ -131,6 +128,13 @@ Grid<double> WaveImage::pixels_of(const Spectrum& sum) const {
 }
 
 Grid<double> WaveImage::apply(std::span<const std::uint64_t> light) const {
+    return apply([&](int cell) {
+        const auto image = light.subspan(static_cast<std::size_t>(cell) * numbers_a_cell(), numbers_a_cell());
+        return std::vector<std::uint64_t>(image.begin(), image.end());
+    });
+}
+
+Grid<double> WaveImage::apply(const ImageOfCell& image_of_cell) const {
     std::vector<std::array<int, 4>> groups;
     for (int cell = 0; cell < filter_.cell_count(); ++cell) {
         if (cell < filter_.mirrored(cell) && cell < filter_.mirrored_upright(cell)) {
@@ -142,9 +146,12 @@ Grid<double> WaveImage::apply(std::span<const std::uint64_t> light) const {
     const auto cores = static_cast<std::size_t>(core_count());
     for (std::size_t first = 0; first < groups.size(); first += cores) {
         const std::size_t count = std::min(cores, groups.size() - first);
-        const std::vector<Parts> transformed = parallel_list(static_cast<int>(count), [&](int k) {
-            return transform(light, groups[first + static_cast<std::size_t>(k)]);
-        });
+        std::vector<CellImages> images(count);
+        for (std::size_t k = 0; k < count; ++k) {
+            std::ranges::transform(groups[first + k], images[k].begin(), image_of_cell);
+        }
+        const std::vector<Parts> transformed = parallel_list(
+            static_cast<int>(count), [&](int k) { return transform(images[static_cast<std::size_t>(k)]); });
         for (std::size_t k = 0; k < count; ++k) {
             add(sum, transformed[k], groups[first + k]);
         }

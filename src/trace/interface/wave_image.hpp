@@ -8,7 +8,9 @@
 #include "trace/interface/tracer.hpp"
 
 #include <array>
+#include <cstddef>
 #include <cstdint>
+#include <functional>
 #include <optional>
 #include <span>
 #include <vector>
@@ -25,8 +27,13 @@ class WaveImage {
 
     // How many numbers the sorted light has: cell after cell, row after row of parts of pixels.
     std::size_t numbers() const;
+    std::size_t numbers_a_cell() const { return size_.count(); }
     // Light of the pixels in the units of the sorted light.
     Grid<double> apply(std::span<const std::uint64_t> light) const;
+    // Of images that are asked for one after the other, by the calling thread, and are not kept: of cells of which as
+    // many are held at a time as there are cores, four times.
+    using ImageOfCell = std::function<std::vector<std::uint64_t>(int cell)>;
+    Grid<double> apply(const ImageOfCell& image_of_cell) const;
 
   private:
     struct Spectrum;
@@ -35,7 +42,8 @@ class WaveImage {
     enum Part : std::size_t { even, odd_along, odd_across, odd };
     using Parts = std::array<Grid<double>, 4>;
     std::array<int, 4> mirror_images(int cell) const;
-    Parts transform(std::span<const std::uint64_t> light, const std::array<int, 4>& cells) const;
+    using CellImages = std::array<std::vector<std::uint64_t>, 4>; // of those cells
+    Parts transform(const CellImages& images) const;
     void add(Spectrum& sum, const Parts& parts, const std::array<int, 4>& cells) const;
     Grid<double> pixels_of(const Spectrum& sum) const;
 

@@ -1,0 +1,112 @@
+#include "measurement/scene/wave_devices.hpp"
+
+#include "core/messages/error.hpp"
+#include "core/threads/threads.hpp"
+#include "measurement/scene/assembly.hpp"
+#include "measurement/scene/disk_space.hpp"
+#include "measurement/scene/host_memory.hpp"
+#include "trace/device/wave_memory.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cstdint>
+#include <optional>
+
+namespace vkfv::measurement {
+
+namespace {
+
+// Half of the storage buffer that Vulkan asks every device for (maxStorageBufferRange, 128 MiB).
+constexpr std::uint64_t every_device_holds = std::uint64_t{1} << 26;
+
+// Of each source with as many cells, as it is asked for alone.
+std::vector<optics::WaveOptions> options_of_lights(const Configuration& configuration,
+                                                   const optics::Instrument& instrument, int cells) {
+    std::vector<optics::WaveOptions> all;
+    const std::size_t lights = instrument.lights().size();
+    for (std::size_t k = 0; k < lights; ++k) {
+        optics::WaveOptions options = configuration.trace.waves.value();
+        options.cells = options.cells > 0 ? options.cells : cells;
+        options.sharers = static_cast<int>(lights);
+        all.push_back(options);
+    }
+    return all;
+}
+
+std::optional<std::string> warning_of_host(const std::vector<optics::WaveOptions>& options,
+                                           const optics::Instrument& instrument) {
+    std::uint64_t memory = 0;
+    for (std::size_t k = 0; k < options.size(); ++k) {
+        const int parts = optics::parts_of(options[k], *instrument.lights()[k]);
+        memory += trace::wave_memory_of_host(options[k].cells, parts, instrument.detector_pixels(), core_count()).all();
+    }
+    const std::uint64_t there = memory_of_host();
+    return memory > there ? std::optional(fmt::format(
+                                "Images as waves make them take {} of memory, and this machine has {}. Take fewer "
+                                "detector.pixels or fewer diffraction.cells, or a device that has as much.",
+                                bytes_text(memory), bytes_text(there)))
+                          : std::nullopt;
+}
+
+} // namespace
+
+std::vector<std::string> wave_warnings_of(const vulkan::DeviceReport& device, const Configuration& configuration,
+                                          const optics::Instrument& instrument, int cells) {
+    std::vector<std::string> warnings;
+    if (!configuration.trace.waves || configuration.trace.nonsequential) {
+        return warnings;
+    }
+    const auto lights = instrument.lights();
+    const auto options = options_of_lights(configuration, instrument, cells);
+    for (std::size_t k = 0; k < options.size(); ++k) {
+        const int asked = optics::parts_of(options[k], *lights[k]);
+        std::string warning;
+        try {
+            const int parts = trace::waves_on_device(options[k], *lights[k], device).parts;
+            if (parts == asked) {
+                continue;
+            }
+            warning = fmt::format("{} has room for light of waves sorted in {} parts of a pixel's side, where {} are "
+                                  "asked for: finer waves fold back.",
+                                  device.name, parts, asked);
+        } catch (const InputError& error) {
+            const InputProblem& problem = error.problem();
+            warning = fmt::format("{} cannot make images as waves make them: {}, where {} are possible. {}",
+                                  device.name, problem.found, problem.expected, problem.remedy);
+        }
+        if (std::ranges::find(warnings, warning) == warnings.end()) {
+            warnings.push_back(warning);
+        }
+    }
+    return warnings;
+}
+
+std::vector<std::string> wave_warnings_of_device(const Configuration& configuration, int cells) {
+    if (!configuration.trace.waves || configuration.trace.nonsequential) {
+        return {};
+    }
+    const auto instrument = assemble_for_figures(configuration);
+    const auto options = options_of_lights(configuration, instrument, cells);
+    std::uint64_t memory = 0;
+    for (std::size_t k = 0; k < options.size(); ++k) {
+        const int parts = optics::parts_of(options[k], *instrument.lights()[k]);
+        memory += trace::wave_memory(options[k].cells, parts, instrument.detector_pixels()).all();
+    }
+    if (memory <= every_device_holds && options.front().most_memory == 0) {
+        return {};
+    }
+    if (configuration.trace.device == "host") {
+        const auto warning = warning_of_host(options, instrument);
+        return warning ? std::vector{*warning} : std::vector<std::string>();
+    }
+    try {
+        const auto reports = vulkan::list_devices();
+        const auto chosen = vulkan::choose_devices(reports, configuration.trace.device);
+        return wave_warnings_of(reports[chosen.front()], configuration, instrument, cells);
+    } catch (const DeviceError&) { // of a machine that images are not made on
+        return {};
+    }
+}
+
+} // namespace vkfv::measurement

@@ -1,0 +1,23 @@
+// Whether the device that images of waves will be made on holds them, before any image is traced.
+#pragma once
+
+#include "configuration/configuration.hpp"
+#include "optics/instrument/instrument.hpp"
+#include "vulkan/device.hpp"
+
+#include <string>
+#include <vector>
+
+namespace vkfv::measurement {
+
+// What does not fit on the device, in sentences: where it has no room even for one part of a pixel, which of its limits
+// forbids that; where it has room for fewer parts than the waves ask for, how many. cells: across the pupil. None of a
+// configuration without waves.
+std::vector<std::string> wave_warnings_of(const vulkan::DeviceReport& device, const Configuration& configuration,
+                                          const optics::Instrument& instrument, int cells);
+
+// The same of the device of trace.device, the first of several. Without a driver or such a device there are none, and
+// the device is not looked for where the images are so small that every device holds them.
+std::vector<std::string> wave_warnings_of_device(const Configuration& configuration, int cells);
+
+} // namespace vkfv::measurement
