@@ -9,13 +9,15 @@ layout(set = 0, binding = WAVES_BINDING_PLANES, scalar) readonly buffer Planes {
 layout(set = 0, binding = WAVES_BINDING_TABLE, scalar) readonly buffer Table { vec2 table[]; };
 layout(set = 0, binding = WAVES_BINDING_SPECTRUM, scalar) buffer Spectrum { vec4 spectrum[]; };
 layout(push_constant, scalar) uniform Push { WaveGroups groups; };
+layout(constant_id = WAVES_CONSTANT_FILTERS) const uint filters = 1u;
 
 // Bilinear; x from -steps to steps, y from 0.
-vec2 transfer(uint cell, float x, float y) {
+vec2 transfer(uint tile, uint cell, float x, float y) {
     int columns = 2 * int(groups.steps) + 1;
     float left = floor(x);
     float low = floor(y);
-    int corner = (int(cell) * (int(groups.steps) + 1) + int(low)) * columns + int(left) + int(groups.steps);
+    int place = int(tile * groups.cells_side * groups.cells_side + cell);
+    int corner = (place * (int(groups.steps) + 1) + int(low)) * columns + int(left) + int(groups.steps);
     vec2 below = mix(table[corner], table[corner + 1], x - left);
     vec2 above = mix(table[corner + columns], table[corner + columns + 1], x - left);
     return mix(below, above, y - low);
@@ -36,7 +38,10 @@ void main() {
     uint column = place % groups.columns;
     uint row = place / groups.columns;
     vec2 at = vec2(column, row) * vec2(groups.steps_a_column, groups.steps_a_row);
-    vec4 sum = groups.first == 0u ? vec4(0.0) : spectrum[place];
+    vec4 sums[filters];
+    for (uint k = 0u; k < filters; ++k) {
+        sums[k] = groups.first == 0u ? vec4(0.0) : spectrum[k * plane + place];
+    }
     if (dot(at, at) < float(groups.steps * groups.steps)) {
         uint left = column == 0u ? 0u : groups.columns - column;
         uint low = row == 0u ? 0u : groups.rows - row;
@@ -66,13 +71,20 @@ void main() {
             vec2 upright = vec2(sideways.x, -sideways.y);
             vec2 turned_round = vec2(same.x, -same.y);
             uvec4 cells = cells_of_group(groups.first + k, groups.cells_side);
-            sum.xy += times(transfer(cells.x, at.x, at.y), same) + times(transfer(cells.y, at.x, at.y), sideways) +
-                      times(transfer(cells.z, at.x, at.y), upright) +
-                      times(transfer(cells.w, at.x, at.y), turned_round);
-            sum.zw += times(transfer(cells.x, -at.x, at.y), sideways) + times(transfer(cells.y, -at.x, at.y), same) +
-                      times(transfer(cells.z, -at.x, at.y), turned_round) +
-                      times(transfer(cells.w, -at.x, at.y), upright);
+            for (uint which = 0u; which < filters; ++which) {
+                uint tile = groups.tiles[which];
+                sums[which].xy += times(transfer(tile, cells.x, at.x, at.y), same) +
+                                  times(transfer(tile, cells.y, at.x, at.y), sideways) +
+                                  times(transfer(tile, cells.z, at.x, at.y), upright) +
+                                  times(transfer(tile, cells.w, at.x, at.y), turned_round);
+                sums[which].zw += times(transfer(tile, cells.x, -at.x, at.y), sideways) +
+                                  times(transfer(tile, cells.y, -at.x, at.y), same) +
+                                  times(transfer(tile, cells.z, -at.x, at.y), turned_round) +
+                                  times(transfer(tile, cells.w, -at.x, at.y), upright);
+            }
         }
     }
-    spectrum[place] = sum;
+    for (uint k = 0u; k < filters; ++k) {
+        spectrum[k * plane + place] = sums[k];
+    }
 }

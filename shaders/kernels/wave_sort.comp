@@ -17,7 +17,9 @@ layout(buffer_reference, scalar, buffer_reference_align = 8) readonly buffer Cel
 
 float light_at(uint cell, uint column, uint row) {
     uint64_t image = CellAddress(packUint2x32(groups.light) + uint64_t(8) * uint64_t(cell)).first;
-    return float(Light(image + uint64_t(8) * (uint64_t(row) * groups.columns + column)).light);
+    return float(Light(image + uint64_t(8) * (uint64_t(groups.first_row + row) * groups.image_columns +
+                                              groups.first_column + column))
+                     .light);
 }
 
 // Where the k-th value of a transform of so many comes from.

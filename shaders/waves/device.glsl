@@ -6,6 +6,7 @@
 #extension GL_EXT_buffer_reference : require
 #include "physics/lang.glsl"
 #include "physics/pupil_cells.glsl"
+#include "waves/tile_ramp.glsl"
 #include "waves/interface.glsl"
 
 uint invocation() {

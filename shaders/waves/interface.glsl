@@ -1,16 +1,20 @@
 // Bindings (set 0) and push constants of the kernels that compute wave images from light sorted by pupil cells; the
 // host binds them in trace/device/device_wave_image.hpp.
 
-const uint WAVES_BINDING_PLANES = 0u;   // complex, two planes a group of cells
-const uint WAVES_BINDING_TABLE = 1u;    // the cells' transfer functions
-const uint WAVES_BINDING_SPECTRUM = 2u; // of the image, two complex numbers a frequency: at (l, m) and (-l, m)
-const uint WAVES_BINDING_IMAGE = 3u;    // complex, the image with its mirror images
+const uint WAVES_BINDING_PLANES = 0u; // complex, two planes a group of cells
+const uint WAVES_BINDING_TABLE = 1u;  // the cells' transfer functions
+const uint WAVES_BINDING_SPECTRUM =
+    2u; // of the image, two complex numbers a frequency: at (l, m) and (-l, m); filter after filter
+const uint WAVES_BINDING_IMAGE = 3u; // complex, the image with its mirror images; filter after filter
 const uint WAVES_BINDING_PIXELS = 4u;
 
 // Some groups of cells, each of four that are mirror images.
 struct WaveGroups {
-    uvec2 light;  // address of a table of the addresses of the cells' images
-    uint columns; // parts of pixels
+    uvec2 light;        // address of a table of the addresses of the cells' images
+    uint image_columns; // parts of pixels, of the whole image
+    uint first_column;  // of the window, in which some filters are blended
+    uint first_row;
+    uint columns;
     uint rows;
     uint cells_side; // cells across the pupil
     uint first;      // group
@@ -18,10 +22,18 @@ struct WaveGroups {
     uint steps;          // of the table, from 0 to the cutoff
     real steps_a_column; // the table's for each 1 / (2 columns) cycles a part
     real steps_a_row;    // for each 1 / (2 rows)
+    uvec4 tiles;         // of the field, whose filters they are
 };
 
 struct WaveSize {
-    uint columns; // parts of pixels
+    uint columns; // parts of pixels, of the window
     uint rows;
     PupilCells cells;
+    uint image_columns; // pixels, of the whole image
+    uint first_column;  // of the window
+    uint first_row;
+    TileRamp along;
+    TileRamp up;
 };
+
+const uint WAVES_CONSTANT_FILTERS = 0u; // how many are blended in a window: 1 or 4

@@ -44,7 +44,8 @@ void run_check(const CommandOptions& options) {
     auto report = measurement::instrument_report(configuration, options.file);
     if (const auto cells = report.json.find("wave_cells"); cells != report.json.end()) {
         // The report is kept from run to run; devices come and go.
-        for (const auto& warning : measurement::wave_warnings_of_device(configuration, cells->get<int>())) {
+        for (const auto& warning : measurement::wave_warnings_of_device(configuration, cells->get<int>(),
+                                                                        report.json["wave_tiles"].get<int>())) {
             report.json["warnings"].push_back(warning);
             report.text += fmt::format("  warning: {}\n", warning);
         }

@@ -15,6 +15,7 @@ namespace {
 
 constexpr std::int64_t most_peak_range_steps = 100;
 constexpr std::int64_t most_pupil_cells = 32; // 512 images of light
+constexpr std::int64_t most_tiles = 9;
 constexpr std::int64_t most_parts = 16;
 
 const topography::TopographyOptions defaults;
@@ -156,6 +157,10 @@ const IntegerKey parts = of_kinds(
     {"waves"}, IntegerKey("parts_per_pixel", 0, most_parts, 0,
                           "Parts of a pixel's side in which light is sorted; 0: as many as waves of the instrument's "
                           "numerical aperture ask for, or as the device's memory allows."));
+const IntegerKey tiles =
+    of_kinds({"waves"}, IntegerKey("tiles", 0, most_tiles, 0,
+                                   "Filters across the field, an odd number, each of its own point and blended in "
+                                   "between; 0: one where the axis' filter is good enough everywhere, else 3 to 9."));
 // This limit is no part of an image's identity: images depend only on the resulting number of parts, which is
 // (trace/interface/tracer_identity.hpp).
 const NumberKey most_memory = of_kinds(
@@ -179,13 +184,13 @@ const KeyTable& topography_keys() {
 }
 
 const KeyTable& diffraction_keys() {
-    static const KeyTable table{
-        .path = "diffraction",
-        .presence = KeyTable::Presence::optional,
-        .meaning = "Diffraction.",
-        .subject = "",
-        .kind = "model",
-        .keys = {&model, &point_spread, &point_spread_file, &point_spread_pitch, &pupil_cells, &parts, &most_memory}};
+    static const KeyTable table{.path = "diffraction",
+                                .presence = KeyTable::Presence::optional,
+                                .meaning = "Diffraction.",
+                                .subject = "",
+                                .kind = "model",
+                                .keys = {&model, &point_spread, &point_spread_file, &point_spread_pitch, &pupil_cells,
+                                         &parts, &tiles, &most_memory}};
     return table;
 }
 
@@ -257,11 +262,16 @@ void read_diffraction(const TomlTable& root, Configuration& configuration) {
         optics::WaveOptions& waves = configuration.trace.waves.emplace();
         waves.cells = static_cast<int>(section.integer(pupil_cells));
         waves.parts = static_cast<int>(section.integer(parts));
+        waves.tiles = static_cast<int>(section.integer(tiles));
         constexpr double bytes_per_gib = 1 << 30;
         waves.most_memory = static_cast<std::uint64_t>(section.number(most_memory) * bytes_per_gib);
         if (waves.cells % 2 != 0) {
             section.fail(pupil_cells, "an even number, so that every cell has its mirror images",
                          fmt::format("Choose {} or {}.", waves.cells - 1, waves.cells + 1));
+        }
+        if (waves.tiles != 0 && waves.tiles % 2 == 0) {
+            section.fail(tiles, "an odd number, so that one filter is that of the axis, or 0",
+                         fmt::format("Choose {} or {}.", waves.tiles - 1, waves.tiles + 1));
         }
         if (configuration.trace.nonsequential) {
             section.fail(

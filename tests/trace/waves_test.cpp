@@ -9,11 +9,13 @@
 #include "trace/device/wave_memory.hpp"
 #include "trace/host/host_tracer.hpp"
 #include "trace/interface/wave_image.hpp"
+#include "trace/interface/wave_windows.hpp"
 #include "trace/microscope.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <deque>
 #include <future>
@@ -257,7 +259,8 @@ TEST(Waves, take_fewer_parts_where_the_device_cannot_hold_them) {
     EXPECT_EQ(trace::waves_on_device({}, coarse, device).cells, 8);
     EXPECT_EQ(trace::waves_on_device({.cells = 10}, coarse, device).cells, 10);
     // 8 bytes a cell and part: 64 x 32^2 x 3^2 cells.
-    const auto memory = trace::wave_memory(8, 3, ImageSize::square(grating_pixels));
+    const auto memory =
+        trace::wave_memory({.cells = 8, .parts = 3, .tiles = 1, .pixels = ImageSize::square(grating_pixels)});
     EXPECT_EQ(memory.light, 8u * 64 * 32 * 32 * 9);
     EXPECT_EQ(parts({.most_memory = memory.all()}), 3);
     EXPECT_EQ(parts({.most_memory = memory.all() - 1}), 2);
@@ -320,6 +323,38 @@ TEST(Waves, of_many_pixels_fit_where_they_are_tiled) {
     device.max_allocation_bytes = 40'000'000; // one cell's image takes 8 x 2448 x 2048
     EXPECT_THAT(refused(camera, {.cells = 8, .parts = 1}),
                 AllOf(HasSubstr("40108032 bytes of light for each cell"), HasSubstr("largest allocation of small")));
+}
+
+// Windows of one size within the image, whose filters' weights add up to 1 at every pixel; one tile is the whole image.
+TEST(Waves, windows_of_the_field_count_every_pixel_once) {
+    for (const auto& [tiles, pixels, parts] : {std::tuple{1, ImageSize{20, 12}, 2},
+                                               {3, ImageSize{320, 200}, 1},
+                                               {5, ImageSize{701, 400}, 2},
+                                               {9, ImageSize{64, 64}, 4}}) {
+        const auto windows = trace::wave_windows(tiles, pixels, parts);
+        ASSERT_EQ(windows.size(), tiles == 1 ? 1u : static_cast<std::size_t>((tiles - 1) * (tiles - 1)));
+        Grid<double> sums(pixels.columns, pixels.rows);
+        for (const trace::WaveWindow& window : windows) {
+            ASSERT_EQ(window.size, windows.front().size);
+            ASSERT_GE(std::min(window.column, window.row), 0);
+            ASSERT_LE(window.column + window.size.columns, pixels.columns);
+            ASSERT_LE(window.row + window.size.rows, pixels.rows);
+            for (int row = 0; row < pixels.rows; ++row) {
+                for (int column = 0; column < pixels.columns; ++column) {
+                    const auto weights = trace::weights_at(window, column, row);
+                    const double weight = std::accumulate(weights.begin(), weights.end(), 0.0);
+                    const bool inside = column >= window.column && column < window.column + window.size.columns &&
+                                        row >= window.row && row < window.row + window.size.rows;
+                    ASSERT_GE(*std::ranges::min_element(weights), 0);
+                    ASSERT_TRUE(inside || weight == 0) << column << ' ' << row;
+                    sums(column, row) += weight;
+                }
+            }
+        }
+        for (const double sum_of_weights : sums.values) {
+            ASSERT_NEAR(sum_of_weights, 1, 1e-12);
+        }
+    }
 }
 
 // How light is sorted is known before a tracer is made, and is that of the tracer's filter.
@@ -412,9 +447,12 @@ TEST(Waves, are_the_same_on_the_device_and_on_the_host) {
     const auto instrument = test::microscope();
     const vulkan::Device device;
     // Sizes with other primes than two; light that lies on one side only, to tell left from right.
-    for (const auto& [pixels, parts, cells] :
-         {std::tuple{ImageSize{20, 20}, 2, 8}, {ImageSize{7, 7}, 5, 2}, {ImageSize{11, 6}, 3, 2}}) {
-        const optics::PupilFilter filter(instrument, {.cells = cells, .parts = parts});
+    // And of several filters over the field, in two windows.
+    for (const auto& [pixels, parts, cells, tiles] : {std::tuple{ImageSize{20, 20}, 2, 8, 1},
+                                                      {ImageSize{7, 7}, 5, 2, 1},
+                                                      {ImageSize{11, 6}, 3, 2, 1},
+                                                      {ImageSize{240, 8}, 1, 2, 3}}) {
+        const optics::PupilFilter filter(instrument, {.cells = cells, .parts = parts, .tiles = tiles});
         const trace::WaveImage on_host(filter, pixels);
         auto light = noisy_light(on_host.numbers(), 50);
         for (std::size_t k = 0; k < light.size(); k += 7) {
@@ -450,9 +488,10 @@ TEST(Waves, are_the_same_bits_of_light_in_several_buffers) {
         sorted.write(light);
         found.push_back(made_by_device(device, filter, pixels, sorted));
         EXPECT_EQ(found.back(), found.front());
-        const auto of_cells = on_host.apply([&](int cell) {
-            std::vector<std::uint64_t> numbers(on_host.numbers_a_cell());
-            sorted.read(static_cast<std::size_t>(cell), numbers);
+        const auto columns = static_cast<std::size_t>(on_host.columns());
+        const auto of_cells = on_host.apply([&](int cell, int first_row, int rows) {
+            std::vector<std::uint64_t> numbers(static_cast<std::size_t>(rows) * columns);
+            sorted.read(static_cast<std::size_t>(cell), static_cast<std::size_t>(first_row) * columns, numbers);
             return numbers;
         });
         EXPECT_EQ(of_cells.values, on_host.apply(light).values);
@@ -461,7 +500,7 @@ TEST(Waves, are_the_same_bits_of_light_in_several_buffers) {
         commands.submit_and_wait();
         for (std::size_t cell = 0; cell < 16; ++cell) {
             std::vector<std::uint64_t> numbers(on_host.numbers_a_cell(), 1);
-            sorted.read(cell, numbers);
+            sorted.read(cell, 0, numbers);
             EXPECT_EQ(numbers, std::vector<std::uint64_t>(numbers.size(), 0));
         }
     }

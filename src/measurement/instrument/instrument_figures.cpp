@@ -141,20 +141,22 @@ FigureGroup figures_of_waves(const optics::WaveOptions& options, const optics::I
     warnings.insert(warnings.end(), further.begin(), further.end());
     std::uint64_t memory = 0, memory_of_host = 0; // each source's light is sorted by itself
     for (const WaveLimits& light : of_lights) {
-        const ImageSize pixels = instrument.detector_pixels();
-        memory += trace::wave_memory(light.cells, light.parts, pixels).all();
-        memory_of_host += trace::wave_memory_of_host(light.cells, light.parts, pixels, core_count()).all();
+        const trace::WaveSizes sizes{
+            .cells = light.cells, .parts = light.parts, .tiles = light.tiles, .pixels = instrument.detector_pixels()};
+        memory += trace::wave_memory(sizes).all();
+        memory_of_host += trace::wave_memory_of_host(sizes, core_count()).all();
     }
     const auto error_of = [&](std::size_t point) { return limits.points[point].error.difference; };
     return {"Images as waves make them, within two depths of field",
             {{"wave_cells", static_cast<double>(limits.cells), "across the pupil that light is sorted by"},
+             {"wave_tiles", static_cast<double>(limits.tiles), "filters across the field, blended in between"},
              {"wave_parts_per_pixel", static_cast<double>(limits.parts), "of a pixel's side that light is sorted in"},
              {"wave_memory_gib", static_cast<double>(memory) / bytes_per_gib, "that a GPU needs, at most"},
              {"wave_memory_host_gib", static_cast<double>(memory_of_host) / bytes_per_gib,
               "that this machine needs where its processor is the device"},
              {"wave_folded_contrast", limits.folded_contrast, "what waves too fine for the parts are off by"},
              {"wave_contrast_error_axis", error_of(0), "of the pupil's cells against Hopkins' integral"},
-             {"wave_contrast_error_edge", error_of(1), "the same at the edge, by the filter of the axis"},
+             {"wave_contrast_error_edge", error_of(1), "the same at the edge, by its filters"},
              {"wave_contrast_error_corner", error_of(2), "the same in the corner"}}};
 }
 

@@ -22,24 +22,31 @@ constexpr std::uint64_t every_device_holds = std::uint64_t{1} << 26;
 
 // Of each source with as many cells, as it is asked for alone.
 std::vector<optics::WaveOptions> options_of_lights(const Configuration& configuration,
-                                                   const optics::Instrument& instrument, int cells) {
+                                                   const optics::Instrument& instrument, int cells, int tiles) {
     std::vector<optics::WaveOptions> all;
     const std::size_t lights = instrument.lights().size();
     for (std::size_t k = 0; k < lights; ++k) {
         optics::WaveOptions options = configuration.trace.waves.value();
         options.cells = options.cells > 0 ? options.cells : cells;
+        options.tiles = options.tiles > 0 ? options.tiles : tiles;
         options.sharers = static_cast<int>(lights);
         all.push_back(options);
     }
     return all;
 }
 
+trace::WaveSizes sizes_of(const optics::WaveOptions& options, const optics::Instrument& light) {
+    return {.cells = options.cells,
+            .parts = optics::parts_of(options, light),
+            .tiles = options.tiles,
+            .pixels = light.detector_pixels()};
+}
+
 std::optional<std::string> warning_of_host(const std::vector<optics::WaveOptions>& options,
                                            const optics::Instrument& instrument) {
     std::uint64_t memory = 0;
     for (std::size_t k = 0; k < options.size(); ++k) {
-        const int parts = optics::parts_of(options[k], *instrument.lights()[k]);
-        memory += trace::wave_memory_of_host(options[k].cells, parts, instrument.detector_pixels(), core_count()).all();
+        memory += trace::wave_memory_of_host(sizes_of(options[k], *instrument.lights()[k]), core_count()).all();
     }
     const std::uint64_t there = memory_of_host();
     return memory > there ? std::optional(fmt::format(
@@ -52,13 +59,13 @@ std::optional<std::string> warning_of_host(const std::vector<optics::WaveOptions
 } // namespace
 
 std::vector<std::string> wave_warnings_of(const vulkan::DeviceReport& device, const Configuration& configuration,
-                                          const optics::Instrument& instrument, int cells) {
+                                          const optics::Instrument& instrument, int cells, int tiles) {
     std::vector<std::string> warnings;
     if (!configuration.trace.waves || configuration.trace.nonsequential) {
         return warnings;
     }
     const auto lights = instrument.lights();
-    const auto options = options_of_lights(configuration, instrument, cells);
+    const auto options = options_of_lights(configuration, instrument, cells, tiles);
     for (std::size_t k = 0; k < options.size(); ++k) {
         const int asked = optics::parts_of(options[k], *lights[k]);
         std::string warning;
@@ -82,16 +89,15 @@ std::vector<std::string> wave_warnings_of(const vulkan::DeviceReport& device, co
     return warnings;
 }
 
-std::vector<std::string> wave_warnings_of_device(const Configuration& configuration, int cells) {
+std::vector<std::string> wave_warnings_of_device(const Configuration& configuration, int cells, int tiles) {
     if (!configuration.trace.waves || configuration.trace.nonsequential) {
         return {};
     }
     const auto instrument = assemble_for_figures(configuration);
-    const auto options = options_of_lights(configuration, instrument, cells);
+    const auto options = options_of_lights(configuration, instrument, cells, tiles);
     std::uint64_t memory = 0;
     for (std::size_t k = 0; k < options.size(); ++k) {
-        const int parts = optics::parts_of(options[k], *instrument.lights()[k]);
-        memory += trace::wave_memory(options[k].cells, parts, instrument.detector_pixels()).all();
+        memory += trace::wave_memory(sizes_of(options[k], *instrument.lights()[k])).all();
     }
     if (memory <= every_device_holds && options.front().most_memory == 0) {
         return {};
@@ -103,7 +109,7 @@ std::vector<std::string> wave_warnings_of_device(const Configuration& configurat
     try {
         const auto reports = vulkan::list_devices();
         const auto chosen = vulkan::choose_devices(reports, configuration.trace.device);
-        return wave_warnings_of(reports[chosen.front()], configuration, instrument, cells);
+        return wave_warnings_of(reports[chosen.front()], configuration, instrument, cells, tiles);
     } catch (const DeviceError&) { // of a machine that images are not made on
         return {};
     }

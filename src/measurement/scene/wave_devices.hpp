@@ -11,13 +11,13 @@
 namespace vkfv::measurement {
 
 // What does not fit on the device, in sentences: where it has no room even for one part of a pixel, which of its limits
-// forbids that; where it has room for fewer parts than the waves ask for, how many. cells: across the pupil. None of a
-// configuration without waves.
+// forbids that; where it has room for fewer parts than the waves ask for, how many. cells: across the pupil;
+// tiles: across the field. None of a configuration without waves.
 std::vector<std::string> wave_warnings_of(const vulkan::DeviceReport& device, const Configuration& configuration,
-                                          const optics::Instrument& instrument, int cells);
+                                          const optics::Instrument& instrument, int cells, int tiles);
 
 // The same of the device of trace.device, the first of several. Without a driver or such a device there are none, and
 // the device is not looked for where the images are so small that every device holds them.
-std::vector<std::string> wave_warnings_of_device(const Configuration& configuration, int cells);
+std::vector<std::string> wave_warnings_of_device(const Configuration& configuration, int cells, int tiles);
 
 } // namespace vkfv::measurement

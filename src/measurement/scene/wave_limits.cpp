@@ -6,7 +6,6 @@
 
 #include <algorithm>
 #include <future>
-#include <utility>
 
 namespace vkfv::measurement {
 
@@ -14,32 +13,17 @@ namespace {
 
 constexpr double most_error = 0.1;
 
-// The wavefronts at the edge and in the corner of the field: traced by other threads while the filter is made.
-struct FieldWaves {
-    explicit FieldWaves(const optics::Instrument& instrument) {
-        const auto begin = [&instrument](glm::dvec2 field) {
-            return std::async(std::launch::async,
-                              [&instrument, field] { return optics::point_for_filter(instrument, field); });
-        };
-        corner = begin(instrument.first_order.field_corner);
-        edge = begin({instrument.first_order.field_edge, 0});
-    }
-
-    std::future<optics::PointWaves> edge;
-    std::future<optics::PointWaves> corner;
-};
-
-WaveLimits limits_of(const optics::PupilFilter& filter, const optics::Instrument& instrument, FieldWaves waves) {
-    const double reach = optics::reach_of_filter(instrument);
+WaveLimits limits_of(const optics::PupilFilter& filter, const optics::Instrument& instrument) {
     WaveLimits limits{.cells = static_cast<int>(filter.cells().side),
+                      .tiles = filter.tiles().across(),
                       .parts = static_cast<int>(filter.cells().parts),
                       .asked_parts = optics::parts_for_waves(instrument),
                       .folded_contrast = filter.folded_contrast(),
                       .points = {}};
-    auto corner =
-        std::async(std::launch::async, [&] { return optics::largest_filter_error(filter, waves.corner.get(), reach); });
-    limits.points.push_back({.name = "axis", .error = optics::largest_filter_error(filter, instrument, glm::dvec2(0))});
-    limits.points.push_back({.name = "edge", .error = optics::largest_filter_error(filter, waves.edge.get(), reach)});
+    const auto error_at = [&](glm::dvec2 field) { return optics::largest_filter_error(filter, instrument, field); };
+    auto corner = std::async(std::launch::async, [&] { return error_at(instrument.first_order.field_corner); });
+    limits.points.push_back({.name = "axis", .error = error_at(glm::dvec2(0))});
+    limits.points.push_back({.name = "edge", .error = error_at(optics::edge_of(instrument))});
     limits.points.push_back({.name = "corner", .error = corner.get()});
     return limits;
 }
@@ -65,9 +49,8 @@ std::vector<WaveLimits> limits_of_each(const optics::Instrument& instrument, con
             all.push_back(all[place]);
             continue;
         }
-        FieldWaves waves(*lights[k]);
         const optics::PupilFilter& filter = filter_of(k);
-        all.push_back(limits_of(filter, *lights[k], std::move(waves)));
+        all.push_back(limits_of(filter, *lights[k]));
     }
     return all;
 }
@@ -111,7 +94,10 @@ std::vector<std::string> warnings_of(const WaveLimits& limits) {
                                                     : fmt::format("at the {} of the field", worst->name),
             um_per_mm / glm::length(error.frequency), error.height * um_per_mm, error.difference,
             std::abs(error.filtered), std::abs(error.waves),
-            of_cells ? "Take more diffraction.cells." : "The filter is that of the axis: trust what lies near it."));
+            of_cells ? "Take more diffraction.cells."
+            : limits.tiles == 1
+                ? "The filter is that of the axis: trust what lies near it, or take diffraction.tiles = 0."
+                : "Take more diffraction.tiles or diffraction.cells."));
     }
     if (limits.folded_contrast > 0) {
         warnings.push_back(fmt::format(
@@ -125,6 +111,7 @@ std::vector<std::string> warnings_of(const WaveLimits& limits) {
 
 nlohmann::ordered_json json_of(const WaveLimits& limits) {
     nlohmann::ordered_json json = {{"cells", limits.cells},
+                                   {"tiles", limits.tiles},
                                    {"parts_per_pixel", limits.parts},
                                    {"parts_asked_for", limits.asked_parts},
                                    {"folded_contrast", limits.folded_contrast}};
@@ -135,7 +122,7 @@ nlohmann::ordered_json json_of(const WaveLimits& limits) {
 }
 
 std::string summary(const WaveLimits& limits) {
-    std::string text = "largest error of contrast as the filter of the axis makes it, within two depths of field\n";
+    std::string text = "largest error of contrast as the filters make it, within two depths of field\n";
     for (const auto& [name, error] : limits.points) {
         text += fmt::format("{:8} {:8.4f}  at {:.4g} cycles/mm, z = {:.4g} um: {:.4f} instead of {:.4f}\n", name,
                             error.difference, glm::length(error.frequency), error.height * um_per_mm,

@@ -1,4 +1,4 @@
-// How far vkfv's images of waves are from exact ones: the error of using the axis' filter across the whole field, and
+// How far vkfv's images of waves are from exact ones: the error of the pupil's cells and of the field's tiles, and
 // aliasing where light is sorted more coarsely than the waves require.
 #pragma once
 
@@ -18,6 +18,7 @@ struct WaveLimits {
         optics::FilterError error;
     };
     int cells = 0; // across the pupil
+    int tiles = 1; // across the field
     int parts = 0; // of a pixel's side
     int asked_parts = 0;
     double folded_contrast = 0; // at most, of waves that the pupil passes; 0: nothing folds

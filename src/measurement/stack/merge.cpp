@@ -58,6 +58,7 @@ std::vector<optics::PupilFilter> filters_of_run(const Configuration& configurati
             auto waves = configuration.trace.waves.value_or(optics::WaveOptions());
             waves.cells = sortings.at(k).pupil_cells;
             waves.parts = sortings.at(k).parts_per_pixel;
+            waves.tiles = sortings.at(k).field_tiles;
             filters.emplace_back(*lights[k], waves);
         }
     }

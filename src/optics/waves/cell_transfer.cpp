@@ -89,16 +89,19 @@ double chief_slope_per_position(const Instrument& instrument) {
 // One wavelength's pupil on a lattice whose points p + lambda f / 2 are points again, for frequencies that are
 // multiples of the cutoff over `half`. No point lies on an axis, where mirror images would share a cell's edge.
 struct CellTransfer::Lattice {
-    Lattice(const Wavefront& wavefront, int half, const physics::f64::PupilCells& cells)
+    // middle: the p that it lies about; slope: of its chief ray at the detector, less that of the chief ray that the
+    // light is sorted by.
+    Lattice(const Wavefront& wavefront, int half, const physics::f64::PupilCells& cells, glm::dvec2 middle,
+            glm::dvec2 slope)
         : half(half), side(2 * half), spacing(wavefront.largest_rim() / half),
           cell(static_cast<std::size_t>(side * side), -1), wave(cell.size()), tilt(cell.size()) {
         const double k = 2 * pi / wavefront.wavelength();
         for (int j = -half; j < half; ++j) {
             for (int i = -half; i < half; ++i) {
-                const glm::dvec2 p = spacing * glm::dvec2(i + 0.5, j + 0.5);
+                const glm::dvec2 p = middle + spacing * glm::dvec2(i + 0.5, j + 0.5);
                 if (wavefront.passes(p)) {
                     const std::size_t place = index(i, j);
-                    cell[place] = static_cast<int>(physics::f64::pupil_cell(cells, wavefront.image_slope(p)));
+                    cell[place] = static_cast<int>(physics::f64::pupil_cell(cells, wavefront.image_slope(p) + slope));
                     wave[place] = std::polar(1.0, k * wavefront.path(p));
                     tilt[place] = 2 * k * spacing * wavefront.displacement(p);
                 }
@@ -168,6 +171,10 @@ struct CellTransfer::Lattice {
     std::vector<glm::dvec2> tilt;
 };
 
+int table_steps(int cells) {
+    return std::max(fewest_steps, points_a_cell * cells / 2);
+}
+
 CellTransfer::~CellTransfer() = default;
 CellTransfer::CellTransfer(CellTransfer&&) noexcept = default;
 CellTransfer& CellTransfer::operator=(CellTransfer&&) noexcept = default;
@@ -176,7 +183,7 @@ CellTransfer::CellTransfer(const Instrument& instrument, int cells)
     : CellTransfer(instrument, wavefronts_for_cells(instrument), cells) {}
 
 CellTransfer::CellTransfer(const Instrument& instrument, std::vector<Wavefront> wavefronts, int cells)
-    : steps_(std::max(fewest_steps, points_a_cell * cells / 2)), wavefronts_(std::move(wavefronts)) {
+    : steps_(table_steps(cells)), wavefronts_(std::move(wavefronts)) {
     cells_.side = static_cast<std::uint32_t>(cells);
     cells_.parts = 1;
     cells_.sensitive_side = std::sqrt(instrument.fill_factor);
@@ -208,21 +215,37 @@ CellTransfer::CellTransfer(const Instrument& instrument, std::vector<Wavefront> 
     round_ = std::ranges::all_of(wavefronts_, &Wavefront::round);
     shares_.resize(physics::f64::pupil_cell_count(cells_));
     for (const Wavefront& wavefront : wavefronts_) {
-        const Lattice& lattice = *lattices_.emplace_back(std::make_unique<Lattice>(wavefront, steps_, cells_));
-        nodes_.push_back(std::make_unique<Nodes>());
-        std::vector<double> points(shares_.size());
-        double all = 0;
-        for (const int cell : lattice.cell) {
-            if (cell >= 0) {
-                points[static_cast<std::size_t>(cell)] += 1;
-                all += 1;
-            }
-        }
-        for (std::size_t cell = 0; cell < shares_.size(); ++cell) {
-            shares_[cell] += wavefront.weight() * points[cell] / all;
-        }
+        add_lattice(wavefront, glm::dvec2(0), glm::dvec2(0));
     }
     find_nearest_lit();
+}
+
+CellTransfer::CellTransfer(const CellTransfer& axis, std::vector<Wavefront> wavefronts)
+    : cells_(axis.cells_), steps_(axis.steps_), cutoff_(axis.cutoff_), wavefronts_(std::move(wavefronts)),
+      shares_(axis.shares_.size()) {
+    round_ = std::ranges::all_of(wavefronts_, &Wavefront::round);
+    for (const Wavefront& wavefront : wavefronts_) {
+        add_lattice(wavefront, wavefront.chief(),
+                    wavefront.chief_slope() - physics::f64::chief_slope(cells_, wavefront.detector_point()));
+    }
+    find_nearest_lit();
+}
+
+void CellTransfer::add_lattice(const Wavefront& wavefront, glm::dvec2 middle, glm::dvec2 slope) {
+    const Lattice& lattice =
+        *lattices_.emplace_back(std::make_unique<Lattice>(wavefront, steps_, cells_, middle, slope));
+    nodes_.push_back(std::make_unique<Nodes>());
+    std::vector<double> points(shares_.size());
+    double all = 0;
+    for (const int cell : lattice.cell) {
+        if (cell >= 0) {
+            points[static_cast<std::size_t>(cell)] += 1;
+            all += 1;
+        }
+    }
+    for (std::size_t cell = 0; cell < shares_.size(); ++cell) {
+        shares_[cell] += wavefront.weight() * points[cell] / all;
+    }
 }
 
 void CellTransfer::find_nearest_lit() {
@@ -347,8 +370,8 @@ std::vector<Complex> CellTransfer::at(double fx, double fy) const {
                               [&](int dx, int dy) { return table_node(dx, dy); });
 }
 
-std::vector<Wavefront> wavefronts_for_cells(const Instrument& instrument) {
-    return wavefronts_of(instrument, at_most(most_wavelengths, spectral_nodes(instrument)));
+std::vector<Wavefront> wavefronts_for_cells(const Instrument& instrument, glm::dvec2 field) {
+    return wavefronts_of(instrument, at_most(most_wavelengths, spectral_nodes(instrument)), field);
 }
 
 } // namespace vkfv::optics

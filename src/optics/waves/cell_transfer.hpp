@@ -37,8 +37,12 @@ std::complex<double> interpolated(const Value* values, int steps, double x, doub
     return row(corner) * (1 - v) + row(corner + 2 * steps + 1) * v;
 }
 
-// The wavefronts of the axis that the filters of an instrument are made of: its spectrum by a few wavelengths.
-std::vector<Wavefront> wavefronts_for_cells(const Instrument& instrument);
+// The wavefronts that the filters of an instrument are made of, its spectrum by a few wavelengths: of a point of the
+// field (mm in the object), the axis if none is given.
+std::vector<Wavefront> wavefronts_for_cells(const Instrument& instrument, glm::dvec2 field = glm::dvec2(0));
+
+// Nodes of a table of so many cells across the pupil, from 0 to the cutoff.
+int table_steps(int cells);
 
 class CellTransfer {
   public:
@@ -47,6 +51,9 @@ class CellTransfer {
     CellTransfer(const Instrument& instrument, int cells);
     // Of these wavefronts, wavefronts_for_cells().
     CellTransfer(const Instrument& instrument, std::vector<Wavefront> wavefronts, int cells);
+    // Of the same cells, frequencies and steps as on the axis, and of the wavefronts of another point of the field,
+    // whose light passes: its pupil lies about its own chief ray.
+    CellTransfer(const CellTransfer& axis, std::vector<Wavefront> wavefronts);
     ~CellTransfer();
     CellTransfer(CellTransfer&&) noexcept;
     CellTransfer& operator=(CellTransfer&&) noexcept;
@@ -69,6 +76,7 @@ class CellTransfer {
 
     const CellValues& node_of_wavelength(std::size_t wavelength, int dx, int dy) const;
     CellValues table_node(int dx, int dy) const;
+    void add_lattice(const Wavefront& wavefront, glm::dvec2 middle, glm::dvec2 slope);
     void find_nearest_lit();
 
     struct Nodes {

@@ -10,6 +10,9 @@
 #include <cstddef>
 #include <cstdint>
 #include <cstdlib>
+#include <future>
+#include <optional>
+#include <utility>
 #include <vector>
 
 namespace vkfv::optics {
@@ -290,7 +293,7 @@ FilterError largest_filter_error(const PupilFilter& filter, const PointWaves& po
             const int dx = static_cast<int>(std::lround(steps.x));
             const int dy = static_cast<int>(std::lround(steps.y));
             const glm::dvec2 frequency = 2 * unit * glm::dvec2(dx, dy);
-            const auto of_cell = filter.transfers(frequency.x, frequency.y);
+            const auto of_cell = filter.transfers(wavefronts.front().detector_point(), frequency.x, frequency.y);
             AtHeights waves{};
             AtHeights filtered{};
             for (std::size_t k = 0; k < lattices.size(); ++k) {
@@ -320,9 +323,20 @@ FilterError largest_filter_error(const PupilFilter& filter, const PointWaves& po
     return *std::ranges::max_element(largest, {}, &FilterError::difference);
 }
 
+glm::dvec2 edge_of(const Instrument& instrument) {
+    return {instrument.first_order.field_edge, 0};
+}
+
 FilterError largest_filter_error(const PupilFilter& filter, const Instrument& instrument, glm::dvec2 field) {
-    if (field == glm::dvec2(0) && filter.error_on_axis()) {
-        return *filter.error_on_axis();
+    const auto& known = filter.known_errors();
+    if (field == glm::dvec2(0) && known.axis) {
+        return *known.axis;
+    }
+    if (field == edge_of(instrument) && known.edge) {
+        return *known.edge;
+    }
+    if (field == instrument.first_order.field_corner && known.corner) {
+        return *known.corner;
     }
     return largest_filter_error(filter, point_for_filter(instrument, field), reach_of_filter(instrument));
 }
@@ -335,16 +349,164 @@ PointWaves point_for_filter(const Instrument& instrument, glm::dvec2 field) {
     return PointWaves(instrument, field, most_wavelengths_tried);
 }
 
-PupilFilter filter_for_waves(const Instrument& instrument) {
-    const auto wavefronts = wavefronts_for_cells(instrument);
-    const auto axis = wavefronts.size() == 1 ? PointWaves(wavefronts) : point_for_filter(instrument, glm::dvec2(0));
-    for (int cells = fewest_cells;; cells += 2) {
-        PupilFilter filter = PupilFilter::unparted(instrument, wavefronts, cells);
-        filter.set_error_on_axis(largest_filter_error(filter, axis, reach_of_filter(instrument)));
-        if (cells == most_cells || filter.error_on_axis()->difference <= most_error_of_cells) {
-            return filter;
+namespace {
+
+// Makes filters of an instrument, and finds how good they are.
+class FilterSearch {
+  public:
+    explicit FilterSearch(const Instrument& instrument)
+        : instrument_(instrument), reach_(reach_of_filter(instrument)), wavefronts_(wavefronts_for_cells(instrument)) {}
+
+    // With the fewest cells, at least so many, that leave no more than this on the axis.
+    PupilFilter with_cells(int fewest, double most_error) {
+        for (int cells = fewest;; cells += 2) {
+            PupilFilter filter = PupilFilter::unparted(instrument_, wavefronts_, cells);
+            filter.set_known_errors({.axis = error_on_axis(filter), .edge = {}, .corner = {}});
+            if (cells >= most_cells || filter.known_errors().axis->difference <= most_error) {
+                return filter;
+            }
         }
     }
+    PupilFilter with_given_cells(int cells) const { return PupilFilter::unparted(instrument_, wavefronts_, cells); }
+
+    // Whether neither the edge nor the corner is worse than this; what was found is kept in the filter.
+    bool is_good(PupilFilter& filter, double most_error) {
+        know({edge_of(instrument_), instrument_.first_order.field_corner});
+        auto errors = filter.known_errors();
+        errors.edge = error_at(filter, edge_of(instrument_));
+        errors.corner = error_at(filter, instrument_.first_order.field_corner);
+        filter.set_known_errors(errors);
+        return std::max(errors.edge->difference, errors.corner->difference) <= most_error;
+    }
+
+    struct Tiled {
+        PupilFilter filter;
+        double worst; // on the axis, at the edge, in the corner and between tiles
+    };
+    Tiled with_tiles(const PupilFilter& axis, int tiles) {
+        PupilFilter filter = axis.tiled(instrument_, tiles);
+        is_good(filter, most_error_of_tiles);
+        auto errors = filter.known_errors();
+        errors.axis = error_on_axis(filter);
+        filter.set_known_errors(errors);
+        double worst = std::max({errors.axis->difference, errors.edge->difference, errors.corner->difference});
+        const auto between = between_tiles(tiles);
+        know(between);
+        for (const glm::dvec2 field : between) {
+            worst = std::max(worst, error_at(filter, field).difference);
+        }
+        return {.filter = std::move(filter), .worst = worst};
+    }
+
+    // The fewest tiles that are good enough; fewer where the next leave hardly less.
+    Tiled with_fewest_tiles(const PupilFilter& axis) {
+        constexpr int most_tiles = 9;
+        Tiled best = with_tiles(axis, 3);
+        for (int tiles = 5; tiles <= most_tiles && best.worst > most_error_of_tiles; tiles += 2) {
+            Tiled next = with_tiles(axis, tiles);
+            if (next.worst > hardly_less * best.worst) {
+                break;
+            }
+            best = std::move(next);
+        }
+        return best;
+    }
+
+    // The same number of tiles with more cells, as long as these are not good enough and the next leave less.
+    Tiled with_more_cells(Tiled best) {
+        const int tiles = best.filter.tiles().across();
+        for (int cells = static_cast<int>(best.filter.cells().side) + 2;
+             cells <= most_cells && best.worst > most_error_of_tiles; cells += 2) {
+            Tiled next = with_tiles(with_given_cells(cells), tiles);
+            if (next.worst > hardly_less * best.worst) {
+                break;
+            }
+            best = std::move(next);
+        }
+        return best;
+    }
+
+  private:
+    static constexpr double hardly_less = 0.95;
+
+    FilterError error_on_axis(const PupilFilter& filter) {
+        if (!axis_) {
+            axis_ = wavefronts_.size() == 1 ? PointWaves(wavefronts_) : point_for_filter(instrument_, glm::dvec2(0));
+        }
+        return largest_filter_error(filter, *axis_, reach_);
+    }
+    // Traces the wavefronts of these points, side by side.
+    void know(const std::vector<glm::dvec2>& fields) {
+        std::vector<std::future<Point>> traced;
+        for (const glm::dvec2 field : fields) {
+            if (std::ranges::find(points_, field, &Point::field) == points_.end()) {
+                traced.push_back(std::async(std::launch::async, [this, field] {
+                    return Point{.field = field, .waves = point_for_filter(instrument_, field)};
+                }));
+            }
+        }
+        for (auto& point : traced) {
+            points_.push_back(point.get());
+        }
+    }
+    FilterError error_at(const PupilFilter& filter, glm::dvec2 field) const {
+        return largest_filter_error(filter, std::ranges::find(points_, field, &Point::field)->waves, reach_);
+    }
+
+    // The middles between four tiles in the corners and at the edges of the field; a symmetric train's quarters are
+    // alike.
+    std::vector<glm::dvec2> between_tiles(int tiles) const {
+        const glm::dvec2 half = instrument_.first_order.field_corner;
+        const double outer = 1 - 1.0 / (tiles - 1); // of the half field
+        const double inner = 1.0 / (tiles - 1);     // next to the axis
+        std::vector<glm::dvec2> points = {half * outer, half * glm::dvec2(outer, inner)};
+        if (imaging_of(instrument_).symmetric) {
+            if (half.x != half.y) {
+                points.push_back(half * glm::dvec2(inner, outer));
+            }
+            return points;
+        }
+        for (const auto& [x, y] : {std::pair{-outer, outer},
+                                   {-outer, -outer},
+                                   {outer, -outer},
+                                   {-outer, inner},
+                                   {inner, outer},
+                                   {inner, -outer}}) {
+            points.push_back(half * glm::dvec2(x, y));
+        }
+        return points;
+    }
+
+    struct Point {
+        glm::dvec2 field;
+        PointWaves waves;
+    };
+
+    const Instrument& instrument_;
+    double reach_;
+    std::vector<Wavefront> wavefronts_;
+    std::optional<PointWaves> axis_;
+    std::vector<Point> points_;
+};
+
+} // namespace
+
+PupilFilter filter_for_waves(const Instrument& instrument, const WaveOptions& options) {
+    constexpr double share_of_cells = 0.8; // of the error that tiles may leave
+    FilterSearch search(instrument);
+    PupilFilter filter = options.cells > 0 ? search.with_given_cells(options.cells)
+                                           : search.with_cells(fewest_cells, most_error_of_cells);
+    if (options.tiles == 1 || (options.tiles == 0 && search.is_good(filter, most_error_of_axis))) {
+        return filter;
+    }
+    if (options.cells == 0) {
+        filter = search.with_cells(static_cast<int>(filter.cells().side), share_of_cells * most_error_of_tiles);
+    }
+    if (options.tiles > 0) {
+        return filter.tiled(instrument, options.tiles);
+    }
+    auto tiled = search.with_fewest_tiles(filter);
+    return options.cells > 0 ? tiled.filter : search.with_more_cells(std::move(tiled)).filter;
 }
 
 } // namespace vkfv::optics

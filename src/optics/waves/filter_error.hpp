@@ -13,13 +13,22 @@ FilterError largest_filter_error(const PupilFilter& filter, const PointWaves& po
 // The wavelengths of a point of the field (mm in the object) that this is found with.
 PointWaves point_for_filter(const Instrument& instrument, glm::dvec2 field);
 double reach_of_filter(const Instrument& instrument); // two depths of field, mm
+// The middle of a side of the field, mm in the object.
+glm::dvec2 edge_of(const Instrument& instrument);
 // The same of a point of the instrument's field (mm in the object), within that.
 FilterError largest_filter_error(const PupilFilter& filter, const Instrument& instrument, glm::dvec2 field);
 
 // What the cells may leave of that on the axis where their number is not asked for.
 inline constexpr double most_error_of_cells = 0.07;
-// With the fewest cells of 8, 10 ... 16 across the pupil that leave no more, or 16; of pixels that are not parted.
+// What the filter of the axis may leave of it at the edge and in the corner of the field where the number of tiles is
+// not asked for. Where it leaves more, tiles are to leave no more than most_error_of_tiles.
+inline constexpr double most_error_of_axis = 0.12;
+inline constexpr double most_error_of_tiles = 0.05;
+// With the cells and tiles that are asked for, of pixels that are not parted. If cells are not: with the fewest of 8,
+// 10 ... 16 across the pupil that leave no more than that on the axis, or 16; with several tiles they are to leave four
+// fifths of most_error_of_tiles. If tiles are not: one where the axis' filter is good enough, else the fewest of 3, 5,
+// 7 and 9 across the field that are, at its edge, in its corner and between tiles; fewer where more are hardly better.
 // Throws as PupilFilter.
-PupilFilter filter_for_waves(const Instrument& instrument);
+PupilFilter filter_for_waves(const Instrument& instrument, const WaveOptions& options = {});
 
 } // namespace vkfv::optics

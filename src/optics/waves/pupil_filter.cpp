@@ -32,12 +32,19 @@ int parts_of(const WaveOptions& options, const Instrument& instrument) {
     return options.parts > 0 ? options.parts : parts_for_waves(instrument);
 }
 
-int cells_of(const WaveOptions& options, const Instrument& instrument) {
-    return options.cells > 0 ? options.cells : static_cast<int>(filter_for_waves(instrument).cells().side);
+WaveOptions resolved(const WaveOptions& options, const Instrument& instrument) {
+    WaveOptions all = options;
+    all.parts = parts_of(options, instrument);
+    if (options.cells == 0 || options.tiles == 0) {
+        const PupilFilter filter = filter_for_waves(instrument, options);
+        all.cells = static_cast<int>(filter.cells().side);
+        all.tiles = filter.tiles().across();
+    }
+    return all;
 }
 
 PupilFilter::PupilFilter(const Instrument& instrument, const WaveOptions& options)
-    : PupilFilter(options.cells > 0 ? unparted(instrument, options.cells) : filter_for_waves(instrument)) {
+    : PupilFilter(filter_for_waves(instrument, options)) {
     set_parts(instrument, parts_of(options, instrument));
 }
 
@@ -47,12 +54,24 @@ void PupilFilter::set_parts(const Instrument& instrument, int parts) {
     parted_ = true;
 }
 
-PupilFilter::PupilFilter(CellTransfer transfer) : cells_(transfer.cells()), made_(new Made{std::move(transfer)}) {}
+PupilFilter::PupilFilter(CellTransfer transfer, const Instrument& instrument)
+    : cells_(transfer.cells()), part_pitch_(instrument.first_order.pixel_pitch),
+      magnification_(instrument.first_order.magnification),
+      made_(new Made{.axis = std::make_shared<const CellTransfer>(std::move(transfer))}) {}
+
+PupilFilter PupilFilter::tiled(const Instrument& instrument, int tiles) const {
+    PupilFilter filter = *this;
+    filter.tiles_ = FieldTiles(instrument, tiles);
+    filter.known_errors_ = {};
+    filter.made_.reset(new Made{.axis = made_->axis});
+    if (tiles > 1) {
+        filter.made_->field = std::make_unique<const FieldTransfer>(instrument, *made_->axis, filter.tiles_);
+    }
+    return filter;
+}
 
 PupilFilter PupilFilter::unparted(const Instrument& instrument, std::vector<Wavefront> wavefronts, int cells) {
-    PupilFilter filter(CellTransfer(instrument, std::move(wavefronts), cells));
-    filter.part_pitch_ = instrument.first_order.pixel_pitch;
-    return filter;
+    return {CellTransfer(instrument, std::move(wavefronts), cells), instrument};
 }
 
 PupilFilter PupilFilter::unparted(const Instrument& instrument, int cells) {
@@ -60,7 +79,8 @@ PupilFilter PupilFilter::unparted(const Instrument& instrument, int cells) {
 }
 
 const std::vector<std::complex<float>>& PupilFilter::table() const {
-    std::call_once(made_->table_once, [&] { made_->table = made_->transfer.table(); });
+    std::call_once(made_->table_once,
+                   [&] { made_->table = made_->field ? made_->field->table() : made_->axis->table(); });
     return made_->table;
 }
 
@@ -81,11 +101,27 @@ int PupilFilter::mirrored_upright(int cell) const {
     return (side - 1 - cell / side) * side + cell % side;
 }
 
-std::complex<double> PupilFilter::transfer(int cell, double fx, double fy) const {
+std::complex<double> PupilFilter::transfer(int tile, int cell, double fx, double fy) const {
     const int steps = this->steps();
     const auto plane = static_cast<std::size_t>((2 * steps + 1) * (steps + 1));
     const double scale = steps / cutoff();
-    return interpolated(table().data() + static_cast<std::size_t>(cell) * plane, steps, fx * scale, fy * scale);
+    const std::size_t place =
+        static_cast<std::size_t>(tile) * static_cast<std::size_t>(cell_count()) + static_cast<std::size_t>(cell);
+    return interpolated(table().data() + place * plane, steps, fx * scale, fy * scale);
+}
+
+std::vector<std::complex<double>> PupilFilter::transfers(glm::dvec2 detector_point, double fx, double fy) const {
+    if (!made_->field) {
+        return transfers(fx, fy);
+    }
+    std::vector<Complex> sum(static_cast<std::size_t>(cell_count()));
+    for (const auto& [tile, weight] : tiles_.shares(detector_point / magnification_)) {
+        const auto own = made_->field->at(tile, fx, fy);
+        for (std::size_t cell = 0; cell < sum.size(); ++cell) {
+            sum[cell] += weight * own[cell];
+        }
+    }
+    return sum;
 }
 
 double PupilFilter::folded_contrast() const {

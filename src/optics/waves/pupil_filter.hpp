@@ -6,6 +6,7 @@
 
 #include "optics/instrument/instrument.hpp"
 #include "optics/waves/cell_transfer.hpp"
+#include "optics/waves/field_tiles.hpp"
 #include "physics/physics.hpp"
 
 #include <complex>
@@ -29,6 +30,7 @@ struct FilterError {
 struct WaveOptions {
     int cells = 0;                 // across the pupil, even; 0: as many as the axis' aberrations ask for
     int parts = 0;                 // of a pixel's side in which light is sorted; 0: as fine as waves ask for
+    int tiles = 0;                 // filters across the field, an odd number; 0: as many as its aberrations ask for
     std::uint64_t most_memory = 0; // bytes that this may take of a device; 0: what the device has
     int sharers = 1;               // of that memory: images that are made of different light at a time
 };
@@ -38,9 +40,9 @@ struct WaveOptions {
 int parts_for_waves(const Instrument& instrument);
 // Those asked for, else these.
 int parts_of(const WaveOptions& options, const Instrument& instrument);
-// Those asked for, else those of filter_for_waves() (optics/waves/filter_error.hpp), for which filters are made and
-// compared.
-int cells_of(const WaveOptions& options, const Instrument& instrument);
+// The options with the cells, tiles and parts asked for, else with these parts, and the cells and tiles of
+// filter_for_waves() (optics/waves/filter_error.hpp), for which filters are made and compared.
+WaveOptions resolved(const WaveOptions& options, const Instrument& instrument);
 
 // Of an instrument's axis. The image has the spectrum  sum over the cells c of  w_c(f) I_c(f)  with
 //   w_c(f) = mean over p in c of  1{p + lambda f / 2 and p - lambda f / 2 in the pupil}
@@ -50,6 +52,9 @@ int cells_of(const WaveOptions& options, const Instrument& instrument);
 // best focus (optics/waves/wavefront.hpp), by the transform exp(-2 pi i f . x). It is Hopkins' transfer function (Proc.
 // R. Soc. A 231, 91, 1955) with what rays have of it left to them; in best focus exactly where |w_c| <= 1, which keeps
 // noise from growing. w_c(0) = 1. Of several wavelengths the mean by their shares of the light.
+//
+// Where the aberrations change over the field, a lattice of its points has transfer functions of their own, and their
+// images are blended: optics/waves/field_tiles.hpp.
 class PupilFilter {
   public:
     // Throws InputError where no light comes through.
@@ -60,25 +65,39 @@ class PupilFilter {
 
     // Of its instrument's pixels, before noise() is asked for.
     void set_parts(const Instrument& instrument, int parts);
+    // The same cells with so many tiles across the field of its instrument.
+    PupilFilter tiled(const Instrument& instrument, int tiles) const;
+    const FieldTiles& tiles() const { return tiles_; }
 
     const physics::f64::PupilCells& cells() const { return cells_; }
     int cell_count() const { return static_cast<int>(physics::f64::pupil_cell_count(cells_)); }
-    // Its error on the axis, where that decided how many cells there are.
-    const std::optional<FilterError>& error_on_axis() const { return error_on_axis_; }
-    void set_error_on_axis(const FilterError& error) { error_on_axis_ = error; }
+    // Its errors on the axis, at the edge and in the corner of the field, as far as they decided how many cells and
+    // tiles there are.
+    struct KnownErrors {
+        std::optional<FilterError> axis;
+        std::optional<FilterError> edge;
+        std::optional<FilterError> corner;
+    };
+    const KnownErrors& known_errors() const { return known_errors_; }
+    void set_known_errors(const KnownErrors& errors) { known_errors_ = errors; }
     // Of light from the axis that fills the pupil as a Lambertian surface's does. What arrives in a cell of share 0
     // comes from the field's edge; it is filtered as that of the nearest other cell.
-    double share(int cell) const { return made_->transfer.shares()[static_cast<std::size_t>(cell)]; }
+    double share(int cell) const { return made_->axis->shares()[static_cast<std::size_t>(cell)]; }
     // The cells that the mirror images of a cell's light, left to right and upside down, belong to.
     int mirrored(int cell) const;
     int mirrored_upright(int cell) const;
 
-    // w of a frequency in cycles per mm of the object plane, by the table.
-    std::complex<double> transfer(int cell, double fx, double fy) const;
-    // The same of all cells, without the table: for few frequencies.
-    std::vector<std::complex<double>> transfers(double fx, double fy) const { return made_->transfer.at(fx, fy); }
-    double cutoff() const { return made_->transfer.cutoff(); } // 2 NA / lambda of the shortest, cycles per mm
-    double part_pitch() const { return part_pitch_; }          // mm in the object plane
+    // w of a frequency in cycles per mm of the object plane, by the table: of a tile, and of that in the middle.
+    std::complex<double> transfer(int tile, int cell, double fx, double fy) const;
+    std::complex<double> transfer(int cell, double fx, double fy) const {
+        return transfer(tiles_.count() / 2, cell, fx, fy);
+    }
+    // The same of all cells, without the table: for few frequencies. Of the axis, and as the tiles about a point of the
+    // detector (mm, in the frame of physics::Detection) are blended there.
+    std::vector<std::complex<double>> transfers(double fx, double fy) const { return made_->axis->at(fx, fy); }
+    std::vector<std::complex<double>> transfers(glm::dvec2 detector_point, double fx, double fy) const;
+    double cutoff() const { return made_->axis->cutoff(); } // 2 NA / lambda of the shortest, cycles per mm
+    double part_pitch() const { return part_pitch_; }       // mm in the object plane
 
     // Standard deviation of a pixel's noise after the filter over that before it, for light that is alike everywhere.
     double noise() const;
@@ -90,27 +109,30 @@ class PupilFilter {
     double folded_contrast() const;
 
     // As a device reads it: w at fx = column / steps cutoff, from -steps to steps, and fy = row / steps cutoff, from 0,
-    // bilinear between; cell after cell, row after row. For fy < 0: the conjugate of -f.
+    // bilinear between; tile after tile, cell after cell, row after row. For fy < 0: the conjugate of -f.
     // It is made when it is first asked for.
     const std::vector<std::complex<float>>& table() const;
-    int steps() const { return made_->transfer.steps(); }
+    int steps() const { return made_->axis->steps(); }
 
   private:
     struct Made { // shared by copies
-        CellTransfer transfer;
+        std::shared_ptr<const CellTransfer> axis;
+        std::unique_ptr<const FieldTransfer> field{}; // where there are several tiles
         std::once_flag table_once{};
         std::vector<std::complex<float>> table{};
         std::once_flag noise_once{};
         double noise = 1;
     };
 
-    explicit PupilFilter(CellTransfer transfer);
+    PupilFilter(CellTransfer transfer, const Instrument& instrument);
     double noise_of_pixels() const;
 
     physics::f64::PupilCells cells_{};
     double part_pitch_ = 0;
     bool parted_ = false;
-    std::optional<FilterError> error_on_axis_;
+    double magnification_ = -1;
+    KnownErrors known_errors_;
+    FieldTiles tiles_;
     std::shared_ptr<Made> made_;
 };
 

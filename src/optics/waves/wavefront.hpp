@@ -43,6 +43,8 @@ class Wavefront {
     double weight() const { return weight_; }         // the wavelength's share of the flux
     double index() const { return index_; }           // of the specimen's medium
     double height() const { return height_; }         // of the object plane
+    // The height of the object plane with the least variance of W over the pupil's rays, mm above z = 0.
+    double sharpest_height() const { return -defocus_; }
     // p of the paraxial chief ray; if it is stopped, of the light's middle.
     glm::dvec2 chief() const { return turned(chief_); }
     glm::dvec2 object_point() const; // x of the chief ray

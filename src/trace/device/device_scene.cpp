@@ -81,6 +81,7 @@ std::unique_ptr<SceneWaves> make_waves(const optics::Instrument& seen, optics::W
     filter.table();
     const auto& device = opened.get();
     options.cells = static_cast<int>(filter.cells().side);
+    options.tiles = filter.tiles().across();
     filter.set_parts(seen, waves_on_device(options, seen, device->report()).parts);
     // Devices that are the host's own cores have nothing that the host has not, and it has doubles.
     const auto by = vulkan::is_software(device->report()) ? MadeBy::host : MadeBy::device;

@@ -142,17 +142,14 @@ TracerIdentity expected_identity_of(const optics::Instrument& instrument, const 
 
     const auto& waves = options.nonsequential ? std::nullopt : options.waves;
     if (options.device == "host") {
-        return host_identity(traced, waves ? LightSorting{.pupil_cells = optics::cells_of(*waves, instrument),
-                                                          .parts_per_pixel = optics::parts_of(*waves, instrument)}
-                                           : LightSorting());
+        return host_identity(traced, waves ? LightSorting::of(optics::resolved(*waves, instrument)) : LightSorting());
     }
     const auto reports = vulkan::list_devices();
     const auto& report = reports[vulkan::choose_device(reports, {options.device})];
     const auto traversal = choose_traversal(report, specimen, options.traversal, options.nonsequential).traversal;
     LightSorting sorting;
     if (waves) {
-        const auto fitted = waves_on_device(*waves, instrument, report);
-        sorting = {.pupil_cells = fitted.cells, .parts_per_pixel = fitted.parts};
+        sorting = LightSorting::of(waves_on_device(*waves, instrument, report));
     }
     return device_identity(report, traversal_name(traversal), traced, sorting);
 }

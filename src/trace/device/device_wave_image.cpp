@@ -35,36 +35,53 @@ float steps_a_line(const optics::PupilFilter& filter, int parts) {
 }
 
 vulkan::Kernel kernel_of(const vulkan::Device& device, const char* name, std::span<const std::uint32_t> code,
-                         std::initializer_list<std::uint32_t> slots, std::uint32_t push_bytes) {
+                         std::initializer_list<std::uint32_t> slots, std::uint32_t push_bytes,
+                         std::span<const vulkan::SpecializationConstant> constants = {}) {
     std::vector<vulkan::BindingDeclaration> declarations;
     for (const std::uint32_t slot : slots) {
         declarations.push_back({slot, vulkan::BindingKind::storage_buffer});
     }
-    return {device, name, code, declarations, push_bytes};
+    return {device, name, code, declarations, push_bytes, constants};
+}
+
+TileRamp in_float(const f64::TileRamp& ramp) {
+    return {.from = static_cast<float>(ramp.from),
+            .width = static_cast<float>(ramp.width),
+            .fade = static_cast<float>(ramp.fade),
+            .neighbours = ramp.neighbours};
+}
+
+ImageSize parts_of(ImageSize pixels, const optics::PupilFilter& filter) {
+    const auto parts = static_cast<int>(filter.cells().parts);
+    return {pixels.columns * parts, pixels.rows * parts};
 }
 
 } // namespace
 
 DeviceWaveImage::DeviceWaveImage(const vulkan::Device& device, const optics::PupilFilter& filter, ImageSize pixels,
                                  const SortedLight& light)
-    : light_(light), pixels_(pixels),
-      cells_(to_float(filter.cells())), size_{pixels.columns * static_cast<int>(cells_.parts),
-                                              pixels.rows * static_cast<int>(cells_.parts)},
-      sizes_(static_cast<int>(cells_.side), size_, largest_binding(device.report())),
+    : light_(light), pixels_(pixels), cells_(to_float(filter.cells())), image_size_(parts_of(pixels, filter)),
+      windows_(wave_windows(filter.tiles().across(), pixels, static_cast<int>(cells_.parts))),
+      filters_{vulkan::SpecializationConstant{.id = WAVES_CONSTANT_FILTERS,
+                                              .value = static_cast<std::uint32_t>(windows_.front().filters)}},
+      size_(parts_of(windows_.front().size, filter)),
+      sizes_(static_cast<int>(cells_.side), size_, windows_.front().filters, largest_binding(device.report())),
       steps_(static_cast<std::uint32_t>(filter.steps())), steps_a_column_(steps_a_line(filter, size_.columns)),
       steps_a_row_(steps_a_line(filter, size_.rows)), planes_(buffer_of(device, sizes_.plane_bytes())),
       table_(table_of(device, filter)), spectrum_(buffer_of(device, sizes_.spectrum_bytes())),
       image_(buffer_of(device, sizes_.image_bytes())), result_(device, bytes(pixels)),
       forward_(device, planes_, size_.columns, size_.rows, sizes_.planes_at_once(),
                vulkan::FourierPlanes::Direction::forward),
-      inverse_(device, image_, 2 * size_.columns, 2 * size_.rows, 1, vulkan::FourierPlanes::Direction::inverse),
+      inverse_(device, image_, 2 * size_.columns, 2 * size_.rows, windows_.front().filters,
+               vulkan::FourierPlanes::Direction::inverse),
       sort_(kernel_of(device, "wave_sort", wave_sort, {WAVES_BINDING_PLANES}, sizeof(WaveGroups))),
       filter_(kernel_of(device, "wave_filter", wave_filter,
-                        {WAVES_BINDING_PLANES, WAVES_BINDING_TABLE, WAVES_BINDING_SPECTRUM}, sizeof(WaveGroups))),
+                        {WAVES_BINDING_PLANES, WAVES_BINDING_TABLE, WAVES_BINDING_SPECTRUM}, sizeof(WaveGroups),
+                        filters_)),
       extend_(kernel_of(device, "wave_extend", wave_extend, {WAVES_BINDING_SPECTRUM, WAVES_BINDING_IMAGE},
-                        sizeof(WaveSize))),
+                        sizeof(WaveSize), filters_)),
       add_up_(kernel_of(device, "wave_pixels", wave_pixels, {WAVES_BINDING_IMAGE, WAVES_BINDING_PIXELS},
-                        sizeof(WaveSize))) {}
+                        sizeof(WaveSize), filters_)) {}
 
 void DeviceWaveImage::dispatch(vulkan::Commands& commands, const vulkan::Kernel& kernel,
                                std::span<const vulkan::Binding> bindings, std::span<const std::byte> push,
@@ -75,16 +92,30 @@ void DeviceWaveImage::dispatch(vulkan::Commands& commands, const vulkan::Kernel&
 }
 
 void DeviceWaveImage::record(vulkan::Commands& commands) const {
+    commands.fill_zero(result_);
+    commands.barrier();
+    for (const WaveWindow& window : windows_) {
+        record(commands, window);
+    }
+}
+
+void DeviceWaveImage::record(vulkan::Commands& commands, const WaveWindow& window) const {
     const vk::DeviceAddress address = light_.address();
+    const auto number = [](int value) { return static_cast<std::uint32_t>(value); };
+    const auto tile = [&](std::size_t filter) { return number(window.tiles[filter]); };
     WaveGroups groups{.light = {static_cast<std::uint32_t>(address), static_cast<std::uint32_t>(address >> 32)},
-                      .columns = static_cast<std::uint32_t>(size_.columns),
-                      .rows = static_cast<std::uint32_t>(size_.rows),
+                      .image_columns = number(image_size_.columns),
+                      .first_column = number(window.column) * cells_.parts,
+                      .first_row = number(window.row) * cells_.parts,
+                      .columns = number(size_.columns),
+                      .rows = number(size_.rows),
                       .cells_side = cells_.side,
                       .first = 0,
                       .count = sizes_.groups_at_once(),
                       .steps = steps_,
                       .steps_a_column = steps_a_column_,
-                      .steps_a_row = steps_a_row_};
+                      .steps_a_row = steps_a_row_,
+                      .tiles = {tile(0), tile(1), tile(2), tile(3)}};
     const std::array<vulkan::Binding, 1> to_planes = {{{WAVES_BINDING_PLANES, &planes_}}};
     const std::array<vulkan::Binding, 3> to_spectrum = {
         {{WAVES_BINDING_PLANES, &planes_}, {WAVES_BINDING_TABLE, &table_}, {WAVES_BINDING_SPECTRUM, &spectrum_}}};
@@ -99,11 +130,18 @@ void DeviceWaveImage::record(vulkan::Commands& commands) const {
         forward_.record(commands);
         dispatch(commands, filter_, to_spectrum, push, places);
     }
-    const WaveSize size{.columns = groups.columns, .rows = groups.rows, .cells = cells_};
+    const WaveSize size{.columns = groups.columns,
+                        .rows = groups.rows,
+                        .cells = cells_,
+                        .image_columns = number(pixels_.columns),
+                        .first_column = number(window.column),
+                        .first_row = number(window.row),
+                        .along = in_float(window.along),
+                        .up = in_float(window.up)};
     const auto push = std::as_bytes(std::span(&size, 1));
-    dispatch(commands, extend_, to_image, push, 2 * places);
+    dispatch(commands, extend_, to_image, push, 2 * places * static_cast<std::size_t>(window.filters));
     inverse_.record(commands);
-    dispatch(commands, add_up_, to_pixels, push, pixels_.count());
+    dispatch(commands, add_up_, to_pixels, push, window.size.count());
 }
 
 } // namespace vkfv::trace

@@ -4,9 +4,14 @@
 #include "optics/waves/pupil_filter.hpp"
 #include "trace/device/sorted_light.hpp"
 #include "trace/device/wave_planes.hpp"
+#include "trace/interface/wave_windows.hpp"
 #include "vulkan/fourier_planes.hpp"
 
+#include <array>
 #include <cstddef>
+#include <cstdint>
+#include <span>
+#include <vector>
 
 namespace vkfv::trace {
 
@@ -23,13 +28,17 @@ class DeviceWaveImage {
     static std::size_t bytes(ImageSize pixels) { return pixels.count() * sizeof(float); }
 
   private:
+    void record(vulkan::Commands& commands, const WaveWindow& window) const;
     void dispatch(vulkan::Commands& commands, const vulkan::Kernel& kernel, std::span<const vulkan::Binding> bindings,
                   std::span<const std::byte> push, std::size_t places) const;
 
     const SortedLight& light_;
     ImageSize pixels_;
     physics::f32::PupilCells cells_;
-    ImageSize size_; // in parts of pixels
+    ImageSize image_size_;                                  // in parts of pixels
+    std::vector<WaveWindow> windows_;                       // of one size
+    std::array<vulkan::SpecializationConstant, 1> filters_; // that are blended in each
+    ImageSize size_;                                        // of a window, in parts of pixels
     WavePlanes sizes_;
     std::uint32_t steps_;
     float steps_a_column_;

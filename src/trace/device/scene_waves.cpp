@@ -41,9 +41,10 @@ void SceneWaves::make_image(ExposureWork& work) const {
 
 Grid<double> SceneWaves::light_by_host() const {
     const WaveImage image(filter_, pixels_);
-    return image.apply([&](int cell) {
-        std::vector<std::uint64_t> numbers(image.numbers_a_cell());
-        light_.read(static_cast<std::size_t>(cell), numbers);
+    const auto columns = static_cast<std::size_t>(image.columns());
+    return image.apply([&](int cell, int first_row, int rows) {
+        std::vector<std::uint64_t> numbers(static_cast<std::size_t>(rows) * columns);
+        light_.read(static_cast<std::size_t>(cell), static_cast<std::size_t>(first_row) * columns, numbers);
         return numbers;
     });
 }

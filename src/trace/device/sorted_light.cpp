@@ -47,8 +47,9 @@ void SortedLight::clear(vulkan::Commands& commands) const {
     commands.barrier();
 }
 
-void SortedLight::read(std::size_t cell, std::span<std::uint64_t> numbers) const {
-    buffers_[cell / cells_a_buffer_].read(std::as_writable_bytes(numbers), cell % cells_a_buffer_ * bytes_a_cell_);
+void SortedLight::read(std::size_t cell, std::size_t first, std::span<std::uint64_t> numbers) const {
+    buffers_[cell / cells_a_buffer_].read(std::as_writable_bytes(numbers),
+                                          cell % cells_a_buffer_ * bytes_a_cell_ + first * sizeof(std::uint64_t));
 }
 
 void SortedLight::write(std::span<const std::uint64_t> numbers) {

@@ -27,8 +27,8 @@ class SortedLight {
     std::vector<const vulkan::Buffer*> buffers() const;
 
     void clear(vulkan::Commands& commands) const;
-    // By the host: all numbers of one cell's image, as they are now.
-    void read(std::size_t cell, std::span<std::uint64_t> numbers) const;
+    // By the host: the numbers of one cell's image from this one on, as they are now.
+    void read(std::size_t cell, std::size_t first, std::span<std::uint64_t> numbers) const;
     // All numbers, cell after cell.
     void write(std::span<const std::uint64_t> numbers);
 

@@ -2,6 +2,7 @@
 
 #include "core/messages/error.hpp"
 #include "trace/device/wave_planes.hpp"
+#include "trace/interface/wave_windows.hpp"
 
 #include <fmt/format.h>
 
@@ -21,9 +22,25 @@ ImageSize in_parts(int parts, ImageSize pixels) {
     return {pixels.columns * parts, pixels.rows * parts};
 }
 
-std::uint64_t light_bytes(int cells, int parts, ImageSize pixels) {
-    const auto count = static_cast<std::uint64_t>(cells) * static_cast<std::uint64_t>(cells);
-    return count * in_parts(parts, pixels).count() * sizeof(std::uint64_t);
+std::uint64_t bytes_a_cell(const WaveSizes& sizes) {
+    return in_parts(sizes.parts, sizes.pixels).count() * sizeof(std::uint64_t);
+}
+
+std::uint64_t light_bytes(const WaveSizes& sizes) {
+    const auto side = static_cast<std::uint64_t>(sizes.cells);
+    return side * side * bytes_a_cell(sizes);
+}
+
+std::uint64_t table_bytes(const WaveSizes& sizes) {
+    const auto steps = static_cast<std::uint64_t>(optics::table_steps(sizes.cells));
+    const auto filters =
+        static_cast<std::uint64_t>(sizes.tiles * sizes.cells) * static_cast<std::uint64_t>(sizes.tiles * sizes.cells);
+    return filters * (2 * steps + 1) * (steps + 1) * 2 * sizeof(float);
+}
+
+WavePlanes planes_of(const WaveSizes& sizes, std::uint64_t binding) {
+    const WaveWindow window = wave_windows(sizes.tiles, sizes.pixels, sizes.parts).front();
+    return {sizes.cells, in_parts(sizes.parts, window.size), window.filters, binding};
 }
 
 // A limit of a device that does not hold the light or its transforms.
@@ -34,20 +51,19 @@ struct Violation {
 };
 
 // What of the device forbids so many cells and parts.
-std::optional<Violation> violation(const optics::WaveOptions& options, int parts, ImageSize pixels,
+std::optional<Violation> violation(const optics::WaveOptions& options, ImageSize pixels,
                                    const vulkan::DeviceReport& device) {
-    const int cells = options.cells;
+    const WaveSizes sizes{.cells = options.cells, .parts = options.parts, .tiles = options.tiles, .pixels = pixels};
     const bool software = vulkan::is_software(device);
     const std::uint64_t binding = largest_binding(device);
     // One group at a time is what a host cannot do without: the parts do not depend on its number of cores.
-    const WaveMemory memory =
-        software ? wave_memory_of_host(cells, parts, pixels, 1) : wave_memory(cells, parts, pixels, binding);
+    const WaveMemory memory = software ? wave_memory_of_host(sizes, 1) : wave_memory(sizes, binding);
     const auto usable = static_cast<std::uint64_t>(usable_share * static_cast<double>(device.memory_bytes));
     const bool bounded = options.most_memory > 0 && options.most_memory < usable;
     const std::uint64_t allowed =
         (bounded ? options.most_memory : usable) / static_cast<std::uint64_t>(options.sharers);
-    const std::string sorted = fmt::format("{} x {} cells, {} x {} parts of {} x {} pixels", cells, cells, parts, parts,
-                                           pixels.columns, pixels.rows);
+    const std::string sorted = fmt::format("{} x {} cells, {} x {} parts of {} x {} pixels", sizes.cells, sizes.cells,
+                                           sizes.parts, sizes.parts, pixels.columns, pixels.rows);
     if (memory.all() > allowed) {
         return Violation{
             .key = "diffraction.cells",
@@ -58,13 +74,13 @@ std::optional<Violation> violation(const optics::WaveOptions& options, int parts
                                             : fmt::format("four fifths of the memory of {}", device.name),
                                     options.sharers > 1 ? fmt::format(" shared by {} sources", options.sharers) : "")};
     }
-    if (const std::uint64_t image = light_bytes(1, parts, pixels); image > largest_buffer(device)) {
+    if (const std::uint64_t image = bytes_a_cell(sizes); image > largest_buffer(device)) {
         return Violation{.key = "detector.pixels",
                          .found = fmt::format("{}: {} bytes of light for each cell", sorted, image),
                          .expected = fmt::format("at most {} bytes, the largest allocation of {}",
                                                  largest_buffer(device), device.name)};
     }
-    const std::uint64_t transform = WavePlanes(cells, in_parts(parts, pixels), binding).largest_bytes();
+    const std::uint64_t transform = planes_of(sizes, binding).largest_bytes();
     if (!software && transform > binding) {
         return Violation{.key = "detector.pixels",
                          .found = fmt::format("{}: {} bytes for the transform of the image with its mirror images",
@@ -89,32 +105,34 @@ std::size_t cells_in_a_buffer(std::uint64_t most_bytes, std::size_t bytes_a_cell
     return std::max<std::size_t>(1, most_bytes / std::max<std::size_t>(1, bytes_a_cell));
 }
 
-WaveMemory wave_memory(int cells, int parts, ImageSize pixels, std::uint64_t binding) {
-    const WavePlanes planes(cells, in_parts(parts, pixels), binding);
-    return {.light = light_bytes(cells, parts, pixels),
-            .transforms = 2 * (planes.plane_bytes() + planes.image_bytes()) + planes.spectrum_bytes()};
+WaveMemory wave_memory(const WaveSizes& sizes, std::uint64_t binding) {
+    const WavePlanes planes = planes_of(sizes, binding);
+    const std::uint64_t tables = sizes.tiles > 1 ? table_bytes(sizes) : 0; // one is small
+    return {.light = light_bytes(sizes),
+            .transforms = 2 * (planes.plane_bytes() + planes.image_bytes()) + planes.spectrum_bytes() + tables};
 }
 
-WaveMemory wave_memory_of_host(int cells, int parts, ImageSize pixels, int groups_at_once) {
-    const std::uint64_t count = in_parts(parts, pixels).count();
-    const auto at_once = static_cast<std::uint64_t>(std::min(groups_at_once, cells * cells / 4));
+WaveMemory wave_memory_of_host(const WaveSizes& sizes, int groups_at_once) {
+    const WaveWindow window = wave_windows(sizes.tiles, sizes.pixels, sizes.parts).front();
+    const std::uint64_t count = in_parts(sizes.parts, window.size).count();
+    const std::uint64_t read = count / static_cast<std::uint64_t>(window.size.columns) *
+                               static_cast<std::uint64_t>(sizes.pixels.columns); // whole rows
+    const auto at_once = static_cast<std::uint64_t>(std::min(groups_at_once, sizes.cells * sizes.cells / 4));
     constexpr std::uint64_t complex_bytes = 2 * sizeof(double), cells_a_group = 4;
-    // Of each part of a pixel: two frequencies of the spectrum, beside the images and the transforms of the cells at a
+    // Of each part of a pixel: two frequencies of the spectra, beside the images and the transforms of the cells at a
     // time, and afterwards beside the image with its mirror images and the pixels.
-    const std::uint64_t spectrum = 2 * complex_bytes;
-    const std::uint64_t groups = at_once * cells_a_group * (sizeof(std::uint64_t) + sizeof(double));
-    const std::uint64_t image = 4 * complex_bytes + sizeof(double);
-    return {.light = light_bytes(cells, parts, pixels), .transforms = count * (spectrum + std::max(groups, image))};
+    const std::uint64_t spectra = static_cast<std::uint64_t>(window.filters) * count * 2 * complex_bytes;
+    const std::uint64_t groups = at_once * cells_a_group * (read * sizeof(std::uint64_t) + count * sizeof(double));
+    const std::uint64_t image = count * (4 * complex_bytes + sizeof(double));
+    return {.light = light_bytes(sizes), .transforms = spectra + std::max(groups, image)};
 }
 
 optics::WaveOptions waves_on_device(const optics::WaveOptions& options, const optics::Instrument& instrument,
                                     const vulkan::DeviceReport& device) {
     const ImageSize pixels = instrument.detector_pixels();
-    optics::WaveOptions fitted = options;
-    fitted.cells = optics::cells_of(options, instrument);
-    fitted.parts = optics::parts_of(options, instrument);
+    optics::WaveOptions fitted = optics::resolved(options, instrument);
     const int least = options.parts > 0 ? options.parts : 1;
-    while (auto forbidden = violation(fitted, fitted.parts, pixels, device)) {
+    while (auto forbidden = violation(fitted, pixels, device)) {
         if (fitted.parts == least) {
             throw InputError({.where = {},
                               .key = options.parts > 0 ? "diffraction.parts_per_pixel" : forbidden->key,

@@ -28,12 +28,19 @@ std::uint64_t largest_binding(const vulkan::DeviceReport& device);
 // How many cells' images of so many bytes lie in one buffer of at most so many, at least one.
 std::size_t cells_in_a_buffer(std::uint64_t most_bytes, std::size_t bytes_a_cell);
 
-// On a GPU. cells: across the pupil; parts: of a pixel's side; pixels: of the detector; binding: largest_binding().
-WaveMemory wave_memory(int cells, int parts, ImageSize pixels,
-                       std::uint64_t binding = std::numeric_limits<std::uint64_t>::max());
+// What it is of: options whose cells, parts and tiles are given.
+struct WaveSizes {
+    int cells = 0; // across the pupil
+    int parts = 0; // of a pixel's side
+    int tiles = 1; // across the field
+    ImageSize pixels;
+};
+
+// On a GPU. binding: largest_binding().
+WaveMemory wave_memory(const WaveSizes& sizes, std::uint64_t binding = std::numeric_limits<std::uint64_t>::max());
 // Where the host's own cores are the device, and the host makes the transforms: of so many groups of four cells at a
 // time, as many as it has cores.
-WaveMemory wave_memory_of_host(int cells, int parts, ImageSize pixels, int groups_at_once);
+WaveMemory wave_memory_of_host(const WaveSizes& sizes, int groups_at_once);
 
 // The options with the pupil cells and the parts of a pixel that light is sorted in: those asked for, or as many as
 // waves ask for, or where these are too many parts for the device, as many as it can hold. Throws InputError, which

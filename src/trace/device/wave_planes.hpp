@@ -13,9 +13,10 @@ class WavePlanes {
   public:
     static constexpr std::uint64_t a_group = 2; // planes, of four cells that are mirror images
 
-    // cells: across the pupil; image: in parts of pixels; binding: bytes of a buffer that kernels are given, at most.
-    // The planes that are transformed at once fit in it where two do.
-    WavePlanes(int cells, ImageSize image, std::uint64_t binding) : plane_(image.count() * complex_bytes) {
+    // cells: across the pupil; image: of a window, in parts of pixels; filters: that are blended in it; binding: bytes
+    // of a buffer that kernels are given, at most. The planes that are transformed at once fit in it where two do.
+    WavePlanes(int cells, ImageSize image, int filters, std::uint64_t binding)
+        : plane_(image.count() * complex_bytes), filters_(static_cast<std::uint64_t>(filters)) {
         groups_ = static_cast<std::uint32_t>(cells / 2) * static_cast<std::uint32_t>(cells / 2);
         // More at once is no quicker on an H100, and a driver takes a tenth of a second to give gigabytes back.
         constexpr std::uint64_t most_bytes = std::uint64_t{1} << 28;
@@ -32,14 +33,15 @@ class WavePlanes {
     int planes_at_once() const { return static_cast<int>(a_group * at_once_); }
 
     std::size_t plane_bytes() const { return a_group * at_once_ * plane_; } // of the groups at once
-    std::size_t spectrum_bytes() const { return 2 * plane_; } // of the image with its mirror images, a half
-    std::size_t image_bytes() const { return 4 * plane_; }    // with its mirror images
+    std::size_t spectrum_bytes() const { return filters_ * 2 * plane_; } // of the image with its mirror images, a half
+    std::size_t image_bytes() const { return filters_ * 4 * plane_; }    // with its mirror images
     std::size_t largest_bytes() const { return std::max(plane_bytes(), image_bytes()); }
 
   private:
     static constexpr std::uint64_t complex_bytes = 2 * sizeof(float);
 
     std::uint64_t plane_;
+    std::uint64_t filters_;
     std::uint32_t groups_ = 0;
     std::uint32_t at_once_ = 0;
 };

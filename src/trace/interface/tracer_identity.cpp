@@ -21,8 +21,13 @@ namespace vkfv::trace {
 
 LightSorting LightSorting::of(const std::optional<optics::PupilFilter>& filter) {
     return filter ? LightSorting{.pupil_cells = static_cast<int>(filter->cells().side),
-                                 .parts_per_pixel = static_cast<int>(filter->cells().parts)}
+                                 .parts_per_pixel = static_cast<int>(filter->cells().parts),
+                                 .field_tiles = filter->tiles().across()}
                   : LightSorting();
+}
+
+LightSorting LightSorting::of(const optics::WaveOptions& options) {
+    return {.pupil_cells = options.cells, .parts_per_pixel = options.parts, .field_tiles = options.tiles};
 }
 
 std::string TracerIdentity::toml() const {
@@ -42,14 +47,21 @@ std::string TracerIdentity::toml() const {
     if (sorting.pupil_cells != 0) {
         text += fmt::format("pupil_cells = {}\nparts_per_pixel = {}\n", sorting.pupil_cells, sorting.parts_per_pixel);
     }
+    if (sorting.field_tiles > 1) {
+        text += fmt::format("field_tiles = {}\n", sorting.field_tiles);
+    }
     if (!further_sortings.empty()) {
-        std::vector<int> cells, parts;
+        std::vector<int> cells, parts, tiles;
         for (const LightSorting& further : further_sortings) {
             cells.push_back(further.pupil_cells);
             parts.push_back(further.parts_per_pixel);
+            tiles.push_back(further.field_tiles);
         }
         text += fmt::format("further_pupil_cells = [{}]\nfurther_parts_per_pixel = [{}]\n", fmt::join(cells, ", "),
                             fmt::join(parts, ", "));
+        if (std::ranges::any_of(tiles, [](int across) { return across > 1; })) {
+            text += fmt::format("further_field_tiles = [{}]\n", fmt::join(tiles, ", "));
+        }
     }
     return text +
            fmt::format("kernels_digest = {}\ninstrument_digest = {}\n", toml_quoted(kernels), toml_quoted(instrument));
@@ -57,14 +69,18 @@ std::string TracerIdentity::toml() const {
 
 TracerIdentity TracerIdentity::parse(const TomlTable& table) {
     const auto text = [&](const char* key) { return table.optional_string(key).value_or(""); };
-    const auto number = [&](const char* key) {
-        return table.optional_integer(key, 0, std::numeric_limits<std::uint32_t>::max()).value_or(0);
+    const auto number = [&](const char* key, std::int64_t otherwise = 0) {
+        return table.optional_integer(key, 0, std::numeric_limits<std::uint32_t>::max()).value_or(otherwise);
     };
     const auto numbers = [&](const char* key) { return table.optional_numbers(key).value_or(std::vector<double>()); };
     const auto cells = numbers("further_pupil_cells"), parts = numbers("further_parts_per_pixel");
+    auto tiles = numbers("further_field_tiles");
+    tiles.resize(cells.size(), 1);
     std::vector<LightSorting> further;
     for (std::size_t k = 0; k < std::min(cells.size(), parts.size()); ++k) {
-        further.push_back({.pupil_cells = static_cast<int>(cells[k]), .parts_per_pixel = static_cast<int>(parts[k])});
+        further.push_back({.pupil_cells = static_cast<int>(cells[k]),
+                           .parts_per_pixel = static_cast<int>(parts[k]),
+                           .field_tiles = static_cast<int>(tiles[k])});
     }
     return {.device = table.string("device"),
             .vendor_id = static_cast<std::uint32_t>(number("vendor_id")),
@@ -73,7 +89,8 @@ TracerIdentity TracerIdentity::parse(const TomlTable& table) {
             .traversal = text("traversal"),
             .fourier = text("fourier"),
             .sorting = {.pupil_cells = static_cast<int>(number("pupil_cells")),
-                        .parts_per_pixel = static_cast<int>(number("parts_per_pixel"))},
+                        .parts_per_pixel = static_cast<int>(number("parts_per_pixel")),
+                        .field_tiles = static_cast<int>(number("field_tiles", 1))},
             .further_sortings = std::move(further),
             .kernels = table.string("kernels_digest"),
             .instrument = table.string("instrument_digest")};

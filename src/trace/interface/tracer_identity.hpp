@@ -18,11 +18,14 @@ struct DeviceReport;
 
 namespace vkfv::trace {
 
-// How light of waves is sorted; 0: images of rays.
+// How light of waves is sorted and filtered; 0: images of rays.
 struct LightSorting {
     int pupil_cells = 0;     // across the pupil
     int parts_per_pixel = 0; // of its side
+    int field_tiles = 1;     // filters across the field
 
+    // options: whose cells, parts and tiles are known.
+    static LightSorting of(const optics::WaveOptions& options);
     static LightSorting of(const std::optional<optics::PupilFilter>& filter);
 };
 

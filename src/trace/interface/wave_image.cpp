@@ -3,6 +3,7 @@
 #include "core/mathematics/fourier.hpp"
 #include "core/mathematics/units.hpp"
 #include "core/threads/parallel_list.hpp"
+#include "trace/interface/wave_windows.hpp"
 
 #include <algorithm>
 #include <atomic>
@@ -12,13 +13,6 @@ namespace vkfv::trace {
 
 using Complex = std::complex<double>;
 
-// Of the extended image, whose periods are twice the image's sides: at l / (2 columns) and -l / (2 columns) cycles a
-// part along x, m / (2 rows) along y, as seen from the lower left corner of its first part, over 4.
-struct WaveImage::Spectrum {
-    Grid<Complex> ahead;
-    Grid<Complex> behind;
-};
-
 namespace {
 
 ImageSize in_parts(ImageSize pixels, const optics::PupilFilter& filter) {
@@ -27,6 +21,45 @@ ImageSize in_parts(ImageSize pixels, const optics::PupilFilter& filter) {
 }
 
 } // namespace
+
+// Of an extended window, whose periods are twice its sides: at l / (2 columns) and -l / (2 columns) cycles a part along
+// x, m / (2 rows) along y, as seen from the lower left corner of its first part, over 4.
+struct WaveImage::Spectrum {
+    Grid<Complex> ahead;
+    Grid<Complex> behind;
+};
+
+// One window, of which each filter has a spectrum.
+class WaveImage::Window {
+  public:
+    // Of a cell and its mirror images (itself, left to right, upside down, both): the parts of their images' extension
+    // that are even or odd along rows (x) and columns (y).
+    enum Part : std::size_t { even, odd_along, odd_across, odd };
+    using Parts = std::array<Grid<double>, 4>;
+    using Rows = std::array<std::vector<std::uint64_t>, 4>; // of the window, of those cells; over the whole image
+
+    // image: in parts of pixels.
+    Window(const optics::PupilFilter& filter, const WaveWindow& window, ImageSize image)
+        : filter_(filter), window_(window), image_(image), size_(in_parts(window.size, filter)),
+          sums_(static_cast<std::size_t>(window.filters),
+                {Grid<Complex>(size_.columns, size_.rows), Grid<Complex>(size_.columns, size_.rows)}) {}
+
+    int first_row() const { return window_.row * parts(); }
+    int rows() const { return size_.rows; }
+    Parts transform(const Rows& images) const;
+    void add(const Parts& parts, const std::array<int, 4>& cells);
+    void add_pixels(Grid<double>& result) const;
+
+  private:
+    int parts() const { return static_cast<int>(filter_.cells().parts); }
+    Grid<double> pixels_of(const Spectrum& sum) const;
+
+    const optics::PupilFilter& filter_;
+    const WaveWindow& window_;
+    ImageSize image_;
+    ImageSize size_; // in parts of pixels
+    std::vector<Spectrum> sums_;
+};
 
 WaveImage::WaveImage(const optics::PupilFilter& filter, ImageSize pixels)
     : filter_(filter), pixels_(pixels), size_(in_parts(pixels, filter)) {}
@@ -40,17 +73,20 @@ std::array<int, 4> WaveImage::mirror_images(int cell) const {
     return {cell, filter_.mirrored(cell), upright, filter_.mirrored(upright)};
 }
 
-WaveImage::Parts WaveImage::transform(const CellImages& images) const {
+WaveImage::Window::Parts WaveImage::Window::transform(const Rows& images) const {
     Parts parts;
     parts.fill(Grid<double>(size_.columns, size_.rows));
+    const int first_column = window_.column * this->parts();
     for (int row = 0; row < size_.rows; ++row) {
         for (int column = 0; column < size_.columns; ++column) {
+            const std::size_t from = static_cast<std::size_t>(row) * static_cast<std::size_t>(image_.columns) +
+                                     static_cast<std::size_t>(first_column + column);
             const std::size_t k = static_cast<std::size_t>(row) * static_cast<std::size_t>(size_.columns) +
                                   static_cast<std::size_t>(column);
-            const auto own = static_cast<double>(images[0][k]);
-            const auto sideways = static_cast<double>(images[1][k]);
-            const auto upright = static_cast<double>(images[2][k]);
-            const auto both = static_cast<double>(images[3][k]);
+            const auto own = static_cast<double>(images[0][from]);
+            const auto sideways = static_cast<double>(images[1][from]);
+            const auto upright = static_cast<double>(images[2][from]);
+            const auto both = static_cast<double>(images[3][from]);
             // A sine transform is the cosine transform of alternating signs, read from the other end.
             const double along = column % 2 == 0 ? 0.25 : -0.25;
             const double across = row % 2 == 0 ? 1 : -1;
@@ -66,7 +102,7 @@ WaveImage::Parts WaveImage::transform(const CellImages& images) const {
     return parts;
 }
 
-void WaveImage::add(Spectrum& sum, const Parts& parts, const std::array<int, 4>& cells) const {
+void WaveImage::Window::add(const Parts& parts, const std::array<int, 4>& cells) {
     const double step_x = 0.5 / size_.columns / filter_.part_pitch();
     const double step_y = 0.5 / size_.rows / filter_.part_pitch();
     for (int row = 0; row < size_.rows; ++row) {
@@ -83,16 +119,19 @@ void WaveImage::add(Spectrum& sum, const Parts& parts, const std::array<int, 4>&
                 const Complex sideways(cosines + sines, sine_along - sine_across);
                 const std::array ahead = {same, sideways, std::conj(sideways), std::conj(same)};
                 const std::array behind = {sideways, same, std::conj(same), std::conj(sideways)};
-                for (std::size_t k = 0; k < cells.size(); ++k) {
-                    sum.ahead(column, row) += filter_.transfer(cells[k], fx, fy) * ahead[k];
-                    sum.behind(column, row) += filter_.transfer(cells[k], -fx, fy) * behind[k];
+                for (std::size_t filter = 0; filter < sums_.size(); ++filter) {
+                    const int tile = window_.tiles[filter];
+                    for (std::size_t k = 0; k < cells.size(); ++k) {
+                        sums_[filter].ahead(column, row) += filter_.transfer(tile, cells[k], fx, fy) * ahead[k];
+                        sums_[filter].behind(column, row) += filter_.transfer(tile, cells[k], -fx, fy) * behind[k];
+                    }
                 }
             }
         }
     }
 }
 
-Grid<double> WaveImage::pixels_of(const Spectrum& sum) const {
+Grid<double> WaveImage::Window::pixels_of(const Spectrum& sum) const {
     const int period_x = 2 * size_.columns;
     const int period_y = 2 * size_.rows;
     Grid<Complex> whole(period_x, period_y);
@@ -114,49 +153,69 @@ Grid<double> WaveImage::pixels_of(const Spectrum& sum) const {
         }
     }
     inverse_fourier_transform(whole);
-    const auto parts = static_cast<int>(filter_.cells().parts);
-    Grid<double> result(pixels_.columns, pixels_.rows);
+    Grid<double> result(window_.size.columns, window_.size.rows);
     for (int row = 0; row < size_.rows; ++row) {
         for (int column = 0; column < size_.columns; ++column) {
             const double sensitive =
-                physics::f64::sensitive_share(filter_.cells(), static_cast<std::uint32_t>(column % parts)) *
-                physics::f64::sensitive_share(filter_.cells(), static_cast<std::uint32_t>(row % parts));
-            result(column / parts, row / parts) += sensitive * whole(column, row).real();
+                physics::f64::sensitive_share(filter_.cells(), static_cast<std::uint32_t>(column % parts())) *
+                physics::f64::sensitive_share(filter_.cells(), static_cast<std::uint32_t>(row % parts()));
+            result(column / parts(), row / parts()) += sensitive * whole(column, row).real();
         }
     }
     return result;
 }
 
+void WaveImage::Window::add_pixels(Grid<double>& result) const {
+    for (std::size_t filter = 0; filter < sums_.size(); ++filter) {
+        const Grid<double> pixels = pixels_of(sums_[filter]);
+        for (int row = 0; row < pixels.rows; ++row) {
+            for (int column = 0; column < pixels.columns; ++column) {
+                const double weight = weights_at(window_, window_.column + column, window_.row + row)[filter];
+                result(window_.column + column, window_.row + row) += weight * pixels(column, row);
+            }
+        }
+    }
+}
+
 Grid<double> WaveImage::apply(std::span<const std::uint64_t> light) const {
-    return apply([&](int cell) {
-        const auto image = light.subspan(static_cast<std::size_t>(cell) * numbers_a_cell(), numbers_a_cell());
-        return std::vector<std::uint64_t>(image.begin(), image.end());
+    return apply([&](int cell, int first_row, int rows) {
+        const auto columns = static_cast<std::size_t>(size_.columns);
+        const auto part = light.subspan(static_cast<std::size_t>(cell) * numbers_a_cell() +
+                                            static_cast<std::size_t>(first_row) * columns,
+                                        static_cast<std::size_t>(rows) * columns);
+        return std::vector<std::uint64_t>(part.begin(), part.end());
     });
 }
 
-Grid<double> WaveImage::apply(const ImageOfCell& image_of_cell) const {
+Grid<double> WaveImage::apply(const RowsOfCell& rows_of_cell) const {
     std::vector<std::array<int, 4>> groups;
     for (int cell = 0; cell < filter_.cell_count(); ++cell) {
         if (cell < filter_.mirrored(cell) && cell < filter_.mirrored_upright(cell)) {
             groups.push_back(mirror_images(cell));
         }
     }
-    Spectrum sum{Grid<Complex>(size_.columns, size_.rows), Grid<Complex>(size_.columns, size_.rows)};
-    // Transformed side by side, added up in their order: the same bits on any number of cores.
-    const auto cores = static_cast<std::size_t>(core_count());
-    for (std::size_t first = 0; first < groups.size(); first += cores) {
-        const std::size_t count = std::min(cores, groups.size() - first);
-        std::vector<CellImages> images(count);
-        for (std::size_t k = 0; k < count; ++k) {
-            std::ranges::transform(groups[first + k], images[k].begin(), image_of_cell);
+    Grid<double> result(pixels_.columns, pixels_.rows);
+    for (const WaveWindow& place :
+         wave_windows(filter_.tiles().across(), pixels_, static_cast<int>(filter_.cells().parts))) {
+        Window window(filter_, place, size_);
+        // Transformed side by side, added up in their order: the same bits on any number of cores.
+        const auto cores = static_cast<std::size_t>(core_count());
+        for (std::size_t first = 0; first < groups.size(); first += cores) {
+            const std::size_t count = std::min(cores, groups.size() - first);
+            std::vector<Window::Rows> images(count);
+            for (std::size_t k = 0; k < count; ++k) {
+                std::ranges::transform(groups[first + k], images[k].begin(),
+                                       [&](int cell) { return rows_of_cell(cell, window.first_row(), window.rows()); });
+            }
+            const std::vector<Window::Parts> transformed = parallel_list(
+                static_cast<int>(count), [&](int k) { return window.transform(images[static_cast<std::size_t>(k)]); });
+            for (std::size_t k = 0; k < count; ++k) {
+                window.add(transformed[k], groups[first + k]);
+            }
         }
-        const std::vector<Parts> transformed = parallel_list(
-            static_cast<int>(count), [&](int k) { return transform(images[static_cast<std::size_t>(k)]); });
-        for (std::size_t k = 0; k < count; ++k) {
-            add(sum, transformed[k], groups[first + k]);
-        }
+        window.add_pixels(result);
     }
-    return pixels_of(sum);
+    return result;
 }
 
 CellLight::CellLight(const std::optional<optics::PupilFilter>& filter, ImageSize pixels) {

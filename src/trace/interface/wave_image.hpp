@@ -28,24 +28,19 @@ class WaveImage {
     // How many numbers the sorted light has: cell after cell, row after row of parts of pixels.
     std::size_t numbers() const;
     std::size_t numbers_a_cell() const { return size_.count(); }
+    int columns() const { return size_.columns; } // of them, in a row
     // Light of the pixels in the units of the sorted light.
     Grid<double> apply(std::span<const std::uint64_t> light) const;
-    // Of images that are asked for one after the other, by the calling thread, and are not kept: of cells of which as
-    // many are held at a time as there are cores, four times.
-    using ImageOfCell = std::function<std::vector<std::uint64_t>(int cell)>;
-    Grid<double> apply(const ImageOfCell& image_of_cell) const;
+    // Of images that are asked for one after the other, by the calling thread, and are not kept: of four times as many
+    // cells at a time as there are cores.
+    // Of each some rows of parts of pixels, as the windows of the field's tiles ask for them.
+    using RowsOfCell = std::function<std::vector<std::uint64_t>(int cell, int first_row, int rows)>;
+    Grid<double> apply(const RowsOfCell& rows_of_cell) const;
 
   private:
     struct Spectrum;
-    // Of a cell and its mirror images (itself, left to right, upside down, both): the parts of their images' extension
-    // that are even or odd along rows (x) and columns (y).
-    enum Part : std::size_t { even, odd_along, odd_across, odd };
-    using Parts = std::array<Grid<double>, 4>;
+    class Window;
     std::array<int, 4> mirror_images(int cell) const;
-    using CellImages = std::array<std::vector<std::uint64_t>, 4>; // of those cells
-    Parts transform(const CellImages& images) const;
-    void add(Spectrum& sum, const Parts& parts, const std::array<int, 4>& cells) const;
-    Grid<double> pixels_of(const Spectrum& sum) const;
 
     const optics::PupilFilter& filter_;
     ImageSize pixels_;
