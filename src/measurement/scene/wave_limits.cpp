@@ -96,7 +96,7 @@ std::vector<std::string> warnings_of(const WaveLimits& limits) {
             std::abs(error.filtered), std::abs(error.waves),
             of_cells ? "Take more diffraction.cells."
             : limits.tiles == 1
-                ? "The filter is that of the axis: trust what lies near it, or take diffraction.tiles = 0."
+                ? "The filter is that of the axis: trust what lies near it, or take diffraction.tiles = 3 or more."
                 : "Take more diffraction.tiles or diffraction.cells."));
     }
     if (limits.folded_contrast > 0) {

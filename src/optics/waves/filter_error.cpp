@@ -379,6 +379,15 @@ class FilterSearch {
         return std::max(errors.edge->difference, errors.corner->difference) <= most_error;
     }
 
+    // Whether the filter of the axis is enough for the field: what few cells leave on the axis no tiles mend.
+    bool is_enough(PupilFilter& filter) {
+        constexpr double more_than_on_axis = 1.5;
+        auto errors = filter.known_errors();
+        errors.axis = errors.axis ? errors.axis : error_on_axis(filter);
+        filter.set_known_errors(errors);
+        return is_good(filter, std::max(most_error_of_axis, more_than_on_axis * errors.axis->difference));
+    }
+
     struct Tiled {
         PupilFilter filter;
         double worst; // on the axis, at the edge, in the corner and between tiles
@@ -496,7 +505,7 @@ PupilFilter filter_for_waves(const Instrument& instrument, const WaveOptions& op
     FilterSearch search(instrument);
     PupilFilter filter = options.cells > 0 ? search.with_given_cells(options.cells)
                                            : search.with_cells(fewest_cells, most_error_of_cells);
-    if (options.tiles == 1 || (options.tiles == 0 && search.is_good(filter, most_error_of_axis))) {
+    if (options.tiles == 1 || (options.tiles == 0 && search.is_enough(filter))) {
         return filter;
     }
     if (options.cells == 0) {
