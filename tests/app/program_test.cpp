@@ -13,6 +13,7 @@
 #include <algorithm>
 #include <cmath>
 #include <sstream>
+#include <unistd.h>
 
 namespace vkfv::test {
 namespace {
@@ -195,6 +196,20 @@ TEST(Program, TraceRaysCountsFromThePlaneThatIsNamed) {
     EXPECT_NEAR(path_of(0, "best-focus"), path_of(offset, "paraxial"), 1e-9);
     // The ray's path is shorter by what its start is nearer, but for the aberrations.
     EXPECT_NEAR(path_of(0, "best-focus") - path_of(0, "paraxial"), -offset / std::sqrt(0.99), 0.01 * std::abs(offset));
+}
+
+// 8 x 8 cells of 16384 x 16384 pixels take 137 GB. Without a word the system would end the program.
+TEST(Program, WavesBeyondTheMachinesMemoryAreRefused) {
+    constexpr double bytes = 8.0 * 64 * 16384 * 16384;
+    if (static_cast<double>(::sysconf(_SC_PHYS_PAGES)) * static_cast<double>(::sysconf(_SC_PAGESIZE)) > bytes) {
+        return; // they fit
+    }
+    const auto folder = fresh_folder("beyond_memory");
+    const auto result = run_program({"image", VKFV_SOURCE_DIR "/assets/stacks/microscope_10x.toml", "--z", "0",
+                                     "--device", "host", "--rays", "1000", "--set", "detector.pixels=16384"},
+                                    folder);
+    EXPECT_EQ(result.exit_code, 2);
+    EXPECT_THAT(result.standard_error, HasSubstr("the memory of this machine"));
 }
 
 TEST(Program, ImageOfAScanPositionIsThatImageOfTheStack) {

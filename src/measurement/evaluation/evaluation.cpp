@@ -50,10 +50,12 @@ double median_of(const Grid<double>& grid) {
 }
 
 std::string text_of(const char* treatment, const topography::Deviation& deviation) {
-    return fmt::format("{:<30} Sq measured {:.4f} um, true {:.4f} um (ratio {:.3f}), RMS deviation {:.4f} um, "
-                       "correlation {:.4f}\n",
-                       treatment, deviation.sq_measured * um_per_mm, deviation.sq_true * um_per_mm,
-                       deviation.sq_measured / deviation.sq_true, deviation.rms * um_per_mm, deviation.correlation);
+    // A flat has no ratio.
+    const std::string ratio =
+        deviation.sq_true > 0 ? fmt::format(" (ratio {:.3f})", deviation.sq_measured / deviation.sq_true) : "";
+    return fmt::format("{:<30} Sq measured {:.4f} um, true {:.4f} um{}, RMS deviation {:.4f} um, correlation {:.4f}\n",
+                       treatment, deviation.sq_measured * um_per_mm, deviation.sq_true * um_per_mm, ratio,
+                       deviation.rms * um_per_mm, deviation.correlation);
 }
 
 std::string band_text(const topography::Band& band) {

@@ -58,6 +58,22 @@ std::optional<std::string> warning_of_host(const std::vector<optics::WaveOptions
 
 } // namespace
 
+void refuse_beyond_host(const optics::WaveOptions& options, const optics::Instrument& instrument) {
+    constexpr int fewest_cells = 8; // that are chosen where none are given
+    const trace::WaveSizes least = {.cells = options.cells > 0 ? options.cells : fewest_cells,
+                                    .parts = optics::parts_of(options, instrument),
+                                    .tiles = 1,
+                                    .pixels = instrument.detector_pixels()};
+    const std::uint64_t memory = trace::wave_memory_of_host(least, 1).light;
+    if (const std::uint64_t there = memory_of_host(); memory > there) {
+        throw InputError({.where = {},
+                          .key = "detector.pixels",
+                          .found = fmt::format("images of waves that take {} of memory", bytes_text(memory)),
+                          .expected = fmt::format("at most {}, the memory of this machine", bytes_text(there)),
+                          .remedy = "Take fewer pixels, fewer diffraction.cells or diffraction.model = \"none\"."});
+    }
+}
+
 std::vector<std::string> wave_warnings_of(const vulkan::DeviceReport& device, const Configuration& configuration,
                                           const optics::Instrument& instrument, int cells, int tiles) {
     std::vector<std::string> warnings;

@@ -20,4 +20,8 @@ std::vector<std::string> wave_warnings_of(const vulkan::DeviceReport& device, co
 // the device is not looked for where the images are so small that every device holds them.
 std::vector<std::string> wave_warnings_of_device(const Configuration& configuration, int cells, int tiles);
 
+// Throws InputError where light sorted for waves cannot lie in this machine's memory, when its processor traces in
+// double.
+void refuse_beyond_host(const optics::WaveOptions& options, const optics::Instrument& instrument);
+
 } // namespace vkfv::measurement

@@ -1,6 +1,7 @@
 #include "measurement/scene/working_devices.hpp"
 
 #include "measurement/scene/assembly.hpp"
+#include "measurement/scene/wave_devices.hpp"
 #include "scan/staged_tracer.hpp"
 #include "trace/device/device_tracer.hpp"
 #include "trace/host/host_tracer.hpp"
@@ -51,6 +52,9 @@ std::unique_ptr<trace::Tracer> WorkingDevices::make_tracer(const optics::Instrum
         of_member.device = members_[place].selector;
         of_member.batch_divisor = members_[place].batch_divisor;
         if (of_member.device == "host") {
+            if (of_member.waves) {
+                refuse_beyond_host(*of_member.waves, instrument);
+            }
             return trace::make_host_tracer(instrument, specimen, of_member);
         }
         try {
