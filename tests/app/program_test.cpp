@@ -205,9 +205,9 @@ TEST(Program, WavesBeyondTheMachinesMemoryAreRefused) {
         return; // they fit
     }
     const auto folder = fresh_folder("beyond_memory");
-    const auto result = run_program({"image", VKFV_SOURCE_DIR "/assets/stacks/microscope_10x.toml", "--z", "0",
-                                     "--device", "host", "--rays", "1000", "--set", "detector.pixels=16384"},
-                                    folder);
+    const std::string stack = (source_folder / "assets/stacks/microscope_10x.toml").string();
+    const auto result = run_program(
+        {"image", stack, "--z", "0", "--device", "host", "--rays", "1000", "--set", "detector.pixels=16384"}, folder);
     EXPECT_EQ(result.exit_code, 2);
     EXPECT_THAT(result.standard_error, HasSubstr("the memory of this machine"));
 }
