@@ -233,25 +233,25 @@ void StackEvaluation::add(topography::Channels image, double z, std::optional<do
     evaluator_.add(std::move(image), z, reading);
 }
 
-void StackEvaluation::reconstruct(double x0, double y0, double pitch, const KnownInstrument& field) {
+void StackEvaluation::reconstruct(double x0, double y0, double pitch, const KnownErrors& errors) {
     auto frames = std::async(std::launch::async, [&] { return frames_ ? frames_->finish() : report::Frames(); });
     evaluation_.topography = evaluator_.finish(x0, y0, pitch);
     auto noise = std::async(std::launch::async, [&] { return median_of(evaluation_.topography.height_noise); });
-    if (const auto& flat = field.flat) {
+    if (const auto& flat = errors.flat) {
         auto corrected = topography::correct_flatness(std::move(evaluation_.topography.height), flat->heights);
         evaluation_.topography.height = std::move(corrected.heights);
         evaluation_.flatness = {.file = flat->file,
                                 .deviation = flat->deviation,
                                 .s_filter = flat->s_filter,
                                 .polynomial_peak_to_valley = corrected.polynomial_peak_to_valley};
-    } else if (const auto& design = field.design) {
+    } else if (const auto& design = errors.design) {
         evaluation_.field_curvature =
             topography::add_curvature(evaluation_.topography.height_uncertainty, evaluation_.topography.height,
                                       [&](double x, double y) { return -design->height(x, y); });
     }
-    if (field.hidden > 0) {
+    if (errors.hidden_uncertainty > 0) {
         for (double& uncertainty : evaluation_.topography.height_uncertainty.values) {
-            uncertainty = std::hypot(uncertainty, field.hidden);
+            uncertainty = std::hypot(uncertainty, errors.hidden_uncertainty);
         }
     }
     evaluation_.height_uncertainty = median_of(evaluation_.topography.height_uncertainty);
@@ -259,15 +259,15 @@ void StackEvaluation::reconstruct(double x0, double y0, double pitch, const Know
     evaluation_.frames = frames.get();
 }
 
-Evaluation StackEvaluation::finish(KnownTruth known, const topography::Band& band, const KnownInstrument& field,
+Evaluation StackEvaluation::finish(KnownTruth known, const topography::Band& band, const KnownErrors& errors,
                                    const std::optional<dimensions::Feature>& feature) {
     if (diffracted_) {
-        evaluation_.diffracted = std::make_shared<Evaluation>(diffracted_->finish(known, band, field, feature));
+        evaluation_.diffracted = std::make_shared<Evaluation>(diffracted_->finish(known, band, errors, feature));
     }
     surface::HeightMap& truth = known.heights;
     {
         const Stopwatch stopwatch(evaluation_.seconds);
-        reconstruct(truth.x0, truth.y0, truth.pitch_x, field);
+        reconstruct(truth.x0, truth.y0, truth.pitch_x, errors);
         const auto& measured = evaluation_.topography.height;
         auto& levelled = evaluation_.levelled;
         auto whole_truth = std::async(std::launch::async, [&] { return surface::remove_form(truth, band.form); });
@@ -285,7 +285,7 @@ Evaluation StackEvaluation::finish(KnownTruth known, const topography::Band& ban
         }
         if (feature) {
             evaluation_.dimensions = standard_dimensions(*feature, measured, known.undistorted);
-            if (field.hidden > 0) {
+            if (errors.hidden_uncertainty > 0) {
                 for (auto& dimension : evaluation_.dimensions) {
                     dimension.measured.standard_error = surface::undefined;
                 }
@@ -297,12 +297,12 @@ Evaluation StackEvaluation::finish(KnownTruth known, const topography::Band& ban
     return std::move(evaluation_);
 }
 
-Evaluation StackEvaluation::finish(double pitch, const surface::Form& form, const KnownInstrument& field) {
+Evaluation StackEvaluation::finish(double pitch, const surface::Form& form, const KnownErrors& errors) {
     evaluation_.band.form = form;
     {
         const Stopwatch stopwatch(evaluation_.seconds);
         const auto grid = PixelGrid::centred(columns_, rows_, pitch);
-        reconstruct(grid.x0, grid.y0, pitch, field);
+        reconstruct(grid.x0, grid.y0, pitch, errors);
         evaluation_.levelled.pair.measured = surface::remove_form(evaluation_.topography.height, form);
     }
     return std::move(evaluation_);

@@ -35,15 +35,15 @@ struct Flat {
 // wide, since shorter waves of heights are no instrument's form.
 std::optional<Flat> read_flat(const Configuration& configuration, ImageSize pixels, double pitch);
 
-// What is known beforehand of how far the instrument's heights are off.
-struct KnownInstrument {
+// Errors of the instrument's heights that are known before any image is evaluated.
+struct KnownErrors {
     // How its field is curved: a flat takes it off; what the design tells counts as uncertainty where there is no flat
     // (topography/flatness.hpp). Neither: nothing is known.
     std::optional<Flat> flat;
     std::optional<optics::FieldCurvature> design;
     // Standard uncertainty of every height beside what the images tell, mm: PhaseLimits::height_uncertainty().
     // Dimensions then have no standard error, as the scatter of the heights tells nothing of it.
-    double hidden = 0;
+    double hidden_uncertainty = 0;
 };
 
 // What a flatness correction found and removed.
@@ -105,13 +105,13 @@ class StackEvaluation {
     // As StackEvaluator::add().
     void add(topography::Channels image, double z, std::optional<double> reading = {});
     // On the truth's grid, with the deviation from it. Feature: what is measured on the specimen.
-    Evaluation finish(KnownTruth known, const topography::Band& band, const KnownInstrument& field = {},
+    Evaluation finish(KnownTruth known, const topography::Band& band, const KnownErrors& errors = {},
                       const std::optional<dimensions::Feature>& feature = {});
     // Without a truth; the grid's middle is the origin, pitch in mm.
-    Evaluation finish(double pitch, const surface::Form& form, const KnownInstrument& field = {});
+    Evaluation finish(double pitch, const surface::Form& form, const KnownErrors& errors = {});
 
   private:
-    void reconstruct(double x0, double y0, double pitch, const KnownInstrument& field);
+    void reconstruct(double x0, double y0, double pitch, const KnownErrors& errors);
 
     topography::StackEvaluator evaluator_;
     std::optional<optics::Diffraction> diffraction_;

@@ -212,10 +212,14 @@ EvaluatedStack evaluate_own_stack(const OwnStack& stack) {
     const auto specimen = make_specimen(configuration);
     const auto instrument = assemble_instrument(configuration, specimen, positions);
     const ImageSize pixels = configuration.instrument.detector_pixels;
-    KnownInstrument field{.flat = read_flat(configuration, pixels, instrument.first_order.pixel_pitch),
-                          .design = optics::field_curvature(instrument.first_order)};
+    KnownErrors errors{.flat = read_flat(configuration, pixels, instrument.first_order.pixel_pitch),
+                       .design = optics::field_curvature(instrument.first_order)};
     if (configuration.trace.waves) {
-        field.hidden = phase_limits(configuration.instrument, instrument, specimen).height_uncertainty();
+        const PhaseLimits limits = phase_limits(configuration.instrument, instrument, specimen);
+        errors.hidden_uncertainty = limits.height_uncertainty();
+        for (const auto& warning : warnings_of(limits)) {
+            spdlog::warn(warning);
+        }
     }
     const auto order = order_of_images(positions.size(), stack.shuffle);
     StackEvaluation evaluation(
@@ -241,7 +245,7 @@ EvaluatedStack evaluate_own_stack(const OwnStack& stack) {
         origin["repaired"] = true;
     }
     return {.evaluation = evaluation.finish(truth_on_pixels(instrument, configuration, specimen), configuration.band,
-                                            field, specimen::feature_of(configuration.specimen->shape)),
+                                            errors, specimen::feature_of(configuration.specimen->shape)),
             .origin = std::move(origin),
             .source = std::move(source),
             .files = topography_files(configuration)};
@@ -264,14 +268,14 @@ EvaluatedStack evaluate_images(const scan::ImageSeries& series, const ForeignSta
         options, focus_planes_for_files(configuration.evaluate_on, configuration.trace.device, order.size()),
         std::nullopt, series.size());
     spdlog::info("{} images, {} to {}", series.size(), series.name(0), series.name(series.size() - 1));
-    KnownInstrument field;
+    KnownErrors errors;
     bool negative = false;
     topography::StackFaultsFinder finder(series.size());
     for (int place = 0; place < series.size(); ++place) {
         const int image = at_place(place);
         auto channels = images.read(order[static_cast<std::size_t>(image)], finder);
         if (place == 0) {
-            field.flat = read_flat(configuration, {channels.front().columns, channels.front().rows}, stack.pitch);
+            errors.flat = read_flat(configuration, {channels.front().columns, channels.front().rows}, stack.pitch);
         }
         negative = negative || any_negative(channels);
         evaluation.add(std::move(channels), stack.z_start + image * stack.z_step);
@@ -314,7 +318,7 @@ EvaluatedStack evaluate_images(const scan::ImageSeries& series, const ForeignSta
     if (configuration.registration != topography::Registration::none) {
         origin["registration"] = images.json();
     }
-    return {.evaluation = evaluation.finish(stack.pitch, configuration.band.form, field),
+    return {.evaluation = evaluation.finish(stack.pitch, configuration.band.form, errors),
             .origin = std::move(origin),
             .source = {},
             .files = {}};

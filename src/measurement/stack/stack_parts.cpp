@@ -72,9 +72,9 @@ scan::StackDescription StackScene::description(const trace::TracerIdentity& trac
 
 GrowingEvaluation::GrowingEvaluation(const StackScene& scene, topography::FocusPlanesMaker planes,
                                      const std::vector<optics::PupilFilter>& filters)
-    : scene_(scene), field_{.flat = read_flat(scene.configuration, scene.pixels(),
-                                              scene.instrument.first_order.pixel_pitch),
-                            .design = optics::field_curvature(scene.instrument.first_order)},
+    : scene_(scene), errors_{.flat = read_flat(scene.configuration, scene.pixels(),
+                                               scene.instrument.first_order.pixel_pitch),
+                             .design = optics::field_curvature(scene.instrument.first_order)},
       evaluation_(evaluation_options(scene.configuration, scene.instrument), std::move(planes),
                   diffraction_of_evaluation(scene.configuration, scene.instrument),
                   static_cast<int>(scene.positions.size())) {
@@ -104,10 +104,10 @@ EvaluatedStack GrowingEvaluation::finish(scan::ImageStore& store, const trace::T
     std::optional<PhaseLimits> phase;
     if (phase_limits_) {
         phase = phase_limits_->get();
-        field_.hidden = phase->height_uncertainty();
+        errors_.hidden_uncertainty = phase->height_uncertainty();
     }
     EvaluatedStack stack{
-        .evaluation = evaluation_.finish(truth_.get(), configuration.band, field_,
+        .evaluation = evaluation_.finish(truth_.get(), configuration.band, errors_,
                                          specimen::feature_of(configuration.specimen->shape)),
         .origin = {{"device", tracer.text()},
                    {"stack_digest", store.description().digest},

@@ -48,7 +48,7 @@ class GrowingEvaluation {
 
   private:
     const StackScene& scene_;
-    KnownInstrument field_;
+    KnownErrors errors_;
     StackEvaluation evaluation_;
     bool any_light_ = false;
     std::future<KnownTruth> truth_;
