@@ -65,7 +65,7 @@ TEST(PhaseLimits, AreClosedFormsOfTheInstrument) {
     const auto limits = limits_of(0.3, sinusoid(0.001, mirror));
     EXPECT_NEAR(limits.source_fill, 0.3, 1e-6);
     EXPECT_NEAR(limits.phase_height, wavelength / (4 * pi), 1e-12);
-    EXPECT_NEAR(limits.depth_of_field, wavelength / (aperture * aperture), 0.01 * limits.depth_of_field);
+    EXPECT_NEAR(limits.depth_of_field, wavelength / (aperture * aperture), 1e-6 * limits.depth_of_field);
     EXPECT_EQ(limits.scatter_fill, 0);
     EXPECT_EQ(limits_of(1.5, sinusoid(0.001, mirror)).source_fill, 1) << "an overfilled pupil is filled";
 }
@@ -89,7 +89,8 @@ TEST(PhaseLimits, ScatterFillsThePupilAsItsLobeDoes) {
         ++median;
     }
     const double expected = static_cast<double>(median) / steps * std::sqrt(2.0);
-    EXPECT_NEAR(limits_of(1, sinusoid(0.001, of_model("henyey-greenstein", {g}))).scatter_fill, expected, 0.03);
+    // Of N = 7400 paths the median has the standard error 1 / (2 f sqrt(N)), f its density: 0.0035 here. Four of them.
+    EXPECT_NEAR(limits_of(1, sinusoid(0.001, of_model("henyey-greenstein", {g}))).scatter_fill, expected, 0.014);
     EXPECT_LT(expected, 0.5);
     // Far off its axis the same lobe is broad: what a ring light from 45 degrees scatters into the aperture fills it.
     auto description = microscope(1);

@@ -14,17 +14,9 @@
 namespace vkfv::optics {
 namespace {
 
-// 0.8 mm across, as the chain of the paper has.
-InstrumentDescription wide_microscope() {
-    auto description = test::microscope();
-    description.detector_width = 8;
-    description.field_stop_radius = 4.3;
-    return description;
-}
-
 // Bilinear weights add up to 1 and give back every point of the field, as linear interpolation does.
 TEST(FieldTiles, AreBlendedBilinearly) {
-    auto description = wide_microscope();
+    auto description = test::wide_microscope();
     description.detector_pixels = {64, 48};
     const Instrument instrument = assemble(description);
     const FieldTiles tiles(instrument, 5);
@@ -54,7 +46,7 @@ TEST(FieldTiles, AreBlendedBilinearly) {
 // What is the mirror image of another point's is what the point's own wavefront gives; but for points of the lattice on
 // the rim, which is known to 5e-10 of its radius.
 TEST(FieldTiles, OfASymmetricTrainAreMirrorImages) {
-    const Instrument instrument = assemble(wide_microscope());
+    const Instrument instrument = assemble(test::wide_microscope());
     const CellTransfer axis(instrument, 4);
     const FieldTiles tiles(instrument, 3);
     const FieldTransfer field(instrument, axis, tiles);
@@ -78,7 +70,7 @@ TEST(FieldTiles, OfASymmetricTrainAreMirrorImages) {
 
 // The table of a device has the values that single frequencies have.
 TEST(FieldTiles, SingleFrequenciesAreThoseOfTheTable) {
-    auto description = wide_microscope();
+    auto description = test::wide_microscope();
     for (const double decentre : {0.0, 0.5}) {
         description.tube_lens_placement.change.decentre_y = decentre;
         const Instrument instrument = assemble(description);

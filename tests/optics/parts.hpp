@@ -34,6 +34,14 @@ inline optics::InstrumentDescription microscope(const std::string& objective = "
     return description;
 }
 
+// The same with a field of 0.8 mm, as the chain of the paper has.
+inline optics::InstrumentDescription wide_microscope() {
+    auto description = microscope();
+    description.detector_width = 8;
+    description.field_stop_radius = 4.3;
+    return description;
+}
+
 // The same with lenses without aberrations, f = 20 and 200 mm.
 inline optics::InstrumentDescription ideal_microscope(double aperture) {
     auto description = microscope();

@@ -1,4 +1,5 @@
 // GGX: reciprocity, the formula as textbooks have it, what is kept of the light, and both ends of its roughness.
+#include "ggx_quadratures.hpp"
 #include "physics/physics.hpp"
 #include "specimen/scatter_tables.hpp"
 #include "support/statistics.hpp"
@@ -10,6 +11,7 @@
 
 using namespace vkfv::physics::f64;
 using vkfv::test::integrate;
+using vkfv::test::kept_by_ggx;
 using vkfv::test::share_z;
 
 namespace {
@@ -61,15 +63,6 @@ double kept(Bsdf bsdf, double theta) {
     return sum * M_PI / azimuths;
 }
 
-struct Kept {
-    double alpha, degrees, share;
-};
-// scipy's dblquad of the textbook formula over the facets' slopes, to 1e-8.
-constexpr Kept quadratures[] = {{0.1, 0, 0.98830406}, {0.1, 60, 0.96920498}, {0.1, 80, 0.89551875},
-                                {0.3, 0, 0.87735842}, {0.3, 60, 0.82171100}, {0.3, 80, 0.84823238},
-                                {0.5, 0, 0.68784852}, {0.5, 60, 0.69825070}, {0.5, 80, 0.80532284},
-                                {0.7, 0, 0.50371745}, {0.7, 60, 0.58990089}, {0.7, 80, 0.75088832}};
-
 } // namespace
 
 TEST(Ggx, is_reciprocal) {
@@ -117,7 +110,7 @@ TEST(Ggx, is_the_textbooks_formula) {
 
 // The white furnace: what is kept, by the density and by the sampler, which absorbs the rest and loses nothing else.
 TEST(Ggx, keeps_the_share_of_single_scattering) {
-    for (const auto& [alpha, degrees, share] : quadratures) {
+    for (const auto& [alpha, degrees, share] : kept_by_ggx) {
         SCOPED_TRACE(testing::Message() << alpha << " at " << degrees);
         const Material material = ggx(alpha);
         const double theta = radians(degrees);

@@ -1,5 +1,6 @@
 // Scatter models against formulas written anew: what ggx-multiple-scatter gives back, the lobes of polished surfaces
 // over direction cosines, and metals.
+#include "ggx_quadratures.hpp"
 #include "physics/physics.hpp"
 #include "specimen/scatter_tables.hpp"
 #include "support/statistics.hpp"
@@ -16,6 +17,7 @@ using namespace vkfv::physics::f64;
 using vkfv::specimen::ggx_kept;
 using vkfv::specimen::tabulated;
 using vkfv::test::integrate;
+using vkfv::test::kept_by_ggx;
 using vkfv::test::share_z;
 
 namespace {
@@ -54,15 +56,6 @@ double kept(const Material& material, double theta) {
     return sum * M_PI / azimuths;
 }
 
-struct Kept {
-    double alpha, degrees, share;
-};
-// Of ggx: scipy's dblquad of the textbook formula over the facets' slopes, to 1e-8, as in ggx_test.cpp.
-constexpr Kept quadratures[] = {{0.1, 0, 0.98830406}, {0.1, 60, 0.96920498}, {0.1, 80, 0.89551875},
-                                {0.3, 0, 0.87735842}, {0.3, 60, 0.82171100}, {0.3, 80, 0.84823238},
-                                {0.5, 0, 0.68784852}, {0.5, 60, 0.69825070}, {0.5, 80, 0.80532284},
-                                {0.7, 0, 0.50371745}, {0.7, 60, 0.58990089}, {0.7, 80, 0.75088832}};
-
 // Of a lobe over direction cosines: numpy's Gauss points (400) along the radius by 4000 azimuths, about the mirror
 // direction's cosines out to the unit circle.
 struct LobeKept {
@@ -92,7 +85,7 @@ Polarised reflected(std::complex<double> index, double cosine) {
 
 // The furnace: with the single scattering of another program, what is given back makes up for all that is lost.
 TEST(GgxMultipleScatter, gives_back_what_facets_lose_by_reflecting_once) {
-    for (const auto& [alpha, degrees, share] : quadratures) {
+    for (const auto& [alpha, degrees, share] : kept_by_ggx) {
         SCOPED_TRACE(testing::Message() << alpha << " at " << degrees);
         EXPECT_NEAR(ggx_kept(alpha, std::cos(radians(degrees))), share, 2e-8);
         const auto given_back = [&](const Material& material) {

@@ -2,6 +2,7 @@
 // backward, and what the wavelength makes of a material against closed forms.
 #include "specimen/tabulated_bsdf.hpp"
 #include "trace/agreement.hpp"
+#include "trace/alike_paths.hpp"
 #include "trace/device/device_tracer.hpp"
 #include "trace/host/host_tracer.hpp"
 #include "trace/microscope.hpp"
@@ -12,7 +13,6 @@
 #include <complex>
 
 using namespace vkfv;
-using physics::f64::PATH_DETECTED;
 using test::agreement;
 using test::total;
 using trace::Estimator;
@@ -131,18 +131,7 @@ TEST(ScatterModels, HostAndDeviceScatterEachPathAlike) {
         options.max_bounces = 2;
         const auto host = trace::host_paths(instrument, specimen, options, 0.0, 7, 0, paths);
         const auto device = trace::device_paths(instrument, specimen, options, 0.0, 7, 0, paths);
-        int differing = 0, far = 0, detected = 0;
-        for (std::uint32_t k = 0; k < paths; ++k) {
-            const bool same = host[k].status == device[k].status && host[k].surface == device[k].surface;
-            differing += same ? 0 : 1;
-            if (same && host[k].status == PATH_DETECTED) {
-                ++detected;
-                far += std::hypot(host[k].x - device[k].x, host[k].y - device[k].y) > 1e-3 ? 1 : 0; // 1 um
-            }
-        }
-        EXPECT_GT(detected, 10);
-        EXPECT_LE(differing, static_cast<int>(paths / 500));
-        EXPECT_LE(far, 2);
+        test::expect_alike(host, device, 10);
     }
 }
 

@@ -11,6 +11,7 @@
 #include "trace/interface/wave_image.hpp"
 #include "trace/interface/wave_windows.hpp"
 #include "trace/microscope.hpp"
+#include "trace/noisy_light.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -20,20 +21,11 @@
 #include <deque>
 #include <future>
 #include <numeric>
-#include <random>
 #include <vector>
 
 using namespace vkfv;
 
 namespace {
-
-std::vector<std::uint64_t> noisy_light(std::size_t numbers, double mean) {
-    std::mt19937_64 random(1);
-    std::poisson_distribution<std::uint64_t> count(mean);
-    std::vector<std::uint64_t> light(numbers);
-    std::generate(light.begin(), light.end(), [&] { return count(random); });
-    return light;
-}
 
 double sum(std::span<const double> values) {
     return std::accumulate(values.begin(), values.end(), 0.0);
@@ -386,7 +378,7 @@ TEST(Waves, keep_the_light_and_do_not_add_noise) {
         const optics::PupilFilter filter(instrument, {.cells = 8, .parts = parts});
         constexpr int pixels = 21;
         const trace::WaveImage waves(filter, ImageSize::square(pixels));
-        const auto light = noisy_light(waves.numbers(), 30);
+        const auto light = test::noisy_light(waves.numbers(), 30);
         const auto before = unfiltered(light, pixels, parts, filter.cell_count());
         const auto after = waves.apply(light);
         EXPECT_NEAR(sum(after.values) / sum(before.values), 1, 1e-12);
@@ -454,7 +446,7 @@ TEST(Waves, are_the_same_on_the_device_and_on_the_host) {
                                                       {ImageSize{240, 8}, 1, 2, 3}}) {
         const optics::PupilFilter filter(instrument, {.cells = cells, .parts = parts, .tiles = tiles});
         const trace::WaveImage on_host(filter, pixels);
-        auto light = noisy_light(on_host.numbers(), 50);
+        auto light = test::noisy_light(on_host.numbers(), 50);
         for (std::size_t k = 0; k < light.size(); k += 7) {
             light[k] *= 1 + k * 5 / light.size();
         }
@@ -479,7 +471,7 @@ TEST(Waves, are_the_same_bits_of_light_in_several_buffers) {
     constexpr ImageSize pixels{11, 6};
     const optics::PupilFilter filter(instrument, {.cells = 4, .parts = 3});
     const trace::WaveImage on_host(filter, pixels);
-    const auto light = noisy_light(on_host.numbers(), 50);
+    const auto light = test::noisy_light(on_host.numbers(), 50);
     const std::size_t image = on_host.numbers_a_cell() * sizeof(std::uint64_t);
     std::vector<std::vector<float>> found;
     for (const auto& [most_bytes, buffers] : {std::pair<std::size_t, std::size_t>{0, 1}, {7 * image - 1, 3}, {1, 16}}) {

@@ -13,13 +13,6 @@
 namespace vkfv::optics {
 namespace {
 
-InstrumentDescription wide_microscope() {
-    auto description = test::microscope();
-    description.detector_width = 8;
-    description.field_stop_radius = 4.3;
-    return description;
-}
-
 struct Worst {
     double error = 0;
     double integral = 0; // of the error's transfer function against that of the integral
@@ -44,7 +37,7 @@ Worst worst_of(const Instrument& instrument, const PupilFilter& filter, const st
 // NA 0.28, corners 1.13 mm apart: within 0.05 of Hopkins' integral at ten points, where the filter of the axis is off
 // by 0.27. The integral's own quadrature (PointWaves::transfer()) shares no lattice with that of the error.
 TEST(FieldError, IsSmallOverAMillimetre) {
-    const Instrument instrument = assemble(wide_microscope());
+    const Instrument instrument = assemble(test::wide_microscope());
     const PupilFilter filter = filter_for_waves(instrument);
     EXPECT_GT(filter.tiles().across(), 1);
     const Worst worst = worst_of(instrument, filter, ten_points);
@@ -63,7 +56,7 @@ TEST(FieldError, OfASmallFieldAsksForOneFilter) {
 
 // Displaced lenses have no symmetry: each point has a wavefront of its own, on both sides of the axis.
 TEST(FieldError, IsSmallWithDisplacedParts) {
-    auto description = wide_microscope();
+    auto description = test::wide_microscope();
     description.objective_placement.change.decentre_y = 0.3;
     const Instrument instrument = assemble(description);
     const PupilFilter filter = filter_for_waves(instrument, {.cells = 10, .tiles = 5});

@@ -3,6 +3,7 @@
 #include "optics/waves/point_waves.hpp"
 #include "trace/interface/wave_image.hpp"
 #include "trace/microscope.hpp"
+#include "trace/noisy_light.hpp"
 
 #include <gtest/gtest.h>
 
@@ -30,14 +31,6 @@ double variance(const std::vector<double>& values) {
     return squares / static_cast<double>(values.size() - 1);
 }
 
-std::vector<std::uint64_t> noisy_light(std::size_t numbers, double mean) {
-    std::mt19937_64 random(1);
-    std::poisson_distribution<std::uint64_t> count(mean);
-    std::vector<std::uint64_t> light(numbers);
-    std::generate(light.begin(), light.end(), [&] { return count(random); });
-    return light;
-}
-
 // Pixels of an eighth of the shortest wave that it passes.
 optics::Instrument ideal_microscope() {
     auto description = test::ideal_microscope_description();
@@ -61,7 +54,7 @@ TEST(WavesOfTheField, InWindowsAreThoseOfTheWholeImage) {
     const optics::PupilFilter whole(instrument, {.cells = 2, .parts = 1, .tiles = 1});
     const optics::PupilFilter tiled(instrument, {.cells = 2, .parts = 1, .tiles = 5});
     const trace::WaveImage image(whole, pixels);
-    const auto light = noisy_light(image.numbers(), 5);
+    const auto light = test::noisy_light(image.numbers(), 5);
     const auto expected = image.apply(light);
     const auto found = trace::WaveImage(tiled, pixels).apply(light);
     const double mean = sum(expected.values) / static_cast<double>(expected.values.size());
