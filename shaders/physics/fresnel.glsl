@@ -11,8 +11,8 @@ VKFV_FUNCTION real fresnel_reflectance(real index_before, real index_after, real
     return cosine_after_squared > real(0.0) ? real(0.5) * (s * s + p * p) : real(1.0);
 }
 
-// Of an absorbing medium with the index n + i k over that of the medium before: the same equations with a complex index
-// (section 14.2), a + i b being the square root of (n + i k)^2 - sin^2.
+// The reflectance of an absorbing medium whose index, over that of the medium before, is n + i k: Fresnel's equations
+// with a complex index (section 14.2), a + i b being the square root of (n + i k)^2 - sin^2.
 VKFV_FUNCTION real absorbing_reflectance(real n, real k, real cosine) {
     real cosine_squared = cosine * cosine;
     real sine_squared = max(real(1.0) - cosine_squared, real(0.0));

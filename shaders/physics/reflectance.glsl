@@ -23,9 +23,9 @@ VKFV_SCENE_FUNCTION VKFV_FUNCTION Material material_at(VKFV_SCENE_PARAMETER Spec
     return material;
 }
 
-// Of the material's numbers (material_number()) the first are its spectrum: points of ascending wavelength, linear in
-// between, and held beyond the ends. A point is the wavelength, um, then of each of the four lobes: the factor of its
-// weight, and the real and the imaginary part of its refractive index, 0 where the model has none.
+// The spectrum of a material stands first among its numbers (material_number()): points of ascending wavelength, linear
+// in between, and held beyond the ends. A point is the wavelength, um, then of each of the four lobes: the factor of
+// its weight, and the real and the imaginary part of its refractive index, 0 where the model has none.
 const int SPECTRAL_POINT_NUMBERS = 13;
 
 struct SpectralPlace {

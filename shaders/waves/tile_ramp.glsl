@@ -11,8 +11,8 @@ struct TileRamp {
 };
 // clang-format on
 
-// What the filters of the first and of the second point count at a place, pixels from the image's border. Of all
-// windows together they add up to 1.
+// The weights of the filters of the first and of the second point at a place, pixels from the image's border. Those of
+// all windows together add up to 1.
 VKFV_FUNCTION real2 tile_weights(TileRamp ramp, real place) {
     real share = real(1.0);
     if ((ramp.neighbours & 1u) != 0u) {

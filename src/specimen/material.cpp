@@ -89,7 +89,7 @@ std::vector<double> spectral_points(const Material& material) {
     return wavelengths;
 }
 
-// As reflectance.glsl reads it.
+// Appends a point of the spectrum in the order that shaders/physics/reflectance.glsl reads.
 void add_spectral_point(const Material& material, double wavelength_um, std::vector<float>& numbers) {
     numbers.push_back(static_cast<float>(wavelength_um));
     for (std::size_t k = 0; k < most_lobes; ++k) {

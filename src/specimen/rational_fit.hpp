@@ -22,10 +22,10 @@ struct RationalFit {
 RationalFit fit_rational(const std::vector<double>& x, const std::vector<double>& f, std::size_t highest_degree,
                          double wanted_error);
 
-// Of a function that is 0 at t = 0, over t in [0, 1]: t (p0 + p1 z + ...) / (1 + q1 z + ...), z = 2 t - 1, both of the
-// same degree. The same iteration with weights that even out the error, which counts a little more where f is small.
-// RationalFit::error is the largest, absolute, as evaluated in float, between the points too: that of the fit of 5 to
-// the highest degree that has the least.
+// Fits a function that is 0 at t = 0, over t in [0, 1], by t (p0 + p1 z + ...) / (1 + q1 z + ...), z = 2 t - 1, both of
+// the same degree. The same iteration with weights that even out the error, which counts a little more where f is
+// small. RationalFit::error is the largest, absolute, as evaluated in float, between the points too: that of the fit of
+// 5 to the highest degree that has the least.
 RationalFit fit_rational_from_zero(const std::function<double(double)>& f, std::size_t highest_degree);
 
 } // namespace vkfv::specimen

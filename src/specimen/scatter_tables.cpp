@@ -65,7 +65,7 @@ LobeRecord with_henyey_greenstein_norm(LobeRecord lobe) {
     return lobe;
 }
 
-// What ggx_multiple_scatter_lack() evaluates, and the bound of its proposals.
+// The lobe with the table that ggx_multiple_scatter_lack() evaluates, and with the bound of its proposals.
 LobeRecord with_ggx_lack(LobeRecord lobe) {
     const double alpha = lobe.parameter_0;
     const double power = alpha >= 0.6 ? 4 : 2, scale = 2 * alpha;
@@ -77,7 +77,7 @@ LobeRecord with_ggx_lack(LobeRecord lobe) {
     std::ranges::fill(lobe.table, 0.0);
     std::ranges::copy(fit.numerator, lobe.table);
     std::copy(fit.denominator.begin() + 1, fit.denominator.end(), lobe.table + 8);
-    // Of the fit itself, so that what is lost is what is given back. The cosine is s^3.
+    // The mean is taken over the fit itself, so that what is lost is what is given back. The cosine is s^3.
     constexpr int panels = 4000;
     double mean = 0, most = 0, most_flat = 0;
     for (int k = 0; k < panels; ++k) {

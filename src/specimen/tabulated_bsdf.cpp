@@ -39,7 +39,7 @@ double integral_of_linear(double a, double b, double lower, double upper) {
     return lower * even + (upper - lower) / (b - a) * rising;
 }
 
-// With the ends of a range, where the outermost values hold.
+// The points and the ends of their range, where the outermost values hold.
 std::vector<double> widened(std::vector<double> points, double first, double last) {
     if (points.front() > first) {
         points.insert(points.begin(), first);
@@ -87,7 +87,7 @@ class BsdfFile {
         return result;
     }
 
-    // Of the first value of an incidence.
+    // The line of the file with the first value of an incidence.
     int line(double incidence) const { return values_.lower_bound({incidence, -1, -1})->second.line; }
 
     [[noreturn]] void fail(int line, std::string found, std::string expected, std::string remedy) const {

@@ -7,7 +7,7 @@
 // lossy
 // index
 
-// Of the facet that mirrors the light into this direction.
+// The reflectance of the facet that mirrors the light into this direction.
 VKFV_FUNCTION real ggx_conductor_reflectance(real refractive_index, real extinction_coefficient, Incidence incidence,
                                              real3 outgoing) {
     real3 half_way = outgoing - incidence.incoming;

@@ -29,9 +29,10 @@ VKFV_FUNCTION real ggx_multiple_scatter_lack(real alpha, real table[LOBE_TABLE_S
 // cosine itself and about as steep for rough ones: what it is proposed by.
 VKFV_FUNCTION bool ggx_multiple_scatter_is_smooth(real alpha) { return alpha < real(0.35); }
 
-// Of ggx in a share of all tries, else of the light that is scattered more often. With lack <= bound (2 lack cosine <=
-// bound for smooth surfaces, whose proposals are even over the hemisphere) such proposals are accepted with the chance
-// 1 / bound sqrt(1 - E_mean), and the share makes the accepted ones as many as the density says.
+// A share of all tries proposes a direction of ggx, the others one of the light that is scattered more often. With lack
+// <= bound (2 lack cosine <= bound for smooth surfaces, whose proposals are even over the hemisphere) such proposals
+// are accepted with the chance 1 / bound sqrt(1 - E_mean), and the share makes the accepted ones as many as the density
+// says.
 VKFV_FUNCTION ScatterTry ggx_multiple_scatter_try(real alpha, real table[LOBE_TABLE_SIZE], Incidence incidence, real u0,
                                                   real u1, real u2) {
     bool smooth_surface = ggx_multiple_scatter_is_smooth(alpha);

@@ -64,7 +64,7 @@ VKFV_SCENE_FUNCTION VKFV_FUNCTION TabulatedPlace tabulated_place(VKFV_SCENE_PARA
     return place;
 }
 
-// Of one incidence.
+// The bsdf at these angles of scatter and azimuth, for the incidence-th angle of incidence of the table.
 VKFV_SCENE_FUNCTION VKFV_FUNCTION real tabulated_value(VKFV_SCENE_PARAMETER TabulatedLayout places, int incidence,
                                                        TabulatedPlace scatter, TabulatedPlace azimuth) {
     int corner = places.first_value + (incidence * places.scatters + scatter.point) * places.azimuths + azimuth.point;

@@ -20,7 +20,7 @@ namespace {
 // Half of the storage buffer that Vulkan asks every device for (maxStorageBufferRange, 128 MiB).
 constexpr std::uint64_t every_device_holds = std::uint64_t{1} << 26;
 
-// Of each source with as many cells, as it is asked for alone.
+// The options of each source's light. Sources have the same number of cells, and are asked for one at a time.
 std::vector<optics::WaveOptions> options_of_lights(const Configuration& configuration,
                                                    const optics::Instrument& instrument, int cells, int tiles) {
     std::vector<optics::WaveOptions> all;

@@ -10,9 +10,9 @@
 
 namespace vkfv::measurement {
 
-// What does not fit on the device, in sentences: where it has no room even for one part of a pixel, which of its limits
-// forbids that; where it has room for fewer parts than the waves ask for, how many. cells: across the pupil;
-// tiles: across the field. None of a configuration without waves.
+// Sentences tell what does not fit on the device: where it has no room even for one part of a pixel, which of its
+// limits forbids that; where it has room for fewer parts than the waves ask for, how many. cells: across the pupil;
+// tiles: across the field. A configuration without waves has none.
 std::vector<std::string> wave_warnings_of(const vulkan::DeviceReport& device, const Configuration& configuration,
                                           const optics::Instrument& instrument, int cells, int tiles);
 

@@ -51,8 +51,8 @@ class CellTransfer {
     CellTransfer(const Instrument& instrument, int cells);
     // Of these wavefronts, wavefronts_for_cells().
     CellTransfer(const Instrument& instrument, std::vector<Wavefront> wavefronts, int cells);
-    // Of the same cells, frequencies and steps as on the axis, and of the wavefronts of another point of the field,
-    // whose light passes: its pupil lies about its own chief ray.
+    // Has the same cells, frequencies and steps as on the axis, and the wavefronts of another point of the field, whose
+    // light passes: its pupil lies about its own chief ray.
     CellTransfer(const CellTransfer& axis, std::vector<Wavefront> wavefronts);
     ~CellTransfer();
     CellTransfer(CellTransfer&&) noexcept;

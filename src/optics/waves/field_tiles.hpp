@@ -28,7 +28,8 @@ class FieldTiles {
         int tile;
         double weight;
     };
-    // Of a point of the field (mm in the object), beyond whose border it is as on the border; weights above 0.
+    // The tiles that are blended at a point of the field (mm in the object), with their weights above 0. Beyond the
+    // field's border they are those of the border.
     std::vector<Share> shares(glm::dvec2 field) const;
 
   private:
@@ -45,13 +46,13 @@ class FieldTransfer {
     // axis: the cells, and what counts for a point that no light comes from.
     FieldTransfer(const Instrument& instrument, const CellTransfer& axis, const FieldTiles& tiles);
 
-    // As CellTransfer::at(), of one point.
+    // CellTransfer::at() of the tile's point.
     std::vector<std::complex<double>> at(int tile, double fx, double fy) const;
-    // As CellTransfer::table(), of one point after the other.
+    // CellTransfer::table() of all tiles, one after the other.
     std::vector<std::complex<float>> table() const;
 
   private:
-    // How a point's pupil is the image of the one that is computed.
+    // The mirroring that makes a point's pupil of one that is computed.
     struct Image {
         std::size_t of = 0;    // of computed_
         bool swapped = false;  // x and y, first

@@ -357,7 +357,7 @@ class FilterSearch {
     explicit FilterSearch(const Instrument& instrument)
         : instrument_(instrument), reach_(reach_of_filter(instrument)), wavefronts_(wavefronts_for_cells(instrument)) {}
 
-    // With the fewest cells, at least so many, that leave no more than this on the axis.
+    // The filter with the fewest cells, at least so many, that leave no more than this error on the axis.
     PupilFilter with_cells(int fewest, double most_error) {
         for (int cells = fewest;; cells += 2) {
             PupilFilter filter = PupilFilter::unparted(instrument_, wavefronts_, cells);
@@ -421,7 +421,7 @@ class FilterSearch {
         return best;
     }
 
-    // The same number of tiles with more cells, as long as these are not good enough and the next leave less.
+    // Takes the same number of tiles with more cells, as long as these are not good enough and the next leave less.
     Tiled with_more_cells(Tiled best) {
         const int tiles = best.filter.tiles().across();
         for (int cells = static_cast<int>(best.filter.cells().side) + 2;

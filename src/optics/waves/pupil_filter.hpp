@@ -65,7 +65,7 @@ class PupilFilter {
 
     // Of its instrument's pixels, before noise() is asked for.
     void set_parts(const Instrument& instrument, int parts);
-    // The same cells with so many tiles across the field of its instrument.
+    // A filter of the same cells, with so many tiles across the field of its instrument.
     PupilFilter tiled(const Instrument& instrument, int tiles) const;
     const FieldTiles& tiles() const { return tiles_; }
 
@@ -92,8 +92,8 @@ class PupilFilter {
     std::complex<double> transfer(int cell, double fx, double fy) const {
         return transfer(tiles_.count() / 2, cell, fx, fy);
     }
-    // The same of all cells, without the table: for few frequencies. Of the axis, and as the tiles about a point of the
-    // detector (mm, in the frame of physics::Detection) are blended there.
+    // The transfer functions of all cells at a few frequencies, without the table: on the axis, and as the tiles about
+    // a point of the detector (mm, in the frame of physics::Detection) are blended there.
     std::vector<std::complex<double>> transfers(double fx, double fy) const { return made_->axis->at(fx, fy); }
     std::vector<std::complex<double>> transfers(glm::dvec2 detector_point, double fx, double fy) const;
     double cutoff() const { return made_->axis->cutoff(); } // 2 NA / lambda of the shortest, cycles per mm

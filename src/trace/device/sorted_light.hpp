@@ -21,13 +21,13 @@ class SortedLight {
     // The device must outlive it. Throws RunError where its memory does not hold the light.
     SortedLight(const vulkan::Device& device, std::size_t cells, std::size_t numbers, std::uint64_t most_bytes = 0);
 
-    // Of a table of 64-bit addresses, one for each cell: that of the first number of its image.
+    // The address of a table, which has for each cell the 64-bit address of the first number of its image.
     vk::DeviceAddress address() const { return table_.address(); }
     // In the order of the cells; all numbers of the light, one after another.
     std::vector<const vulkan::Buffer*> buffers() const;
 
     void clear(vulkan::Commands& commands) const;
-    // By the host: the numbers of one cell's image from this one on, as they are now.
+    // The host reads numbers of one cell's image from `first` on, as they are now.
     void read(std::size_t cell, std::size_t first, std::span<std::uint64_t> numbers) const;
     // All numbers, cell after cell.
     void write(std::span<const std::uint64_t> numbers);

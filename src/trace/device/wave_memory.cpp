@@ -50,7 +50,7 @@ struct Violation {
     std::string expected;
 };
 
-// What of the device forbids so many cells and parts.
+// The limit of the device that forbids so many cells and parts; none: it holds them.
 std::optional<Violation> violation(const optics::WaveOptions& options, ImageSize pixels,
                                    const vulkan::DeviceReport& device) {
     const WaveSizes sizes{.cells = options.cells, .parts = options.parts, .tiles = options.tiles, .pixels = pixels};
@@ -119,7 +119,7 @@ WaveMemory wave_memory_of_host(const WaveSizes& sizes, int groups_at_once) {
                                static_cast<std::uint64_t>(sizes.pixels.columns); // whole rows
     const auto at_once = static_cast<std::uint64_t>(std::min(groups_at_once, sizes.cells * sizes.cells / 4));
     constexpr std::uint64_t complex_bytes = 2 * sizeof(double), cells_a_group = 4;
-    // Of each part of a pixel: two frequencies of the spectra, beside the images and the transforms of the cells at a
+    // Each part of a pixel takes two frequencies of the spectra, beside the images and the transforms of the cells at a
     // time, and afterwards beside the image with its mirror images and the pixels.
     const std::uint64_t spectra = static_cast<std::uint64_t>(window.filters) * count * 2 * complex_bytes;
     const std::uint64_t groups = at_once * cells_a_group * (read * sizeof(std::uint64_t) + count * sizeof(double));

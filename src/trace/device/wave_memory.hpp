@@ -28,7 +28,7 @@ std::uint64_t largest_binding(const vulkan::DeviceReport& device);
 // How many cells' images of so many bytes lie in one buffer of at most so many, at least one.
 std::size_t cells_in_a_buffer(std::uint64_t most_bytes, std::size_t bytes_a_cell);
 
-// What it is of: options whose cells, parts and tiles are given.
+// The numbers that the memory follows from.
 struct WaveSizes {
     int cells = 0; // across the pupil
     int parts = 0; // of a pixel's side

@@ -18,7 +18,7 @@ struct DeviceReport;
 
 namespace vkfv::trace {
 
-// How light of waves is sorted and filtered; 0: images of rays.
+// The numbers by which light of waves is sorted and filtered; 0: images of rays.
 struct LightSorting {
     int pupil_cells = 0;     // across the pupil
     int parts_per_pixel = 0; // of its side

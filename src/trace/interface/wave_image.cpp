@@ -22,8 +22,8 @@ ImageSize in_parts(ImageSize pixels, const optics::PupilFilter& filter) {
 
 } // namespace
 
-// Of an extended window, whose periods are twice its sides: at l / (2 columns) and -l / (2 columns) cycles a part along
-// x, m / (2 rows) along y, as seen from the lower left corner of its first part, over 4.
+// The spectrum of an extended window, whose periods are twice its sides: at l / (2 columns) and -l / (2 columns) cycles
+// a part along x, m / (2 rows) along y, as seen from the lower left corner of its first part, over 4.
 struct WaveImage::Spectrum {
     Grid<Complex> ahead;
     Grid<Complex> behind;
@@ -32,8 +32,8 @@ struct WaveImage::Spectrum {
 // One window, of which each filter has a spectrum.
 class WaveImage::Window {
   public:
-    // Of a cell and its mirror images (itself, left to right, upside down, both): the parts of their images' extension
-    // that are even or odd along rows (x) and columns (y).
+    // A cell and its mirror images (itself, left to right, upside down, both) are transformed together, by the parts of
+    // their images' extension that are even or odd along rows (x) and columns (y).
     enum Part : std::size_t { even, odd_along, odd_across, odd };
     using Parts = std::array<Grid<double>, 4>;
     using Rows = std::array<std::vector<std::uint64_t>, 4>; // of the window, of those cells; over the whole image

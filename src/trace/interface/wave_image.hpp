@@ -31,9 +31,9 @@ class WaveImage {
     int columns() const { return size_.columns; } // of them, in a row
     // Light of the pixels in the units of the sorted light.
     Grid<double> apply(std::span<const std::uint64_t> light) const;
-    // Of images that are asked for one after the other, by the calling thread, and are not kept: of four times as many
-    // cells at a time as there are cores.
-    // Of each some rows of parts of pixels, as the windows of the field's tiles ask for them.
+    // The same from cells that the calling thread asks for one after the other and does not keep: four times as many
+    // cells at a time as there are cores, and of each the rows of parts of pixels that a window of the field's tiles
+    // takes.
     using RowsOfCell = std::function<std::vector<std::uint64_t>(int cell, int first_row, int rows)>;
     Grid<double> apply(const RowsOfCell& rows_of_cell) const;
 

@@ -21,11 +21,12 @@ struct WaveWindow {
     waves::f64::TileRamp up;
 };
 
-// Of an image of so many pixels, each of so many parts a side, with so many tiles across the field
-// (optics::FieldTiles::across()): all of one size, whose weights add up to 1 at every pixel. One tile: the whole image.
+// The windows of an image of so many pixels, each of so many parts a side, with so many tiles across the field
+// (optics::FieldTiles::across()). All are of one size, whose weights add up to 1 at every pixel. One tile: the whole
+// image.
 std::vector<WaveWindow> wave_windows(int tiles, ImageSize pixels, int parts);
 
-// Of its filters at a pixel of the image.
+// The weights of the window's four filters at a pixel of the image.
 std::array<double, 4> weights_at(const WaveWindow& window, int column, int row);
 
 } // namespace vkfv::trace
