@@ -1,6 +1,7 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
-// The spectrum of the image with its mirror images, as seen from the middle of the first part.
+// The spectra of the filters' images with their mirror images, as seen from the middle of the first part. The images
+// are real: two of four become the real and the imaginary part of one plane.
 layout(local_size_x = 128) in;
 
 #include "waves/device.glsl"
@@ -10,29 +11,39 @@ layout(set = 0, binding = WAVES_BINDING_IMAGE, scalar) writeonly buffer Image { 
 layout(push_constant, scalar) uniform Push { WaveSize size; };
 layout(constant_id = WAVES_CONSTANT_FILTERS) const uint filters = 1u;
 
+const uint planes = filters == 1u ? 1u : filters / 2u;
+
 void main() {
     uint period = 2u * size.columns;
     uint half_plane = size.rows * period;
-    uint which = invocation() / half_plane; // filter
+    uint which = invocation() / half_plane; // plane
     uint place = invocation() % half_plane;
-    if (which < filters) {
+    if (which < planes) {
         uint column = place % period;
         uint row = place / period; // the lower half; the rest are the conjugates of the opposite frequencies
         uint first = 2u * half_plane * which;
         uint nearest = column < size.columns ? column : period - column;
-        vec2 value = vec2(0.0);
+        vec2 real_part = vec2(0.0);
+        vec2 imaginary_part = vec2(0.0);
         if (nearest < size.columns) {
-            vec4 both = spectrum[(which * size.rows + row) * size.columns + nearest];
             bool behind = column > size.columns;
             float along = float(nearest) / float(period);
             float across = float(row) / float(2u * size.rows);
-            float half_turns = behind ? across - along : across + along;
-            value = times(turned(half_turns), behind ? both.zw : both.xy);
+            vec2 turn = turned(behind ? across - along : across + along);
+            uint from = row * size.columns + nearest;
+            uint of_filter = size.rows * size.columns;
+            vec4 both = spectrum[2u * which * of_filter + from];
+            real_part = times(turn, behind ? both.zw : both.xy);
+            if (filters > 1u) {
+                both = spectrum[(2u * which + 1u) * of_filter + from];
+                imaginary_part = times(turn, behind ? both.zw : both.xy);
+            }
         }
-        image[first + row * period + column] = value;
+        image[first + row * period + column] = vec2(real_part.x - imaginary_part.y, real_part.y + imaginary_part.x);
         if (row > 0u) {
             uint opposite = column == 0u ? 0u : period - column;
-            image[first + (2u * size.rows - row) * period + opposite] = vec2(value.x, -value.y);
+            image[first + (2u * size.rows - row) * period + opposite] =
+                vec2(real_part.x + imaginary_part.y, imaginary_part.x - real_part.y);
         } else {
             image[first + size.rows * period + column] = vec2(0.0); // the frequency of a half, which no pupil passes
         }

@@ -25,12 +25,12 @@ void main() {
         uint pixel = pixel_row * size.image_columns + pixel_column;
         float light = pixels[pixel];
         for (uint k = 0u; k < filters; ++k) {
-            uint first = k * 4u * size.columns * size.rows;
+            uint first = k / 2u * 4u * size.columns * size.rows; // plane, of two filters
             float sum = 0.0;
             for (uint j = 0u; j < parts; ++j) {
                 for (uint i = 0u; i < parts; ++i) {
                     sum += sensitive_share(size.cells, i) * sensitive_share(size.cells, j) *
-                           image[first + (row + j) * 2u * size.columns + column + i].x;
+                           image[first + (row + j) * 2u * size.columns + column + i][k % 2u];
                 }
             }
             // A cosine stands at four frequencies, and a transform there and back counts 4 columns rows times.

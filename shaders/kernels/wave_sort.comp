@@ -22,32 +22,33 @@ float light_at(uint cell, uint column, uint row) {
                      .light);
 }
 
-// Where the k-th value of a transform of so many comes from.
-uint source_of(uint k, uint length) {
-    uint from_front = (length + 1u) / 2u;
-    return k < from_front ? 2u * k : 2u * (length - k) - 1u;
-}
+// Where the value from this place goes in the transform's order.
+uint destination_of(uint from, uint length) { return from % 2u == 0u ? from / 2u : length - 1u - from / 2u; }
 
 void main() {
+    // An invocation takes two neighbours of a row, so that each line of memory is read once.
     uint place = invocation();
-    uint plane = groups.columns * groups.rows;
-    if (place < plane) {
-        uint column = place % groups.columns;
-        uint row = place / groups.columns;
-        uint from_column = source_of(column, groups.columns);
-        uint from_row = source_of(row, groups.rows);
-        float along = from_column % 2u == 0u ? 0.25 : -0.25;
+    uint pairs = (groups.columns + 1u) / 2u;
+    if (place < pairs * groups.rows) {
+        uint first_column = place % pairs * 2u;
+        uint from_row = place / pairs;
+        uint plane = groups.columns * groups.rows;
+        uint row = destination_of(from_row, groups.rows) * groups.columns;
         float across = from_row % 2u == 0u ? 1.0 : -1.0;
         for (uint k = 0u; k < groups.count; ++k) {
             uvec4 cells = cells_of_group(groups.first + k, groups.cells_side);
-            float own = light_at(cells.x, from_column, from_row);
-            float sideways = light_at(cells.y, from_column, from_row);
-            float upright = light_at(cells.z, from_column, from_row);
-            float both = light_at(cells.w, from_column, from_row);
-            planes[2u * k * plane + place] =
-                vec2(0.25 * (own + sideways + upright + both), along * across * (own - sideways - upright + both));
-            planes[(2u * k + 1u) * plane + place] =
-                vec2(along * (own - sideways + upright - both), 0.25 * across * (own + sideways - upright - both));
+            for (uint from_column = first_column; from_column < min(first_column + 2u, groups.columns); ++from_column) {
+                float along = from_column % 2u == 0u ? 0.25 : -0.25;
+                float own = light_at(cells.x, from_column, from_row);
+                float sideways = light_at(cells.y, from_column, from_row);
+                float upright = light_at(cells.z, from_column, from_row);
+                float both = light_at(cells.w, from_column, from_row);
+                uint to = 2u * k * plane + row + destination_of(from_column, groups.columns);
+                planes[to] =
+                    vec2(0.25 * (own + sideways + upright + both), along * across * (own - sideways - upright + both));
+                planes[to + plane] =
+                    vec2(along * (own - sideways + upright - both), 0.25 * across * (own + sideways - upright - both));
+            }
         }
     }
 }

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <future>
 #include <map>
 #include <tuple>
 #include <utility>
@@ -71,6 +72,7 @@ FieldTransfer::FieldTransfer(const Instrument& instrument, const CellTransfer& a
     const bool symmetric = imaging_of(instrument).symmetric;
     const glm::dvec2 half = instrument.first_order.field_corner;
     std::map<std::array<int, 2>, std::size_t> known; // by distances from the axis, in tiles
+    std::vector<int> computed;                       // tiles
     const int middle = tiles.across() / 2;
     for (int tile = 0; tile < tiles.count(); ++tile) {
         std::array<int, 2> place = {tile % tiles.across() - middle, tile / tiles.across() - middle};
@@ -84,17 +86,25 @@ FieldTransfer::FieldTransfer(const Instrument& instrument, const CellTransfer& a
                 std::swap(place[0], place[1]);
             }
         }
-        const auto [found, is_new] = known.try_emplace(place, computed_.size());
+        const auto [found, is_new] = known.try_emplace(place, computed.size());
         image.of = found->second;
         images_.push_back(image);
         if (is_new) {
-            const int computed = (place[1] + middle) * tiles.across() + place[0] + middle;
-            auto wavefronts = wavefronts_for_cells(instrument, tiles.point(computed));
+            computed.push_back((place[1] + middle) * tiles.across() + place[0] + middle);
+        }
+    }
+    std::vector<std::future<std::unique_ptr<const CellTransfer>>> transfers; // of the points, side by side
+    for (const int tile : computed) {
+        transfers.push_back(std::async(std::launch::async, [&, tile] {
+            auto wavefronts = wavefronts_for_cells(instrument, tiles.point(tile));
             if (is_dark(wavefronts)) {
                 wavefronts = wavefronts_for_cells(instrument);
             }
-            computed_.push_back(std::make_unique<const CellTransfer>(axis, sharpest(std::move(wavefronts))));
-        }
+            return std::make_unique<const CellTransfer>(axis, sharpest(std::move(wavefronts)));
+        }));
+    }
+    for (auto& transfer : transfers) {
+        computed_.push_back(transfer.get());
     }
 }
 

@@ -10,6 +10,7 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -29,6 +30,8 @@ class DeviceWaveImage {
 
   private:
     void record(vulkan::Commands& commands, const WaveWindow& window) const;
+    // The table of the window's filters, where there are several tiles.
+    void put_table_together(vulkan::Commands& commands, const WaveWindow& window) const;
     void dispatch(vulkan::Commands& commands, const vulkan::Kernel& kernel, std::span<const vulkan::Binding> bindings,
                   std::span<const std::byte> push, std::size_t places) const;
 
@@ -41,15 +44,18 @@ class DeviceWaveImage {
     ImageSize size_;                                        // of a window, in parts of pixels
     WavePlanes sizes_;
     std::uint32_t steps_;
+    std::uint32_t nodes_; // of the tables of all cells together
     float steps_a_column_;
     float steps_a_row_;
     vulkan::Buffer planes_;
-    vulkan::Buffer table_;
+    vulkan::Buffer tables_;               // of all tiles of the field
+    std::optional<vulkan::Buffer> table_; // of the window's four filters, where there are any
     vulkan::Buffer spectrum_;
     vulkan::Buffer image_;
     vulkan::Buffer result_;
     vulkan::FourierPlanes forward_;
     vulkan::FourierPlanes inverse_;
+    std::optional<vulkan::Kernel> put_together_; // makes table_
     vulkan::Kernel sort_;
     vulkan::Kernel filter_;
     vulkan::Kernel extend_;

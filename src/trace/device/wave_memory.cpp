@@ -31,11 +31,12 @@ std::uint64_t light_bytes(const WaveSizes& sizes) {
     return side * side * bytes_a_cell(sizes);
 }
 
+// The tables of all tiles, and the table of the four filters of a window.
 std::uint64_t table_bytes(const WaveSizes& sizes) {
     const auto steps = static_cast<std::uint64_t>(optics::table_steps(sizes.cells));
-    const auto filters =
-        static_cast<std::uint64_t>(sizes.tiles * sizes.cells) * static_cast<std::uint64_t>(sizes.tiles * sizes.cells);
-    return filters * (2 * steps + 1) * (steps + 1) * 2 * sizeof(float);
+    const auto cells = static_cast<std::uint64_t>(sizes.cells);
+    const auto tiles = static_cast<std::uint64_t>(sizes.tiles);
+    return (tiles * tiles + 4) * cells * cells * (2 * steps + 1) * (steps + 1) * 2 * sizeof(float);
 }
 
 WavePlanes planes_of(const WaveSizes& sizes, std::uint64_t binding) {

@@ -34,7 +34,9 @@ class WavePlanes {
 
     std::size_t plane_bytes() const { return a_group * at_once_ * plane_; } // of the groups at once
     std::size_t spectrum_bytes() const { return filters_ * 2 * plane_; } // of the image with its mirror images, a half
-    std::size_t image_bytes() const { return filters_ * 4 * plane_; }    // with its mirror images
+    // Planes of the filters' images: two real images are the real and the imaginary part of one.
+    int image_planes() const { return static_cast<int>((filters_ + 1) / 2); }
+    std::size_t image_bytes() const { return (filters_ + 1) / 2 * 4 * plane_; } // with their mirror images
     std::size_t largest_bytes() const { return std::max(plane_bytes(), image_bytes()); }
 
   private:
