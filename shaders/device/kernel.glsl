@@ -6,6 +6,9 @@
 #ifdef VKFV_RAY_QUERY
 #extension GL_EXT_ray_query : require
 #endif
+#ifdef VKFV_RAY_PIPELINE
+#extension GL_EXT_ray_tracing : require
+#endif
 #include "device/bindings.glsl"
 #include "device/specimen_hit.glsl"
 #ifdef VKFV_NONSEQUENTIAL

@@ -77,6 +77,8 @@ Hit no_hit() {
 
 #ifdef VKFV_RAY_QUERY
 #include "device/specimen_ray_query.glsl"
+#elif defined(VKFV_RAY_PIPELINE)
+#include "device/specimen_ray_pipeline.glsl"
 #elif defined(VKFV_BVH)
 #include "device/specimen_bvh.glsl"
 #else

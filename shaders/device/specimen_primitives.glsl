@@ -41,6 +41,7 @@ Hit tile_hit(SurfaceTile tile, SpecimenRay ray, real rounding) {
     return hit;
 }
 
+#ifndef VKFV_AT_A_PRIMITIVE // a shader that is called for one primitive
 Hit meet_triangles(real3 origin, real3 direction, RayInterval over);
 Hit meet_tiles(SpecimenRay ray, real rounding);
 
@@ -72,3 +73,4 @@ Hit specimen_hit(real3 origin, real3 direction) {
     hit.distance = max(hit.distance + ray.advance, real(0.0));
     return hit;
 }
+#endif

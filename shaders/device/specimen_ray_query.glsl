@@ -1,17 +1,6 @@
 // Triangles, and analytic surfaces as procedural boxes, through VK_KHR_ray_query.
 #include "device/specimen_primitives.glsl"
-
-layout(set = 0, binding = BINDING_STRUCTURE) uniform accelerationStructureEXT specimen_structure;
-
-layout(set = 0, binding = BINDING_VERTICES, scalar) readonly buffer Vertices { real vertices[]; }; // three a vertex, mm
-layout(set = 0, binding = BINDING_TRIANGLES, scalar) readonly buffer Triangles {
-    uint triangles[];
-}; // three a triangle
-
-real3 triangle_vertex(uint triangle, uint corner) {
-    uint first = 3u * triangles[3u * triangle + corner];
-    return real3(vertices[first], vertices[first + 1u], vertices[first + 2u]);
-}
+#include "device/specimen_structure.glsl"
 
 // Bits of AccelerationStructure::join: parts in the order that they were joined in.
 const uint SPECIMEN_MASK = 1u;

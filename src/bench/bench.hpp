@@ -9,6 +9,8 @@
 //   forms[]           g, max_bounces, geometry ("as configured", "mesh": the height field's triangles), and a timing
 //   traversals[]      name and a timing
 //   hits[]            traversal, order, numerical_aperture, hits_per_second, spread, share_met
+//   pipeline[]        of rays by a ray-tracing pipeline and by a traversal: traversal, rays, both, one_alone, apart,
+//                     unexplained, largest_height_apart_nm (pipeline_hits.hpp)
 //   estimators[]      name, a timing, seeds, variance (W^2, summed over the pixels), relative_efficiency (forward: 1)
 //   scaling           rays[], triangles[], surfaces[], pixels[]: the quantity and a timing
 //   peer              rays, seconds, rays_per_second, processor_seconds, ratio (our rate over its), processor_ratio

@@ -10,8 +10,9 @@
 
 namespace vkfv::bench {
 
-const std::vector<std::string> bench_parts = {"validation", "stages", "whole",     "forms",    "traversals", "hits",
-                                              "estimators", "rays",   "triangles", "surfaces", "pixels",     "peer"};
+const std::vector<std::string> bench_parts = {"validation", "stages",   "whole",      "forms", "traversals",
+                                              "hits",       "pipeline", "estimators", "rays",  "triangles",
+                                              "surfaces",   "pixels",   "peer"};
 
 namespace {
 
@@ -27,6 +28,7 @@ constexpr std::array parts_after_whole = {
     Part{"forms", "forms", false, forms},
     Part{"traversals", "traversals", false, traversal_timings},
     Part{"hits", "hits", false, hits},
+    Part{"pipeline", "pipeline", false, pipeline},
     Part{"estimators", "estimators", false, estimator_timings},
     Part{"rays", "rays", true, over_rays},
     Part{"triangles", "triangles", true, over_triangles},
@@ -77,7 +79,7 @@ Json measure_bench(const BenchOptions& options, const std::function<void(const J
         after_part(report);
     }
     const bool exposes = std::ranges::any_of(bench_parts, [&](const std::string& part) {
-        return part != "validation" && part != "stages" && part != "hits" && wants(part);
+        return part != "validation" && part != "stages" && part != "hits" && part != "pipeline" && wants(part);
     });
     if (exposes) {
         scene.settle_rays();

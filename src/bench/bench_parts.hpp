@@ -14,6 +14,8 @@ Json stages(const BenchScene& scene);
 Json forms(const BenchScene& scene);
 Json traversal_timings(const BenchScene& scene);
 Json hits(const BenchScene& scene);
+// Rays by a ray-tracing pipeline beside the traversals, where the device has such pipelines.
+Json pipeline(const BenchScene& scene);
 Json estimator_timings(const BenchScene& scene);
 
 Json over_rays(const BenchScene& scene);

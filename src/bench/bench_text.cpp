@@ -84,6 +84,15 @@ std::string form_text(const Json& entry) {
                        entry);
 }
 
+std::string pipeline_text(const Json& entry) {
+    return fmt::format(
+        "  {:<10} {} rays, {} met by both, {} by one alone, {} more than 1 nm apart; {} of these not for "
+        "rounding; else at most {:.3f} nm apart\n",
+        text(entry, "traversal"), entry.at("rays").get<std::uint64_t>(), entry.at("both").get<std::uint64_t>(),
+        entry.at("one_alone").get<std::uint64_t>(), entry.at("apart").get<std::uint64_t>(),
+        entry.at("unexplained").get<std::uint64_t>(), number(entry, "largest_height_apart_nm"));
+}
+
 std::string hits_text(const Json& entry) {
     return fmt::format("  {:<10} {:<10} {:>8} hits/s at NA {:.1f}, {:.0f} % met, spread {:.1f} %\n",
                        text(entry, "traversal"), text(entry, "order"), with_prefix(number(entry, "hits_per_second")),
@@ -142,6 +151,7 @@ std::string bench_text(const Json& report) {
     result +=
         list_text(report, "traversals", [](const Json& entry) { return timing_text(text(entry, "name"), entry); });
     result += list_text(report, "hits", hits_text);
+    result += list_text(report, "pipeline", pipeline_text);
     result += list_text(report, "estimators", estimator_text);
     if (report.contains("scaling")) {
         result += scaling_text(report.at("scaling"));

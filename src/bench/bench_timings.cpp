@@ -1,6 +1,8 @@
 #include "bench/bench_parts.hpp"
 #include "bench/hit_times.hpp"
+#include "bench/pipeline_hits.hpp"
 #include "bench/stage_times.hpp"
+#include "core/mathematics/units.hpp"
 #include "trace/device/device_tracer.hpp"
 
 #include <fmt/format.h>
@@ -97,6 +99,29 @@ Json traversal_timings(const BenchScene& scene) {
         Json entry = {{"name", way.name}};
         entry.update(scene.timing(*scene.tracer_of(way.options, scene.rays())));
         result.push_back(entry);
+    }
+    return result;
+}
+
+Json pipeline(const BenchScene& scene) {
+    Json result = Json::array();
+    if (!scene.device().ray_pipeline) {
+        return result;
+    }
+    const std::uint64_t rays = scene.options().quick ? 20'000 : 1'000'000;
+    for (const auto& way : scene.traversals()) {
+        if (way.options.traversal != trace::Traversal::ray_query) {
+            spdlog::info("rays by a ray-tracing pipeline and by {}", way.name);
+            const auto found = compare_pipeline_hits(scene.specimen(), scene.specimen(), way.options.traversal,
+                                                     way.options.device, rays, way.options.seed);
+            result.push_back({{"traversal", way.name},
+                              {"rays", found.rays},
+                              {"both", found.both},
+                              {"one_alone", found.one_alone},
+                              {"apart", found.apart},
+                              {"unexplained", found.unexplained},
+                              {"largest_height_apart_nm", 1000 * um_per_mm * found.largest_height_apart}});
+        }
     }
     return result;
 }

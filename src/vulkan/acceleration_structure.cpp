@@ -23,8 +23,8 @@ bool is_finite(const glm::vec3& v) {
     return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z);
 }
 
-void require_ray_query(const Device& device) {
-    if (!device.report().ray_query) {
+void require_structures(const Device& device) {
+    if (!device.builds_structures()) {
         throw DeviceError(
             fmt::format("{} offers no ray query (VK_KHR_ray_query). Choose --traversal quadtree or another "
                         "device",
@@ -40,7 +40,7 @@ vk::PhysicalDeviceAccelerationStructurePropertiesKHR limits_of(const Device& dev
 
 // Checked before anything is uploaded.
 std::uint32_t count_of(const Device& device, std::size_t primitives) {
-    require_ray_query(device);
+    require_structures(device);
     if (primitives == 0) {
         throw std::logic_error("an acceleration structure of no primitives");
     }

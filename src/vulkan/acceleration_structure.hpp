@@ -1,4 +1,4 @@
-// Bottom- and top-level acceleration structures for VK_KHR_ray_query.
+// Bottom- and top-level acceleration structures, for ray queries and for ray-tracing pipelines.
 #pragma once
 
 #include "vulkan/buffer.hpp"
@@ -19,7 +19,7 @@ struct Box {
 // Geometries under identity instances, built for fast tracing; triangles are opaque, and their front is
 // where they are seen counter-clockwise. The caller gives primitives in the order the driver likes (lavapipe
 // splits by index: see median_order). Throws std::logic_error for no primitives, coordinates that are not
-// finite or indices out of range, and DeviceError when the device has no ray query or cannot hold the
+// finite or indices out of range, and DeviceError when the device was opened without them or cannot hold the
 // structure.
 class AccelerationStructure {
   public:

@@ -21,8 +21,11 @@ vk::BufferUsageFlags usage_on(const Device& device) {
     using Usage = vk::BufferUsageFlagBits;
     vk::BufferUsageFlags usage = Usage::eStorageBuffer | Usage::eUniformBuffer | Usage::eTransferSrc |
                                  Usage::eTransferDst | Usage::eShaderDeviceAddress;
-    if (device.report().ray_query) {
+    if (device.builds_structures()) {
         usage |= Usage::eAccelerationStructureBuildInputReadOnlyKHR | Usage::eAccelerationStructureStorageKHR;
+    }
+    if (device.has_ray_pipelines()) {
+        usage |= Usage::eShaderBindingTableKHR;
     }
     return usage;
 }

@@ -1,6 +1,8 @@
 // What a device has compiled.
 #pragma once
 
+#include "vulkan/pipeline_layout.hpp"
+
 #include <vulkan/vulkan_raii.hpp>
 
 #include <functional>
@@ -13,8 +15,7 @@
 namespace vkfv::vulkan {
 
 struct CompiledKernel {
-    vk::raii::DescriptorSetLayout set_layout{nullptr};
-    vk::raii::PipelineLayout layout{nullptr};
+    PipelineLayout layout;
     vk::raii::Pipeline pipeline{nullptr};
 };
 

@@ -26,9 +26,8 @@ namespace vkfv::vulkan {
 
 namespace {
 
-constexpr std::array ray_query_extensions = {VK_KHR_DEFERRED_HOST_OPERATIONS_EXTENSION_NAME,
-                                             VK_KHR_ACCELERATION_STRUCTURE_EXTENSION_NAME,
-                                             VK_KHR_RAY_QUERY_EXTENSION_NAME};
+constexpr std::array structure_extensions = {VK_KHR_DEFERRED_HOST_OPERATIONS_EXTENSION_NAME,
+                                             VK_KHR_ACCELERATION_STRUCTURE_EXTENSION_NAME};
 
 // In the order of preference.
 constexpr std::array<std::string_view, 5> type_names = {"discrete GPU", "integrated GPU", "virtual GPU", "CPU",
@@ -120,12 +119,17 @@ DeviceReport examine(const vk::raii::PhysicalDevice& device, int index) {
     require(has_subgroup(vk::SubgroupFeatureFlagBits::eArithmetic), "subgroup arithmetic in compute shaders");
 
     report.doubles = features_10.shaderFloat64 == VK_TRUE;
-    if (std::ranges::all_of(ray_query_extensions, has_extension)) {
+    if (std::ranges::all_of(structure_extensions, has_extension)) {
         const auto ray =
-            device.getFeatures2<vk::PhysicalDeviceFeatures2, vk::PhysicalDeviceAccelerationStructureFeaturesKHR,
-                                vk::PhysicalDeviceRayQueryFeaturesKHR>();
-        report.ray_query = ray.get<vk::PhysicalDeviceAccelerationStructureFeaturesKHR>().accelerationStructure &&
+            device
+                .getFeatures2<vk::PhysicalDeviceFeatures2, vk::PhysicalDeviceAccelerationStructureFeaturesKHR,
+                              vk::PhysicalDeviceRayQueryFeaturesKHR, vk::PhysicalDeviceRayTracingPipelineFeaturesKHR>();
+        const bool builds =
+            ray.get<vk::PhysicalDeviceAccelerationStructureFeaturesKHR>().accelerationStructure == VK_TRUE;
+        report.ray_query = builds && has_extension(VK_KHR_RAY_QUERY_EXTENSION_NAME) &&
                            ray.get<vk::PhysicalDeviceRayQueryFeaturesKHR>().rayQuery;
+        report.ray_pipeline = builds && has_extension(VK_KHR_RAY_TRACING_PIPELINE_EXTENSION_NAME) &&
+                              ray.get<vk::PhysicalDeviceRayTracingPipelineFeaturesKHR>().rayTracingPipeline;
     }
     return report;
 }
@@ -266,6 +270,7 @@ struct Device::State {
     std::atomic<std::int64_t> most_taken{0};
     DeviceReport report;
     std::string choice;
+    bool ray_pipelines = false;
 };
 
 std::size_t choose_device(std::span<const DeviceReport> reports, const DeviceOptions& options) {
@@ -321,7 +326,8 @@ Device::Device(const DeviceOptions& options) : state_(std::make_unique<State>())
 
     std::vector<const char*> extensions = {VK_KHR_PUSH_DESCRIPTOR_EXTENSION_NAME};
     vk::StructureChain<vk::DeviceCreateInfo, vk::PhysicalDeviceFeatures2, vk::PhysicalDeviceVulkan12Features,
-                       vk::PhysicalDeviceAccelerationStructureFeaturesKHR, vk::PhysicalDeviceRayQueryFeaturesKHR>
+                       vk::PhysicalDeviceAccelerationStructureFeaturesKHR, vk::PhysicalDeviceRayQueryFeaturesKHR,
+                       vk::PhysicalDeviceRayTracingPipelineFeaturesKHR>
         chain;
     chain.get<vk::PhysicalDeviceFeatures2>().features.setShaderInt64(VK_TRUE).setShaderFloat64(
         state.report.doubles ? VK_TRUE : VK_FALSE);
@@ -329,13 +335,30 @@ Device::Device(const DeviceOptions& options) : state_(std::make_unique<State>())
         .setBufferDeviceAddress(VK_TRUE)
         .setScalarBlockLayout(VK_TRUE)
         .setShaderBufferInt64Atomics(VK_TRUE);
-    if (state.report.ray_query) {
-        extensions.insert(extensions.end(), ray_query_extensions.begin(), ray_query_extensions.end());
+    state.ray_pipelines = options.ray_pipelines;
+    if (state.ray_pipelines && !state.report.ray_pipeline) {
+        throw DeviceError(
+            fmt::format("{} offers no ray-tracing pipelines (VK_KHR_ray_tracing_pipeline). Choose another "
+                        "device",
+                        state.report.name));
+    }
+    if (builds_structures()) {
+        extensions.insert(extensions.end(), structure_extensions.begin(), structure_extensions.end());
         chain.get<vk::PhysicalDeviceAccelerationStructureFeaturesKHR>().setAccelerationStructure(VK_TRUE);
-        chain.get<vk::PhysicalDeviceRayQueryFeaturesKHR>().setRayQuery(VK_TRUE);
     } else {
         chain.unlink<vk::PhysicalDeviceAccelerationStructureFeaturesKHR>();
+    }
+    if (state.report.ray_query) {
+        extensions.push_back(VK_KHR_RAY_QUERY_EXTENSION_NAME);
+        chain.get<vk::PhysicalDeviceRayQueryFeaturesKHR>().setRayQuery(VK_TRUE);
+    } else {
         chain.unlink<vk::PhysicalDeviceRayQueryFeaturesKHR>();
+    }
+    if (state.ray_pipelines) {
+        extensions.push_back(VK_KHR_RAY_TRACING_PIPELINE_EXTENSION_NAME);
+        chain.get<vk::PhysicalDeviceRayTracingPipelineFeaturesKHR>().setRayTracingPipeline(VK_TRUE);
+    } else {
+        chain.unlink<vk::PhysicalDeviceRayTracingPipelineFeaturesKHR>();
     }
     const std::array<float, 2> priorities = {0.5F, 1.0F}; // evaluation, far shorter, goes first
     const std::uint32_t queues =
@@ -379,6 +402,9 @@ const DeviceReport& Device::report() const {
 }
 const std::string& Device::choice() const {
     return state_->choice;
+}
+bool Device::has_ray_pipelines() const {
+    return state_->ray_pipelines;
 }
 const vk::raii::Device& Device::handle() const {
     return state_->device;

@@ -26,7 +26,9 @@ struct DeviceReport {
     std::string type; // "discrete GPU", "integrated GPU", "CPU", ...
     std::string api_version;
     bool ray_query = false; // not needed: the trace has other traversals
-    bool doubles = false;   // in shaders; not needed: the host has them
+    bool ray_pipeline =
+        false;            // likewise; VK_KHR_ray_tracing_pipeline, by which structures can be probed without ray query
+    bool doubles = false; // in shaders; not needed: the host has them
     std::uint32_t subgroup_size = 0;
     std::uint64_t memory_bytes = 0; // the largest device-local heap
     std::uint64_t max_storage_buffer_bytes = 0;
@@ -41,7 +43,8 @@ inline bool is_software(const DeviceReport& report) {
 }
 
 struct DeviceOptions {
-    std::string selector; // empty: the best; else an index or a part of the name, or a list for choose_devices()
+    std::string selector;       // empty: the best; else an index or a part of the name, or a list for choose_devices()
+    bool ray_pipelines = false; // opens it for RayPipeline too; throws DeviceError where it has none
 };
 
 // The index into `reports` of the device to use: the selector's, else discrete before integrated before
@@ -68,6 +71,8 @@ class Device {
 
     const DeviceReport& report() const;
     const std::string& choice() const; // one sentence: which device, and why
+    bool has_ray_pipelines() const;    // was opened for them
+    bool builds_structures() const { return report().ray_query || has_ray_pipelines(); }
     const vk::raii::Device& handle() const;
     const vk::raii::PhysicalDevice& physical() const;
     // What is submitted to one lane works in the order of submission; lanes work beside each other where the device

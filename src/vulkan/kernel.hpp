@@ -1,55 +1,32 @@
 // Compute kernels, what they are bound to, and the recording of their dispatches.
 #pragma once
 
-#include "vulkan/acceleration_structure.hpp"
-#include "vulkan/buffer.hpp"
 #include "vulkan/compiled_kernels.hpp"
+#include "vulkan/pipeline_layout.hpp"
 #include "vulkan/specialised_spirv.hpp"
 
 #include <cstdint>
 #include <memory>
 #include <span>
 #include <string>
-#include <variant>
 #include <vector>
 
 namespace vkfv::vulkan {
-
-// A buffer or a top-level acceleration structure at a binding of set 0.
-struct Binding {
-    std::uint32_t slot;
-    std::variant<const Buffer*, const AccelerationStructure*> resource;
-    // Of a buffer, if not the whole: bytes from first_byte on, a multiple of binding_alignment.
-    std::size_t first_byte = 0;
-    std::size_t bytes = 0;
-};
-inline constexpr std::size_t binding_alignment = 256; // Vulkan asks for no more
-
-enum class BindingKind { storage_buffer, uniform_buffer, acceleration_structure };
-
-struct BindingDeclaration {
-    std::uint32_t slot;
-    BindingKind kind;
-};
 
 // A compute pipeline with push descriptors in set 0 and push constants at offset 0. A device compiles a kernel once:
 // those of the same code, bindings and constants share one pipeline, which it keeps until it closes.
 class Kernel {
   public:
     Kernel(const Device& device, std::string name, std::span<const std::uint32_t> spirv,
-           std::vector<BindingDeclaration> bindings, std::uint32_t push_constant_bytes = 0,
+           const std::vector<BindingDeclaration>& bindings, std::uint32_t push_constant_bytes = 0,
            std::span<const SpecializationConstant> constants = {});
 
     const std::string& name() const { return name_; }
     vk::Pipeline pipeline() const { return *compiled_->pipeline; }
-    vk::PipelineLayout layout() const { return *compiled_->layout; }
-    const std::vector<BindingDeclaration>& bindings() const { return bindings_; }
-    std::uint32_t push_constant_bytes() const { return push_constant_bytes_; }
+    const PipelineLayout& layout() const { return compiled_->layout; }
 
   private:
     std::string name_;
-    std::vector<BindingDeclaration> bindings_;
-    std::uint32_t push_constant_bytes_;
     std::shared_ptr<const CompiledKernel> compiled_;
 };
 
@@ -77,9 +54,7 @@ class Commands {
     Commands(const Commands&) = delete;
     Commands& operator=(const Commands&) = delete;
 
-    // Bindings must name every slot the kernel declares (throws std::logic_error otherwise). Throws
-    // DeviceError for a buffer larger than a descriptor may span on this device: reach that one by its
-    // address.
+    // Bindings and push constants are those that the kernel declares: throws as PipelineLayout::bind().
     void dispatch(const Kernel& kernel, std::span<const Binding> bindings, std::span<const std::byte> push_constants,
                   std::uint32_t groups_x, std::uint32_t groups_y = 1);
     template <class Push>

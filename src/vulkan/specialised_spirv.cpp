@@ -6,6 +6,19 @@
 
 namespace vkfv::vulkan {
 
+Specialization::Specialization(std::span<const SpecializationConstant> constants) {
+    for (const SpecializationConstant& constant : constants) {
+        entries_.emplace_back(constant.id, static_cast<std::uint32_t>(values_.size() * sizeof(std::uint32_t)),
+                              sizeof(std::uint32_t));
+        values_.push_back(constant.value);
+    }
+}
+
+vk::SpecializationInfo Specialization::info() const {
+    return {static_cast<std::uint32_t>(entries_.size()), entries_.data(), values_.size() * sizeof(std::uint32_t),
+            values_.data()};
+}
+
 std::vector<std::uint32_t> specialised_spirv(std::span<const std::uint32_t> spirv,
                                              std::span<const SpecializationConstant> constants) {
     std::unordered_map<std::uint32_t, std::vector<std::uint32_t>> values;

@@ -1,6 +1,8 @@
 // Kernels whose constants are put in before a driver has them.
 #pragma once
 
+#include <vulkan/vulkan.hpp>
+
 #include <cstdint>
 #include <span>
 #include <vector>
@@ -10,6 +12,17 @@ namespace vkfv::vulkan {
 struct SpecializationConstant {
     std::uint32_t id;
     std::uint32_t value; // the bits of an int, uint, float or bool
+};
+
+// The same as a driver takes them.
+class Specialization {
+  public:
+    explicit Specialization(std::span<const SpecializationConstant> constants);
+    vk::SpecializationInfo info() const; // valid as long as this object
+
+  private:
+    std::vector<vk::SpecializationMapEntry> entries_;
+    std::vector<std::uint32_t> values_;
 };
 
 // The module with these constants in place: what they exclude is gone, and calls have become what they call. Each

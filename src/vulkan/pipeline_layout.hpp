@@ -1,0 +1,60 @@
+// What the shaders of a pipeline are bound to: buffers and acceleration structures by push descriptors in set 0, and
+// push constants at offset 0.
+#pragma once
+
+#include "vulkan/acceleration_structure.hpp"
+#include "vulkan/buffer.hpp"
+
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <string_view>
+#include <variant>
+#include <vector>
+
+namespace vkfv::vulkan {
+
+// A buffer or a top-level acceleration structure at a binding of set 0.
+struct Binding {
+    std::uint32_t slot;
+    std::variant<const Buffer*, const AccelerationStructure*> resource;
+    // Of a buffer, if not the whole: bytes from first_byte on, a multiple of binding_alignment.
+    std::size_t first_byte = 0;
+    std::size_t bytes = 0;
+};
+inline constexpr std::size_t binding_alignment = 256; // Vulkan asks for no more
+
+enum class BindingKind { storage_buffer, uniform_buffer, acceleration_structure };
+
+struct BindingDeclaration {
+    std::uint32_t slot;
+    BindingKind kind;
+};
+
+class PipelineLayout {
+  public:
+    PipelineLayout() = default;
+    // stages: those that see the bindings and the push constants, whose bytes are a multiple of 4, at most 128, which
+    // every device grants (throws std::logic_error otherwise). Throws vk::SystemError.
+    PipelineLayout(const Device& device, std::vector<BindingDeclaration> declarations,
+                   std::uint32_t push_constant_bytes, vk::ShaderStageFlags stages);
+
+    vk::PipelineLayout handle() const { return *layout_; }
+
+    // Binds what the next command of a pipeline with this layout takes; name: of that pipeline, for errors. The
+    // bindings must name every slot that is declared, and the push constants have the declared size (throws
+    // std::logic_error otherwise). Throws DeviceError for a buffer larger than a descriptor may span on this device:
+    // reach that one by its address.
+    void bind(const Device& device, const vk::raii::CommandBuffer& commands, vk::PipelineBindPoint point,
+              std::string_view name, std::span<const Binding> bindings,
+              std::span<const std::byte> push_constants) const;
+
+  private:
+    std::vector<BindingDeclaration> declarations_;
+    std::uint32_t push_constant_bytes_ = 0;
+    vk::ShaderStageFlags stages_;
+    vk::raii::DescriptorSetLayout set_{nullptr};
+    vk::raii::PipelineLayout layout_{nullptr};
+};
+
+} // namespace vkfv::vulkan
