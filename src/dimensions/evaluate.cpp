@@ -130,6 +130,7 @@ Dimensions of(const HeightMap& map, const CrossGrating& grating) {
         take_period(u, found->waves[0]);
         take_period(v, found->waves[1]);
         between.value = angle_between(found->waves[0], found->waves[1]);
+        between.standard_error = found->angle_error;
     }
     return {u, v, between};
 }
