@@ -173,10 +173,10 @@ std::string text_of(const topography::Comparison& comparison, const ComparisonRe
             with_error(over(comparison, [](const auto& one) { return one.deviation.offset; }), um_per_mm, "um"));
     }
     text +=
-        fmt::format("\n{:<18} {:>12} {:>12} {:>12} {:>8}\n", "ISO 25178-2", "measured", "std. error", "true", "ratio");
+        fmt::format("\n{:<21} {:>12} {:>12} {:>12} {:>8}\n", "ISO 25178-2", "measured", "std. error", "true", "ratio");
     for (const auto& row : compared_parameters(comparison)) {
         const double ratio = topography::ratio_to_truth(row.measured.mean, row.truth);
-        text += fmt::format("{:<5} {:<12} {:>12} {:>12} {:>12} {:>8}\n", row.named.name, row.named.unit,
+        text += fmt::format("{:<8} {:<12} {:>12} {:>12} {:>12} {:>8}\n", row.named.name, row.named.unit,
                             report::number_text(row.measured.mean), report::number_text(row.measured.error),
                             report::number_text(row.truth), row.named.unit == "deg" ? "-" : ratio_text(ratio));
     }
@@ -221,7 +221,7 @@ std::string profile_text(const ComparedProfile& profile) {
                truth = report::parameter_rows(profile.truth.parameters);
     for (std::size_t k = 0; k < measured.size(); ++k) {
         const double ratio = topography::ratio_to_truth(measured[k].value, truth[k].value);
-        text += fmt::format("{:<5} {:<12} {:>12} {:>12} {:>12} {:>8}\n", measured[k].name, measured[k].unit,
+        text += fmt::format("{:<8} {:<12} {:>12} {:>12} {:>12} {:>8}\n", measured[k].name, measured[k].unit,
                             report::number_text(measured[k].value), "-", report::number_text(truth[k].value),
                             ratio_text(ratio));
     }
