@@ -7,6 +7,7 @@
 #include "dimensions/waves.hpp"
 #include "surface/filter.hpp"
 #include "surface/height_parameters.hpp"
+#include "surface/minimum_zone.hpp"
 
 #include <fmt/format.h>
 
@@ -212,7 +213,9 @@ Dimensions of(const HeightMap& map, const Flat&) {
     const auto parameters = surface::height_parameters(surface::remove_plane(map, surface::least_squares_plane(map)));
     sz.value = parameters.sz;
     sq.value = parameters.sq;
-    return {sz, sq};
+    Dimension least{.name = "flatness, minimum zone", .rule = "ISO 12781-1", .nominal = 0};
+    least.value = surface::minimum_zone(map);
+    return {sz, sq, least};
 }
 
 Dimensions of(const HeightMap& map, const Plateaus& plateaus) {
