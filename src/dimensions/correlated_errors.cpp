@@ -63,9 +63,8 @@ double trace(const std::vector<double>& matrix, std::size_t n) {
 } // namespace
 
 double student_factor(double degrees) {
-    constexpr double fewest = 3;
-    const double nu = std::max(fewest, degrees);
-    return std::sqrt(nu / (nu - 2));
+    const double nu = std::max(1.0, degrees);
+    return 2 * nu / (2 * nu - 1);
 }
 
 double FitCovariance::standard_error(std::span<const double> weights) const {

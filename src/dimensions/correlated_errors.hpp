@@ -35,14 +35,15 @@ using FitFunctions = std::function<void(std::size_t place, std::span<double> val
 // and along columns, each up to the first distance at which it is not positive; what the fit has taken of it is given
 // back: E. Parzen, "On consistent estimates of the spectrum", 1957, has the means of lagged products, P. Bloomfield,
 // "Fourier Analysis of Time Series", 9, that a wave meets the errors' spectrum at its own frequency alone. `taken`:
-// parameters besides the unknowns that were taken off the residues. The standard errors are the standard deviations of
-// Student's distribution for the degrees of freedom that are left (JCGM 101, 6.4.9.4). A variance is at least a tenth
+// parameters besides the unknowns that were taken off the residues. The standard errors cover 68.27 % of
+// Student's distribution for the degrees of freedom that are left (JCGM 100, G.3). A variance is at least a tenth
 // of that of independent errors.
 FitCovariance fit_covariance(const Grid<double>& residues, const LeastSquares::Solution& solution,
                              const FitFunctions& functions, double taken = 0);
 
-// The factor by which a standard error grows when its own variance was found with so few degrees of freedom:
-// sqrt(nu / (nu - 2)), nu no less than 3.
+// By what a standard error grows when its own variance was found with so few degrees of freedom: the quantile of
+// Student's distribution within which 68.27 % lie, 2 nu / (2 nu - 1) to one in a hundred from nu = 2 on; nu no less
+// than 1.
 double student_factor(double degrees);
 
 } // namespace vkfv::dimensions

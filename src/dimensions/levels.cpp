@@ -42,13 +42,12 @@ bool enough(const std::vector<Region>& found, std::size_t asked, bool any) {
 std::optional<LevelDifference> fitted_levels(const HeightMap& map, const Frame& frame,
                                              const std::vector<Region>& regions, bool any = false) {
     const Profiles profiles = profiles_across(map, frame);
-    std::vector<double> differences, middles, places;
+    std::vector<double> differences, middles;
     LeastSquares areal(4), along(3);
     for (const auto& line : profiles.lines) {
         const auto found = covered(regions, line, profiles.spacing);
         differences.push_back(surface::undefined);
         middles.push_back(surface::undefined);
-        places.push_back(line.empty() ? 0 : line.front().v);
         if (!enough(found, regions.size(), any))
             continue;
         LeastSquares one(3);
@@ -77,9 +76,7 @@ std::optional<LevelDifference> fitted_levels(const HeightMap& map, const Frame& 
     result.slope_u = solution->unknowns[1];
     result.areal = 2 * solution->unknowns[2];
     result.slope_v = whole ? solution->unknowns[3] : 0;
-    for (std::size_t k = 0; k < middles.size(); ++k)
-        middles[k] -= result.slope_v * places[k];
-    result.middle_error = mean_of(middles).standard_error;
+    result.middles = std::move(middles);
     return result;
 }
 
@@ -96,18 +93,22 @@ double middle_of(const std::vector<double>& crossings) {
     return crossings.empty() ? surface::undefined : sum / static_cast<double>(crossings.size());
 }
 
-// Each profile's width so much above the level halfway; NaN where it does not cross it near both edges.
-std::vector<double> widths_at(const Profiles& profiles, const Groove& groove, const LevelDifference& depth,
-                              double above) {
+// Each profile's width at the level halfway, that of all or, if `own`, the profile's; NaN where it does not cross it
+// near both edges.
+std::vector<double> widths_at(const Profiles& profiles, const Groove& groove, const LevelDifference& depth, bool own) {
     std::vector<double> widths;
-    for (const auto& line : profiles.lines) {
+    for (std::size_t line = 0; line < profiles.lines.size(); ++line) {
+        const auto& points = profiles.lines[line];
+        const auto over = [&](const ProfilePoint& point) {
+            return point.height -
+                   (own ? depth.middles[line] + depth.slope_u * point.u : depth.halfway(point.u, point.v));
+        };
         std::vector<double> before, behind;
-        for (std::size_t k = 1; k < line.size(); ++k) {
-            const double a = line[k - 1].height - depth.halfway(line[k - 1].u, line[k - 1].v) - above;
-            const double b = line[k].height - depth.halfway(line[k].u, line[k].v) - above;
-            if ((a < 0) == (b < 0))
+        for (std::size_t k = 1; k < points.size(); ++k) {
+            const double a = over(points[k - 1]), b = over(points[k]);
+            if (!std::isfinite(a) || (a < 0) == (b < 0))
                 continue;
-            const double u = line[k - 1].u + (line[k].u - line[k - 1].u) * a / (a - b);
+            const double u = points[k - 1].u + (points[k].u - points[k - 1].u) * a / (a - b);
             if (std::abs(std::abs(u) - groove.width / 2) <= groove.width / 3)
                 (u < 0 ? before : behind).push_back(u);
         }
@@ -141,13 +142,11 @@ std::optional<LevelDifference> step_height(const HeightMap& map, const Step& ste
 
 std::optional<Mean> groove_width(const HeightMap& map, const Groove& groove, const LevelDifference& depth) {
     const Profiles profiles = profiles_across(map, groove.frame);
-    Mean mean = mean_of(widths_at(profiles, groove, depth, 0));
+    Mean mean = mean_of(widths_at(profiles, groove, depth, false));
     if (!(mean.count > 0))
         return std::nullopt;
-    const double higher = mean_of(widths_at(profiles, groove, depth, depth.middle_error)).mean;
-    const double lower = mean_of(widths_at(profiles, groove, depth, -depth.middle_error)).mean;
-    if (std::isfinite(higher - lower))
-        mean.standard_error = std::hypot(mean.standard_error, 0.5 * (higher - lower));
+    if (const double error = mean_of(widths_at(profiles, groove, depth, true)).standard_error; std::isfinite(error))
+        mean.standard_error = error;
     return mean;
 }
 

@@ -5,6 +5,7 @@
 #include "dimensions/statistics.hpp"
 
 #include <optional>
+#include <vector>
 
 namespace vkfv::dimensions {
 
@@ -15,7 +16,7 @@ struct LevelDifference {
     double areal = 0; // of one fit to all points, with a slope along v too
     // That fit: the level halfway between both.
     double middle = 0, slope_u = 0, slope_v = 0;
-    double middle_error = surface::undefined; // standard error of `middle`, by the scatter of the profiles
+    std::vector<double> middles{}; // each profile's own level halfway, at u = 0; NaN where it has none
 
     double halfway(double u, double v) const { return middle + slope_u * u + slope_v * v; }
 };

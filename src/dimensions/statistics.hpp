@@ -18,7 +18,7 @@ struct Mean {
 // Neighbours may be correlated, as profiles of a window's width are. With rho_k the correlation at a distance of k, up
 // to the first that is no larger than its standard error (M. Bartlett's equation), tau = 1 + 2 sum of rho_k of them
 // carry one independent value (G. Box, G. Jenkins, G. Reinsel, "Time Series Analysis", 2.1). The standard error is s
-// sqrt(tau / (n - tau)), since the scatter about the mean lacks the mean's own, times the standard deviation of
+// sqrt(tau / (n - tau)), since the scatter about the mean lacks the mean's own, times the factor of
 // Student's distribution with n / tau - 1 degrees of freedom (correlated_errors.hpp). NaN among the numbers are gaps.
 Mean mean_of(const std::vector<double>& in_order);
 
