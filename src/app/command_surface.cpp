@@ -20,7 +20,22 @@ struct SurfaceOptions {
     std::optional<surface::ProfileLine> line; // none: the middle row
     surface::ProfileSetting setting;
     std::optional<dimensions::Sought> sought;
+    measurement::AskedRatios asked;
 };
+
+void take_ratio_height(CommandOptions& options, double um) {
+    if (!std::isfinite(um)) {
+        refuse_argument(fmt::format("--smr_um {}", um), "a height over the mean height, in um", "Correct it.");
+    }
+    options.of<SurfaceOptions>().asked.height = um / um_per_mm;
+}
+
+void take_ratio(CommandOptions& options, double percent) {
+    if (!(percent >= 0 && percent <= 100)) {
+        refuse_argument(fmt::format("--smc_percent {}", percent), "a material ratio from 0 to 100", "Correct it.");
+    }
+    options.of<SurfaceOptions>().asked.ratio = percent / 100;
+}
 
 void take_profile_filter(CommandOptions& options, double um) {
     auto& setting = options.of<SurfaceOptions>().setting;
@@ -103,6 +118,16 @@ Command surface_command() {
         .target = Take<std::string>(take_profile_setting),
         .fallback = "fifth",
         .choices = {"fifth", "by-Ra", "Sc1", "Sc2", "Sc3", "Sc4", "Sc5"}};
+    const Option ratio_height = {.name = "--smr_um,--smr-um",
+                                 .value = "C",
+                                 .description =
+                                     "Also the material ratios Smr(c) and Rmr(c) at this height over the mean height",
+                                 .target = Take<double>(take_ratio_height)};
+    const Option ratio = {.name = "--smc_percent,--smc-percent",
+                          .value = "MR",
+                          .description =
+                              "Also the heights Smc(mr) and Rmc(mr), over the mean height, of this material ratio",
+                          .target = Take<double>(take_ratio)};
     const Option sought = {.name = "--dimensions",
                            .value = "NAME",
                            .description =
@@ -116,10 +141,11 @@ Command surface_command() {
                        "form removed and filtered, its ISO 25178-2 "
                        "parameters; with --out also written, in another format if so named",
             .operands = {{"FILE", "Surface", into(&CommandOptions::file)}},
-            .options = together(
-                {{out_option("A .x3p, .sur, .sdf, .gwy, .gsf, .csv, .npy, .tif or .ply file"), json_option()},
-                 band_options(),
-                 {pitch_option(), unit, profile, profile_filter, profile_setting, sought, accept_checksum_option()}}),
+            .options =
+                together({{out_option("A .x3p, .sur, .sdf, .gwy, .gsf, .csv, .npy, .tif or .ply file"), json_option()},
+                          band_options(),
+                          {pitch_option(), unit, profile, profile_filter, profile_setting, ratio_height, ratio, sought,
+                           accept_checksum_option()}}),
             .run = run_surface,
             .example = "vkfv surface measured.x3p --form polynomial-2 --s_filter_um 5 --out treated.sur"};
 }
@@ -134,6 +160,7 @@ void run_surface(const CommandOptions& options) {
                                       .line = own.line,
                                       .setting = own.setting,
                                       .sought = own.sought,
+                                      .asked = own.asked,
                                       .out = options.out});
     fmt::print("{}", options.json ? measurement::surface_json(figures, options.file).dump(2) + "\n"
                                   : measurement::surface_text(figures));

@@ -161,7 +161,8 @@ std::vector<Option> band_options() {
          .fallback = "0, no filter"},
         {.name = "--filter",
          .value = "NAME",
-         .description = "Which S-filter and L-filter; a spline's ends are natural (ISO 16610-22) or mirrored",
+         .description = "Which S-filter and L-filter; a spline's ends are natural (ISO 16610-22) or mirrored; robust: "
+                        "ISO 16610-71",
          .target = Take<std::string>([](CommandOptions& options, const std::string& name) {
              surface::take_filter(options.of<surface::Band>(), name);
          }),

@@ -90,7 +90,8 @@ const ChoiceKey<int> filter = without_influence(
     ChoiceKey<int>("filter",
                    {{0, surface::filter_names[0], "ISO 16610-61"},
                     {1, surface::filter_names[1], "ISO 16610-62, with the natural ends of ISO 16610-22"},
-                    {2, surface::filter_names[2], "the same, mirrored at the edges"}},
+                    {2, surface::filter_names[2], "the same, mirrored at the edges"},
+                    {3, surface::filter_names[3], "ISO 16610-71, of degree 0: spikes and holes take no part"}},
                    0, "Which S-filter and L-filter."));
 const NumberKey s_filter =
     without_influence(NumberKey("s_filter_um", NumberRange::at_least(0), 0.0,

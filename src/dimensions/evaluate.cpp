@@ -7,6 +7,7 @@
 #include "dimensions/waves.hpp"
 #include "surface/filter.hpp"
 #include "surface/height_parameters.hpp"
+#include "surface/minimum_zone.hpp"
 
 #include <fmt/format.h>
 
@@ -130,6 +131,7 @@ Dimensions of(const HeightMap& map, const CrossGrating& grating) {
         take_period(u, found->waves[0]);
         take_period(v, found->waves[1]);
         between.value = angle_between(found->waves[0], found->waves[1]);
+        between.standard_error = found->angle_error;
     }
     return {u, v, between};
 }
@@ -211,7 +213,9 @@ Dimensions of(const HeightMap& map, const Flat&) {
     const auto parameters = surface::height_parameters(surface::remove_plane(map, surface::least_squares_plane(map)));
     sz.value = parameters.sz;
     sq.value = parameters.sq;
-    return {sz, sq};
+    Dimension least{.name = "flatness, minimum zone", .rule = "ISO 12781-1", .nominal = 0};
+    least.value = surface::minimum_zone(map);
+    return {sz, sq, least};
 }
 
 Dimensions of(const HeightMap& map, const Plateaus& plateaus) {

@@ -1,8 +1,8 @@
 #include "dimensions/find.hpp"
 
 #include "core/mathematics/units.hpp"
+#include "dimensions/find_sphere.hpp"
 #include "dimensions/levels.hpp"
-#include "dimensions/sphere_form.hpp"
 #include "dimensions/waves.hpp"
 #include "surface/filter.hpp"
 
@@ -119,14 +119,6 @@ std::vector<double> sorted_heights(const HeightMap& map) {
     return heights;
 }
 
-// Above or below a height; the others are not measured.
-HeightMap half_of(HeightMap map, double height, bool upper) {
-    for (double& z : map.height.values)
-        if (!(upper ? z >= height : z <= height))
-            z = surface::undefined;
-    return map;
-}
-
 double frequency_size(const std::array<double, 2>& frequency) {
     return std::hypot(frequency[0], frequency[1]);
 }
@@ -191,46 +183,16 @@ std::optional<Groove> found_groove(const HeightMap& map) {
     return groove;
 }
 
-HeightMap sphere_part(const HeightMap& map) {
-    const auto heights = sorted_heights(map);
-    if (heights.empty())
-        return map;
-    const double middle = 0.5 * (heights[heights.size() / 100] + heights[heights.size() - 1 - heights.size() / 100]);
-    HeightMap part = half_of(map, middle, true);
-    auto form = sphere_form(part);
-    const HeightMap lower = half_of(map, middle, false);
-    if (const auto other = sphere_form(lower); other && (!form || other->rms < form->rms)) {
-        part = lower;
-        form = other;
-    }
-    constexpr int most_rounds = 10;
-    for (int round = 0; form && round < most_rounds; ++round) {
-        const auto& sphere = form->sphere;
-        const double depth = sphere.convex ? -sphere.radius : sphere.radius;
-        HeightMap next = map;
-        bool same = true;
-        for (int row = 0; row < map.rows(); ++row)
-            for (int column = 0; column < map.columns(); ++column) {
-                double& z = next.height(column, row);
-                const double distance =
-                    std::hypot(map.x(column) - sphere.x_centre, map.y(row) - sphere.y_centre, z - sphere.apex - depth) -
-                    sphere.radius;
-                if (!(std::abs(distance) <= 5 * form->rms + 1e-9 * sphere.radius))
-                    z = surface::undefined;
-                same = same && std::isfinite(z) == std::isfinite(part.height(column, row));
-            }
-        if (same)
-            break;
-        part = std::move(next);
-        form = sphere_form(part);
-    }
-    return part;
-}
-
 std::vector<Dimension> evaluate_found(const HeightMap& map, Sought sought) {
+    constexpr double least_radius_in_errors = 5;
     std::vector<Dimension> dimensions;
     if (sought == Sought::sphere) {
-        dimensions = evaluate(sphere_part(map), SphereCap{});
+        if (const auto sphere = found_sphere(map))
+            dimensions = evaluate(map, *sphere);
+        // The heights settle no radius, whatever the fit says.
+        if (!dimensions.empty() &&
+            !(dimensions.front().value >= least_radius_in_errors * dimensions.front().standard_error))
+            dimensions.clear();
     } else if (const auto feature = found(map, sought)) {
         dimensions = evaluate(map, *feature);
     }

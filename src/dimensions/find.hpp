@@ -19,14 +19,10 @@ inline constexpr std::array sought_names = {"step", "groove", "sinusoid", "grati
 std::optional<Step> found_step(const surface::HeightMap& map);
 std::optional<Groove> found_groove(const surface::HeightMap& map);
 
-// The part of the map that lies on a sphere: of the higher and the lower half of its heights that which a sphere fits
-// better, and all points within five times the rest's root mean square from that sphere, found again until no point
-// changes. Not a sphere's: not measured.
-surface::HeightMap sphere_part(const surface::HeightMap& map);
-
 // The dimensions of what is sought, wherever it lies: those of evaluate(), without nominal values. A grating's and a
 // sinusoid's waves are the strongest of the map; a cross grating's second one is at least 20 degrees off the first;
-// the width of lines follows from how many points lie above the middle level.
+// the width of lines follows from how many points lie above the middle level. A sphere is that of find_sphere.hpp; none
+// is told whose radius is less than five of its standard errors. Empty where nothing of the kind is found.
 std::vector<Dimension> evaluate_found(const surface::HeightMap& map, Sought sought);
 
 } // namespace vkfv::dimensions

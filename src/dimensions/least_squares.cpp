@@ -31,8 +31,11 @@ std::optional<LeastSquares::Solution> LeastSquares::solve() const {
     if (!decomposition.isInvertible() || decomposition.rcond() < 1e-13)
         return std::nullopt;
     const Eigen::VectorXd unknowns = scale.asDiagonal() * decomposition.solve(scale.asDiagonal() * right);
-    const Eigen::VectorXd variances = (scale.asDiagonal() * decomposition.inverse() * scale.asDiagonal()).diagonal();
-    return Solution{{unknowns.begin(), unknowns.end()}, {variances.begin(), variances.end()}};
+    const Eigen::MatrixXd inverse = scale.asDiagonal() * decomposition.inverse() * scale.asDiagonal();
+    const Eigen::VectorXd variances = inverse.diagonal();
+    return Solution{{unknowns.begin(), unknowns.end()},
+                    {variances.begin(), variances.end()},
+                    {inverse.data(), inverse.data() + inverse.size()}}; // symmetric
 }
 
 } // namespace vkfv::dimensions

@@ -16,7 +16,8 @@ class LeastSquares {
 
     struct Solution {
         std::vector<double> unknowns;
-        std::vector<double> variances; // for points of unit variance
+        std::vector<double> variances; // for independent points of unit variance
+        std::vector<double> inverse;   // of the normal matrix, n x n: their covariances
     };
     // None where the points leave an unknown open.
     std::optional<Solution> solve() const;

@@ -42,11 +42,12 @@ bool enough(const std::vector<Region>& found, std::size_t asked, bool any) {
 std::optional<LevelDifference> fitted_levels(const HeightMap& map, const Frame& frame,
                                              const std::vector<Region>& regions, bool any = false) {
     const Profiles profiles = profiles_across(map, frame);
-    std::vector<double> differences;
+    std::vector<double> differences, middles;
     LeastSquares areal(4), along(3);
     for (const auto& line : profiles.lines) {
         const auto found = covered(regions, line, profiles.spacing);
         differences.push_back(surface::undefined);
+        middles.push_back(surface::undefined);
         if (!enough(found, regions.size(), any))
             continue;
         LeastSquares one(3);
@@ -57,8 +58,10 @@ std::optional<LevelDifference> fitted_levels(const HeightMap& map, const Frame& 
                     along.add(std::array{1.0, point.u, region.side}, point.height);
                     areal.add(std::array{1.0, point.u, region.side, point.v}, point.height);
                 }
-        if (const auto solution = one.solve())
+        if (const auto solution = one.solve()) {
             differences.back() = 2 * solution->unknowns[2];
+            middles.back() = solution->unknowns[0];
+        }
     }
     LevelDifference result{.profiles = mean_of(differences)};
     // A fifth of the profiles at least, so that no corner stands for the field; across a field's diagonal a third is
@@ -73,6 +76,7 @@ std::optional<LevelDifference> fitted_levels(const HeightMap& map, const Frame& 
     result.slope_u = solution->unknowns[1];
     result.areal = 2 * solution->unknowns[2];
     result.slope_v = whole ? solution->unknowns[3] : 0;
+    result.middles = std::move(middles);
     return result;
 }
 
@@ -87,6 +91,30 @@ double middle_of(const std::vector<double>& crossings) {
     for (const double u : crossings)
         sum += u;
     return crossings.empty() ? surface::undefined : sum / static_cast<double>(crossings.size());
+}
+
+// Each profile's width at the level halfway, that of all or, if `own`, the profile's; NaN where it does not cross it
+// near both edges.
+std::vector<double> widths_at(const Profiles& profiles, const Groove& groove, const LevelDifference& depth, bool own) {
+    std::vector<double> widths;
+    for (std::size_t line = 0; line < profiles.lines.size(); ++line) {
+        const auto& points = profiles.lines[line];
+        const auto over = [&](const ProfilePoint& point) {
+            return point.height -
+                   (own ? depth.middles[line] + depth.slope_u * point.u : depth.halfway(point.u, point.v));
+        };
+        std::vector<double> before, behind;
+        for (std::size_t k = 1; k < points.size(); ++k) {
+            const double a = over(points[k - 1]), b = over(points[k]);
+            if (!std::isfinite(a) || (a < 0) == (b < 0))
+                continue;
+            const double u = points[k - 1].u + (points[k].u - points[k - 1].u) * a / (a - b);
+            if (std::abs(std::abs(u) - groove.width / 2) <= groove.width / 3)
+                (u < 0 ? before : behind).push_back(u);
+        }
+        widths.push_back(middle_of(behind) - middle_of(before));
+    }
+    return widths;
 }
 
 } // namespace
@@ -114,22 +142,12 @@ std::optional<LevelDifference> step_height(const HeightMap& map, const Step& ste
 
 std::optional<Mean> groove_width(const HeightMap& map, const Groove& groove, const LevelDifference& depth) {
     const Profiles profiles = profiles_across(map, groove.frame);
-    std::vector<double> widths;
-    for (const auto& line : profiles.lines) {
-        std::vector<double> before, behind;
-        for (std::size_t k = 1; k < line.size(); ++k) {
-            const double a = line[k - 1].height - depth.halfway(line[k - 1].u, line[k - 1].v);
-            const double b = line[k].height - depth.halfway(line[k].u, line[k].v);
-            if ((a < 0) == (b < 0))
-                continue;
-            const double u = line[k - 1].u + (line[k].u - line[k - 1].u) * a / (a - b);
-            if (std::abs(std::abs(u) - groove.width / 2) <= groove.width / 3)
-                (u < 0 ? before : behind).push_back(u);
-        }
-        widths.push_back(middle_of(behind) - middle_of(before));
-    }
-    const Mean mean = mean_of(widths);
-    return mean.count > 0 ? std::optional(mean) : std::nullopt;
+    Mean mean = mean_of(widths_at(profiles, groove, depth, false));
+    if (!(mean.count > 0))
+        return std::nullopt;
+    if (const double error = mean_of(widths_at(profiles, groove, depth, true)).standard_error; std::isfinite(error))
+        mean.standard_error = error;
+    return mean;
 }
 
 std::optional<LevelDifference> line_depth(const HeightMap& map, const Grating& grating) {

@@ -5,6 +5,7 @@
 #include "dimensions/statistics.hpp"
 
 #include <optional>
+#include <vector>
 
 namespace vkfv::dimensions {
 
@@ -15,6 +16,7 @@ struct LevelDifference {
     double areal = 0; // of one fit to all points, with a slope along v too
     // That fit: the level halfway between both.
     double middle = 0, slope_u = 0, slope_v = 0;
+    std::vector<double> middles{}; // each profile's own level halfway, at u = 0; NaN where it has none
 
     double halfway(double u, double v) const { return middle + slope_u * u + slope_v * v; }
 };
@@ -32,7 +34,8 @@ std::optional<LevelDifference> step_height(const surface::HeightMap& map, const 
 
 // Between the two places where a profile crosses the level halfway between both (linearly between its points; the mean
 // where noise makes it cross several times), mean over the profiles. Across flanks that were not measured the nearest
-// points to either side count. None where no profile crosses it within W/3 of both edges.
+// points to either side count. The standard error counts that of the level too, which all profiles have in common. None
+// where no profile crosses it within W/3 of both edges.
 std::optional<Mean> groove_width(const surface::HeightMap& map, const Groove& groove, const LevelDifference& depth);
 
 // The depth between lines and ground of a grating: the middle third of each line and of the ground between two lines.

@@ -1,3 +1,4 @@
+#include "dimensions/correlated_errors.hpp"
 #include "dimensions/least_squares.hpp"
 #include "dimensions/levels.hpp"
 
@@ -123,13 +124,17 @@ std::vector<PlateauHeight> plateau_heights(const HeightMap& map, const Plateaus&
         unknown[k] = counts[k + 1] >= least_points ? unknowns++ : 0;
     if (counts[0] < least_points || unknowns == 3)
         return result;
-    const auto functions = [&](int column, int row, int level) {
-        std::vector<double> values(unknowns);
+    const auto functions_into = [&](int column, int row, int level, std::span<double> values) {
+        std::ranges::fill(values, 0);
         values[0] = 1;
         values[1] = map.x(column) - map.x0;
         values[2] = map.y(row) - map.y0;
         if (level > 0 && unknown[static_cast<std::size_t>(level) - 1] > 0)
             values[unknown[static_cast<std::size_t>(level) - 1]] = 1;
+    };
+    const auto functions = [&](int column, int row, int level) {
+        std::vector<double> values(unknowns);
+        functions_into(column, row, level, values);
         return values;
     };
     const auto counts_for = [&](int level) { return level == 0 || unknown[static_cast<std::size_t>(level) - 1] > 0; };
@@ -142,7 +147,7 @@ std::vector<PlateauHeight> plateau_heights(const HeightMap& map, const Plateaus&
     if (!solution)
         return result;
     Grid<double> residues(map.columns(), map.rows(), surface::undefined);
-    double sum = 0, count = 0;
+    Grid<int> level_of(map.columns(), map.rows());
     for_points([&](int column, int row, int level, double z) {
         if (!counts_for(level))
             return;
@@ -150,14 +155,17 @@ std::vector<PlateauHeight> plateau_heights(const HeightMap& map, const Plateaus&
         for (std::size_t k = 0; k < unknowns; ++k)
             z -= values[k] * solution->unknowns[k];
         residues(column, row) = z;
-        sum += z * z;
-        count += 1;
+        level_of(column, row) = level;
     });
-    const double variance = sum / (count - static_cast<double>(unknowns)) * correlated_points(residues);
+    const auto covariance = fit_covariance(residues, *solution, [&](std::size_t place, std::span<double> values) {
+        const auto columns = static_cast<std::size_t>(map.columns());
+        functions_into(static_cast<int>(place % columns), static_cast<int>(place / columns), level_of.values[place],
+                       values);
+    });
     for (std::size_t k = 0; k < result.size(); ++k)
         if (unknown[k] > 0) {
             result[k].height = solution->unknowns[unknown[k]];
-            result[k].standard_error = std::sqrt(variance * solution->variances[unknown[k]]);
+            result[k].standard_error = covariance.standard_error(unknown[k]);
         }
     return result;
 }

@@ -1,6 +1,7 @@
 #include "dimensions/sphere_form.hpp"
 
 #include "core/mathematics/units.hpp"
+#include "dimensions/correlated_errors.hpp"
 #include "dimensions/least_squares.hpp"
 #include "dimensions/profiles.hpp"
 
@@ -17,17 +18,24 @@ std::optional<SphereForm> sphere_form(const HeightMap& map) {
     if (!std::isfinite(sphere.radius))
         return std::nullopt;
     const double side = sphere.convex ? 1 : -1;
-    LeastSquares squares(4); // unknowns of least_squares_sphere()
+    LeastSquares squares(4);
+    std::array<double, 4> functions{}; // unknowns of least_squares_sphere()
+    const auto functions_at = [&](std::size_t place, std::span<double> values) {
+        const auto column = static_cast<int>(place % static_cast<std::size_t>(map.columns()));
+        const auto row = static_cast<int>(place / static_cast<std::size_t>(map.columns()));
+        const double x = map.x(column) - sphere.x_centre, y = map.y(row) - sphere.y_centre;
+        const double height = map.height(column, row) - sphere.apex + side * sphere.radius;
+        const double r = std::hypot(x, y, height);
+        std::ranges::copy(std::array{-x / r, -y / r, -height / r, side * height / r - 1}, values.begin());
+        return r - sphere.radius;
+    };
     Grid<double> distances(map.columns(), map.rows(), surface::undefined);
     double sum = 0, count = 0, lowest = 0, highest = 0;
     for (int row = 0; row < map.rows(); ++row)
         for (int column = 0; column < map.columns(); ++column)
-            if (const double z = map.height(column, row); std::isfinite(z)) {
-                const double x = map.x(column) - sphere.x_centre, y = map.y(row) - sphere.y_centre;
-                const double height = z - sphere.apex + side * sphere.radius;
-                const double r = std::hypot(x, y, height);
-                const double distance = r - sphere.radius;
-                squares.add(std::array{-x / r, -y / r, -height / r, side * height / r - 1}, distance);
+            if (std::isfinite(map.height(column, row))) {
+                const double distance = functions_at(map.height.index(column, row), functions);
+                squares.add(functions, distance);
                 distances(column, row) = distance;
                 sum += distance * distance;
                 lowest = count > 0 ? std::min(lowest, distance) : distance;
@@ -37,9 +45,8 @@ std::optional<SphereForm> sphere_form(const HeightMap& map) {
     form.peak_to_valley = highest - lowest;
     form.rms = std::sqrt(sum / count);
     const auto solution = squares.solve();
-    form.radius_error = solution && count > 4
-                            ? std::sqrt(solution->variances[3] * sum / (count - 4) * correlated_points(distances))
-                            : surface::undefined;
+    form.radius_error = solution && count > 4 ? fit_covariance(distances, *solution, functions_at).standard_error(3)
+                                              : surface::undefined;
     return form;
 }
 

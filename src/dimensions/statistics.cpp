@@ -1,7 +1,10 @@
 #include "dimensions/statistics.hpp"
 
+#include "dimensions/correlated_errors.hpp"
+
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 
 namespace vkfv::dimensions {
 namespace {
@@ -26,18 +29,20 @@ struct Correlation {
         return pairs > 0 ? sum / pairs : 0;
     }
 
-    // 1 + 2 sum of rho_k; lags of more than a quarter of the length tell nothing.
-    double sum() const {
+    // rho at lags of 0, 1, ..., up to the first that is no larger than so many of its standard errors by M. Bartlett's
+    // equation for `independent` values; lags of more than a quarter of the length tell nothing.
+    std::vector<double> positive(double independent, double errors) const {
+        std::vector<double> correlation{1};
         const double variance = at(0);
-        double total = 1;
-        if (variance > 0)
-            for (std::size_t lag = 1; lag <= length / 4; ++lag) {
-                const double rho = at(lag) / variance;
-                if (!(rho > 0))
-                    break;
-                total += 2 * rho;
-            }
-        return total;
+        double squares = 1;
+        for (std::size_t lag = 1; variance > 0 && lag <= length / 4; ++lag) {
+            const double rho = at(lag) / variance;
+            if (!(rho > errors * std::sqrt(squares / independent)))
+                break;
+            correlation.push_back(rho);
+            squares += 2 * rho * rho;
+        }
+        return correlation;
     }
 };
 
@@ -66,17 +71,29 @@ Mean mean_of(const std::vector<double>& in_order) {
             squares += (value - result.mean) * (value - result.mean);
     result.standard_deviation = std::sqrt(squares / (count - 1));
     const Correlation correlation{in_order, 1, 0, in_order.size(), 1, result.mean};
-    result.standard_error = result.standard_deviation * std::sqrt(std::min(correlation.sum(), count) / count);
+    const double together = correlated_length(correlation.positive(count, 1));
+    const double share = std::min(together / count, 0.5);
+    result.standard_error =
+        result.standard_deviation * std::sqrt(share / (1 - share)) * student_factor((1 - share) / share);
     return result;
 }
 
-double correlated_points(const Grid<double>& residues) {
+double correlated_length(const std::vector<double>& correlation) {
+    return 2 * std::accumulate(correlation.begin(), correlation.end(), 0.0) - correlation.front();
+}
+
+std::vector<double> correlation_along_x(const Grid<double>& residues) {
     double count = 0;
     const double mean = mean_of_finite(residues.values, count);
     const auto columns = static_cast<std::size_t>(residues.columns), rows = static_cast<std::size_t>(residues.rows);
-    const Correlation along_x{residues.values, rows, columns, columns, 1, mean};
-    const Correlation along_y{residues.values, columns, 1, rows, columns, mean};
-    return along_x.sum() * along_y.sum();
+    return Correlation{residues.values, rows, columns, columns, 1, mean}.positive(count, 0);
+}
+
+std::vector<double> correlation_along_y(const Grid<double>& residues) {
+    double count = 0;
+    const double mean = mean_of_finite(residues.values, count);
+    const auto columns = static_cast<std::size_t>(residues.columns), rows = static_cast<std::size_t>(residues.rows);
+    return Correlation{residues.values, columns, 1, rows, columns, mean}.positive(count, 0);
 }
 
 } // namespace vkfv::dimensions

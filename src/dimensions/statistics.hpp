@@ -15,13 +15,19 @@ struct Mean {
     int count = 0;
 };
 
-// Neighbours may be correlated, as profiles of a window's width are: the standard error is s / sqrt(n) times
-// sqrt(1 + 2 sum of rho_k), rho_k the correlation at a distance of k, up to the first that is not positive (G. Box,
-// G. Jenkins, G. Reinsel, "Time Series Analysis", 2.1). NaN among the numbers are gaps.
+// Neighbours may be correlated, as profiles of a window's width are. With rho_k the correlation at a distance of k, up
+// to the first that is no larger than its standard error (M. Bartlett's equation), tau = 1 + 2 sum of rho_k of them
+// carry one independent value (G. Box, G. Jenkins, G. Reinsel, "Time Series Analysis", 2.1). The standard error is s
+// sqrt(tau / (n - tau)), since the scatter about the mean lacks the mean's own, times the factor of
+// Student's distribution with n / tau - 1 degrees of freedom (correlated_errors.hpp). NaN among the numbers are gaps.
 Mean mean_of(const std::vector<double>& in_order);
 
-// As many neighbouring points of these residues carry one independent value: the same sum, along rows times along
-// columns; at least 1.
-double correlated_points(const Grid<double>& residues);
+// rho at distances of 0 (1), 1, ... points along rows and along columns, all that lie before the first that is not
+// positive and within a quarter of the map.
+std::vector<double> correlation_along_x(const Grid<double>& residues);
+std::vector<double> correlation_along_y(const Grid<double>& residues);
+
+// 1 + 2 sum of rho_k.
+double correlated_length(const std::vector<double>& correlation);
 
 } // namespace vkfv::dimensions

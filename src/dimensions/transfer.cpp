@@ -1,6 +1,7 @@
 #include "dimensions/transfer.hpp"
 
 #include "core/mathematics/units.hpp"
+#include "dimensions/correlated_errors.hpp"
 #include "dimensions/least_squares.hpp"
 #include "dimensions/profiles.hpp"
 #include "dimensions/statistics.hpp"
@@ -128,20 +129,21 @@ std::vector<Transfer> star_transfer(const HeightMap& map, const Star& star) {
         const double expected = pi * (outer * outer - inner * inner) / (map.pitch_x * map.pitch_y);
         const auto solution = count >= 0.5 * expected ? squares.solve() : std::nullopt;
         if (solution) {
-            double rest = 0;
             Grid<double> residues(map.columns(), map.rows(), surface::undefined);
             for_points([&](const std::vector<double>& values, double z, std::size_t place) {
                 for (std::size_t k = 0; k < values.size(); ++k)
                     z -= values[k] * solution->unknowns[k];
                 residues.values[place] = z;
-                rest += z * z;
             });
             const double nominal = 2 * std::abs(star.height) / pi;
             transfer.ratio = std::hypot(solution->unknowns[3], solution->unknowns[4]) / nominal;
-            const double variance =
-                rest / (count - static_cast<double>(3 + 2 * harmonics)) * correlated_points(residues);
-            transfer.standard_error =
-                std::sqrt(variance * std::max(solution->variances[3], solution->variances[4])) / nominal;
+            const auto covariance = fit_covariance(residues, *solution, [&](std::size_t place, std::span<double> into) {
+                const auto columns = static_cast<std::size_t>(map.columns());
+                const double px = map.x(static_cast<int>(place % columns)),
+                             py = map.y(static_cast<int>(place / columns));
+                std::ranges::copy(functions(star.frame.u(px, py), star.frame.v(px, py)), into.begin());
+            });
+            transfer.standard_error = std::max(covariance.standard_error(3), covariance.standard_error(4)) / nominal;
         }
         transfers.push_back(transfer);
     }

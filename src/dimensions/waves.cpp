@@ -2,8 +2,8 @@
 
 #include "core/mathematics/fourier.hpp"
 #include "core/mathematics/units.hpp"
+#include "dimensions/correlated_errors.hpp"
 #include "dimensions/least_squares.hpp"
-#include "dimensions/statistics.hpp"
 #include "surface/filter.hpp"
 
 #include <algorithm>
@@ -56,24 +56,27 @@ double turns(const Wave& wave, const Point& point) {
 
 // 1, x, y; of each wave cosine and sine; and with `derivatives` what a change of its frequencies changes.
 void functions_at(const Point& point, const std::vector<Wave>& waves, const Points& points, bool derivatives,
-                  std::vector<double>& functions) {
-    functions.assign({1.0, point.x, point.y});
+                  std::span<double> functions) {
+    std::size_t next = 3;
+    std::ranges::copy(std::array{1.0, point.x, point.y}, functions.begin());
     for (const auto& wave : waves) {
         const double angle = 2 * pi * turns(wave, point);
         const double cosine = std::cos(angle), sine = std::sin(angle);
-        functions.insert(functions.end(), {cosine, sine});
+        functions[next++] = cosine;
+        functions[next++] = sine;
         if (derivatives) {
             const double slope = -2 * pi * wave.amplitude * std::sin(angle - wave.phase);
             for (std::size_t k = 0; k < points.components; ++k)
-                functions.push_back(slope * point.distance[k]);
+                functions[next++] = slope * point.distance[k];
         }
     }
 }
 
 std::optional<LeastSquares::Solution> solved(const Points& points, const std::vector<Wave>& waves, bool derivatives,
                                              std::size_t stride = 1) {
-    std::vector<double> functions;
-    LeastSquares squares(derivatives ? points.unknowns(waves.size()) : 3 + 2 * waves.size());
+    const std::size_t unknowns = derivatives ? points.unknowns(waves.size()) : 3 + 2 * waves.size();
+    std::vector<double> functions(unknowns);
+    LeastSquares squares(unknowns);
     for (std::size_t k = 0; k < points.all.size(); k += stride) {
         functions_at(points.all[k], waves, points, derivatives, functions);
         squares.add(functions, points.all[k].z);
@@ -112,6 +115,55 @@ void choose_starts(const Points& points, std::vector<Wave>& waves) {
         take_amplitudes(waves, solution->unknowns, 2);
 }
 
+// The mean at each phase of one wave, or of two, is taken off: harmonics that all periods have in common are the
+// standard's shape, and no scatter of its heights. How many means there are.
+double remove_periodic_part(Grid<double>& residues, const Points& points, const std::vector<Wave>& waves) {
+    constexpr double points_a_mean = 24;
+    constexpr int most_phases = 256;
+    if (waves.size() > 2)
+        return 0;
+    const double means = static_cast<double>(points.all.size()) / points_a_mean;
+    const int phases =
+        static_cast<int>(std::min<double>(most_phases, waves.size() == 1 ? means / 4 : std::sqrt(means)));
+    if (phases < 4)
+        return 0;
+    const int second_phases = waves.size() == 2 ? phases : 1;
+    // A point counts for the four means around its phases, by its nearness; so the mean is linear between them.
+    const auto shares_of = [&](const Point& point, const auto& visit) {
+        std::array<int, 2> lower{}, upper{};
+        std::array<double, 2> share{};
+        for (std::size_t k = 0; k < waves.size(); ++k) {
+            const double turn = turns(waves[k], point), place = (turn - std::floor(turn)) * phases;
+            lower[k] = static_cast<int>(place) % phases;
+            upper[k] = (lower[k] + 1) % phases;
+            share[k] = place - std::floor(place);
+        }
+        for (const bool up : {false, true})
+            for (const bool second_up : {false, true})
+                if (const double weight = (up ? share[0] : 1 - share[0]) * (second_up ? share[1] : 1 - share[1]);
+                    weight > 0)
+                    visit(up ? upper[0] : lower[0], second_up ? upper[1] : lower[1], weight);
+    };
+    // Again and again, since a mean over the neighbourhood of a phase rounds off the edges of lines.
+    constexpr int passes = 4;
+    for (int pass = 0; pass < passes; ++pass) {
+        Grid<double> sums(phases, second_phases), counts(phases, second_phases);
+        for (std::size_t k = 0; k < points.all.size(); ++k)
+            shares_of(points.all[k], [&](int first, int second, double weight) {
+                sums(first, second) += weight * residues.values[points.places[k]];
+                counts(first, second) += weight;
+            });
+        for (std::size_t k = 0; k < points.all.size(); ++k) {
+            double mean = 0;
+            shares_of(points.all[k], [&](int first, int second, double weight) {
+                mean += weight * sums(first, second) / counts(first, second);
+            });
+            residues.values[points.places[k]] -= mean;
+        }
+    }
+    return static_cast<double>(phases) * second_phases;
+}
+
 std::optional<Waves> fitted(const HeightMap& map, const Points& points, std::vector<Wave> waves) {
     const std::size_t per_wave = 2 + points.components;
     if (points.all.size() < 2 * points.unknowns(waves.size()))
@@ -142,28 +194,45 @@ std::optional<Waves> fitted(const HeightMap& map, const Points& points, std::vec
         return std::nullopt;
     Waves result{.waves = waves};
     Grid<double> residues(map.columns(), map.rows(), surface::undefined);
-    std::vector<double> functions;
+    std::vector<double> functions(points.unknowns(waves.size()));
+    std::vector<std::size_t> number(residues.values.size()); // of a place's point
     double squares = 0;
     for (std::size_t k = 0; k < points.all.size(); ++k) {
         functions_at(points.all[k], waves, points, true, functions);
         const double rest =
             points.all[k].z - std::inner_product(functions.begin(), functions.end(), solution->unknowns.begin(), 0.0);
         residues.values[points.places[k]] = rest;
+        number[points.places[k]] = k;
         squares += rest * rest;
     }
-    const auto count = static_cast<double>(points.all.size());
-    result.residue = std::sqrt(squares / count);
-    const double variance =
-        squares / (count - static_cast<double>(points.unknowns(waves.size()))) * correlated_points(residues);
+    result.residue = std::sqrt(squares / static_cast<double>(points.all.size()));
+    const double taken = remove_periodic_part(residues, points, waves);
+    const auto covariance = fit_covariance(
+        residues, *solution,
+        [&](std::size_t place, std::span<double> values) {
+            functions_at(points.all[number[place]], waves, points, true, values);
+        },
+        taken);
+    // Of a sum of changes of wave k's amplitudes and frequencies, in the order of the unknowns.
+    const auto error_of = [&](std::initializer_list<std::pair<std::size_t, std::array<double, 4>>> changes) {
+        std::vector<double> weights(points.unknowns(waves.size()));
+        for (const auto& [k, change] : changes)
+            std::copy_n(change.begin(), per_wave, weights.begin() + static_cast<std::ptrdiff_t>(3 + per_wave * k));
+        return covariance.standard_error(weights);
+    };
     for (std::size_t k = 0; k < waves.size(); ++k) {
-        const double* variances = &solution->variances[3 + per_wave * k];
         Wave& wave = result.waves[k];
-        const double cosine = std::cos(wave.phase), sine = std::sin(wave.phase);
-        wave.amplitude_error = std::sqrt(variance * (cosine * cosine * variances[0] + sine * sine * variances[1]));
-        double along = 0;
-        for (std::size_t component = 0; component < points.components; ++component)
-            along += std::pow(wave.frequency[component] * wave.period(), 2) * variances[2 + component];
-        wave.period_error = std::sqrt(variance * along) * wave.period() * wave.period();
+        const auto& f = wave.frequency;
+        const double size = std::hypot(f[0], f[1]), period = wave.period();
+        wave.amplitude_error = error_of({{k, {std::cos(wave.phase), std::sin(wave.phase), 0, 0}}});
+        wave.period_error = error_of({{k, {0, 0, f[0] / size, f[1] / size}}}) * period * period;
+    }
+    if (waves.size() == 2 && points.components == 2) {
+        const auto turn = [](const Wave& wave, double sign) {
+            const double square = std::pow(wave.frequency[0], 2) + std::pow(wave.frequency[1], 2);
+            return std::array{0.0, 0.0, -sign * wave.frequency[1] / square, sign * wave.frequency[0] / square};
+        };
+        result.angle_error = error_of({{0, turn(waves[0], -1)}, {1, turn(waves[1], 1)}});
     }
     return result;
 }

@@ -22,14 +22,15 @@ struct Wave {
 
 struct Waves {
     std::vector<Wave> waves;
-    double residue = 0; // root mean square, mm
+    double residue = 0;     // root mean square, mm
+    double angle_error = 0; // standard error of the angle between two waves, rad; 0 for another number of them
 };
 
 // Least squares over all measured points: frequency (both components), phase and amplitude of each wave, mean and tilt,
 // by Gauss and Newton's iteration. Frequencies start at those given, a quarter of a cycle over the map to either side
-// of them, or a half, and may be wrong by as much. Standard errors are the fit's, for residues whose correlation makes
-// so many neighbours one independent point (statistics.hpp). None where the points settle no wave, where the map is
-// shorter than a period and a half, or the iteration ends elsewhere.
+// of them, or a half, and may be wrong by as much. Standard errors are the fit's for errors that are
+// correlated as the residues are (correlated_errors.hpp), less what all periods have in common. None where the points
+// settle no wave, where the map is shorter than a period and a half, or the iteration ends elsewhere.
 std::optional<Waves> fitted_waves(const surface::HeightMap& map, const Frame& frame,
                                   const std::vector<std::array<double, 2>>& frequencies);
 

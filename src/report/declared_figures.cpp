@@ -24,10 +24,12 @@ struct Unit {
     std::string_view in_keys;
     double factor;
 };
-constexpr std::array<Unit, 5> units = {{{"um", "um", um_per_mm},
+constexpr std::array<Unit, 7> units = {{{"um", "um", um_per_mm},
                                         {"um3/um2", "um3_per_um2", um_per_mm},
                                         {"deg", "deg", 1 / radians_per_degree},
                                         {"%", "percent", 100},
+                                        {"1/mm2", "per_mm2", 1},
+                                        {"1/mm", "per_mm", 1},
                                         {"1", "", 1}}};
 
 Unit unit_of(std::string_view declared) {

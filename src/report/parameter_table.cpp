@@ -5,6 +5,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 
 namespace vkfv::report {
@@ -23,9 +24,14 @@ std::vector<ParameterRow> parameter_rows(const surface::ArealParameters& paramet
 }
 
 std::vector<ParameterRow> parameter_rows(const surface::ProfileParameters& parameters) {
-    return {{"Ra", "um", parameters.ra * um_per_mm},
-            {"Rq", "um", parameters.rq * um_per_mm},
-            {"Rz", "um", parameters.rz * um_per_mm}};
+    const auto& p = parameters;
+    const auto um = [](const char* name, double value) { return ParameterRow{name, "um", value * um_per_mm}; };
+    const auto percent = [](const char* name, double value) { return ParameterRow{name, "percent", value * 100}; };
+    return {um("Ra", p.ra),           um("Rq", p.rq),   um("Rz", p.rz),     um("Rp", p.rp),
+            um("Rv", p.rv),           um("Rt", p.rt),   {"Rsk", "", p.rsk}, {"Rku", "", p.rku},
+            {"Rdq", "", p.rdq},       um("Rsm", p.rsm), um("Rc", p.rc),     um("Rdc", p.rdc),
+            um("Rk", p.rk),           um("Rpk", p.rpk), um("Rvk", p.rvk),   percent("Rmrk1", p.rmrk1),
+            percent("Rmrk2", p.rmrk2)};
 }
 
 nlohmann::ordered_json json_of(const std::vector<ParameterRow>& rows) {
@@ -34,6 +40,18 @@ nlohmann::ordered_json json_of(const std::vector<ParameterRow>& rows) {
         object[row.key()] = row.value;
     }
     return object;
+}
+
+std::string slope_loss_text(const std::vector<ParameterRow>& rows) {
+    constexpr double least_percent = 1;
+    const auto loss = std::ranges::find(rows, "Sdq_loss", &ParameterRow::name);
+    if (loss == rows.end() || !(loss->value >= least_percent)) {
+        return {};
+    }
+    return fmt::format(
+        "Sdq and Sdr depend on the distance of the points: with finer points Sdq would be at least {:.2g} % "
+        "larger, Sdr {:.2g} %. Compare them at one sampling only, or remove shorter waves by an S-filter.",
+        loss->value, 2 * loss->value);
 }
 
 std::string number_text(double value) {
@@ -49,7 +67,7 @@ nlohmann::ordered_json treatment_json(const surface::Band& band) {
 
 std::string treatment_text(const surface::Band& band) {
     std::string text = "form " + surface::form_name(band.form);
-    const char* filter = band.spline ? surface::filter_name(band) : "Gaussian";
+    const char* filter = band.spline || band.robust ? surface::filter_name(band) : "Gaussian";
     if (band.s_filter > 0) {
         text += fmt::format(", S-filter {:g} um ({})", band.s_filter * um_per_mm, filter);
     }

@@ -14,7 +14,7 @@ namespace vkfv::report {
 
 struct ParameterRow {
     std::string name; // "Sa"
-    std::string unit; // of `value`: "um", "um3_per_um2", "deg", "percent" or none
+    std::string unit; // of `value`: "um", "um3_per_um2", "deg", "percent", "per_mm2", "per_mm" or none
     double value = 0; // NaN: undefined
 
     std::string key() const; // "Sa_um"
@@ -22,11 +22,14 @@ struct ParameterRow {
 
 // Those that ISO 25178-2 names, in its order.
 std::vector<ParameterRow> parameter_rows(const surface::ArealParameters& parameters);
-// Ra, Rq and Rz.
+// Those of ISO 21920-2.
 std::vector<ParameterRow> parameter_rows(const surface::ProfileParameters& parameters);
 
 // A row's value under its key; NaN becomes null.
 nlohmann::ordered_json json_of(const std::vector<ParameterRow>& rows);
+
+// Says by how much sampling lowers Sdq and Sdr, where that is 1 % or more of Sdq; empty otherwise.
+std::string slope_loss_text(const std::vector<ParameterRow>& rows);
 
 // Six digits; "-" for NaN.
 std::string number_text(double value);

@@ -19,8 +19,10 @@ constexpr int most_digits = 4;
 constexpr int uncertain_digits = 2;
 constexpr int least_exponent = -4, most_exponent = 5; // written without a power of ten
 
-constexpr std::array<std::pair<std::string_view, std::string_view>, 10> units = {{
+constexpr std::array<std::pair<std::string_view, std::string_view>, 12> units = {{
     {"um3_per_um2", "µm³/µm²"},
+    {"per_mm2", "1/mm²"},
+    {"per_mm", "1/mm"},
     {"um", "µm"},
     {"mm", "mm"},
     {"deg", "°"},

@@ -1,6 +1,7 @@
 // All parameters of ISO 25178-2 that vkfv knows, of one height map.
 #pragma once
 
+#include "surface/feature_parameters.hpp"
 #include "surface/height_parameters.hpp"
 #include "surface/hybrid_parameters.hpp"
 #include "surface/material_ratio.hpp"
@@ -18,6 +19,8 @@ struct ArealParameters {
     SpatialParameters spatial;
     CoreParameters core;
     VolumeParameters volume;
+    RatioParameters ratio;
+    FeatureParameters feature;
 };
 
 // No levelling, no filter: the caller's business.
@@ -25,10 +28,10 @@ ArealParameters areal_parameters(const HeightMap& map);
 
 struct NamedParameter {
     std::string_view name; // "Sa"
-    double value = 0;      // mm, mm^3/mm^2, radians, shares of 1
+    double value = 0;      // mm, mm^3/mm^2, radians, shares of 1, 1/mm, 1/mm^2
 };
 
-// Those that the standard names, in its order.
+// Those that the standard names, in its order; beside Sdq what sampling takes of it.
 std::vector<NamedParameter> named_parameters(const ArealParameters& parameters);
 
 } // namespace vkfv::surface

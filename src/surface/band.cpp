@@ -1,6 +1,7 @@
 #include "surface/band.hpp"
 
 #include "surface/filter.hpp"
+#include "surface/robust_filter.hpp"
 #include "surface/spline_filter.hpp"
 
 #include <algorithm>
@@ -11,6 +12,8 @@ namespace vkfv::surface {
 
 HeightMap filtered(HeightMap map, const Band& band) {
     const auto low_pass = [&](double nesting_index) {
+        if (band.robust)
+            return robust_gaussian_low_pass(map, nesting_index);
         return band.spline ? spline_low_pass(map, nesting_index, band.spline_ends)
                            : gaussian_low_pass(map, nesting_index);
     };
@@ -27,13 +30,16 @@ HeightMap filtered(HeightMap map, const Band& band) {
 }
 
 const char* filter_name(const Band& band) {
+    if (band.robust)
+        return filter_names[3];
     return filter_names[band.spline ? (band.spline_ends == SplineEnds::natural ? 1 : 2) : 0];
 }
 
 void take_filter(Band& band, std::string_view name) {
     if (std::ranges::find(filter_names, name) == filter_names.end())
         throw std::invalid_argument("take_filter: no filter of this name");
-    band.spline = name != filter_names[0];
+    band.robust = name == filter_names[3];
+    band.spline = !band.robust && name != filter_names[0];
     band.spline_ends = name == filter_names[2] ? SplineEnds::mirrored : SplineEnds::natural;
 }
 

@@ -14,6 +14,7 @@ struct Band {
     double s_filter = 0; // shorter waves are removed
     double l_filter = 0; // longer waves are removed
     bool spline = false; // by spline_filter.hpp, not by the Gaussian of ISO 16610-61
+    bool robust = false; // by robust_filter.hpp; not with `spline`
     SplineEnds spline_ends = SplineEnds::natural;
     Form form = {}; // removed before both
 
@@ -25,7 +26,7 @@ struct Band {
 HeightMap filtered(HeightMap map, const Band& band);
 
 // Which filters, by the name that configuration and command line have for them.
-inline constexpr std::array filter_names = {"gaussian", "spline", "spline-mirrored"};
+inline constexpr std::array filter_names = {"gaussian", "spline", "spline-mirrored", "robust-gaussian"};
 const char* filter_name(const Band& band);
 // Throws std::invalid_argument for another name.
 void take_filter(Band& band, std::string_view name);

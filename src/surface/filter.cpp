@@ -58,8 +58,10 @@ constexpr std::size_t most_direct_weights = 120;
 
 // Heights and measured points are the real and the imaginary part of one convolution. A measured point's own weight is
 // one: the quotient does not magnify rounding.
+// `weights`: of each point; none: 1.
 HeightMap low_pass_by_transforms(const HeightMap& map, const std::vector<double>& along_x,
-                                 const std::vector<double>& along_y) {
+                                 const std::vector<double>& along_y, const Grid<double>* weights = nullptr) {
+    constexpr double least_weight = 1e-6;
     // In units of their greatest distance from one of them, heights round as their weights do, and a constant stays.
     double level = undefined, greatest = 0;
     for (const double z : map.height.values)
@@ -71,15 +73,17 @@ HeightMap low_pass_by_transforms(const HeightMap& map, const std::vector<double>
     const double unit = greatest > 0 ? greatest : 1;
     Grid<std::complex<double>> grid(map.columns(), map.rows());
     for (std::size_t k = 0; k < grid.values.size(); ++k)
-        if (const double z = map.height.values[k]; std::isfinite(z))
-            grid.values[k] = {(z - level) / unit, 1};
+        if (const double z = map.height.values[k]; std::isfinite(z)) {
+            const double weight = weights != nullptr ? weights->values[k] : 1;
+            grid.values[k] = {weight * (z - level) / unit, weight};
+        }
     const auto outwards = [](const std::vector<double>& weights) {
         return std::vector<double>(weights.begin() + static_cast<std::ptrdiff_t>(weights.size() / 2), weights.end());
     };
     convolve(grid, outwards(along_x), outwards(along_y));
     HeightMap result = map;
     for (std::size_t k = 0; k < grid.values.size(); ++k)
-        if (double& z = result.height.values[k]; std::isfinite(z))
+        if (double& z = result.height.values[k]; std::isfinite(z) && grid.values[k].imag() > least_weight)
             z = level + unit * grid.values[k].real() / grid.values[k].imag();
         else
             z = undefined;
@@ -175,6 +179,13 @@ HeightMap gaussian_low_pass(const HeightMap& map, double nesting_index, Convolut
     for (std::size_t k = 0; k < result.height.values.size(); ++k)
         result.height.values[k] = std::isfinite(map.height.values[k]) ? sum.values[k] / weight.values[k] : undefined;
     return result;
+}
+
+HeightMap weighted_low_pass(const HeightMap& map, const Grid<double>& weights, double nesting_index) {
+    if (!(nesting_index > 0))
+        throw std::invalid_argument("weighted_low_pass: the nesting index must be positive");
+    return low_pass_by_transforms(map, gaussian_weights(nesting_index, map.pitch_x, map.columns()),
+                                  gaussian_weights(nesting_index, map.pitch_y, map.rows()), &weights);
 }
 
 HeightMap remove_long_waves(const HeightMap& map, double nesting_index) {

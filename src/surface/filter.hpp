@@ -32,6 +32,10 @@ HeightMap remove_plane(HeightMap map, const Plane& plane);
 enum class Convolution { by_cost, direct, by_transforms };
 HeightMap gaussian_low_pass(const HeightMap& map, double nesting_index, Convolution how = Convolution::by_cost);
 
+// The same with a weight for each point, from 0 to 1, on the map's grid: the weighting function times these, normalised
+// to one. NaN also where less than a millionth of a point's own weight is left of them.
+HeightMap weighted_low_pass(const HeightMap& map, const Grid<double>& weights, double nesting_index);
+
 // The L-filter: what the Gaussian low-pass does not keep.
 HeightMap remove_long_waves(const HeightMap& map, double nesting_index);
 

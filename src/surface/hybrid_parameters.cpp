@@ -17,15 +17,16 @@ struct MeanSquare {
     double value() const { return count > 0 ? sum / count : undefined; }
 };
 
-double gradient(const HeightMap& map) {
+// Over so many pitches.
+double gradient(const HeightMap& map, int over) {
     MeanSquare along_x, along_y;
     for (int row = 0; row < map.rows(); ++row)
         for (int column = 0; column < map.columns(); ++column) {
             const double z = map.height(column, row);
-            if (column + 1 < map.columns())
-                along_x.add((map.height(column + 1, row) - z) / map.pitch_x);
-            if (row + 1 < map.rows())
-                along_y.add((map.height(column, row + 1) - z) / map.pitch_y);
+            if (column + over < map.columns())
+                along_x.add((map.height(column + over, row) - z) / (over * map.pitch_x));
+            if (row + over < map.rows())
+                along_y.add((map.height(column, row + over) - z) / (over * map.pitch_y));
         }
     return std::sqrt(along_x.value() + along_y.value());
 }
@@ -56,7 +57,10 @@ double area_ratio(const HeightMap& map) {
 } // namespace
 
 HybridParameters hybrid_parameters(const HeightMap& map) {
-    return {.sdq = gradient(map), .sdr = area_ratio(map)};
+    const double sdq = gradient(map, 1), coarser = gradient(map, 2);
+    return {.sdq = sdq,
+            .sdq_loss = sdq > 0 ? std::fmax(0, (1 - coarser / sdq) / 3) + 0 * coarser : undefined,
+            .sdr = area_ratio(map)};
 }
 
 } // namespace vkfv::surface

@@ -20,6 +20,11 @@ namespace vkfv::surface {
 // the cell's mean height lose 7.8 %.
 struct HybridParameters {
     double sdq = 0; // root mean square gradient
+    // By which share of sdq sdq would at least grow with ever finer sampling, by L. Richardson's extrapolation from the
+    // differences over one pitch and over two: (1 - sdq(2 pitches) / sdq) / 3, not below 0. Sdr would grow by twice as
+    // much. It is right for waves of eight points a period and more, and too small for shorter ones and for noise,
+    // whose slopes have no limit. NaN where sdq is 0 or lacks pairs.
+    double sdq_loss = 0;
     double sdr = 0; // developed interfacial area ratio: area of the surface over that of its projection, less one
 };
 

@@ -73,6 +73,10 @@ double MaterialRatioCurve::void_volume(double height) const {
     return sum / static_cast<double>(heights_.size());
 }
 
+RatioParameters ratio_parameters(const MaterialRatioCurve& curve) {
+    return {.sxp = curve.height(0.025) - curve.height(0.5), .sdc = curve.height(0.02) - curve.height(0.98)};
+}
+
 CoreParameters core_parameters(const MaterialRatioCurve& curve) {
     const std::vector<double>& z = curve.heights();
     if (z.size() < 4)

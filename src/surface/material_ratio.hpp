@@ -41,6 +41,14 @@ struct CoreParameters {
     double smr2 = 0; // share of the area above the dales, 0 to 1
 };
 
+// Differences of heights on the curve, mm, with the default ratios of ISO 25178-2; NaN without measured points.
+struct RatioParameters {
+    double sxp = 0; // peak extreme height, from 2.5 % to 50 %
+    double sdc = 0; // material ratio height difference, from 2 % to 98 %
+};
+
+RatioParameters ratio_parameters(const MaterialRatioCurve& curve);
+
 CoreParameters core_parameters(const MaterialRatioCurve& curve);
 
 } // namespace vkfv::surface

@@ -2,6 +2,8 @@
 
 #include "surface/filter.hpp"
 #include "surface/height_parameters.hpp"
+#include "surface/material_ratio.hpp"
+#include "surface/profile_elements.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -49,7 +51,21 @@ HeightMap row_of(std::vector<double> heights, double spacing) {
     return map;
 }
 
+double root_mean_square_slope(const Profile& profile) {
+    double sum = 0, count = 0;
+    for (std::size_t k = 1; k < profile.height.size(); ++k)
+        if (const double slope = (profile.height[k] - profile.height[k - 1]) / profile.spacing; std::isfinite(slope)) {
+            sum += slope * slope;
+            count += 1;
+        }
+    return count > 0 ? std::sqrt(sum / count) : not_measured;
+}
+
 } // namespace
+
+HeightMap map_of(const Profile& profile) {
+    return row_of(profile.height, profile.spacing);
+}
 
 Profile extract_profile(const HeightMap& map, double x_start, double y_start, double x_end, double y_end,
                         double spacing) {
@@ -77,7 +93,23 @@ ProfileParameters profile_parameters(const Profile& profile, int sections) {
     if (sections < 1)
         throw std::invalid_argument("profile_parameters: at least one section");
     const HeightParameters heights = height_parameters(row_of(profile.height, profile.spacing));
-    ProfileParameters result{.ra = heights.sa, .rq = heights.sq};
+    const MaterialRatioCurve curve(row_of(profile.height, profile.spacing));
+    const CoreParameters core = core_parameters(curve);
+    ProfileParameters result{.ra = heights.sa,
+                             .rq = heights.sq,
+                             .rz = 0,
+                             .rp = 0,
+                             .rv = 0,
+                             .rt = heights.sz,
+                             .rsk = heights.ssk,
+                             .rku = heights.sku,
+                             .rdq = root_mean_square_slope(profile),
+                             .rdc = ratio_parameters(curve).sdc,
+                             .rk = core.sk,
+                             .rpk = core.spk,
+                             .rvk = core.svk,
+                             .rmrk1 = core.smr1,
+                             .rmrk2 = core.smr2};
     const auto points = profile.height.size(), count = static_cast<std::size_t>(sections);
     for (std::size_t section = 0; section < count; ++section) {
         double highest = not_measured, lowest = not_measured;
@@ -86,7 +118,12 @@ ProfileParameters profile_parameters(const Profile& profile, int sections) {
             lowest = std::fmin(lowest, profile.height[k]);
         }
         result.rz += (highest - lowest) / sections;
+        result.rp += (highest - heights.mean) / sections;
+        result.rv += (heights.mean - lowest) / sections;
     }
+    const ProfileElements elements = profile_elements(profile, heights.mean, 0.1 * result.rz);
+    result.rsm = elements.mean_spacing;
+    result.rc = elements.mean_height;
     return result;
 }
 

@@ -6,7 +6,7 @@
 namespace vkfv::surface {
 namespace {
 
-constexpr ProfileParameters no_parameters{.ra = undefined, .rq = undefined, .rz = undefined};
+constexpr ProfileParameters no_parameters{};
 constexpr double sections = 5;
 
 // As many points as that length has, in the middle.
@@ -28,7 +28,8 @@ bool take_class(RoughnessProfile& result, const SettingClass& setting) {
     if (length < sections * setting.l_filter - 0.5 * profile.spacing)
         return false;
     const Profile roughness = remove_long_waves(gaussian_low_pass(profile, setting.s_filter), setting.l_filter);
-    result.parameters = profile_parameters(middle_of(roughness, sections * setting.l_filter));
+    result.roughness = middle_of(roughness, sections * setting.l_filter);
+    result.parameters = profile_parameters(result.roughness);
     return true;
 }
 
@@ -65,10 +66,9 @@ RoughnessProfile roughness_profile(const HeightMap& map, const ProfileLine& line
     result.l_filter =
         setting.kind == ProfileSetting::Kind::nesting_index ? setting.nesting_index : result.section_length;
     if (result.section_length <= spacing) // of such a section the filter leaves nothing
-        result.parameters = no_parameters;
-    else
-        result.parameters = profile_parameters(result.l_filter > 0 ? remove_long_waves(result.profile, result.l_filter)
-                                                                   : result.profile);
+        return result;
+    result.roughness = result.l_filter > 0 ? remove_long_waves(result.profile, result.l_filter) : result.profile;
+    result.parameters = profile_parameters(result.roughness);
     return result;
 }
 

@@ -47,6 +47,7 @@ struct ProfileSetting {
 
 struct RoughnessProfile {
     Profile profile;                             // before the filter
+    Profile roughness;                           // after it, over the evaluation length
     double s_filter = 0, l_filter = 0;           // nesting indices, mm; 0: none
     const SettingClass* setting_class = nullptr; // whose they are
     double section_length = 0;                   // mm

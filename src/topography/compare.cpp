@@ -49,6 +49,10 @@ LevelledPair levelled_pair(HeightMap measured, HeightMap truth, const Band& band
             .form_removed = band.form.kind != surface::Form::Kind::none};
 }
 
+double ratio_to_truth(double measured, double truth) {
+    return truth == 0 ? std::numeric_limits<double>::quiet_NaN() : measured / truth;
+}
+
 Deviation compare(const LevelledPair& treated, const HeightMap& deviation) {
     auto of_truth = std::async(std::launch::async, [&] { return surface::height_parameters(treated.truth); });
     auto of_difference = std::async(std::launch::async, [&] { return surface::height_parameters(deviation); });
@@ -71,6 +75,10 @@ Deviation compare(const LevelledPair& treated, const HeightMap& deviation) {
     else if (a.sq > 0 && b.sq > 0)
         result.correlation = covariance / count / (a.sq * b.sq);
     result.measured_share = a.measured_share;
+    if (count > 0 && b.sq > 0) {
+        result.slope = covariance / count / (b.sq * b.sq);
+        result.offset = a.mean - result.slope * b.mean;
+    }
     return result;
 }
 

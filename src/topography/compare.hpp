@@ -3,6 +3,8 @@
 
 #include "surface/band.hpp"
 
+#include <limits>
+
 namespace vkfv::topography {
 
 using surface::Band; // what is compared of both surfaces
@@ -15,7 +17,14 @@ struct Deviation {
     double rms = 0;            // of the difference, offset and tilt removed; with the form "none" about zero, as it is
     double correlation = 0;    // Pearson; 0 where either is flat
     double measured_share = 0; // points present in both, of all points
+    // The least-squares line of measured on true heights, measured = offset + slope * true: what the instrument
+    // amplifies heights by, and its zero. After levelling the offset is 0. NaN where the true heights are flat.
+    double slope = std::numeric_limits<double>::quiet_NaN();
+    double offset = std::numeric_limits<double>::quiet_NaN();
 };
+
+// measured / truth; NaN where the truth is 0, as the Sq of a flat is: there is no ratio then.
+double ratio_to_truth(double measured, double truth);
 
 // The treatment itself: what is not measured in one is so in both; the form of each is removed (unless told otherwise,
 // its least-squares plane), then the filters are applied. With the form "truth" nothing is taken off the truth, and off

@@ -117,6 +117,35 @@ TEST_F(Compare, WritesMapsAndTables) {
     EXPECT_GT(profile["measured"]["Rq_um"], profile["true"]["Rq_um"]); // it has noise
 }
 
+// measured = 0.8 true + 0.2 um: what regression tells, without a form that would take the offset off.
+TEST_F(Compare, TellsSlopeAndOffsetOfMeasuredOnTrueHeights) {
+    HeightMap map = surface::read_height_map(folder / "truth.tif");
+    for (double& z : map.height.values) {
+        z = 0.8 * z + 0.2 * um;
+    }
+    surface::write_height_map(folder / "scaled.tif", map);
+    const auto figures = report({"scaled.tif", "truth.tif", "--form", "none"});
+    // The files hold single precision.
+    EXPECT_NEAR(figures["regression_slope"], 0.8, 1e-5);
+    EXPECT_NEAR(figures["regression_offset_um"], 0.2, 1e-5);
+    const auto text = run_program({"--compare", "scaled.tif", "truth.tif"}, folder).standard_output;
+    EXPECT_THAT(text, HasSubstr("slope 0.8"));
+}
+
+// A flat has no Sq, no other height and no slope: nothing can be divided by them.
+TEST_F(Compare, AgainstAFlatTellsNoRatio) {
+    HeightMap flat = surface::read_height_map(folder / "truth.tif");
+    for (double& z : flat.height.values) {
+        z = 0;
+    }
+    surface::write_height_map(folder / "flat.tif", flat);
+    const auto result = run_program({"--compare", "measured_0.tif", "flat.tif"}, folder);
+    ASSERT_EQ(result.exit_code, 0) << result.standard_error;
+    EXPECT_THAT(result.standard_output, testing::Not(HasSubstr("inf")));
+    EXPECT_THAT(result.standard_output, testing::Not(HasSubstr("nan")));
+    EXPECT_TRUE(report({"measured_0.tif", "flat.tif"})["regression_slope"].is_null());
+}
+
 TEST_F(Compare, IsOfTheSurfacesAsTreated) {
     write_map(folder / "same_grid.tif", 120, 0, 1, 0, 0, 0);
     const auto plain = report({"measured_0.tif", "same_grid.tif"});

@@ -4,6 +4,7 @@
 #include "surface/filter.hpp"
 #include "surface/height_parameters.hpp"
 #include "surface/maps.hpp"
+#include "surface/robust_filter.hpp"
 #include "surface/spline_filter.hpp"
 
 #include <gtest/gtest.h>
@@ -62,7 +63,9 @@ TEST(Band, TakesAndSaysTheNameOfItsFilter) {
         const std::string_view word = name;
         expect_same(scale_limited(map, band), word == "gaussian" ? gaussian_low_pass(map, 0.005)
                                               : word == "spline" ? spline_low_pass(map, 0.005, SplineEnds::natural)
-                                                                 : spline_low_pass(map, 0.005, SplineEnds::mirrored));
+                                              : word == "spline-mirrored"
+                                                  ? spline_low_pass(map, 0.005, SplineEnds::mirrored)
+                                                  : robust_gaussian_low_pass(map, 0.005));
     }
     Band band;
     EXPECT_THROW(take_filter(band, "box"), std::invalid_argument);

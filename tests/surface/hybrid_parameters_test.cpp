@@ -79,5 +79,19 @@ TEST(HybridParameters, AreUndefinedWithoutAWholeCell) {
     EXPECT_TRUE(std::isnan(hybrid_parameters(map).sdr));
 }
 
+// sin(2 a) / (2 a) over sin(a) / a is cos(a), a = pi over the points a period.
+TEST(HybridParameters, TellWhatSamplingTakesOfTheSlope) {
+    for (const double points : {8.0, 16.0, 40.0}) {
+        const auto map = sampled(4000, 4, 1, [&](double x, double) { return std::sin(2 * pi * x / points); });
+        const auto p = hybrid_parameters(map);
+        // The ends lack a difference of 4000, or two: a sixth of that, of the loss.
+        EXPECT_NEAR(p.sdq_loss, (1 - std::cos(pi / points)) / 3, 1e-4);
+        // The slope itself, and how near the extrapolation comes to it.
+        const double slope = 2 * pi / points / std::sqrt(2.0);
+        EXPECT_NEAR(p.sdq * (1 + p.sdq_loss), slope, 0.004 * slope);
+    }
+    EXPECT_TRUE(std::isnan(hybrid_parameters(sampled(9, 9, 1, [](double, double) { return 1.0; })).sdq_loss));
+}
+
 } // namespace
 } // namespace vkfv::surface

@@ -48,6 +48,10 @@ TEST(MaterialRatio, OfANormalDistributionHasItsClosedForms) {
     EXPECT_NEAR(curve.height(0.1), 0.05 + sigma * quantile(0.1), 1e-8);
     EXPECT_NEAR(curve.ratio(0.05 + sigma), tail(1), 1e-7);
 
+    const RatioParameters ratio = ratio_parameters(curve);
+    EXPECT_NEAR(ratio.sxp, sigma * quantile(0.025), 1e-7);
+    EXPECT_NEAR(ratio.sdc, 2 * sigma * quantile(0.02), 1e-7);
+
     // The flattest 40 % lie about the median, between -t and t. With P the distribution the line's fall over all
     // ratios is the integral of t (P - 1/2) over that of (P - 1/2)^2, by parts and with density^2 integrated:
     const double t = quantile(0.3);

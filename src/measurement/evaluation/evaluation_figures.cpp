@@ -52,7 +52,7 @@ nlohmann::ordered_json json_of(const Figures& figures) {
     if (const auto& deviation = figures.deviation) {
         json = {{"sq_measured", deviation->sq_measured},
                 {"sq_true", deviation->sq_true},
-                {"sq_ratio", deviation->sq_measured / deviation->sq_true},
+                {"sq_ratio", topography::ratio_to_truth(deviation->sq_measured, deviation->sq_true)},
                 {"rms_deviation", deviation->rms},
                 {"correlation", deviation->correlation},
                 {"measured_share", deviation->measured_share}};

@@ -93,7 +93,9 @@ Json json_of(const topography::Comparison& comparison, const ComparisonRequest& 
                             {"sq_measured_um", one.deviation.sq_measured * um_per_mm},
                             {"sq_true_um", one.deviation.sq_true * um_per_mm},
                             {"rms_deviation_um", one.deviation.rms * um_per_mm},
-                            {"correlation", one.deviation.correlation}});
+                            {"correlation", one.deviation.correlation},
+                            {"regression_slope", one.deviation.slope},
+                            {"regression_offset_um", one.deviation.offset * um_per_mm}});
     }
     report["measured"] = std::move(measured);
     report["truth"] = request.truth.string();
@@ -103,6 +105,9 @@ Json json_of(const topography::Comparison& comparison, const ComparisonRequest& 
     add(report, "measured_share", over(comparison, [](const auto& one) { return one.deviation.measured_share; }));
     add(report, "rms_deviation_um", over(comparison, [](const auto& one) { return one.deviation.rms * um_per_mm; }));
     add(report, "correlation", over(comparison, [](const auto& one) { return one.deviation.correlation; }));
+    add(report, "regression_slope", over(comparison, [](const auto& one) { return one.deviation.slope; }));
+    add(report, "regression_offset_um",
+        over(comparison, [](const auto& one) { return one.deviation.offset * um_per_mm; }));
     if (comparison.parts) {
         report["systematic_um"] = comparison.parts->systematic * um_per_mm;
         report["systematic_um_standard_error"] = comparison.parts->systematic_error * um_per_mm;
@@ -160,11 +165,18 @@ std::string text_of(const topography::Comparison& comparison, const ComparisonRe
     }
     text += fmt::format("{:<22} {}\n", "correlation",
                         with_error(over(comparison, [](const auto& one) { return one.deviation.correlation; }), 1, ""));
+    // Of a flat there is no slope.
+    if (const auto slope = over(comparison, [](const auto& one) { return one.deviation.slope; });
+        std::isfinite(slope.mean)) {
+        text += fmt::format(
+            "{:<22} slope {}, offset {}\n", "measured on true", with_error(slope, 1, "um per um"),
+            with_error(over(comparison, [](const auto& one) { return one.deviation.offset; }), um_per_mm, "um"));
+    }
     text +=
-        fmt::format("\n{:<18} {:>12} {:>12} {:>12} {:>8}\n", "ISO 25178-2", "measured", "std. error", "true", "ratio");
+        fmt::format("\n{:<21} {:>12} {:>12} {:>12} {:>8}\n", "ISO 25178-2", "measured", "std. error", "true", "ratio");
     for (const auto& row : compared_parameters(comparison)) {
-        const double ratio = row.measured.mean / row.truth;
-        text += fmt::format("{:<5} {:<12} {:>12} {:>12} {:>12} {:>8}\n", row.named.name, row.named.unit,
+        const double ratio = topography::ratio_to_truth(row.measured.mean, row.truth);
+        text += fmt::format("{:<8} {:<12} {:>12} {:>12} {:>12} {:>8}\n", row.named.name, row.named.unit,
                             report::number_text(row.measured.mean), report::number_text(row.measured.error),
                             report::number_text(row.truth), row.named.unit == "deg" ? "-" : ratio_text(ratio));
     }
@@ -208,8 +220,8 @@ std::string profile_text(const ComparedProfile& profile) {
     const auto measured = report::parameter_rows(profile.measured.parameters),
                truth = report::parameter_rows(profile.truth.parameters);
     for (std::size_t k = 0; k < measured.size(); ++k) {
-        const double ratio = measured[k].value / truth[k].value;
-        text += fmt::format("{:<5} {:<12} {:>12} {:>12} {:>12} {:>8}\n", measured[k].name, measured[k].unit,
+        const double ratio = topography::ratio_to_truth(measured[k].value, truth[k].value);
+        text += fmt::format("{:<8} {:<12} {:>12} {:>12} {:>12} {:>8}\n", measured[k].name, measured[k].unit,
                             report::number_text(measured[k].value), "-", report::number_text(truth[k].value),
                             ratio_text(ratio));
     }

@@ -134,6 +134,7 @@ SurfaceFigures measure_surface(const SurfaceRequest& request) {
     auto figures = surface_figures(map, line, request.setting, request.band);
     figures.warnings = std::move(warnings);
     check_class(request, figures.profile);
+    figures.asked = asked_rows(map, figures.profile, request.asked);
     if (request.sought) {
         figures.dimensions = sought_dimensions(request, original);
     }

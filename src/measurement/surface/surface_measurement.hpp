@@ -18,6 +18,7 @@ struct SurfaceRequest {
     std::optional<surface::ProfileLine> line; // none: the middle row
     surface::ProfileSetting setting;          // the profile's own filters
     std::optional<dimensions::Sought> sought; // whose dimensions are found in the heights as they were read
+    AskedRatios asked;
     std::optional<std::filesystem::path> out; // where the treated surface is written; its name tells the format
 };
 

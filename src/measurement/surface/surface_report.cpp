@@ -29,6 +29,28 @@ SurfaceFigures surface_figures(const surface::HeightMap& map, const surface::Pro
             .profile = surface::roughness_profile(map, line, setting)};
 }
 
+std::vector<report::ParameterRow> asked_rows(const surface::HeightMap& map, const surface::RoughnessProfile& profile,
+                                             const AskedRatios& asked) {
+    std::vector<report::ParameterRow> rows;
+    const auto add = [&](const surface::HeightMap& heights, const char* ratio, const char* height) {
+        const surface::MaterialRatioCurve curve(heights);
+        const double mean = surface::height_parameters(heights).mean;
+        if (asked.height) {
+            rows.push_back({fmt::format("{}({:g} um)", ratio, *asked.height * um_per_mm), "percent",
+                            100 * curve.ratio(mean + *asked.height)});
+        }
+        if (asked.ratio) {
+            rows.push_back({fmt::format("{}({:g} %)", height, *asked.ratio * 100), "um",
+                            (curve.height(*asked.ratio) - mean) * um_per_mm});
+        }
+    };
+    if (asked.height || asked.ratio) {
+        add(map, "Smr", "Smc");
+        add(surface::map_of(profile.roughness), "Rmr", "Rmc");
+    }
+    return rows;
+}
+
 std::string profile_filter_text(const surface::RoughnessProfile& profile) {
     const auto um = [](double length) { return fmt::format("{:.4g} um", length * um_per_mm); };
     std::string text = "section length " + um(profile.section_length);
@@ -73,6 +95,9 @@ nlohmann::ordered_json surface_json(const SurfaceFigures& figures, const std::fi
                          {"end_um", {line.x_end * um_per_mm, line.y_end * um_per_mm}}};
     report["profile"].update(profile_filter_json(figures.profile));
     report["profile"].update(report::json_of(report::parameter_rows(figures.profile.parameters)));
+    if (!figures.asked.empty()) {
+        report["material_ratio"] = report::json_of(figures.asked);
+    }
     add_dimensions(report, figures.dimensions);
     report["warnings"] = figures.warnings;
     report["evaluated_by"] = fmt::format("vkfv {}", VKFV_VERSION);
@@ -92,16 +117,25 @@ std::string surface_text(const SurfaceFigures& figures) {
     text += fmt::format("{:<14} {}\n", "treatment", report::treatment_text(figures.band));
     const auto table = [&text](const std::vector<report::ParameterRow>& rows) {
         for (const auto& row : rows) {
-            text += fmt::format("{:<5} {:<12} {:>12}\n", row.name, row.unit, report::number_text(row.value));
+            text += fmt::format("{:<8} {:<12} {:>12}\n", row.name, row.unit, report::number_text(row.value));
         }
     };
     text += "\nISO 25178-2\n";
     table(figures.parameters);
+    if (const auto loss = report::slope_loss_text(figures.parameters); !loss.empty()) {
+        text += loss + "\n";
+    }
     const auto& line = figures.line;
     text += fmt::format("\nISO 21920-2, profile from ({:.6g}, {:.6g}) um to ({:.6g}, {:.6g}) um, {}\n",
                         line.x_start * um_per_mm, line.y_start * um_per_mm, line.x_end * um_per_mm,
                         line.y_end * um_per_mm, profile_filter_text(figures.profile));
     table(report::parameter_rows(figures.profile.parameters));
+    if (!figures.asked.empty()) {
+        text += "\nMaterial ratio\n";
+        for (const auto& row : figures.asked) {
+            text += fmt::format("{:<18} {:>12} {}\n", row.name, report::number_text(row.value), row.unit);
+        }
+    }
     return figures.dimensions.empty() ? text : text + "\nDimensions\n" + dimensions_text(figures.dimensions);
 }
 

@@ -10,6 +10,7 @@
 
 #include <cstddef>
 #include <filesystem>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -17,6 +18,12 @@ namespace vkfv::measurement {
 
 // Whether any point was measured.
 bool any_height(const surface::HeightMap& map);
+
+// Places on the material ratio curves, of the surface and of its profile, that were asked for.
+struct AskedRatios {
+    std::optional<double> height; // mm over the mean height
+    std::optional<double> ratio;  // 0 to 1
+};
 
 struct SurfaceFigures {
     int columns = 0;
@@ -28,6 +35,7 @@ struct SurfaceFigures {
     std::vector<report::ParameterRow> parameters; // ISO 25178-2
     surface::ProfileLine line;
     surface::RoughnessProfile profile;
+    std::vector<report::ParameterRow> asked{};   // Smr, Rmr, Smc and Rmc where asked for
     std::vector<StandardDimension> dimensions{}; // of what was sought
     std::vector<std::string> warnings{};         // of the file
 };
@@ -35,6 +43,10 @@ struct SurfaceFigures {
 // Of a surface that was treated by `band`, and of the profile along the line.
 SurfaceFigures surface_figures(const surface::HeightMap& map, const surface::ProfileLine& line,
                                const surface::ProfileSetting& setting, const surface::Band& band);
+
+// The rows of what was asked for: of the treated surface, and of the profile after its filters.
+std::vector<report::ParameterRow> asked_rows(const surface::HeightMap& map, const surface::RoughnessProfile& profile,
+                                             const AskedRatios& asked);
 
 // "section length 20 um, L-filter 20 um (Gaussian, a fifth of the profile)"
 std::string profile_filter_text(const surface::RoughnessProfile& profile);
