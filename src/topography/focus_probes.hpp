@@ -35,6 +35,8 @@ struct NoiseModel {
     double variance(double value) const { return constant + slope * (value > 0 ? value : 0); }
 };
 
+class WindowResponses; // texture_and_noise.cpp
+
 class FocusProbes {
   public:
     // On a regular grid, fewer once they hold 128 MB.
@@ -151,6 +153,16 @@ class FocusProbes {
         Grid<double> sums{};
     };
     Products products_of(const Probe& probe, std::size_t channel, const Scale& scale) const;
+
+    // Responses to patches of noise over the model's deviation: the second differences of quiet images at these probes,
+    // or random numbers of their variance where the noise is independent.
+    std::vector<std::vector<double>> noise_responses(const WindowResponses& responses,
+                                                     const std::vector<std::size_t>& places, const NoiseModel& model,
+                                                     const NoiseCorrelation& correlation) const;
+
+    // The variance of quiet images at these probes over the model's, which takes the smallest of some; 1 for few
+    // images.
+    double variance_over(const NoiseModel& model, const std::vector<std::size_t>& places) const;
 
     // What every mean is made of: of the images, then of the curve's values.
     struct Means {

@@ -8,12 +8,10 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdlib>
-#include <limits>
 #include <numeric>
 #include <random>
 
 namespace vkfv::topography {
-namespace {
 
 // Responses of a patch to every channel's masks, in the window around its middle.
 class WindowResponses {
@@ -36,6 +34,8 @@ class WindowResponses {
     }
 
     int patch_side() const { return side_ + 2 * mask_reach; }
+    // Whether the measure adds magnitudes, not energies.
+    bool magnitudes() const { return laplacian_; }
 
     // patch: all channels, patch_side() squared pixels each.
     std::vector<double> of(const std::vector<double>& patch) const {
@@ -146,6 +146,8 @@ class WindowResponses {
     std::vector<double> weights_;
 };
 
+namespace {
+
 // Two means around an image that share none, both near that of the weights: of its even and of its odd neighbours, or
 // of the image and the one after it.
 struct Halves {
@@ -182,12 +184,95 @@ std::vector<Halves> halves_at(const std::vector<double>& axial_weights, int at, 
     return result;
 }
 
-// What the probes add up to at a distance from the maximum.
+// What a probe tells at one distance from its maximum, over the square of the energy at the maximum: by that noise
+// makes the variance of a height.
 struct Sums {
     double energy = 0;
     double beside = 0;
     double places = 0;
 };
+
+struct TextureOfProbe {
+    std::vector<Sums> sums{}; // by the distance
+    double bend = 0;
+    double variance = 0;
+    double noise_share = 0; // of the energy at the maximum
+    bool found = false;
+};
+
+// Of the noise's variance by the average of the images.
+double kept_by(const std::vector<double>& axial_weights) {
+    const int radius = static_cast<int>(axial_weights.size()) - 1;
+    double kept = 0;
+    for (const Share& share : axial_shares(axial_weights, 2 * radius, 4 * radius + 1)) {
+        kept += static_cast<double>(share.weight) * static_cast<double>(share.weight);
+    }
+    return kept;
+}
+
+constexpr std::size_t least_probes = 9, patches_a_probe = 4, partners = 8;
+
+// Of noise alone.
+void find_noise(const WindowResponses& responses, const std::vector<std::vector<double>>& noise,
+                TextureAndNoise& result) {
+    double pairs = 0, squares = 0;
+    for (std::size_t k = 0; k < noise.size(); ++k) {
+        result.noise_energy += responses.energy(noise[k]) / static_cast<double>(noise.size());
+        const auto slopes = responses.slopes(noise[k]);
+        for (std::size_t partner = 1; partner <= partners / 2; ++partner) {
+            constexpr std::size_t apart = 7 * patches_a_probe; // patches of one probe follow each other
+            squares += std::pow(responses.product(slopes, noise[(k + apart * partner + 1) % noise.size()]), 2);
+            pairs += 1;
+        }
+    }
+    result.alone = 0.5 * squares / pairs / (responses.magnitudes() ? 1 : result.noise_energy);
+}
+
+// Of all probes, for every image at a distance from the maximum; apart: images between two distances.
+bool add_up(const std::vector<TextureOfProbe>& probes, int apart, TextureAndNoise& result) {
+    std::vector<Sums> sums(probes.front().sums.size());
+    double count = 0, bends = 0, squares = 0, noise_share = 0;
+    for (const TextureOfProbe& probe : probes) {
+        if (!probe.found) {
+            continue;
+        }
+        for (std::size_t k = 0; k < sums.size(); ++k) {
+            sums[k].energy += probe.sums[k].energy;
+            sums[k].beside += probe.sums[k].beside;
+            sums[k].places += probe.sums[k].places;
+        }
+        count += 1;
+        bends += probe.bend;
+        squares += probe.bend * probe.bend;
+        noise_share += probe.noise_share;
+        result.variance += probe.variance;
+    }
+    if (count < static_cast<double>(least_probes) || !(sums[0].energy > 0) || !(sums[0].beside > 0)) {
+        return false;
+    }
+    result.variance /= count;
+    result.share = 1 - noise_share / count;
+    result.bend_variance = std::max(0.0, squares - bends * bends / count) / (count - 1);
+    std::vector<double> energy, beside;
+    for (const Sums& here : sums) {
+        const bool any = here.places > 0 && here.energy > 0;
+        const double top = sums[0].energy / sums[0].places;
+        energy.push_back(here.places > 0 ? std::clamp(here.energy / here.places / top, 0.0, 1.0) : energy.back());
+        beside.push_back(any && here.beside > 0 ? here.beside / here.energy : beside.back());
+    }
+    for (int image = 0; image <= apart * (static_cast<int>(sums.size()) - 1); ++image) {
+        const auto before = static_cast<std::size_t>(image / apart);
+        const std::size_t after = std::min(before + 1, energy.size() - 1);
+        // What fades as a Gaussian is straight by the square of the distance, in its logarithm.
+        const double from = static_cast<double>(before) * apart, to = from + apart;
+        const double rest = (image * image - from * from) / (to * to - from * from);
+        const bool fades = energy[before] > 0 && energy[after] > 0;
+        result.energy.push_back(fades ? std::exp(std::lerp(std::log(energy[before]), std::log(energy[after]), rest))
+                                      : std::lerp(energy[before], energy[after], rest));
+        result.beside.push_back(std::lerp(beside[before], beside[after], rest));
+    }
+    return true;
+}
 
 } // namespace
 
@@ -199,122 +284,130 @@ double TextureAndNoise::between(const std::vector<double>& values, double distan
                                       : values.back();
 }
 
-std::optional<TextureAndNoise> FocusProbes::texture_and_noise(const std::vector<double>& axial_weights,
-                                                              const NoiseModel& model,
-                                                              const NoiseCorrelation& correlation) const {
-    constexpr std::size_t least_probes = 9, patches_a_probe = 4, white_patches = 1024, partners = 8;
-    constexpr int most_offsets = 8; // on either side
-    const WindowResponses responses(measure_, window_, channels_);
-    const auto side = static_cast<std::size_t>(responses.patch_side());
-    const std::size_t values = static_cast<std::size_t>(channels_) * side * side;
-    std::vector<std::size_t> whole;
-    for (std::size_t k = 0; k < probes_.size(); ++k) {
-        if (probes_[k].columns == responses.patch_side() && probes_[k].rows == responses.patch_side()) {
-            whole.push_back(k);
-        }
-    }
-    if (whole.size() < least_probes || images_ < 3) {
-        return std::nullopt;
+double FocusProbes::variance_over(const NoiseModel& model, const std::vector<std::size_t>& places) const {
+    if (images_ < least_images_for_correlation) {
+        return 1;
     }
     const Scale scale = this->scale();
-    const auto level_of = [&](const double* patch) {
-        return std::accumulate(patch, patch + values, 0.0) / static_cast<double>(values);
-    };
+    const auto of_probes = parallel_list(static_cast<int>(places.size()), [&](int k) {
+        const Differences found = differences(probes_[places[static_cast<std::size_t>(k)]], 0, scale);
+        const double expected = model.variance(found.level);
+        const std::vector<int> quiet = quiet_images(found.variances, found.sparse);
+        double sum = 0;
+        for (const int image : quiet) {
+            sum += found.variances[static_cast<std::size_t>(image - 1)];
+        }
+        return quiet.empty() || !(expected > 0) ? 1.0 : sum / static_cast<double>(quiet.size()) / expected;
+    });
+    const double mean =
+        std::accumulate(of_probes.begin(), of_probes.end(), 0.0) / static_cast<double>(of_probes.size());
+    return std::isfinite(mean) ? mean : 1;
+}
 
-    // Responses to patches of noise of one deviation in every pixel.
+std::vector<std::vector<double>> FocusProbes::noise_responses(const WindowResponses& responses,
+                                                              const std::vector<std::size_t>& places,
+                                                              const NoiseModel& model,
+                                                              const NoiseCorrelation& correlation) const {
+    const std::size_t values = static_cast<std::size_t>(channels_) * probes_[places.front()].pixels();
     std::vector<std::vector<double>> noise;
     if (channels_ == 1 && !correlation.neighbours()) {
+        constexpr std::size_t most = 1024, most_values = std::size_t{1} << 21;
+        const std::size_t patches = std::clamp<std::size_t>(most_values / values, most / 8, most);
         std::mt19937_64 random(0);
         std::normal_distribution<double> normal;
         std::vector<double> patch(values);
-        for (std::size_t k = 0; k < white_patches; ++k) {
-            std::ranges::generate(patch, [&] { return normal(random); });
+        const double deviation = std::sqrt(variance_over(model, places));
+        for (std::size_t k = 0; k < patches; ++k) {
+            std::ranges::generate(patch, [&] { return deviation * normal(random); });
             noise.push_back(responses.of(patch));
         }
-    } else {
-        const auto of_probes = parallel_list(static_cast<int>(whole.size()), [&](int k) {
-            const Probe& probe = probes_[whole[static_cast<std::size_t>(k)]];
-            const Differences found = differences(probe, 0, scale);
-            const std::vector<int> quiet = quiet_images(found.variances, found.sparse);
-            std::vector<std::vector<double>> result;
-            const std::size_t taken = std::min(patches_a_probe, quiet.size());
-            for (std::size_t m = 0; m < taken; ++m) {
-                const int image = quiet[(2 * m + 1) * quiet.size() / (2 * taken)];
-                std::vector<double> patch(values);
-                double level = 0;
-                for (std::size_t pixel = 0; pixel < values; ++pixel) {
-                    patch[pixel] = second_difference(probe, image, pixel, scale).value_or(0);
-                    level +=
-                        probe.values[static_cast<std::size_t>(image) * values + pixel] / static_cast<double>(values);
-                }
-                const double deviation = std::sqrt(6 * model.variance(level));
-                if (deviation > 0) {
-                    for (double& value : patch) {
-                        value /= deviation;
-                    }
-                    result.push_back(responses.of(patch));
-                }
+        return noise;
+    }
+    const Scale scale = this->scale();
+    const auto of_probes = parallel_list(static_cast<int>(places.size()), [&](int k) {
+        const Probe& probe = probes_[places[static_cast<std::size_t>(k)]];
+        const Differences found = differences(probe, 0, scale);
+        const std::vector<int> quiet =
+            found.variances.empty() ? std::vector<int>() : quiet_images(found.variances, found.sparse);
+        std::vector<std::vector<double>> result;
+        const std::size_t taken = std::min(patches_a_probe, quiet.size());
+        for (std::size_t m = 0; m < taken; ++m) {
+            const int image = quiet[(2 * m + 1) * quiet.size() / (2 * taken)];
+            const float* from = probe.values.data() + static_cast<std::size_t>(image) * values;
+            constexpr double gain = 1 + 4 + 1; // of the second difference on the variance of independent values
+            const double level = std::accumulate(from, from + values, 0.0) / static_cast<double>(values);
+            const double deviation = std::sqrt(gain * model.variance(level));
+            if (!(deviation > 0)) {
+                continue;
             }
-            return result;
-        });
-        for (const auto& patches : of_probes) {
-            noise.insert(noise.end(), patches.begin(), patches.end());
+            std::vector<double> patch(values);
+            for (std::size_t pixel = 0; pixel < values; ++pixel) {
+                patch[pixel] = second_difference(probe, image, pixel, scale).value_or(0) / deviation;
+            }
+            result.push_back(responses.of(patch));
+        }
+        return result;
+    });
+    for (const auto& patches : of_probes) {
+        noise.insert(noise.end(), patches.begin(), patches.end());
+    }
+    return noise;
+}
+
+std::optional<TextureAndNoise> FocusProbes::texture_and_noise(const std::vector<double>& axial_weights,
+                                                              const NoiseModel& model,
+                                                              const NoiseCorrelation& correlation) const {
+    const WindowResponses responses(measure_, window_, channels_);
+    std::vector<std::size_t> places; // whose patch lies in the image
+    for (std::size_t k = 0; k < probes_.size(); ++k) {
+        if (probes_[k].columns == responses.patch_side() && probes_[k].rows == responses.patch_side()) {
+            places.push_back(k);
         }
     }
+    if (places.size() < least_probes || images_ < 3) {
+        return std::nullopt;
+    }
+    // Patches of wide windows overlap, and take long.
+    constexpr std::size_t most_pixels = std::size_t{1} << 17;
+    const std::size_t kept_places =
+        std::clamp<std::size_t>(most_pixels / probes_[places.front()].pixels(), 2 * least_probes, places.size());
+    for (std::size_t k = 0; k < kept_places; ++k) {
+        places[k] = places[k * places.size() / kept_places];
+    }
+    places.resize(kept_places);
+    const auto noise = noise_responses(responses, places, model, correlation);
     if (noise.size() < 4 * least_probes) {
         return std::nullopt;
     }
     TextureAndNoise result;
-    double pairs = 0, product_squares = 0;
-    for (std::size_t k = 0; k < noise.size(); ++k) {
-        result.noise_energy += responses.energy(noise[k]) / static_cast<double>(noise.size());
-        const auto slopes = responses.slopes(noise[k]);
-        for (std::size_t partner = 1; partner <= partners / 2; ++partner) {
-            // Patches of one probe follow each other.
-            const auto& other = noise[(k + patches_a_probe * partner * 7 + 1) % noise.size()];
-            const double product = responses.product(slopes, other);
-            product_squares += product * product;
-            pairs += 1;
-        }
-    }
-    const bool laplacian = measure_ == FocusMeasure::modified_laplacian;
-    result.alone = 0.5 * product_squares / pairs / (laplacian ? 1 : result.noise_energy);
+    find_noise(responses, noise, result);
 
-    // Texture around the maximum of every probe's curve.
-    const int radius = static_cast<int>(axial_weights.size()) - 1;
-    const double width = curve_width();
-    const double aligned = topography::suitable_smoothing(width, images_);
-    const Means means = means_of(radius > 0 ? axial_weights : topography::axial_weights(aligned), images_);
-    double kept = 0; // of the noise's variance by the average of the images
-    for (const Share& share : axial_shares(axial_weights, 2 * radius, 4 * radius + 1)) {
-        kept += static_cast<double>(share.weight) * static_cast<double>(share.weight);
-    }
-    const int reach = radius + 2;
+    constexpr int most_distances = 8;
+    const int radius = static_cast<int>(axial_weights.size()) - 1, reach = radius + 2;
+    const double width = curve_width(), kept = kept_by(axial_weights);
     const int apart =
-        std::max({1, static_cast<int>(std::lround(width / 2)), (reach + most_offsets - 1) / most_offsets});
-    const int offsets = (reach + apart - 1) / apart;
-    struct OfProbe {
-        std::vector<Sums> sums;
-        double bend = std::numeric_limits<double>::quiet_NaN();
-        double variance = 0;
-        double noise_share = 0;
-    };
-    const auto of_probes = parallel_list(static_cast<int>(whole.size()), [&](int k) {
-        const Probe& probe = probes_[whole[static_cast<std::size_t>(k)]];
-        OfProbe found{.sums = std::vector<Sums>(static_cast<std::size_t>(offsets) + 1)};
-        const std::vector<double> here =
+        std::max({1, static_cast<int>(std::lround(width / 2)), (reach + most_distances - 1) / most_distances});
+    const int distances = (reach + apart - 1) / apart;
+    // Where nothing is averaged, noise would choose the maxima.
+    const Means means =
+        means_of(radius > 0 ? axial_weights : topography::axial_weights(topography::suitable_smoothing(width, images_)),
+                 images_);
+    const std::size_t values = static_cast<std::size_t>(channels_) * probes_[places.front()].pixels();
+    const auto of_probes = parallel_list(static_cast<int>(places.size()), [&](int k) {
+        const Probe& probe = probes_[places[static_cast<std::size_t>(k)]];
+        TextureOfProbe here{.sums = std::vector<Sums>(static_cast<std::size_t>(distances) + 1)};
+        const std::vector<double> smooth =
             radius > 0 ? curve(probe, images_in_order(images_), means) : averaged_singles(probe, means);
-        const auto at = static_cast<int>(std::ranges::max_element(here) - here.begin());
+        const auto at = static_cast<int>(std::ranges::max_element(smooth) - smooth.begin());
         if (at == 0 || at + 1 == images_) {
-            return found;
+            return here;
         }
-        {
-            const std::vector<double>& bent = radius > 0 ? here : probe.singles;
-            const auto top = static_cast<std::size_t>(
-                std::clamp(static_cast<int>(std::ranges::max_element(bent) - bent.begin()), 1, images_ - 2));
-            found.bend = (2 * bent[top] - bent[top - 1] - bent[top + 1]) / bent[top];
-        }
-        const auto mean_of = [&](const std::vector<Share>& shares) {
+        const std::vector<double>& bent = radius > 0 ? smooth : probe.singles;
+        const auto top = static_cast<std::size_t>(
+            std::clamp(static_cast<int>(std::ranges::max_element(bent) - bent.begin()), 1, images_ - 2));
+        here.bend = bent[top] > 0 ? (2 * bent[top] - bent[top - 1] - bent[top + 1]) / bent[top] : 0;
+        // Over its mean brightness.
+        const auto responses_of = [&](const std::vector<Share>& shares) {
             std::vector<double> mean(values);
             for (const auto& [image, weight] : shares) {
                 const float* from = probe.values.data() + static_cast<std::size_t>(image) * values;
@@ -322,108 +415,65 @@ std::optional<TextureAndNoise> FocusProbes::texture_and_noise(const std::vector<
                     mean[pixel] += static_cast<double>(weight) * static_cast<double>(from[pixel]);
                 }
             }
-            const double level = level_of(mean.data());
+            const double level = std::accumulate(mean.begin(), mean.end(), 0.0) / static_cast<double>(values);
             for (double& value : mean) {
                 value = level > 0 ? value / level : 0;
             }
-            return mean;
+            return responses.of(mean);
         };
-        const auto around = mean_of(axial_shares(axial_weights, at, images_));
-        const double whole_energy = responses.energy(responses.of(around));
-        if (!(whole_energy > 0)) {
-            return found;
+        const double whole = responses.energy(responses_of(axial_shares(axial_weights, at, images_)));
+        const float* focused = probe.values.data() + static_cast<std::size_t>(at) * values;
+        const double level = std::accumulate(focused, focused + values, 0.0) / static_cast<double>(values);
+        if (!(whole > 0) || !(level > 0)) {
+            return here;
         }
-        double level = 0;
-        for (std::size_t pixel = 0; pixel < values; ++pixel) {
-            level += probe.values[static_cast<std::size_t>(at) * values + pixel] / static_cast<double>(values);
-        }
-        found.variance = level > 0 ? model.variance(level) / (level * level) : 0;
-        const double noise_here = level > 0 ? kept * model.variance(level) / (level * level) * result.noise_energy : 0;
-        for (int offset = -offsets; offset <= offsets; ++offset) {
-            const int image = at + offset * apart;
+        here.found = true;
+        here.variance = model.variance(level) / (level * level);
+        const double noise_here = kept * here.variance * result.noise_energy;
+        here.noise_share = std::min(1.0, noise_here / whole);
+        const auto patch = [&](std::size_t m) -> const std::vector<double>& {
+            return noise[((static_cast<std::size_t>(k) * 37 + 1) * partners + m * 5) % noise.size()];
+        };
+        const auto beside = [&](const std::vector<double>& one, const std::vector<double>& other) {
+            double sum = 0;
+            for (std::size_t m = 0; m < partners; ++m) {
+                sum += responses.product(one, patch(m)) * responses.product(other, patch(m));
+            }
+            return sum / static_cast<double>(partners);
+        };
+        for (int distance = -distances; distance <= distances; ++distance) {
+            const int image = at + distance * apart;
             if (image < 0 || image >= images_) {
                 continue;
             }
-            Sums& sums = found.sums[static_cast<std::size_t>(std::abs(offset))];
+            Sums& sums = here.sums[static_cast<std::size_t>(std::abs(distance))];
             for (const Halves& halves : halves_at(axial_weights, image, images_)) {
                 if (halves.one.empty() || halves.other.empty()) {
                     continue;
                 }
-                const auto one = responses.of(mean_of(halves.one)), other = responses.of(mean_of(halves.other));
-                double energy = 0, beside = 0;
-                const auto first = (static_cast<std::size_t>(k) * 37 + 1) * partners;
-                if (laplacian) {
-                    const auto all = responses.of(mean_of(axial_shares(axial_weights, image, images_)));
-                    const auto slopes_one = responses.slopes(one), slopes_other = responses.slopes(other),
-                               slopes = responses.slopes(all);
-                    energy = std::max(0.0, responses.energy(all) - noise_here);
-                    for (std::size_t m = 0; m < partners; ++m) {
-                        const auto& patch = noise[(first + m * 5) % noise.size()];
-                        const double of_all = responses.product(slopes, patch);
-                        beside += 0.5 *
-                                  (of_all * of_all +
-                                   responses.product(slopes_one, patch) * responses.product(slopes_other, patch)) /
-                                  static_cast<double>(partners);
-                    }
+                const auto one = responses_of(halves.one), other = responses_of(halves.other);
+                double energy = 0, product = 0;
+                if (responses.magnitudes()) {
+                    const auto all = responses_of(axial_shares(axial_weights, image, images_));
+                    const auto slopes = responses.slopes(all);
+                    const double square = responses.energy(all);
+                    energy = std::max(0.0, square - noise_here);
                     // Of F itself, with what noise alone adds: without it, and times F^2.
-                    beside = beside * responses.energy(all) - noise_here * result.alone;
+                    product = 0.5 * square *
+                                  (beside(slopes, slopes) + beside(responses.slopes(one), responses.slopes(other))) -
+                              noise_here * result.alone;
                 } else {
                     energy = responses.product(one, other);
-                    for (std::size_t m = 0; m < partners; ++m) {
-                        const auto& patch = noise[(first + m * 5) % noise.size()];
-                        beside += responses.product(one, patch) * responses.product(other, patch) /
-                                  static_cast<double>(partners);
-                    }
+                    product = beside(one, other);
                 }
-                sums.energy += energy / (whole_energy * whole_energy);
-                sums.beside += beside / (whole_energy * whole_energy);
+                sums.energy += energy / (whole * whole);
+                sums.beside += product / (whole * whole);
                 sums.places += 1;
             }
         }
-        return found;
+        return here;
     });
-    std::vector<Sums> sums(static_cast<std::size_t>(offsets) + 1);
-    std::vector<double> bends;
-    for (const OfProbe& found : of_probes) {
-        for (std::size_t offset = 0; offset < sums.size(); ++offset) {
-            sums[offset].energy += found.sums[offset].energy;
-            sums[offset].beside += found.sums[offset].beside;
-            sums[offset].places += found.sums[offset].places;
-        }
-        if (std::isfinite(found.bend)) {
-            bends.push_back(found.bend);
-            result.variance += found.variance;
-            result.share -= found.noise_share;
-        }
-    }
-    if (!(sums[0].energy > 0) || !(sums[0].beside > 0) || bends.size() < least_probes) {
-        return std::nullopt;
-    }
-    const double mean_bend = std::accumulate(bends.begin(), bends.end(), 0.0) / static_cast<double>(bends.size());
-    for (const double bend : bends) {
-        result.bend_variance += (bend - mean_bend) * (bend - mean_bend) / static_cast<double>(bends.size() - 1);
-    }
-    result.variance /= static_cast<double>(bends.size());
-    const double top = sums[0].energy / sums[0].places;
-    result.share = 1 + result.share / static_cast<double>(bends.size());
-    std::vector<double> energy, beside;
-    for (const Sums& here : sums) {
-        const bool any = here.places > 0 && here.energy > 0;
-        energy.push_back(here.places > 0 ? std::clamp(here.energy / here.places / top, 0.0, 1.0) : energy.back());
-        beside.push_back(any && here.beside > 0 ? here.beside / here.energy : beside.back());
-    }
-    for (int image = 0; image <= offsets * apart; ++image) {
-        const auto before = static_cast<std::size_t>(image / apart);
-        const std::size_t after = std::min(before + 1, energy.size() - 1);
-        // What fades as a Gaussian is straight by the square of the distance, in its logarithm.
-        const double from = static_cast<double>(before) * apart, to = from + apart;
-        const double rest = (image * image - from * from) / (to * to - from * from);
-        const bool fades = energy[before] > 0 && energy[after] > 0;
-        result.energy.push_back(fades ? std::exp(std::lerp(std::log(energy[before]), std::log(energy[after]), rest))
-                                      : std::lerp(energy[before], energy[after], rest));
-        result.beside.push_back(std::lerp(beside[before], beside[after], rest));
-    }
-    return result;
+    return add_up(of_probes, apart, result) ? std::optional(result) : std::nullopt;
 }
 
 } // namespace vkfv::topography
