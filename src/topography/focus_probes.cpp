@@ -1,6 +1,7 @@
 #include "topography/focus_probes.hpp"
 
 #include "core/threads/parallel_list.hpp"
+#include "topography/noise/quiet_images.hpp"
 #include "topography/topography.hpp"
 
 #include <algorithm>
@@ -84,36 +85,6 @@ double neighbours_alike(const std::vector<double>& values) {
         steps += (values[k] - values[k - 1]) * (values[k] - values[k - 1]) / static_cast<double>(values.size() - 1);
     }
     return variance > 0 ? std::max(0.0, 1 - steps / (2 * variance)) : 0;
-}
-
-// The limit of the smallest quarter.
-double smallest_quarter(std::vector<double> values) {
-    const auto quarter = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 4);
-    std::ranges::nth_element(values, quarter);
-    return *quarter;
-}
-
-// Images whose second differences along z are noise, by the variances of those of image 1, 2, ... Noise is least
-// correlated where it is least by chance: what decides is not an image's own difference but those three images before
-// and after, which share no image with it. Its own tells texture that is in focus in an image or two.
-std::vector<int> quiet_images(const std::vector<double>& variances, bool all) {
-    constexpr int apart = 3;
-    constexpr double most = 3; // of the smallest quarter's limit, which noise hardly reaches
-    const int count = static_cast<int>(variances.size());
-    const auto at = [&](int k) { return variances[static_cast<std::size_t>(k)]; };
-    std::vector<double> around;
-    for (int k = 0; k < count; ++k) {
-        const int before = k >= apart ? k - apart : k + apart, after = k + apart < count ? k + apart : k - apart;
-        around.push_back(at(std::clamp(before, 0, count - 1)) + at(std::clamp(after, 0, count - 1)));
-    }
-    std::vector<int> images;
-    const double quiet = smallest_quarter(around), limit = most * smallest_quarter(variances);
-    for (int k = 0; k < count; ++k) {
-        if (all || (around[static_cast<std::size_t>(k)] <= quiet && at(k) <= limit)) {
-            images.push_back(k + 1);
-        }
-    }
-    return images;
 }
 
 // Adds values(p) values(p + k) for every k = (column - reach, row) of sums, over the pixels p of a patch.
@@ -223,6 +194,10 @@ std::vector<double> FocusProbes::curve(const Probe& probe, const std::vector<int
         values.push_back(focus_at(mean, measure_, window_, probe.middle_column, probe.middle_row));
     }
     return averaged(values, means.curve);
+}
+
+std::vector<double> FocusProbes::averaged_singles(const Probe& probe, const Means& means) {
+    return averaged(probe.singles, means.curve);
 }
 
 std::vector<std::vector<double>> FocusProbes::curves_in_order(const Means& means) const {

@@ -6,7 +6,8 @@
 #include "topography/axial_average.hpp"
 #include "topography/chance.hpp"
 #include "topography/focus_measure.hpp"
-#include "topography/noise_gain.hpp"
+#include "topography/noise/noise_gain.hpp"
+#include "topography/noise/texture_and_noise.hpp"
 #include "topography/persistence.hpp"
 #include "topography/saturation.hpp"
 
@@ -33,6 +34,8 @@ struct NoiseModel {
     double slope = 0;
     double variance(double value) const { return constant + slope * (value > 0 ? value : 0); }
 };
+
+class WindowResponses; // texture_and_noise.cpp
 
 class FocusProbes {
   public:
@@ -61,6 +64,11 @@ class FocusProbes {
     // does not exceed four standard deviations of its own is 0, so independent noise stays that; independence too of
     // less than least_images_for_correlation and of images without noise.
     NoiseCorrelation noise_correlation() const;
+
+    // How the images' noise passes into curves that are averaged by these weights. model, correlation: noise() and
+    // noise_correlation(). None where the probes are few, hardly wider than the image, or show no texture or no noise.
+    std::optional<TextureAndNoise> texture_and_noise(const std::vector<double>& axial_weights, const NoiseModel& model,
+                                                     const NoiseCorrelation& correlation) const;
 
     // The evidence of curves with the images in random order, none where the largest value stands at an end.
     // axial_weights: of both averages (axial_average.hpp). Of as many orders as tell what a share of `rate` exceeds,
@@ -146,6 +154,16 @@ class FocusProbes {
     };
     Products products_of(const Probe& probe, std::size_t channel, const Scale& scale) const;
 
+    // Responses to patches of noise over the model's deviation: the second differences of quiet images at these probes,
+    // or random numbers of their variance where the noise is independent.
+    std::vector<std::vector<double>> noise_responses(const WindowResponses& responses,
+                                                     const std::vector<std::size_t>& places, const NoiseModel& model,
+                                                     const NoiseCorrelation& correlation) const;
+
+    // The variance of quiet images at these probes over the model's, which takes the smallest of some; 1 for few
+    // images.
+    double variance_over(const NoiseModel& model, const std::vector<std::size_t>& places) const;
+
     // What every mean is made of: of the images, then of the curve's values.
     struct Means {
         std::vector<std::vector<Share>> images, curve;
@@ -157,6 +175,8 @@ class FocusProbes {
 
     // Of the weighted means of images in this order.
     std::vector<double> curve(const Probe& probe, const std::vector<int>& order, const Means& means) const;
+    // Of single images' curve.
+    static std::vector<double> averaged_singles(const Probe& probe, const Means& means);
     // A probe's each, after both averages.
     std::vector<std::vector<double>> curves_in_order(const Means& means) const;
 

@@ -1,6 +1,7 @@
 #include "core/messages/error.hpp"
 #include "core/threads/parallel_rows.hpp"
 #include "topography/height_uncertainty.hpp"
+#include "topography/noise/curve_noise.hpp"
 #include "topography/places_of_maxima.hpp"
 #include "topography/texture_place.hpp"
 #include "topography/topography.hpp"
@@ -98,34 +99,17 @@ void leave_out_chance(Topography& topography) {
     }
 }
 
-// Of a smoothed curve's noise over that of a single image's, away from the ends: standard deviation of the difference
-// of its values one step before and after a point, and of its second difference there.
-struct SmoothedNoise {
-    double difference = 0;
-    double bend = 0;
-};
-
-SmoothedNoise smoothed_noise(const std::vector<double>& axial_weights) {
-    const int radius = static_cast<int>(axial_weights.size()) - 1;
-    const int images = 8 * radius + 5;
-    const std::vector<double> kernel = twice_averaged(axial_weights, images / 2, images);
-    SmoothedNoise variance;
-    for (int k = 0; k < images; ++k) {
-        const double before = k + 1 < images ? kernel[static_cast<std::size_t>(k + 1)] : 0;
-        const double after = k > 0 ? kernel[static_cast<std::size_t>(k - 1)] : 0;
-        const double bend = 2 * kernel[static_cast<std::size_t>(k)] - before - after;
-        variance.difference += (after - before) * (after - before);
-        variance.bend += bend * bend;
+// Where the probes do not tell: texture of the noise's own spectrum, which fades as the stack's curves do.
+TextureAndNoise assumed(double gain, double curve_width) {
+    TextureAndNoise result;
+    result.alone = gain / 2;
+    result.share = 1;
+    result.bend_variance = 1; // beside which noise is little
+    for (int image = 0; image == 0 || image < 3 * curve_width; ++image) {
+        result.energy.push_back(curve_width > 0 ? std::exp(-std::pow(image / curve_width, 2)) : 1);
+        result.beside.push_back(gain);
     }
-    return {.difference = std::sqrt(variance.difference), .bend = std::sqrt(variance.bend)};
-}
-
-// Of a maximum's place, in steps: the noise of the difference over the curve's bend. The bend is found with its noise,
-// which adds to its square what is taken off here, but for a quarter of it.
-double place_noise(double bend, double image_noise, const SmoothedNoise& smoothed) {
-    const double by_noise = image_noise * smoothed.bend;
-    const double without = std::sqrt(std::max(bend * bend - by_noise * by_noise, bend * bend / 4));
-    return image_noise * smoothed.difference / (2 * std::max(without, 1e-30));
+    return result;
 }
 
 // At these places of the scan, in steps, by the readings around each: their averages, which stand for `averaged`.
@@ -393,7 +377,6 @@ Topography StackEvaluator::finish(double x0, double y0, double pitch) {
     StackSummary stack = planes_->summary();
 
     const int images = static_cast<int>(z_.size());
-    const SmoothedNoise smoothed = smoothed_noise(axial_weights_);
     const std::vector<AveragedPoint> points = averaged_points(axial_weights_, images);
     const double brightness = mean_of(stack.brightness) / images;
     const Grid<float> brightness_around = window_mean(stack.brightness, window_); // of all images together
@@ -402,9 +385,9 @@ Topography StackEvaluator::finish(double x0, double y0, double pitch) {
     const NoiseModel noise_model = noise_of_probes.get();
     const NoiseCorrelation correlation = correlation_of_probes.get();
     const double gain = noise_gain(measure_, 1, correlation);
+    const PeakFinder finder{.method = options_.peak, .range = options_.peak_range_steps};
     StackFigures figures = figures_of_probes.get();
-    const std::vector<double> places = places_of_maxima(axial_weights_, images, figures.curve_width_steps,
-                                                        {.method = options_.peak, .range = options_.peak_range_steps});
+    const std::vector<double> places = places_of_maxima(axial_weights_, images, figures.curve_width_steps, finder);
     const double step = (z_.back() - z_.front()) / (images - 1);
     const auto read =
         readings_.empty() ? std::vector<double>() : readings_at(places, points, readings_, axial_weights_);
@@ -414,6 +397,9 @@ Topography StackEvaluator::finish(double x0, double y0, double pitch) {
     };
     const double whole_window =
         window_.pixels(4 * window_.radius(), 4 * window_.radius(), 2 * window_.radius(), 2 * window_.radius());
+    const auto found = probes_->texture_and_noise(axial_weights_, noise_model, correlation);
+    const CurveNoise curve_noise(found.value_or(assumed(gain * gain / whole_window, figures.curve_width_steps)),
+                                 axial_weights_, finder, images);
     std::vector<focus::f64::CurveRecord> of_curves(curve_pixels_.size());
     const auto judge_point = [&](std::size_t pixel, const focus::f64::CurveRecord& curve,
                                  const focus::f64::SingleRecord& single) {
@@ -438,7 +424,8 @@ Topography StackEvaluator::finish(double x0, double y0, double pitch) {
                     : PointState::dark;
         if (state == PointState::measured) {
             result.height.height(column, row) = height_at(curve.at + curve.offset);
-            result.height_noise(column, row) = step * place_noise(curve.bend, image_noise, smoothed);
+            result.height_noise(column, row) =
+                step * curve_noise.place(curve, std::pow(relative_noise(here, noise_model), 2), pixels / whole_window);
         }
     };
     planes_->visit_records(judge_point);

@@ -4,7 +4,7 @@
 #include "core/mathematics/fourier.hpp"
 #include "core/mathematics/grid.hpp"
 #include "core/mathematics/units.hpp"
-#include "topography/noise_gain.hpp"
+#include "topography/noise/noise_gain.hpp"
 
 #include <algorithm>
 #include <cmath>

@@ -1,7 +1,7 @@
 #include "topography/focus_measure.hpp"
 
 #include "core/messages/error.hpp"
-#include "topography/noise_gain.hpp"
+#include "topography/noise/noise_gain.hpp"
 
 #include <gtest/gtest.h>
 

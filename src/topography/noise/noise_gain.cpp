@@ -1,6 +1,7 @@
-#include "topography/noise_gain.hpp"
+#include "topography/noise/noise_gain.hpp"
 
 #include "core/mathematics/units.hpp"
+#include "topography/noise/focus_masks.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -9,42 +10,6 @@
 
 namespace vkfv::topography {
 namespace {
-
-constexpr int mask_reach = 2;
-
-// The weight at (i, j), from -mask_reach to mask_reach, is x[i] y[j].
-struct Mask {
-    std::array<double, 5> x;
-    std::array<double, 5> y;
-};
-
-std::vector<Mask> masks_of(FocusMeasure measure) {
-    const std::array<double, 5> here = {0, 0, 1, 0, 0}, across = {0, -1, 0, 1, 0};
-    const auto both_ways = [](const std::array<double, 5>& one, const std::array<double, 5>& other) {
-        return std::vector<Mask>{{one, other}, {other, one}};
-    };
-    switch (measure) {
-    case FocusMeasure::standard_deviation:
-        return {{here, here}};
-    case FocusMeasure::tenengrad:
-        return both_ways(across, {0, 1, 2, 1, 0});
-    case FocusMeasure::modified_laplacian:
-        return both_ways({0, -1, 2, -1, 0}, here);
-    case FocusMeasure::brenner:
-        return both_ways(across, here);
-    case FocusMeasure::wavelet: {
-        std::array<double, 5> low{}, high{};
-        for (int tap = -mask_reach; tap <= mask_reach; ++tap) {
-            low[static_cast<std::size_t>(tap + mask_reach)] = focus::f64::wavelet_low(tap);
-            high[static_cast<std::size_t>(tap + mask_reach)] = focus::f64::wavelet_high(tap);
-        }
-        auto masks = both_ways(low, high);
-        masks.push_back({high, high});
-        return masks;
-    }
-    }
-    return {};
-}
 
 // sum over p of a(p) b(p + d) along one axis, |d| <= 2 mask_reach.
 double overlap(const std::array<double, 5>& a, const std::array<double, 5>& b, int d) {

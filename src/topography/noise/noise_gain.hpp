@@ -3,6 +3,7 @@
 
 #include "topography/focus_measure.hpp"
 
+#include <algorithm>
 #include <array>
 #include <cstddef>
 
@@ -20,6 +21,10 @@ class NoiseCorrelation {
     double operator()(int dx, int dy) const {
         const bool inside = dx >= -reach && dx <= reach && dy >= -reach && dy <= reach;
         return inside ? values_[index(dx, dy)] : 0;
+    }
+    // Whether any pixels beside each other are correlated.
+    bool neighbours() const {
+        return std::ranges::count_if(values_, [](double value) { return value != 0; }) > 1;
     }
     // Of both signs; within the reach.
     void set(int dx, int dy, double value) { values_[index(dx, dy)] = values_[index(-dx, -dy)] = value; }
