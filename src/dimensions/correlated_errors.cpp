@@ -25,38 +25,45 @@ std::vector<double> correlated_products(const Grid<double>& residues, std::size_
     for (std::size_t first = 0; first < n; first += 2) {
         const std::size_t second = std::min(first + 1, n - 1);
         Grid<std::complex<double>> spread(residues.columns, residues.rows);
-        for (std::size_t place = 0; place < residues.values.size(); ++place)
+        for (std::size_t place = 0; place < residues.values.size(); ++place) {
             if (std::isfinite(residues.values[place])) {
                 functions(place, values);
                 spread.values[place] = {values[first], values[second]};
             }
+        }
         convolve(spread, correlations.along_x, correlations.along_y);
-        for (std::size_t place = 0; place < residues.values.size(); ++place)
+        for (std::size_t place = 0; place < residues.values.size(); ++place) {
             if (std::isfinite(residues.values[place])) {
                 functions(place, values);
                 for (std::size_t k = 0; k < n; ++k) {
                     products[k * n + first] += values[k] * spread.values[place].real();
-                    if (second != first)
+                    if (second != first) {
                         products[k * n + second] += values[k] * spread.values[place].imag();
+                    }
                 }
             }
+        }
     }
     return products;
 }
 
 std::vector<double> product(const std::vector<double>& a, const std::vector<double>& b, std::size_t n) {
     std::vector<double> result(n * n);
-    for (std::size_t row = 0; row < n; ++row)
-        for (std::size_t k = 0; k < n; ++k)
-            for (std::size_t column = 0; column < n; ++column)
+    for (std::size_t row = 0; row < n; ++row) {
+        for (std::size_t k = 0; k < n; ++k) {
+            for (std::size_t column = 0; column < n; ++column) {
                 result[row * n + column] += a[row * n + k] * b[k * n + column];
+            }
+        }
+    }
     return result;
 }
 
 double trace(const std::vector<double>& matrix, std::size_t n) {
     double sum = 0;
-    for (std::size_t k = 0; k < n; ++k)
+    for (std::size_t k = 0; k < n; ++k) {
         sum += matrix[k * n + k];
+    }
     return sum;
 }
 
@@ -69,11 +76,12 @@ double student_factor(double degrees) {
 
 double FitCovariance::standard_error(std::span<const double> weights) const {
     double variance = 0, least = 0;
-    for (std::size_t row = 0; row < n_; ++row)
+    for (std::size_t row = 0; row < n_; ++row) {
         for (std::size_t column = 0; column < n_; ++column) {
             variance += weights[row] * weights[column] * values_[row * n_ + column];
             least += weights[row] * weights[column] * least_[row * n_ + column];
         }
+    }
     return std::sqrt(std::max(variance, least));
 }
 
@@ -88,11 +96,12 @@ FitCovariance fit_covariance(const Grid<double>& residues, const LeastSquares::S
     constexpr double least_share = 0.1, worth_giving_back = 0.01;
     const std::size_t n = solution.unknowns.size();
     double squares = 0, points = 0;
-    for (const double residue : residues.values)
+    for (const double residue : residues.values) {
         if (std::isfinite(residue)) {
             squares += residue * residue;
             points += 1;
         }
+    }
     Correlations correlations{.along_x = correlation_along_x(residues), .along_y = correlation_along_y(residues)};
     std::vector<double> spread =
         product(solution.inverse, correlated_products(residues, n, functions, correlations), n);
@@ -102,9 +111,11 @@ FitCovariance fit_covariance(const Grid<double>& residues, const LeastSquares::S
         static_cast<double>((2 * correlations.along_x.size() - 1) * (2 * correlations.along_y.size() - 1));
     if (taken_share * lags > worth_giving_back * correlations.points()) {
         const double share = std::min(0.5, taken_share);
-        for (auto* line : {&correlations.along_x, &correlations.along_y})
-            for (double& rho : *line)
+        for (auto* line : {&correlations.along_x, &correlations.along_y}) {
+            for (double& rho : *line) {
                 rho += share * (1 - rho);
+            }
+        }
         spread = product(solution.inverse, correlated_products(residues, n, functions, correlations), n);
     }
     const double left = points - trace(spread, n) - taken;
@@ -114,10 +125,12 @@ FitCovariance fit_covariance(const Grid<double>& residues, const LeastSquares::S
     }
     const double factor = squares / left * std::pow(student_factor(left / correlations.points()), 2);
     std::vector<double> covariance = product(spread, solution.inverse, n), least = solution.inverse;
-    for (double& value : covariance)
+    for (double& value : covariance) {
         value *= factor;
-    for (double& value : least)
+    }
+    for (double& value : least) {
         value *= least_share * factor;
+    }
     return {n, std::move(covariance), std::move(least)};
 }
 

@@ -17,36 +17,44 @@ constexpr double inside_rim = 0.9, outside_rim = 1.05;
 
 template <class Visit>
 void for_measured(const HeightMap& map, const Visit& visit) {
-    for (int row = 0; row < map.rows(); ++row)
-        for (int column = 0; column < map.columns(); ++column)
-            if (const double z = map.height(column, row); std::isfinite(z))
+    for (int row = 0; row < map.rows(); ++row) {
+        for (int column = 0; column < map.columns(); ++column) {
+            if (const double z = map.height(column, row); std::isfinite(z)) {
                 visit(map.x(column), map.y(row), z);
+            }
+        }
+    }
 }
 
 // Means of square blocks, at most so many along the longer side; of blocks of which at least a quarter was measured.
 HeightMap block_means(const HeightMap& map, int most) {
     const int block = (std::max(map.columns(), map.rows()) + most - 1) / most;
-    if (block <= 1)
+    if (block <= 1) {
         return map;
+    }
     HeightMap means{.height = Grid<double>((map.columns() + block - 1) / block, (map.rows() + block - 1) / block,
                                            surface::undefined),
                     .x0 = map.x0 + 0.5 * (block - 1) * map.pitch_x,
                     .y0 = map.y0 + 0.5 * (block - 1) * map.pitch_y,
                     .pitch_x = block * map.pitch_x,
                     .pitch_y = block * map.pitch_y};
-    for (int row = 0; row < means.rows(); ++row)
+    for (int row = 0; row < means.rows(); ++row) {
         for (int column = 0; column < means.columns(); ++column) {
             double sum = 0;
             int count = 0;
-            for (int k = row * block; k < std::min((row + 1) * block, map.rows()); ++k)
-                for (int i = column * block; i < std::min((column + 1) * block, map.columns()); ++i)
+            for (int k = row * block; k < std::min((row + 1) * block, map.rows()); ++k) {
+                for (int i = column * block; i < std::min((column + 1) * block, map.columns()); ++i) {
                     if (const double z = map.height(i, k); std::isfinite(z)) {
                         sum += z;
                         ++count;
                     }
-            if (4 * count >= block * block)
+                }
+            }
+            if (4 * count >= block * block) {
                 means.height(column, row) = sum / count;
+            }
         }
+    }
     return means;
 }
 
@@ -96,13 +104,14 @@ class Bump {
         const auto [left, right] = within(rim.x, level_.x0, level_.pitch_x, level_.columns());
         const auto [first, last] = within(rim.y, level_.y0, level_.pitch_y, level_.rows());
         double points = 0, sum = 0, along_x = 0, along_y = 0, squares = 0, product = 0;
-        for (int row = first; row <= last; ++row)
+        for (int row = first; row <= last; ++row) {
             for (int column = left; column <= right; ++column) {
                 const double z = level_.height(column, row), x = level_.x(column), y = level_.y(row);
                 const double dx = (x - rim.x) / rim.radius, dy = (y - rim.y) / rim.radius;
                 const double bump = 1 - dx * dx - dy * dy;
-                if (!(bump > 0) || !std::isfinite(z))
+                if (!(bump > 0) || !std::isfinite(z)) {
                     continue;
+                }
                 points += 1;
                 sum += bump;
                 along_x += bump * (x - x_);
@@ -110,6 +119,7 @@ class Bump {
                 squares += bump * bump;
                 product += bump * z;
             }
+        }
         const double rest = squares - sum * sum / count_ - along_x * along_x / xx_ - along_y * along_y / yy_;
         return points >= 8 && rest > 1e-6 * squares ? product * product / rest : 0;
     }
@@ -120,8 +130,8 @@ class Bump {
         const double least = std::max(3 * std::max(level_.pitch_x, level_.pitch_y), 0.02 * longest);
         Rim best;
         double most = 0;
-        for (double radius = least; radius < longest; radius *= 1.2)
-            for (double y = 0; y <= height; y += radius / 2)
+        for (double radius = least; radius < longest; radius *= 1.2) {
+            for (double y = 0; y <= height; y += radius / 2) {
                 for (double x = 0; x <= width; x += radius / 2) {
                     const Rim rim{level_.x0 + x, level_.y0 + y, radius};
                     if (const double gained = gain(rim); gained > most) {
@@ -129,13 +139,16 @@ class Bump {
                         best = rim;
                     }
                 }
+            }
+        }
         return best;
     }
 
     // Steps along each unknown, halved where none gains.
     Rim refined(Rim rim) const {
-        if (!(rim.radius > 0))
+        if (!(rim.radius > 0)) {
             return rim;
+        }
         double most = gain(rim);
         for (double step = rim.radius / 4; step > 1e-3 * rim.radius;) {
             const Rim from = rim;
@@ -151,8 +164,9 @@ class Bump {
                     rim = next;
                 }
             }
-            if (rim.x == from.x && rim.y == from.y && rim.radius == from.radius)
+            if (rim.x == from.x && rim.y == from.y && rim.radius == from.radius) {
                 step /= 2;
+            }
         }
         return rim;
     }
@@ -163,12 +177,14 @@ class Bump {
 };
 
 HeightMap part_of(HeightMap map, const Rim& rim, bool inside) {
-    for (int row = 0; row < map.rows(); ++row)
+    for (int row = 0; row < map.rows(); ++row) {
         for (int column = 0; column < map.columns(); ++column) {
             const double share = rim.share(map.x(column), map.y(row));
-            if (inside ? !(share < inside_rim) : !(share > outside_rim))
+            if (inside ? !(share < inside_rim) : !(share > outside_rim)) {
                 map.height(column, row) = surface::undefined;
+            }
         }
+    }
     return map;
 }
 
@@ -201,8 +217,9 @@ std::optional<CapOnPlane> meeting(const surface::Sphere& sphere, const surface::
     // Of the centre over the plane, along its normal; towards the pole.
     const double over = (centre - plane.height(sphere.x_centre, sphere.y_centre)) / steepness;
     const double distance = std::min(0.0, side * over);
-    if (!(sphere.radius + distance > 0))
+    if (!(sphere.radius + distance > 0)) {
         return std::nullopt;
+    }
     const double along = over == 0 ? 0 : side * distance / steepness;
     return CapOnPlane{.sphere = sphere,
                       .plane = plane,
@@ -219,18 +236,22 @@ std::optional<CapOnPlane> settled_cap(const HeightMap& map, Rim rim) {
     const double nearness = 0.1 * std::max(map.pitch_x, map.pitch_y);
     for (int round = 0; round < most_rounds; ++round) {
         const HeightMap ground = part_of(map, rim, false);
-        if (measured_points(ground) < std::max(least_points, least_ground * measured_points(map)))
+        if (measured_points(ground) < std::max(least_points, least_ground * measured_points(map))) {
             return std::nullopt;
+        }
         const auto sphere = surface::least_squares_sphere(part_of(map, rim, true));
-        if (!std::isfinite(sphere.radius))
+        if (!std::isfinite(sphere.radius)) {
             return std::nullopt;
+        }
         const auto cap = meeting(sphere, surface::least_squares_plane(ground));
-        if (!cap)
+        if (!cap) {
             return std::nullopt;
+        }
         const Rim last = rim;
         rim = cap->rim;
-        if (std::hypot(rim.x - last.x, rim.y - last.y) < nearness && std::abs(rim.radius - last.radius) < nearness)
+        if (std::hypot(rim.x - last.x, rim.y - last.y) < nearness && std::abs(rim.radius - last.radius) < nearness) {
             return cap;
+        }
     }
     return std::nullopt;
 }
@@ -244,8 +265,9 @@ Rests rests_of(const HeightMap& map, const CapOnPlane& cap, const surface::Spher
     Rests rests;
     for_measured(map, [&](double x, double y, double z) {
         const double share = cap.rim.share(x, y);
-        if (share > inside_rim && share < outside_rim)
+        if (share > inside_rim && share < outside_rim) {
             return;
+        }
         const double rest = share < 1 ? orthogonal_distance(cap.sphere, x, y, z) : z - cap.plane.height(x, y);
         rests.points += 1;
         rests.cap += rest * rest;
@@ -273,8 +295,9 @@ std::optional<SphereCap> found_sphere(const HeightMap& map) {
     const HeightMap coarse = block_means(map, search_blocks), fine = block_means(map, settling_blocks),
                     judged = block_means(map, judging_blocks);
     const Bump bump(coarse);
-    if (!bump.settled())
+    if (!bump.settled()) {
         return std::nullopt;
+    }
     const auto whole = surface::least_squares_sphere(fine);
     const Rim start = bump.refined(bump.best());
     const auto cap = start.radius > 0 ? settled_cap(fine, start) : std::nullopt;
@@ -284,8 +307,9 @@ std::optional<SphereCap> found_sphere(const HeightMap& map) {
         if (!spherical ||
             rests.whole > like_the_cap * rests.cap + rests.points * std::pow(rounding * whole.radius, 2)) {
             const double reach = inside_rim * cap->rim.radius;
-            if (!(rest_of(part_of(judged, cap->rim, true), cap->sphere) <= most_rest * sag_over(cap->sphere, reach)))
+            if (!(rest_of(part_of(judged, cap->rim, true), cap->sphere) <= most_rest * sag_over(cap->sphere, reach))) {
                 return std::nullopt;
+            }
             return SphereCap{
                 .frame = {.x = cap->rim.x, .y = cap->rim.y}, .radius = cap->sphere.radius, .height = cap->height};
         }
@@ -295,11 +319,13 @@ std::optional<SphereCap> found_sphere(const HeightMap& map) {
     if (const double whole_rest = rest_of(coarse, whole);
         start.radius > 0 &&
         !(whole_rest * whole_rest * measured_points(coarse) <=
-          like_the_cap * bump.rest(start) + measured_points(coarse) * std::pow(rounding * whole.radius, 2)))
+          like_the_cap * bump.rest(start) + measured_points(coarse) * std::pow(rounding * whole.radius, 2))) {
         return std::nullopt;
+    }
     const double reach = 0.5 * std::max((map.columns() - 1) * map.pitch_x, (map.rows() - 1) * map.pitch_y);
-    if (!(rest_of(judged, whole) <= most_rest * sag_over(whole, reach)))
+    if (!(rest_of(judged, whole) <= most_rest * sag_over(whole, reach))) {
         return std::nullopt;
+    }
     return SphereCap{};
 }
 

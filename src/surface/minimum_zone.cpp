@@ -42,7 +42,7 @@ double least_of(const Function& function, double reach) {
     double from = -reach, to = reach;
     double low = to - golden * (to - from), high = from + golden * (to - from);
     double at_low = function(low), at_high = function(high);
-    for (int round = 0; round < rounds; ++round)
+    for (int round = 0; round < rounds; ++round) {
         if (at_low < at_high) {
             to = high;
             high = low;
@@ -56,6 +56,7 @@ double least_of(const Function& function, double reach) {
             high = from + golden * (to - from);
             at_high = function(high);
         }
+    }
     return 0.5 * (from + to);
 }
 
@@ -69,7 +70,7 @@ Tilt least_tilt(const std::vector<Point>& points, const Tilt& reach) {
 std::array<Point, 2> extremes(const HeightMap& map, const Tilt& tilt) {
     std::array<Point, 2> found{};
     double lowest = std::numeric_limits<double>::infinity(), highest = -lowest;
-    for (int row = 0; row < map.rows(); ++row)
+    for (int row = 0; row < map.rows(); ++row) {
         for (int column = 0; column < map.columns(); ++column) {
             const Point point{map.x(column) - map.x0, map.y(row) - map.y0, map.height(column, row)};
             const double z = over(point, tilt);
@@ -82,6 +83,7 @@ std::array<Point, 2> extremes(const HeightMap& map, const Tilt& tilt) {
                 found[1] = point;
             }
         }
+    }
     return found;
 }
 
@@ -91,8 +93,9 @@ double minimum_zone(const HeightMap& map) {
     constexpr double nearness = 1e-6;
     constexpr int most_rounds = 200;
     const Plane plane = least_squares_plane(map);
-    if (!std::isfinite(plane.offset))
+    if (!std::isfinite(plane.offset)) {
         return undefined;
+    }
     const HeightMap level = remove_plane(map, plane);
     Tilt tilt;
     std::vector<Point> points;
@@ -111,8 +114,9 @@ double minimum_zone(const HeightMap& map) {
         const double length_x = (map.columns() - 1) * map.pitch_x, length_y = (map.rows() - 1) * map.pitch_y;
         const Tilt reach{length_x > 0 ? 2 * zone / length_x : 0, length_y > 0 ? 2 * zone / length_y : 0};
         tilt = least_tilt(points, reach);
-        if (range_of(points, tilt) >= (1 - nearness) * zone)
+        if (range_of(points, tilt) >= (1 - nearness) * zone) {
             break;
+        }
     }
     const double slope = std::hypot(plane.slope_x + best.x, plane.slope_y + best.y);
     return zone / std::hypot(1, slope);

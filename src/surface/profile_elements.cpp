@@ -25,8 +25,9 @@ ProfileElements profile_elements(const Profile& profile, double reference, doubl
         }
         const double before = k > 0 ? profile.height[k - 1] - reference : undefined;
         // The first upward crossing after a dale; later ones are ripple within the threshold.
-        if (before < 0 && z >= 0 && side == Side::dale && std::isnan(crossing))
+        if (before < 0 && z >= 0 && side == Side::dale && std::isnan(crossing)) {
             crossing = static_cast<double>(k) - z / (z - before);
+        }
         if (z <= -threshold && side != Side::dale) {
             side = Side::dale;
             crossing = undefined;
@@ -42,13 +43,15 @@ ProfileElements profile_elements(const Profile& profile, double reference, doubl
             started = crossing;
             highest = lowest = z;
         }
-        if (z >= threshold)
+        if (z >= threshold) {
             side = Side::hill;
+        }
         highest = std::fmax(highest, z);
         lowest = std::fmin(lowest, z);
     }
-    if (!(count > 0))
+    if (!(count > 0)) {
         return {};
+    }
     return {.mean_spacing = spacings / count, .mean_height = heights / count, .count = static_cast<int>(count)};
 }
 
