@@ -10,10 +10,10 @@
 
 namespace vkfv::bench {
 
-// Two ways of meeting the same rays. A difference counts as one of rounding where both points lie within 1 nm across the
-// surface, as those of a grazing ray do whose heights are farther apart; or where, for both ways, the host's reference in
-// double ends as that way does for the ray or one of its 26 neighbours that are moved by 1 nm along the axes: the ray
-// grazes, or comes within 1 nm of an edge.
+// Two ways of meeting the same rays. A difference counts as one of rounding where both points lie within 1 nm across
+// the surface, as those of a grazing ray do whose heights are farther apart; or where, for both ways, the host's
+// reference in double ends as that way does for the ray or one of its 26 neighbours that are moved by 1 nm along the
+// axes: the ray grazes, or comes within 1 nm of an edge.
 struct HitDifferences {
     std::uint64_t rays = 0;
     std::uint64_t both = 0;          // met by both
@@ -24,9 +24,9 @@ struct HitDifferences {
 };
 
 // Half of the rays come from the top plane, uniform over the footprint and over a pupil of NA 0.4; the others leave the
-// points that these meet, as a Lambertian surface sends them. beside: what the rays are met with by the traversal, quadtree
-// or bvh; the same specimen, but in a test of the comparison. seed: of the rays. Throws InputError where the traversal
-// does not take the specimen, DeviceError where the device has no ray-tracing pipelines.
+// points that these meet, as a Lambertian surface sends them. beside: what the rays are met with by the traversal,
+// quadtree or bvh; the same specimen, but in a test of the comparison. seed: of the rays. Throws InputError where the
+// traversal does not take the specimen, DeviceError where the device has no ray-tracing pipelines.
 HitDifferences compare_pipeline_hits(const specimen::Specimen& specimen, const specimen::Specimen& beside,
                                      trace::Traversal traversal, const std::string& device_selector, std::uint64_t rays,
                                      std::uint64_t seed);
