@@ -1,6 +1,6 @@
 // Triangles, and analytic surfaces as procedural boxes, through VK_KHR_ray_tracing_pipeline: for the probe that meets
-// rays with acceleration structures on GPUs that have no ray query. Its generation stage calls specimen_hit(); the stages
-// at a primitive compute that primitive's hit alone.
+// rays with acceleration structures on GPUs that have no ray query. Its generation stage calls specimen_hit(); the
+// stages at a primitive compute that primitive's hit alone.
 #include "device/specimen_primitives.glsl"
 #include "device/specimen_structure.glsl"
 
