@@ -52,7 +52,8 @@ HitDifferences compared(const specimen::Specimen& specimen, const specimen::Spec
 
 void expect_agreement(const specimen::Specimen& specimen, trace::Traversal traversal) {
     const HitDifferences found = compared(specimen, specimen, traversal);
-    EXPECT_GT(found.both, found.rays / 2);
+    // Nearly all that arrive meet it, and hardly any that leave a roof.
+    EXPECT_GT(found.both, found.rays * 2 / 5);
     EXPECT_EQ(found.unexplained, 0U);
     // The belt of 1 nm beside edges and crests, some 100 lines of 0.1 mm in a square of that side, holds 1e-3 of the
     // rays.
