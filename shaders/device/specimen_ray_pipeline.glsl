@@ -18,7 +18,7 @@ Hit meet_triangles(real3 origin, real3 direction, RayInterval over) { return mee
 
 Hit meet_tiles(SpecimenRay ray, real rounding) { return meet_structure(ray.origin, ray.direction, ray.over); }
 #else
-// Of the ray that the shader is called for, which starts where the generation stage has cut it to the specimen: cutting
+// The hit of a ray with one tile. The ray starts where the generation stage has cut it to the specimen, so that cutting
 // it once more changes nothing.
 Hit hit_of_tile(uint tile, real3 origin, real3 direction) {
     real rounding = specimen_rounding();

@@ -37,7 +37,7 @@ vec2 transfer(Nodes at, int cell) {
            at.weights.w * table[above + 1];
 }
 
-// Of two of four filters.
+// A window of four filters keeps them in two pairs: this is the transfer of the filters of one pair.
 vec4 transfer_of_two(Nodes at, int cell, uint pair) {
     int low = 2 * (at.corner + cell) + int(pair);
     int above = low + 4 * int(groups.steps) + 2;

@@ -22,7 +22,7 @@ float light_at(uint cell, uint column, uint row) {
                      .light);
 }
 
-// Where the value from this place goes in the transform's order.
+// The index, in the transform's order, of the value that stands at this place of a line.
 uint destination_of(uint from, uint length) { return from % 2u == 0u ? from / 2u : length - 1u - from / 2u; }
 
 void main() {

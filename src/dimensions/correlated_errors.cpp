@@ -14,7 +14,7 @@ namespace {
 struct Correlations {
     std::vector<double> along_x, along_y; // at distances of 0, 1, ... points
 
-    // As many points carry one independent value.
+    // The number of points that carry one independent value.
     double points() const { return correlated_length(along_x) * correlated_length(along_y); }
 };
 

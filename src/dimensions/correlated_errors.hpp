@@ -41,7 +41,7 @@ using FitFunctions = std::function<void(std::size_t place, std::span<double> val
 FitCovariance fit_covariance(const Grid<double>& residues, const LeastSquares::Solution& solution,
                              const FitFunctions& functions, double taken = 0);
 
-// By what a standard error grows when its own variance was found with so few degrees of freedom: the quantile of
+// The factor by which a standard error grows since its variance was found with few degrees of freedom: the quantile of
 // Student's distribution within which 68.27 % lie, 2 nu / (2 nu - 1) to one in a hundred from nu = 2 on; nu no less
 // than 1.
 double student_factor(double degrees);

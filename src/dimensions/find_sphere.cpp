@@ -65,7 +65,7 @@ struct Rim {
     double share(double px, double py) const { return std::hypot(px - x, py - y) / radius; }
 };
 
-// By how much a paraboloid upon a circle, beside a plane, lowers the sum of squares of a map's heights.
+// A paraboloid upon a circle, fitted beside a plane; gain() is by how much it lowers the sum of squares of the heights.
 class Bump {
   public:
     explicit Bump(const HeightMap& map) : level_(surface::remove_plane(map, surface::least_squares_plane(map))) {
@@ -214,7 +214,7 @@ std::optional<CapOnPlane> meeting(const surface::Sphere& sphere, const surface::
     const double side = sphere.convex ? 1 : -1;
     const double centre = sphere.apex - side * sphere.radius;
     const double steepness = std::hypot(1, plane.slope_x, plane.slope_y);
-    // Of the centre over the plane, along its normal; towards the pole.
+    // The distance of the centre from the plane, positive above it.
     const double over = (centre - plane.height(sphere.x_centre, sphere.y_centre)) / steepness;
     const double distance = std::min(0.0, side * over);
     if (!(sphere.radius + distance > 0)) {
@@ -229,7 +229,8 @@ std::optional<CapOnPlane> meeting(const surface::Sphere& sphere, const surface::
                       .height = side * (sphere.radius + distance)};
 }
 
-// None where too little lies beyond the rim, or the rim does not settle.
+// Fits sphere and plane in turn until the rim stays. There is none where too little lies beyond the rim, or the rim
+// does not settle.
 std::optional<CapOnPlane> settled_cap(const HeightMap& map, Rim rim) {
     constexpr double least_ground = 0.002, least_points = 10;
     constexpr int most_rounds = 50;

@@ -34,8 +34,8 @@ std::optional<LevelDifference> step_height(const surface::HeightMap& map, const 
 
 // Between the two places where a profile crosses the level halfway between both (linearly between its points; the mean
 // where noise makes it cross several times), mean over the profiles. Across flanks that were not measured the nearest
-// points to either side count. The standard error counts that of the level too, which all profiles have in common. None
-// where no profile crosses it within W/3 of both edges.
+// points to either side count. The standard error is that of the widths at each profile's own level halfway, so that it
+// counts how the levels scatter. None where no profile crosses the level within W/3 of both edges.
 std::optional<Mean> groove_width(const surface::HeightMap& map, const Groove& groove, const LevelDifference& depth);
 
 // The depth between lines and ground of a grating: the middle third of each line and of the ground between two lines.

@@ -213,7 +213,8 @@ std::optional<Waves> fitted(const HeightMap& map, const Points& points, std::vec
             functions_at(points.all[number[place]], waves, points, true, values);
         },
         taken);
-    // Of a sum of changes of wave k's amplitudes and frequencies, in the order of the unknowns.
+    // The standard error of a sum of changes of the waves: for each wave k, weights of its cosine, its sine and its
+    // frequencies, which is the order of the unknowns.
     const auto error_of = [&](std::initializer_list<std::pair<std::size_t, std::array<double, 4>>> changes) {
         std::vector<double> weights(points.unknowns(waves.size()));
         for (const auto& [k, change] : changes)

@@ -22,7 +22,7 @@ struct ParameterRow {
 
 // Those that ISO 25178-2 names, in its order.
 std::vector<ParameterRow> parameter_rows(const surface::ArealParameters& parameters);
-// Those of ISO 21920-2.
+// The profile parameters of ISO 21920-2.
 std::vector<ParameterRow> parameter_rows(const surface::ProfileParameters& parameters);
 
 // A row's value under its key; NaN becomes null.

@@ -31,7 +31,7 @@ struct NamedParameter {
     double value = 0;      // mm, mm^3/mm^2, radians, shares of 1, 1/mm, 1/mm^2
 };
 
-// Those that the standard names, in its order; beside Sdq what sampling takes of it.
+// The parameters that the standard names, in its order; beside Sdq, by how much sampling lowers it.
 std::vector<NamedParameter> named_parameters(const ArealParameters& parameters);
 
 } // namespace vkfv::surface

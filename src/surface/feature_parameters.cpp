@@ -66,7 +66,7 @@ class Hills {
     std::vector<std::uint32_t> order_;
 };
 
-// Peaks in descending order of how high they are; of heights turned over, pits.
+// The peaks of points in descending order; points in ascending order have their pits told instead.
 template <class Points>
 std::vector<Place> significant_peaks(const HeightMap& map, const Points& descending, double least_rise) {
     const auto height = [&](Place place) { return map.height.values[place]; };
@@ -78,7 +78,8 @@ std::vector<Place> significant_peaks(const HeightMap& map, const Points& descend
             if (std::abs(height(peak) - point.height) >= least_rise)
                 peaks.push_back(peak);
         });
-    // What is left are the highest peak and hills that gaps cut off: each point after its root lowers its hill.
+    // The highest peak and the hills that gaps cut off have met no higher one. Such a hill rises over its own lowest
+    // point, which is the last of its points in descending order.
     std::vector<Point> lowest;
     for (const Point& point : descending)
         if (const Place root = hills.root_of(point.place); root == point.place)

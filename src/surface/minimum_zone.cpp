@@ -34,7 +34,7 @@ double range_of(const std::vector<Point>& points, const Tilt& tilt) {
     return highest - lowest;
 }
 
-// Where a convex function of one number is least, between -reach and reach.
+// Finds the place between -reach and reach at which a convex function of one number is least.
 template <class Function>
 double least_of(const Function& function, double reach) {
     constexpr double golden = 1 / std::numbers::phi;

@@ -175,7 +175,7 @@ class FocusProbes {
 
     // Of the weighted means of images in this order.
     std::vector<double> curve(const Probe& probe, const std::vector<int>& order, const Means& means) const;
-    // Of single images' curve.
+    // The curve of a probe's single images, averaged along z as curves are.
     static std::vector<double> averaged_singles(const Probe& probe, const Means& means);
     // A probe's each, after both averages.
     std::vector<std::vector<double>> curves_in_order(const Means& means) const;

@@ -12,7 +12,7 @@ namespace vkfv::vulkan {
 
 namespace {
 
-// What every Vulkan device grants; more would run here and fail elsewhere.
+// Every Vulkan device grants so many; more would run here and fail elsewhere.
 constexpr std::uint32_t portable_push_constant_bytes = 128;
 
 vk::DescriptorType type_of(BindingKind kind) {

@@ -1,4 +1,4 @@
-// What the shaders of a pipeline are bound to: buffers and acceleration structures by push descriptors in set 0, and
+// The bindings of a pipeline's shaders: buffers and acceleration structures by push descriptors in set 0, and
 // push constants at offset 0.
 #pragma once
 
@@ -18,7 +18,8 @@ namespace vkfv::vulkan {
 struct Binding {
     std::uint32_t slot;
     std::variant<const Buffer*, const AccelerationStructure*> resource;
-    // Of a buffer, if not the whole: bytes from first_byte on, a multiple of binding_alignment.
+    // A part of a buffer has bytes above 0, and begins at first_byte, a multiple of binding_alignment; else it is all
+    // of it.
     std::size_t first_byte = 0;
     std::size_t bytes = 0;
 };

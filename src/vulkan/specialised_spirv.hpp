@@ -14,7 +14,7 @@ struct SpecializationConstant {
     std::uint32_t value; // the bits of an int, uint, float or bool
 };
 
-// The same as a driver takes them.
+// Specialization constants in the form that a driver takes.
 class Specialization {
   public:
     explicit Specialization(std::span<const SpecializationConstant> constants);

@@ -46,7 +46,7 @@ TEST(FindSphere, ACapWhoseRimLeavesOnlyTheCornersToTheGround) {
     EXPECT_LE(std::abs(found[0].value - 1), 3 * found[0].standard_error);
 }
 
-// Every one of these had a radius of metres before, with an uncertainty as large.
+// A sphere of metres with an uncertainty as large would fit each of these.
 TEST(FindSphere, NoneInOtherStandards) {
     const Disturbance noisy{.tilt_x = 0.01, .noise = 5e-5};
     const std::vector<HeightMap> others{

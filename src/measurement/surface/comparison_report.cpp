@@ -165,7 +165,7 @@ std::string text_of(const topography::Comparison& comparison, const ComparisonRe
     }
     text += fmt::format("{:<22} {}\n", "correlation",
                         with_error(over(comparison, [](const auto& one) { return one.deviation.correlation; }), 1, ""));
-    // Of a flat there is no slope.
+    // The slope on a true surface without relief does not exist.
     if (const auto slope = over(comparison, [](const auto& one) { return one.deviation.slope; });
         std::isfinite(slope.mean)) {
         text += fmt::format(

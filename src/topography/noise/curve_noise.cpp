@@ -31,7 +31,8 @@ std::optional<double> place_of(const std::vector<double>& values, int at, const 
     return fit.found ? std::optional(fit.offset) : std::nullopt;
 }
 
-// Of a Gaussian exp(-curvature (x - offset)^2 / 2), over its value at 0: the derivatives of its place by its values.
+// The derivatives of a maximum's place by the values around it, for the Gaussian exp(-curvature (x - offset)^2 / 2)
+// over its value at 0.
 std::vector<double> derivatives(double curvature, double offset, const PeakFinder& finder) {
     const int range = range_of(finder);
     std::vector<double> values;

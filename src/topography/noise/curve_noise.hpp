@@ -1,4 +1,4 @@
-// From the noise of a stack's images to that of a height: propagated through both averages and the peak's method.
+// The noise of a height, by propagating that of a stack's images through both averages and the peak's method.
 //
 // A single image's noise has the relative variance v. Images k and l of those that are averaged share noise by
 // rho(k - l), the autocorrelation of the average's weights, so their measures have (texture_and_noise.hpp)
@@ -10,8 +10,8 @@
 // and its maximum found by the method; the derivatives of that, times cov, are the variance of the place (JCGM 100,
 // 5.2.2). They ask how curved the curve is at its maximum, which its own noise hides where nothing is averaged: the
 // bend that is found counts by the share of its variance that noise does not explain, that of the stack by the rest.
-// What noise does beyond a linear propagation (a maximum one image further, a bend near nothing) is simulated once for
-// the stack (JCGM 101).
+// Noise also acts beyond a linear propagation (a maximum one image further, a bend near nothing): this is simulated
+// once for the stack (JCGM 101).
 #pragma once
 
 #include "topography/noise/texture_and_noise.hpp"
@@ -48,7 +48,7 @@ class CurveNoise {
     };
     template <class ValueOf>
     double at_share(double share, const ValueOf& value_of) const;
-    // Of the energy where the averaged curve is as large as this; noise: N there.
+    // The texture's share of the energy where the averaged curve is as large as this; noise: N there.
     double share_of(double largest, double noise) const;
     double place_variance(const OfShare& here, double bend, double offset) const;
     void simulate(const std::vector<double>& axial_weights, const PeakFinder& finder);

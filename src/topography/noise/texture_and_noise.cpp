@@ -51,7 +51,7 @@ class WindowResponses {
         return result;
     }
 
-    // What noise is weighed by: the responses, or the modified Laplacian's signs.
+    // The weights that noise has in the measure: the responses, or the modified Laplacian's signs.
     std::vector<double> slopes(const std::vector<double>& responses) const {
         if (!laplacian_) {
             return responses;
@@ -184,8 +184,8 @@ std::vector<Halves> halves_at(const std::vector<double>& axial_weights, int at, 
     return result;
 }
 
-// What a probe tells at one distance from its maximum, over the square of the energy at the maximum: by that noise
-// makes the variance of a height.
+// Sums that a probe tells at one distance from its maximum, over the square of the energy at the maximum, since noise
+// makes the variance of a height in this proportion.
 struct Sums {
     double energy = 0;
     double beside = 0;
@@ -200,7 +200,7 @@ struct TextureOfProbe {
     bool found = false;
 };
 
-// Of the noise's variance by the average of the images.
+// The share of the noise's variance that the average of the images keeps.
 double kept_by(const std::vector<double>& axial_weights) {
     const int radius = static_cast<int>(axial_weights.size()) - 1;
     double kept = 0;
@@ -212,7 +212,7 @@ double kept_by(const std::vector<double>& axial_weights) {
 
 constexpr std::size_t least_probes = 9, patches_a_probe = 4, partners = 8;
 
-// Of noise alone.
+// Finds the energy that noise alone has, and the variance of the measure by it.
 void find_noise(const WindowResponses& responses, const std::vector<std::vector<double>>& noise,
                 TextureAndNoise& result) {
     double pairs = 0, squares = 0;
@@ -228,7 +228,7 @@ void find_noise(const WindowResponses& responses, const std::vector<std::vector<
     result.alone = 0.5 * squares / pairs / (responses.magnitudes() ? 1 : result.noise_energy);
 }
 
-// Of all probes, for every image at a distance from the maximum; apart: images between two distances.
+// Adds up what all probes tell, for every distance of an image from the maximum; apart: images between two distances.
 bool add_up(const std::vector<TextureOfProbe>& probes, int apart, TextureAndNoise& result) {
     std::vector<Sums> sums(probes.front().sums.size());
     double count = 0, bends = 0, squares = 0, noise_share = 0;
@@ -406,7 +406,7 @@ std::optional<TextureAndNoise> FocusProbes::texture_and_noise(const std::vector<
         const auto top = static_cast<std::size_t>(
             std::clamp(static_cast<int>(std::ranges::max_element(bent) - bent.begin()), 1, images_ - 2));
         here.bend = bent[top] > 0 ? (2 * bent[top] - bent[top - 1] - bent[top + 1]) / bent[top] : 0;
-        // Over its mean brightness.
+        // The responses to a weighted mean of images, over its mean brightness.
         const auto responses_of = [&](const std::vector<Share>& shares) {
             std::vector<double> mean(values);
             for (const auto& [image, weight] : shares) {
@@ -458,7 +458,7 @@ std::optional<TextureAndNoise> FocusProbes::texture_and_noise(const std::vector<
                     const auto slopes = responses.slopes(all);
                     const double square = responses.energy(all);
                     energy = std::max(0.0, square - noise_here);
-                    // Of F itself, with what noise alone adds: without it, and times F^2.
+                    // The product holds the variance of F itself: times F^2, and less what noise alone adds.
                     product = 0.5 * square *
                                   (beside(slopes, slopes) + beside(responses.slopes(one), responses.slopes(other))) -
                               noise_here * result.alone;
