@@ -291,14 +291,17 @@ std::vector<std::complex<float>> CellTransfer::table() const {
             }
         });
         const double ratio = cutoff_ * wavefront.wavelength() / (2 * wavefront.largest_rim());
+        std::vector<TablePlace> places; // of the table's nodes
+        for (int dy = 0; dy <= steps_; ++dy) {
+            for (int dx = -steps_; dx <= steps_; ++dx) {
+                places.push_back(table_place(steps_, dx * ratio, dy * ratio));
+            }
+        }
         parallel_bands(static_cast<int>(count), 1, [&](int first, int end) {
             for (auto cell = static_cast<std::size_t>(first); cell < static_cast<std::size_t>(end); ++cell) {
-                for (int dy = 0; dy <= steps_; ++dy) {
-                    for (int dx = -steps_; dx <= steps_; ++dx) {
-                        const Complex value = interpolated(own.data() + cell * plane, steps_, dx * ratio, dy * ratio);
-                        table[cell * plane + static_cast<std::size_t>(dy * columns + dx + steps_)] +=
-                            std::complex<float>(wavefront.weight() * value);
-                    }
+                for (std::size_t node = 0; node < plane; ++node) {
+                    const Complex value = interpolated(own.data() + cell * plane, steps_, places[node]);
+                    table[cell * plane + node] += std::complex<float>(wavefront.weight() * value);
                 }
             }
         });

@@ -17,24 +17,46 @@
 
 namespace vkfv::optics {
 
-// Values at -steps ... steps, for rows 0 ... steps, bilinear between; 0 beyond, for rows below 0 the conjugate of the
-// opposite.
-template <class Value>
-std::complex<double> interpolated(const Value* values, int steps, double x, double y) {
-    using Complex = std::complex<double>;
+// A place in a table of transfer functions, whose nodes lie at -steps ... steps and whose rows at 0 ... steps: 0 beyond
+// them, and for rows below 0 the conjugate of the opposite.
+struct TablePlace {
+    std::ptrdiff_t node = 0; // at its lower left
+    double right = 0;        // of that node, 0 to 1
+    double above = 0;
+    bool inside = false;
+    bool opposite = false;
+};
+
+inline TablePlace table_place(int steps, double x, double y) {
     if (y < 0 || (y == 0 && x < 0)) {
-        return std::conj(interpolated(values, steps, -x, -y));
+        TablePlace place = table_place(steps, -x, -y);
+        place.opposite = !place.opposite;
+        return place;
     }
     if (std::abs(x) >= steps || y >= steps) {
-        return 0;
+        return {};
     }
     const double left = std::floor(x);
     const double low = std::floor(y);
-    const double u = x - left;
-    const double v = y - low;
-    const Value* corner = values + static_cast<std::ptrdiff_t>(low) * (2 * steps + 1) + static_cast<int>(left) + steps;
-    const auto row = [&](const Value* first) { return Complex(first[0]) * (1 - u) + Complex(first[1]) * u; };
-    return row(corner) * (1 - v) + row(corner + 2 * steps + 1) * v;
+    return {.node = static_cast<std::ptrdiff_t>(low) * (2 * steps + 1) + static_cast<int>(left) + steps,
+            .right = x - left,
+            .above = y - low,
+            .inside = true};
+}
+
+// The value there, bilinear between the nodes of one cell's table.
+template <class Value>
+std::complex<double> interpolated(const Value* values, int steps, const TablePlace& place) {
+    using Complex = std::complex<double>;
+    if (!place.inside) {
+        return 0;
+    }
+    const auto row = [&](const Value* first) {
+        return Complex(first[0]) * (1 - place.right) + Complex(first[1]) * place.right;
+    };
+    const Value* corner = values + place.node;
+    const Complex value = row(corner) * (1 - place.above) + row(corner + 2 * steps + 1) * place.above;
+    return place.opposite ? std::conj(value) : value;
 }
 
 // The wavefronts that the filters of an instrument are made of, its spectrum by a few wavelengths: of a point of the

@@ -22,10 +22,11 @@ LevelledWavefront levelled(const Wavefront& wavefront) {
     double area = 0;
     double mean_path = 0;
     glm::dvec2 middle(0);
+    const auto nodes = gauss_legendre(rings, 0, 1); // in the square of the radius over the rim's
     for (int spoke = 0; spoke < spokes; ++spoke) {
         const double azimuth = 2 * pi * spoke / spokes;
         const double rim = wavefront.rim(azimuth);
-        for (const QuadratureNode& node : gauss_legendre(rings, 0, 1)) { // in the square of the radius over the rim's
+        for (const QuadratureNode& node : nodes) {
             const glm::dvec2 p = rim * std::sqrt(node.place) * direction_of(azimuth);
             const double weight = node.weight * rim * rim;
             shares.push_back({p, wavefront.path(wavefront.chief() + p), weight});

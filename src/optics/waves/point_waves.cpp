@@ -19,10 +19,11 @@ struct Piece {
 
 std::vector<Piece> pieces_of(const Wavefront& wavefront, int rings, int spokes) {
     std::vector<Piece> pieces;
+    const auto nodes = gauss_legendre(rings, 0, 1);
     for (int spoke = 0; spoke < spokes; ++spoke) {
         const double azimuth = 2 * pi * spoke / spokes;
         const double rim = wavefront.rim(azimuth);
-        for (const QuadratureNode& radius : gauss_legendre(rings, 0, 1)) {
+        for (const QuadratureNode& radius : nodes) {
             pieces.push_back({.p = wavefront.chief() + radius.place * rim * direction_of(azimuth),
                               .area = radius.weight * radius.place * rim * rim * 2 * pi / spokes});
         }

@@ -101,13 +101,15 @@ int PupilFilter::mirrored_upright(int cell) const {
     return (side - 1 - cell / side) * side + cell % side;
 }
 
+TileTransfers PupilFilter::tile_transfers(int tile) const {
+    const auto plane = static_cast<std::size_t>((2 * steps() + 1) * (steps() + 1));
+    const std::size_t count = static_cast<std::size_t>(cell_count()) * plane;
+    return {std::span(table()).subspan(static_cast<std::size_t>(tile) * count, count), plane, steps(), cutoff()};
+}
+
 std::complex<double> PupilFilter::transfer(int tile, int cell, double fx, double fy) const {
-    const int steps = this->steps();
-    const auto plane = static_cast<std::size_t>((2 * steps + 1) * (steps + 1));
-    const double scale = steps / cutoff();
-    const std::size_t place =
-        static_cast<std::size_t>(tile) * static_cast<std::size_t>(cell_count()) + static_cast<std::size_t>(cell);
-    return interpolated(table().data() + place * plane, steps, fx * scale, fy * scale);
+    const TileTransfers transfers = tile_transfers(tile);
+    return transfers.at(cell, transfers.place(fx, fy));
 }
 
 std::vector<std::complex<double>> PupilFilter::transfers(glm::dvec2 detector_point, double fx, double fy) const {
@@ -130,6 +132,10 @@ double PupilFilter::folded_contrast() const {
     const double pixel_pitch = part_pitch_ * cells_.parts;
     const auto folded = [sampling](double f) { return f - sampling * std::round(f / sampling); };
     const auto sinc = [](double x) { return x == 0 ? 1.0 : std::sin(pi * x) / (pi * x); };
+    if (const double highest = cutoff() * (samples - 1) / samples; folded(highest) == highest) {
+        return 0; // without the table, which takes far longer
+    }
+    const TileTransfers transfers = tile_transfers(middle_tile());
     double largest = 0;
     for (int j = 0; j < samples; ++j) {
         for (int i = -samples + 1; i < samples; ++i) {
@@ -138,9 +144,11 @@ double PupilFilter::folded_contrast() const {
             if (folded(fx) == fx && folded(fy) == fy) {
                 continue;
             }
+            const TablePlace folded_place = transfers.place(folded(fx), folded(fy));
+            const TablePlace place = transfers.place(fx, fy);
             double difference = 0;
             for (int cell = 0; cell < cell_count(); ++cell) {
-                difference += share(cell) * std::abs(transfer(cell, folded(fx), folded(fy)) - transfer(cell, fx, fy));
+                difference += share(cell) * std::abs(transfers.at(cell, folded_place) - transfers.at(cell, place));
             }
             largest = std::max(largest, difference * std::abs(sinc(fx * pixel_pitch) * sinc(fy * pixel_pitch)));
         }
@@ -164,6 +172,7 @@ double PupilFilter::noise_of_pixels() const {
         double before = 0;
         double after = 0;
     };
+    const TileTransfers transfers = tile_transfers(middle_tile());
     const auto rows = parallel_list(2 * samples, [&](int row) {
         Power power;
         const double fy = 0.5 * (row - samples + 0.5) / samples;
@@ -171,9 +180,10 @@ double PupilFilter::noise_of_pixels() const {
             const double fx = 0.5 * (i + 0.5) / samples;
             power.before += added_up(fx, true) * added_up(fy, true);
             const double pixel = added_up(fx, false) * added_up(fy, false);
+            const TablePlace place = transfers.place(fx / part_pitch_, fy / part_pitch_);
             for (int cell = 0; cell < cell_count(); ++cell) {
                 if (share(cell) > 0) {
-                    power.after += pixel * share(cell) * std::norm(transfer(cell, fx / part_pitch_, fy / part_pitch_));
+                    power.after += pixel * share(cell) * std::norm(transfers.at(cell, place));
                 }
             }
         }

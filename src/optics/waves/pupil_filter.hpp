@@ -10,10 +10,12 @@
 #include "physics/physics.hpp"
 
 #include <complex>
+#include <cstddef>
 #include <cstdint>
 #include <memory>
 #include <mutex>
 #include <optional>
+#include <span>
 #include <vector>
 
 namespace vkfv::optics {
@@ -25,6 +27,26 @@ struct FilterError {
     double height = 0;                                       // of the object plane above z = 0, mm
     std::complex<double> waves = std::complex<double>(0);    // Hopkins' transfer function of this point of the field
     std::complex<double> filtered = std::complex<double>(0); // what the axis' filter makes of this point's rays
+};
+
+// The transfer functions of one tile's cells as a filter's table has them, valid as long as the filter is.
+class TileTransfers {
+  public:
+    // table: cell after cell, each of a plane of nodes; cutoff in cycles per mm of the object plane.
+    TileTransfers(std::span<const std::complex<float>> table, std::size_t plane, int steps, double cutoff)
+        : table_(table), plane_(plane), steps_(steps), scale_(steps / cutoff) {}
+
+    // A frequency in cycles per mm of the object plane; its place is the same in every cell and tile.
+    TablePlace place(double fx, double fy) const { return table_place(steps_, fx * scale_, fy * scale_); }
+    std::complex<double> at(int cell, const TablePlace& place) const {
+        return interpolated(table_.data() + static_cast<std::size_t>(cell) * plane_, steps_, place);
+    }
+
+  private:
+    std::span<const std::complex<float>> table_;
+    std::size_t plane_;
+    int steps_;
+    double scale_;
 };
 
 struct WaveOptions {
@@ -87,10 +109,12 @@ class PupilFilter {
     int mirrored(int cell) const;
     int mirrored_upright(int cell) const;
 
-    // w of a frequency in cycles per mm of the object plane, by the table: of a tile, and of that in the middle.
+    // By the table, which is made when it is first asked for: all of a tile; and w of a frequency (cycles per mm of the
+    // object plane), of a tile and of that in the middle.
+    TileTransfers tile_transfers(int tile) const;
     std::complex<double> transfer(int tile, int cell, double fx, double fy) const;
     std::complex<double> transfer(int cell, double fx, double fy) const {
-        return transfer(tiles_.count() / 2, cell, fx, fy);
+        return transfer(middle_tile(), cell, fx, fy);
     }
     // The transfer functions of all cells at a few frequencies, without the table: on the axis, and as the tiles about
     // a point of the detector (mm, in the frame of physics::Detection) are blended there.
@@ -126,6 +150,7 @@ class PupilFilter {
 
     PupilFilter(CellTransfer transfer, const Instrument& instrument);
     double noise_of_pixels() const;
+    int middle_tile() const { return tiles_.count() / 2; }
 
     physics::f64::PupilCells cells_{};
     double part_pitch_ = 0;

@@ -3,13 +3,24 @@
 #include "core/mathematics/units.hpp"
 
 #include <cmath>
+#include <map>
+#include <memory>
+#include <mutex>
 
 namespace vkfv::optics {
 
+namespace {
+
+// A node of the rule over [-1, 1], whose weight is 2 / divisor.
+struct UnitNode {
+    double place = 0;
+    double divisor = 0;
+};
+
 // The roots of Legendre's polynomial by Newton's method, which converges from this guess (Abramowitz and Stegun,
 // section 22.16.6); weights 2 / ((1 - x^2) P'(x)^2) (25.4.29).
-std::vector<QuadratureNode> gauss_legendre(int count, double from, double to) {
-    std::vector<QuadratureNode> nodes;
+std::vector<UnitNode> unit_nodes(int count) {
+    std::vector<UnitNode> nodes;
     for (int k = 0; k < count; ++k) {
         double x = -std::cos(pi * (k + 0.75) / (count + 0.5));
         double slope = 1;
@@ -26,8 +37,37 @@ std::vector<QuadratureNode> gauss_legendre(int count, double from, double to) {
             last = value / slope;
             x -= last;
         }
-        const double half = 0.5 * (to - from);
-        nodes.push_back({.place = from + half * (1 + x), .weight = half * 2 / ((1 - x) * (1 + x) * slope * slope)});
+        nodes.push_back({.place = x, .divisor = (1 - x) * (1 + x) * slope * slope});
+    }
+    return nodes;
+}
+
+// The rules of few nodes are kept, because an aberrated pupil asks for the same rule ten thousand times. They take at
+// most 2 MB.
+std::shared_ptr<const std::vector<UnitNode>> kept_unit_nodes(int count) {
+    constexpr int most_kept = 512;
+    if (count > most_kept) {
+        return std::make_shared<const std::vector<UnitNode>>(unit_nodes(count));
+    }
+    static std::mutex mutex;
+    static std::map<int, std::shared_ptr<const std::vector<UnitNode>>> kept;
+    const std::scoped_lock lock(mutex);
+    auto& rule = kept[count];
+    if (!rule) {
+        rule = std::make_shared<const std::vector<UnitNode>>(unit_nodes(count));
+    }
+    return rule;
+}
+
+} // namespace
+
+std::vector<QuadratureNode> gauss_legendre(int count, double from, double to) {
+    const auto unit = kept_unit_nodes(count);
+    const double half = 0.5 * (to - from);
+    std::vector<QuadratureNode> nodes;
+    nodes.reserve(unit->size());
+    for (const UnitNode& node : *unit) {
+        nodes.push_back({.place = from + half * (1 + node.place), .weight = half * 2 / node.divisor});
     }
     return nodes;
 }

@@ -3,6 +3,7 @@
 #include "core/mathematics/fourier.hpp"
 #include "core/mathematics/units.hpp"
 #include "core/threads/parallel_list.hpp"
+#include "optics/waves/complex_product.hpp"
 #include "trace/interface/wave_windows.hpp"
 
 #include <algorithm>
@@ -42,7 +43,11 @@ class WaveImage::Window {
     Window(const optics::PupilFilter& filter, const WaveWindow& window, ImageSize image)
         : filter_(filter), window_(window), image_(image), size_(in_parts(window.size, filter)),
           sums_(static_cast<std::size_t>(window.filters),
-                {Grid<Complex>(size_.columns, size_.rows), Grid<Complex>(size_.columns, size_.rows)}) {}
+                {Grid<Complex>(size_.columns, size_.rows), Grid<Complex>(size_.columns, size_.rows)}) {
+        for (std::size_t k = 0; k < sums_.size(); ++k) {
+            transfers_.push_back(filter.tile_transfers(window.tiles[k]));
+        }
+    }
 
     int first_row() const { return window_.row * parts(); }
     int rows() const { return size_.rows; }
@@ -59,6 +64,7 @@ class WaveImage::Window {
     ImageSize image_;
     ImageSize size_; // in parts of pixels
     std::vector<Spectrum> sums_;
+    std::vector<optics::TileTransfers> transfers_; // of each filter
 };
 
 WaveImage::WaveImage(const optics::PupilFilter& filter, ImageSize pixels)
@@ -119,11 +125,15 @@ void WaveImage::Window::add(const Parts& parts, const std::array<int, 4>& cells)
                 const Complex sideways(cosines + sines, sine_along - sine_across);
                 const std::array ahead = {same, sideways, std::conj(sideways), std::conj(same)};
                 const std::array behind = {sideways, same, std::conj(same), std::conj(sideways)};
+                const optics::TablePlace place_ahead = transfers_.front().place(fx, fy);
+                const optics::TablePlace place_behind = transfers_.front().place(-fx, fy);
                 for (std::size_t filter = 0; filter < sums_.size(); ++filter) {
-                    const int tile = window_.tiles[filter];
+                    const optics::TileTransfers& transfers = transfers_[filter];
+                    Complex& sum_ahead = sums_[filter].ahead(column, row);
+                    Complex& sum_behind = sums_[filter].behind(column, row);
                     for (std::size_t k = 0; k < cells.size(); ++k) {
-                        sums_[filter].ahead(column, row) += filter_.transfer(tile, cells[k], fx, fy) * ahead[k];
-                        sums_[filter].behind(column, row) += filter_.transfer(tile, cells[k], -fx, fy) * behind[k];
+                        sum_ahead += optics::product(transfers.at(cells[k], place_ahead), ahead[k]);
+                        sum_behind += optics::product(transfers.at(cells[k], place_behind), behind[k]);
                     }
                 }
             }
