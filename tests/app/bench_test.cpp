@@ -11,7 +11,7 @@
 
 using namespace vkfv;
 
-TEST(Bench, reports_what_it_measured_as_json_and_picture) {
+TEST(Bench, ReportsWhatItMeasuredAsJsonAndPicture) {
     const auto folder = test::fresh_folder("bench");
     test::write_file(folder / "c.toml", test::small_configuration);
     const auto result = test::run_program({"--bench", "c.toml", "--quick", "--runs", "2", "--bench-parts",
@@ -44,7 +44,7 @@ TEST(Bench, reports_what_it_measured_as_json_and_picture) {
 }
 
 // Embree and lenses in double: it shares no physics with vkfv, only the instrument that both are told of.
-TEST(Bench, agrees_with_its_peer_and_times_it) {
+TEST(Bench, AgreesWithItsPeerAndTimesIt) {
     const auto folder = test::fresh_folder("bench_peer");
     test::write_file(folder / "c.toml", test::small_configuration);
     const std::string peer = VKFV_BINARY_DIR "/vkfv_bench_peer";
@@ -81,7 +81,7 @@ TEST(Bench, agrees_with_its_peer_and_times_it) {
     }
 }
 
-TEST(Bench, refuses_parts_that_there_are_not_and_a_peer_that_fails) {
+TEST(Bench, RefusesPartsThatThereAreNotAndAPeerThatFails) {
     const auto folder = test::fresh_folder("bench_refused");
     test::write_file(folder / "c.toml", test::small_configuration);
     EXPECT_EQ(test::run_program({"--bench", "c.toml", "--bench-parts", "nonsense"}, folder).exit_code, 2);

@@ -106,10 +106,11 @@ class FileFaults : public testing::Test {
     FileFaults() : folder_(fresh_folder("work")) {
         write_file(folder_ / "c.toml",
                    replaced(small_configuration, "[trace]\n", "[trace]\ndevice = \"host\"\n") +
-                       "[sweep]\nz_um = 0\n[[sweep.parameter]]\nkey = \"specimen.material.g\"\nvalues = [0.3, 1.0]\n");
+                       "[diffraction]\nmodel = \"none\"\n[sweep]\nz_um = 0\n[[sweep.parameter]]\nkey = "
+                       "\"specimen.material.g\"\nvalues = [0.3, 1.0]\n");
     }
 
-    // Three small images by the host, so that many runs cost little.
+    // Three small images by the host and without waves, so that many runs cost little.
     static Arguments traced(const std::string& command, const std::string& out, const Arguments& further = {}) {
         return joined({command, "c.toml", "--out", out, "--rays", "500", "--quiet", "--set", "scan.z_start_um=-1",
                        "--set", "scan.z_stop_um=1"},
