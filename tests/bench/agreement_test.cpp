@@ -29,7 +29,7 @@ bench::Measured image(std::mt19937_64& random, double mean, int shift = 0) {
 
 // 400 pairs, mean counts from 0.05 a pixel (3 a block) on: p < 0.05 in 20 +- 4.4 of them. At 4.5 standard deviations,
 // with the conservative side open for few counts, whose chi-square varies less: false-positive rate 7e-6.
-TEST(Agreement, equal_expectations_are_found_apart_as_often_as_stated) {
+TEST(Agreement, EqualExpectationsAreFoundApartAsOftenAsStated) {
     std::mt19937_64 random(11);
     for (const double mean : {0.05, 5.0}) {
         int apart = 0;
@@ -49,7 +49,7 @@ TEST(Agreement, equal_expectations_are_found_apart_as_often_as_stated) {
 
 // Wrong twins: 3 % more light with 50000 counts is 4.7 standard errors; stripes that stand elsewhere have the same
 // total.
-TEST(Agreement, what_differs_is_found_apart) {
+TEST(Agreement, WhatDiffersIsFoundApart) {
     std::mt19937_64 random(12);
     const auto reference = image(random, 5);
     EXPECT_TRUE(bench::compare(reference, image(random, 5)).holds(1e-3));

@@ -41,7 +41,7 @@ double rounding(const Grid<Complex>& grid) {
 
 class Fourier : public testing::TestWithParam<std::pair<int, int>> {};
 
-TEST_P(Fourier, is_the_sum_of_its_definition) {
+TEST_P(Fourier, IsTheSumOfItsDefinition) {
     const auto [columns, rows] = GetParam();
     const Grid<Complex> before = noise(columns, rows);
     Grid<Complex> after = before;
@@ -51,7 +51,7 @@ TEST_P(Fourier, is_the_sum_of_its_definition) {
             EXPECT_LT(std::abs(after(l, m) - transformed_at(before, l, m)), rounding(before)) << l << " " << m;
 }
 
-TEST_P(Fourier, inverse_gives_the_grid_back) {
+TEST_P(Fourier, InverseGivesTheGridBack) {
     const auto [columns, rows] = GetParam();
     const Grid<Complex> before = noise(columns, rows);
     Grid<Complex> grid = before;
@@ -61,7 +61,7 @@ TEST_P(Fourier, inverse_gives_the_grid_back) {
         EXPECT_LT(std::abs(grid.values[k] - before.values[k]), rounding(before));
 }
 
-TEST_P(Fourier, cosine_transform_is_the_sum_of_its_definition) {
+TEST_P(Fourier, CosineTransformIsTheSumOfItsDefinition) {
     const auto [columns, rows] = GetParam();
     Grid<double> before(columns, rows);
     const Grid<Complex> random = noise(columns, rows);
@@ -87,14 +87,14 @@ TEST_P(Fourier, cosine_transform_is_the_sum_of_its_definition) {
 INSTANTIATE_TEST_SUITE_P(Sizes, Fourier,
                          testing::Values(std::pair{8, 4}, std::pair{6, 15}, std::pair{7, 5}, std::pair{16, 1}));
 
-TEST(ConvenientLength, has_no_factor_above_five) {
+TEST(ConvenientLength, HasNoFactorAboveFive) {
     EXPECT_EQ(vkfv::convenient_length(1), 1);
     EXPECT_EQ(vkfv::convenient_length(7), 8);
     EXPECT_EQ(vkfv::convenient_length(257), 270);
     EXPECT_EQ(vkfv::convenient_length(1999), 2000);
 }
 
-TEST(FourierFrequency, is_negative_from_half_the_size_on) {
+TEST(FourierFrequency, IsNegativeFromHalfTheSizeOn) {
     EXPECT_DOUBLE_EQ(vkfv::fourier_frequency(3, 8), 0.375);
     EXPECT_DOUBLE_EQ(vkfv::fourier_frequency(4, 8), -0.5);
     EXPECT_DOUBLE_EQ(vkfv::fourier_frequency(3, 5), -0.4);

@@ -13,7 +13,7 @@
 namespace vkfv {
 namespace {
 
-TEST(JobQueue, one_thread_does_all_jobs_in_their_order) {
+TEST(JobQueue, OneThreadDoesAllJobsInTheirOrder) {
     std::vector<int> done;
     JobQueue jobs(1, 3);
     for (int k = 0; k < 50; ++k) {
@@ -25,7 +25,7 @@ TEST(JobQueue, one_thread_does_all_jobs_in_their_order) {
     EXPECT_EQ(done, expected);
 }
 
-TEST(JobQueue, several_threads_work_at_a_time) {
+TEST(JobQueue, SeveralThreadsWorkAtATime) {
     std::latch all_there(3); // none ends before three have begun
     JobQueue jobs(3, 3);
     for (int k = 0; k < 3; ++k) {
@@ -34,7 +34,7 @@ TEST(JobQueue, several_threads_work_at_a_time) {
     jobs.finish();
 }
 
-TEST(JobQueue, who_adds_waits_for_room) {
+TEST(JobQueue, WhoAddsWaitsForRoom) {
     std::latch may_end(1);
     std::atomic<int> added = 0;
     JobQueue jobs(1, 2);
@@ -55,7 +55,7 @@ TEST(JobQueue, who_adds_waits_for_room) {
     EXPECT_EQ(added, 6);
 }
 
-TEST(JobQueue, what_a_job_throws_reaches_who_adds_and_the_rest_is_dropped) {
+TEST(JobQueue, WhatAJobThrowsReachesWhoAddsAndTheRestIsDropped) {
     std::atomic<int> done = 0;
     JobQueue jobs(1, 100);
     std::latch begun(1);
@@ -73,7 +73,7 @@ TEST(JobQueue, what_a_job_throws_reaches_who_adds_and_the_rest_is_dropped) {
     EXPECT_EQ(done, 0);
 }
 
-TEST(JobQueue, its_end_waits_for_the_job_under_way_and_drops_the_others) {
+TEST(JobQueue, ItsEndWaitsForTheJobUnderWayAndDropsTheOthers) {
     std::atomic<int> done = 0;
     std::latch begun(1);
     {

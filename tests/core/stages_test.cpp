@@ -11,7 +11,7 @@
 namespace vkfv {
 namespace {
 
-TEST(Stages, add_up_to_the_wall_clock) {
+TEST(Stages, AddUpToTheWallClock) {
     const auto start = std::chrono::steady_clock::now();
     enter_stage("first");
     std::this_thread::sleep_for(std::chrono::milliseconds(30));

@@ -14,7 +14,7 @@ class UserCache : public test::OwnCache {
     const std::vector<std::byte> data_ = std::vector<std::byte>(1000, std::byte{42});
 };
 
-TEST_F(UserCache, gives_back_what_was_kept) {
+TEST_F(UserCache, GivesBackWhatWasKept) {
     EXPECT_TRUE(read_cached("some").empty());
     write_cached("some", data_);
     EXPECT_EQ(read_cached("some"), data_);
@@ -25,7 +25,7 @@ TEST_F(UserCache, gives_back_what_was_kept) {
     EXPECT_EQ(std::distance(std::filesystem::directory_iterator(*cache_folder()), {}), 1);
 }
 
-TEST_F(UserCache, damaged_and_foreign_files_are_as_none) {
+TEST_F(UserCache, DamagedAndForeignFilesAreAsNone) {
     const auto path = *cache_folder() / "some";
     const auto size = [&] { return static_cast<std::streamoff>(std::filesystem::file_size(path)); };
     write_cached("some", data_);
@@ -43,7 +43,7 @@ TEST_F(UserCache, damaged_and_foreign_files_are_as_none) {
     EXPECT_TRUE(read_cached("some").empty());
 }
 
-TEST_F(UserCache, what_cannot_be_written_is_not) {
+TEST_F(UserCache, WhatCannotBeWrittenIsNot) {
     const auto blocked = folder_ / "file";
     std::ofstream(blocked) << "no folder";
     setenv("XDG_CACHE_HOME", blocked.c_str(), 1);
@@ -53,7 +53,7 @@ TEST_F(UserCache, what_cannot_be_written_is_not) {
     EXPECT_EQ(cache_folder(), std::filesystem::path(std::getenv("HOME")) / ".cache" / "vkfv");
 }
 
-TEST_F(UserCache, keeps_those_that_were_written_last) {
+TEST_F(UserCache, KeepsThoseThatWereWrittenLast) {
     for (const char* name : {"some-1", "some-2", "some-3", "other"}) {
         write_cached(name, data_);
         usleep(20000); // a tick of the file system's clock

@@ -36,7 +36,7 @@ double encircled(double radius) {
 
 // In pixels so fine, whose share of a circle's rim is that of their middles, the pattern is Rayleigh's: the rim of
 // radius r crosses about 8 r / p pixels, whose halves err independently, by at most half a pixel's light each.
-TEST(Diffraction, encircled_energy_is_rayleighs) {
+TEST(Diffraction, EncircledEnergyIsRayleighs) {
     const int size = 257;
     const double pitch = 0.1e-3;
     const Grid<float> image = Diffraction(pattern(), size, size, pitch).apply(point(size, 128, 128));
@@ -59,7 +59,7 @@ TEST(Diffraction, encircled_energy_is_rayleighs) {
     }
 }
 
-TEST(Diffraction, keeps_the_light) {
+TEST(Diffraction, KeepsTheLight) {
     const double pitch = 1e-3;
     const Diffraction diffraction(pattern(), 40, 40, pitch);
     for (const auto& [column, row] : {std::pair{20, 20}, std::pair{0, 0}, std::pair{39, 7}}) {
@@ -71,7 +71,7 @@ TEST(Diffraction, keeps_the_light) {
         EXPECT_NEAR(value, 3.0f, 1e-5f);
 }
 
-TEST(Diffraction, long_waves_keep_the_contrast_of_the_transfer_function) {
+TEST(Diffraction, LongWavesKeepTheContrastOfTheTransferFunction) {
     const double pitch = 1e-3;
     const int size = 120;
     const Diffraction diffraction(pattern(), size, size, pitch);
@@ -92,7 +92,7 @@ TEST(Diffraction, long_waves_keep_the_contrast_of_the_transfer_function) {
     }
 }
 
-TEST(Diffraction, a_measured_point_spread_function_is_centred_and_normalised) {
+TEST(Diffraction, AMeasuredPointSpreadFunctionIsCentredAndNormalised) {
     Grid<float> spread(9, 7);
     spread(2, 3) = 6;
     spread(4, 3) = 2; // centroid at 2.5
@@ -110,7 +110,7 @@ TEST(Diffraction, a_measured_point_spread_function_is_centred_and_normalised) {
 
 // A point spread function from a file is collected over the image's pixels: that of the Airy pattern, sampled finely,
 // is the fine image of the pattern added up to pixels.
-TEST(Diffraction, both_ways_agree) {
+TEST(Diffraction, BothWaysAgree) {
     constexpr int size = 48, parts = 11;
     const double pitch = 1e-3;
     const double fine = pitch / parts;
@@ -128,7 +128,7 @@ TEST(Diffraction, both_ways_agree) {
             EXPECT_NEAR(by_file(column, row), pixels(column, row), 0.02 * pixels(22, 25)) << column << " " << row;
 }
 
-TEST(AiryPattern, averages_over_the_spectrum) {
+TEST(AiryPattern, AveragesOverTheSpectrum) {
     const optics::AiryPattern two(aperture, optics::Spectrum::lines({0.45, 0.65}, {1, 3}));
     const double f = 400; // cycles per mm
     EXPECT_NEAR(two.transfer(f),

@@ -41,7 +41,7 @@ double layer_at(double sine, double wavelength, double thickness = design / (4 *
 
 } // namespace
 
-TEST(Fresnel, normal_incidence) {
+TEST(Fresnel, NormalIncidence) {
     const double expected = square((glass - 1) / (glass + 1));
     EXPECT_NEAR(f64::fresnel_reflectance(1, glass, 1), expected, 1e-15);
     EXPECT_NEAR(f64::fresnel_reflectance(glass, 1, 1), expected, 1e-15);
@@ -49,7 +49,7 @@ TEST(Fresnel, normal_incidence) {
 }
 
 // The same from either side along one path, and against the matrix without a layer.
-TEST(Fresnel, either_side_and_the_matrix_agree) {
+TEST(Fresnel, EitherSideAndTheMatrixAgree) {
     for (int i = 0; i < 90; ++i) {
         const double sine = std::sin(i * M_PI / 180);
         const double there = f64::fresnel_reflectance(1, glass, std::sqrt(1 - sine * sine));
@@ -62,7 +62,7 @@ TEST(Fresnel, either_side_and_the_matrix_agree) {
 }
 
 // At tan(theta) = n the p wave is not reflected, and the s wave by (n^2 - 1) / (n^2 + 1) in amplitude.
-TEST(Fresnel, brewsters_angle) {
+TEST(Fresnel, BrewstersAngle) {
     const auto at = [](double angle) { return f64::fresnel_reflectance(1, glass, std::cos(angle)); };
     const double s = (glass * glass - 1) / (glass * glass + 1);
     EXPECT_NEAR(at(std::atan(glass)), 0.5 * s * s, 1e-15);
@@ -71,7 +71,7 @@ TEST(Fresnel, brewsters_angle) {
 
 // Below the critical angle 1 - R falls off as the cosine of the refracted angle: 2 (n + 1/n) cos' / sqrt(n^2 - 1) ...
 // with n cos = sqrt(n^2 - 1) there, and the error is of its square.
-TEST(Fresnel, critical_angle) {
+TEST(Fresnel, CriticalAngle) {
     const auto at = [](double sine) { return f64::fresnel_reflectance(glass, 1, std::sqrt(1 - sine * sine)); };
     EXPECT_EQ(at(1 / glass * (1 + 1e-12)), 1);
     EXPECT_EQ(at(0.9), 1);
@@ -85,7 +85,7 @@ TEST(Fresnel, critical_angle) {
     EXPECT_LT(at(1 / glass * 0.99), 0.5); // wrong twin: a degree before it most light passes
 }
 
-TEST(Fresnel, grazing_incidence) {
+TEST(Fresnel, GrazingIncidence) {
     for (const double cosine : {1e-3, 1e-5, 1e-7}) {
         const double lost = 2 * cosine * (1 + glass * glass) / std::sqrt(glass * glass - 1);
         EXPECT_NEAR(1 - f64::fresnel_reflectance(1, glass, cosine), lost, lost * lost);
@@ -94,7 +94,7 @@ TEST(Fresnel, grazing_incidence) {
 }
 
 // A quarter wave: ((n0 ns - n1^2) / (n0 ns + n1^2))^2; a half wave: as if there were no layer.
-TEST(QuarterWaveLayer, normal_incidence) {
+TEST(QuarterWaveLayer, NormalIncidence) {
     const double quarter = square((glass - fluoride * fluoride) / (glass + fluoride * fluoride));
     EXPECT_NEAR(layer_at(0, design), quarter, 1e-15);
     const double bare = square((glass - 1) / (glass + 1));
@@ -104,7 +104,7 @@ TEST(QuarterWaveLayer, normal_incidence) {
 }
 
 // Both sides, all angles, and thicknesses to many waves, total reflection included.
-TEST(QuarterWaveLayer, agrees_with_the_characteristic_matrix) {
+TEST(QuarterWaveLayer, AgreesWithTheCharacteristicMatrix) {
     double twin = 0;
     for (const double thickness : {0.0, 0.03, design / (4 * fluoride), 0.31, 7.7}) {
         for (const double wavelength : {0.45, 0.5876, 0.7}) {

@@ -65,7 +65,7 @@ double kept(Bsdf bsdf, double theta) {
 
 } // namespace
 
-TEST(Ggx, is_reciprocal) {
+TEST(Ggx, IsReciprocal) {
     std::mt19937 engine(7);
     std::uniform_real_distribution<double> uniform(0, 1);
     const auto above = [&](const Frame& frame, real3 normal) {
@@ -92,7 +92,7 @@ TEST(Ggx, is_reciprocal) {
     EXPECT_NEAR(ratio(ggx(0.3)), 1, 1e-12);
 }
 
-TEST(Ggx, is_the_textbooks_formula) {
+TEST(Ggx, IsTheTextbooksFormula) {
     double uncorrelated = 0;
     for (const double alpha : {0.01, 0.1, 0.3, 0.7, 1.0}) {
         for (const double theta : {0.0, 0.4, 1.0, 1.5}) {
@@ -109,7 +109,7 @@ TEST(Ggx, is_the_textbooks_formula) {
 }
 
 // The white furnace: what is kept, by the density and by the sampler, which absorbs the rest and loses nothing else.
-TEST(Ggx, keeps_the_share_of_single_scattering) {
+TEST(Ggx, KeepsTheShareOfSingleScattering) {
     for (const auto& [alpha, degrees, share] : kept_by_ggx) {
         SCOPED_TRACE(testing::Message() << alpha << " at " << degrees);
         const Material material = ggx(alpha);
@@ -135,7 +135,7 @@ TEST(Ggx, keeps_the_share_of_single_scattering) {
 
 // With alpha = 1, D is 1 / pi at all angles, and what is left is the law of Lommel and Seeliger, which keeps
 // 1 - mu ln((1 + mu) / mu), mu the incidence's cosine.
-TEST(Ggx, of_full_roughness_is_lommel_seeliger) {
+TEST(Ggx, OfFullRoughnessIsLommelSeeliger) {
     for (const double degrees : {0.0, 30.0, 60.0, 85.0}) {
         const real3 from = direction(radians(degrees));
         const double mu = from.z;
@@ -152,7 +152,7 @@ TEST(Ggx, of_full_roughness_is_lommel_seeliger) {
 
 // At normal incidence half of the light meets facets of slopes below alpha, and goes off at less than twice their
 // angle: at the sharp end too, on a surface that no axis is normal to, in float as in double.
-TEST(Ggx, half_of_the_light_stays_within_twice_the_slope) {
+TEST(Ggx, HalfOfTheLightStaysWithinTwiceTheSlope) {
     const real3 normal = direction(0.7, 0.3);
     constexpr uint draws = 100000;
     for (const double alpha : {0.001, 0.01, 0.1}) {
@@ -177,7 +177,7 @@ TEST(Ggx, half_of_the_light_stays_within_twice_the_slope) {
 }
 
 // In float, near the mirror direction of the sharpest lobe, where 1 - cos^2 would be lost.
-TEST(Ggx, float_keeps_the_density) {
+TEST(Ggx, FloatKeepsTheDensity) {
     for (const double alpha : {0.001, 0.01, 0.2}) {
         f32::Material single{};
         single.lobe_0 = {f32::SCATTER_GGX, 1, static_cast<float>(alpha), 0, 0, 0, {}};

@@ -25,7 +25,7 @@ constexpr std::array<double, 7> sines = {-0.95, -0.6, -0.2, 0.0, 0.3, 0.7, 0.95}
 
 // A point of the front focal plane becomes one plane wave: one direction, one optical path to a wavefront, at any
 // aperture.
-TEST(IdealLens, images_its_front_focal_plane_to_infinity) {
+TEST(IdealLens, ImagesItsFrontFocalPlaneToInfinity) {
     for (const auto& [before, after] : {std::pair(1.0, 1.0), {immersion, 1.0}, {1.0, immersion}}) {
         for (const double x : {0.0, 1.5, -4.0}) {
             for (const double l : sines) {
@@ -47,7 +47,7 @@ TEST(IdealLens, images_its_front_focal_plane_to_infinity) {
 }
 
 // Abbe: a ray from the focal point leaves at the height n f sin(theta); f tan(theta) is the wrong twin.
-TEST(IdealLens, obeys_the_sine_condition) {
+TEST(IdealLens, ObeysTheSineCondition) {
     for (const double sine : sines) {
         const IdealLens lens = pass({0, 0, -immersion * focal_length}, immersion * sine, 0, immersion, 1);
         EXPECT_NEAR(lens.position.x, immersion * focal_length * sine, 1e-14);
@@ -59,7 +59,7 @@ TEST(IdealLens, obeys_the_sine_condition) {
 
 // Objective and tube lens: all rays of a point meet in one point, along equal optical paths, wherever the tube lens
 // stands.
-TEST(IdealLens, two_of_them_image_a_point_to_a_point) {
+TEST(IdealLens, TwoOfThemImageAPointToAPoint) {
     constexpr double tube = 200;
     for (const double distance : {30.0, 170.0}) {
         double spread = 0; // on a detector 1 um off: the wrong twin
@@ -82,7 +82,7 @@ TEST(IdealLens, two_of_them_image_a_point_to_a_point) {
 
 // (x, y, p, q) on one plane to those on another has the determinant 1 between any planes: etendue is kept. A thin lens
 // of tangents is the wrong twin.
-TEST(IdealLens, keeps_etendue) {
+TEST(IdealLens, KeepsEtendue) {
     const auto canonical = [](std::array<double, 4> in, bool tangents) {
         const double axial = std::sqrt(immersion * immersion - in[2] * in[2] - in[3] * in[3]);
         const real3 start(in[0], in[1], -12.0); // near the front focal plane, where steep rays pass
@@ -123,7 +123,7 @@ TEST(IdealLens, keeps_etendue) {
 }
 
 // Light sent back along a ray returns along it, with the same optical path.
-TEST(IdealLens, is_reversible) {
+TEST(IdealLens, IsReversible) {
     for (const double l : sines) {
         const real3 start(0.7, -0.2, -12);
         const IdealLens there = pass(start, immersion * l, 0.1, immersion, 1);
@@ -143,7 +143,7 @@ TEST(IdealLens, is_reversible) {
 }
 
 // A point as far off the axis as its focal length's reach in air sends no light through.
-TEST(IdealLens, refuses_what_has_no_direction_behind_it) {
+TEST(IdealLens, RefusesWhatHasNoDirectionBehindIt) {
     EXPECT_EQ(pass({9.9, 0, -focal_length}, 0, 0, 1, 1).passes, 1u);
     EXPECT_EQ(pass({10.1, 0, -focal_length}, 0, 0, 1, 1).passes, 0u);
     EXPECT_EQ(pass({10.1, 0, -focal_length}, 0, 0, 1, immersion).passes, 1u);

@@ -13,7 +13,7 @@ using namespace vkfv::physics::f64;
 
 // The known answers published with the generator's reference implementation (Random123, kat_vectors), at ten rounds and
 // at the seven that the paths use.
-TEST(Random, philox_gives_the_published_answers) {
+TEST(Random, PhiloxGivesThePublishedAnswers) {
     const uint ones = 0xffffffffu;
     const uvec4 digits(0x243f6a88u, 0x85a308d3u, 0x13198a2eu, 0x03707344u);
     EXPECT_EQ(philox_4x32(uvec4(0u), 0u, 0u, 10), uvec4(0x6627e8d5u, 0xe169c58du, 0xbc57ac4cu, 0x9b00dbd8u));
@@ -181,7 +181,7 @@ Verdict battery(const Generator& generator) {
 
 // 255 p-values; a sound generator fails with the probability 1/1000 (and as all is fixed, always or never). What is
 // weaker must be found out: five rounds, and pcg4d.
-TEST(Random, numbers_pass_the_battery_over_paths_seeds_images_and_blocks) {
+TEST(Random, NumbersPassTheBatteryOverPathsSeedsImagesAndBlocks) {
     const auto of_rounds = [](int rounds) {
         return battery([rounds](uint seed, uint image, uint path, uint block) {
             return philox(seed, image, path, block, rounds);
@@ -197,7 +197,7 @@ TEST(Random, numbers_pass_the_battery_over_paths_seeds_images_and_blocks) {
 
 // Wrong twins: four rounds, and images of 11 % more variance than independent paths have, since a path of 18 repeats
 // the one before: of n paths a share f so repeated makes the variance of a pixel 1 + 2 f times as large.
-TEST(Random, images_of_consecutive_seeds_scatter_as_independent_ones) {
+TEST(Random, ImagesOfConsecutiveSeedsScatterAsIndependentOnes) {
     const auto least = [](const Generator& generator) {
         std::vector<double> p;
         test_dispersion(generator, p);
@@ -216,14 +216,14 @@ TEST(Random, images_of_consecutive_seeds_scatter_as_independent_ones) {
               level);
 }
 
-TEST(Random, a_draw_is_the_generator_at_its_path) {
+TEST(Random, ADrawIsTheGeneratorAtItsPath) {
     const Draws drawn = draw(7u, 3u, uvec2(5u, 0u), 1u);
     const Draws expected = draws_of_bits(philox(7u, 3u, 5u, 1u, PHILOX_ROUNDS));
     EXPECT_EQ(drawn.u0, expected.u0);
     EXPECT_EQ(drawn.u5, expected.u5);
 }
 
-TEST(Random, every_number_stays_inside_the_open_interval_in_float) {
+TEST(Random, EveryNumberStaysInsideTheOpenIntervalInFloat) {
     EXPECT_GT(vkfv::physics::f32::uniform_from_21_bits(0u), 0.0f);
     EXPECT_LT(vkfv::physics::f32::uniform_from_21_bits(0xffffffffu), 1.0f);
 }

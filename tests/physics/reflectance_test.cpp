@@ -96,7 +96,7 @@ std::complex<double> coefficient(const Map& map, double fx, double fy) {
 } // namespace
 
 // 5 periods a mm along (3, 4) / 5: the phase at the origin says where it is brightest.
-TEST(Reflectance, a_sinusoidal_grating_is_one_frequency) {
+TEST(Reflectance, ASinusoidalGratingIsOneFrequency) {
     Map grating;
     grating.record.lowest = 0.2;
     grating.record.highest = 0.8;
@@ -114,7 +114,7 @@ TEST(Reflectance, a_sinusoidal_grating_is_one_frequency) {
     EXPECT_LT(std::abs(coefficient(grating, 3, 4)), 1e-12);
 }
 
-TEST(Reflectance, a_square_grating_has_odd_harmonics) {
+TEST(Reflectance, ASquareGratingHasOddHarmonics) {
     Map grating;
     grating.record.per_mm = 4;
     grating.record.square = 1;
@@ -127,7 +127,7 @@ TEST(Reflectance, a_square_grating_has_odd_harmonics) {
     EXPECT_EQ(grating(0.26 / 4, 0), 0);
 }
 
-TEST(Reflectance, a_checkerboard_has_its_corner_at_the_origin) {
+TEST(Reflectance, ACheckerboardHasItsCornerAtTheOrigin) {
     Map board;
     board.record.kind = f64::PATTERN_CHECKERBOARD;
     board.record.per_mm = 10;
@@ -140,7 +140,7 @@ TEST(Reflectance, a_checkerboard_has_its_corner_at_the_origin) {
     EXPECT_EQ(board(0.01, 0.01), 0.1);
 }
 
-TEST(Reflectance, a_star_is_a_cosine_of_the_azimuth) {
+TEST(Reflectance, AStarIsACosineOfTheAzimuth) {
     Map star;
     star.record.kind = f64::PATTERN_STAR;
     star.record.centre_x = 0.1;
@@ -161,7 +161,7 @@ TEST(Reflectance, a_star_is_a_cosine_of_the_azimuth) {
 
 // The grid's points at odd halves of a pitch; beyond its outer pixels the reflections of SciPy's "reflect"
 // (scipy.ndimage: d c b a | a b c d | d c b a), here counted by hand.
-TEST(Reflectance, a_grid_is_linear_between_its_points_and_goes_on_mirrored) {
+TEST(Reflectance, AGridIsLinearBetweenItsPointsAndGoesOnMirrored) {
     Map grid;
     grid.record.kind = f64::PATTERN_GRID;
     grid.record.per_mm = 10;
@@ -204,7 +204,7 @@ struct Scene {
 
 } // namespace
 
-TEST(Reflectance, scales_every_lobe_and_nothing_without_a_map) {
+TEST(Reflectance, ScalesEveryLobeAndNothingWithoutAMap) {
     f64::SpecimenRecord specimen{};
     specimen.material.lobe_0.weight = 0.4;
     specimen.material.lobe_1.weight = 0.3;

@@ -84,7 +84,7 @@ Polarised reflected(std::complex<double> index, double cosine) {
 } // namespace
 
 // The furnace: with the single scattering of another program, what is given back makes up for all that is lost.
-TEST(GgxMultipleScatter, gives_back_what_facets_lose_by_reflecting_once) {
+TEST(GgxMultipleScatter, GivesBackWhatFacetsLoseByReflectingOnce) {
     for (const auto& [alpha, degrees, share] : kept_by_ggx) {
         SCOPED_TRACE(testing::Message() << alpha << " at " << degrees);
         EXPECT_NEAR(ggx_kept(alpha, std::cos(radians(degrees))), share, 2e-8);
@@ -100,7 +100,7 @@ TEST(GgxMultipleScatter, gives_back_what_facets_lose_by_reflecting_once) {
     }
 }
 
-TEST(GgxMultipleScatter, closes_the_white_furnace_at_any_roughness_and_incidence) {
+TEST(GgxMultipleScatter, ClosesTheWhiteFurnaceAtAnyRoughnessAndIncidence) {
     for (const double alpha : {0.05, 0.1, 0.3, 0.6, 1.0}) {
         const Material material = one(SCATTER_GGX_MULTIPLE_SCATTER, alpha);
         for (const double degrees : {0.0, 30.0, 60.0, 80.0}) {
@@ -123,7 +123,7 @@ TEST(GgxMultipleScatter, closes_the_white_furnace_at_any_roughness_and_incidence
     EXPECT_NEAR(1 - ggx_kept(1, 1), 0.693, 5e-4);
 }
 
-TEST(GgxMultipleScatter, is_reciprocal_and_ggx_besides) {
+TEST(GgxMultipleScatter, IsReciprocalAndGgxBesides) {
     std::mt19937 engine(8);
     std::uniform_real_distribution<double> uniform(0, 1);
     for (int k = 0; k < 8; ++k) {
@@ -140,7 +140,7 @@ TEST(GgxMultipleScatter, is_reciprocal_and_ggx_besides) {
     }
 }
 
-TEST(HarveyShack, is_the_formula_of_direction_cosines) {
+TEST(HarveyShack, IsTheFormulaOfDirectionCosines) {
     for (const double shoulder : {0.003, 0.05, 0.4}) {
         for (const double slope : {-0.7, -1.5, -2.0, -3.0}) {
             const Material material = one(SCATTER_HARVEY_SHACK, shoulder, slope);
@@ -160,7 +160,7 @@ TEST(HarveyShack, is_the_formula_of_direction_cosines) {
     }
 }
 
-TEST(Abg, is_the_formula_of_direction_cosines_and_a_harvey_shack_lobe_where_g_is_two) {
+TEST(Abg, IsTheFormulaOfDirectionCosinesAndAHarveyShackLobeWhereGIsTwo) {
     for (const double b : {1e-9, 1e-4, 0.03, 1.0}) {
         // A in closed form for g = 2.
         const Material material = one(SCATTER_ABG, b, 2);
@@ -183,7 +183,7 @@ TEST(Abg, is_the_formula_of_direction_cosines_and_a_harvey_shack_lobe_where_g_is
 }
 
 // What lies beyond the horizon is absorbed, and nothing else: by the sampler, at all incidences.
-TEST(ScatterOfCosines, keeps_the_share_of_the_lobe_above_the_horizon) {
+TEST(ScatterOfCosines, KeepsTheShareOfTheLobeAboveTheHorizon) {
     constexpr uint draws = 40000;
     for (const auto& [model, first, second, degrees, share] : lobes_kept) {
         SCOPED_TRACE(testing::Message() << model << " " << first << " " << second << " at " << degrees);
@@ -201,7 +201,7 @@ TEST(ScatterOfCosines, keeps_the_share_of_the_lobe_above_the_horizon) {
 }
 
 // The radius of sharp lobes, in float as in double, on a surface that no axis is normal to.
-TEST(ScatterOfCosines, half_of_the_light_is_within_the_median_distance) {
+TEST(ScatterOfCosines, HalfOfTheLightIsWithinTheMedianDistance) {
     const real3 normal = direction(0.7, 0.3);
     constexpr uint draws = 40000;
     struct Sharp {
@@ -237,7 +237,7 @@ TEST(ScatterOfCosines, half_of_the_light_is_within_the_median_distance) {
     }
 }
 
-TEST(TotalScatter, is_that_of_the_phase_that_the_height_makes) {
+TEST(TotalScatter, IsThatOfThePhaseThatTheHeightMakes) {
     // 10 nm at 632.8 nm: (4 pi 10 / 632.8)^2 = 0.03944.
     EXPECT_NEAR(vkfv::specimen::total_scatter(10e-6, 0.6328), 0.03867, 1e-5);
     EXPECT_NEAR(vkfv::specimen::total_scatter(1e-6, 0.6328) / 3.944e-4, 1, 1e-3);
@@ -245,7 +245,7 @@ TEST(TotalScatter, is_that_of_the_phase_that_the_height_makes) {
 }
 
 // Gold at 0.5876 um, silver, iron, a dielectric, and an index below that of the medium.
-TEST(Conductor, reflects_as_fresnels_complex_amplitudes_say) {
+TEST(Conductor, ReflectsAsFresnelsComplexAmplitudesSay) {
     const std::vector<std::complex<double>> indices = {{0.27, 2.95}, {0.05, 4.0}, {2.9, 3.1},
                                                        {1.5, 0},     {0.8, 0},    {4, 0.1}};
     for (const auto& index : indices) {
@@ -270,7 +270,7 @@ TEST(Conductor, reflects_as_fresnels_complex_amplitudes_say) {
     }
 }
 
-TEST(Conductor, absorbs_what_it_does_not_mirror) {
+TEST(Conductor, AbsorbsWhatItDoesNotMirror) {
     constexpr uint draws = 40000;
     const std::complex<double> index(2.9, 3.1);
     for (const double degrees : {0.0, 50.0, 78.0, 88.0}) {
@@ -288,7 +288,7 @@ TEST(Conductor, absorbs_what_it_does_not_mirror) {
     }
 }
 
-TEST(GgxConductor, is_ggx_times_the_facets_reflectance) {
+TEST(GgxConductor, IsGgxTimesTheFacetsReflectance) {
     const std::complex<double> index(0.27, 2.95);
     const Material metal = one(SCATTER_GGX_CONDUCTOR, index.real(), index.imag(), 0.4), white = one(SCATTER_GGX, 0.4);
     double flat = 0; // wrong twin: the reflectance at the angle to the surface

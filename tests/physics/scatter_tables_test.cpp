@@ -19,7 +19,7 @@ namespace f32 = vkfv::physics::f32;
 
 // N = sum over l of (2 l + 1) / 2 g^l P_l(cos(theta_i)) c_l with c_l the integral of mu P_l(mu) over [0, 1]: 1/2, 1/3,
 // then 0 for odd l and c_2 = 1/8, c_{2k+2} = -c_{2k} (2k - 1) / (2k + 4).
-TEST(ScatterTables, the_norm_is_that_of_the_legendre_series) {
+TEST(ScatterTables, TheNormIsThatOfTheLegendreSeries) {
     const auto series = [](double g, double cosine) {
         double sum = 0.25 + g * cosine / 2;
         double before = cosine, legendre = (3 * cosine * cosine - 1) / 2, c = 0.125; // P_1, P_2, c_2
@@ -44,7 +44,7 @@ TEST(ScatterTables, the_norm_is_that_of_the_legendre_series) {
 }
 
 // What density and kernels take, against the integral, in double and in float and between the points of the fit.
-TEST(ScatterTables, the_table_gives_the_norm) {
+TEST(ScatterTables, TheTableGivesTheNorm) {
     std::vector<double> gs = {-0.899, -0.41, -0.39, -1e-9, 1e-9, 0.39, 0.41, 0.995, 0.998, 0.999};
     for (int k = 0; k < 95; ++k) {
         gs.push_back(-0.9 + 0.02 * k);

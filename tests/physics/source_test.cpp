@@ -47,7 +47,7 @@ std::vector<double> expected_in_rings(const std::function<double(double)>& irrad
 } // namespace
 
 // A source small against its distance: E = E0 cos^4(theta); with d = 1, E0 = 1 / (pi d^2) of the emitted power.
-TEST(Source, a_small_disc_obeys_the_cosine_to_the_fourth_law) {
+TEST(Source, ASmallDiscObeysTheCosineToTheFourthLaw) {
     const auto seen = land_in_rings(1e-6, 1.0, 3.0, 11u);
     const auto law = [](double power) {
         return [power](double r) { return std::pow(1 / std::sqrt(1 + r * r), power) / M_PI; };
@@ -58,7 +58,7 @@ TEST(Source, a_small_disc_obeys_the_cosine_to_the_fourth_law) {
 
 // P. D. Foote, Bull. Bur. Stand. 12 (1915) 583: irradiance of a plane parallel to a Lambertian disc of radius R at the
 // distance d and offset x: E = (M/2) [1 - (x^2 + d^2 - R^2) / sqrt((x^2 + d^2 + R^2)^2 - 4 x^2 R^2)], M the exitance.
-TEST(Source, a_finite_disc_obeys_footes_formula) {
+TEST(Source, AFiniteDiscObeysFootesFormula) {
     const double d = 1.0;
     const auto foote = [d](double disc) {
         return [d, disc](double x) {
@@ -81,7 +81,7 @@ double corner_factor(double a, double b) {
 
 // The irradiance is the factor times the exitance pi L, and pi L w h is the flux: shares of the flux on 12 x 10 cells
 // of a plane, and beside them. So the whole of the light, pi L times the area, is the sum over all of the plane.
-TEST(Source, a_rectangle_obeys_the_configuration_factor) {
+TEST(Source, ARectangleObeysTheConfigurationFactor) {
     constexpr double half_width = 0.8, half_height = 0.3, width = 3.6, height = 3;
     constexpr int columns = 12, rows = 10;
     std::vector<double> seen(columns * rows + 1);
@@ -126,7 +126,7 @@ TEST(Source, a_rectangle_obeys_the_configuration_factor) {
 }
 
 // A Lambertian source sends sin^2 of its flux into a cone; the aimed source is the whole one's part in that cone.
-TEST(Source, an_aimed_disc_is_the_cone_cut_out_of_the_whole) {
+TEST(Source, AnAimedDiscIsTheConeCutOutOfTheWhole) {
     const double sine = 0.3;
     std::vector<double> whole(20), aimed(20);
     double inside = 0;
@@ -152,7 +152,7 @@ TEST(Source, an_aimed_disc_is_the_cone_cut_out_of_the_whole) {
 
 // The same where the middle moves with the place: about it the part cut out of the whole is as even, from every part of
 // the source. Bins of equal light: by the place, and by the distance from the middle and the side of it.
-TEST(Source, an_aim_that_moves_with_the_place_is_cut_out_of_the_whole) {
+TEST(Source, AnAimThatMovesWithThePlaceIsCutOutOfTheWhole) {
     constexpr double sine = 0.3, shift = -0.6;
     constexpr int places = 5, distances = 6, sides = 8, bins = places * distances * sides;
     double off_unit = 0;
@@ -234,7 +234,7 @@ RingRay ring_ray(const RingLight& ring, double sine, uint seed, uint k) {
 } // namespace
 
 // Every ray starts on the band, within the sectors of the segments that are on.
-TEST(RingLight, stands_where_it_is_said_to) {
+TEST(RingLight, StandsWhereItIsSaidTo) {
     RingLight ring = broad_ring();
     ring.segments = 8;
     ring.switched_on = 0b10010110u;
@@ -265,7 +265,7 @@ TEST(RingLight, stands_where_it_is_said_to) {
 }
 
 // Uniform per area: over the width the density goes as the radius. Uniform in width is the wrong twin.
-TEST(RingLight, is_uniform_over_its_area) {
+TEST(RingLight, IsUniformOverItsArea) {
     const RingLight ring = broad_ring();
     const double radius = ring.distance * ring.elevation_cosine;
     std::vector<double> across(30), azimuths(30), expected;
@@ -285,7 +285,7 @@ TEST(RingLight, is_uniform_over_its_area) {
 
 // About the normal towards the aim: sin^2 of the angle to it is uniform up to that of the cone, the cosine (the wrong
 // twin) is not, and the azimuth about it is.
-TEST(RingLight, is_lambertian_about_the_way_to_its_aim) {
+TEST(RingLight, IsLambertianAboutTheWayToItsAim) {
     const RingLight ring = broad_ring();
     const double sine = 0.9;
     std::vector<double> squares(20), cosines(20), azimuths(20);
@@ -313,7 +313,7 @@ TEST(RingLight, is_lambertian_about_the_way_to_its_aim) {
 
 // E = L times the projected solid angle: the band is seen from its aim at elevations e +- atan(h / d), so
 // E = L pi (sin^2 up - sin^2 down) with the radiance L = flux / (pi area), area 2 pi d cos(e) 2 h.
-TEST(RingLight, lights_its_aim_as_its_projected_solid_angle_says) {
+TEST(RingLight, LightsItsAimAsItsProjectedSolidAngleSays) {
     for (const double elevation : {pi / 6, pi / 3}) {
         RingLight ring = broad_ring();
         ring.half_width = 4;
@@ -341,7 +341,7 @@ TEST(RingLight, lights_its_aim_as_its_projected_solid_angle_says) {
 }
 
 // Of two halves the one on lights from its own side, across the axis to the other.
-TEST(RingLight, half_of_it_lights_from_its_side) {
+TEST(RingLight, HalfOfItLightsFromItsSide) {
     for (const uint half : {0u, 1u}) {
         RingLight ring = broad_ring();
         ring.segments = 2;
@@ -357,7 +357,7 @@ TEST(RingLight, half_of_it_lights_from_its_side) {
     }
 }
 
-TEST(TurnOf, agrees_with_cosine_and_sine) {
+TEST(TurnOf, AgreesWithCosineAndSine) {
     for (int i = 0; i <= 20000; ++i) {
         const double u = i / 20000.0;
         // A few roundings of 2^-53; in float three roundings of 2^-24. GLSL's own functions may be off by 2^-11.

@@ -71,7 +71,7 @@ std::string png_of(const pugi::xml_node& image) {
     return bytes_of(reference.substr(head.size()));
 }
 
-TEST(Png, holds_the_pixels_with_the_lowest_row_last) {
+TEST(Png, HoldsThePixelsWithTheLowestRowLast) {
     Grid<Rgb> pixels(2, 3);
     for (int row = 0; row < 3; ++row)
         for (int column = 0; column < 2; ++column)
@@ -86,7 +86,7 @@ TEST(Png, holds_the_pixels_with_the_lowest_row_last) {
     EXPECT_EQ(png_bytes(pixels), png_bytes(pixels));
 }
 
-TEST(Base64, is_that_of_rfc_4648) {
+TEST(Base64, IsThatOfRfc4648) {
     EXPECT_EQ(base64(""), "");
     EXPECT_EQ(base64("f"), "Zg==");
     EXPECT_EQ(base64("fo"), "Zm8=");
@@ -94,7 +94,7 @@ TEST(Base64, is_that_of_rfc_4648) {
     EXPECT_EQ(base64("foobar"), "Zm9vYmFy");
 }
 
-TEST(Colours, grow_brighter_with_the_height) {
+TEST(Colours, GrowBrighterWithTheHeight) {
     double last = -1;
     for (int k = 0; k <= 32; ++k) {
         const Rgb colour = colour_of(Palette::height, k / 32.0);
@@ -109,7 +109,7 @@ TEST(Colours, grow_brighter_with_the_height) {
     EXPECT_GT(high.red, high.blue);
 }
 
-TEST(Ticks, are_round_numbers_within_the_ends) {
+TEST(Ticks, AreRoundNumbersWithinTheEnds) {
     EXPECT_EQ(ticks(0, 10, 5), (std::vector<double>{0, 2, 4, 6, 8, 10}));
     EXPECT_EQ(ticks(-0.5, 0.5, 4), (std::vector<double>{-0.5, 0, 0.5}));
     EXPECT_EQ(ticks(3, 3, 5), std::vector<double>{3});
@@ -122,7 +122,7 @@ TEST(Ticks, are_round_numbers_within_the_ends) {
     EXPECT_EQ(with_prefix(12345678), "12.3 M");
 }
 
-TEST(RangeOf, leaves_out_the_share_that_is_asked_for) {
+TEST(RangeOf, LeavesOutTheShareThatIsAskedFor) {
     Grid<double> values(101, 1);
     for (int k = 0; k <= 100; ++k)
         values(k, 0) = k;
@@ -132,7 +132,7 @@ TEST(RangeOf, leaves_out_the_share_that_is_asked_for) {
     EXPECT_EQ(range_of(Grid<double>(3, 3, nan), 0), (std::pair{0.0, 1.0}));
 }
 
-TEST(Chart, points_stand_between_the_ticks_of_their_values) {
+TEST(Chart, PointsStandBetweenTheTicksOfTheirValues) {
     const std::vector<Curve> curves = {
         {.name = "a", .points = {{1, 10}, {10, 100}, {100, 1000}}, .spreads = {}, .markers = true}};
     Svg svg;
@@ -154,7 +154,7 @@ TEST(Chart, points_stand_between_the_ticks_of_their_values) {
     EXPECT_TRUE(labelled);
 }
 
-TEST(Map, shows_the_upper_row_on_top_and_gaps_in_their_colour) {
+TEST(Map, ShowsTheUpperRowOnTopAndGapsInTheirColour) {
     report::Map map;
     map.values = Grid<double>(2, 2);
     map.values(0, 0) = 0;
@@ -171,7 +171,7 @@ TEST(Map, shows_the_upper_row_on_top_and_gaps_in_their_colour) {
                                                  not_measured_colour.green, not_measured_colour.blue}));
 }
 
-TEST(Map, keeps_its_shape_and_its_places_when_its_values_are_averaged) {
+TEST(Map, KeepsItsShapeAndItsPlacesWhenItsValuesAreAveraged) {
     // 3000 x 500 values, twice as high as wide: 3 by 1. The block of ones ends at three eighths of the width.
     Map map{.title = "", .values = Grid<double>(3000, 500, 0.0), .pitch = {1, 2}};
     for (int row = 0; row < 500; ++row)
@@ -193,7 +193,7 @@ TEST(Map, keeps_its_shape_and_its_places_when_its_values_are_averaged) {
     EXPECT_NEAR(ones, 0.375 * columns, 1);
 }
 
-TEST(TopographyPicture, has_a_panel_for_each_map_and_the_profile) {
+TEST(TopographyPicture, HasAPanelForEachMapAndTheProfile) {
     surface::HeightMap heights{
         .height = Grid<double>(8, 6, 0.001), .x0 = -0.01, .y0 = 0, .pitch_x = 0.002, .pitch_y = 0.002};
     heights.height(3, 3) = nan;
@@ -208,7 +208,7 @@ TEST(TopographyPicture, has_a_panel_for_each_map_and_the_profile) {
     EXPECT_STREQ(document.child("svg").child("title").child_value(), "a < b");
 }
 
-TEST(ImagePicture, states_mean_and_contrast) {
+TEST(ImagePicture, StatesMeanAndContrast) {
     Grid<double> image(4, 2, 1.0);
     for (int column = 0; column < 4; ++column)
         image(column, 1) = 3.0;
@@ -216,7 +216,7 @@ TEST(ImagePicture, states_mean_and_contrast) {
     EXPECT_NE(svg.find("Mean 2 W, contrast 0.5000"), std::string::npos);
 }
 
-TEST(ContactSheet, rows_and_columns_stand_in_their_order) {
+TEST(ContactSheet, RowsAndColumnsStandInTheirOrder) {
     ContactSheet sheet;
     sheet.row_label = "g";
     sheet.column_label = "N";

@@ -21,7 +21,7 @@ pugi::xml_document parsed(const std::string& page) {
     return document;
 }
 
-TEST(Page, shows_texts_as_they_are) {
+TEST(Page, ShowsTextsAsTheyAre) {
     report::Page page;
     page.section("one", "a < b & \"c\"");
     page.table("caption <", {{"", "one"}, {"</table>", "<b>"}});
@@ -44,7 +44,7 @@ TEST(Page, shows_texts_as_they_are) {
     EXPECT_STREQ(first.next_sibling().attribute("id").value(), "two");
 }
 
-TEST(Page, carries_its_pictures) {
+TEST(Page, CarriesItsPictures) {
     const std::string svg = "<svg xmlns=\"http://www.w3.org/2000/svg\"><title>\"</title></svg>";
     report::Page page;
     page.section("s", "s");
@@ -55,7 +55,7 @@ TEST(Page, carries_its_pictures) {
     EXPECT_EQ(image.attribute("src").value(), "data:image/svg+xml;base64," + report::base64(svg));
 }
 
-TEST(Page, carries_its_libraries_and_their_licences) {
+TEST(Page, CarriesItsLibrariesAndTheirLicences) {
     report::Page page;
     page.section("s", "s");
     page.data("numbers", "[1, 2]");

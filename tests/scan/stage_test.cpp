@@ -41,7 +41,7 @@ std::vector<double> errors(const StageMotion& motion, const std::vector<double>&
 
 } // namespace
 
-TEST(Stage, without_errors_is_true) {
+TEST(Stage, WithoutErrorsIsTrue) {
     const auto positions = steps(21, 0.001);
     Stage stage;
     EXPECT_TRUE(stage.still());
@@ -54,7 +54,7 @@ TEST(Stage, without_errors_is_true) {
 }
 
 // The stage stands where the scale reads the nominal position.
-TEST(Stage, stands_where_its_scale_reads_the_position) {
+TEST(Stage, StandsWhereItsScaleReadsThePosition) {
     const auto positions = steps(401, 0.0005);
     Stage stage;
     stage.scale_error = 0.01;
@@ -78,7 +78,7 @@ TEST(Stage, stands_where_its_scale_reads_the_position) {
     }
 }
 
-TEST(Stage, jitter_is_independent_and_does_not_add_up) {
+TEST(Stage, JitterIsIndependentAndDoesNotAddUp) {
     const auto positions = steps(4001, 0.0001);
     Stage stage;
     stage.jitter = 0.0003;
@@ -103,7 +103,7 @@ TEST(Stage, jitter_is_independent_and_does_not_add_up) {
     EXPECT_NEAR(deviation(apart), 0.0001, 5 * 0.0001 / std::sqrt(2 * 4000.0));
 }
 
-TEST(Stage, tells_how_far_astray_images_beyond_the_scan_are_too) {
+TEST(Stage, TellsHowFarAstrayImagesBeyondTheScanAreToo) {
     const std::vector<double> scan = {0, 0.001, 0.002};
     const std::vector<double> with_further = {0, 0.001, 0.002, 0.01};
     Stage stage;
@@ -118,7 +118,7 @@ TEST(Stage, tells_how_far_astray_images_beyond_the_scan_are_too) {
     EXPECT_GT(farther, 0);
 }
 
-TEST(Stage, lags_on_the_way_down) {
+TEST(Stage, LagsOnTheWayDown) {
     const auto positions = steps(11, 0.001);
     Stage stage;
     stage.backlash = 0.0025;
@@ -134,7 +134,7 @@ TEST(Stage, lags_on_the_way_down) {
 }
 
 // Images are taken one after the other, and the focal plane goes on upwards meanwhile.
-TEST(Stage, drifts_from_image_to_image) {
+TEST(Stage, DriftsFromImageToImage) {
     const auto positions = steps(21, 0.001);
     Stage stage;
     stage.drift = 0.0004;
@@ -150,7 +150,7 @@ TEST(Stage, drifts_from_image_to_image) {
 }
 
 // Looked at once an interval, a vibration has its aliased frequency; within an exposure it is averaged.
-TEST(Stage, vibrates) {
+TEST(Stage, Vibrates) {
     const auto positions = steps(1000, 0.0001);
     Stage stage;
     stage.vibrations = {{.amplitude = 0.0002, .frequency = 52}};
@@ -185,7 +185,7 @@ TEST(Stage, vibrates) {
 // The mean square is the spectrum's integral, and what lies below 40 Hz the integral to there: of 10 to 20 Hz flat, and
 // of a triangle over 60 to 80 Hz, of which a quarter lies below 70 Hz. Of a band B looked at for T seconds the mean
 // square is known to 1 / sqrt(B T) of it: the bounds are four times that, of four seeds together.
-TEST(Stage, vibrates_by_a_spectrum) {
+TEST(Stage, VibratesByASpectrum) {
     constexpr int images = 8192, seeds = 4;
     constexpr double interval = 0.005; // 41 s, up to 100 Hz
     const auto positions = steps(images, 0.0001);
@@ -224,7 +224,7 @@ TEST(Stage, vibrates_by_a_spectrum) {
     EXPECT_LT(power_below(errors(StageMotion(other, positions), positions), 40) / low, 0.7);
 }
 
-TEST(Stage, moves_the_specimen_aside) {
+TEST(Stage, MovesTheSpecimenAside) {
     const auto positions = steps(11, 0.1);
     Stage stage;
     stage.lateral_drift = {0.001, 0};
@@ -241,7 +241,7 @@ TEST(Stage, moves_the_specimen_aside) {
     EXPECT_NEAR(glm::length(round.at(positions[6], 6).beside + round.at(positions[8], 8).beside), 0, 1e-15);
 }
 
-TEST(StagedTracer, exposes_where_the_stage_stands) {
+TEST(StagedTracer, ExposesWhereTheStageStands) {
     const auto positions = steps(21, 0.001);
     Stage stage;
     stage.jitter = 0.0002;
@@ -260,7 +260,7 @@ TEST(StagedTracer, exposes_where_the_stage_stands) {
 }
 
 // The mean of an exposure's moments, with random numbers of each one's own.
-TEST(StagedTracer, averages_over_the_moments_of_an_exposure) {
+TEST(StagedTracer, AveragesOverTheMomentsOfAnExposure) {
     const auto positions = steps(21, 0.001);
     Stage stage;
     stage.vibrations = {{.amplitude = 0.002, .frequency = 90}, {.amplitude = 0.001, .frequency = 31}};

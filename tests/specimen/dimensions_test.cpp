@@ -40,7 +40,7 @@ double sq_of(const Shape& shape) {
     return surface::height_parameters(truth_of(shape)).sq;
 }
 
-TEST(StandardsAsSold, root_mean_squares_are_those_of_closed_forms) {
+TEST(StandardsAsSold, RootMeanSquaresAreThoseOfClosedForms) {
     // Whole periods lie in the field; a pixel's mean and the facets take a share of (pi pitch / period)^2 / 6.
     auto wave = over<Sinusoid>(0.32, 0.001);
     wave.amplitude = 0.001;
@@ -70,7 +70,7 @@ TEST(StandardsAsSold, root_mean_squares_are_those_of_closed_forms) {
     EXPECT_NEAR(sq_of(texture), 0.0005, 5e-6);
 }
 
-TEST(StandardsAsSold, a_deterministic_texture_repeats_itself_and_has_no_random_number) {
+TEST(StandardsAsSold, ADeterministicTextureRepeatsItselfAndHasNoRandomNumber) {
     auto texture = over<Deterministic>(0.32, 0.001);
     texture.period = 0.1;
     texture.sq = 0.0005;
@@ -93,7 +93,7 @@ TEST(StandardsAsSold, a_deterministic_texture_repeats_itself_and_has_no_random_n
     EXPECT_NEAR(static_cast<double>(field.heights(160, 160)), 0.0005 * sum / std::sqrt(squares), 1e-9);
 }
 
-TEST(StandardsAsSold, dimensions_of_the_truth_are_nominal) {
+TEST(StandardsAsSold, DimensionsOfTheTruthAreNominal) {
     auto step = over<Step>(0.32, 0.001);
     step.height = 0.005;
     const auto edge = dimensions_of(step);
@@ -175,7 +175,7 @@ TEST(StandardsAsSold, dimensions_of_the_truth_are_nominal) {
     expect_nominal(plateaus, "plateau of 4 um", 1e-6);
 }
 
-TEST(StandardsAsSold, what_does_not_fit_is_refused_by_its_key) {
+TEST(StandardsAsSold, WhatDoesNotFitIsRefusedByItsKey) {
     const auto refused = [](const Shape& shape, const std::string& key) {
         try {
             (void)make({.shape = shape});

@@ -69,7 +69,7 @@ std::string problem_of(const Reflectance& reflectance, const Rectangle& footprin
 } // namespace
 
 // 501 x 501 points, of which about 16,000 are independent: correlations are known to about 0.008.
-TEST(ReflectanceNoise, has_the_correlation_that_was_asked_for) {
+TEST(ReflectanceNoise, HasTheCorrelationThatWasAskedFor) {
     const auto map = make_reflectance_map(noise(), square_mm, {});
     ASSERT_EQ(map.values.columns, 501);
     ASSERT_EQ(map.values.rows, 501);
@@ -89,7 +89,7 @@ TEST(ReflectanceNoise, has_the_correlation_that_was_asked_for) {
     EXPECT_NEAR(correlation(white.values, 0, 1), 0, 0.01);
 }
 
-TEST(ReflectanceNoise, covers_the_footprint_and_is_clipped) {
+TEST(ReflectanceNoise, CoversTheFootprintAndIsClipped) {
     const Rectangle footprint{0.1, -0.3, 0.31, 0.2};
     auto loud = noise();
     loud.standard_deviation = 0.5;
@@ -106,7 +106,7 @@ TEST(ReflectanceNoise, covers_the_footprint_and_is_clipped) {
     EXPECT_NEAR(static_cast<double>(on_bounds) / (106 * 251), std::erfc(std::sqrt(0.5)), 0.03);
 }
 
-TEST(ReflectanceNoise, depends_on_its_numbers_alone) {
+TEST(ReflectanceNoise, DependsOnItsNumbersAlone) {
     const auto bits = [](const Reflectance& reflectance) {
         return make_reflectance_map(reflectance, square_mm, {}).values.values;
     };
@@ -119,7 +119,7 @@ TEST(ReflectanceNoise, depends_on_its_numbers_alone) {
 
 class ReflectanceImage : public test::TemporaryFiles {};
 
-TEST_F(ReflectanceImage, is_taken_pixel_by_pixel_and_enters_the_digest) {
+TEST_F(ReflectanceImage, IsTakenPixelByPixelAndEntersTheDigest) {
     Grid<float> pixels(3, 2);
     pixels.values = {0, 0.25f, 0.5f, 0.75f, 1, 0.125f};
     Description description;
@@ -151,7 +151,7 @@ TEST_F(ReflectanceImage, is_taken_pixel_by_pixel_and_enters_the_digest) {
     EXPECT_NE(geometry_digest(make(description)), geometry_digest(specimen));
 }
 
-TEST_F(ReflectanceImage, outside_0_to_1_or_not_there_is_refused) {
+TEST_F(ReflectanceImage, Outside0To1OrNotThereIsRefused) {
     Grid<float> pixels(3, 2, 0.5f);
     pixels(2, 1) = 1.5f;
     Reflectance image{.kind = Kind::image, .pitch = 0.001, .file = write("bright.tif", images::tiff_bytes(pixels))};
@@ -163,7 +163,7 @@ TEST_F(ReflectanceImage, outside_0_to_1_or_not_there_is_refused) {
     EXPECT_THAT(problem_of(image), AllOf(HasSubstr("absent.tif"), HasSubstr("no such file")));
 }
 
-TEST(Reflectance, refuses_what_is_no_map) {
+TEST(Reflectance, RefusesWhatIsNoMap) {
     Reflectance grating;
     grating.period = 0.01;
     EXPECT_EQ(problem_of(grating), "");

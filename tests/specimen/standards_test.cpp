@@ -38,7 +38,7 @@ Plateaus letters(const std::string& text, std::vector<double> heights) {
     return d;
 }
 
-TEST(Plateaus, letters_have_their_heights_from_left_to_right) {
+TEST(Plateaus, LettersHaveTheirHeightsFromLeftToRight) {
     const Specimen made = make({.shape = letters("vk f", {0.002, 0.004, 0.006})});
     const HeightField& field = field_of(made);
     std::map<float, std::pair<int, int>> columns; // of each height: first and last
@@ -56,7 +56,7 @@ TEST(Plateaus, letters_have_their_heights_from_left_to_right) {
     EXPECT_NEAR(columns.at(0.006f).second + columns.at(0.002f).first, 400, 12);
 }
 
-TEST(Plateaus, a_letter_reads_correctly_from_above) {
+TEST(Plateaus, ALetterReadsCorrectlyFromAbove) {
     // An L has its stem at the left and its bar below.
     const Specimen made = make({.shape = letters("L", {0.003})});
     const HeightField& field = field_of(made);
@@ -71,7 +71,7 @@ TEST(Plateaus, a_letter_reads_correctly_from_above) {
     EXPECT_GT(lower, 1.5 * upper);
 }
 
-TEST(Plateaus, mask_of_an_image_with_a_height_a_grey_value) {
+TEST(Plateaus, MaskOfAnImageWithAHeightAGreyValue) {
     auto d = over<Plateaus>(0.2, 0.001);
     d.file = std::filesystem::path(VKFV_SOURCE_DIR) / "assets/specimens/letter_F.png";
     d.heights = {0.005};
@@ -85,7 +85,7 @@ TEST(Plateaus, mask_of_an_image_with_a_height_a_grey_value) {
     EXPECT_THROW(make({.shape = d}), InputError);
 }
 
-TEST(Plateaus, unknown_fonts_and_missing_heights_are_refused) {
+TEST(Plateaus, UnknownFontsAndMissingHeightsAreRefused) {
     auto d = letters("vkfv", {0.001, 0.002});
     EXPECT_THROW(make({.shape = d}), InputError);
     d = letters("vkfv", {0.001});
@@ -126,7 +126,7 @@ std::vector<double> rings(const HeightField& field, int tile_column, int points)
     return power;
 }
 
-TEST(SubSurfaces, have_the_power_spectrum_that_is_stated) {
+TEST(SubSurfaces, HaveThePowerSpectrumThatIsStated) {
     const Specimen made = make({.shape = air()});
     const HeightField& field = field_of(made);
     ASSERT_EQ(field.heights.columns, 401);
@@ -149,7 +149,7 @@ TEST(SubSurfaces, have_the_power_spectrum_that_is_stated) {
     EXPECT_LT(power[22] / power[18], 1e-6); // nothing beyond the shortest wavelength but the rounding to float
 }
 
-TEST(SubSurfaces, have_their_sq_and_meet_at_seams) {
+TEST(SubSurfaces, HaveTheirSqAndMeetAtSeams) {
     const Specimen made = make({.shape = air()});
     const HeightField& field = field_of(made);
     const auto sq = [&](int tile_column, int tile_row) {
@@ -178,7 +178,7 @@ TEST(SubSurfaces, have_their_sq_and_meet_at_seams) {
     EXPECT_LT(step(100), 0.0004);
 }
 
-TEST(SubSurfaces, of_a_measured_surface_repeat_its_middle) {
+TEST(SubSurfaces, OfAMeasuredSurfaceRepeatItsMiddle) {
     const auto file = std::filesystem::path(testing::TempDir()) / "vkfv_sub_surfaces.x3p";
     surface::HeightMap map{.height = Grid<double>(61, 51), .x0 = 0, .y0 = 0, .pitch_x = 0.002, .pitch_y = 0.002};
     for (int row = 0; row < 51; ++row)
@@ -208,7 +208,7 @@ TEST(SubSurfaces, of_a_measured_surface_repeat_its_middle) {
     std::filesystem::remove(file);
 }
 
-TEST(SubSurfaces, other_seeds_make_other_surfaces) {
+TEST(SubSurfaces, OtherSeedsMakeOtherSurfaces) {
     Air d = air();
     const Specimen first = make({.shape = d});
     d.seed = 4;
@@ -220,7 +220,7 @@ TEST(SubSurfaces, other_seeds_make_other_surfaces) {
     EXPECT_LT(std::abs(product) / 401 / 401 / (0.0015 * 0.0015), 0.5);
 }
 
-TEST(Star, sectors_alternate_and_end_at_the_radius) {
+TEST(Star, SectorsAlternateAndEndAtTheRadius) {
     auto d = over<Star>(0.2, 0.001);
     d.petals = 8;
     d.radius = 0.08;
@@ -235,7 +235,7 @@ TEST(Star, sectors_alternate_and_end_at_the_radius) {
     }
 }
 
-TEST(Groove, has_its_width_and_depth) {
+TEST(Groove, HasItsWidthAndDepth) {
     auto d = over<Groove>(0.2, 0.001);
     d.width = 0.05;
     d.depth = 0.003;

@@ -118,7 +118,7 @@ specimen::Specimen with_material(specimen::Specimen specimen, const specimen::Ma
 } // namespace
 
 // One scatter event and up to four, on facets so steep that light meets them again.
-TEST(Backward, estimates_the_image_that_forward_does) {
+TEST(Backward, EstimatesTheImageThatForwardDoes) {
     const auto instrument = optics::assemble(small_description());
     const auto rough = test::rough_specimen();
     expect_agreement(forward_image(instrument, rough, 1), backward_image(instrument, rough, 1));
@@ -127,7 +127,7 @@ TEST(Backward, estimates_the_image_that_forward_does) {
 }
 
 // Wrong twins: a slightly sharper lobe, and a bounce too few, are told apart.
-TEST(Backward, another_specimen_does_not_pass) {
+TEST(Backward, AnotherSpecimenDoesNotPass) {
     const auto instrument = optics::assemble(ideal_description());
     const auto rough = test::rough_specimen(0.65);
     EXPECT_LT(agreement(forward_image(instrument, rough, 1), backward_image(instrument, test::rough_specimen(0.68), 1)),
@@ -139,7 +139,7 @@ TEST(Backward, another_specimen_does_not_pass) {
 // What the source shows for sure is looked at apart from its rim: the same image. How much less noise that is depends
 // on the specimen; here it is no more, as it would be if the rim's directions were a poor lattice: ten times the
 // variance.
-TEST(Backward, tells_the_rim_of_the_source_apart) {
+TEST(Backward, TellsTheRimOfTheSourceApart) {
     auto description = small_description();
     description.field_stop_radius = 0.3; // so that all of the detector sees the source's middle for sure
     const auto instrument = optics::assemble(description);
@@ -160,7 +160,7 @@ TEST(Backward, tells_the_rim_of_the_source_apart) {
     EXPECT_LT(agreement(forward, backward_image(too_sure, rough, 1)), level);
 }
 
-TEST(Backward, knows_every_material) {
+TEST(Backward, KnowsEveryMaterial) {
     const auto instrument = optics::assemble(ideal_description());
     const auto rough = test::rough_specimen();
     const specimen::Material mixture{
@@ -180,7 +180,7 @@ TEST(Backward, knows_every_material) {
 
 // GGX loses light at each event, and not the same backward: with the lobe as wide as the source's cone, sharper, and
 // much wider, on facets that light meets again.
-TEST(Backward, knows_what_a_lossy_lobe_absorbs) {
+TEST(Backward, KnowsWhatALossyLobeAbsorbs) {
     const auto instrument = optics::assemble(ideal_description());
     const auto rough = test::rough_specimen();
     for (const double alpha : {0.03, 0.2, 0.7}) {
@@ -197,7 +197,7 @@ TEST(Backward, knows_what_a_lossy_lobe_absorbs) {
 }
 
 // Losses at interfaces, a spectrum, parts that stand askew, a cube: whatever makes the trains differ.
-TEST(Backward, knows_every_instrument) {
+TEST(Backward, KnowsEveryInstrument) {
     const auto rough = test::rough_specimen();
     auto lossy = small_description();
     lossy.interfaces.model = optics::Interfaces::Model::fresnel;
@@ -220,7 +220,7 @@ TEST(Backward, knows_every_instrument) {
     }
 }
 
-TEST(Backward, every_traversal_gives_the_same_image) {
+TEST(Backward, EveryTraversalGivesTheSameImage) {
     const auto instrument = optics::assemble(small_description());
     const auto specimen = test::steep_specimen(0.65);
     auto with = options(trace::Estimator::backward, 1 << 16, 3);
@@ -243,7 +243,7 @@ TEST(Backward, every_traversal_gives_the_same_image) {
 
 // In double and in float: the same points, so the same values but for paths within rounding of an edge, and of the
 // choice between two candidates.
-TEST(Backward, host_and_device_follow_the_same_paths) {
+TEST(Backward, HostAndDeviceFollowTheSamePaths) {
     const auto instrument = optics::assemble(small_description());
     const auto specimen = test::steep_specimen(0.65);
     const auto with = options(trace::Estimator::backward, 1 << 14, 3);
@@ -266,7 +266,7 @@ TEST(Backward, host_and_device_follow_the_same_paths) {
 }
 
 // More paths than two of the largest lattices have.
-TEST(Backward, host_and_device_follow_the_same_paths_of_three_randomisations) {
+TEST(Backward, HostAndDeviceFollowTheSamePathsOfThreeRandomisations) {
     auto description = small_description();
     description.detector_pixels = {2, 1};
     description.detector_width = 0.32;
@@ -282,7 +282,7 @@ TEST(Backward, host_and_device_follow_the_same_paths_of_three_randomisations) {
     }
 }
 
-TEST(Backward, bits_do_not_depend_on_the_batch) {
+TEST(Backward, BitsDoNotDependOnTheBatch) {
     const auto instrument = optics::assemble(ideal_description());
     const auto specimen = test::rough_specimen();
     auto with = options(trace::Estimator::backward, 1 << 16, 2);
@@ -295,7 +295,7 @@ TEST(Backward, bits_do_not_depend_on_the_batch) {
 
 // The mean of the stated variances is the variance over images: their ratio has a relative spread of about
 // sqrt(2 / 256 (1 / 15 + 1)), the stated one with one degree of freedom a pixel and image; five of those are allowed.
-TEST(Backward, states_its_standard_error) {
+TEST(Backward, StatesItsStandardError) {
     const auto instrument = optics::assemble(ideal_description());
     const auto specimen = test::plane_specimen(0.3);
     constexpr int images = 16;
@@ -320,7 +320,7 @@ TEST(Backward, states_its_standard_error) {
 
 // What the gates promise, for each microscope of the library, in double: all light within the inner one is from the
 // source, none outside the outer one.
-TEST(Backward, gates_hold_for_every_microscope) {
+TEST(Backward, GatesHoldForEveryMicroscope) {
     for (const char* objective : objectives) {
         SCOPED_TRACE(objective);
         const auto description = with_objective(objective);
@@ -362,7 +362,7 @@ TEST(Backward, gates_hold_for_every_microscope) {
 }
 
 // So that a stack is not continued by a program that draws others.
-TEST(Backward, identity_knows_what_paths_are_drawn_by) {
+TEST(Backward, IdentityKnowsWhatPathsAreDrawnBy) {
     const auto instrument = optics::assemble(small_description());
     auto other = instrument;
     other.turned->pupil_rim *= 1.001;
@@ -381,7 +381,7 @@ TEST(Backward, identity_knows_what_paths_are_drawn_by) {
 
 // Where the pupil ends in the disc that paths start from: after so many of a lattice's points for every shift. Between
 // two numbers, the wrong twin, it is one or the other.
-TEST(Backward, the_pupils_rim_adds_no_noise) {
+TEST(Backward, ThePupilsRimAddsNoNoise) {
     for (const char* objective : objectives) {
         SCOPED_TRACE(objective);
         auto description = with_objective(objective);
@@ -445,7 +445,7 @@ TEST(Backward, the_pupils_rim_adds_no_noise) {
 }
 
 // An LED's die: narrower than the pupil one way, wider the other.
-TEST(Backward, knows_a_rectangular_source) {
+TEST(Backward, KnowsARectangularSource) {
     auto description = ideal_description();
     description.source.rectangle = glm::dvec2(2.4, 0.9);
     const auto rough = test::rough_specimen();
@@ -475,7 +475,7 @@ TEST(Backward, knows_a_rectangular_source) {
 
 // Light from one side, past the objective: segments with gaps, wide and sharp lobes, mirrors, a spectrum, a cover
 // glass.
-TEST(Backward, knows_a_ring_light) {
+TEST(Backward, KnowsARingLight) {
     auto description = ideal_description();
     description.detector_width = 0.64;
     description.greatest_defocus = 0.02;
@@ -515,7 +515,7 @@ TEST(Backward, knows_a_ring_light) {
 }
 
 // Points that are drawn on a wide band are met by the rays that go there, and gaps and what is beside the band are not.
-TEST(RingLight, is_met_where_it_is_drawn) {
+TEST(RingLight, IsMetWhereItIsDrawn) {
     RingLight ring{};
     ring.distance = 25;
     ring.elevation_sine = std::sin(0.7);
@@ -552,7 +552,7 @@ TEST(RingLight, is_met_where_it_is_drawn) {
 }
 
 // Columns and rows are told apart, and what lies between the sensitive parts of the pixels is not seen.
-TEST(Backward, knows_rectangular_detectors_with_gaps) {
+TEST(Backward, KnowsRectangularDetectorsWithGaps) {
     auto description = ideal_description();
     description.detector_pixels = {24, 9};
     description.detector_width = 24 * 0.02;
@@ -598,7 +598,7 @@ TEST(Backward, knows_rectangular_detectors_with_gaps) {
 }
 
 // Each coordinate alone visits every n-th of the interval once, and no two coordinates are one.
-TEST(Lattice, every_coordinate_is_stratified) {
+TEST(Lattice, EveryCoordinateIsStratified) {
     for (std::uint32_t bits = 0; bits < trace::lattice_generators.size(); ++bits) {
         const auto& z = trace::lattice_generators[bits];
         const std::uint32_t n = 1u << bits;

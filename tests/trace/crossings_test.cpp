@@ -9,7 +9,7 @@
 using namespace vkfv;
 
 // By the names of the ledger's rows, which say where light ended.
-TEST(Crossings, are_those_of_the_ledger) {
+TEST(Crossings, AreThoseOfTheLedger) {
     const auto instrument = optics::assemble(test::microscope_description());
     const auto specimen = test::rough_specimen();
     trace::TraceOptions options;

@@ -33,7 +33,7 @@ double blur_diameter(const optics::Instrument& instrument, double height, double
 // square of the aperture; the blur follows the derivative of aperture times offence, three times as much: 0.8 %.
 // Spherical aberration cancels to first order in the mean of equal defocus to both sides, and leaves (7 um / 200 um)^2,
 // 0.1 %.
-TEST(Defocus, the_blur_has_the_diameter_of_the_marginal_cone) {
+TEST(Defocus, TheBlurHasTheDiameterOfTheMarginalCone) {
     const auto instrument = test::microscope();
     const double na = instrument.first_order.numerical_aperture * (1 - 1e-6);
     const double z = 0.2;

@@ -50,7 +50,7 @@ double power_of(const trace::Ledger& ledger, const std::string& name) {
 
 } // namespace
 
-TEST(DetectorAim, makes_the_image_of_all_light_with_fewer_rays) {
+TEST(DetectorAim, MakesTheImageOfAllLightWithFewerRays) {
     const auto aimed = aimed_microscope();
     auto whole = aimed;
     whole.single_scatter_aim.reset();
@@ -76,7 +76,7 @@ TEST(DetectorAim, makes_the_image_of_all_light_with_fewer_rays) {
 }
 
 // Only for paths that cannot come back from beside the field.
-TEST(DetectorAim, is_taken_for_single_scatter_alone) {
+TEST(DetectorAim, IsTakenForSingleScatterAlone) {
     const auto instrument = aimed_microscope();
     const auto is_taken = [&](const trace::TraceOptions& options) {
         return (trace::as_traced(instrument, options).features & FEATURE_AIMED_RECTANGLE) != 0;
@@ -98,7 +98,7 @@ TEST(DetectorAim, is_taken_for_single_scatter_alone) {
 }
 
 // Fates as the host's in double; those within float rounding of an edge may differ (Paths.*).
-TEST(DetectorAim, host_and_device_trace_the_same_paths) {
+TEST(DetectorAim, HostAndDeviceTraceTheSamePaths) {
     const auto instrument = optics::aimed_for_single_scatter(aimed_microscope());
     ASSERT_NE(instrument.features & FEATURE_AIMED_RECTANGLE, 0u);
     const auto specimen = high_specimen();

@@ -80,7 +80,7 @@ double power(const trace::Image& image, const std::string& name) {
 // A plane that scatters by Lambert's law under the middle of the gate, which is a circle of the slope r there: the
 // share r^2 / (1 + r^2) of its light passes. Both samples together have that mean; either with the weight 1 has
 // another.
-TEST(DirectedScatter, both_samples_together_have_the_mean_of_the_light_in_the_gate) {
+TEST(DirectedScatter, BothSamplesTogetherHaveTheMeanOfTheLightInTheGate) {
     const auto instrument = test::microscope().constants;
     const Lobe lambertian{SCATTER_LAMBERTIAN, 1, 0, 0, 0, 0, {}};
     const real3 down(std::sin(0.3), 0, -std::cos(0.3)), up(0, 0, 1);
@@ -110,7 +110,7 @@ TEST(DirectedScatter, both_samples_together_have_the_mean_of_the_light_in_the_ga
     EXPECT_GT(std::abs(aimed_alone / draws - share) / error, 4.0);
 }
 
-TEST(DirectedScatter, the_aim_is_the_gate) {
+TEST(DirectedScatter, TheAimIsTheGate) {
     const auto instrument = test::microscope().constants;
     int inside = 0, outside = 0;
     constexpr int points = 2000;
@@ -128,7 +128,7 @@ TEST(DirectedScatter, the_aim_is_the_gate) {
 
 // Chi-square per pixel and a z-test of the sum, eighteen tests that err together once in 1e4. Two fifths of the light
 // missing is found out.
-TEST(DirectedScatter, the_expected_image_is_the_analog_one) {
+TEST(DirectedScatter, TheExpectedImageIsTheAnalogOne) {
     const auto instrument = coarse_microscope();
     const double level = test::sidak(1e-4, 18);
     const double z_limit = 4.5; // two-sided, 7e-6
@@ -160,7 +160,7 @@ TEST(DirectedScatter, the_expected_image_is_the_analog_one) {
 }
 
 // At g = 0.3 a tenth of the light in the lobe enters the pupil.
-TEST(DirectedScatter, the_image_has_less_noise) {
+TEST(DirectedScatter, TheImageHasLessNoise) {
     const auto instrument = coarse_microscope();
     const auto specimen = test::rough_specimen(0.3);
     const auto analog = expose(instrument, specimen, options(false));
@@ -170,7 +170,7 @@ TEST(DirectedScatter, the_image_has_less_noise) {
 
 // Over images of other random numbers the residual varies as its stated error says: chi-square of 16 of them, 1e-4
 // each.
-TEST(DirectedScatter, the_ledger_closes_in_expectation) {
+TEST(DirectedScatter, TheLedgerClosesInExpectation) {
     const auto instrument = coarse_microscope();
     for (const auto& [specimen, bounces] :
          {std::pair{mixed_specimen(), 1}, {mixed_specimen(), 4}, {lossy_specimen(), 1}, {lossy_specimen(), 4}}) {
@@ -196,7 +196,7 @@ TEST(DirectedScatter, the_ledger_closes_in_expectation) {
 }
 
 // A mirror cannot be aimed: every ray keeps its way and its weight 1.
-TEST(DirectedScatter, a_mirror_stays_as_it_was) {
+TEST(DirectedScatter, AMirrorStaysAsItWas) {
     const auto instrument = coarse_microscope();
     auto specimen = test::rough_specimen(0);
     for (const specimen::Lobe& lobe : {specimen::Lobe{"mirror", 1, {}}, specimen::Lobe{"henyey-greenstein", 1, {1}}}) {
@@ -211,7 +211,7 @@ TEST(DirectedScatter, a_mirror_stays_as_it_was) {
     }
 }
 
-TEST(DirectedScatter, bits_do_not_depend_on_the_batch) {
+TEST(DirectedScatter, BitsDoNotDependOnTheBatch) {
     const auto instrument = coarse_microscope();
     const auto specimen = mixed_specimen();
     const auto reference = expose(instrument, specimen, options(true, 4));
@@ -227,7 +227,7 @@ TEST(DirectedScatter, bits_do_not_depend_on_the_batch) {
 }
 
 // The same paths by every traversal and in double: images differ by ties within rounding alone, as in the analog form.
-TEST(DirectedScatter, traversals_and_host_give_the_same_image) {
+TEST(DirectedScatter, TraversalsAndHostGiveTheSameImage) {
     const auto instrument = coarse_microscope();
     const auto specimen = test::steep_specimen(0.65);
     const auto quadtree = expose(instrument, specimen, options(true, 3));
@@ -251,7 +251,7 @@ TEST(DirectedScatter, traversals_and_host_give_the_same_image) {
 
 // Path by path: the same fate, place and weight but for ties within rounding, which mirrors on facets enlarge: 76 of
 // 16146 that arrived when this was written, and 8 of 770 in the analog form.
-TEST(DirectedScatter, host_and_device_trace_the_same_paths) {
+TEST(DirectedScatter, HostAndDeviceTraceTheSamePaths) {
     const auto instrument = test::microscope();
     const auto specimen = mixed_specimen();
     constexpr std::uint32_t paths = 30000;

@@ -29,7 +29,7 @@ double difference(const trace::Image& first, const trace::Image& second, int rig
 
 } // namespace
 
-TEST(Displacement, moves_the_image) {
+TEST(Displacement, MovesTheImage) {
     auto description = test::microscope_description();
     description.field_stop_radius = 0.25;
     description.detector_width = side * 0.02;

@@ -83,7 +83,7 @@ double mean_step(const optics::Instrument& instrument, const DrawsOf& draws_of) 
 
 } // namespace
 
-TEST(EmissionOrder, cells_have_as_many_paths_as_independent_ones_would_bring) {
+TEST(EmissionOrder, CellsHaveAsManyPathsAsIndependentOnesWouldBring) {
     const auto instrument = test::microscope();
     for (const std::uint64_t paths : {60, 3000, 100000}) {
         const EmissionOrder order(instrument, paths, seed);
@@ -122,7 +122,7 @@ TEST(EmissionOrder, cells_have_as_many_paths_as_independent_ones_would_bring) {
     }
 }
 
-TEST(EmissionOrder, images_and_seeds_differ_and_the_same_are_the_same) {
+TEST(EmissionOrder, ImagesAndSeedsDifferAndTheSameAreTheSame) {
     const auto instrument = test::microscope();
     const EmissionOrder order(instrument, 10000, seed);
     EXPECT_EQ(order.first_paths(3), EmissionOrder(instrument, 10000, seed).first_paths(3));
@@ -130,7 +130,7 @@ TEST(EmissionOrder, images_and_seeds_differ_and_the_same_are_the_same) {
     EXPECT_NE(order.first_paths(3), EmissionOrder(instrument, 10000, seed + 1).first_paths(3));
 }
 
-TEST(EmissionOrder, cells_are_all_of_the_cube_and_apart) {
+TEST(EmissionOrder, CellsAreAllOfTheCubeAndApart) {
     for (const auto& instrument : {test::microscope(), ring_microscope()}) {
         const EmissionOrder order(instrument, 1000000, seed);
         ASSERT_EQ(order.cells(), 4096U);
@@ -145,7 +145,7 @@ TEST(EmissionOrder, cells_are_all_of_the_cube_and_apart) {
     }
 }
 
-TEST(EmissionOrder, a_path_is_in_the_cell_of_its_number) {
+TEST(EmissionOrder, APathIsInTheCellOfItsNumber) {
     const EmissionOrder order(test::microscope(), 5000, seed);
     const EmissionCells cells(order, 2);
     const auto first = order.first_paths(2);
@@ -160,7 +160,7 @@ TEST(EmissionOrder, a_path_is_in_the_cell_of_its_number) {
     EXPECT_EQ(EmissionCells(EmissionOrder(), 0).of(7).drawn, all_emission().drawn);
 }
 
-TEST(EmissionOrder, numbers_are_uniform_over_all_paths) {
+TEST(EmissionOrder, NumbersAreUniformOverAllPaths) {
     constexpr std::uint32_t paths = 200000;
     constexpr int bins = 64;
     const EmissionOrder order(test::microscope(), paths, seed);
@@ -187,7 +187,7 @@ TEST(EmissionOrder, numbers_are_uniform_over_all_paths) {
     EXPECT_GT(std::ranges::max(excesses(paths / 2)), 100); // wrong twin: half of the cells, half of the field
 }
 
-TEST(EmissionOrder, consecutive_paths_arrive_close_together) {
+TEST(EmissionOrder, ConsecutivePathsArriveCloseTogether) {
     // 2^17 cells, of which 2^15 divide the disc's field. Of a ring light place and direction both say where light
     // arrives: 2^(17 / 4) pieces of each of the four numbers, all of which move it. A quarter of
     // the cells would be too few: steps of 0.06 and 0.23.

@@ -55,7 +55,7 @@ bool overlap(const Box& box, glm::dvec2 lower, glm::dvec2 upper) {
 
 } // namespace
 
-TEST(EntryNodes, hold_all_that_is_over_a_cell_and_its_neighbours) {
+TEST(EntryNodes, HoldAllThatIsOverACellAndItsNeighbours) {
     const glm::dvec2 lower(-0.4, 0.1), upper(0.9, 0.8);
     const auto boxes = boxes_over(lower, upper, 48);
     const auto tree = build_hierarchy(boxes, 1);

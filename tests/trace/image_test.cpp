@@ -45,7 +45,7 @@ double same_expectation_p(const trace::Image& a, const trace::Image& b) {
 
 } // namespace
 
-TEST(Image, the_ledger_closes_for_analog_and_aimed_emission) {
+TEST(Image, TheLedgerClosesForAnalogAndAimedEmission) {
     const auto specimen = test::rough_specimen();
     for (const bool directed : {false, true}) {
         auto description = test::microscope_description();
@@ -72,7 +72,7 @@ TEST(Image, the_ledger_closes_for_analog_and_aimed_emission) {
 
 // Uncoated interfaces: every loss is counted at its surface. Light from the source meets the first one, of B270 (n
 // = 1.523 at d), all but normally.
-TEST(Image, the_ledger_counts_what_interfaces_reflect) {
+TEST(Image, TheLedgerCountsWhatInterfacesReflect) {
     auto description = test::microscope_description();
     const auto ideal = optics::assemble(description);
     description.interfaces.model = optics::Interfaces::Model::fresnel;
@@ -105,7 +105,7 @@ TEST(Image, the_ledger_counts_what_interfaces_reflect) {
 
 // Power per ray: whole before the splitter, R beyond it, R (1 - R) beyond its second pass; a wrong split would still
 // close.
-TEST(Image, the_ledger_gives_each_loss_the_power_it_carried) {
+TEST(Image, TheLedgerGivesEachLossThePowerItCarried) {
     auto description = test::microscope_description();
     description.splitter.reflectance = 0.3;
     description.splitter.transmittance = 0.7;
@@ -130,7 +130,7 @@ TEST(Image, the_ledger_gives_each_loss_the_power_it_carried) {
 }
 
 // Analog emission and emission into what can arrive have the same expectation of detected power.
-TEST(Image, aimed_emission_detects_the_power_of_the_whole_source) {
+TEST(Image, AimedEmissionDetectsThePowerOfTheWholeSource) {
     auto description = test::microscope_description();
     description.source.radius = 0.2;
     const auto aimed = optics::assemble(description);
@@ -149,7 +149,7 @@ TEST(Image, aimed_emission_detects_the_power_of_the_whole_source) {
     EXPECT_GT(std::abs(1.3 * power(a) - power(b)) / std::hypot(error(a), error(b)), 4.0); // wrong twin
 }
 
-TEST(Image, bits_do_not_depend_on_the_batch_or_the_run) {
+TEST(Image, BitsDoNotDependOnTheBatchOrTheRun) {
     const auto instrument = test::microscope();
     const auto specimen = test::rough_specimen();
     const auto reference = expose(instrument, specimen, options());
@@ -169,7 +169,7 @@ TEST(Image, bits_do_not_depend_on_the_batch_or_the_run) {
 
 // The same paths meet the same facets: the two traversals differ in a few detections of ties within rounding. The
 // images also agree with the host's, and a specimen of another g does not.
-TEST(Image, traversals_and_host_give_the_same_image) {
+TEST(Image, TraversalsAndHostGiveTheSameImage) {
     const auto instrument = test::microscope();
     const auto specimen = test::rough_specimen();
     const auto quadtree = expose(instrument, specimen, options());
@@ -193,7 +193,7 @@ TEST(Image, traversals_and_host_give_the_same_image) {
 
 // An instrument of more surfaces than a kernel has as constants is traced from the uniform block. Stops without an edge
 // behind the last lens make it one and change nothing but, within rounding, where a few rays meet a pixel's border.
-TEST(Image, an_instrument_in_constants_gives_the_image_of_one_in_a_buffer) {
+TEST(Image, AnInstrumentInConstantsGivesTheImageOfOneInABuffer) {
     const auto instrument = test::microscope();
     auto padded = instrument;
     const auto& last = instrument.surfaces.back();
@@ -223,7 +223,7 @@ TEST(Image, an_instrument_in_constants_gives_the_image_of_one_in_a_buffer) {
 
 // The illumination as polynomials: what becomes of light in it is the same ray by ray, and where it arrives differs by
 // less than 0.2 um, which moves a few in a hundred to another facet and changes no expectation.
-TEST(Image, an_illumination_in_polynomials_gives_the_image_of_one_that_is_traced) {
+TEST(Image, AnIlluminationInPolynomialsGivesTheImageOfOneThatIsTraced) {
     const auto instrument = test::microscope();
     const auto specimen = test::rough_specimen();
     auto in_constants = options();
@@ -251,7 +251,7 @@ TEST(Image, an_illumination_in_polynomials_gives_the_image_of_one_that_is_traced
 
 // One scatter event on a plane: every ray that comes to the specimen is absorbed or not by its reflectance, and the
 // ledger closes with its power in a row of its own. As many bounces change nothing, as a plane is met once.
-TEST(Image, what_the_specimen_does_not_reflect_is_absorbed) {
+TEST(Image, WhatTheSpecimenDoesNotReflectIsAbsorbed) {
     const auto instrument = test::microscope();
     specimen::Specimen plane = test::plane_specimen(0.0);
     const auto count = [](const trace::Image& image, const std::string& name) {
@@ -294,7 +294,7 @@ TEST(Image, what_the_specimen_does_not_reflect_is_absorbed) {
 // White furnace with every bounce permitted: whatever reaches the specimen leaves it again. Of 400 000 paths about 7
 // are under way after 16 bounces, 1 after 32 and one in six times 1 after 64, where the reference in double says how
 // many; at 256 chance has no say.
-TEST(Image, a_rough_specimen_loses_nothing_to_bounces) {
+TEST(Image, ARoughSpecimenLosesNothingToBounces) {
     const auto instrument = test::microscope();
     const auto specimen = test::steep_specimen(0.0);
     auto with = options();

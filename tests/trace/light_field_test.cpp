@@ -145,7 +145,7 @@ optics::LightField grating(double magnification) {
 } // namespace
 
 // The light's frame is the specimen's turned half a turn about x, and the stop's image upside down.
-TEST(LightField, falls_off_from_its_brightest_place) {
+TEST(LightField, FallsOffFromItsBrightestPlace) {
     optics::LightField light = even();
     light.record.falloff = 10;
     light.record.brightest_x = 0.06;
@@ -177,7 +177,7 @@ TEST(LightField, falls_off_from_its_brightest_place) {
 
 // A mirror shows the stop's plane: in focus a grating has the pixels' contrast alone. Out of focus by h its light comes
 // from within 2 h tan(theta), uniform over the aperture's direction cosines.
-TEST(LightField, a_mirror_shows_a_grating_and_loses_it_out_of_focus) {
+TEST(LightField, AMirrorShowsAGratingAndLosesItOutOfFocus) {
     const auto bare_instrument = with(std::nullopt);
     const auto instrument = with(grating(bare_instrument.first_order.field_stop_magnification));
     const auto mirror = flat("mirror");
@@ -207,7 +207,7 @@ TEST(LightField, a_mirror_shows_a_grating_and_loses_it_out_of_focus) {
 }
 
 // Forward from the source, backward from the pixels, and light that finds its own way.
-TEST(LightField, all_ways_of_tracing_have_one_expectation) {
+TEST(LightField, AllWaysOfTracingHaveOneExpectation) {
     const auto instrument = with(uneven());
     const auto specimen = test::smooth_specimen();
     const auto backward = options(Estimator::backward, 1 << 18, 2);
@@ -231,7 +231,7 @@ TEST(LightField, all_ways_of_tracing_have_one_expectation) {
 }
 
 // A reticle: the pattern is on the first face of a plate of glass.
-TEST(LightField, is_met_on_glass_by_all_ways_of_tracing) {
+TEST(LightField, IsMetOnGlassByAllWaysOfTracing) {
     auto description = small_description();
     auto& surfaces = description.illumination.surfaces;
     const auto front = std::ranges::find(surfaces, optics::SurfaceRole::field_stop, &optics::PrescribedSurface::role);
@@ -260,7 +260,7 @@ TEST(LightField, is_met_on_glass_by_all_ways_of_tracing) {
 }
 
 // What the pattern takes is an entry at the stop: half of what comes through the hole around it.
-TEST(LightField, the_ledger_counts_what_the_pattern_takes) {
+TEST(LightField, TheLedgerCountsWhatThePatternTakes) {
     optics::LightField light = even();
     light.record.pattern.lowest = 0.2;
     light.record.pattern.highest = 0.8;

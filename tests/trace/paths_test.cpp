@@ -36,7 +36,7 @@ bool same_fate(const trace::PathEnd& a, const trace::PathEnd& b) {
 // rounding. In object space the float error of a train is 4 nm rms and 25 nm at most (measured on prototypes), so those
 // change their fate or place in double too when the source is scaled by up to 1e-4 (10 nm at the field's edge) or the
 // focus moved by up to 20 nm. Positions: at the detector, ten times larger, 0.5 um bounds every other path.
-TEST(Paths, host_and_device_trace_the_same_paths) {
+TEST(Paths, HostAndDeviceTraceTheSamePaths) {
     const auto instrument = test::microscope();
     const auto specimen = test::steep_specimen(0.65);
     const auto host = trace::host_paths(instrument, specimen, options(), focal_height, 7, 0, paths);
@@ -93,7 +93,7 @@ TEST(Paths, host_and_device_trace_the_same_paths) {
 }
 
 // Wrong twin of the comparison: a device that traced other paths would be found out.
-TEST(Paths, other_paths_do_not_pass_for_the_same) {
+TEST(Paths, OtherPathsDoNotPassForTheSame) {
     const auto instrument = test::microscope();
     const auto specimen = test::rough_specimen();
     const auto host = trace::host_paths(instrument, specimen, options(), focal_height, 7, 0, 2000);
@@ -106,7 +106,7 @@ TEST(Paths, other_paths_do_not_pass_for_the_same) {
 }
 
 // Gate wide open: the same detections, one by one. A gate shrunk by a tenth loses some.
-TEST(Paths, the_gate_turns_no_detected_light_away) {
+TEST(Paths, TheGateTurnsNoDetectedLightAway) {
     const auto instrument = test::microscope();
     const auto specimen = test::plane_specimen(0.3);
     auto open = instrument;

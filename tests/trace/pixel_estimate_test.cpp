@@ -50,7 +50,7 @@ Estimate::Estimated found_by(const vulkan::Device& device, const Estimate& estim
 
 } // namespace
 
-TEST(PixelEstimate, of_counts_is_that_of_so_many_of_the_rays) {
+TEST(PixelEstimate, OfCountsIsThatOfSoManyOfTheRays) {
     // N of n rays: mean scale N, variance N (1 - N / n).
     const std::vector<std::uint64_t> counts = {0, 400, 1'000'000};
     const auto light = trace::estimate_pixels(rule_of(estimate::ESTIMATE_COUNTS, 1'000'000), ImageSize{3, 1}, counts);
@@ -60,7 +60,7 @@ TEST(PixelEstimate, of_counts_is_that_of_so_many_of_the_rays) {
     EXPECT_EQ(light.standard_error.values[2], 0);
 }
 
-TEST(PixelEstimate, of_weights_is_that_of_rays_with_these_weights) {
+TEST(PixelEstimate, OfWeightsIsThatOfRaysWithTheseWeights) {
     // Weights 1/2, 1/2 and 2: sum 3, squares 4.5, in their units.
     const std::vector<std::uint64_t> numbers = {3u << 22, 75'497'472};
     const auto light = trace::estimate_pixels(rule_of(estimate::ESTIMATE_WEIGHTS, 90), ImageSize{1, 1}, numbers);
@@ -68,7 +68,7 @@ TEST(PixelEstimate, of_weights_is_that_of_rays_with_these_weights) {
     EXPECT_NEAR(light.standard_error.values[0], 3.1e-9 * std::sqrt(4.5 - 9.0 / 90), 1e-22);
 }
 
-TEST(PixelEstimate, of_two_randomisations_errs_by_half_of_their_difference) {
+TEST(PixelEstimate, OfTwoRandomisationsErrsByHalfOfTheirDifference) {
     const std::vector<std::uint64_t> numbers = {3u << 22, 1, 5u << 22, 9}; // one of padding
     const auto light =
         trace::estimate_pixels(rule_of(estimate::ESTIMATE_RANDOMISATIONS, 2), ImageSize{1, 1}, numbers, 2);
@@ -76,7 +76,7 @@ TEST(PixelEstimate, of_two_randomisations_errs_by_half_of_their_difference) {
     EXPECT_DOUBLE_EQ(light.standard_error.values[0], 3.1e-9 * 1);
 }
 
-TEST(PixelEstimate, has_the_same_bits_by_the_device_and_by_the_host) {
+TEST(PixelEstimate, HasTheSameBitsByTheDeviceAndByTheHost) {
     const vulkan::Device device;
     ASSERT_TRUE(device.report().doubles); // else both would be the host's
     struct Case {
@@ -113,7 +113,7 @@ TEST(PixelEstimate, has_the_same_bits_by_the_device_and_by_the_host) {
 }
 
 // Whose pixels need more workgroups than a row of them holds.
-TEST(PixelEstimate, reaches_every_pixel_of_a_large_detector) {
+TEST(PixelEstimate, ReachesEveryPixelOfALargeDetector) {
     const vulkan::Device device;
     constexpr ImageSize large{3000, 2800};
     std::vector<std::uint64_t> numbers(large.count());
@@ -129,7 +129,7 @@ TEST(PixelEstimate, reaches_every_pixel_of_a_large_detector) {
     EXPECT_TRUE(found.pixels.flux.values == expected);
 }
 
-TEST(PixelEstimate, of_waves_is_their_light_with_the_noise_that_filtering_leaves) {
+TEST(PixelEstimate, OfWavesIsTheirLightWithTheNoiseThatFilteringLeaves) {
     const auto instrument = test::microscope();
     const vulkan::Device device;
     constexpr ImageSize pixels{20, 12}; // sides of small primes: their transforms are made ready soon

@@ -143,7 +143,7 @@ void expect_precise(const optics::Instrument& instrument, Train train, const std
 
 class Precision : public ::testing::TestWithParam<std::tuple<const char*, const char*>> {};
 
-TEST_P(Precision, of_the_imaging_train_in_float) {
+TEST_P(Precision, OfTheImagingTrainInFloat) {
     const auto [objective, tube_lens] = GetParam();
     const auto instrument = optics::assemble(described(objective, tube_lens));
     const auto& first_order = instrument.first_order;
@@ -166,7 +166,7 @@ INSTANTIATE_TEST_SUITE_P(Library, Precision,
 
 class IlluminationPrecision : public ::testing::TestWithParam<const char*> {};
 
-TEST_P(IlluminationPrecision, of_the_illumination_train_in_float) {
+TEST_P(IlluminationPrecision, OfTheIlluminationTrainInFloat) {
     const auto instrument = optics::assemble(described(GetParam(), "200mm"));
     const auto& constants = instrument.constants;
     const auto rays =

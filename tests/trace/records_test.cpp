@@ -94,7 +94,7 @@ vulkan::Buffer buffer_of(const vulkan::Device& device, std::span<const Value> va
 
 } // namespace
 
-TEST(Records, the_device_sees_every_field_where_the_host_wrote_it) {
+TEST(Records, TheDeviceSeesEveryFieldWhereTheHostWroteIt) {
     const vulkan::Device device;
     std::vector<Surface> surfaces(SURFACE_CAPACITY);
     std::vector<SpectralBin> bins(SPECTRUM_CAPACITY);

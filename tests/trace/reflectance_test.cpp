@@ -181,7 +181,7 @@ double difference(const trace::Image& one, const trace::Image& other) {
 } // namespace
 
 // Backward paths of the same points: pixels of the bare flat divide the illumination out.
-TEST(ReflectanceMap, a_grating_on_every_kind_of_specimen_and_in_every_traversal_has_its_closed_form) {
+TEST(ReflectanceMap, AGratingOnEveryKindOfSpecimenAndInEveryTraversalHasItsClosedForm) {
     const auto instrument = ideal_microscope();
     const auto quadtree = way("quadtree", Estimator::backward, 1 << 14, Traversal::quadtree);
     const auto bvh = way("bvh", Estimator::backward, 1 << 14, Traversal::bvh);
@@ -203,7 +203,7 @@ TEST(ReflectanceMap, a_grating_on_every_kind_of_specimen_and_in_every_traversal_
     }
 }
 
-TEST(ReflectanceMap, forward_paths_of_every_form_have_the_closed_form) {
+TEST(ReflectanceMap, ForwardPathsOfEveryFormHaveTheClosedForm) {
     const auto instrument = ideal_microscope();
     const auto flat = analytic_flat();
     const auto mapped = with_map(flat, grating());
@@ -217,7 +217,7 @@ TEST(ReflectanceMap, forward_paths_of_every_form_have_the_closed_form) {
 }
 
 // By ray queries the same paths as by the hierarchy of boxes, but for those within rounding of an edge.
-TEST(ReflectanceMap, nonsequential_paths_meet_the_same_map_by_ray_query) {
+TEST(ReflectanceMap, NonsequentialPathsMeetTheSameMapByRayQuery) {
     const auto instrument = ideal_microscope();
     const auto mapped = with_map(mesh_flat(), grating());
     const auto by = [&](Traversal traversal) {
@@ -229,7 +229,7 @@ TEST(ReflectanceMap, nonsequential_paths_meet_the_same_map_by_ray_query) {
 }
 
 // The wrong twin: the angle the other way is told by every way.
-TEST(ReflectanceMap, another_angle_has_no_such_frequency) {
+TEST(ReflectanceMap, AnotherAngleHasNoSuchFrequency) {
     const auto instrument = ideal_microscope();
     const auto by = way("backward", Estimator::backward, 1 << 16);
     const auto bare = expose(instrument, analytic_flat(), by);
@@ -240,7 +240,7 @@ TEST(ReflectanceMap, another_angle_has_no_such_frequency) {
 
 // Up to four bounces on facets so steep that light meets them again, a mixture of lobes: forward, which counts what the
 // map absorbs, against backward, which multiplies by the map.
-TEST(ReflectanceMap, estimators_agree_where_light_is_scattered_again) {
+TEST(ReflectanceMap, EstimatorsAgreeWhereLightIsScatteredAgain) {
     const auto instrument = ideal_microscope();
     auto steep = test::steep_specimen(0.65);
     steep.material.lobes = {{"lambertian", 0.5, {}}, {"henyey-greenstein", 0.3, {0.8}}, {"mirror", 0.1, {}}};
@@ -261,7 +261,7 @@ TEST(ReflectanceMap, estimators_agree_where_light_is_scattered_again) {
 }
 
 // The same paths in every traversal and on the host: what differs are those within rounding of an edge.
-TEST(ReflectanceMap, host_and_every_traversal_trace_the_same_paths) {
+TEST(ReflectanceMap, HostAndEveryTraversalTraceTheSamePaths) {
     const auto instrument = ideal_microscope();
     const auto mapped = with_map(test::steep_specimen(0.65), texture());
     const auto by = [&](Traversal traversal) {
@@ -283,7 +283,7 @@ TEST(ReflectanceMap, host_and_every_traversal_trace_the_same_paths) {
 }
 
 // What the map takes is absorbed: its mean of what arrives, and the ledger closes.
-TEST(ReflectanceMap, the_ledger_counts_what_the_map_absorbs) {
+TEST(ReflectanceMap, TheLedgerCountsWhatTheMapAbsorbs) {
     const auto instrument = ideal_microscope();
     const auto mapped = with_map(analytic_flat(), grating());
     using Status = trace::Ledger::Status;
@@ -310,7 +310,7 @@ TEST(ReflectanceMap, the_ledger_counts_what_the_map_absorbs) {
     }
 }
 
-TEST(ReflectanceMap, bits_do_not_depend_on_the_batch) {
+TEST(ReflectanceMap, BitsDoNotDependOnTheBatch) {
     const auto instrument = ideal_microscope();
     const auto mapped = with_map(test::rough_specimen(), texture());
     for (Way by : {way("backward", Estimator::backward, 1 << 16, Traversal::quadtree, 2),

@@ -31,7 +31,7 @@ void expect_same_bits(const optics::Instrument& instrument, const trace::TraceOp
 
 } // namespace
 
-TEST(SoftwareKernels, give_the_bits_of_those_for_gpus) {
+TEST(SoftwareKernels, GiveTheBitsOfThoseForGpus) {
     auto description = test::microscope_description();
     description.detector_pixels = ImageSize::square(32);
     description.turned = true;

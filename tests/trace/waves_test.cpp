@@ -166,7 +166,7 @@ double grating_contrast(const Grid<double>& image, double period, double angle, 
 
 } // namespace
 
-TEST(Waves, give_gratings_the_contrast_of_the_debye_integral) {
+TEST(Waves, GiveGratingsTheContrastOfTheDebyeIntegral) {
     constexpr double angle = 0.39; // rad, between a cell's side and its diagonal
     for (const double aperture : {0.28, 0.83}) {
         const auto instrument = ideal_microscope(aperture);
@@ -198,7 +198,7 @@ TEST(Waves, give_gratings_the_contrast_of_the_debye_integral) {
 }
 
 // A detector that stands askew sees the whole pupil from aside: by 5 degrees, three times the pupil's own half width.
-TEST(Waves, follow_a_detector_that_is_tilted) {
+TEST(Waves, FollowADetectorThatIsTilted) {
     constexpr double aperture = 0.28, s = 0.5, waves = 0.25, angle = 0.39, degrees = 5;
     const auto instrument = ideal_microscope(aperture, degrees * pi / 180);
     const double period = grating_wavelength / (2 * aperture * s);
@@ -217,7 +217,7 @@ TEST(Waves, follow_a_detector_that_is_tilted) {
 
 // H on the axis of the 10x for waves of 2.5 um, of a flat below, at and above best focus:
 // tests/references/wavefront_reference.py, transfer(). By rays alone it is 0.29, 0.69, 0.29.
-TEST(Waves, give_gratings_the_contrast_of_an_aberrated_objective) {
+TEST(Waves, GiveGratingsTheContrastOfAnAberratedObjective) {
     auto description = test::microscope_description();
     constexpr double period = 2.5e-3;
     description.detector_pixels = ImageSize::square(grating_pixels);
@@ -236,7 +236,7 @@ TEST(Waves, give_gratings_the_contrast_of_an_aberrated_objective) {
     }
 }
 
-TEST(Waves, take_fewer_parts_where_the_device_cannot_hold_them) {
+TEST(Waves, TakeFewerPartsWhereTheDeviceCannotHoldThem) {
     const auto instrument = ideal_microscope(0.28);
     auto coarse = instrument;
     coarse.first_order.pixel_pitch *= 6; // of an eighth of the shortest wave: three parts
@@ -272,7 +272,7 @@ TEST(Waves, take_fewer_parts_where_the_device_cannot_hold_them) {
 
 // Of limits as lavapipe has them. What the host transforms no kernel is given: 800 x 800 pixels needed 164 MB in one
 // binding of 134 MB, and 2448 x 2048 pixels need 2.6 GB of light, which is more than one allocation gives.
-TEST(Waves, of_many_pixels_fit_where_they_are_tiled) {
+TEST(Waves, OfManyPixelsFitWhereTheyAreTiled) {
     auto instrument = ideal_microscope(0.28);
     vulkan::DeviceReport device;
     device.name = "small";
@@ -318,7 +318,7 @@ TEST(Waves, of_many_pixels_fit_where_they_are_tiled) {
 }
 
 // Windows of one size within the image, whose filters' weights add up to 1 at every pixel; one tile is the whole image.
-TEST(Waves, windows_of_the_field_count_every_pixel_once) {
+TEST(Waves, WindowsOfTheFieldCountEveryPixelOnce) {
     for (const auto& [tiles, pixels, parts] : {std::tuple{1, ImageSize{20, 12}, 2},
                                                {3, ImageSize{320, 200}, 1},
                                                {5, ImageSize{701, 400}, 2},
@@ -350,7 +350,7 @@ TEST(Waves, windows_of_the_field_count_every_pixel_once) {
 }
 
 // How light is sorted is known before a tracer is made, and is that of the tracer's filter.
-TEST(Waves, are_told_apart_by_how_their_light_is_sorted) {
+TEST(Waves, AreToldApartByHowTheirLightIsSorted) {
     const auto instrument = turned_microscope();
     const auto specimen = test::rough_specimen();
     for (const auto estimator : {trace::Estimator::forward, trace::Estimator::backward}) {
@@ -372,7 +372,7 @@ TEST(Waves, are_told_apart_by_how_their_light_is_sorted) {
     }
 }
 
-TEST(Waves, keep_the_light_and_do_not_add_noise) {
+TEST(Waves, KeepTheLightAndDoNotAddNoise) {
     const auto instrument = test::microscope();
     for (const int parts : {1, 3}) {
         const optics::PupilFilter filter(instrument, {.cells = 8, .parts = parts});
@@ -390,7 +390,7 @@ TEST(Waves, keep_the_light_and_do_not_add_noise) {
 }
 
 // A grating along either side of a rectangle, and light that only a part of each pixel takes.
-TEST(Waves, of_rectangular_detectors_with_gaps) {
+TEST(Waves, OfRectangularDetectorsWithGaps) {
     constexpr double aperture = 0.28, s = 0.5;
     constexpr double period = grating_wavelength / (2 * aperture * s);
     auto description = ideal_description(aperture);
@@ -421,7 +421,7 @@ TEST(Waves, of_rectangular_detectors_with_gaps) {
     EXPECT_NEAR(light[2] / light[0], 0.3, 0.003);
 }
 
-TEST(Waves, of_a_single_cell_in_focus_are_the_airy_transfer) {
+TEST(Waves, OfASingleCellInFocusAreTheAiryTransfer) {
     // All light in one part of a pixel: its image is the point spread.
     const auto instrument = optics::assemble(test::ideal_microscope_description());
     const optics::PupilFilter filter(instrument, {.cells = 8, .parts = 4});
@@ -435,7 +435,7 @@ TEST(Waves, of_a_single_cell_in_focus_are_the_airy_transfer) {
     }
 }
 
-TEST(Waves, are_the_same_on_the_device_and_on_the_host) {
+TEST(Waves, AreTheSameOnTheDeviceAndOnTheHost) {
     const auto instrument = test::microscope();
     const vulkan::Device device;
     // Sizes with other primes than two; light that lies on one side only, to tell left from right.
@@ -465,7 +465,7 @@ TEST(Waves, are_the_same_on_the_device_and_on_the_host) {
 }
 
 // A device bounds the size of one allocation: the cells' images lie in several.
-TEST(Waves, are_the_same_bits_of_light_in_several_buffers) {
+TEST(Waves, AreTheSameBitsOfLightInSeveralBuffers) {
     const auto instrument = test::microscope();
     const vulkan::Device device;
     constexpr ImageSize pixels{11, 6};
@@ -498,7 +498,7 @@ TEST(Waves, are_the_same_bits_of_light_in_several_buffers) {
     }
 }
 
-TEST(Waves, sort_light_alike_forward_and_backward_on_device_and_host) {
+TEST(Waves, SortLightAlikeForwardAndBackwardOnDeviceAndHost) {
     const auto instrument = turned_microscope();
     const auto specimen = test::rough_specimen();
     constexpr double z = 0.004;
@@ -540,7 +540,7 @@ TEST(Waves, sort_light_alike_forward_and_backward_on_device_and_host) {
 }
 
 // While one exposure is asked for, the device has others.
-TEST(Exposures, under_way_at_a_time_are_the_same_bits) {
+TEST(Exposures, UnderWayAtATimeAreTheSameBits) {
     auto description = test::microscope_description();
     description.detector_pixels = ImageSize::square(32);
     description.detector_width /= 2;
@@ -585,7 +585,7 @@ TEST(Exposures, under_way_at_a_time_are_the_same_bits) {
     }
 }
 
-TEST(Waves, are_the_same_bits_for_any_batch) {
+TEST(Waves, AreTheSameBitsForAnyBatch) {
     const auto instrument = turned_microscope();
     const auto specimen = test::rough_specimen();
     for (const auto estimator : {trace::Estimator::forward, trace::Estimator::backward}) {

@@ -115,13 +115,13 @@ void expect_all_light(const optics::InstrumentDescription& description, const sp
 
 } // namespace
 
-TEST(WideSpectrum, small_disc_through_a_singlet_onto_a_mirror) {
+TEST(WideSpectrum, SmallDiscThroughASingletOntoAMirror) {
     auto description = coloured(optics::Spectrum::lines({0.45, 0.9}, {1, 1}), 0.3);
     description.objective = singlet("N-SF66", 20.4, 2.5);
     expect_all_light(description, plane("mirror"), 400'000);
 }
 
-TEST(WideSpectrum, narrow_rectangle_behind_a_condenser_of_heavy_flint) {
+TEST(WideSpectrum, NarrowRectangleBehindACondenserOfHeavyFlint) {
     auto description = coloured(optics::Spectrum::lines({0.45, 0.9}, {1, 1}), 0.3);
     use_condenser_of(description, "N-SF11");
     description.objective = singlet("N-SF66", 20.4, 2.5);
@@ -129,14 +129,14 @@ TEST(WideSpectrum, narrow_rectangle_behind_a_condenser_of_heavy_flint) {
     expect_all_light(description, plane("mirror"), 400'000);
 }
 
-TEST(WideSpectrum, white_light_on_a_matt_plane) {
+TEST(WideSpectrum, WhiteLightOnAMattPlane) {
     auto description = coloured(optics::Spectrum::table({0.42, 0.6, 0.9}, {1, 1, 1}), 0.3);
     use_condenser_of(description, "N-SF11");
     description.objective = singlet("N-SF66", 20.4, 2.5);
     expect_all_light(description, plane("lambertian"), 4'000'000);
 }
 
-TEST(WideSpectrum, parts_beside_their_places) {
+TEST(WideSpectrum, PartsBesideTheirPlaces) {
     auto description = coloured(optics::Spectrum::lines({0.45, 0.9}, {1, 1}), 0.3);
     description.objective = singlet("N-SF66", 20.4, 2.5);
     description.objective_placement.change = {.decentre_x = 0.1, .tilt_y = 0.01};

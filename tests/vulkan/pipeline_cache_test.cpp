@@ -27,14 +27,14 @@ std::vector<std::filesystem::path> compile() {
 
 } // namespace
 
-TEST_F(PipelineCache, is_not_kept_where_nothing_can_be_written) {
+TEST_F(PipelineCache, IsNotKeptWhereNothingCanBeWritten) {
     const auto blocked = folder_ / "file";
     std::ofstream(blocked) << "no folder";
     setenv("XDG_CACHE_HOME", blocked.c_str(), 1);
     EXPECT_TRUE(compile().empty());
 }
 
-TEST_F(PipelineCache, a_device_keeps_its_kernels_and_survives_a_damaged_file) {
+TEST_F(PipelineCache, ADeviceKeepsItsKernelsAndSurvivesADamagedFile) {
     const auto files = compile();
     ASSERT_EQ(files.size(), 1U);
     const auto kept = read_cached(files[0].filename().string());

@@ -182,7 +182,7 @@ double deviation_p(const Material& material, double theta, uint seed, uint draws
 } // namespace
 
 // What lossy ones keep is for their own tests.
-TEST(Scatter, every_density_integrates_to_one) {
+TEST(Scatter, EveryDensityIntegratesToOne) {
     int integrated = 0;
     for (const auto& [name, delta, lossy, material] : cases()) {
         for (const double theta : {0.0, 0.6, 1.2, 1.5}) {
@@ -201,7 +201,7 @@ TEST(Scatter, every_density_integrates_to_one) {
 }
 
 // The sampler against the density, for every model: the family errs once in 1000.
-TEST(Scatter, every_model_draws_its_density) {
+TEST(Scatter, EveryModelDrawsItsDensity) {
     const std::vector<double> thetas = {0.0, 0.7, 1.3};
     const uint draws = 200000;
     const auto all = cases();
@@ -217,7 +217,7 @@ TEST(Scatter, every_model_draws_its_density) {
     }
 }
 
-TEST(Scatter, a_sum_of_lobes_has_the_weighted_mean_density) {
+TEST(Scatter, ASumOfLobesHasTheWeightedMeanDensity) {
     const Material sum = {lobe(SCATTER_HENYEY_GREENSTEIN, 0.3, 0.8), lobe(SCATTER_LAMBERTIAN, 0.2),
                           lobe(SCATTER_HENYEY_GREENSTEIN, 0.1, -0.3), lobe(SCATTER_LAMBERTIAN, 0.15)};
     Material twin = sum; // of the same reflectance
@@ -238,7 +238,7 @@ TEST(Scatter, a_sum_of_lobes_has_the_weighted_mean_density) {
     EXPECT_LT(deviation_p(sum, 0.6, 32u, draws_made, twin), 1e-3);
 }
 
-TEST(Scatter, reflectance_is_the_share_that_is_not_absorbed) {
+TEST(Scatter, ReflectanceIsTheShareThatIsNotAbsorbed) {
     for (const auto& [name, delta, lossy, material] : cases()) {
         if (delta && lossy) { // no density to integrate: conductor_test.cpp
             continue;
@@ -263,7 +263,7 @@ TEST(Scatter, reflectance_is_the_share_that_is_not_absorbed) {
 
 // Weights that add up to 1 absorb nothing, in float too: the rounding of their sum is less than half a step of the
 // number that chooses. An absorber of one step more, 2^-20, would take one ray of a million.
-TEST(Scatter, weights_that_add_up_to_one_absorb_nothing) {
+TEST(Scatter, WeightsThatAddUpToOneAbsorbNothing) {
     const double parts[][4] = {{0.1, 0.2, 0.3, 0.4}, {0.7, 0.1, 0.1, 0.1}, {0.3, 0.3, 0.3, 0.1}, {0.6, 0.4, 0, 0}};
     const double largest = 1.0 - 1.0 / 4194304; // of the draws
     for (const auto& p : parts) {
@@ -281,7 +281,7 @@ TEST(Scatter, weights_that_add_up_to_one_absorb_nothing) {
     }
 }
 
-TEST(Scatter, a_pupil_collects_the_closed_form_share) {
+TEST(Scatter, APupilCollectsTheClosedFormShare) {
     // From the definition; g = 0 is sin^2 = 0.0784 exactly.
     const std::vector<std::pair<double, double>> published = {
         {0.0, 0.0784}, {0.3, 0.1174}, {0.65, 0.2914}, {0.8, 0.5125}, {0.95, 0.8780}};
@@ -305,7 +305,7 @@ TEST(Scatter, a_pupil_collects_the_closed_form_share) {
     }
 }
 
-TEST(Scatter, moments_at_normal_incidence_are_shifted_by_the_cosine) {
+TEST(Scatter, MomentsAtNormalIncidenceAreShiftedByTheCosine) {
     const double g = 0.8;
     const auto p2 = [](double c) { return 1.5 * c * c - 0.5; };
     EXPECT_NEAR(mean_at_normal_incidence(g, [](double c) { return c; }), 0.9099, 5e-5);
@@ -328,7 +328,7 @@ TEST(Scatter, moments_at_normal_incidence_are_shifted_by_the_cosine) {
 }
 
 // Henyey-Greenstein against the formula written anew and normalised over the cells; the family errs once in 1000.
-TEST(Scatter, henyey_greenstein_has_the_stated_density_at_every_incidence) {
+TEST(Scatter, HenyeyGreensteinHasTheStatedDensityAtEveryIncidence) {
     const std::vector<double> gs = {-0.4, 0.0, 0.3, 0.65, 0.8, 0.9};
     const std::vector<double> thetas = {0.0, 0.5, 1.0, 1.4};
     const double level = vkfv::test::sidak(1e-3, static_cast<int>(gs.size() * thetas.size()));
@@ -358,7 +358,7 @@ TEST(Scatter, henyey_greenstein_has_the_stated_density_at_every_incidence) {
     }
 }
 
-TEST(Scatter, a_white_furnace_keeps_every_ray) {
+TEST(Scatter, AWhiteFurnaceKeepsEveryRay) {
     auto all = cases();
     for (const double g : {-0.6, 0.0, 0.3, 0.36, 0.65, 0.8, 0.95, 0.99, 1.0}) {
         all.push_back({"henyey-greenstein g = " + std::to_string(g), false, false, henyey_greenstein(g)});
@@ -387,13 +387,13 @@ TEST(Scatter, a_white_furnace_keeps_every_ray) {
     }
 }
 
-TEST(Scatter, light_from_behind_is_not_scattered) {
+TEST(Scatter, LightFromBehindIsNotScattered) {
     const Scattered s = scatter(henyey_greenstein(0.8), real3(0.0, 0.0, 1.0), up, 1u, 1u, uvec2(0u), 1u);
     EXPECT_EQ(s.accepted, 0u);
     EXPECT_EQ(s.absorbed, 0u);
 }
 
-TEST(Scatter, the_ends_of_henyey_greenstein_are_lambertian_and_mirror) {
+TEST(Scatter, TheEndsOfHenyeyGreensteinAreLambertianAndMirror) {
     const Material lambertian = {lobe(SCATTER_LAMBERTIAN, 1), {}, {}, {}};
     const Material mirror = {lobe(SCATTER_MIRROR, 1), {}, {}, {}};
     const Material zero = henyey_greenstein(0), one = henyey_greenstein(1);
@@ -419,7 +419,7 @@ TEST(Scatter, the_ends_of_henyey_greenstein_are_lambertian_and_mirror) {
 }
 
 // The mirror: two cones, weighted by the cosine to the axis, overlap.
-TEST(Scatter, a_tilted_mirror_returns_the_overlap_of_two_cones) {
+TEST(Scatter, ATiltedMirrorReturnsTheOverlapOfTwoCones) {
     const double sine = 0.4;
     const auto returned = [&](const Material& mirror, double tilt) {
         const real3 normal{std::sin(tilt), 0.0, std::cos(tilt)};
@@ -446,7 +446,7 @@ TEST(Scatter, a_tilted_mirror_returns_the_overlap_of_two_cones) {
     }
 }
 
-TEST(Scatter, float_draws_the_same_directions_as_double) {
+TEST(Scatter, FloatDrawsTheSameDirectionsAsDouble) {
     // The lobe's versine of about 1e-6 and more keeps its relative precision in float: directions agree to a few
     // ulps (6e-8) of the unit vector; 1e-6 leaves a factor of ten for the sum of roundings.
     const auto differing = [](const Material& material, double twin) {
