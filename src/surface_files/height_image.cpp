@@ -160,7 +160,7 @@ SurfaceFile parse_height_image(std::string_view bytes, const std::filesystem::pa
         const double value = image.values.values[k];
         const double height = (stated.offset + stated.gain * value) * *whole.unit;
         const bool measured =
-            std::isfinite(height) && std::abs(value) < not_measured_from && !(mark && is_mark(value, *mark));
+            std::abs(height) < no_height_from && std::abs(value) < not_measured_from && !(mark && is_mark(value, *mark));
         result.map.height.values[k] = measured ? height : std::numeric_limits<double>::quiet_NaN();
     }
     return result;

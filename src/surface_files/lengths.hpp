@@ -50,9 +50,16 @@ inline double height_from(double value, double unit) {
 // length reaches.
 inline constexpr double not_measured_from = 1e37;
 
-// The same of a value of a file whose formats have no mark of their own.
+// Heights of at least this length (mm) are not measured either: in every unit that is written, a height that was read
+// is then below not_measured_from, and reads back.
+inline constexpr double no_height_from = 1e30;
+
+// NaN where a value of a file whose formats have no mark of their own is no height, mm otherwise.
 inline double measured_height(double value, double unit) {
-    return std::abs(value) < not_measured_from ? height_from(value, unit) : std::numeric_limits<double>::quiet_NaN();
+    const double height = height_from(value, unit);
+    return std::abs(value) < not_measured_from && std::abs(height) < no_height_from
+               ? height
+               : std::numeric_limits<double>::quiet_NaN();
 }
 
 // Whether an option's length is so far from the one that a file states that the user should hear of it; files and users

@@ -158,6 +158,7 @@ int main(int argument_count, char** arguments) {
     whole("height_table", "gaps.csv", true);
     write(root / "height_table" / "points", "0,0,1\n1,0,2\n0,1,3\n1,1,4\n");
     write(root / "height_table" / "decimal_commas", "1,5;2\n3;4,25\n");
+    write(root / "height_table" / "far", "# Width: 2 nm\n# Height: 3 nm\n# Value units: m\n1e-6 2e-6\n1e34 4e-6\n");
     write(root / "height_table" / "gwyddion", "# Width: 2 nm\n# Height: 3 nm\n# Value units: m\n1e-6 2e-6\n* 4e-6\n");
     for (const auto& [reader, ending] :
          {std::pair{"opd", "opd"}, {"metropro", "dat"}, {"nms", "nms"}, {"plu", "plu"}}) {

@@ -52,6 +52,8 @@ TEST(TableStatements, MarksOfPointsThatWereNotMeasured) {
                     ElementsAre(near(1), near(2), IsNan(), near(4)))
             << mark;
     EXPECT_THAT(heights_of(table("1,2\n1e30,4\n", given))[2], near(1e30)); // warned of, not taken for a mark
+    // In micrometres it is a mark, so in metres too: what is read is written in another unit and read again.
+    EXPECT_THAT(heights_of(table("# Value units: m\n1,2\n1e34,4\n", {.pitch = 2 * um, .unit = {}}))[2], IsNan());
     for (const char* header :
          {"NODATA_value -9999", "# nodata: -9999", "no data value = -9999.0", "Missing value\t-9999",
           "\"Bad data\",\"-9999\"", "# Fill value; -9.999e3", "nodata -9999"})
