@@ -401,13 +401,17 @@ TEST(Topography, WhatAFileStatesIsUsed) {
         parted.push_back(two[k < stack.size() ? 2 * k : 2 * (k - stack.size()) + 1]);
     }
     write_pages<std::uint8_t>(folder / "parted.tif", parted, 1, OIIO::TypeDesc::UINT8,
-                              {"<?xml version=\"1.0\"?><OME><Image ID=\"Image:0\"><Pixels DimensionOrder=\"XYZCT\" "
+                              {"<?xml version=\"1.0\"?><OME><Image ID=\"Image:0\">"
+                               "<AcquisitionDate>2024-02-29T01:02:03</AcquisitionDate><Pixels DimensionOrder=\"XYZCT\" "
                                "SizeX=\"24\" SizeY=\"24\" SizeZ=\"12\" SizeC=\"2\" SizeT=\"1\" Type=\"uint8\" "
                                "PhysicalSizeX=\"2\" PhysicalSizeY=\"2\" PhysicalSizeZ=\"500\" "
                                "PhysicalSizeZUnit=\"nm\"/></Image></OME>"});
     const auto ome = run({"parted.tif", "--channel", "2", "--out", "ome"});
     ASSERT_EQ(ome.exit_code, 0) << ome.standard_error;
     EXPECT_EQ(read_file(folder / "ome/topography.tif"), read_file(folder / "alone/topography.tif"));
+    // X3P, which has a date in any case, has that of the images.
+    ASSERT_EQ(run_program({"surface", "ome/topography.x3p", "--out", "dated.csv"}, folder).exit_code, 0);
+    EXPECT_THAT(read_file(folder / "dated.csv"), HasSubstr("date=2024-02-29T01:02:03Z"));
     // Where the planes stand is the start, from which less than a hundredth of a step is no other start.
     std::string planes;
     for (std::size_t k = 0; k < stack.size(); ++k) {
@@ -534,6 +538,18 @@ TEST(Topography, DarkAndFlatFieldAreTakenOff) {
     const auto result = evaluate(folder, "stack.tif", "out", {"--dark", "dark.tif", "--flat-field", "flat.tif"});
     ASSERT_EQ(result.exit_code, 0) << result.standard_error;
     ASSERT_EQ(evaluate(folder, "stack.tif", "raw").exit_code, 0);
+    // The same corrections by this test, in hundredths of a grey value.
+    const auto flat = seen([](std::size_t) { return 15000; });
+    auto corrected = by_camera;
+    for (auto& image : corrected) {
+        for (std::size_t p = 0; p < image.size(); ++p) {
+            image[p] = flat[p] == dark[p] ? 0
+                                          : static_cast<int>(std::lround(100.0 * 15000 * (image[p] - dark[p]) /
+                                                                         static_cast<double>(flat[p] - dark[p])));
+        }
+    }
+    write_pages<float>(folder / "corrected.tif", corrected, 1, OIIO::TypeDesc::FLOAT);
+    ASSERT_EQ(evaluate(folder, "corrected.tif", "corrected").exit_code, 0);
     const auto results = nlohmann::json::parse(read_file(folder / "out/results.json"));
     EXPECT_EQ(results["dead_pixels"], 3);
     EXPECT_EQ(results["dark"], "dark.tif");
@@ -541,7 +557,8 @@ TEST(Topography, DarkAndFlatFieldAreTakenOff) {
     const auto ideal = surface::read_height_map(folder / "ideal/topography.tif");
     const auto map = surface::read_height_map(folder / "out/topography.tif");
     const auto raw = surface::read_height_map(folder / "raw/topography.tif");
-    double worst = 0, worst_raw = 0;
+    const auto by_test = surface::read_height_map(folder / "corrected/topography.tif");
+    double worst = 0, worst_raw = 0, from_test = 0, raw_from_test = 0;
     for (int row = 2; row < side - 2; ++row) {
         for (int column = 2; column < side - 2; ++column) {
             const auto place = static_cast<std::size_t>((side - 1 - row) * side + column);
@@ -551,7 +568,10 @@ TEST(Topography, DarkAndFlatFieldAreTakenOff) {
             });
             if (!by_dead && std::isfinite(ideal.height(column, row)) && std::isfinite(map.height(column, row))) {
                 worst = std::max(worst, std::abs(map.height(column, row) - ideal.height(column, row)));
+                from_test = std::max(from_test, std::abs(map.height(column, row) - by_test.height(column, row)));
                 if (std::isfinite(raw.height(column, row))) {
+                    raw_from_test =
+                        std::max(raw_from_test, std::abs(raw.height(column, row) - by_test.height(column, row)));
                     worst_raw = std::max(worst_raw, std::abs(raw.height(column, row) - ideal.height(column, row)));
                 }
             }
@@ -559,6 +579,10 @@ TEST(Topography, DarkAndFlatFieldAreTakenOff) {
     }
     EXPECT_LT(worst, 5e-6);          // mm: rounding to whole numbers
     EXPECT_GT(worst_raw, 2 * worst); // wrong twin: nothing taken off
+    // Errors of heights are proportional to those of values. The ideal heights are off by roundings of one grey value,
+    // those of this test by roundings of a hundredth; a tenth leaves room for one pair that is worst by chance.
+    EXPECT_LT(from_test, 0.1 * worst);
+    EXPECT_GT(raw_from_test, worst);
     // Of another size, unlit, or lit.
     write_file(folder / "small.pgm", "P5\n2 2\n255\n\1\2\1\2");
     for (const auto& [option, file, words] : std::vector<std::array<std::string, 3>>{
