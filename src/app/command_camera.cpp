@@ -7,6 +7,10 @@
 #include <fmt/format.h>
 #include <spdlog/spdlog.h>
 
+#include <set>
+#include <string>
+#include <utility>
+
 namespace vkfv::app {
 
 namespace {
@@ -52,14 +56,39 @@ Command camera_command() {
 
 namespace {
 
-// The line above the images of one irradiation in a descriptor file of the EMVA 1288 reference implementation: exposure
-// time in ns, and photons a pixel if there is light.
-std::string descriptor_set(const camera::TakenImage& what) {
-    constexpr double ns_per_s = 1e9;
-    const double exposure = what.exposure_time * ns_per_s;
-    return what.photons > 0 ? fmt::format("b {:.1f} {:.6f}\n", exposure, what.photons)
-                            : fmt::format("d {:.1f}\n", exposure);
-}
+// The descriptor file of the EMVA 1288 reference implementation: it lists the images by sets of one exposure time in ns
+// and one number of photons a pixel. That program takes a set of two images for a pair, and refuses a second pair or a
+// second stack of the same numbers. The rounds about the largest variance have some, of which the first is listed.
+class DescriptorFile {
+  public:
+    // averaged: images of a stack.
+    DescriptorFile(int bits, int columns, int rows, int averaged)
+        : stacks_are_pairs_(averaged == 2),
+          text_(fmt::format("# Images of a camera that vkfv simulates\nv 3.0\nn {} {} {}\n", bits, columns, rows)) {}
+
+    // Images of a set follow each other. file: relative to the descriptor's folder.
+    void add(const camera::TakenImage& what, const std::string& file) {
+        if (what.file.ends_with("_a") || what.series != series_) {
+            series_ = what.series;
+            constexpr double ns_per_s = 1e9;
+            const double exposure = what.exposure_time * ns_per_s;
+            const std::string set = what.photons > 0 ? fmt::format("b {:.1f} {:.6f}\n", exposure, what.photons)
+                                                     : fmt::format("d {:.1f}\n", exposure);
+            const bool pair = stacks_are_pairs_ || what.file.ends_with("_a");
+            listed_ = sets_.emplace(pair, set).second;
+            text_ += listed_ ? set : "";
+        }
+        text_ += listed_ ? fmt::format("i {}\n", file) : "";
+    }
+    const std::string& text() const { return text_; }
+
+  private:
+    bool stacks_are_pairs_;
+    std::string text_;
+    std::string series_;                          // of the last image
+    bool listed_ = false;                         // whether its set is
+    std::set<std::pair<bool, std::string>> sets_; // whether it is a pair, and the set's line
+};
 
 } // namespace
 
@@ -76,24 +105,16 @@ void run_camera(const CommandOptions& options) {
     const camera::Camera camera(*configuration.camera, configuration.instrument.spectrum);
     ResultFolder results(options.out.value_or(options.file.stem().string() + "-camera"));
     std::string list = "file,series,photons,exposure_s\n";
-    std::string descriptor = fmt::format("# Images of a camera that vkfv simulates\nv 3.0\nn {} {} {}\n",
-                                         camera.options().bit_depth, own.pixels, own.pixels);
+    DescriptorFile descriptor(camera.options().bit_depth, own.pixels, own.pixels, own.averaged);
     camera::ImageTaker take;
     if (own.images) {
         constexpr int bits_of_bytes = 8;
         const auto type = camera.options().bit_depth > bits_of_bytes ? scan::PixelType::uint16 : scan::PixelType::uint8;
-        std::string set; // of images at one irradiation
-        take = [&results, &list, &descriptor, type, set](const camera::TakenImage& what,
-                                                         const Grid<float>& image) mutable {
+        take = [&results, &list, &descriptor, type](const camera::TakenImage& what, const Grid<float>& image) {
             const std::string file = "images/" + what.file + ".tif";
             results.write(file, scan::frame_bytes(image, type, 0, "grey values in DN"));
             list += fmt::format("{},{},{},{}\n", file, what.series, what.photons, what.exposure_time);
-            const std::string line = descriptor_set(what);
-            if (what.series + line != set) {
-                descriptor += line;
-                set = what.series + line;
-            }
-            descriptor += fmt::format("i {}\n", file);
+            descriptor.add(what, file);
         };
     }
     const auto measurement = measurement::measure_camera(
@@ -105,7 +126,7 @@ void run_camera(const CommandOptions& options) {
     results.write("linearity.svg", measurement::linearity_chart(measurement));
     if (own.images) {
         results.write("images.csv", list);
-        results.write("emva1288.txt", descriptor);
+        results.write("emva1288.txt", descriptor.text());
     }
     results.write_checksums();
     for (const auto& warnings : {measurement::warnings_of(camera), measurement::warnings_of(measurement)}) {

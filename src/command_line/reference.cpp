@@ -186,8 +186,8 @@ const std::vector<OwnedOption>& all_options() {
             }
         }
         for (OwnedOption& owned : list) {
-            std::ranges::stable_partition(owned.owners,
-                                          [&](const auto* owner) { return owner->name == owned.option->foremost; });
+            std::stable_partition(owned.owners.begin(), owned.owners.end(),
+                                  [&](const auto* owner) { return owner->name == owned.option->foremost; });
         }
         return list;
     }();

@@ -260,7 +260,7 @@ std::vector<LightOfSource> read_source(const TomlTable& root, Configuration& con
         }
     }
     // What stands behind the illuminator is the first.
-    std::ranges::stable_partition(read, [](const ReadSource& one) { return !one.source.ring; });
+    std::stable_partition(read.begin(), read.end(), [](const ReadSource& one) { return !one.source.ring; });
     instrument.source = read.front().source;
     for (std::size_t further = 1; further < read.size(); ++further) {
         instrument.further_sources.push_back(read[further].source);

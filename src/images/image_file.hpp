@@ -44,7 +44,7 @@ Grid<float> read_image(const std::filesystem::path& path, int page = 0);
 // The same of grey or colour, a grid a channel; an alpha channel is left out.
 std::vector<Grid<float>> read_channels(const std::filesystem::path& path, int page = 0);
 
-// The size of an image file's first page, its description, and how many of its pixels make a unit of length.
+// The size of an image file's first page, its description, its date, and how many of its pixels make a unit of length.
 struct ImageStatement {
     int columns = 0;
     int rows = 0;
@@ -54,6 +54,7 @@ struct ImageStatement {
     double rows_per_unit = 0;    // likewise
     enum class Unit { none, inch, centimetre };
     Unit unit = Unit::none; // theirs
+    std::string date{};     // when it was taken, "2026:01:31 12:00:00" in local time; empty: it is not stated
 };
 ImageStatement image_statement(const std::filesystem::path& path);
 

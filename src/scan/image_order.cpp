@@ -139,15 +139,14 @@ std::optional<std::vector<int>> steps_of(const std::vector<double>& values, doub
     std::size_t single = 0;
     for (const double difference : differences) {
         const double multiple = std::round(difference / step);
-        if (!(difference > 0) || multiple < 1 || multiple > most_steps ||
+        if (!(difference > 0) || multiple < 1 || multiple > most_steps - steps.back() ||
             std::abs(difference - multiple * step) > tolerance * step) {
             return std::nullopt;
         }
         single += multiple == 1 ? 1 : 0;
         steps.push_back(steps.back() + static_cast<int>(multiple));
     }
-    if (static_cast<double>(single) < share_of_a_series * static_cast<double>(differences.size()) ||
-        steps.back() > most_steps) {
+    if (static_cast<double>(single) < share_of_a_series * static_cast<double>(differences.size())) {
         return std::nullopt;
     }
     step = (values.back() - values.front()) / steps.back();

@@ -281,9 +281,25 @@ StatedSeries by_ome(const pugi::xml_node& pixels, int pages, const std::filesyst
     return stated;
 }
 
-} // namespace
+// "2026:01:31 12:00:00" as xsd:dateTime; empty for any other text.
+std::string date_of(const std::string& date) {
+    constexpr std::string_view pattern = "0000:00:00 00:00:00";
+    if (date.size() < pattern.size()) {
+        return {};
+    }
+    std::string text = date.substr(0, pattern.size());
+    for (std::size_t k = 0; k < pattern.size(); ++k) {
+        const bool digit = text[k] >= '0' && text[k] <= '9';
+        if (pattern[k] == '0' ? !digit : text[k] != pattern[k]) {
+            return {};
+        }
+    }
+    text[4] = text[7] = '-';
+    text[10] = 'T';
+    return text;
+}
 
-StatedSeries stated_series(const images::ImageStatement& statement, int pages, const std::filesystem::path& file) {
+StatedSeries by_description(const images::ImageStatement& statement, int pages, const std::filesystem::path& file) {
     if (statement.description.starts_with("ImageJ=")) {
         return by_imagej(statement, pages, file);
     }
@@ -296,7 +312,9 @@ StatedSeries stated_series(const images::ImageStatement& statement, int pages, c
                             "Save the one to be measured as a file of its own.");
             }
             if (const pugi::xml_node pixels = document.document_element().child("Image").child("Pixels")) {
-                return by_ome(pixels, pages, file);
+                StatedSeries stated = by_ome(pixels, pages, file);
+                stated.date = document.document_element().child("Image").child_value("AcquisitionDate");
+                return stated;
             }
         }
     }
@@ -307,6 +325,16 @@ StatedSeries stated_series(const images::ImageStatement& statement, int pages, c
     const double unit = unit_length(statement.unit);
     take_pitch(stated, statement, unit, unit);
     stated.by = stated.pitch_x ? "the resolution tags" : "";
+    return stated;
+}
+
+} // namespace
+
+StatedSeries stated_series(const images::ImageStatement& statement, int pages, const std::filesystem::path& file) {
+    StatedSeries stated = by_description(statement, pages, file);
+    if (stated.date.empty()) {
+        stated.date = date_of(statement.date);
+    }
     return stated;
 }
 

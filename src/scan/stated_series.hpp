@@ -11,7 +11,7 @@
 namespace vkfv::scan {
 
 // Lengths in mm. By ImageJ's description (ij.io.TiffDecoder and FileInfo), by OME-XML (schema 2016-06), else by the
-// resolution tags of TIFF 6.0.
+// resolution tags of TIFF 6.0. The date is OME-XML's AcquisitionDate, else that of TIFF or Exif.
 struct StatedSeries {
     static constexpr int uncounted = 0; // pages of a file whose others are not asked for
 
@@ -25,6 +25,7 @@ struct StatedSeries {
     int heights = 0;                            // pages of one channel and frame
     std::vector<int> pages{};                   // of (height * channels + channel) * frames + frame, in the file
     std::vector<std::string> doubts{};          // sentences: what is stated and not used, and why
+    std::string date{};                         // when the images were taken, xsd:dateTime; empty: it is not stated
 
     int page(int height, int channel, int frame) const {
         return pages.at(static_cast<std::size_t>((height * channels + channel) * frames + frame));

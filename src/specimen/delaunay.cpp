@@ -144,7 +144,7 @@ class Circles {
     void append(const Vertex& vertex, std::vector<glm::uvec3>& triangles) {
         corners_.clear();
         around(vertex, [&](const Edge& edge) { corners_.push_back(points_[edge.cell()->source_index()]); });
-        std::ranges::rotate(corners_, std::ranges::min_element(corners_));
+        std::rotate(corners_.begin(), std::ranges::min_element(corners_), corners_.end());
         for (std::size_t k = 2; k < corners_.size(); ++k) {
             triangles.emplace_back(corners_[0], corners_[k - 1], corners_[k]);
         }

@@ -6,7 +6,6 @@
 #include <cstdint>
 #include <future>
 #include <numeric>
-#include <ranges>
 #include <vector>
 
 namespace vkfv::surface {
@@ -64,6 +63,13 @@ class Hills {
     int columns_, rows_;
     std::vector<Place> parent_;
     std::vector<std::uint32_t> order_;
+};
+
+// Points from the last to the first; clang 14 cannot read std::ranges::subrange of these iterators.
+struct Reversed {
+    const std::vector<Point>& points;
+    auto begin() const { return points.rbegin(); }
+    auto end() const { return points.rend(); }
 };
 
 // The peaks of points in descending order; points in ascending order have their pits told instead.
@@ -141,9 +147,8 @@ FeatureParameters feature_parameters(const HeightMap& map, double pruning) {
     });
     const auto count = static_cast<double>(points.size());
     const double mean = sum / count, least_rise = pruning * (points.front().height - points.back().height);
-    auto pits_found = std::async(std::launch::async, [&] {
-        return significant_peaks(map, std::ranges::subrange(points.rbegin(), points.rend()), least_rise);
-    });
+    auto pits_found =
+        std::async(std::launch::async, [&] { return significant_peaks(map, Reversed{points}, least_rise); });
     const auto peaks = significant_peaks(map, points, least_rise);
     const auto pits = pits_found.get();
     result.s5p = mean_of_extremes(map, peaks, mean, true);

@@ -13,15 +13,21 @@
 
 namespace vkfv::surface {
 
-// mm per unit; the sign for micro as UTF-8, in both of Unicode's forms, and as Latin-1.
-inline constexpr std::array length_units = {
-    std::pair{std::string_view("m"), 1e3},          std::pair{std::string_view("cm"), 1e1},
-    std::pair{std::string_view("mm"), 1.0},         std::pair{std::string_view("um"), 1e-3},
-    std::pair{std::string_view("\xC2\xB5m"), 1e-3}, std::pair{std::string_view("\xCE\xBCm"), 1e-3},
-    std::pair{std::string_view("\xB5m"), 1e-3},     std::pair{std::string_view("nm"), 1e-6},
-    std::pair{std::string_view("pm"), 1e-9},        std::pair{std::string_view("inch"), 25.4},
-    std::pair{std::string_view("\\u00B5m"), 1e-3}, // as Java programs escape it
-    std::pair{std::string_view("micron"), 1e-3},    std::pair{std::string_view("microns"), 1e-3}};
+// mm per unit; the sign for micro as UTF-8, in both of Unicode's forms, as Latin-1 and as code page 437 of DOS.
+inline constexpr std::array length_units = {std::pair{std::string_view("m"), 1e3},
+                                            std::pair{std::string_view("cm"), 1e1},
+                                            std::pair{std::string_view("mm"), 1.0},
+                                            std::pair{std::string_view("um"), 1e-3},
+                                            std::pair{std::string_view("\xC2\xB5m"), 1e-3},
+                                            std::pair{std::string_view("\xCE\xBCm"), 1e-3},
+                                            std::pair{std::string_view("\xB5m"), 1e-3},
+                                            std::pair{std::string_view("\xE6m"), 1e-3},
+                                            std::pair{std::string_view("nm"), 1e-6},
+                                            std::pair{std::string_view("pm"), 1e-9},
+                                            std::pair{std::string_view("inch"), 25.4},
+                                            std::pair{std::string_view("\\u00B5m"), 1e-3}, // as Java programs escape it
+                                            std::pair{std::string_view("micron"), 1e-3},
+                                            std::pair{std::string_view("microns"), 1e-3}};
 inline constexpr double mm_per_nm = 1e-6;
 inline constexpr const char* length_unit_names = "a unit of length: m, cm, mm, um, nm, pm or inch";
 

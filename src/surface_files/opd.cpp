@@ -3,6 +3,8 @@
 #include "core/parsing/byte_reader.hpp"
 #include "surface_files/lengths.hpp"
 
+#include <algorithm>
+#include <array>
 #include <map>
 
 namespace vkfv::surface {
@@ -64,8 +66,10 @@ void read_opd_heights(std::string_view points, std::size_t element_bytes, double
     for (int column = 0; column < heights.columns; ++column)
         for (int row = 0; row < heights.rows; ++row, ++index) {
             double value = 0;
-            bool measured = false;
-            if (element_bytes == sizeof(std::int16_t)) {
+            bool measured = true;
+            if (element_bytes == sizeof(std::uint8_t)) {
+                value = element<std::uint8_t>(points, index); // no value of a byte means that nothing was measured
+            } else if (element_bytes == sizeof(std::int16_t)) {
                 const auto stored = element<std::int16_t>(points, index);
                 measured = stored < bad_integer && stored > std::numeric_limits<std::int16_t>::min();
                 value = stored;
@@ -78,14 +82,23 @@ void read_opd_heights(std::string_view points, std::size_t element_bytes, double
         }
 }
 
-// "10/26/2009" and "11:16:55"
+// Three whole numbers with `separator` between them; -1 for one that is missing or no number.
+std::array<int, 3> numbers_between(std::string_view text, char separator) {
+    std::array<int, 3> numbers{};
+    for (int& number : numbers) {
+        const std::size_t end = std::min(text.find(separator), text.size());
+        number = number_in<int>(text.substr(0, end)).value_or(-1);
+        text.remove_prefix(std::min(end + 1, text.size()));
+    }
+    return numbers;
+}
+
+// The blocks have "10/26/2009", month first, and "11:16:55"; Vision64 leaves zeros at the beginning out.
 std::string date_of_blocks(const Blocks& blocks) {
     const std::string day = blocks.text("Date"), time = blocks.text("Time");
-    const auto part = [](const std::string& text, std::size_t begin, std::size_t length) {
-        return begin < text.size() ? number_in<int>(std::string_view(text).substr(begin, length)).value_or(-1) : -1;
-    };
-    const DateTime date{part(day, 6, 4),  part(day, 0, 2),  part(day, 3, 2),
-                        part(time, 0, 2), part(time, 3, 2), part(time, 6, 2)};
+    const auto [month, day_of_month, year] = numbers_between(day, '/');
+    const auto [hour, minute, second] = numbers_between(time, ':');
+    const DateTime date{year, month, day_of_month, hour, minute, second};
     return date.valid() ? known_date(date.text()) : std::string();
 }
 
@@ -108,8 +121,10 @@ SurfaceFile parse_opd(std::string_view bytes, const std::filesystem::path& path)
                rows = file.at<std::uint16_t>(data->offset + 2, "points along y"),
                element_bytes = file.at<std::uint16_t>(data->offset + 4, "bytes a point");
     file.check_size(columns, rows, data->offset);
-    if (element_bytes != sizeof(std::int16_t) && element_bytes != sizeof(float))
-        file.fail(data->offset + 4, "bytes a point", fmt::format("{}", element_bytes), "2 (int16) or 4 (float32)");
+    if (element_bytes != sizeof(std::uint8_t) && element_bytes != sizeof(std::int16_t) &&
+        element_bytes != sizeof(float))
+        file.fail(data->offset + 4, "bytes a point", fmt::format("{}", element_bytes),
+                  "1 (uint8), 2 (int16) or 4 (float32)");
     const auto points = file.bytes(data->offset + 6, std::uint64_t{columns} * rows * element_bytes, "points");
 
     SurfaceFile result;

@@ -19,7 +19,7 @@ constexpr std::array text_magics = {text_magic, std::string_view("aBCR-1.0"), st
 constexpr std::size_t manufacturer_at = 8, manufacturer_length = 10, creation_at = 18, date_length = 12,
                       columns_at = 42, rows_at = 44, x_scale_at = 46, y_scale_at = 54, z_scale_at = 62,
                       compression_at = 78, type_at = 79, check_at = 80, header_size = 81;
-constexpr int float_type = 3, short_type = 5, int_type = 6, double_type = 7;
+constexpr int double_type = 7;
 constexpr std::string_view x0_key = "x0_mm=", y0_key = "y0_mm=";
 
 // "DDMMYYYYHHMM" to xsd:dateTime; nothing for what is no date.
@@ -42,8 +42,9 @@ void check_type(const ByteReader& file, int compression, int type, int check, st
     if (compression != 0 || check != 0)
         file.fail(offset, "compression, checksum", fmt::format("{}, {}", compression, check), "0, 0",
                   "Export the file without compression and checksum.");
-    if (type != float_type && type != short_type && type != int_type && type != double_type)
-        file.fail(offset, "data type", fmt::format("{}", type), "3, 5, 6 or 7 (float32, int16, int32 or float64)");
+    if (type < 0 || type > double_type)
+        file.fail(offset, "data type", fmt::format("{}", type),
+                  "0 to 7 (uint8, uint16, uint32, float32, int8, int16, int32 or float64)");
 }
 
 void check_scale(const ByteReader& file, double scale, std::optional<std::uint64_t> offset) {
@@ -56,8 +57,12 @@ void read_sdf_heights(std::string_view points, double scale, Grid<double>& heigh
     std::size_t index = 0;
     for (int row = heights.rows - 1; row >= 0; --row)
         for (int column = 0; column < heights.columns; ++column, ++index) {
+            using Limits = std::numeric_limits<Stored>;
             const Stored value = element<Stored>(points, index);
-            const bool gap = std::numeric_limits<Stored>::is_integer && value == std::numeric_limits<Stored>::min();
+            // Integers of several bytes have a value for points that were not measured: the lowest of a signed type,
+            // the largest of an unsigned one.
+            const bool gap = Limits::is_integer && sizeof(Stored) > 1 &&
+                             value == (Limits::is_signed ? Limits::min() : Limits::max());
             heights(column, row) =
                 gap ? std::numeric_limits<double>::quiet_NaN() : height_from_metres(static_cast<double>(value) * scale);
         }
@@ -77,17 +82,26 @@ SurfaceFile parse_binary(const ByteReader& file) {
     const int type = file.at<std::uint8_t>(type_at, "data type");
     check_type(file, file.at<std::uint8_t>(compression_at, "compression"), type,
                file.at<std::uint8_t>(check_at, "checksum"), compression_at);
-    const std::uint64_t point_bytes = type == short_type ? 2 : type == double_type ? 8 : 4;
-    const auto points = file.bytes(header_size, std::uint64_t{columns} * rows * point_bytes, "points");
+    struct StoredType {
+        std::uint64_t bytes;
+        void (*read)(std::string_view, double, Grid<double>&);
+    };
+    constexpr std::array<StoredType, double_type + 1> types = {{{1, read_sdf_heights<std::uint8_t>},
+                                                                {2, read_sdf_heights<std::uint16_t>},
+                                                                {4, read_sdf_heights<std::uint32_t>},
+                                                                {4, read_sdf_heights<float>},
+                                                                {1, read_sdf_heights<std::int8_t>},
+                                                                {2, read_sdf_heights<std::int16_t>},
+                                                                {4, read_sdf_heights<std::int32_t>},
+                                                                {8, read_sdf_heights<double>}}};
+    const StoredType& stored = types[static_cast<std::size_t>(type)];
+    const auto points = file.bytes(header_size, std::uint64_t{columns} * rows * stored.bytes, "points");
 
     SurfaceFile result;
     result.map.pitch_x = x_scale;
     result.map.pitch_y = y_scale;
     result.map.height = Grid<double>(columns, rows);
-    (type == float_type   ? read_sdf_heights<float>
-     : type == short_type ? read_sdf_heights<std::int16_t>
-     : type == int_type   ? read_sdf_heights<std::int32_t>
-                          : read_sdf_heights<double>)(points, z_scale, result.map.height);
+    stored.read(points, z_scale, result.map.height);
     result.provenance.manufacturer = plain_line(file.bytes(manufacturer_at, manufacturer_length, "manufacturer"));
     result.provenance.date = date_from(file.bytes(creation_at, date_length, "date"));
     return result;

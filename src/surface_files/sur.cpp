@@ -21,7 +21,7 @@ constexpr std::size_t object_count_at = 14, version_at = 16, type_at = 18, objec
                       columns_at = 108, rows_at = 112, count_at = 116, dx_at = 120, dy_at = 124, dz_at = 128,
                       x_name_at = 132, y_name_at = 148, z_name_at = 164, dx_unit_at = 180, dy_unit_at = 196,
                       dz_unit_at = 212, x_unit_at = 228, y_unit_at = 244, z_unit_at = 260, x_ratio_at = 276,
-                      y_ratio_at = 280, z_ratio_at = 284, second_at = 306, comment_length_at = 334,
+                      y_ratio_at = 280, z_ratio_at = 284, inversion_at = 290, second_at = 306, comment_length_at = 334,
                       private_length_at = 336, x0_at = 466, y0_at = 470, z0_at = 474, header_size = 512;
 constexpr std::size_t name_length = 30, axis_length = 16;
 constexpr std::int16_t surface_type = 2;
@@ -77,6 +77,25 @@ void read_sur_heights(std::string_view points, std::int64_t not_measured, double
             const Stored value = element<Stored>(points, index);
             heights(column, row) = value == not_measured ? std::numeric_limits<double>::quiet_NaN() : value * step + z0;
         }
+}
+
+// Applies the header's inversion as Gwyddion 2.62 and SurfaceTopography do: each of 1, 2 and 3 negates the heights, 2
+// exchanges left and right besides, and 3 the lines' order.
+void invert(std::int16_t inversion, Grid<double>& heights) {
+    constexpr std::int16_t about_y = 2, about_x = 3;
+    if (inversion < 1 || inversion > about_x)
+        return;
+    for (double& height : heights.values)
+        height = -height;
+    const auto row_at = [&](int row) {
+        return heights.values.begin() + static_cast<std::ptrdiff_t>(row) * heights.columns;
+    };
+    if (inversion == about_y)
+        for (int row = 0; row < heights.rows; ++row)
+            std::reverse(row_at(row), row_at(row + 1));
+    if (inversion == about_x)
+        for (int row = 0; row < heights.rows / 2; ++row)
+            std::swap_ranges(row_at(row), row_at(row + 1), row_at(heights.rows - 1 - row));
 }
 
 // Of steps of 2^exponent mm, so that the largest height takes up 30 bits, also after rounding. RunError where heights,
@@ -162,6 +181,7 @@ SurfaceFile parse_sur(std::string_view bytes, const std::filesystem::path& path)
     result.map.height = Grid<double>(columns, rows);
     (bits == 16 ? read_sur_heights<std::int16_t> : read_sur_heights<std::int32_t>)(points, not_measured, step, z0,
                                                                                    result.map.height);
+    invert(file.at<std::int16_t>(inversion_at, "inversion"), result.map.height);
 
     result.provenance = parse_provenance(comment);
     const auto known = [&](std::string& member, std::size_t offset) {

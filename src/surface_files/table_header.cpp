@@ -6,6 +6,7 @@
 #include "surface_files/table_text.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cctype>
 
 namespace vkfv::surface {
@@ -48,6 +49,7 @@ struct Statement {
     std::vector<std::string_view> values;
 
     std::optional<double> number() const { return values.empty() ? std::nullopt : number_in<double>(values[0]); }
+    std::optional<double> unit() const { return values.empty() ? std::nullopt : mm_per_unit(bare(values[0])); }
     std::optional<double> length() const {
         if (values.empty())
             return std::nullopt;
@@ -98,10 +100,20 @@ void take(const Statement& statement, TableHeader& header) {
         first(header.pitch_y, statement.length());
     else if (is_one_of(key, {"cellsize", "cell size"}))
         first(header.cells, statement.number());
-    else if (key == "width")
+    else if (is_one_of(key, {"width", "breite"}))
         first(header.width, statement.length());
-    else if (key == "height")
+    else if (is_one_of(key, {"height", "h\xC3\xB6he"}))
         first(header.height, statement.length());
+    else if (key == "x length") {
+        first(header.width, statement.length());
+        first(header.x_length, statement.number());
+    } else if (key == "y length") {
+        first(header.height, statement.length());
+        first(header.y_length, statement.number());
+    } else if (key == "x unit")
+        first(header.x_unit, statement.unit());
+    else if (key == "y unit")
+        first(header.y_unit, statement.unit());
     else if (key == "xllcorner")
         first(header.x_corner, statement.number());
     else if (key == "yllcorner")
@@ -110,9 +122,39 @@ void take(const Statement& statement, TableHeader& header) {
         first(header.x_centre, statement.number());
     else if (key == "yllcenter")
         first(header.y_centre, statement.number());
-    else if (is_one_of(key, {"unit", "units", "height unit", "z unit", "value unit", "value units"}) &&
-             !statement.values.empty())
-        first(header.unit, mm_per_unit(bare(statement.values[0])));
+    else if (is_one_of(key, {"unit", "units", "height unit", "z unit", "value unit", "value units", "einheit"}))
+        first(header.unit, statement.unit());
+    else if (key.starts_with("height conversion factor")) {
+        // "height conversion factor (-> m) = 1e-9": what a value of one is, in the unit behind the arrow.
+        const auto arrow = key.find('>'), close = key.rfind(')');
+        if (arrow != std::string::npos && close != std::string::npos && arrow < close)
+            if (const auto factor = statement.number(),
+                unit = mm_per_unit(bare(std::string_view(key).substr(arrow + 1, close - arrow - 1)));
+                factor && unit)
+                first(header.unit, *factor * *unit);
+    }
+}
+
+// Extents whose unit is that of their axis, or of the heights.
+void take_lengths(TableHeader& header) {
+    const auto take_length = [&](std::optional<double>& extent, const std::optional<double>& length,
+                                 const std::optional<double>& own) {
+        const auto unit = own ? own : header.unit;
+        if (!extent && length && unit)
+            extent = *length * *unit;
+    };
+    take_length(header.width, header.x_length, header.x_unit);
+    take_length(header.height, header.y_length, header.y_unit);
+}
+
+// The names in "x (um) y (um) z (um)", each with its brackets.
+std::vector<std::string_view> cells_with_brackets(std::string_view names) {
+    std::vector<std::string_view> cells;
+    for (auto end = names.find_first_of(")]"); end != std::string_view::npos; end = names.find_first_of(")]")) {
+        cells.push_back(bare(names.substr(0, end + 1)));
+        names.remove_prefix(end + 1);
+    }
+    return cells;
 }
 
 } // namespace
@@ -145,9 +187,9 @@ TableHeader table_header(std::span<const std::string_view> lines, std::size_t co
     TableHeader header;
     for (const std::string_view line : lines)
         take(statement_of(line), header);
+    take_lengths(header);
     // The names of columns stand on the last line that has a unit for some of them; a matrix has one name or none.
-    const auto take_names = [&](std::string_view names, char between, std::size_t count) {
-        const auto cells = cells_of(names, between);
+    const auto take_names = [&](std::string_view names, const std::vector<std::string_view>& cells, std::size_t count) {
         if (cells.size() != count)
             return false;
         std::array<std::optional<double>, 3> units;
@@ -161,10 +203,14 @@ TableHeader table_header(std::span<const std::string_view> lines, std::size_t co
     };
     for (auto line = lines.rbegin(); line != lines.rend() && !header.column_names; ++line) {
         const std::string_view names = bare(line->substr(std::min(line->find_first_not_of("# \t"), line->size())));
-        for (const std::size_t count : {columns, std::size_t{1}})
-            for (const char between : {separator, ';', '\t', ','})
-                if (take_names(names, between, count))
-                    return header;
+        constexpr std::size_t one = 1;
+        const auto separated = [&](std::size_t count) {
+            return std::ranges::any_of(std::array{separator, ';', '\t', ','}, [&](char between) {
+                return take_names(names, cells_of(names, between), count);
+            });
+        };
+        if (separated(columns) || take_names(names, cells_with_brackets(names), columns) || separated(one))
+            return header;
     }
     return header;
 }

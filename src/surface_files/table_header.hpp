@@ -17,7 +17,10 @@ struct TableHeader {
     std::optional<double> pitch_x, pitch_y; // between points
     std::optional<double> cells;            // the same, in the unit of the heights (ESRI's grids)
     std::optional<double> width, height;    // of the whole grid
-    std::optional<double> x0, y0;           // of the point with the lowest x and y
+    // The same as numbers whose unit stands elsewhere (SPIP): in that of its axis, else of the heights.
+    std::optional<double> x_length, y_length;
+    std::optional<double> x_unit, y_unit; // mm
+    std::optional<double> x0, y0;         // of the point with the lowest x and y
     // The place of that point, or of the corner of its cell, in the unit of the heights, as ESRI's grids state it.
     std::optional<double> x_centre, y_centre, x_corner, y_corner;
     std::optional<double> not_measured;                  // the value that says so

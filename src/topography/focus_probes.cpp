@@ -87,6 +87,30 @@ double neighbours_alike(const std::vector<double>& values) {
     return variance > 0 ? std::max(0.0, 1 - steps / (2 * variance)) : 0;
 }
 
+// The largest correlation of two patches over shifts of up to a third of their sides.
+double largest_correlation(const std::vector<double>& a, const std::vector<double>& b, int columns, int rows) {
+    const int most_x = columns / 3, most_y = rows / 3;
+    double largest = 0;
+    for (int dy = -most_y; dy <= most_y; ++dy) {
+        for (int dx = -most_x; dx <= most_x; ++dx) {
+            double product = 0, square_a = 0, square_b = 0;
+            for (int row = std::max(0, -dy); row < std::min(rows, rows - dy); ++row) {
+                for (int column = std::max(0, -dx); column < std::min(columns, columns - dx); ++column) {
+                    const double of_a = a[static_cast<std::size_t>(row * columns + column)];
+                    const double of_b = b[static_cast<std::size_t>((row + dy) * columns + column + dx)];
+                    product += of_a * of_b;
+                    square_a += of_a * of_a;
+                    square_b += of_b * of_b;
+                }
+            }
+            if (square_a > 0 && square_b > 0) {
+                largest = std::max(largest, product / std::sqrt(square_a * square_b));
+            }
+        }
+    }
+    return largest;
+}
+
 // Adds values(p) values(p + k) for every k = (column - reach, row) of sums, over the pixels p of a patch.
 void add_products(const std::vector<double>& values, int columns, int rows, Grid<double>& sums) {
     const int reach = sums.columns / 2;
@@ -450,7 +474,7 @@ Channels FocusProbes::noise_patch(const Probe& probe, int image, double contrast
         return {};
     }
     // At this contrast the brightness stays 1, so that the focus measure is proportional to the contrast.
-    constexpr double little = 1e-3;
+    constexpr double little = 1e-3, most = 0.1;
     const auto fill = [&](double strength) {
         for (std::size_t k = 0; k < noise.size(); ++k) {
             patch[k / pixels].values[k % pixels] = static_cast<float>(1 + strength * noise[k]);
@@ -458,7 +482,8 @@ Channels FocusProbes::noise_patch(const Probe& probe, int image, double contrast
     };
     fill(little / largest);
     const double found = focus_at(patch, measure_, window_, probe.middle_column, probe.middle_row);
-    if (!(found > 0)) {
+    // Images without noise have differences that are texture, and a window may hold hardly any of it.
+    if (!(found > 0) || little * contrast / found > most) {
         return {};
     }
     fill(little / largest * contrast / found);
@@ -572,9 +597,52 @@ double FocusProbes::measure_of_rounding(double brightness) const {
     return focus_at(patch, measure_, window_, probes_.front().middle_column, probes_.front().middle_row);
 }
 
+std::vector<double> FocusProbes::pattern(const Probe& probe, std::size_t image) const {
+    const std::size_t pixels = probe.pixels(), values = pixels * static_cast<std::size_t>(channels_);
+    std::vector<double> result(pixels);
+    for (std::size_t k = 0; k < values; ++k) {
+        double mean = 0;
+        for (int other = 0; other < images_; ++other) {
+            mean += static_cast<double>(probe.values[static_cast<std::size_t>(other) * values + k]) / images_;
+        }
+        result[k % pixels] += static_cast<double>(probe.values[image * values + k]) - mean;
+    }
+    const double level = std::accumulate(result.begin(), result.end(), 0.0) / static_cast<double>(pixels);
+    for (double& value : result) {
+        value -= level;
+    }
+    return result;
+}
+
+bool FocusProbes::reappears(const std::vector<PlaceOfImages>& places) const {
+    constexpr std::size_t fewest = 5;
+    constexpr double most_errors_by_chance = 3; // standard errors
+    if (places.size() < fewest) {
+        return true;
+    }
+    std::vector<double> excess(places.size(), 0.0);
+    parallel_items(static_cast<int>(places.size()), [&](int k) {
+        const PlaceOfImages& here = places[static_cast<std::size_t>(k)];
+        const PlaceOfImages& other = places[(static_cast<std::size_t>(k) + 1) % places.size()];
+        if (other.probe->columns != here.probe->columns || other.probe->rows != here.probe->rows) {
+            return;
+        }
+        const auto image = pattern(*here.probe, here.image);
+        const auto correlation = [&](const PlaceOfImages& place) {
+            return largest_correlation(image, pattern(*place.probe, place.neighbour), here.probe->columns,
+                                       here.probe->rows);
+        };
+        excess[static_cast<std::size_t>(k)] = correlation(here) - correlation(other);
+    });
+    const auto count = static_cast<double>(excess.size());
+    const double mean = std::accumulate(excess.begin(), excess.end(), 0.0) / count;
+    return mean > most_errors_by_chance * std::sqrt(variance_of(excess) / count);
+}
+
 std::optional<double> FocusProbes::persistence_of_strong_texture(const std::vector<double>& neighbour_weights,
                                                                  bool curves_averaged) const {
     constexpr double least_rise = 8; // of the measure over its quiet values, along z
+    constexpr double persistent = 0.25;
     constexpr double least_share = 0.02;
     const double mean = [&] {
         double sum = 0;
@@ -590,6 +658,7 @@ std::optional<double> FocusProbes::persistence_of_strong_texture(const std::vect
         means.curve = all_shares(axial_shares, {1}, images_);
     }
     std::vector<double> shares(probes_.size(), std::numeric_limits<double>::quiet_NaN());
+    std::vector<std::optional<PlaceOfImages>> wide(probes_.size()); // strong in a neighbouring image too
     parallel_items(static_cast<int>(probes_.size()), [&](int k) {
         const Probe& probe = probes_[static_cast<std::size_t>(k)];
         const std::vector<double>& singles = probe.singles;
@@ -607,7 +676,22 @@ std::optional<double> FocusProbes::persistence_of_strong_texture(const std::vect
             alone += share * single * single;
         }
         shares[static_cast<std::size_t>(k)] = (joint * joint / alone - 1) / (1 / kept - 1);
+        const std::size_t neighbour = singles[at - 1] > singles[at + 1] ? at - 1 : at + 1;
+        if (singles[neighbour] > 0.5 * singles[at] && shares[static_cast<std::size_t>(k)] < persistent) {
+            wide[static_cast<std::size_t>(k)] = {&probe, at, neighbour};
+        }
     });
+    std::vector<PlaceOfImages> not_persistent;
+    for (const auto& place : wide) {
+        if (place) {
+            not_persistent.push_back(*place);
+        }
+    }
+    if (!reappears(not_persistent)) { // it is noise, of which strength says nothing
+        for (std::size_t k = 0; k < shares.size(); ++k) {
+            shares[k] = wide[k] ? std::numeric_limits<double>::quiet_NaN() : shares[k];
+        }
+    }
     std::erase_if(shares, [](double share) { return std::isnan(share); });
     if (static_cast<double>(shares.size()) < std::max(5.0, least_share * static_cast<double>(probes_.size()))) {
         return std::nullopt;

@@ -85,7 +85,8 @@ class FocusProbes {
     // The share of strong texture that persists from image to image (persistence.hpp): 0 if every image has another
     // pattern, 1 if the pattern stays. Texture is strong where the focus measure rises to eight times its quiet value
     // and that of rounding to grey values. The result is the median over the probes with strong texture; it is empty if
-    // hardly any has. The share is small if the images move, or if texture is in focus in one image alone.
+    // hardly any has. The share is small if the images move, or if texture is in focus in one image alone. What is
+    // strong in a neighbouring image too, but not found there at any place nearby, is noise, and does not count.
     std::optional<double> persistence_of_strong_texture(const std::vector<double>& neighbour_weights,
                                                         bool curves_averaged) const;
 
@@ -122,6 +123,17 @@ class FocusProbes {
 
     // Of the image whose patches were added last.
     void follow_singles();
+
+    // Two images next to each other at a probe.
+    struct PlaceOfImages {
+        const Probe* probe;
+        std::size_t image, neighbour;
+    };
+    // A probe's image without what all of its images have, channels added up; the mean is 0.
+    std::vector<double> pattern(const Probe& probe, std::size_t image) const;
+    // Whether the patterns of images stand in their neighbours too, wherever they have moved: whether their largest
+    // correlations exceed those with other places' neighbours by more than chance. Few places tell nothing: true.
+    bool reappears(const std::vector<PlaceOfImages>& places) const;
 
     // Second differences along z of a channel.
     struct Differences {

@@ -1,7 +1,9 @@
-// Any bytes are an image or an InputError: as a specimen, and as a file of a stack, of which RunError may say that the
-// library cannot read such a kind at all.
+// Any bytes are an image or an InputError: as a specimen, as a mask, and as a file of a stack, of which RunError may
+// say that the library cannot read such a kind at all. So are the number of a file's pages and what it states of
+// itself.
 #include "core/messages/error.hpp"
 #include "images/image_file.hpp"
+#include "images/tiff.hpp"
 #include "specimen/files.hpp"
 
 #include <unistd.h>
@@ -35,18 +37,27 @@ extern "C" const char* __asan_default_options() {
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
     using namespace vkfv;
+    constexpr std::uint64_t most_pixels = 1 << 20;
+    constexpr std::uint32_t gdal_nodata = 42113; // a tag of texts
     const std::string_view bytes(reinterpret_cast<const char*>(data), size);
+    const auto refused_or_read = [](const auto& read) {
+        try {
+            (void)read();
+        } catch (const InputError&) {
+        } catch (const RunError&) {
+        }
+    };
     try {
         (void)specimen::parse_image(bytes, "fuzzed");
     } catch (const InputError&) {
     }
+    refused_or_read([&] { return images::parse_grey(bytes, most_pixels, "fuzzed"); });
+    refused_or_read([&] { return images::tiff_text(bytes, gdal_nodata); });
     const auto file = file_for(bytes);
     std::ofstream(file, std::ios::binary).write(bytes.data(), static_cast<std::streamsize>(bytes.size())).flush();
-    try {
-        (void)images::read_channels(file);
-    } catch (const InputError&) {
-    } catch (const RunError&) {
-    }
+    refused_or_read([&] { return images::page_count(file); });
+    refused_or_read([&] { return images::image_statement(file); });
+    refused_or_read([&] { return images::read_channels(file); });
     std::filesystem::remove(file);
     return 0;
 }

@@ -56,6 +56,20 @@ TEST(StatedSeries, IsReadFromImageJ) {
     EXPECT_TRUE(stated.doubts.empty());
 }
 
+TEST(StatedSeries, HasTheDateOfTheImages) {
+    const auto dated = [](const std::string& date, const std::string& description = "") {
+        return stated_series({.description = description, .date = date}, 1, file).date;
+    };
+    EXPECT_EQ(dated("2024:02:29 01:02:03"), "2024-02-29T01:02:03");
+    EXPECT_EQ(dated("2024:02:29 01:02:03", "ImageJ=1.53t\nimages=1\n"), "2024-02-29T01:02:03");
+    const std::string xml = "<OME><Image><AcquisitionDate>2023-12-01T10:00:00</AcquisitionDate>"
+                            "<Pixels SizeZ=\"1\" SizeC=\"1\" SizeT=\"1\"/></Image></OME>";
+    EXPECT_EQ(dated("2024:02:29 01:02:03", xml), "2023-12-01T10:00:00");
+    for (const char* none : {"", "2024", "2024-02-29 01:02:03", "    :  :     :  :  ", "yesterday, at noon"}) {
+        EXPECT_EQ(dated(none), "") << none;
+    }
+}
+
 TEST(StatedSeries, KnowsEveryUnit) {
     for (const auto& [unit, length] : std::vector<std::pair<std::string, double>>{{"um", 1e-3},
                                                                                   {"\xc2\xb5m", 1e-3},

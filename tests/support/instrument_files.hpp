@@ -57,6 +57,8 @@ inline std::string opd_file() {
         raw_points<std::uint16_t>({3, 2, 2}) + raw_points<std::int16_t>({800, 200, 32767, 400, 1200, 600}));
     add("Pixel_size", 7, raw_points<float>({1e-3}));
     add("Wavelength", 7, raw_points<float>({500}));
+    add("Date", 5, "10/26/2009");
+    add("Time", 5, "11:16:55");
     put(directory, 18, static_cast<std::uint32_t>(directory.size()));
     put(directory, 22, std::uint16_t{0xffff});
     return std::string("\1\0", 2) + directory + contents;

@@ -210,6 +210,32 @@ TEST(SurfaceFormats, TableOfGwyddionStatesItsScale) {
     EXPECT_EQ(contradicted.warnings.size(), 1u);
 }
 
+// SPIP's headers have the unit of an extent in a line of its own, NanoFocus' have factors, Gwyddion's may be German.
+TEST(SurfaceFormats, TablesOfOtherProgramsStateTheirScale) {
+    const char* rows = "1 2\n3 4\n";
+    for (const char* header : {"# x-pixels = 2\n# y-pixels = 2\n# x-length = 4\n# y-length = 8\n# x-unit = um\n# "
+                               "y-unit = um\n# z-unit = nm\n",
+                               "# x-length = 4000\n# y-length = 8000\n# z-unit = nm\n",
+                               "# x-length = 4 um\n# y-length = 8 um\n# z-unit = nm\n",
+                               "# Kanal: Topo\n# Breite: 4 \xC2\xB5m\n# H\xC3\xB6he: 8 \xC2\xB5m\n# Einheit: nm\n"}) {
+        const HeightMap map = parse_height_table(std::string(header) + rows, "a.asc", {}).map;
+        EXPECT_DOUBLE_EQ(map.pitch_x, 2e-3) << header;
+        EXPECT_DOUBLE_EQ(map.pitch_y, 4e-3) << header;
+        EXPECT_NEAR(map.height(1, 0), 4e-6, 1e-18) << header;
+    }
+    const std::string focus = "w = 2\nh = 2\npixel size = 2e-06 m\nheight conversion factor (-> m) = 1e-9\n";
+    const HeightMap map = parse_height_table(focus + rows, "a.txt", {}).map;
+    EXPECT_DOUBLE_EQ(map.pitch_x, 2e-3);
+    EXPECT_NEAR(map.height(1, 0), 4e-6, 1e-18);
+    // An extent without any unit is none.
+    expect_refusal(
+        [&] {
+            (void)parse_height_table(std::string("# x-length = 4\n# y-length = 8\n") + rows, "a.txt",
+                                     {.pitch = {}, .unit = 1});
+        },
+        "pitch");
+}
+
 TEST(SurfaceFormats, PointsOnAGrid) {
     // In any order; one is left out.
     const HeightMap map = parse_height_table("x y z\n1.0 5 1\n1.5 5 2\n2.0 5 3\n1.0 5.25 4\n2.0 5.25 6\n", "a.xyz",
@@ -285,6 +311,25 @@ TEST(SurfaceFormats, OpdOfEveryNameOfItsBlock) {
             EXPECT_TRUE(found[k] == expected[k] || (std::isnan(found[k]) && std::isnan(expected[k]))) << name << k;
     }
     EXPECT_THROW((void)parse_opd(named("Other"), "a.opd"), InputError);
+    // It also writes dates without zeros at their beginning.
+    std::string dated = named("OPD");
+    const auto replace = [&dated](const std::string& from, std::string to) {
+        to.resize(from.size(), '\0');
+        dated.replace(dated.find(from), from.size(), to);
+    };
+    EXPECT_EQ(parse_opd(dated, "a.opd").provenance.date, "2009-10-26T11:16:55Z");
+    replace("10/26/2009", "1/2/2003");
+    replace("11:16:55", "4:05:6");
+    EXPECT_EQ(parse_opd(dated, "a.opd").provenance.date, "2003-01-02T04:05:06Z");
+    // Heights of a byte each, in steps of 5 nm.
+    std::string of_bytes = bytes;
+    const auto size = of_bytes.find(std::string("\3\0\2\0\2\0", 6));
+    ASSERT_NE(size, std::string::npos);
+    of_bytes.replace(size + 4, 8, "\1\0\x20\x03\xC8\x07\xFF\x7F", 8);
+    const auto map = parse_opd(of_bytes, "a.opd").map;
+    EXPECT_NEAR(map.height(0, 0), 0x20 * 5e-6, 1e-12);
+    EXPECT_NEAR(map.height(0, 1), 0x03 * 5e-6, 1e-12);
+    EXPECT_NEAR(map.height(2, 0), 0xFF * 5e-6, 1e-12);
 }
 
 } // namespace

@@ -80,8 +80,9 @@ TEST(TableStatements, AGridOfEsriCountsInOneUnit) {
 
 TEST(TableStatements, UnitsInTheNamesOfColumnsAreUsed) {
     const std::string points = "0,0,5\n0.002,0,6\n0,0.002,7\n0.002,0.002,8\n";
-    for (const char* names : {"x [mm],y [mm],z [um]", "X (mm);Y (mm);Z (\xC2\xB5m)", "x/mm,y/mm,z/\xCE\xBCm",
-                              "# x [mm], y [mm], z [\xC2\xB5m]", "\"x [mm]\",\"y [mm]\",\"height [micron]\""}) {
+    for (const char* names :
+         {"x [mm],y [mm],z [um]", "X (mm);Y (mm);Z (\xC2\xB5m)", "x/mm,y/mm,z/\xCE\xBCm",
+          "# x [mm], y [mm], z [\xC2\xB5m]", "\"x [mm]\",\"y [mm]\",\"height [micron]\"", "# x (mm) y (mm) z (um)"}) {
         const SurfaceFile file = table(std::string(names) + "\n" + points);
         EXPECT_THAT(heights_of(file), ElementsAre(near(7), near(8), near(5), near(6))) << names;
         EXPECT_THAT(file.map.pitch_x, near(0.002)) << names;

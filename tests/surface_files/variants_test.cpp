@@ -13,11 +13,15 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
 #include <cstring>
 #include <fstream>
 #include <functional>
 #include <iterator>
+#include <limits>
+#include <optional>
 #include <random>
+#include <string>
 #include <utility>
 #include <vector>
 
@@ -227,6 +231,56 @@ TEST(SurfaceVariants, SurOfTypeOneWithSeveralRows) {
     bytes[212] = ' ';
     bytes[213] = ' ';
     expect_told([&] { (void)parse_sur(bytes, "a.sur"); }, "unit of length = nothing");
+}
+
+// Gwyddion 2.62 shows each inversion so; lists begin at the lowest y.
+TEST(SurfaceVariants, SurWithAnInversionAndTheMicroSignOfDos) {
+    std::string bytes = sur_bytes(slope(3, 2), {});
+    constexpr std::size_t inversion_at = 290, units_at = 180, unit_length = 16;
+    const double h = 0.25;
+    const std::vector<std::vector<double>> expected = {{0, h, 2 * h, 3 * h, 4 * h, 5 * h},
+                                                       {0, -h, -2 * h, -3 * h, -4 * h, -5 * h},
+                                                       {-2 * h, -h, 0, -5 * h, -4 * h, -3 * h},
+                                                       {-3 * h, -4 * h, -5 * h, 0, -h, -2 * h}};
+    for (std::size_t inversion = 0; inversion < expected.size(); ++inversion) {
+        bytes[inversion_at] = static_cast<char>(inversion);
+        EXPECT_EQ(parse_sur(bytes, "a.sur").map.height.values, expected[inversion]) << inversion;
+    }
+    bytes[inversion_at] = 0;
+    for (std::size_t axis = 0; axis < 3; ++axis)
+        bytes.replace(units_at + axis * unit_length, 2, "\xE6m");
+    EXPECT_NEAR(parse_sur(bytes, "a.sur").map.height(1, 0), 1e-3 * h, 1e-15);
+}
+
+template <class Stored>
+std::string sdf_of(int type, const std::vector<Stored>& points) {
+    std::string bytes = sdf_bytes(slope(3, 2), {}).substr(0, 81);
+    bytes[79] = static_cast<char>(type);
+    return bytes + std::string(reinterpret_cast<const char*>(points.data()), points.size() * sizeof(Stored));
+}
+
+// ISO 25178-71, table 2: with the value that means "not measured" where a type has one.
+template <class Stored>
+void expect_sdf(int type, std::optional<Stored> mark) {
+    std::vector<Stored> points = {10, 20, 30, 40, 50, 60};
+    if (mark)
+        points[5] = *mark;
+    const auto map = parse_sdf(sdf_of(type, points), "a.sdf").map;
+    EXPECT_NEAR(map.height(0, 1), 10e3, 1e-9) << type; // m
+    EXPECT_NEAR(map.height(1, 0), 50e3, 1e-9) << type;
+    EXPECT_EQ(std::isnan(map.height(2, 0)), mark.has_value()) << type;
+}
+
+TEST(SurfaceVariants, SdfOfEveryType) {
+    expect_sdf<std::uint8_t>(0, {});
+    expect_sdf<std::uint16_t>(1, 65535);
+    expect_sdf<std::uint32_t>(2, 4294967295);
+    expect_sdf<float>(3, std::numeric_limits<float>::quiet_NaN());
+    expect_sdf<std::int8_t>(4, {});
+    expect_sdf<std::int16_t>(5, -32768);
+    expect_sdf<std::int32_t>(6, std::numeric_limits<std::int32_t>::min());
+    expect_sdf<double>(7, std::numeric_limits<double>::quiet_NaN());
+    expect_told([] { (void)parse_sdf(sdf_of<double>(8, std::vector<double>(6)), "a.sdf"); }, "data type = 8");
 }
 
 TEST(SurfaceVariants, SdfOfEveryMagic) {

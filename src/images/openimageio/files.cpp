@@ -183,6 +183,8 @@ ImageStatement image_statement(const std::filesystem::path& path) {
     statement.rows = turned ? spec.width : spec.height;
     statement.channels = spec.nchannels - (opacity_channel(spec) >= 0 ? 1 : 0);
     statement.description = description_of(image);
+    // Cameras write both where an image was edited: the date of the photograph, and that of the file.
+    statement.date = spec.get_string_attribute("Exif:DateTimeOriginal", spec.get_string_attribute("DateTime"));
     // Other formats' resolution is that of a screen or of print.
     if (std::string_view(image.input->format_name()) == "tiff") {
         const std::string unit = spec.get_string_attribute("ResolutionUnit");

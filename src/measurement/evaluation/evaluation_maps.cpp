@@ -126,9 +126,14 @@ EvaluationData write_maps(ResultFolder& results, const std::filesystem::path& fo
     }
     for (const std::string& file : files.names) {
         write(file, [&, file] {
+            surface::Provenance provenance = files.provenance;
+            const bool dated = file.ends_with(".x3p") || file.ends_with(".sdf");
+            if (dated && surface::source_date().empty()) {
+                provenance.date = files.date_of_images;
+            }
             return file.ends_with(".gwy")
-                       ? surface::gwy_bytes(channels_of(evaluation, deviation, files.image_unit), files.provenance)
-                       : surface::surface_bytes(file, topography.height, files.provenance);
+                       ? surface::gwy_bytes(channels_of(evaluation, deviation, files.image_unit), provenance)
+                       : surface::surface_bytes(file, topography.height, provenance);
         });
     }
     write("height_noise.tif",

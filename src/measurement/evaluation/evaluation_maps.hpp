@@ -22,6 +22,9 @@ struct TopographyFiles {
                                       .manufacturer = "vkfv",
                                       .model = "virtual focus-variation microscope",
                                       .version = VKFV_VERSION};
+    // When the images were taken, as they state it (xsd:dateTime), for the formats that cannot do without a date;
+    // empty: it is not known.
+    std::string date_of_images{};
 };
 
 // The files that [output] surfaces names; they also hold the configuration's digest.

@@ -321,7 +321,7 @@ EvaluatedStack evaluate_images(const scan::ImageSeries& series, const ForeignSta
     return {.evaluation = evaluation.finish(stack.pitch, configuration.band.form, errors),
             .origin = std::move(origin),
             .source = {},
-            .files = {}};
+            .files = {.date_of_images = series.stated().date}};
 }
 
 } // namespace vkfv::measurement

@@ -55,15 +55,22 @@ TEST(StackFaults, GoodImagesHaveNone) {
 }
 
 TEST(StackFaults, FlickerIsTold) {
-    auto images = good_images(2);
     std::mt19937 random(3);
     std::normal_distribution<double> normal;
-    for (auto& image : images) {
-        brighten(image, 1 + 0.05 * normal(random));
+    constexpr int stacks = 12;
+    double mean = 0;
+    for (unsigned seed = 0; seed < stacks; ++seed) {
+        auto images = good_images(seed);
+        for (auto& image : images) {
+            brighten(image, 1 + 0.05 * normal(random));
+        }
+        const StackFaults faults = faults_of(images);
+        EXPECT_EQ(faults.exposure_step, 0) << seed;
+        mean += faults.flicker / stacks;
     }
-    const StackFaults faults = faults_of(images);
-    EXPECT_NEAR(faults.flicker, 0.05, 0.02); // of 41 images
-    EXPECT_EQ(faults.exposure_step, 0);
+    // The median of 39 second differences of independent normal values has a mean of 1.017 and a standard deviation of
+    // 0.224 of what it estimates, by 200 000 simulated stacks in numpy.
+    EXPECT_NEAR(mean, 1.017 * 0.05, 3 * 0.224 * 0.05 / std::sqrt(stacks));
 }
 
 TEST(StackFaults, AStepOfTheExposureIsToldWithItsPlace) {
@@ -199,9 +206,7 @@ TEST(StackFaults, SaturatedPixelsHideNoNoise) {
             }
         }
     }
-    const double cut = median_noise(images);
-    EXPECT_GT(cut, 0.7 * whole);
-    EXPECT_LT(cut, 1.5 * whole);
+    EXPECT_NEAR(median_noise(images) / whole, 1, 0.15); // as of flicker
 }
 
 } // namespace

@@ -34,11 +34,13 @@ double bell(double at, double middle, double width) {
 std::vector<Case> cases() {
     const auto narrow = [](double at) { return bell(at, 0.6, 0.08); };
     const auto wide = [](double at) { return bell(at, 0.5, 0.2); };
+    const auto strong = [](double at) { return 1 + 9 * std::exp(-0.5 * std::pow((at - 0.5) / 0.05, 2)); };
     const auto ramp = [](double at) { return 1 + at; };
     const auto step = [](double at) { return at < 0.5 ? 1.0 : 1.6; };
     const auto pulse = [](double at) { return std::abs(at - 0.5) < 0.15 ? 2.0 : 1.0; };
     return {{.name = "narrow bell", .noise = narrow},
             {.name = "wide bell", .noise = wide},
+            {.name = "strong bell", .noise = strong},
             {.name = "ramp", .noise = ramp},
             {.name = "step of the gain", .noise = step},
             {.name = "pulse", .noise = pulse},
