@@ -35,7 +35,8 @@ struct NoiseModel {
     double variance(double value) const { return constant + slope * (value > 0 ? value : 0); }
 };
 
-class WindowResponses; // texture_and_noise.cpp
+struct LevelsAtPlace;
+class WindowResponses;
 
 class FocusProbes {
   public:
@@ -69,6 +70,11 @@ class FocusProbes {
     // noise_correlation(). None where the probes are few, hardly wider than the image, or show no texture or no noise.
     std::optional<TextureAndNoise> texture_and_noise(const std::vector<double>& axial_weights, const NoiseModel& model,
                                                      const NoiseCorrelation& correlation) const;
+
+    // Several levels of height at the probes whose patch lies in the image, where texture is above noise
+    // (hidden_levels.hpp). axial_weights: of both averages. Empty for fewer than least_images_for_correlation, where
+    // the curves have no form, and for fewer than nine such probes.
+    std::vector<LevelsAtPlace> levels(const std::vector<double>& axial_weights) const;
 
     // The evidence of curves with the images in random order, none where the largest value stands at an end.
     // axial_weights: of both averages (axial_average.hpp). Of as many orders as tell what a share of `rate` exceeds,
@@ -185,6 +191,8 @@ class FocusProbes {
     // The focus measure of values that were rounded to the grey values which the probes have, about this brightness.
     double measure_of_rounding(double brightness) const;
 
+    // A probe's patch of all channels in the weighted mean of images, over its mean brightness; 0 where that is.
+    std::vector<double> mean_patch(const Probe& probe, const std::vector<Share>& shares) const;
     // Of the weighted means of images in this order.
     std::vector<double> curve(const Probe& probe, const std::vector<int>& order, const Means& means) const;
     // The curve of a probe's single images, averaged along z as curves are.

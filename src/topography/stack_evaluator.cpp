@@ -1,6 +1,7 @@
 #include "core/messages/error.hpp"
 #include "core/threads/parallel_rows.hpp"
 #include "topography/height_uncertainty.hpp"
+#include "topography/hidden_levels.hpp"
 #include "topography/noise/curve_noise.hpp"
 #include "topography/places_of_maxima.hpp"
 #include "topography/texture_place.hpp"
@@ -377,6 +378,7 @@ Topography StackEvaluator::finish(double x0, double y0, double pitch) {
     // By the probes alone, while the planes are finished.
     auto noise_of_probes = std::async(std::launch::async, [this] { return probes_->noise(); });
     auto correlation_of_probes = std::async(std::launch::async, [this] { return probes_->noise_correlation(); });
+    auto levels_of_probes = std::async(std::launch::async, [this] { return probes_->levels(axial_weights_); });
     auto figures_of_probes = std::async(std::launch::async, [this] { return judge_stack(); });
     advance(true);
     StackSummary stack = planes_->summary();
@@ -458,9 +460,15 @@ Topography StackEvaluator::finish(double x0, double y0, double pitch) {
         repair_outliers(result);
     result.height_uncertainty =
         height_uncertainty(result.height.height, result.height_noise, options_.window_px, options_.window_shape);
-    std::ranges::transform(result.height_uncertainty.values, end_uncertainty.values,
-                           result.height_uncertainty.values.begin(),
-                           [](double of_window, double of_end) { return std::hypot(of_window, of_end); });
+    const HiddenLevels levels(levels_of_probes.get(), result.height.height, step, window_.radius());
+    for (int row = 0; row < rows_; ++row) {
+        for (int column = 0; column < columns_; ++column) {
+            double& uncertainty = result.height_uncertainty(column, row);
+            uncertainty = std::sqrt(uncertainty * uncertainty + std::pow(end_uncertainty(column, row), 2) +
+                                    levels.variance(column, row));
+        }
+    }
+    figures.hidden_relief = levels.mean_deviation();
     figures.image_noise = relative_noise(brightness, noise_model);
     figures.noise_correlation = correlation;
     result.stack = figures;

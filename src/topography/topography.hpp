@@ -89,14 +89,15 @@ enum class PointState : std::uint16_t {
 
 // Of a stack as a whole.
 struct StackFigures {
-    double smoothing_steps = 0;           // that were used
-    double curve_width_steps = 0;         // standard deviation of its focus curves, FocusProbes::curve_width()
-    ChanceLimit limit;                    // that a measured point exceeds
-    Evidence whole;                       // mean of single images' curves at some places
-    double rivalled_share = 0;            // of wide windows' curves that have a second maximum above most_rival
-    PersistenceLimit persistence;         // that a measured point exceeds too
-    ChanceLimit limit_of_whole;           // that it exceeds where anything is measured, but for few_images
-    double image_noise = 0;               // standard deviation of a pixel over its brightness, at the mean brightness
+    double smoothing_steps = 0;   // that were used
+    double curve_width_steps = 0; // standard deviation of its focus curves, FocusProbes::curve_width()
+    ChanceLimit limit;            // that a measured point exceeds
+    Evidence whole;               // mean of single images' curves at some places
+    double rivalled_share = 0;    // of wide windows' curves that have a second maximum above most_rival
+    PersistenceLimit persistence; // that a measured point exceeds too
+    ChanceLimit limit_of_whole;   // that it exceeds where anything is measured, but for few_images
+    double image_noise = 0;       // standard deviation of a pixel over its brightness, at the mean brightness
+    double hidden_relief = 0;     // mm, HiddenLevels::mean_deviation(): what windows have in them and do not show
     NoiseCorrelation noise_correlation{}; // of neighbouring pixels' noise, FocusProbes::noise_correlation()
 
     bool rivalled() const { return rivalled_share > 0.5; }
@@ -110,7 +111,7 @@ struct Topography {
     // Standard deviation of the height that the images' noise brings, mm; NaN: not measured.
     Grid<double> height_noise;
     // Standard uncertainty of the height by what neighbouring windows do not agree on, noise with all the rest
-    // (height_uncertainty.hpp), mm; NaN: not measured.
+    // (height_uncertainty.hpp), and by levels that windows have at once (hidden_levels.hpp), mm; NaN: not measured.
     Grid<double> height_uncertainty;
     // RMS distance of the curve from a Gaussian over the range around its maximum, in units of the maximum.
     Grid<double> fit_residual;

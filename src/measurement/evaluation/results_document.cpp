@@ -93,7 +93,8 @@ nlohmann::ordered_json figures_of_curves(const Evaluation& evaluation) {
                          {"image_noise", whole.image_noise},
                          {"noise_correlation", {whole.noise_correlation(1, 0), whole.noise_correlation(0, 1)}},
                          {"height_noise", evaluation.height_noise},
-                         {"height_uncertainty", evaluation.height_uncertainty}};
+                         {"height_uncertainty", evaluation.height_uncertainty},
+                         {"hidden_relief", whole.hidden_relief}};
     figures["focus_curves"] = places_json(evaluation.topography.curves, evaluation.topography.height.rows());
     figures["points"] = point_counts(evaluation.topography.state);
     return figures;

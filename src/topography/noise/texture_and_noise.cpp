@@ -2,8 +2,9 @@
 
 #include "core/threads/parallel_list.hpp"
 #include "topography/focus_probes.hpp"
-#include "topography/noise/focus_masks.hpp"
+#include "topography/noise/image_halves.hpp"
 #include "topography/noise/quiet_images.hpp"
+#include "topography/noise/window_responses.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -13,176 +14,7 @@
 
 namespace vkfv::topography {
 
-// Responses of a patch to every channel's masks, in the window around its middle.
-class WindowResponses {
-  public:
-    WindowResponses(FocusMeasure measure, const FocusWindow& window, int channels)
-        : laplacian_(measure == FocusMeasure::modified_laplacian),
-          deviation_(measure == FocusMeasure::standard_deviation), masks_(masks_of(measure)), channels_(channels),
-          side_(2 * window.radius() + 1) {
-        double total = 0;
-        for (int row = 0; row < side_; ++row) {
-            for (int column = 0; column < side_; ++column) {
-                weights_.push_back(window.weights()[static_cast<std::size_t>(std::abs(row - window.radius()))] *
-                                   window.weights()[static_cast<std::size_t>(std::abs(column - window.radius()))]);
-                total += weights_.back();
-            }
-        }
-        for (double& weight : weights_) {
-            weight /= total;
-        }
-    }
-
-    int patch_side() const { return side_ + 2 * mask_reach; }
-    // Whether the measure adds magnitudes, not energies.
-    bool magnitudes() const { return laplacian_; }
-
-    // patch: all channels, patch_side() squared pixels each.
-    std::vector<double> of(const std::vector<double>& patch) const {
-        const auto side = static_cast<std::size_t>(patch_side());
-        std::vector<double> result;
-        result.reserve(static_cast<std::size_t>(channels_) * masks_.size() * weights_.size());
-        for (std::size_t channel = 0; channel < static_cast<std::size_t>(channels_); ++channel) {
-            const double* pixels = patch.data() + channel * side * side;
-            for (const Mask& mask : masks_) {
-                append(pixels, mask, result);
-            }
-        }
-        return result;
-    }
-
-    // The weights that noise has in the measure: the responses, or the modified Laplacian's signs.
-    std::vector<double> slopes(const std::vector<double>& responses) const {
-        if (!laplacian_) {
-            return responses;
-        }
-        std::vector<double> result(responses.size());
-        for (std::size_t pixel = 0; pixel < weights_.size(); ++pixel) {
-            const double whole = magnitude(responses, pixel);
-            for (std::size_t channel = 0; channel < static_cast<std::size_t>(channels_) && whole > 0; ++channel) {
-                const double share = of_channel(responses, channel, pixel) / whole;
-                for (std::size_t mask = 0; mask < masks_.size(); ++mask) {
-                    const std::size_t at = (channel * masks_.size() + mask) * weights_.size() + pixel;
-                    result[at] = share * (responses[at] > 0 ? 1.0 : responses[at] < 0 ? -1.0 : 0.0);
-                }
-            }
-        }
-        return result;
-    }
-
-    // Window's mean of the product, summed over masks and channels: over the channels' number as the measure is.
-    double product(const std::vector<double>& a, const std::vector<double>& b) const {
-        double sum = 0;
-        for (std::size_t field = 0; field < a.size(); field += weights_.size()) {
-            for (std::size_t pixel = 0; pixel < weights_.size(); ++pixel) {
-                sum += weights_[pixel] * a[field + pixel] * b[field + pixel];
-            }
-        }
-        return sum / (laplacian_ ? std::sqrt(channels_) : channels_);
-    }
-
-    // Square of the measure.
-    double energy(const std::vector<double>& responses) const {
-        if (!laplacian_) {
-            return product(responses, responses);
-        }
-        double sum = 0;
-        for (std::size_t pixel = 0; pixel < weights_.size(); ++pixel) {
-            sum += weights_[pixel] * magnitude(responses, pixel);
-        }
-        return sum * sum / channels_;
-    }
-
-  private:
-    void append(const double* pixels, const Mask& mask, std::vector<double>& result) const {
-        const int patch = patch_side(), taps = 2 * mask_reach + 1;
-        std::vector<double> along(static_cast<std::size_t>(side_) * static_cast<std::size_t>(patch));
-        for (int row = 0; row < patch; ++row) {
-            for (int column = 0; column < side_; ++column) {
-                double sum = 0;
-                for (int tap = 0; tap < taps; ++tap) {
-                    sum += mask.x[static_cast<std::size_t>(tap)] * pixels[row * patch + column + tap];
-                }
-                along[static_cast<std::size_t>(row * side_ + column)] = sum;
-            }
-        }
-        const std::size_t first = result.size();
-        double mean = 0;
-        for (int row = 0; row < side_; ++row) {
-            for (int column = 0; column < side_; ++column) {
-                double sum = 0;
-                for (int tap = 0; tap < taps; ++tap) {
-                    sum += mask.y[static_cast<std::size_t>(tap)] *
-                           along[static_cast<std::size_t>((row + tap) * side_ + column)];
-                }
-                mean += weights_[result.size() - first] * sum;
-                result.push_back(sum);
-            }
-        }
-        for (std::size_t k = first; deviation_ && k < result.size(); ++k) {
-            result[k] -= mean;
-        }
-    }
-
-    double of_channel(const std::vector<double>& responses, std::size_t channel, std::size_t pixel) const {
-        double sum = 0;
-        for (std::size_t mask = 0; mask < masks_.size(); ++mask) {
-            sum += std::abs(responses[(channel * masks_.size() + mask) * weights_.size() + pixel]);
-        }
-        return sum;
-    }
-    double magnitude(const std::vector<double>& responses, std::size_t pixel) const {
-        double squares = 0;
-        for (std::size_t channel = 0; channel < static_cast<std::size_t>(channels_); ++channel) {
-            squares += std::pow(of_channel(responses, channel, pixel), 2);
-        }
-        return std::sqrt(squares);
-    }
-
-    bool laplacian_, deviation_;
-    std::vector<Mask> masks_;
-    int channels_;
-    int side_;
-    std::vector<double> weights_;
-};
-
 namespace {
-
-// Two means around an image that share none, both near that of the weights: of its even and of its odd neighbours, or
-// of the image and the one after it.
-struct Halves {
-    std::vector<Share> one, other;
-};
-
-std::vector<Share> every_second(const std::vector<Share>& shares, int parity) {
-    std::vector<Share> half;
-    float total = 0;
-    for (const Share& share : shares) {
-        if (share.image % 2 == parity) {
-            half.push_back(share);
-            total += share.weight;
-        }
-    }
-    for (Share& share : half) {
-        share.weight /= total;
-    }
-    return half;
-}
-
-std::vector<Halves> halves_at(const std::vector<double>& axial_weights, int at, int images) {
-    std::vector<Halves> result;
-    if (axial_weights.size() > 1) {
-        const auto shares = axial_shares(axial_weights, at, images);
-        result.push_back({.one = every_second(shares, 0), .other = every_second(shares, 1)});
-        return result;
-    }
-    for (const int first : {at - 1, at}) {
-        if (first >= 0 && first + 1 < images) {
-            result.push_back({.one = {{first, 1.0f}}, .other = {{first + 1, 1.0f}}});
-        }
-    }
-    return result;
-}
 
 // Sums that a probe tells at one distance from its maximum, over the square of the energy at the maximum, since noise
 // makes the variance of a height in this proportion.
@@ -354,6 +186,22 @@ std::vector<std::vector<double>> FocusProbes::noise_responses(const WindowRespon
     return noise;
 }
 
+std::vector<double> FocusProbes::mean_patch(const Probe& probe, const std::vector<Share>& shares) const {
+    const std::size_t values = static_cast<std::size_t>(channels_) * probe.pixels();
+    std::vector<double> mean(values);
+    for (const auto& [image, weight] : shares) {
+        const float* from = probe.values.data() + static_cast<std::size_t>(image) * values;
+        for (std::size_t pixel = 0; pixel < values; ++pixel) {
+            mean[pixel] += static_cast<double>(weight) * static_cast<double>(from[pixel]);
+        }
+    }
+    const double level = std::accumulate(mean.begin(), mean.end(), 0.0) / static_cast<double>(values);
+    for (double& value : mean) {
+        value = level > 0 ? value / level : 0;
+    }
+    return mean;
+}
+
 std::optional<TextureAndNoise> FocusProbes::texture_and_noise(const std::vector<double>& axial_weights,
                                                               const NoiseModel& model,
                                                               const NoiseCorrelation& correlation) const {
@@ -406,20 +254,8 @@ std::optional<TextureAndNoise> FocusProbes::texture_and_noise(const std::vector<
         const auto top = static_cast<std::size_t>(
             std::clamp(static_cast<int>(std::ranges::max_element(bent) - bent.begin()), 1, images_ - 2));
         here.bend = bent[top] > 0 ? (2 * bent[top] - bent[top - 1] - bent[top + 1]) / bent[top] : 0;
-        // The responses to a weighted mean of images, over its mean brightness.
         const auto responses_of = [&](const std::vector<Share>& shares) {
-            std::vector<double> mean(values);
-            for (const auto& [image, weight] : shares) {
-                const float* from = probe.values.data() + static_cast<std::size_t>(image) * values;
-                for (std::size_t pixel = 0; pixel < values; ++pixel) {
-                    mean[pixel] += static_cast<double>(weight) * static_cast<double>(from[pixel]);
-                }
-            }
-            const double level = std::accumulate(mean.begin(), mean.end(), 0.0) / static_cast<double>(values);
-            for (double& value : mean) {
-                value = level > 0 ? value / level : 0;
-            }
-            return responses.of(mean);
+            return responses.of(mean_patch(probe, shares));
         };
         const double whole = responses.energy(responses_of(axial_shares(axial_weights, at, images_)));
         const float* focused = probe.values.data() + static_cast<std::size_t>(at) * values;
