@@ -159,8 +159,8 @@ SurfaceFile parse_height_image(std::string_view bytes, const std::filesystem::pa
     for (std::size_t k = 0; k < image.values.values.size(); ++k) {
         const double value = image.values.values[k];
         const double height = (stated.offset + stated.gain * value) * *whole.unit;
-        const bool measured =
-            std::abs(height) < no_height_from && std::abs(value) < not_measured_from && !(mark && is_mark(value, *mark));
+        const bool measured = std::abs(height) < no_height_from && std::abs(value) < not_measured_from &&
+                              !(mark && is_mark(value, *mark));
         result.map.height.values[k] = measured ? height : std::numeric_limits<double>::quiet_NaN();
     }
     return result;
