@@ -1,6 +1,7 @@
 // Lengths as files state them: with the name of a unit, or as the extent of a whole grid.
 #pragma once
 
+#include "core/mathematics/units.hpp"
 #include "surface/metres.hpp"
 
 #include <algorithm>
@@ -56,9 +57,9 @@ inline double height_from(double value, double unit) {
 // length reaches.
 inline constexpr double not_measured_from = 1e37;
 
-// Heights of at least this length (mm) are not measured either: in every unit that is written, a height that was read
-// is then below not_measured_from, and reads back.
-inline constexpr double no_height_from = 1e30;
+// Heights of at least this length (mm) are not measured either: a height that was read is then below not_measured_from
+// in micrometres too, which tables are written in, and reads back; half of it keeps clear of rounding.
+inline constexpr double no_height_from = 0.5 * not_measured_from / um_per_mm;
 
 // NaN where a value of a file whose formats have no mark of their own is no height, mm otherwise.
 inline double measured_height(double value, double unit) {
