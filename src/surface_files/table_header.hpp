@@ -17,7 +17,7 @@ struct TableHeader {
     std::optional<double> pitch_x, pitch_y; // between points
     std::optional<double> cells;            // the same, in the unit of the heights (ESRI's grids)
     std::optional<double> width, height;    // of the whole grid
-    // The same as numbers whose unit stands elsewhere (SPIP): in that of its axis, else of the heights.
+    // SPIP states the extents of the whole grid as numbers, whose unit is that of their axis, else of the heights.
     std::optional<double> x_length, y_length;
     std::optional<double> x_unit, y_unit; // mm
     std::optional<double> x0, y0;         // of the point with the lowest x and y

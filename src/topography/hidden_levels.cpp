@@ -21,8 +21,9 @@ constexpr std::size_t neighbours = 9;
 // Levels 0.6 depths of focus apart have 0.14 and more in the median, spherical aberration of 0.1 wave has 0.05.
 constexpr double least_share = 0.08;
 
-// What a window of this radius has by the slope of the map at a place: of the plane that fits the heights within twice
-// the radius. Heights that jump between two levels have none.
+// The variance of height that a window of this radius holds because the map slopes there, by the plane that fits the
+// heights within twice the radius: the map shows it, so it is not hidden. Heights that jump between two levels have no
+// slope.
 double variance_by_slope(const Grid<double>& height, const LevelsAtPlace& place, int radius) {
     const int reach = 2 * radius;
     PlaneMoments around;
@@ -58,7 +59,8 @@ double squared_distance(const LevelsAtPlace& place, double column, double row) {
     return std::pow(place.column - column, 2) + std::pow(place.row - row, 2);
 }
 
-// Of the places nearest to one of them.
+// The mean variance of levels over the places nearest to `middle`, in the unit of the heights squared; 0 where they do
+// not agree that there are several levels, since a single place is often wrong.
 double variance_around(std::span<const LevelsAtPlace> places, const LevelsAtPlace& middle) {
     std::vector<LevelsAtPlace> near(places.begin(), places.end());
     const auto count = std::min(neighbours, near.size());

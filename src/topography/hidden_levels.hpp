@@ -21,7 +21,8 @@
 
 namespace vkfv::topography {
 
-// What a place of the stack tells; variances in squares of steps.
+// The levels that the focus curves of one place, a pixel of the stack, point to. Variances are in squares of the scan's
+// steps.
 struct LevelsAtPlace {
     int column = 0;
     int row = 0;

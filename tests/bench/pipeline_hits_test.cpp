@@ -52,8 +52,8 @@ HitDifferences compared(const specimen::Specimen& specimen, const specimen::Spec
 
 void expect_agreement(const specimen::Specimen& specimen, trace::Traversal traversal) {
     const HitDifferences found = compared(specimen, specimen, traversal);
-    // Of the rays that arrive, at most a fifth leave sideways: the roof is 0.03 mm high and 0.1 mm wide, and they lean
-    // by at most 24 degrees. None that leave it need meet it again.
+    // The roof is 0.03 mm high and 0.1 mm wide, and rays lean by at most 24 degrees, so that at most a fifth of those
+    // that arrive leave sideways. Rays that leave the roof need not meet it again.
     EXPECT_GT(found.both, found.rays * 2 / 5);
     EXPECT_EQ(found.unexplained, 0U);
     // The belt of 1 nm beside edges and crests, some 100 lines of 0.1 mm in a square of that side, holds 1e-3 of the
