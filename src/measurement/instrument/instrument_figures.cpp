@@ -163,7 +163,8 @@ FigureGroup figures_of_waves(const optics::WaveOptions& options, const optics::I
 FigureGroup figures_of_phase(const PhaseLimits& limits, std::vector<std::string>& warnings) {
     std::ranges::move(warnings_of(limits), std::back_inserter(warnings));
     return {"Whether images of waves hold: a filled pupil, or relief above lambda / (4 pi)",
-            {{"wave_source_fill", limits.source_fill, "of the objective's aperture, by the source; 0: a ring"},
+            {{"wave_contrast_error_fill", limits.contrast_error, "at most, since light does not fill the pupil evenly"},
+             {"wave_source_fill", limits.source_fill, "of the objective's aperture, by the source; 0: a ring"},
              {"wave_scatter_fill", limits.scatter_fill, "the same by the specimen's scatter; 0: a mirror"},
              {"wave_texture_um", limits.texture * um_per_mm, "standard deviation of the specimen's texture"},
              {"wave_phase_height_um", limits.phase_height * um_per_mm, "lambda / (4 pi)"}}};

@@ -15,6 +15,8 @@
 namespace vkfv::measurement {
 
 struct PhaseLimits {
+    // The largest error of contrast, since light does not fill the pupil evenly (contrast_error_of()).
+    double contrast_error = 0;
     // Half of the light from the middle of the source (of a ring: from its band) that a level specimen scatters into
     // the objective's aperture lies within a sine; this is that sine over the one of a pupil filled evenly, at most 1:
     // 0 of a mirror, 1 of a Lambertian surface.

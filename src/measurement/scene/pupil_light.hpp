@@ -1,0 +1,42 @@
+// How light from a point of the specimen is spread over the objective's pupil, and what that means for its images.
+#pragma once
+
+#include "core/mathematics/grid.hpp"
+#include "optics/instrument/instrument.hpp"
+#include "specimen/description.hpp"
+#include "specimen/specimen.hpp"
+
+#include <cstddef>
+
+namespace vkfv::measurement {
+
+// The numbers of a material that the shared physics asks its scene for.
+class MaterialScene {
+  public:
+    explicit MaterialScene(const specimen::Material& material) : material_(specimen::material_numbers(material)) {}
+    double material_number(int index) const { return material_.numbers[static_cast<std::size_t>(index)]; }
+
+  private:
+    specimen::MaterialNumbers material_;
+};
+
+// Shares of the light of a source that a level point in the middle of the field sends into cells of the objective's
+// pupil. The pupil is the circle inscribed in the grid, its coordinates are direction cosines; a cell whose middle lies
+// outside has 0. All are 0 where no light arrives.
+using PupilLight = Grid<double>;
+
+inline constexpr int pupil_light_cells = 32; // across
+
+// The light of the source of `instrument` that `source` describes. aperture_sine: of the objective, in the object's
+// medium. Mirror lobes and sharp ones are drawn by 65536 paths, others are integrated over 1024 points of the source.
+PupilLight pupil_light(const optics::InstrumentDescription& description, const optics::SourceDescription& source,
+                       const optics::Instrument& instrument, const specimen::Material& material, double aperture_sine);
+
+// The largest error of contrast, over all frequencies that a pupil passes in focus, of images that add the waves of
+// different paths without their phases. They count light at the middle m of two points of the pupil, m + lambda f / 2
+// and m - lambda f / 2, whose waves make the frequency f. For weak differences of reflectance the light that counts is
+// the mean of the two points themselves (Hopkins, Proc. R. Soc. A 217, 408 (1953), for weak objects). Both are the same
+// where the pupil is filled evenly. 1 where no light arrives.
+double contrast_error_of(const PupilLight& light);
+
+} // namespace vkfv::measurement
