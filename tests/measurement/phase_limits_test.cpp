@@ -115,12 +115,15 @@ TEST(PhaseLimits, ScatterFillsThePupilAsItsLobeDoes) {
 
 // The light of a mirror is the source's image, a disc. The same difference of contrasts by areas of overlapping discs.
 double error_of_disc(double fill) {
-    constexpr int steps = 600;
+    constexpr int steps = 600, frequencies = 100;
+    const auto place = [&](int step) { return fill * (2 * (step + 0.5) / steps - 1); };
     double largest = 0;
-    for (double frequency = 0.02; frequency < 2; frequency += 0.02) {
+    for (int i = 1; i < frequencies; ++i) {
+        const double frequency = 2.0 * i / frequencies;
         int lit = 0, middles = 0, ends = 0;
-        for (int i = 0; i < steps * steps; ++i) {
-            const double x = fill * (2 * (i % steps + 0.5) / steps - 1), y = fill * (2 * (i / steps + 0.5) / steps - 1);
+        for (int j = 0; j < steps * steps; ++j) {
+            const int row = j / steps;
+            const double x = place(j % steps), y = place(row);
             const bool is_lit = x * x + y * y <= fill * fill;
             lit += is_lit ? 1 : 0;
             middles += is_lit && std::hypot(std::abs(x) + 0.5 * frequency, y) <= 1 ? 1 : 0;
